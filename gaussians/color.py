@@ -1,0 +1,153 @@
+"""Colours: names to RGB, and display RGB to CIE Lab and LCh and back.
+
+Display space is sRGB with the D65 white point (IEC 61966-2-1); Lab is CIE 1976. Names are the CSS Color Module
+Level 4 names (through Pillow's table) plus a few that people say and CSS does not know.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+
+import torch
+from torch import Tensor
+
+from .errors import UserError
+
+Rgb = tuple[float, float, float]
+
+# Everyday names that CSS lacks, or for which its value is not what people picture.
+EVERYDAY: dict[str, str] = {
+    "cream": "#fffdd0", "mustard": "#e1ad01", "rose": "#ff66a3", "charcoal": "#36454f", "burgundy": "#800020",
+    "terracotta": "#e2725b", "mint": "#98ff98", "peach": "#ffcba4", "ochre": "#cc7722", "emerald": "#50c878",
+    "sapphire": "#0f52ba", "ruby": "#9b111e", "amber": "#ffbf00", "lilac": "#c8a2c8", "mauve": "#c29bc2",
+    "taupe": "#8b7d6b", "rust": "#b7410e", "copper": "#b87333", "bronze": "#cd7f32", "brass": "#b5a642",
+    "sand": "#c2b280", "wine": "#722f37", "denim": "#1560bd", "forest green": "#228b22", "sage": "#9caf88",
+    "blonde": "#e6c98f", "wooden": "#9a6a3c", "oak": "#b5894f", "walnut": "#5d432c", "green": "#1f8b24",
+    "apricot": "#fbceb1", "scarlet": "#ff2400", "jade": "#00a86b", "off white": "#f5f2e8", "pink": "#ff8fb0",
+}  # fmt: skip
+
+# The basic colour terms (Berlin & Kay 1969) and the ones our users say most, each by one typical Lab value.
+BASIC: dict[str, str] = {
+    "red": "#c8201e", "orange": "#f07c1c", "yellow": "#f2d31b", "green": "#3c9a3f", "teal": "#128080",
+    "blue": "#2a5ac8", "purple": "#7d3fa6", "pink": "#f08fb4", "brown": "#7a4a26", "beige": "#d9c4a0",
+    "black": "#1a1a1a", "gray": "#808080", "white": "#f2f2f2",
+}  # fmt: skip
+
+_WORDS = re.compile(r"[^a-z0-9#]+")
+_QUALIFIER = re.compile(r"^(very dark|dark|deep|very light|light|pale|bright|vivid) (.+)$")
+
+
+def names() -> tuple[str, ...]:
+    """All colour names that `parse` accepts, without qualifiers."""
+    from PIL import ImageColor
+
+    return tuple(sorted(set(ImageColor.colormap) | set(EVERYDAY)))
+
+
+def parse(text: str) -> Rgb:
+    """RGB in [0, 1], display space, of a CSS name, an everyday name, `#rgb`, `#rrggbb`, or "dark/light/… NAME".
+
+    Raises:
+        UserError: for an unknown colour, naming the closest known ones.
+    """
+    from PIL import ImageColor
+
+    plain = _WORDS.sub(" ", text.lower()).strip()
+    joined = plain.replace(" ", "")
+    for table in (EVERYDAY, ImageColor.colormap):
+        value = table.get(plain) or table.get(joined) or table.get(joined.replace("grey", "gray"))
+        if isinstance(value, str):
+            return _hex(value)
+    if re.fullmatch(r"#([0-9a-f]{3}|[0-9a-f]{6})", joined):
+        return _hex(joined)
+    if found := _QUALIFIER.match(plain):
+        return _qualify(found.group(1), parse(found.group(2)))
+    if found := re.fullmatch(r"(\w+)ish", joined):
+        return parse(found.group(1).removesuffix("d") if found.group(1).endswith("dd") else found.group(1))
+    close = difflib.get_close_matches(joined, names(), n=3, cutoff=0.6)
+    hint = f"; did you mean {', '.join(close)}?" if close else "; use a CSS name such as teal, or #1f8a8a"
+    raise UserError(f"unknown colour {text!r}{hint}")
+
+
+def _hex(value: str) -> Rgb:
+    digits = value.lstrip("#")
+    if len(digits) == 3:
+        digits = "".join(c * 2 for c in digits)
+    return (int(digits[0:2], 16) / 255, int(digits[2:4], 16) / 255, int(digits[4:6], 16) / 255)
+
+
+def _qualify(word: str, rgb: Rgb) -> Rgb:
+    """Shift lightness or chroma of `rgb` in LCh as the qualifier says."""
+    lightness, a, b = rgb_to_lab(torch.tensor(rgb)).tolist()
+    chroma_gain = 1.3 if word in ("bright", "vivid", "deep") else 0.7 if word in ("pale", "light", "very light") else 1
+    if word in ("dark", "deep"):
+        lightness *= 0.6
+    elif word == "very dark":
+        lightness *= 0.35
+    elif word in ("light", "pale"):
+        lightness += 0.5 * (100 - lightness)
+    elif word == "very light":
+        lightness += 0.75 * (100 - lightness)
+    r, g, blue = lab_to_rgb(torch.tensor([lightness, a * chroma_gain, b * chroma_gain])).clamp(0, 1).tolist()
+    return (r, g, blue)
+
+
+# Rows: linear sRGB to XYZ, relative to the D65 white (0.95047, 1, 1.08883), so that white maps to (1, 1, 1).
+_XYZ = torch.tensor(
+    [
+        [0.4124564 / 0.95047, 0.3575761 / 0.95047, 0.1804375 / 0.95047],
+        [0.2126729, 0.7151522, 0.0721750],
+        [0.0193339 / 1.08883, 0.1191920 / 1.08883, 0.9503041 / 1.08883],
+    ],
+    dtype=torch.float64,
+)
+
+
+def rgb_to_lab(rgb: Tensor) -> Tensor:
+    """Display RGB `[..., 3]` (0..1; values outside are extended by odd symmetry) to Lab `[..., 3]`, L in 0..100."""
+    linear = torch.where(
+        rgb.abs() <= 0.04045, rgb / 12.92, torch.sign(rgb) * ((rgb.abs() + 0.055) / 1.055).clamp(min=0) ** 2.4
+    )
+    xyz = linear @ _XYZ.to(rgb.device, rgb.dtype).T
+    f = torch.where(
+        xyz > (6 / 29) ** 3, xyz.clamp(min=1e-12) ** (1 / 3), xyz / (3 * (6 / 29) ** 2) + 4 / 29
+    )
+    return torch.stack([116 * f[..., 1] - 16, 500 * (f[..., 0] - f[..., 1]), 200 * (f[..., 1] - f[..., 2])], dim=-1)
+
+
+def lab_to_rgb(lab: Tensor) -> Tensor:
+    """Lab `[..., 3]` to display RGB `[..., 3]`, not clipped to the gamut."""
+    fy = (lab[..., 0] + 16) / 116
+    f = torch.stack([fy + lab[..., 1] / 500, fy, fy - lab[..., 2] / 200], dim=-1)
+    xyz = torch.where(f > 6 / 29, f**3, 3 * (6 / 29) ** 2 * (f - 4 / 29))
+    linear = xyz @ torch.linalg.inv(_XYZ).to(lab.device, lab.dtype).T
+    low = linear.abs() <= 0.0031308
+    return torch.where(low, 12.92 * linear, torch.sign(linear) * (1.055 * linear.abs().clamp(min=1e-12) ** (1 / 2.4) - 0.055))
+
+
+def name_of(lab: tuple[float, float, float] | Tensor) -> str:
+    """The basic colour term nearest to a Lab value, with "dark" or "light" where the lightness is far off."""
+    lightness, a, b = (float(v) for v in lab)
+    chroma = math.hypot(a, b)
+    if chroma < 9:
+        return "black" if lightness < 22 else "dark gray" if lightness < 42 else "gray" if lightness < 72 else (
+            "light gray" if lightness < 86 else "white"
+        )
+    best = min(_BASIC_LAB, key=lambda n: _term_distance((lightness, a, b), _BASIC_LAB[n]))
+    gap = lightness - _BASIC_LAB[best][0]
+    return f"dark {best}" if gap < -18 and best != "black" else f"light {best}" if gap > 22 and best != "white" else best
+
+
+def _term_distance(x: tuple[float, float, float], y: tuple[float, float, float]) -> float:
+    """Distance for naming: hue and chroma count fully, lightness at 0.55, as names tolerate shading."""
+    return math.sqrt((0.55 * (x[0] - y[0])) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2)
+
+
+def _lab3(rgb: Rgb) -> tuple[float, float, float]:
+    lightness, a, b = rgb_to_lab(torch.tensor(rgb, dtype=torch.float64)).tolist()
+    return (lightness, a, b)
+
+
+_BASIC_LAB: dict[str, tuple[float, float, float]] = {name: _lab3(_hex(value)) for name, value in BASIC.items()}

@@ -1,0 +1,113 @@
+"""The language field: a table of groups, never a vector per Gaussian.
+
+A group is a node of a two-level tree. Leaves ("part") own Gaussians through `GaussianCloud.group`; an "object" is the
+union of its parts (an object of one part is its own leaf). "structure" is floor, ground, wall or ceiling.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..camera import Vec3
+from ..errors import BackendError
+
+Level = Literal["object", "part", "structure"]
+
+
+@dataclass(frozen=True)
+class Box:
+    """An upright oriented box.
+
+    Attributes:
+        center: world, scene units.
+        axes: two level unit vectors (x', y') and the scene's up, right-handed, as rows.
+        size: full extents along those axes.
+    """
+
+    center: Vec3
+    axes: tuple[Vec3, Vec3, Vec3]
+    size: Vec3
+
+    def local(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
+        """World points `[M, 3]` in the box's frame, origin at its centre."""
+        return (np.asarray(points, dtype=np.float64) - np.array(self.center)) @ np.array(self.axes).T
+
+    def corners(self) -> NDArray[np.float64]:
+        """`[8, 3]` world corners; the first four are the lower ones."""
+        signs = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], dtype=np.float64)
+        return np.array(self.center) + (signs * np.array(self.size) / 2) @ np.array(self.axes)
+
+
+@dataclass(frozen=True)
+class Group:
+    """One row of the table.
+
+    Attributes:
+        id: index into the field's embeddings; leaves appear in `GaussianCloud.group`.
+        level: "object", "part" or "structure".
+        parent: id of the object a part belongs to, or -1.
+        label: the name the encoder gives it, "" if it has none it is sure of.
+        label_score: calibrated probability of that name, in [0, 1].
+        box: robust extent of its Gaussians.
+        lab: measured colour, opacity-and-area-weighted median in CIE Lab.
+        count: Gaussians in it.
+        views: how many of the embedding views saw it.
+        confidence: share of its Gaussians that the segmentation is sure of, in [0, 1].
+    """
+
+    id: int
+    level: Level
+    parent: int
+    label: str
+    label_score: float
+    box: Box
+    lab: Vec3
+    count: int
+    views: int
+    confidence: float
+
+
+@dataclass(frozen=True, eq=False)
+class LanguageField:
+    """The table and what is needed to ask it.
+
+    Attributes:
+        groups: rows, `groups[i].id == i`.
+        embeddings: `[G, D]` float32, unit rows (zero rows for groups that were never encoded).
+        encoder: fingerprint of the encoder that made the embeddings; a query with another one raises.
+        notes: what the embedding left out, in sentences ("3 % of the Gaussians are seen from no view").
+    """
+
+    groups: tuple[Group, ...]
+    embeddings: NDArray[np.float32]
+    encoder: str
+    notes: tuple[str, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        if [g.id for g in self.groups] != list(range(len(self.groups))) or len(self.embeddings) != len(self.groups):
+            raise BackendError("the language field's table is inconsistent; embed the scene again")
+
+    def objects(self) -> tuple[Group, ...]:
+        """The rows that a person would count as things."""
+        return tuple(g for g in self.groups if g.level == "object")
+
+    def leaves(self, group: int) -> tuple[int, ...]:
+        """Ids under which the Gaussians of a group are filed in the cloud: itself and its parts."""
+        return (group, *(g.id for g in self.groups if g.parent == group))
+
+    def require_encoder(self, fingerprint: str) -> Self:
+        """Itself, if it was made with this encoder.
+
+        Raises:
+            BackendError: the vectors come from another encoder and cannot be compared.
+        """
+        if fingerprint != self.encoder:
+            raise BackendError(
+                f"this scene was embedded with encoder {self.encoder}, the query uses {fingerprint}; "
+                "run `scenewright embed` again or choose the encoder it was made with"
+            )
+        return self

@@ -1,0 +1,94 @@
+"""What a phrase means, as data. Knows nothing of the sentence it came from nor of the scene it will meet.
+
+Text similarity, measured attributes and geometry stay separate terms: a colour word never goes to the text encoder,
+and negation is a set difference, because encoders are near bag-of-words on both (see FIELD figures in docs).
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Name = Annotated[str, Field(max_length=80)]
+Relations = Literal[
+    "left_of", "right_of", "in_front_of", "behind", "on", "under", "above", "below", "inside", "next_to", "between",
+    "nearest_to", "farthest_from", "part_of",
+]  # fmt: skip
+Picks = Literal[
+    "one", "all", "any", "largest", "smallest", "tallest", "shortest", "nearest", "farthest", "leftmost", "rightmost",
+    "highest", "lowest", "nth", "rest",
+]  # fmt: skip
+Sizes = Literal["small", "large", "tall", "short", "wide", "narrow"]
+
+
+class Relation(BaseModel):
+    """A relation of what is sought to one or two anchors, in a named frame of reference.
+
+    `frame="viewer"`: left, right, in front and behind as the current camera sees them; `"object"`: along the anchor's
+    own axes, its front being the side it faces.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: Relations
+    anchors: Annotated[tuple[Query, ...], Field(min_length=1, max_length=2)]
+    frame: Literal["viewer", "object"] = "viewer"
+
+
+class Query(BaseModel):
+    """What to select.
+
+    Attributes:
+        text: the noun phrase without its measured attributes, singular, e.g. "coffee table"; "" means anything.
+        colors: colour words that must hold as measured ("red", "dark green"); every one of them.
+        not_colors: colour words that must not hold.
+        size: a relative size word among those that otherwise match.
+        relations: all must hold.
+        pick: what to do with several matches. "one" demands exactly one and reports an ambiguity otherwise;
+            "all" takes every match; "any" takes the best; superlatives and "nth" (with `ordinal`) order them;
+            "rest" takes everything but the matches.
+        ordinal: 1-based, with pick "nth", counted left to right as the viewer sees them.
+        count: how many are meant ("two chairs"); fewer or more matches are reported.
+        exclude: set difference ("all chairs but the green one").
+        also: set union ("the chairs and the lamp").
+        last: the selection of the instruction before ("it", "them").
+        groups: explicit group ids (from a picked candidate or a planner that saw the graph); overrides `text`.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    text: Name = ""
+    colors: Annotated[tuple[Name, ...], Field(max_length=4)] = ()
+    not_colors: Annotated[tuple[Name, ...], Field(max_length=4)] = ()
+    size: Sizes | None = None
+    relations: Annotated[tuple[Relation, ...], Field(max_length=4)] = ()
+    pick: Picks = "one"
+    ordinal: Annotated[int, Field(ge=1, le=1000)] | None = None
+    count: Annotated[int, Field(ge=1, le=1000)] | None = None
+    exclude: Annotated[tuple[Query, ...], Field(max_length=4)] = ()
+    also: Annotated[tuple[Query, ...], Field(max_length=8)] = ()
+    last: bool = False
+    groups: Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(max_length=256)] = ()
+
+    def describe(self) -> str:
+        """The query in words, for messages: "the red chair left of the sofa"."""
+        if self.last:
+            return "it"
+        words = [*([self.size] if self.size else []), *self.colors, self.text or "thing"]
+        said = " ".join([*(f"not {c}" for c in self.not_colors), *words])
+        if self.pick not in ("one", "all", "any", "nth", "rest"):
+            said = f"{self.pick} {said}"
+        if self.pick == "nth" and self.ordinal:
+            said = f"{said} number {self.ordinal}"
+        said = f"{ {'all': 'all', 'any': 'any', 'rest': 'everything but'}.get(self.pick, 'the') } {said}"
+        for r in self.relations:
+            said += f" {r.name.replace('_', ' ')} " + " and ".join(a.describe() for a in r.anchors)
+        for q in self.exclude:
+            said += f" but not {q.describe()}"
+        for q in self.also:
+            said += f" and {q.describe()}"
+        return said
+
+
+Relation.model_rebuild()

@@ -1,0 +1,88 @@
+"""What a query found: rows by stable id, the groups behind them, every term's score, and one verdict."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import torch
+from torch import Tensor
+
+from ..camera import Vec3
+from ..cloud import GaussianCloud
+from ..errors import AbsentError, AmbiguousError
+from .query import Query
+
+Verdict = Literal["found", "ambiguous", "absent"]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One thing a query might mean.
+
+    Attributes:
+        group: id of its group.
+        label: what the encoder calls it, e.g. "armchair".
+        color: nearest basic colour name of its measured colour.
+        center: `[3]` of its box, world frame, scene units.
+        size: `[3]` extents of its oriented box, scene units: two level sides, then height.
+        score: product of the terms, in [0, 1].
+        terms: each term's own score in [0, 1]: "text", "color", "size", one a relation.
+    """
+
+    group: int
+    label: str
+    color: str
+    center: Vec3
+    size: Vec3
+    score: float
+    terms: dict[str, float] = field(default_factory=dict)
+
+    def describe(self) -> str:
+        return f"{self.color} {self.label} (group {self.group})"
+
+
+@dataclass(frozen=True, eq=False)
+class Selection:
+    """The answer to a query.
+
+    Attributes:
+        query: what was asked.
+        verdict: "found", "ambiguous" (see `candidates`) or "absent" (`candidates` holds the nearest).
+        ids: `[M]` int64 sorted stable ids of the selected Gaussians; empty unless found.
+        groups: ids of the selected groups.
+        candidates: best first; what was selected, what it hesitated between, or the nearest miss.
+        reason: one sentence for a person.
+    """
+
+    query: Query
+    verdict: Verdict
+    ids: Tensor
+    groups: tuple[int, ...] = ()
+    candidates: tuple[Candidate, ...] = ()
+    reason: str = ""
+
+    def __len__(self) -> int:
+        return int(self.ids.shape[0])
+
+    def mask(self, cloud: GaussianCloud) -> Tensor:
+        """`[N]` bool over the rows of `cloud`: which of its Gaussians are selected (ids gone since are ignored)."""
+        return torch.isin(cloud.ids, self.ids.to(cloud.device), assume_unique=True)
+
+    def require(self) -> Selection:
+        """Itself if found.
+
+        Raises:
+            AbsentError: nothing matches; the message names the nearest candidates.
+            AmbiguousError: several match; the message lists them.
+        """
+        if self.verdict == "absent":
+            raise AbsentError(self.reason or f"{self.query.describe()} is not in this scene")
+        if self.verdict == "ambiguous":
+            raise AmbiguousError(self.reason or f"{self.query.describe()}: several things match")
+        return self
+
+
+def nothing(query: Query, reason: str, candidates: tuple[Candidate, ...] = ()) -> Selection:
+    """An empty selection with the verdict absent."""
+    return Selection(query, "absent", torch.zeros(0, dtype=torch.int64), (), candidates, reason)

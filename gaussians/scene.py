@@ -1,0 +1,86 @@
+"""A scene: a cloud, the frame it stands in, the cameras it came with and the language field over it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .camera import Camera, Vec3
+from .cloud import GaussianCloud
+from .errors import UserError
+
+if TYPE_CHECKING:
+    from .language.field import LanguageField
+
+Source = Literal["given", "file", "estimated", "unknown"]
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Where up is and how long a metre is; each says where it came from.
+
+    Attributes:
+        up: unit vector, world frame.
+        floor: height of the floor along `up` (scene units), None if there is none.
+        metres_per_unit: None if the scale is unknown; distances are then in scene units and labelled so.
+        up_source, scale_source: how each was obtained.
+    """
+
+    up: Vec3 = (0.0, 0.0, 1.0)
+    floor: float | None = None
+    metres_per_unit: float | None = None
+    up_source: Source = "unknown"
+    scale_source: Source = "unknown"
+
+    def __post_init__(self) -> None:
+        length = math.sqrt(sum(c * c for c in self.up))
+        if not 0 < length < math.inf:
+            raise UserError(f"Frame.up must be a finite non-zero vector, got {self.up}")
+        object.__setattr__(self, "up", tuple(float(c) / length for c in self.up))
+        if self.metres_per_unit is not None and not 0 < self.metres_per_unit < math.inf:
+            raise UserError(f"Frame.metres_per_unit must be positive, got {self.metres_per_unit}")
+
+    @property
+    def up_vector(self) -> NDArray[np.float64]:
+        """`[3]`, unit."""
+        return np.array(self.up, dtype=np.float64)
+
+    def heights(self, points: NDArray[np.floating]) -> NDArray[np.floating]:
+        """Height of world points `[M, 3]` along up, `[M]`, scene units, above the world origin."""
+        return points @ self.up_vector.astype(points.dtype)
+
+    def basis(self) -> NDArray[np.float64]:
+        """`[3, 3]` rows east, north, up of a level right-handed frame; the identity when up is +z."""
+        up = self.up_vector
+        seed = np.array([1.0, 0.0, 0.0]) if abs(up[0]) < 0.9 else np.array([0.0, 1.0, 0.0])
+        east = seed - up * (seed @ up)
+        east /= np.linalg.norm(east)
+        return np.stack([east, np.cross(up, east), up])
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A frozen scene. Editing makes a new one; what did not change is shared.
+
+    Attributes:
+        cloud: the Gaussians.
+        frame: up, floor and scale.
+        cameras: cameras that came with the scene (may be empty); the first is the viewer by default.
+        language: groups that words resolve to, or None before embedding.
+        path: the file it was loaded from, or None.
+    """
+
+    cloud: GaussianCloud
+    frame: Frame = Frame()
+    cameras: tuple[Camera, ...] = ()
+    language: LanguageField | None = None
+    path: Path | None = None
+
+    def replace(self, **changes: Any) -> Self:
+        """A new scene with some parts exchanged."""
+        return replace(self, **changes)
