@@ -6,6 +6,7 @@ Knows tensors and their shapes. Refuses to know files (which store logits and lo
 from __future__ import annotations
 
 import hashlib
+import itertools
 from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
@@ -172,4 +173,4 @@ def concat(clouds: list[GaussianCloud]) -> GaussianCloud:
 def _ranges_overlap(clouds: list[GaussianCloud]) -> bool:
     """Whether id ranges of any two clouds intersect (cheap test before the exact one)."""
     spans = sorted((int(c.ids.min()), int(c.ids.max())) for c in clouds if len(c))
-    return any(low <= high for (_, high), (low, _) in zip(spans, spans[1:], strict=False))
+    return any(low <= high for (_, high), (low, _) in itertools.pairwise(spans))

@@ -111,9 +111,7 @@ def rgb_to_lab(rgb: Tensor) -> Tensor:
         rgb.abs() <= 0.04045, rgb / 12.92, torch.sign(rgb) * ((rgb.abs() + 0.055) / 1.055).clamp(min=0) ** 2.4
     )
     xyz = linear @ _XYZ.to(rgb.device, rgb.dtype).T
-    f = torch.where(
-        xyz > (6 / 29) ** 3, xyz.clamp(min=1e-12) ** (1 / 3), xyz / (3 * (6 / 29) ** 2) + 4 / 29
-    )
+    f = torch.where(xyz > (6 / 29) ** 3, xyz.clamp(min=1e-12) ** (1 / 3), xyz / (3 * (6 / 29) ** 2) + 4 / 29)
     return torch.stack([116 * f[..., 1] - 16, 500 * (f[..., 0] - f[..., 1]), 200 * (f[..., 1] - f[..., 2])], dim=-1)
 
 
@@ -124,7 +122,9 @@ def lab_to_rgb(lab: Tensor) -> Tensor:
     xyz = torch.where(f > 6 / 29, f**3, 3 * (6 / 29) ** 2 * (f - 4 / 29))
     linear = xyz @ torch.linalg.inv(_XYZ).to(lab.device, lab.dtype).T
     low = linear.abs() <= 0.0031308
-    return torch.where(low, 12.92 * linear, torch.sign(linear) * (1.055 * linear.abs().clamp(min=1e-12) ** (1 / 2.4) - 0.055))
+    return torch.where(
+        low, 12.92 * linear, torch.sign(linear) * (1.055 * linear.abs().clamp(min=1e-12) ** (1 / 2.4) - 0.055)
+    )
 
 
 def name_of(lab: tuple[float, float, float] | Tensor) -> str:
@@ -132,12 +132,20 @@ def name_of(lab: tuple[float, float, float] | Tensor) -> str:
     lightness, a, b = (float(v) for v in lab)
     chroma = math.hypot(a, b)
     if chroma < 9:
-        return "black" if lightness < 22 else "dark gray" if lightness < 42 else "gray" if lightness < 72 else (
-            "light gray" if lightness < 86 else "white"
+        return (
+            "black"
+            if lightness < 22
+            else "dark gray"
+            if lightness < 42
+            else "gray"
+            if lightness < 72
+            else ("light gray" if lightness < 86 else "white")
         )
     best = min(_BASIC_LAB, key=lambda n: _term_distance((lightness, a, b), _BASIC_LAB[n]))
     gap = lightness - _BASIC_LAB[best][0]
-    return f"dark {best}" if gap < -18 and best != "black" else f"light {best}" if gap > 22 and best != "white" else best
+    return (
+        f"dark {best}" if gap < -18 and best != "black" else f"light {best}" if gap > 22 and best != "white" else best
+    )
 
 
 def _term_distance(x: tuple[float, float, float], y: tuple[float, float, float]) -> float:

@@ -1,0 +1,18 @@
+"""Shared fixtures: where the real data lies, and seeds."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+_DATA = Path(os.environ.get("SCENEWRIGHT_DATA", Path(__file__).resolve().parents[1] / "../shared/data")).resolve()
+
+
+@pytest.fixture(scope="session")
+def data_dir() -> Path:
+    """The folder of real scenes; tests that need it are skipped where it is absent."""
+    if not _DATA.is_dir():
+        pytest.skip(f"real data not found at {_DATA}; set SCENEWRIGHT_DATA to run this test")
+    return _DATA
