@@ -1,3 +1,120 @@
-"""Scenewright: edit, build and question 3D Gaussian Splatting scenes in plain words."""
+"""Scenewright: edit, build and question 3D Gaussian Splatting scenes in plain words.
+
+The public API. Names are imported on first use, so that `import scenewright` and the command line start at once; nothing
+here computes anything. `__all__` is the whole promise: what is not in it may change without notice.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .agent.result import Result
+    from .agent.session import Session
+    from .gaussians.assets import Asset, Room, furnish, kinds, make
+    from .gaussians.camera import Camera, Render
+    from .gaussians.cloud import GaussianCloud
+    from .gaussians.errors import (
+        AbsentError,
+        AmbiguousError,
+        BackendError,
+        CheckFailedError,
+        FileError,
+        InstructionError,
+        ScenewrightError,
+        UserError,
+    )
+    from .gaussians.files import load, save
+    from .gaussians.language import embed
+    from .gaussians.language.field import LanguageField
+    from .gaussians.language.query import Query, Relation
+    from .gaussians.language.selection import Selection
+    from .gaussians.render import render
+    from .gaussians.scene import Frame, Scene
+    from .planners.plan import EditPlan
+    from .tools import EditOp
+    from .tools.receipt import Receipt
 
 __version__ = "0.1.0"
+
+_HOME = {
+    "Session": ".agent.session",
+    "Result": ".agent.result",
+    "load": ".gaussians.files",
+    "save": ".gaussians.files",
+    "render": ".gaussians.render",
+    "embed": ".gaussians.language",
+    "kinds": ".gaussians.assets",
+    "make": ".gaussians.assets",
+    "furnish": ".gaussians.assets",
+    "Asset": ".gaussians.assets",
+    "Room": ".gaussians.assets",
+    "Scene": ".gaussians.scene",
+    "Frame": ".gaussians.scene",
+    "GaussianCloud": ".gaussians.cloud",
+    "Camera": ".gaussians.camera",
+    "Render": ".gaussians.camera",
+    "LanguageField": ".gaussians.language.field",
+    "Query": ".gaussians.language.query",
+    "Relation": ".gaussians.language.query",
+    "Selection": ".gaussians.language.selection",
+    "EditOp": ".tools",
+    "Receipt": ".tools.receipt",
+    "EditPlan": ".planners.plan",
+    "ScenewrightError": ".gaussians.errors",
+    "UserError": ".gaussians.errors",
+    "InstructionError": ".gaussians.errors",
+    "AbsentError": ".gaussians.errors",
+    "AmbiguousError": ".gaussians.errors",
+    "CheckFailedError": ".gaussians.errors",
+    "FileError": ".gaussians.errors",
+    "BackendError": ".gaussians.errors",
+}
+
+__all__ = [
+    "AbsentError",
+    "AmbiguousError",
+    "Asset",
+    "BackendError",
+    "Camera",
+    "CheckFailedError",
+    "EditOp",
+    "EditPlan",
+    "FileError",
+    "Frame",
+    "GaussianCloud",
+    "InstructionError",
+    "LanguageField",
+    "Query",
+    "Receipt",
+    "Relation",
+    "Render",
+    "Result",
+    "Room",
+    "Scene",
+    "ScenewrightError",
+    "Selection",
+    "Session",
+    "UserError",
+    "embed",
+    "furnish",
+    "kinds",
+    "load",
+    "make",
+    "render",
+    "save",
+]
+
+
+def __getattr__(name: str) -> Any:
+    home = _HOME.get(name)
+    if home is None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(importlib.import_module(home, __name__), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

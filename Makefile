@@ -1,0 +1,47 @@
+# Two commands for a person: `make demo` and `make test`. Everything lands in .venv and is installed once.
+#   make demo PYTHON=python3.12                                            another interpreter
+#   make test PIP_ARGS="--extra-index-url https://download.pytorch.org/whl/cpu"   where to find a CPU build of torch
+# pip prefers a CPU build of torch ("+cpu") wherever one of its indexes or --find-links folders offers it.
+
+PYTHON ?= python3
+VENV ?= .venv
+PIP_ARGS ?=
+DEMO ?= demo
+SEED ?= 0
+PYTEST_ARGS ?=
+
+BIN := $(VENV)/bin
+INSTALL := $(BIN)/python -m pip install --disable-pip-version-check $(PIP_ARGS)
+
+.PHONY: demo test lint format clean
+
+demo: $(VENV)/.ready
+	$(BIN)/scenewright demo -o $(DEMO) --seed $(SEED) --force
+
+test: $(VENV)/.ready-dev
+	$(BIN)/python -m pytest $(PYTEST_ARGS)
+
+lint: $(VENV)/.ready-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy -p scenewright
+
+format: $(VENV)/.ready-dev
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+clean:
+	rm -rf $(VENV) $(DEMO) build dist scenewright.egg-info
+
+# One pip command each, so that torch and whatever depends on it are resolved together.
+$(VENV)/.ready: $(VENV)/pyvenv.cfg pyproject.toml
+	$(INSTALL) -e .
+	touch $@
+
+$(VENV)/.ready-dev: $(VENV)/pyvenv.cfg pyproject.toml
+	$(INSTALL) -e ".[dev]"
+	touch $@ $(VENV)/.ready
+
+$(VENV)/pyvenv.cfg:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Scenewright needs Python 3.11 or newer: make PYTHON=python3.12 ...")'
+	$(PYTHON) -m venv $(VENV)

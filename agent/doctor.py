@@ -1,0 +1,162 @@
+"""Which back ends are usable on this machine, and what to install for the rest.
+
+Knows names of distributions and how each is known to break. Looks at metadata; imports a package only where nothing else tells
+(torchvision against a CPU torch). Changes nothing and fetches nothing.
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+import os
+import platform
+import shutil
+import subprocess
+import sys
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One back end.
+
+    Attributes:
+        name: what it is called on the command line or in `pip install`.
+        serves: what it is for.
+        usable: whether it would work now.
+        needed: without it the program does not run.
+        version: of the installed distribution, "" if there is none.
+        detail: what was found, one sentence.
+        fix: what to do if it is not usable, "" if it is.
+    """
+
+    name: str
+    serves: str
+    usable: bool
+    needed: bool
+    version: str
+    detail: str
+    fix: str
+
+    def to_json(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+NEEDED = {
+    "torch": "tensors and the reference renderer",
+    "numba": "fast rendering on the CPU",
+    "scipy": "nearest neighbours",
+    "onnxruntime": "the embedded text and image encoder",
+    "trimesh": "procedural assets",
+    "lark": "the grammar planner",
+    "pydantic": "plans and receipts",
+    "pillow": "pictures",
+    "typer": "the command line",
+    "rich": "tables",
+    "prompt_toolkit": "the chat",
+    "safetensors": "saved language fields",
+}
+
+
+def examine() -> list[Finding]:
+    """Every finding, the needed ones first."""
+    needed = [_distribution(name, serves, needed=True, fix=_REINSTALL) for name, serves in NEEDED.items()]
+    return [*needed, *(check() for check in (_cuda, _encoder, _torchvision, _open_clip, _transformers, _charts, _ffmpeg))]
+
+
+def machine() -> dict[str, Any]:
+    """What this runs on."""
+    return {
+        "python": platform.python_version(),
+        "system": f"{platform.system()} {platform.machine()}",
+        "cores": len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count(),
+        "executable": sys.executable,
+    }
+
+
+_REINSTALL = "install Scenewright again: pip install -e . (in its folder)"
+_MODELS = 'pip install "scenewright[models]" in one command with torch'
+
+
+def _version(name: str) -> str:
+    try:
+        return importlib.metadata.version(name)
+    except importlib.metadata.PackageNotFoundError:
+        return ""
+
+
+def _distribution(name: str, serves: str, *, needed: bool, fix: str) -> Finding:
+    version = _version(name)
+    detail = "installed" if version else "not installed"
+    return Finding(name, serves, bool(version), needed, version, detail, "" if version else fix)
+
+
+def _cuda() -> Finding:
+    """CUDA needs a CUDA build of torch and a driver; torch is asked only if both seem to be there."""
+    version = _version("torch")
+    if not version or version.endswith("+cpu"):
+        detail, usable = ("this torch is a CPU build" if version else "torch is not installed"), False
+    elif not shutil.which("nvidia-smi"):
+        detail, usable = "no NVIDIA driver found (nvidia-smi is not on the path)", False
+    else:
+        import torch
+
+        usable = bool(torch.cuda.is_available())
+        detail = torch.cuda.get_device_name(0) if usable else "torch finds no CUDA device"
+    fix = "" if usable else "not needed; with an NVIDIA GPU: install a CUDA build of torch 2.13 from pytorch.org"
+    return Finding("cuda", "tensors and the reference renderer on a GPU", usable, False, version, detail, fix)
+
+
+def _encoder() -> Finding:
+    """The encoder of our own ships as a file inside the package; a broken installation may lack it."""
+    home = Path(__file__).resolve().parent.parent / "gaussians" / "language"
+    weights = sorted(home.rglob("*.onnx"))
+    usable = bool(weights) and bool(_version("onnxruntime"))
+    detail = f"{len(weights)} files, {sum(w.stat().st_size for w in weights) / 1e6:.1f} MB" if weights else "its .onnx files are missing"
+    serves = "text and image embedding without a download"
+    return Finding("embedded encoder", serves, usable, True, "", detail, "" if usable else _REINSTALL)
+
+
+def _torchvision() -> Finding:
+    """torchvision from the usual index is a CUDA build; beside a CPU torch its import fails, and takes others with it."""
+    serves, version, torch = "transforms of open_clip and transformers", _version("torchvision"), _version("torch")
+    if not version:
+        return Finding("torchvision", serves, False, False, "", "not installed", _MODELS)
+    if torch.endswith("+cpu") == version.endswith("+cpu"):
+        return Finding("torchvision", serves, True, False, version, f"matches torch {torch}", "")
+    if not _problem("import torchvision"):
+        return Finding("torchvision", serves, True, False, version, f"imports beside torch {torch}", "")
+    problem = _problem("from scenewright.gaussians.vision_cure import import_torchvision as cured; cured()")
+    if not problem:
+        detail = f"a CUDA build beside torch {torch}: Scenewright cures its import"
+        return Finding("torchvision", serves, True, False, version, detail, "")
+    fix = f"pip install torchvision=={version.split('+')[0]}+cpu --index-url https://download.pytorch.org/whl/cpu"
+    return Finding("torchvision", serves, False, False, version, problem, fix)
+
+
+def _problem(code: str) -> str:
+    """The last line of what a fresh interpreter says to `code`; "" if it is content."""
+    try:
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+    except subprocess.TimeoutExpired:
+        return "its import takes longer than two minutes"
+    return "" if done.returncode == 0 else (done.stderr.strip().splitlines() or ["import failed"])[-1]
+
+
+def _open_clip() -> Finding:
+    return _distribution("open_clip_torch", "real CLIP towers (open_clip:MODEL/PRETRAINED)", needed=False, fix=_MODELS)
+
+
+def _transformers() -> Finding:
+    return _distribution("transformers", "local language and vision models", needed=False, fix=_MODELS)
+
+
+def _charts() -> Finding:
+    return _distribution("matplotlib", "charts of `scenewright bench`", needed=False, fix='pip install "scenewright[bench]"')
+
+
+def _ffmpeg() -> Finding:
+    path = shutil.which("ffmpeg")
+    detail = path or "not on the path"
+    return Finding("ffmpeg", "turning pictures into video", bool(path), False, "", detail, "" if path else "apt-get install ffmpeg")

@@ -1,0 +1,113 @@
+"""Where output goes: results on stdout, talk and progress on stderr, JSON when asked for.
+
+Knows streams. Refuses to know what a result means.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Mapping
+from typing import Any, TextIO
+
+from ..gaussians.errors import ScenewrightError, UserError
+
+
+class Terminal:
+    """One command's output.
+
+    Attributes:
+        as_json: print the result as one JSON object instead of text.
+        debug: let errors through with their traceback.
+    """
+
+    def __init__(self, out: TextIO | None = None, err: TextIO | None = None) -> None:
+        self._out, self._err = out, err
+        self.as_json = False
+        self.debug = False
+        self._line_open = False
+        self._last_progress = 0.0
+
+    @property
+    def out(self) -> TextIO:
+        return self._out or sys.stdout
+
+    @property
+    def err(self) -> TextIO:
+        return self._err or sys.stderr
+
+    def result(self, text: str, data: Mapping[str, Any]) -> None:
+        """The command's answer: `data` as JSON where asked for, else `text`."""
+        self.row(data) if self.as_json else self._write(self.out, text)
+
+    def row(self, data: Mapping[str, Any]) -> None:
+        """One JSON object on one line of stdout."""
+        self._write(self.out, json.dumps(data, ensure_ascii=False, default=str))
+
+    def say(self, text: str) -> None:
+        """A remark for a person."""
+        self._write(self.err, text)
+
+    def progress(self, stage: str, fraction: float) -> None:
+        """How far a long piece of work is, `fraction` in [0, 1]; drawn on a terminal only, at most ten times a second."""
+        if not self.err.isatty():
+            return
+        now = time.monotonic()
+        if fraction < 1 and now - self._last_progress < 0.1:
+            return
+        self._last_progress = now
+        filled = round(24 * min(max(fraction, 0.0), 1.0))
+        self.err.write(f"\r\x1b[K{'━' * filled}{'╌' * (24 - filled)} {stage}")
+        self._line_open = True
+        if fraction >= 1:
+            self.clear()
+        self.err.flush()
+
+    def clear(self) -> None:
+        """Remove an unfinished progress line."""
+        if self._line_open:
+            self.err.write("\r\x1b[K")
+            self._line_open = False
+
+    def _write(self, stream: TextIO, text: str) -> None:
+        self.clear()
+        stream.write(text + "\n")
+        stream.flush()
+
+
+def explain(error: ScenewrightError) -> dict[str, Any]:
+    """An error as data: its verdict, what to do, and the exit code."""
+    name = type(error).__name__.removesuffix("Error")
+    verdict = "".join(f"_{c.lower()}" if c.isupper() else c for c in name).lstrip("_")
+    return {"verdict": verdict, "reason": str(error), "exit_code": error.exit_code}
+
+
+def read_batch(path: str) -> list[dict[str, Any]]:
+    """The rows of a batch file: one JSON object a line with `id`, `text` and perhaps `context`; "-" is stdin.
+
+    Raises:
+        UserError: a line is not such an object; the message names it.
+    """
+    try:
+        if path == "-":
+            lines = sys.stdin.read().splitlines()
+        else:
+            with open(path, encoding="utf-8") as file:
+                lines = file.read().splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise UserError(f"cannot read the batch file {path}: {error}") from error
+    rows = []
+    for number, line in enumerate(lines, start=1):
+        if not line.strip():
+            continue
+        try:
+            row = json.loads(line)
+        except ValueError as error:
+            raise UserError(f"{path}, line {number}: not JSON ({error})") from error
+        if not isinstance(row, dict) or "id" not in row or not isinstance(row.get("text"), str):
+            raise UserError(f'{path}, line {number}: expected {{"id": …, "text": "…"}}')
+        if not isinstance(row.get("context", ""), str | None):
+            raise UserError(f"{path}, line {number}: context must be the instruction before, as text")
+        rows.append(row)
+    return rows
