@@ -1,0 +1,225 @@
+"""The types every operation is made of: lengths, placements, the operation itself, its context and its outcome.
+
+Knows what an operation may say and what it must give back. Refuses to know which operations exist (see registry),
+how words become selections (see gaussians.language) and where an operation came from.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Annotated, Any, ClassVar, Literal, Protocol, Self
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+from torch import Tensor
+
+from ..gaussians.camera import Camera
+from ..gaussians.language.query import Query
+from ..gaussians.language.selection import Selection
+from ..gaussians.scene import Frame, Scene
+from .receipt import Check, Pixels, Receipt, SelectionSummary
+
+__all__ = [
+    "Affine", "Check", "ColorName", "Context", "Direction", "EditOp", "Encoder", "Length", "Outcome", "Pixels",
+    "Placement", "Receipt", "SelectionSummary", "TargetedOp",
+]  # fmt: skip
+
+Unit = Literal["m", "cm", "mm", "in", "ft", "units"]
+Direction = Literal["left", "right", "forward", "backward", "up", "down"]
+Spot = Literal[
+    "on", "under", "next_to", "left_of", "right_of", "in_front_of", "behind", "between", "against", "inside",
+    "center", "corner",
+]  # fmt: skip
+ColorName = Annotated[str, Field(min_length=1, max_length=40)]
+AssetName = Annotated[str, Field(min_length=1, max_length=60)]
+
+METRES: dict[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+# Spots that make no sense without something to be placed against.
+_NEED_ANCHOR = {"under", "next_to", "left_of", "right_of", "in_front_of", "behind", "between", "inside"}
+
+
+class Length(BaseModel):
+    """A length with its unit. "units" are the scene's own units; the others are converted by the scene's scale."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    value: Annotated[float, Field(gt=0, le=10_000, allow_inf_nan=False)]
+    unit: Unit = "m"
+
+    def in_units(self, frame: Frame) -> float:
+        """This length in scene units; one unit counts as one metre where the scale is unknown (see `assumption`)."""
+        if self.unit == "units":
+            return self.value
+        return self.value * METRES[self.unit] / (frame.metres_per_unit or 1.0)
+
+    def assumption(self, frame: Frame) -> tuple[str, ...]:
+        """What had to be assumed to convert it, as notes for the receipt; empty if nothing."""
+        if self.unit == "units" or frame.metres_per_unit is not None:
+            return ()
+        return (f"the scene's scale is unknown: {self.describe()} was read with one scene unit as one metre",)
+
+    def describe(self) -> str:
+        """ "40 cm"."""
+        return f"{self.value:g} {self.unit}"
+
+
+class Placement(BaseModel):
+    """Where to put something: a relation to one or two things, or to the room if there are no anchors.
+
+    "on" without an anchor or with an anchor called "floor" is on the floor. Left, right, in front and behind are as
+    the viewer sees them. "between" takes two anchors, or one that means two things. "against" without an anchor is
+    against a wall; "center" and "corner" without one are those of the room.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    relation: Spot
+    anchors: Annotated[tuple[Query, ...], Field(max_length=2)] = ()
+
+    @model_validator(mode="after")
+    def _anchored(self) -> Self:
+        if self.relation in _NEED_ANCHOR and not self.anchors:
+            raise ValueError(f'place "{self.relation}" needs an anchor: say {self.relation.replace("_", " ")} what')
+        if len(self.anchors) > 1 and self.relation != "between":
+            raise ValueError(f'place "{self.relation}" takes one anchor, got {len(self.anchors)}')
+        return self
+
+    def describe(self) -> str:
+        """ "next to the sofa"."""
+        things = " and ".join(a.describe() for a in self.anchors) or "the room"
+        return f"{self.relation.replace('_', ' ')} {things}"
+
+
+class Encoder(Protocol):
+    """The part of a text encoder that operations use: new objects get a vector from their name."""
+
+    @property
+    def fingerprint(self) -> str: ...
+
+    def encode_text(self, texts: list[str]) -> NDArray[np.float32]:
+        """Unit rows `[T, D]`."""
+        ...
+
+
+Resolver = Callable[..., Selection]  # resolve(scene, query, viewer, encoder=None, last=None), as gaussians.language
+
+
+@dataclass(frozen=True, eq=False)
+class Context:
+    """What an operation may look at besides the scene.
+
+    Attributes:
+        viewer: whose left, right, in front and behind are meant; pixel checks look through it.
+        last: the selection of the instruction before ("it").
+        encoder: for words and for naming new objects; None works with measured attributes only.
+        seed: what varies between two inserted chairs; same seed, same bytes.
+        pixel_checks: whether to render before and after from the viewer (slower; never needed for correctness).
+        pixel_width: width of these pictures, pixels.
+        resolver: how queries become selections; None means `scenewright.gaussians.language.resolve`.
+        renderer: back end of pixel checks, as `gaussians.render.render` takes it.
+    """
+
+    viewer: Camera
+    last: Selection | None = None
+    encoder: Encoder | None = None
+    seed: int = 0
+    pixel_checks: bool = False
+    pixel_width: int = 256
+    resolver: Resolver | None = None
+    renderer: str = "auto"
+
+    def resolve(self, scene: Scene, query: Query) -> Selection:
+        """What `query` means in `scene`; the verdict is not judged here (see `Selection.require`)."""
+        resolver = self.resolver
+        if resolver is None:
+            from ..gaussians.language.resolve import resolve as resolver
+        return resolver(scene, query, self.viewer, encoder=self.encoder, last=self.last)
+
+
+@dataclass(frozen=True, eq=False)
+class Affine:
+    """What was asked of one body: `x -> matrix @ x + offset` on its centres.
+
+    Attributes:
+        ids: `[M]` int64, the Gaussians that were to move.
+        matrix: `[3, 3]` float64.
+        offset: `[3]` float64, scene units.
+        source: `[M]` int64, the Gaussians before the edit they are compared with; the same ids unless copied.
+        support: height along up of the surface it was put on, scene units; None if it was not put anywhere.
+    """
+
+    ids: Tensor
+    matrix: NDArray[np.float64]
+    offset: NDArray[np.float64]
+    source: Tensor
+    support: float | None = None
+
+
+_NONE = torch.zeros(0, dtype=torch.int64)
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What `EditOp.apply` gives back.
+
+    Rows that stay keep their order; added rows stand at the end.
+
+    Attributes:
+        scene: the new scene; shares every column that did not change.
+        touched: `[M]` int64 ids of Gaussians that stayed and changed.
+        added, removed: `[M]` int64 ids.
+        moved: what was asked of each body, for the checks.
+        notes: for the receipt.
+        focus: what "it" means next; None keeps the operation's own selection.
+    """
+
+    scene: Scene
+    touched: Tensor = field(default_factory=lambda: _NONE)
+    added: Tensor = field(default_factory=lambda: _NONE)
+    removed: Tensor = field(default_factory=lambda: _NONE)
+    moved: tuple[Affine, ...] = ()
+    notes: tuple[str, ...] = ()
+    focus: Selection | None = None
+
+
+class EditOp(BaseModel):
+    """One atomic operation: data that says what to do, and the code that does and checks it.
+
+    A subclass in `tools/ops/` sets `op: Literal["name"] = "name"`, documents itself for a model in its docstring, gives
+    an `example` (words and the JSON they mean) and implements `apply` and `check`.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    op: str
+    example: ClassVar[tuple[str, dict[str, Any]]]
+
+    def query(self) -> Query | None:
+        """What the operation is about, or None if it needs no target."""
+        return None
+
+    # @abstractmethod
+    def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
+        """The edited scene; never touches `scene` in place.
+
+        Raises:
+            InstructionError: it cannot be done as said.
+        """
+
+    # @abstractmethod
+    def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
+        """The operation's own post-conditions, measured on the two scenes."""
+
+
+class TargetedOp(EditOp):
+    """An operation on something that is already in the scene."""
+
+    target: Query
+    """What to change."""
+
+    def query(self) -> Query | None:
+        return self.target

@@ -1,0 +1,1 @@
+"""One file per operation; each defines one `EditOp` subclass, found by scanning this package."""

@@ -1,0 +1,140 @@
+"""What an edit did, as data: checks with measured values, counts, pixels, seconds and back ends.
+
+Knows numbers and sentences that survive a trip through JSON. Refuses to know tensors and how the edit was made.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class Check(BaseModel):
+    """One post-condition with what was measured.
+
+    Attributes:
+        name: short and stable, e.g. "outside unchanged".
+        passed: whether the measured value keeps the bound; a check without a bound only reports.
+        value: what was measured.
+        bound: the largest (or, with `at_least`, the smallest) value that passes; None if it only reports.
+        at_least: the bound is a lower one.
+        unit: of value and bound: "Gaussians", "ΔE", "m", "units", "px", "1".
+        sentence: the check in words, for a person.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: str
+    passed: bool
+    value: float
+    bound: float | None = None
+    at_least: bool = False
+    unit: str = "1"
+    sentence: str = ""
+
+
+def at_most(name: str, value: float, bound: float, unit: str, sentence: str) -> Check:
+    """A check that passes while `value <= bound` (NaN fails)."""
+    return Check(name=name, passed=value <= bound, value=value, bound=bound, unit=unit, sentence=sentence)
+
+
+def at_least(name: str, value: float, bound: float, unit: str, sentence: str) -> Check:
+    """A check that passes while `value >= bound` (NaN fails)."""
+    return Check(
+        name=name, passed=value >= bound, value=value, bound=bound, at_least=True, unit=unit, sentence=sentence
+    )
+
+
+def report(name: str, value: float, unit: str, sentence: str) -> Check:
+    """A measured value without a bound."""
+    return Check(name=name, passed=True, value=value, unit=unit, sentence=sentence)
+
+
+class SelectionSummary(BaseModel):
+    """The selection an operation worked on, without its rows."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    asked: str
+    verdict: str
+    gaussians: int
+    groups: tuple[int, ...] = ()
+    things: tuple[str, ...] = ()
+    reason: str = ""
+
+
+class Pixels(BaseModel):
+    """What changed in the viewer's picture.
+
+    Attributes:
+        width, height: of the compared pictures, pixels.
+        changed: pixels whose colour moved by more than `threshold` in some channel.
+        changed_outside: those of them outside the target's dilated silhouettes before and after.
+        silhouette: pixels inside these silhouettes.
+        threshold: in display space, 0..1.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    width: int
+    height: int
+    changed: int
+    changed_outside: int
+    silhouette: int
+    threshold: float
+
+
+class Receipt(BaseModel):
+    """What one operation did; `Receipt.model_validate_json(receipt.to_json()) == receipt`.
+
+    Attributes:
+        op: the operation as JSON.
+        selection: what it was applied to; for insert, what was inserted.
+        changed, added, removed: counts of Gaussians.
+        total: Gaussians in the scene afterwards.
+        columns: the columns of the cloud whose values changed for Gaussians that stayed.
+        outside_changed: Gaussians outside the target that differ from before in any bit (0, or the edit was refused).
+        pixels: what changed in the viewer's picture, if it was compared.
+        checks: every post-condition.
+        notes: what the user should know: assumptions taken, defaults used, neighbours touched.
+        seconds: wall time a stage: "resolve", "apply", "check", "pixels".
+        backends: what was used, by role: "resolver", "encoder", "renderer".
+        dry_run: True if nothing was kept.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    op: dict[str, Any]
+    selection: SelectionSummary
+    changed: int
+    added: int
+    removed: int
+    total: int
+    columns: tuple[str, ...]
+    outside_changed: int
+    pixels: Pixels | None = None
+    checks: tuple[Check, ...]
+    notes: tuple[str, ...] = ()
+    seconds: dict[str, float] = Field(default_factory=dict)
+    backends: dict[str, str] = Field(default_factory=dict)
+    dry_run: bool = False
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check passed."""
+        return all(check.passed for check in self.checks)
+
+    def to_json(self) -> str:
+        """One line of JSON."""
+        return self.model_dump_json()
+
+    def sentence(self) -> str:
+        """The receipt in one line for a person: "recolor the red chair: 1,204 Gaussians changed, 5 checks passed"."""
+        counts = [f"{n:,} {word}" for n, word in self._counts() if n] or ["nothing changed"]
+        failed = [c.name for c in self.checks if not c.passed]
+        verdict = f"failed: {', '.join(failed)}" if failed else f"{len(self.checks)} checks passed"
+        return f"{self.op.get('op', '?')} {self.selection.asked}: {', '.join(counts)}; {verdict}"
+
+    def _counts(self) -> list[tuple[int, str]]:
+        return [(self.changed, "changed"), (self.added, "added"), (self.removed, "removed")]
