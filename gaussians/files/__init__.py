@@ -1,0 +1,87 @@
+"""Scenes in files: `load`, `load_with_report`, `save`. The only room that knows logits, logarithms and packing.
+
+One module a format; a module of this package with a `FORMAT` is a format (see `format.Format`), found by scanning.
+Content decides which format a file has; its name decides only where the content does not say.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import pkgutil
+from pathlib import Path
+
+from ..errors import FileError, UserError
+from ..scene import Scene
+from .atomic import writing
+from .format import HEAD_BYTES, Format, Report
+
+__all__ = ["Format", "Report", "formats", "load", "load_with_report", "save", "writing"]
+
+
+@functools.cache
+def formats() -> tuple[Format, ...]:
+    """Every known format, by name."""
+    modules = (importlib.import_module(f"{__name__}.{info.name}") for info in pkgutil.iter_modules(__path__))
+    found = [module.FORMAT for module in modules if hasattr(module, "FORMAT")]
+    return tuple(sorted(found, key=lambda f: f.name))
+
+
+def load(path: str | Path) -> Scene:
+    """The scene in a file or folder of any known format; ids are the row numbers there.
+
+    Raises:
+        FileError: missing, unreadable, of unknown format, or without a single usable Gaussian.
+    """
+    return load_with_report(path)[0]
+
+
+def load_with_report(path: str | Path) -> tuple[Scene, Report]:
+    """As `load`, with what was found and repaired on the way."""
+    path = Path(path)
+    try:
+        return _detect(path).read(path)
+    except OSError as error:
+        raise FileError(f"cannot read {path}: {error.strerror or error}") from error
+
+
+def _detect(path: Path) -> Format:
+    """The format of what lies at `path`: by content first, by name second."""
+    if not path.exists():
+        raise FileError(f"no such file or folder: {path}")
+    head = b""
+    if not path.is_dir():
+        with open(path, "rb") as file:
+            head = file.read(HEAD_BYTES)
+    for known in formats():
+        if known.recognises(path, head):
+            return known
+    if named := _by_suffix(path):
+        return named
+    listed = "; ".join(f"{f.name} ({', '.join(f.suffixes)})" for f in formats())
+    raise FileError(f"{path}: unknown format. Known are: {listed}")
+
+
+def _by_suffix(path: Path) -> Format | None:
+    """The format with the longest suffix that the name ends in."""
+    name = path.name.lower()
+    matches = [(len(s), f) for f in formats() for s in f.suffixes if name.endswith(s)]
+    return max(matches, key=lambda m: m[0])[1] if matches else None
+
+
+def save(scene: Scene, path: str | Path, force: bool = False) -> None:
+    """Write a scene in the format its name asks for, in row order, whole or not at all.
+
+    Raises:
+        UserError: the format cannot be written, the scene is empty, or the file exists and `force` is not set.
+        FileError: the folder is missing or the disk refuses; an existing file is then unchanged.
+    """
+    path = Path(path)
+    known = _by_suffix(path)
+    if known is None or known.write is None:
+        writable = ", ".join(s for f in formats() if f.write for s in f.suffixes)
+        raise UserError(f"cannot write {path.name}: scenes are written as {writable}")
+    if len(scene.cloud) == 0:
+        raise UserError("there is nothing to save: the scene holds zero Gaussians")
+    with writing(path, force) as file:
+        known.write(scene, file)
