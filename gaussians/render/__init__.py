@@ -1,0 +1,80 @@
+"""Pixels from Gaussians: one call, several back ends behind it.
+
+Knows which back ends exist and checks what they are given. Refuses to know how any of them works: each is one module
+with `render(cloud, camera, background)` and `contributions(cloud, camera)`, imported when first asked for.
+"""
+
+from __future__ import annotations
+
+import importlib
+import math
+from typing import Protocol, cast
+
+from torch import Tensor
+
+from ..camera import Camera, Render, Vec3
+from ..cloud import GaussianCloud
+from ..errors import BackendError, UserError
+
+__all__ = ["backends", "contributions", "render"]
+
+_MODULES = {"reference": ".reference"}
+_AUTO = "reference"
+
+
+class Backend(Protocol):
+    """What a back end module offers. Equal input gives equal bytes."""
+
+    def render(self, cloud: GaussianCloud, camera: Camera, background: Vec3) -> Render: ...
+
+    def contributions(self, cloud: GaussianCloud, camera: Camera) -> Tensor: ...
+
+
+def backends() -> tuple[str, ...]:
+    """Names that `backend=` accepts besides "auto"."""
+    return tuple(_MODULES)
+
+
+def render(cloud: GaussianCloud, camera: Camera, background: Vec3 = (0.0, 0.0, 0.0), backend: str = "auto") -> Render:
+    """Draw a cloud as a camera sees it: colour, alpha, depth and group of every pixel in one pass.
+
+    Gaussians with a number that is not finite are left out, as are those behind the eye; no pixel is ever NaN.
+    Drawing the same input twice gives the same bytes.
+
+    Args:
+        cloud: the Gaussians; moved to the CPU by back ends that live there.
+        camera: pose, intrinsics and image size.
+        background: display-space colour behind everything.
+        backend: "auto" (the fast CPU renderer), or a name from `backends()`.
+
+    Raises:
+        UserError: `background` is not three finite numbers.
+        BackendError: no such back end, or its package is not installed.
+    """
+    if len(background) != 3 or not all(math.isfinite(channel) for channel in background):
+        raise UserError(f"background must be three finite numbers, red green blue, got {background!r}")
+    return _load(backend).render(cloud, camera, background)
+
+
+def contributions(cloud: GaussianCloud, camera: Camera, backend: str = "auto") -> Tensor:
+    """How much of the picture each Gaussian is: `[N]` float32, its blending weight summed over all pixels.
+
+    The sum over Gaussians is the sum of alpha over pixels. Zero means not seen: outside the view or hidden.
+
+    Raises:
+        BackendError: no such back end, or its package is not installed.
+    """
+    return _load(backend).contributions(cloud, camera)
+
+
+def _load(name: str) -> Backend:
+    """The module of a back end."""
+    chosen = _AUTO if name == "auto" else name
+    if chosen not in _MODULES:
+        raise BackendError(f"no renderer is called {name!r}; choose auto, {', '.join(_MODULES)}")
+    try:
+        return cast(Backend, importlib.import_module(_MODULES[chosen], __package__))
+    except ImportError as error:
+        raise BackendError(
+            f"renderer {chosen!r} cannot start ({error}); reinstall with: pip install scenewright"
+        ) from error
