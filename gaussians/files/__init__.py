@@ -58,8 +58,17 @@ def _detect(path: Path) -> Format:
             return known
     if named := _by_suffix(path):
         return named
+    raise FileError(_unknown(path))
+
+
+def _unknown(path: Path) -> str:
+    """What is wrong with a path that no format recognises."""
+    if path.is_dir():
+        inside = sorted(p.name for p in path.iterdir() if any(f.recognises(p, b"") for f in formats() if p.is_dir()))
+        if inside:
+            return f"{path} holds several scenes; name one of them: {', '.join(inside[:10])}"
     listed = "; ".join(f"{f.name} ({', '.join(f.suffixes)})" for f in formats())
-    raise FileError(f"{path}: unknown format. Known are: {listed}")
+    return f"{path}: unknown format. Known are: {listed}"
 
 
 def _by_suffix(path: Path) -> Format | None:

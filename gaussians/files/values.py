@@ -49,6 +49,28 @@ def logits_from_opacities(opacities: Floats) -> Floats:
     return _by_block(opacities, logit)
 
 
+def opacities_from_bytes(codes: NDArray[np.integer]) -> Floats:
+    """Opacities `[N]` strictly inside (0, 1) of linear bytes 0 to 255."""
+    return np.clip(codes / 255, OPACITY_MIN, OPACITY_MAX).astype(np.float32)
+
+
+def smallest_three(thirds: NDArray[np.float64], largest: NDArray[np.integer]) -> Floats:
+    """Unit quaternions `[N, 4]` wxyz packed without their largest component, which is positive.
+
+    Args:
+        thirds: `[N, 3]` in [0, 1], the other components in order, over -1/√2 to 1/√2.
+        largest: `[N]` index 0 to 3 of the one left out.
+    """
+    three = (thirds - 0.5) * np.sqrt(2)
+    index = largest.astype(np.int64)
+    rest = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])[index]
+    quats = np.empty((len(three), 4))
+    np.put_along_axis(quats, rest, three, axis=1)
+    missing = np.sqrt(np.maximum(0, 1 - np.einsum("ij,ij->i", three, three)))
+    np.put_along_axis(quats, index[:, None], missing[:, None], axis=1)
+    return quats.astype(np.float32)
+
+
 def unit_quats(quats: Floats) -> tuple[Floats, int]:
     """Quaternions `[N, 4]` of unit length, and how many had none (they become the identity).
 

@@ -1,0 +1,161 @@
+"""PlayCanvas' compressed .ply: 256 Gaussians share a chunk of bounds, each is four 32-bit words. Read only.
+
+Knows the layout as written by SuperSplat and splat-transform (github.com/playcanvas/splat-transform, reader of
+compressed PLY): element `chunk` with float bounds of position, log scale and, in newer files, colour; element
+`vertex` with packed position and scale (11, 10, 11 bits), rotation (index of the largest component in 2 bits, the
+other three in 10 each) and colour with opacity (8 bits each); optional element `sh` with one byte a coefficient.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import BinaryIO, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cloud import SH_BANDS
+from ..errors import FileError
+from ..harmonics import SH_C0
+from ..scene import Scene
+from . import comments, ply, values
+from .format import Format, Report
+
+NAME = "PlayCanvas compressed .ply"
+_CHUNK = 256
+_PACKED = ("packed_position", "packed_rotation", "packed_scale", "packed_color")
+_POSITION, _SCALE, _COLOR = ("x", "y", "z"), ("scale_x", "scale_y", "scale_z"), ("r", "g", "b")
+_Words = NDArray[np.uint32]
+Number = TypeVar("Number", bound=np.generic)
+
+
+def recognises(path: Path, head: bytes) -> bool:
+    """Whether the file starts as a PLY with packed vertices."""
+    return head[:4] in (b"ply\n", b"ply\r") and b"packed_position" in head
+
+
+def read(path: Path) -> tuple[Scene, Report]:
+    """Read the scene.
+
+    Raises:
+        FileError: cut off, malformed, without Gaussians, or with chunks or harmonics that do not fit the vertices.
+    """
+    with open(path, "rb") as file:
+        header = ply.read_header(file, path)
+        count, degree = _check(path, header)
+        words = _table(file, path, header, ("vertex", _PACKED), np.uint32)
+        bounds = _bounds(file, path, header)
+        rest = _harmonics(file, path, header, degree)
+    chunk = np.arange(count) // _CHUNK
+    position, rotation, scale, color = words.T
+    rgb = _between(bounds, _COLOR, chunk, _unpack(color, (8, 8, 8, 8))[:, :3])
+    sh = np.concatenate([((rgb - 0.5) / SH_C0).astype(np.float32)[:, None], rest], axis=1)
+    cloud, notes = values.sound_cloud(
+        _between(bounds, _POSITION, chunk, _unpack(position, (11, 10, 11))).astype(np.float32),
+        _rotations(rotation),
+        values.scales_from_logs(_between(bounds, _SCALE, chunk, _unpack(scale, (11, 10, 11))).astype(np.float32)),
+        values.opacities_from_bytes(color & 255),
+        sh,
+    )
+    frame, cameras, doubts = comments.parse(header.comments)
+    return Scene(cloud, frame, cameras, path=path), Report(NAME, count, len(cloud), notes + doubts)
+
+
+def _check(path: Path, header: ply.Header) -> tuple[int, int]:
+    """Number of Gaussians and harmonics degree, once the elements are seen to fit together."""
+    chunk, vertex, sh = (header.element(name) for name in ("chunk", "vertex", "sh"))
+    if chunk is None or vertex is None:
+        raise FileError(f"{path}: a compressed PLY needs the elements chunk and vertex")
+    wanted = [f"{end}_{name}" for end in ("min", "max") for name in (*_POSITION, *_SCALE)]
+    missing = [n for n in wanted if n not in chunk.names] + [n for n in _PACKED if n not in vertex.names]
+    if missing:
+        raise FileError(f"{path}: the compressed PLY lacks {', '.join(missing)}")
+    if any(kind not in ("u4", "i4") for name, kind in vertex.properties if name in _PACKED):
+        raise FileError(f"{path}: packed properties must be 32-bit integers")
+    if vertex.count == 0:
+        raise FileError(f"{path}: the file holds zero Gaussians")
+    if chunk.count * _CHUNK < vertex.count:
+        raise FileError(
+            f"{path}: {chunk.count:,} chunks cannot describe {vertex.count:,} Gaussians at {_CHUNK} a chunk; "
+            "the file is damaged"
+        )
+    if sh is None:
+        return vertex.count, 0
+    degrees = {3 * (k - 1): degree for k, degree in SH_BANDS.items() if degree}
+    if sh.count != vertex.count or set(sh.names) not in [{f"f_rest_{i}" for i in range(n)} for n in degrees]:
+        raise FileError(f"{path}: the sh element must hold 9, 24 or 45 f_rest properties for each Gaussian")
+    return vertex.count, degrees[len(sh.names)]
+
+
+def _table(
+    file: BinaryIO, path: Path, header: ply.Header, columns: tuple[str, tuple[str, ...]], dtype: type[Number]
+) -> NDArray[Number]:
+    """Columns `(element, names)` of the file as `[rows, names]`."""
+    element, names = columns
+    found = header.element(element)
+    assert found is not None
+    blocks = ply.read_rows(file, path, header, element)
+    table = np.empty((found.count, len(names)), dtype)
+    with np.errstate(invalid="ignore"):
+        for start, rows in blocks:
+            for i, name in enumerate(names):
+                table[start : start + len(rows), i] = rows[name].astype(dtype)
+    return table
+
+
+def _bounds(file: BinaryIO, path: Path, header: ply.Header) -> dict[str, NDArray[np.float64]]:
+    """Bounds by property name, `[chunks]` each; colour spans 0 to 1 in files that do not store it."""
+    chunk = header.element("chunk")
+    assert chunk is not None
+    table = _table(file, path, header, ("chunk", chunk.names), np.float64)
+    bounds = {name: table[:, i] for i, name in enumerate(chunk.names)}
+    for name in _COLOR:
+        bounds.setdefault(f"min_{name}", np.zeros(len(table)))
+        bounds.setdefault(f"max_{name}", np.ones(len(table)))
+    return bounds
+
+
+def _harmonics(file: BinaryIO, path: Path, header: ply.Header, degree: int) -> values.Floats:
+    """Bands above the constant one, `[N, K - 1, 3]`, from one byte each over -4 to 4; channel-major in the file.
+
+    The ends stand for themselves, the bytes between for the middle of their interval.
+    """
+    vertex, k = header.element("vertex"), (degree + 1) ** 2
+    assert vertex is not None
+    if degree == 0:
+        return np.empty((vertex.count, 0, 3), np.float32)
+    steps = (np.arange(256) + 0.5) / 256
+    steps[0], steps[255] = 0, 1
+    lookup = ((steps - 0.5) * 8).astype(np.float32)
+    names = tuple(f"f_rest_{i}" for i in range(3 * (k - 1)))
+    codes = _table(file, path, header, ("sh", names), np.uint8)
+    channels: values.Floats = lookup[codes].reshape(vertex.count, 3, k - 1)
+    return np.ascontiguousarray(channels.transpose(0, 2, 1))
+
+
+def _unpack(words: _Words, bits: tuple[int, ...]) -> NDArray[np.float64]:
+    """`[N, fields]` in [0, 1] of unsigned fields, the first in the highest bits."""
+    out = np.empty((len(words), len(bits)))
+    shift = 32
+    for i, width in enumerate(bits):
+        shift -= width
+        out[:, i] = ((words >> np.uint32(shift)) & np.uint32((1 << width) - 1)) / ((1 << width) - 1)
+    return out
+
+
+def _between(
+    bounds: dict[str, NDArray[np.float64]], names: tuple[str, ...], chunk: NDArray[np.int64], t: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """`[N, 3]` between the bounds of each Gaussian's chunk, at fractions `t` `[N, 3]`."""
+    low, high = (np.stack([bounds[f"{end}_{name}"] for name in names], axis=1)[chunk] for end in ("min", "max"))
+    with np.errstate(all="ignore"):  # bounds that are not finite give rows that are dropped as such
+        mixed: NDArray[np.float64] = low * (1 - t) + high * t
+    return mixed
+
+
+def _rotations(words: _Words) -> values.Floats:
+    """Unit quaternions `[N, 4]` wxyz: index of the largest component in the high bits, the others over ±1/√2."""
+    return values.smallest_three(_unpack(words, (2, 10, 10, 10))[:, 1:], words >> np.uint32(30))
+
+
+FORMAT = Format(NAME, (".compressed.ply",), recognises, read)
