@@ -1,0 +1,12 @@
+"""Procedural furniture and props as Gaussians, and rooms furnished with them.
+
+`make` gives one object, `furnish` a room with its ground truth beside it. The catalogue is one file a family of kinds.
+"""
+
+from __future__ import annotations
+
+from . import decor, electronics, kitchen, leisure, lighting, openings, plants, seating, storage, tables  # noqa: F401
+from .forge import Asset, Parts, kinds, make
+from .registry import KINDS, Kind, find
+
+__all__ = ["KINDS", "Asset", "Kind", "Parts", "find", "kinds", "make"]

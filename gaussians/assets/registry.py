@@ -1,0 +1,84 @@
+"""The kinds of things that can be made. Knows names, sizes and where things live; the builders register themselves.
+
+Adding a kind is one decorated function in one family file:
+
+    @kind("stool", sizes=((0.3, 0.5), (0.3, 0.5), (0.4, 0.8)), synonyms=("bar stool",), palette="wood")
+    def stool(rng, tone): return [box(...).named("seat", tone.main), ...]
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from ..errors import UserError
+from .materials import Tone
+from .shapes import Piece
+
+Builder = Callable[[np.random.Generator, Tone], list[Piece]]
+Support = Literal["floor", "surface", "wall", "ceiling"]
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What is known of a kind before one is made.
+
+    Attributes:
+        name: as it is said, lower case, singular ("floor lamp").
+        build: makes the pieces of one design.
+        sizes: typical (lowest, highest) width x, depth y and height z, metres.
+        support: what it normally stands on or hangs from.
+        against_wall: whether it belongs with its back to a wall.
+        synonyms: other words for it.
+        palette: where its main colour is drawn from (see `materials.PALETTES`).
+    """
+
+    name: str
+    build: Builder
+    sizes: tuple[Range, Range, Range]
+    support: Support = "floor"
+    against_wall: bool = False
+    synonyms: tuple[str, ...] = ()
+    palette: str = "any"
+
+
+KINDS: dict[str, Kind] = {}
+
+
+def kind(
+    name: str,
+    sizes: tuple[Range, Range, Range],
+    support: Support = "floor",
+    synonyms: tuple[str, ...] = (),
+    palette: str = "any",
+    against_wall: bool = False,
+) -> Callable[[Builder], Builder]:
+    """Register a builder under `name`."""
+
+    def keep(build: Builder) -> Builder:
+        assert name not in KINDS, f"kind {name!r} is registered twice"
+        KINDS[name] = Kind(name, build, sizes, support, against_wall, synonyms, palette)
+        return build
+
+    return keep
+
+
+def find(name: str) -> Kind:
+    """The kind called `name`, by its name or a synonym, singular or plural.
+
+    Raises:
+        UserError: for an unknown kind, naming the closest known ones.
+    """
+    said = " ".join(name.lower().replace("_", " ").replace("-", " ").split())
+    words = {s: k for k in KINDS.values() for s in k.synonyms} | {k.name: k for k in KINDS.values()}
+    for form in (said, said.removesuffix("s"), said.removesuffix("es")):
+        if form in words:
+            return words[form]
+    close = difflib.get_close_matches(said, words, n=3, cutoff=0.55)
+    hint = f"did you mean {', '.join(close)}?" if close else f"known kinds: {', '.join(sorted(KINDS))}"
+    raise UserError(f"no asset is called {name!r}; {hint}")
