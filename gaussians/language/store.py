@@ -1,0 +1,147 @@
+"""The language field on disk: one safetensors file with the table as JSON in its header, no pickle.
+
+It is bound to the scene *file* by content: `fingerprint(scene file)` stands in the header, and a field whose scene
+was changed elsewhere is not loaded. It lies beside the scene, or in the user's cache where that folder is read-only.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tempfile
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from pydantic import TypeAdapter, ValidationError
+
+from ..errors import FileError
+from ..scene import Frame, Scene
+from .field import Group, LanguageField
+
+SUFFIX = ".field.safetensors"
+VERSION = "1"
+_GROUPS = TypeAdapter(tuple[Group, ...])
+_FRAME = TypeAdapter(Frame)
+
+
+def fingerprint(path: Path) -> str:
+    """Hex SHA-256 of a scene file's bytes; of names and bytes of all files where the scene is a folder (SOG)."""
+    h = hashlib.sha256()
+    files = sorted(p for p in path.iterdir() if p.is_file()) if path.is_dir() else [path]
+    try:
+        for file in files:
+            h.update(f"{file.name};".encode() if path.is_dir() else b"")
+            with file.open("rb") as stream:
+                while block := stream.read(1 << 22):
+                    h.update(block)
+    except OSError as error:
+        raise FileError(f"cannot read {path}: {error.strerror or error}") from error
+    return h.hexdigest()
+
+
+def beside(scene_path: Path) -> Path:
+    """Where the field of a scene file lies when its folder can be written."""
+    return scene_path.with_name(scene_path.name + SUFFIX)
+
+
+def cached(scene_fingerprint: str) -> Path:
+    """Where it lies otherwise."""
+    root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return root / "scenewright" / "fields" / (scene_fingerprint + SUFFIX)
+
+
+def save_field(scene: Scene, scene_path: Path) -> Path:
+    """Write the field of `scene`, whose cloud stands row for row in the file `scene_path`; returns where it went.
+
+    Raises:
+        FileError: neither the scene's folder nor the cache can be written.
+    """
+    if scene.language is None:
+        raise FileError("this scene has no language field to save; embed it first")
+    mark = fingerprint(scene_path)
+    metadata = {
+        "version": VERSION,
+        "scene": mark,
+        "encoder": scene.language.encoder,
+        "rows": str(len(scene.cloud)),
+        "groups": json.dumps([asdict(g) for g in scene.language.groups]),
+        "notes": json.dumps(scene.language.notes),
+        "frame": json.dumps(asdict(scene.frame)),
+    }
+    tensors = {
+        "group": scene.cloud.group.cpu().contiguous(),
+        "embeddings": torch.from_numpy(np.ascontiguousarray(scene.language.embeddings, dtype=np.float32)),
+    }
+    problem: OSError | None = None
+    for target in (beside(scene_path), cached(mark)):
+        try:
+            return _write(target, tensors, metadata)
+        except OSError as error:
+            problem = error
+    raise FileError(f"cannot save the language field of {scene_path}: {problem}") from problem
+
+
+def load_field(scene: Scene, scene_path: Path, encoder: str | None = None) -> Scene | None:
+    """`scene`, freshly loaded from `scene_path`, with its saved field; None if there is none that fits.
+
+    A field fits when the scene file's bytes are those it was made for and, if given, its encoder is `encoder`.
+
+    Raises:
+        FileError: a field file is there and bound to this scene, but broken.
+    """
+    mark = fingerprint(scene_path)
+    for target in (beside(scene_path), cached(mark)):
+        if not target.is_file():
+            continue
+        tensors, metadata = _read(target)
+        fits = metadata.get("version") == VERSION and metadata.get("scene") == mark
+        if fits and (encoder is None or metadata.get("encoder") == encoder):
+            return _attach(scene, tensors, metadata, target)
+    return None
+
+
+def _write(target: Path, tensors: dict[str, torch.Tensor], metadata: dict[str, str]) -> Path:
+    from safetensors.torch import save
+
+    target.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=target.parent, prefix=".field-")
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(save(tensors, metadata))
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.replace(name, target)
+    except OSError:
+        Path(name).unlink(missing_ok=True)
+        raise
+    return target
+
+
+def _read(path: Path) -> tuple[dict[str, torch.Tensor], dict[str, str]]:
+    from safetensors import SafetensorError, safe_open
+
+    try:
+        with safe_open(path, framework="pt") as stream:
+            return {name: stream.get_tensor(name) for name in stream.keys()}, stream.metadata() or {}  # noqa: SIM118
+    except (SafetensorError, OSError) as error:
+        raise FileError(f"{path} is not a language field ({error}); delete it and embed the scene again") from error
+
+
+def _attach(scene: Scene, tensors: dict[str, torch.Tensor], metadata: dict[str, str], source: Path) -> Scene:
+    broken = FileError(f"{source} is damaged; delete it and embed the scene again")
+    try:
+        groups = _GROUPS.validate_json(metadata["groups"])
+        notes: Any = json.loads(metadata["notes"])
+        frame = _FRAME.validate_json(metadata["frame"])
+        column, embeddings = tensors["group"], tensors["embeddings"].numpy()
+    except (KeyError, ValueError, ValidationError) as error:
+        raise broken from error
+    fits = column.shape == (len(scene.cloud),) and column.dtype == torch.int32 and embeddings.ndim == 2
+    if not fits or (len(column) and not -1 <= int(column.min()) <= int(column.max()) < len(groups)):
+        raise broken
+    field = LanguageField(groups, embeddings, metadata["encoder"], tuple(str(n) for n in notes))
+    return scene.replace(cloud=scene.cloud.replace(group=column), language=field, frame=frame)

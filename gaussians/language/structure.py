@@ -1,0 +1,203 @@
+"""Floor or ground, walls and ceiling: the large surfaces that things stand on, hang on and stand in front of.
+
+Knows geometry and colour of the surface. A rug lies in the floor's plane and a painting in the wall's: they differ by
+their colour and their small extent, and stay objects.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from ..scene import Frame
+from .surface import Surface
+
+NONE, FLOOR, WALL, CEILING = 0, 1, 2, 3
+NAMES = {FLOOR: "floor", WALL: "wall", CEILING: "ceiling"}
+
+CELLS = 64  # of the height map across the larger side
+ROUGH = 0.012  # ground whose height varies by more than this share of the scene is terrain, not a floor
+OUTSIDE = 0.02  # share of the scene that may lie behind a wall
+WALL_LENGTH = 0.3  # of the scene's extent: shorter upright planes are furniture
+WALL_HEIGHT = 0.55
+SAME_COLOR = 11.0  # Lab difference within which pieces of a plane are the same paint
+SPREAD = 0.6  # a colour that spans this much of a plane both ways belongs to its pattern
+
+
+@dataclass(frozen=True)
+class Level:
+    """Surface points in a level frame: `east, north, height` columns `[M, 3]`, and normals likewise."""
+
+    points: NDArray[np.float64]
+    normals: NDArray[np.float64]
+
+
+def level(surface: Surface, frame: Frame) -> Level:
+    """Rotate the surface so that up is the third axis."""
+    basis = frame.basis()
+    return Level(surface.points @ basis.T, surface.normals @ basis.T)
+
+
+def structures(surface: Surface, labels: NDArray[np.int32], frame: Frame) -> NDArray[np.int8]:
+    """`[M]` NONE, FLOOR, WALL or CEILING for each surface point; whole superpoints where they mostly agree."""
+    flat = level(surface, frame)
+    found = np.zeros(len(surface), np.int8)
+    if len(surface) < 200:
+        return found
+    found[_ground(surface, labels, flat)] = FLOOR
+    for plane in _walls(surface, flat, found):
+        found[_painted(surface, labels, plane, found == NONE)] = WALL
+    top = _ceiling(surface, flat, found)
+    if top is not None:
+        found[_painted(surface, labels, top, found == NONE)] = CEILING
+    return found
+
+
+@dataclass(frozen=True)
+class _Plane:
+    """Points near a plane `[M]` bool, and their two coordinates along it `[M, 2]`."""
+
+    near: NDArray[np.bool_]
+    along: NDArray[np.float64]
+
+
+def _extent(flat: Level) -> NDArray[np.float64]:
+    """Robust size of the scene: east, north, height."""
+    spread: NDArray[np.float64] = np.ptp(np.quantile(flat.points, [0.01, 0.99], axis=0), axis=0)
+    return np.maximum(spread, 1e-9)
+
+
+def _ground(surface: Surface, labels: NDArray[np.int32], flat: Level) -> NDArray[np.bool_]:
+    """Points of the floor (a plane with one paint) or of the terrain (a rough height field)."""
+    extent = _extent(flat)
+    cell = max(extent[0], extent[1]) / CELLS
+    low = np.quantile(flat.points[:, :2], 0.005, axis=0)
+    index = np.clip(((flat.points[:, :2] - low) / cell).astype(np.int64), 0, CELLS - 1)
+    lowest = np.full((CELLS, CELLS), np.nan)
+    key = index[:, 0] * CELLS + index[:, 1]
+    order = np.lexsort((flat.points[:, 2], key))
+    starts = np.flatnonzero(np.r_[True, np.diff(key[order]) > 0])
+    counts = np.diff(np.r_[starts, len(order)])
+    lowest.ravel()[key[order][starts]] = flat.points[order[starts + counts // 20], 2]
+    filled = _fill(lowest)
+    window = max(3, CELLS // 4)
+    base = ndimage.gaussian_filter(ndimage.grey_opening(filled, size=(window, window)), 1.0)
+    above = flat.points[:, 2] - base[index[:, 0], index[:, 1]]
+    is_level = np.abs(flat.normals[:, 2]) > 0.8
+    close = np.abs(above) < 0.06 * max(extent)
+    if not (close & is_level).any():
+        return np.zeros(len(surface), bool)
+    weight = close & is_level
+    rough = float(np.median(np.abs(above[weight] - np.median(above[weight]))))
+    if rough > ROUGH * max(extent) * 0.25:
+        return (above < np.median(above[weight]) + 3.0 * rough) & (above < 0.08 * max(extent))
+    offset = _mode(flat.points[weight, 2], surface.area[weight])
+    near = np.abs(flat.points[:, 2] - offset) < max(1.5 * surface.spacing, 0.003 * max(extent))
+    if near.sum() < 0.02 * len(surface):
+        return np.zeros(len(surface), bool)
+    return _painted(surface, labels, _Plane(near, flat.points[:, :2]), np.ones(len(surface), bool))
+
+
+def _fill(grid: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Empty cells take the value of the nearest full one."""
+    index = ndimage.distance_transform_edt(np.isnan(grid), return_distances=False, return_indices=True)
+    filled: NDArray[np.float64] = grid[tuple(index)]
+    return filled
+
+
+def _mode(values: NDArray[np.floating], weight: NDArray[np.floating]) -> float:
+    """The densest value, refined to the median of what lies near it."""
+    bins = np.histogram_bin_edges(values, 200)
+    share = np.histogram(values, bins, weights=weight)[0]
+    peak = int(np.argmax(np.convolve(share, np.ones(3), mode="same")))
+    near = (values >= bins[max(peak - 1, 0)]) & (values <= bins[min(peak + 2, len(bins) - 1)])
+    return float(np.median(values[near]))
+
+
+def _walls(surface: Surface, flat: Level, found: NDArray[np.int8]) -> list[_Plane]:
+    """Upright planes at the scene's edge, long and high enough."""
+    extent = _extent(flat)
+    upright = (np.abs(flat.normals[:, 2]) < 0.25) & (found == NONE) & (surface.flatness > 0.3)
+    planes: list[_Plane] = []
+    inside = flat.points[:: max(1, len(surface) // 20_000)]
+    for angle in _azimuths(surface, flat, upright):
+        normal = np.array([np.cos(angle), np.sin(angle), 0.0])
+        tangent = np.array([-normal[1], normal[0], 0.0])
+        facing = upright & (np.abs(flat.normals @ normal) > 0.9)
+        if facing.sum() < 100:
+            continue
+        offset = _mode(flat.points[facing] @ normal, surface.area[facing])
+        tolerance = max(2.0 * surface.spacing, 0.004 * float(max(extent)))
+        behind = float((inside @ normal > offset + 2 * tolerance).mean())
+        before = float((inside @ normal < offset - 2 * tolerance).mean())
+        near = np.abs(flat.points @ normal - offset) < tolerance
+        along = np.stack([flat.points @ tangent, flat.points[:, 2]], axis=1)
+        if min(behind, before) > OUTSIDE or not near.any():
+            continue
+        size = np.ptp(np.quantile(along[near & facing], [0.02, 0.98], axis=0), axis=0)
+        if size[0] >= WALL_LENGTH * max(extent[:2]) and size[1] >= WALL_HEIGHT * extent[2]:
+            planes.append(_Plane(near, along))
+    return planes
+
+
+def _azimuths(surface: Surface, flat: Level, upright: NDArray[np.bool_]) -> list[float]:
+    """Candidate outward directions of walls: each strong azimuth, both ways, in full circle."""
+    if not upright.any():
+        return []
+    angle = np.arctan2(flat.normals[upright, 1], flat.normals[upright, 0]) % np.pi
+    share = np.histogram(angle, 90, range=(0, np.pi), weights=surface.area[upright])[0]
+    smooth = share + np.roll(share, 1) + np.roll(share, -1)
+    peaks: list[float] = []
+    for _ in range(4):
+        best = int(np.argmax(smooth))
+        if smooth[best] < 0.08 * share.sum():
+            break
+        near = np.abs((angle - (best + 0.5) * np.pi / 90 + np.pi / 2) % np.pi - np.pi / 2) < np.radians(4)
+        doubled = np.exp(2j * angle[near])
+        peaks.append(float(np.angle((doubled * surface.area[upright][near]).sum()) / 2))
+        smooth[np.arange(best - 7, best + 8) % 90] = 0
+    return [a + turn for a in peaks for turn in (0.0, np.pi)]
+
+
+def _ceiling(surface: Surface, flat: Level, found: NDArray[np.int8]) -> _Plane | None:
+    """A level plane at the very top that covers most of the plan."""
+    extent = _extent(flat)
+    top = np.quantile(flat.points[:, 2], 0.995)
+    near = (np.abs(flat.points[:, 2] - top) < max(2 * surface.spacing, 0.01 * extent[2])) & (found == NONE)
+    near &= np.abs(flat.normals[:, 2]) > 0.8
+    if near.sum() < 0.03 * len(surface):
+        return None
+    size = np.ptp(np.quantile(flat.points[near, :2], [0.05, 0.95], axis=0), axis=0)
+    return _Plane(near, flat.points[:, :2]) if (size > 0.6 * extent[:2]).all() else None
+
+
+def _painted(
+    surface: Surface, labels: NDArray[np.int32], plane: _Plane, free: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Points of a plane that carry its paint: the largest superpoint's colour, and colours spread all over it."""
+    count = int(labels.max()) + 1
+    total = np.bincount(labels, minlength=count)
+    inside = np.bincount(labels[plane.near], minlength=count)
+    area = np.bincount(labels[plane.near], weights=surface.area[plane.near], minlength=count)
+    lab = np.stack(
+        [np.bincount(labels, weights=surface.lab[:, c], minlength=count) / np.maximum(total, 1) for c in range(3)], 1
+    )
+    member = inside > 0.5 * np.maximum(total, 1)
+    if not member.any():
+        return np.zeros(len(surface), bool)
+    span = np.ptp(np.quantile(plane.along[plane.near], [0.02, 0.98], axis=0), axis=0)
+    kept = np.zeros(count, bool)
+    for piece in np.argsort(-area * member):
+        if not member[piece] or kept[piece]:
+            continue
+        alike = member & (np.linalg.norm((lab - lab[piece]) * [0.6, 1, 1], axis=1) < SAME_COLOR)
+        where = plane.near & alike[labels]
+        reach = np.ptp(np.quantile(plane.along[where], [0.02, 0.98], axis=0), axis=0)
+        if not kept.any() or (reach > SPREAD * span).all():
+            kept |= alike
+        elif area[piece] < 0.01 * area.sum():
+            break
+    return kept[labels] & free & (plane.near | (inside > 0.9 * np.maximum(total, 1))[labels])

@@ -1,0 +1,166 @@
+"""Where to look from: the fewest views that see every Gaussian that can be seen, chosen from the scene itself.
+
+Knows clouds, cameras and the renderer's blending weights. Refuses to know masks and words.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from ..camera import Camera
+from ..cloud import GaussianCloud
+from ..render import contributions
+from ..scene import Frame, Scene
+
+F64 = NDArray[np.float64]
+
+SIZE = 160  # pixels a side while choosing
+SEEN = 0.05  # summed blending weight (pixels at SIZE) from which a Gaussian counts as seen
+COVER = 0.985  # of what any candidate sees
+GAIN = 0.003  # a view that adds less than this share of all Gaussians is not worth its time
+MOST = 24
+EYE_HEIGHT = 0.55  # of the scene's height, for eyes inside
+PLAN_CELLS = 24
+
+
+@dataclass(frozen=True)
+class Views:
+    """Chosen cameras and what they see.
+
+    Attributes:
+        cameras: best first.
+        seen_by: `[V, N]` bool, which Gaussians each camera sees.
+        unseen: share of all Gaussians that no candidate sees.
+    """
+
+    cameras: tuple[Camera, ...]
+    seen_by: NDArray[np.bool_]
+    unseen: float
+
+
+def choose_views(scene: Scene, most: int = MOST, size: int = SIZE) -> Views:
+    """Greedy set cover over the scene's own cameras if it has enough, else over eyes around and inside it."""
+    own = [_small(c, size) for c in scene.cameras]
+    pool = own if len(own) >= most else own + candidates(scene.cloud, scene.frame, size)
+    if not len(scene.cloud) or not pool:
+        return Views((), np.zeros((0, len(scene.cloud)), bool), 0.0)
+    if len(pool) > 4 * most:
+        pool = [pool[i] for i in np.linspace(0, len(pool) - 1, 4 * most).astype(int)]
+    seen = np.stack([(contributions(scene.cloud, c) > SEEN).numpy() for c in pool])
+    visible = int(seen.any(axis=0).sum())
+    covered = np.zeros(len(scene.cloud), bool)
+    chosen: list[int] = []
+    while len(chosen) < most and covered.sum() < COVER * visible:
+        gain = (seen & ~covered).sum(axis=1)
+        best = int(np.argmax(gain))
+        if chosen and gain[best] < GAIN * len(scene.cloud):
+            break
+        chosen.append(best)
+        covered |= seen[best]
+    return Views(tuple(pool[i] for i in chosen), seen[chosen], 1 - visible / len(scene.cloud))
+
+
+def default_viewer(scene: Scene, width: int = 640, height: int = 480) -> Camera:
+    """The scene's first camera at this size, or the candidate that sees most of the scene."""
+    if scene.cameras:
+        return fit_camera(scene.cameras[0], width, height)
+    pool = candidates(scene.cloud, scene.frame, 96)
+    if not pool:
+        return Camera.look_at([0, -3, 1], [0, 0, 0], scene.frame.up, width, height)
+    weight = [_interest(scene.cloud, c) for c in pool]
+    return fit_camera(pool[int(np.argmax(weight))], width, height)
+
+
+def fit_camera(camera: Camera, width: int, height: int) -> Camera:
+    """The same eye and direction at another size, the shorter field of view kept."""
+    gain = min(width / camera.width, height / camera.height)
+    return replace(
+        camera, fx=camera.fx * gain, fy=camera.fy * gain, cx=width / 2, cy=height / 2, width=width, height=height
+    )
+
+
+def candidates(cloud: GaussianCloud, frame: Frame, size: int) -> list[Camera]:
+    """Eyes on two rings around the scene, and at eye height in its free space looking all ways."""
+    if not len(cloud):
+        return []
+    solid = cloud.opacities > 0.1
+    means = (cloud.means[solid] if bool(solid.any()) else cloud.means).numpy()
+    points = means[:: max(1, len(means) // 50_000)].astype(np.float64)
+    basis = frame.basis()
+    local = points @ basis.T
+    low, high = np.quantile(local, 0.02, axis=0), np.quantile(local, 0.98, axis=0)
+    return _around(low, high, frame, size) + _inside(local, low, high, frame, size)
+
+
+def _around(low: F64, high: F64, frame: Frame, size: int) -> list[Camera]:
+    basis, center, half = frame.basis(), (low + high) / 2, (high - low) / 2
+    radius = 2.2 * float(np.linalg.norm(half)) + 1e-6
+    eyes = []
+    for elevation in (18.0, 42.0):
+        for azimuth in np.arange(8) * 45.0 - 90.0 + (22.5 if elevation > 30 else 0.0):
+            a, e = np.radians(azimuth), np.radians(elevation)
+            eyes.append(center + radius * np.array([np.cos(a) * np.cos(e), np.sin(a) * np.cos(e), np.sin(e)]))
+    target = center @ basis
+    return [
+        Camera.look_at(eye @ basis, target, frame.up, size, size, 46.0, f"around {i}") for i, eye in enumerate(eyes)
+    ]
+
+
+def _inside(local: F64, low: F64, high: F64, frame: Frame, size: int) -> list[Camera]:
+    """Eyes over free cells of the plan, spread far apart, six directions each, a little downwards."""
+    span = np.maximum(high - low, 1e-9)
+    eye_height = low[2] + EYE_HEIGHT * span[2]
+    cell = span[:2] / PLAN_CELLS
+    body = (local[:, 2] > low[2] + 0.35 * span[2]) & (local[:, 2] < low[2] + 0.75 * span[2])
+    index = np.clip(((local[body, :2] - low[:2]) / cell).astype(int), 0, PLAN_CELLS - 1)
+    taken = np.zeros((PLAN_CELLS, PLAN_CELLS), bool)
+    taken[index[:, 0], index[:, 1]] = True
+    from scipy import ndimage
+
+    clear = ndimage.distance_transform_edt(np.pad(~taken, 1))[1:-1, 1:-1]
+    basis, cameras = frame.basis(), []
+    for spot in range(5):
+        i, j = np.unravel_index(int(np.argmax(clear)), clear.shape)
+        if clear[i, j] < 2:
+            break
+        eye = np.array([*(low[:2] + (np.array([i, j]) + 0.5) * cell), eye_height])
+        for k in range(6):
+            a = np.radians(60 * k)
+            aim = eye + np.array([np.cos(a), np.sin(a), -0.35])
+            cameras.append(Camera.look_at(eye @ basis, aim @ basis, frame.up, size, size, 70.0, f"inside {spot}.{k}"))
+        grid = np.stack(np.meshgrid(*[np.arange(PLAN_CELLS)] * 2, indexing="ij"), axis=-1)
+        clear = np.where(np.linalg.norm(grid - [i, j], axis=-1) < PLAN_CELLS / 4, 0, clear)
+    return cameras
+
+
+def _interest(cloud: GaussianCloud, camera: Camera) -> float:
+    """How many Gaussians a view sees, discounted by how much of the picture stays empty."""
+    weight = contributions(cloud, camera)
+    seen = float((weight > SEEN).sum()) / max(len(cloud), 1)
+    filled = float(weight.sum()) / (camera.width * camera.height)
+    return seen * min(1.0, 0.4 + filled)
+
+
+def _small(camera: Camera, size: int) -> Camera:
+    gain = size / max(camera.width, camera.height)
+    return camera.resized(max(1, round(camera.width * gain)), max(1, round(camera.height * gain)))
+
+
+def visible_rows(views: Views, count: int) -> torch.Tensor:
+    """`[count]` bool: seen by any of the chosen views."""
+    return torch.from_numpy(views.seen_by.any(axis=0)) if len(views.cameras) else torch.zeros(count, dtype=torch.bool)
+
+
+def best_of(cameras: Sequence[Camera], target: F64) -> Camera | None:
+    """The camera that looks most straight at a world point, None if all look away."""
+    facing = [
+        (float((target - c.position) @ c.forward / max(float(np.linalg.norm(target - c.position)), 1e-9)), i)
+        for i, c in enumerate(cameras)
+    ]
+    best = max(facing, default=(0.0, -1))
+    return cameras[best[1]] if best[0] > 0.5 else None
