@@ -46,8 +46,15 @@ class Camera:
             raise UserError(f"Camera.world_to_camera must be a finite 4x4 matrix, got shape {list(pose.shape)}")
         if not np.allclose(pose[:3, :3] @ pose[:3, :3].T, np.eye(3), atol=1e-4) or np.linalg.det(pose[:3, :3]) < 0:
             raise UserError("Camera.world_to_camera must be rigid: its upper 3x3 block is not a rotation")
-        if self.width < 1 or self.height < 1 or not (self.fx > 0 and self.fy > 0):
-            raise UserError(f"Camera needs a positive size and focal lengths, got {self.width}x{self.height}")
+        if not np.allclose(pose[3], (0, 0, 0, 1), atol=1e-6):
+            raise UserError(f"Camera.world_to_camera must be rigid: its last row is {pose[3].tolist()}, not 0 0 0 1")
+        if self.width < 1 or self.height < 1 or not (0 < self.fx < math.inf and 0 < self.fy < math.inf):
+            raise UserError(
+                f"Camera needs a positive size and focal lengths, got {self.width}x{self.height}, "
+                f"focal {self.fx}, {self.fy}"
+            )
+        if not (math.isfinite(self.cx) and math.isfinite(self.cy)):
+            raise UserError(f"Camera needs a finite principal point, got {self.cx}, {self.cy}")
         pose.setflags(write=False)
         object.__setattr__(self, "world_to_camera", pose)
 
@@ -67,6 +74,8 @@ class Camera:
         `fov_y` is the vertical field of view in degrees. If the view runs along `up`, any perpendicular is used.
         """
         eye_, target_, up_ = (np.asarray(v, dtype=np.float64) for v in (eye, target, up))
+        if not 0 < fov_y < 180:
+            raise UserError(f"Camera.look_at: the field of view must lie between 0 and 180 degrees, got {fov_y}")
         forward = target_ - eye_
         length = float(np.linalg.norm(forward))
         if not length > 0:

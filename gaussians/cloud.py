@@ -91,7 +91,7 @@ class GaussianCloud:
     @classmethod
     def empty(cls, degree: int = 0, device: str | torch.device = "cpu") -> Self:
         """A cloud of zero Gaussians."""
-        f = {"dtype": torch.float32, "device": device}
+        f: dict[str, Any] = {"dtype": torch.float32, "device": device}
         return cls.create(
             torch.zeros(0, 3, **f), torch.zeros(0, 4, **f), torch.zeros(0, 3, **f), torch.zeros(0, **f),
             torch.zeros(0, (degree + 1) ** 2, 3, **f),

@@ -35,6 +35,7 @@ BASIC: dict[str, str] = {
     "black": "#1a1a1a", "gray": "#808080", "white": "#f2f2f2",
 }  # fmt: skip
 
+_TEXT_LIMIT = 80  # characters; no colour name with qualifiers is longer
 _WORDS = re.compile(r"[^a-z0-9#]+")
 _QUALIFIER = re.compile(r"^(very dark|dark|deep|very light|light|pale|bright|vivid) (.+)$")
 
@@ -52,23 +53,34 @@ def parse(text: str) -> Rgb:
     Raises:
         UserError: for an unknown colour, naming the closest known ones.
     """
-    from PIL import ImageColor
-
+    if len(text) > _TEXT_LIMIT:
+        raise UserError(f"unknown colour {text[:40]!r}…; use a CSS name such as teal, or #1f8a8a")
     plain = _WORDS.sub(" ", text.lower()).strip()
     joined = plain.replace(" ", "")
-    for table in (EVERYDAY, ImageColor.colormap):
-        value = table.get(plain) or table.get(joined) or table.get(joined.replace("grey", "gray"))
-        if isinstance(value, str):
-            return _hex(value)
+    if named := _named(plain):
+        return named
     if re.fullmatch(r"#([0-9a-f]{3}|[0-9a-f]{6})", joined):
         return _hex(joined)
     if found := _QUALIFIER.match(plain):
         return _qualify(found.group(1), parse(found.group(2)))
-    if found := re.fullmatch(r"(\w+)ish", joined):
-        return parse(found.group(1).removesuffix("d") if found.group(1).endswith("dd") else found.group(1))
+    stem = plain.removesuffix("ish")
+    if stem != plain and (named := _named(stem) or _named(stem[:-1]) or _named(f"{stem}e")):
+        return named  # greenish, reddish, bluish
     close = difflib.get_close_matches(joined, names(), n=3, cutoff=0.6)
     hint = f"; did you mean {', '.join(close)}?" if close else "; use a CSS name such as teal, or #1f8a8a"
     raise UserError(f"unknown colour {text!r}{hint}")
+
+
+def _named(plain: str) -> Rgb | None:
+    """The colour of a name in lower case, if it is one."""
+    from PIL import ImageColor
+
+    joined = plain.replace(" ", "")
+    for table in (EVERYDAY, ImageColor.colormap):
+        value = table.get(plain) or table.get(joined) or table.get(joined.replace("grey", "gray"))
+        if value:  # Pillow swaps a name's text for numbers once somebody has drawn with it
+            return _hex(value) if isinstance(value, str) else (value[0] / 255, value[1] / 255, value[2] / 255)
+    return None
 
 
 def _hex(value: str) -> Rgb:
@@ -90,7 +102,7 @@ def _qualify(word: str, rgb: Rgb) -> Rgb:
         lightness += 0.5 * (100 - lightness)
     elif word == "very light":
         lightness += 0.75 * (100 - lightness)
-    r, g, blue = lab_to_rgb(torch.tensor([lightness, a * chroma_gain, b * chroma_gain])).clamp(0, 1).tolist()
+    r, g, blue = displayable(torch.tensor([lightness, a * chroma_gain, b * chroma_gain])).tolist()
     return (r, g, blue)
 
 
@@ -125,6 +137,26 @@ def lab_to_rgb(lab: Tensor) -> Tensor:
     return torch.where(
         low, 12.92 * linear, torch.sign(linear) * (1.055 * linear.abs().clamp(min=1e-12) ** (1 / 2.4) - 0.055)
     )
+
+
+def displayable(lab: Tensor) -> Tensor:
+    """The display RGB `[..., 3]` in [0, 1] nearest to Lab `[..., 3]` of the same lightness and hue.
+
+    Clipping channels would turn a deep blue back into plain blue; here chroma gives way instead, by bisection.
+    """
+    lightness, chroma = lab[..., :1].clamp(0, 100), lab[..., 1:]
+
+    def shown(share: Tensor) -> tuple[Tensor, Tensor]:
+        rgb = lab_to_rgb(torch.cat([lightness, chroma * share], dim=-1))
+        return rgb, ((rgb >= -1e-4) & (rgb <= 1 + 1e-4)).all(dim=-1, keepdim=True)
+
+    high = torch.ones_like(lightness)
+    low = shown(high)[1].to(lab.dtype)  # where all of the chroma fits, the interval is already closed
+    for _ in range(16):  # down to 1.5e-5 of the chroma, well below one step of eight bits
+        middle = (low + high) / 2
+        fits = shown(middle)[1]
+        low, high = torch.where(fits, middle, low), torch.where(fits, high, middle)
+    return shown(low)[0].clamp(0, 1)
 
 
 def name_of(lab: tuple[float, float, float] | Tensor) -> str:

@@ -6,6 +6,11 @@ import os
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+# Machines differ in speed, so no deadline; a failing example is the same for everyone.
+settings.register_profile("scenewright", deadline=None, derandomize=True)
+settings.load_profile("scenewright")
 
 _DATA = Path(os.environ.get("SCENEWRIGHT_DATA", Path(__file__).resolve().parents[1] / "../shared/data")).resolve()
 

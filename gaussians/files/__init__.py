@@ -64,11 +64,16 @@ def _detect(path: Path) -> Format:
 def _unknown(path: Path) -> str:
     """What is wrong with a path that no format recognises."""
     if path.is_dir():
-        inside = sorted(p.name for p in path.iterdir() if any(f.recognises(p, b"") for f in formats() if p.is_dir()))
+        inside = sorted(p.name for p in path.iterdir() if _promising(p))
         if inside:
-            return f"{path} holds several scenes; name one of them: {', '.join(inside[:10])}"
+            return f"{path} is a folder that holds scenes; name one of them: {', '.join(inside[:10])}"
     listed = "; ".join(f"{f.name} ({', '.join(f.suffixes)})" for f in formats())
     return f"{path}: unknown format. Known are: {listed}"
+
+
+def _promising(path: Path) -> bool:
+    """Whether something in a folder looks like a scene."""
+    return any(f.recognises(path, b"") for f in formats()) if path.is_dir() else _by_suffix(path) is not None
 
 
 def _by_suffix(path: Path) -> Format | None:

@@ -78,7 +78,7 @@ def read_header(file: BinaryIO, path: Path) -> Header:
             case ["comment", *_]:
                 comments.append(line.strip()[len("comment") :].strip())
             case ["format", ("ascii" | "binary_little_endian" | "binary_big_endian") as found, "1.0"]:
-                encoding = found  # type: ignore[assignment]
+                encoding = found
             case ["element", name, count] if count.isascii() and count.isdigit() and len(count) < 19:
                 elements.append((name, int(count), []))
             case ["property", kind, name] if kind in _TYPES and elements:

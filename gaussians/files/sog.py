@@ -195,7 +195,8 @@ def _means(images: _Images, means: _Means) -> values.Floats:
     mins, maxs = np.array(means.mins), np.array(means.maxs)
     logs = mins + (maxs - mins) * ((low + 256 * high) / 65535)
     with np.errstate(over="ignore"):  # absurd bounds give infinite rows, which are dropped as such
-        return (np.sign(logs) * np.expm1(np.abs(logs))).astype(np.float32)
+        positions: values.Floats = (np.sign(logs) * np.expm1(np.abs(logs))).astype(np.float32)
+    return positions
 
 
 def _rotations(pixels: Bytes) -> values.Floats:
@@ -213,8 +214,8 @@ def _decode(path: Path, codebook: tuple[float, ...], codes: NDArray[Any]) -> val
     if int(codes.max(initial=0)) >= len(codebook):
         raise FileError(f"{path}: a codebook of {len(codebook)} values is too short for the codes that use it")
     with np.errstate(over="ignore"):
-        table = np.array(codebook).astype(np.float32)
-    return table[codes]
+        decoded: values.Floats = np.array(codebook).astype(np.float32)[codes]
+    return decoded
 
 
 def _bands(images: _Images, palette: _Palette) -> values.Floats:
@@ -234,7 +235,8 @@ def _bands(images: _Images, palette: _Palette) -> values.Floats:
     chosen = pixels[:, 0] + 256 * pixels[:, 1]
     if int(chosen.max()) >= palette.count:
         raise FileError(f"{images.bundle.path}: {labels} names sets beyond the palette of {palette.count:,}")
-    return sets[chosen]
+    bands: values.Floats = sets[chosen]
+    return bands
 
 
 FORMAT = Format(NAME, (".sog",), recognises, read)

@@ -110,13 +110,13 @@ def sound_cloud(
         if lost == rows:
             raise FileError(f"none of its {rows:,} Gaussians is usable: every row holds NaN or infinite values")
         notes.append(f"{lost:,} of {rows:,} Gaussians were left out: NaN or infinite values")
-        means, quats, scales, opacities, sh, ids = (c[sound] for c in (means, quats, scales, opacities, sh, ids))
+        means, quats, scales, opacities, sh = (c[sound] for c in (means, quats, scales, opacities, sh))
+        ids = ids[sound]
     quats, turned = unit_quats(quats)
     if turned:
         notes.append(f"{turned:,} zero quaternions were replaced by no rotation")
-    columns = (means, quats, scales, opacities, sh)
-    cloud = GaussianCloud.create(*(torch.from_numpy(c) for c in columns), ids=torch.from_numpy(ids))
-    return cloud, tuple(notes)
+    columns = {"means": means, "quats": quats, "scales": scales, "opacities": opacities, "sh": sh, "ids": ids}
+    return GaussianCloud.create(**{name: torch.from_numpy(c) for name, c in columns.items()}), tuple(notes)
 
 
 def _finite_rows(column: Floats) -> NDArray[np.bool_]:
@@ -124,7 +124,8 @@ def _finite_rows(column: Floats) -> NDArray[np.bool_]:
     flat = column.reshape(len(column), -1)
     with np.errstate(all="ignore"):
         total = flat.sum(axis=1, dtype=np.float64)  # float64 so that large float32 terms cannot overflow
-    return np.isfinite(total)
+    finite: NDArray[np.bool_] = np.isfinite(total)
+    return finite
 
 
 def _by_block(values: Floats, function: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> Floats:
