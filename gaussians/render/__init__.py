@@ -18,8 +18,8 @@ from ..errors import BackendError, UserError
 
 __all__ = ["backends", "contributions", "render"]
 
-_MODULES = {"reference": ".reference"}
-_AUTO = "reference"
+_MODULES = {"cpu": ".cpu", "reference": ".reference"}
+_AUTO = "cpu"
 
 
 class Backend(Protocol):

@@ -64,7 +64,8 @@ def render(cloud: GaussianCloud, camera: Camera, background: Vec3) -> Render:
         best = torch.zeros(len(pixels), device=device)
         winner = torch.full((len(pixels),), NO_GROUP, dtype=torch.int32, device=device)
         T = torch.ones(len(pixels), device=device)
-        for part, weights, T in _blend(tile, pixels):
+        for part, weights, behind in _blend(tile, pixels):
+            T = behind
             total = total + weights @ features[part]
             heaviest, at = weights.max(dim=1)
             winner = torch.where(heaviest > best, cloud.group[tile.row[part][at]], winner)

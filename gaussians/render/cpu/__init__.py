@@ -1,0 +1,107 @@
+"""The fast renderer: numba kernels with explicit SIMD on all cores of the CPU.
+
+Knows the order of the stages and the memory they share. Refuses to know their insides: `project` finds footprints,
+`order` sorts them by depth and into tiles, `blend` makes pixels. Same input, same bytes, whatever the number of cores.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+
+from ...camera import Camera, Render, Vec3
+from ...cloud import GaussianCloud
+from .. import convention
+from . import blend, order, project, threads
+
+Array = NDArray[Any]
+
+LIMITS = (np.float32(convention.ALPHA_MAX), np.float32(convention.T_MIN))
+MAX_ENTRIES = 1 << 26  # footprints times tiles held at once (256 MB); a picture with more is drawn in strips
+
+
+@dataclass(frozen=True)
+class Bins:
+    """Footprints sorted into tiles: `entries[first[t]:first[t + 1]]` are the rows that touch tile t, nearest first."""
+
+    records: Array
+    first: Array
+    entries: Array
+
+
+def render(cloud: GaussianCloud, camera: Camera, background: Vec3) -> Render:
+    """See `scenewright.gaussians.render.render`."""
+    h, w = camera.height, camera.width
+    out = (
+        np.empty((h, w, 3), np.float32), np.empty((h, w), np.float32), np.empty((h, w), np.float32),
+        np.empty((h, w), np.int32),
+    )  # fmt: skip
+    columns, behind = _columns(cloud), np.array(background, dtype=np.float32)
+    for top, bottom, bins in _strips(columns, camera, 0, h):
+        strip = tuple(channel[top:bottom] for channel in out)
+        size = (w, bottom - top)
+        threads.run(blend.draw, bins.first, bins.entries, bins.records, size, LIMITS, behind, strip, _counter())
+    return Render(*(torch.from_numpy(channel).to(cloud.device) for channel in out))
+
+
+def contributions(cloud: GaussianCloud, camera: Camera) -> Tensor:
+    """See `scenewright.gaussians.render.contributions`."""
+    total = np.zeros(len(cloud), np.float64)
+    columns = _columns(cloud)
+    for top, bottom, bins in _strips(columns, camera, 0, camera.height):
+        share = np.zeros(len(bins.entries), np.float32)
+        size = (camera.width, bottom - top)
+        threads.run(blend.weigh, bins.first, bins.entries, bins.records, size, LIMITS, share, _counter())
+        blend.collect(bins.entries, share, total)
+    return torch.from_numpy(total.astype(np.float32)).to(cloud.device)
+
+
+def _columns(cloud: GaussianCloud) -> tuple[Array, ...]:
+    """The columns the kernels read, as arrays on the CPU (shared with the tensors where they lie there)."""
+    columns = (cloud.means, cloud.quats, cloud.scales, cloud.opacities, cloud.sh, cloud.group)
+    return tuple(column.detach().cpu().contiguous().numpy() for column in columns)
+
+
+def _strips(columns: tuple[Array, ...], camera: Camera, top: int, bottom: int) -> Iterator[tuple[int, int, Bins]]:
+    """The image rows from `top` to `bottom` in as few strips as memory allows, each with its sorted footprints."""
+    bins = _bin(columns, camera, top, bottom)
+    if bins is not None:
+        yield top, bottom, bins
+        return
+    middle = top + (bottom - top) // (2 * project.TILE) * project.TILE
+    yield from _strips(columns, camera, top, middle)
+    yield from _strips(columns, camera, middle, bottom)
+
+
+def _bin(columns: tuple[Array, ...], camera: Camera, top: int, bottom: int) -> Bins | None:
+    """Project and sort for some image rows; None if that takes too much memory and the rows can be divided."""
+    n, size = len(columns[0]), (camera.width, bottom - top)
+    chunks = -(-n // project.CHUNK)
+    records, corner, mask = np.empty((n, project.RECORD), np.float32), np.empty(n, np.uint32), np.empty(n, np.uint64)
+    depth, visible, found = np.empty(n, np.int32), np.empty(n, np.int32), np.empty(chunks, np.int32)
+    view = project.view_vector(camera, top)
+    threads.run(project.project, *columns, view, size, (records, corner, mask, depth, visible, found), _counter())
+
+    scratch = np.empty((2, n), np.int32), np.empty((2, n), np.int32)
+    rows = order.depth_order(depth, visible, found, project.CHUNK, *scratch)
+    wide, high = (-(-side // project.TILE) for side in size)
+    places = np.zeros((threads.workers(), wide * high), np.int64)
+    threads.run(order.count_tiles, rows, records, corner, mask, size, wide, places)
+    first = np.empty(wide * high + 1, np.int64)
+    total = order.starts(places, first)
+    if total > MAX_ENTRIES and high > 1:
+        return None
+    entries = np.empty(total, np.int32)
+    threads.run(order.fill_tiles, rows, records, corner, mask, size, wide, places, entries)
+    return Bins(records, first, entries)
+
+
+def _counter() -> Array:
+    """A fresh count of work handed out."""
+    return np.zeros(1, np.int64)

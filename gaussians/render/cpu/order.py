@@ -1,0 +1,132 @@
+"""Which footprint comes first, and which tiles it goes to.
+
+Knows two counting sorts: rows by depth, then rows into tiles in that order. Refuses to know what a footprint looks
+like beyond the tiles it touches. Both sorts are stable, so equal depths keep row order and the result does not depend
+on the number of workers.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from llvmlite import ir
+from numba import njit, types
+from numba.extending import intrinsic
+
+from .project import KERNEL, MASK_SIDE, tile_rows, tile_span
+
+DIGIT = 11  # bits sorted at once: 2048 counters stay in the first-level cache
+BUCKETS = 1 << DIGIT
+DIGITS = 3  # 3 x 11 bits hold the 31 of a positive float
+
+
+@intrinsic
+def _lowest_bit(typing_context: Any, value: Any) -> Any:
+    """Index of the lowest set bit of a uint64 that is not 0."""
+
+    def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
+        return builder.cttz(arguments[0], ir.Constant(ir.IntType(1), 1))
+
+    return types.int64(types.uint64), generate
+
+
+@njit(**KERNEL)
+def depth_order(depth, visible, found, chunk, keys, rows):  # type: ignore[no-untyped-def]
+    """Rows in order of depth. `keys` and `rows` are `[2, N]` int32 scratch; returns a view of `rows`.
+
+    `visible` `[N]` holds rows packed to the front of chunks of `chunk`, `found[c]` of them in chunk c.
+    """
+    count = 0
+    tally = np.zeros((DIGITS, BUCKETS), np.int64)
+    for c in range(found.shape[0]):
+        for i in range(c * chunk, c * chunk + found[c]):
+            key = depth[visible[i]]
+            keys[0, count], rows[0, count] = key, visible[i]
+            count += 1
+            for digit in range(DIGITS):
+                tally[digit, (key >> (DIGIT * digit)) & (BUCKETS - 1)] += 1
+    source = 0
+    for digit in range(DIGITS):
+        if _scatter(tally[digit], DIGIT * digit, count, keys, rows, source):
+            source = 1 - source
+    return rows[source, :count]
+
+
+@njit(**KERNEL)
+def _scatter(tally, shift, count, keys, rows, source):  # type: ignore[no-untyped-def]
+    """One stable pass by the digit at `shift`; returns False, having moved nothing, if all keys share that digit."""
+    total = 0
+    for bucket in range(BUCKETS):
+        size = tally[bucket]
+        if size == count:
+            return False
+        tally[bucket] = total
+        total += size
+    target = 1 - source
+    for i in range(count):
+        key = keys[source, i]
+        bucket = (key >> shift) & (BUCKETS - 1)
+        place = tally[bucket]
+        tally[bucket] = place + 1
+        keys[target, place] = key
+        rows[target, place] = rows[source, i]
+    return True
+
+
+@njit(**KERNEL)
+def count_tiles(worker, workers, order, records, corner, mask, size, tiles_wide, tally):  # type: ignore[no-untyped-def]
+    """Add this worker's share of `order` to `tally[worker]` `[tiles]` int32, which holds zeros."""
+    mine = tally[worker]
+    for k in range(order.shape[0] * worker // workers, order.shape[0] * (worker + 1) // workers):
+        n = order[k]
+        touched = mask[n]
+        if touched == 0:
+            top, bottom = tile_rows(records, n, size)
+            for row in range(top, bottom):
+                first, last = tile_span(records, n, row, size)
+                for column in range(first, last):
+                    mine[row * tiles_wide + column] += 1
+        base = np.int64(corner[n] >> 16) * tiles_wide + np.int64(corner[n] & 0xFFFF)
+        while touched != 0:
+            bit = _lowest_bit(touched)
+            touched &= touched - np.uint64(1)
+            mine[base + bit // MASK_SIDE * tiles_wide + bit % MASK_SIDE] += 1
+
+
+@njit(**KERNEL)
+def starts(tally, first):  # type: ignore[no-untyped-def]
+    """Turn counts `[workers, tiles]` into where each worker writes; `first[t]`: where tile t starts. Returns the total."""
+    total = 0
+    for tile in range(tally.shape[1]):
+        first[tile] = total
+        for worker in range(tally.shape[0]):
+            size = tally[worker, tile]
+            tally[worker, tile] = total
+            total += size
+    first[tally.shape[1]] = total
+    return total
+
+
+@njit(**KERNEL)
+def fill_tiles(worker, workers, order, records, corner, mask, size, tiles_wide, places, entries):  # type: ignore[no-untyped-def]
+    """Write rows into `entries`, tile by tile and nearest first; walks exactly as `count_tiles` did."""
+    mine = places[worker]
+    for k in range(order.shape[0] * worker // workers, order.shape[0] * (worker + 1) // workers):
+        n = order[k]
+        touched = mask[n]
+        if touched == 0:
+            top, bottom = tile_rows(records, n, size)
+            for row in range(top, bottom):
+                first, last = tile_span(records, n, row, size)
+                for column in range(first, last):
+                    tile = row * tiles_wide + column
+                    entries[mine[tile]] = n
+                    mine[tile] += 1
+        base = np.int64(corner[n] >> 16) * tiles_wide + np.int64(corner[n] & 0xFFFF)
+        while touched != 0:
+            bit = _lowest_bit(touched)
+            touched &= touched - np.uint64(1)
+            tile = base + bit // MASK_SIDE * tiles_wide + bit % MASK_SIDE
+            entries[mine[tile]] = n
+            mine[tile] += 1
