@@ -141,7 +141,7 @@ def _fit(pieces: Sequence[Piece], known: registry.Kind, size: Vec3 | None) -> li
 def spacing(pieces: Sequence[Piece], detail: float) -> float:
     """Cell length, metres, so that an object gets about 1,000 to 6,000 Gaussians by its area."""
     total = surface.area(pieces)
-    count = float(np.clip(1600 + 1300 * math.sqrt(total), 1000, 7000)) * detail
+    count = float(np.clip(1300 + 900 * math.sqrt(total), 900, 4200)) * detail
     return math.sqrt(total / count)
 
 

@@ -5,29 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from .materials import Material, Tone
+from .parts import Rng, chance, clipped_below, drape, shell, tapered_legs
 from .registry import kind
 from .shapes import Piece, Point, ball, box, boxes, cushion, cylinder, extrude, join, lathe, legs4, pillow, ring, rod
 from .shapes import rounded_rectangle, tube
-
-Rng = np.random.Generator
-
-
-def _chance(rng: Rng, p: float) -> bool:
-    return bool(rng.random() < p)
-
-
-def _tapered_legs(rng: Rng, w: float, d: float, h: float, thick: float) -> Piece:
-    """Four legs: square posts, or round ones that taper and splay outwards."""
-    if _chance(rng, 0.4):
-        return legs4(w, d, h, thick)
-    splay = rng.uniform(0.0, 0.07)
-    return join(
-        *(
-            rod((sx * (w / 2 + splay - thick), sy * (d / 2 + splay - thick), 0),
-                (sx * (w / 2 - 1.5 * thick), sy * (d / 2 - 1.5 * thick), h), thick * 0.35, thick * 0.6)
-            for sx in (-1, 1) for sy in (-1, 1)
-        )
-    )  # fmt: skip
 
 
 def _star_base(r: float, h: float, metal: Material, wheels: Material) -> list[Piece]:
@@ -78,8 +59,8 @@ def _hoop(w: float, h: float, y: float, z: float) -> list[Point]:
 def chair(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, seat = rng.uniform(0.4, 0.5), rng.uniform(0.42, 0.5), rng.uniform(0.43, 0.48)
     back, style = rng.uniform(0.36, 0.55), int(rng.integers(6))
-    mat = tone.main if not _chance(rng, 0.25) else Material(tone.color, "wood", seed=tone.seed, axis=2, main=True)
-    legs = mat if _chance(rng, 0.6) else tone.frame()
+    mat = tone.main if not chance(rng, 0.25) else Material(tone.color, "wood", seed=tone.seed, axis=2, main=True)
+    legs = mat if chance(rng, 0.6) else tone.frame()
     out = _chair_back(rng, style, w, d, seat, back, mat)
     shape = int(rng.integers(3))
     if shape == 0:
@@ -95,7 +76,7 @@ def chair(rng: Rng, tone: Tone) -> list[Piece]:
         rails = legs4(w, d, seat - 0.03, 0.038, 0.004), boxes([(w - 0.05, 0.02, 0.03, 0, s * (d / 2 - 0.03), 0.18) for s in (-1, 1)])
         out += [p.named("leg", legs.along(2)) for p in rails]
     elif under in (1, 2):
-        out.append(_tapered_legs(rng, w, d, seat - 0.03, 0.042).named("leg", legs.along(2)))
+        out.append(tapered_legs(rng, w, d, seat - 0.03, 0.042).named("leg", legs.along(2)))
     else:  # a bent steel cantilever
         for s in (-1, 1):
             x = s * (w / 2 - 0.02)
@@ -115,11 +96,11 @@ def office_chair(rng: Rng, tone: Tone) -> list[Piece]:
     back = cushion(w * rng.uniform(0.8, 0.98), h, 0.09, square=curveback).turned("x", 90).moved(0, d / 2 + 0.03, seat + 0.08 + h / 2)
     out += [back.turned("x", -8, (0, d / 2, seat)).named("back", mat),
             rod((0, d * 0.2, seat - 0.06), (0, d / 2 + 0.08, seat + 0.2), 0.02).named("frame", metal)]  # fmt: skip
-    if _chance(rng, 0.65):
+    if chance(rng, 0.65):
         for s in (-1, 1):
             x = s * (w / 2 + 0.03)
             out.append(boxes([(0.035, 0.04, 0.22, x, 0.02, seat - 0.03), (0.06, 0.26, 0.03, x, 0, seat + 0.19)]).named("armrest", black))
-    if _chance(rng, 0.3):
+    if chance(rng, 0.3):
         head = cushion(0.28, 0.16, 0.07).turned("x", 90).moved(0, d / 2 - 0.05, seat + h + 0.24)
         out.append(head.named("headrest", mat))
     return out
@@ -148,12 +129,12 @@ def _sofa_body(rng: Rng, tone: Tone, w: float, seats: int) -> list[Piece]:
             out.append(boxes([(0.05, 0.05, high, x, -d / 2 + 0.06, 0), (0.05, 0.05, high, x, d / 2 - 0.06, 0), (0.07, d, 0.035, x, 0, high)]).named("arm", wood.along(1)))
         inner = w - 0.14
     thick = rng.uniform(0.16, 0.24)
-    if style == 2 or _chance(rng, 0.3):
+    if style == 2 or chance(rng, 0.3):
         shell = cushion(w - 0.04, thick * 1.2, back - foot, (0, d / 2 - thick * 0.6, foot), 0.3)
     else:
         shell = box(w - 0.02, thick * 0.8, back - foot, (0, d / 2 - thick * 0.4, foot), 0.03)
     out.append(shell.named("back", mat))
-    n = seats if _chance(rng, 0.8) else 1
+    n = seats if chance(rng, 0.8) else 1
     each, deep = inner / n, d - thick * 0.9
     for k in range(n):
         x = -inner / 2 + each * (k + 0.5)
@@ -161,8 +142,8 @@ def _sofa_body(rng: Rng, tone: Tone, w: float, seats: int) -> list[Piece]:
         if back > 0.78:
             lean = cushion(each * 0.97, 0.15, back - seat - 0.02, (x, d / 2 - thick * 1.15, seat + 0.01), 0.35)
             out.append(lean.turned("x", -6, (0, d / 2 - thick, seat)).named("back cushion", mat))
-    out.append(_tapered_legs(rng, w - 0.08, d - 0.08, foot + 0.02, 0.05).named("leg", tone.frame().along(2), 1.2))
-    if _chance(rng, 0.45):
+    out.append(tapered_legs(rng, w - 0.08, d - 0.08, foot + 0.02, 0.05).named("leg", tone.frame().along(2), 1.2))
+    if chance(rng, 0.45):
         scatter = tone.accent()
         for s in (-1, 1)[: int(rng.integers(1, 3))]:
             p = pillow(0.42, 0.42, 0.14).turned("x", 68).turned("z", 12 * s).moved(s * max(inner / 2 - 0.24, 0), d / 2 - thick - 0.2, seat + 0.2)
@@ -172,7 +153,7 @@ def _sofa_body(rng: Rng, tone: Tone, w: float, seats: int) -> list[Piece]:
 
 @kind("armchair", ((0.68, 1.1), (0.7, 1.05), (0.68, 1.15)), synonyms=("lounge chair", "easy chair", "recliner", "club chair"), palette="fabric")
 def armchair(rng: Rng, tone: Tone) -> list[Piece]:
-    if _chance(rng, 0.25):  # a tub: one shell around the sitter
+    if chance(rng, 0.25):  # a tub: one shell around the sitter
         r, seat, h = rng.uniform(0.36, 0.42), 0.42, rng.uniform(0.7, 0.85)
         mat = tone.textile(0.1)
         a = np.radians(np.linspace(-35, 215, 31))[None]
@@ -182,17 +163,11 @@ def armchair(rng: Rng, tone: Tone) -> list[Piece]:
         for rr, flip in ((r, 1), (r - 0.09, -1)):
             z = 0.12 + (top - 0.12) * t
             grid = np.stack([rr * np.cos(a) + 0 * t, rr * np.sin(a) + 0 * t, z], axis=-1)
-            walls.append(Piece(_soft(grid if flip < 0 else grid[::-1])))
+            walls.append(shell(grid if flip < 0 else grid[::-1]))
         lip = tube(np.stack([(r - 0.045) * np.cos(a[0]), (r - 0.045) * np.sin(a[0]), top[0]], 1), 0.05)
         return [join(*walls, lip).named("shell", mat), cushion(2 * r - 0.16, 2 * r - 0.14, 0.18, (0, -0.05, seat - 0.16), 0.6).named("seat", mat),
                 cylinder(r - 0.02, 0.2, (0, 0, 0.1)).named("base", mat), legs4(0.5, 0.5, 0.12, 0.04).named("leg", tone.wood())]  # fmt: skip
     return _sofa_body(rng, tone, rng.uniform(0.75, 0.98), 1)
-
-
-def _soft(grid: np.ndarray) -> tuple:  # type: ignore[type-arg]
-    from .shapes import Sheets
-
-    return (Sheets(grid[None], True, True),)
 
 
 @kind("sofa", ((1.3, 2.6), (0.75, 1.7), (0.65, 1.1)), synonyms=("couch", "settee", "loveseat", "divan"), palette="fabric", against_wall=True)
@@ -206,7 +181,7 @@ def sofa(rng: Rng, tone: Tone) -> list[Piece]:
 def stool(rng: Rng, tone: Tone) -> list[Piece]:
     h, r = rng.choice([rng.uniform(0.42, 0.5), rng.uniform(0.62, 0.78)]), rng.uniform(0.15, 0.2)
     style, mat = int(rng.integers(4)), tone.main
-    frame = mat if _chance(rng, 0.5) else tone.frame()
+    frame = mat if chance(rng, 0.5) else tone.frame()
     if style == 0:
         top = cylinder(r, 0.04, (0, 0, h - 0.04), bevel=0.012)
     elif style == 1:
@@ -217,7 +192,7 @@ def stool(rng: Rng, tone: Tone) -> list[Piece]:
     else:
         top = box(2.4 * r, 1.5 * r, 0.05, (0, 0, h - 0.05), 0.015)
     out = [top.named("seat", mat.along(1))]
-    if style == 2 and _chance(rng, 0.6):
+    if style == 2 and chance(rng, 0.6):
         out += [cylinder(0.025, h - 0.08, (0, 0, 0.02)).named("column", tone.metal()), cylinder(r * 1.05, 0.025, bevel=0.01).named("base", tone.metal()),
                 ring(r * 0.8, 0.01, (0, 0, h * 0.35)).named("footrest", tone.metal())]  # fmt: skip
         return out
@@ -225,7 +200,7 @@ def stool(rng: Rng, tone: Tone) -> list[Piece]:
     turns = [2 * np.pi * (k + 0.5) / count for k in range(count)]
     low, up = r * 0.9 + splay, r * 0.72
     out.append(join(*(rod((low * np.cos(a), low * np.sin(a), 0), (up * np.cos(a), up * np.sin(a), h - 0.03), 0.014, 0.02) for a in turns)).named("leg", frame.along(2), 1.2))
-    if _chance(rng, 0.6):
+    if chance(rng, 0.6):
         out.append(ring((low * 0.65 + up * 0.35), 0.009, (0, 0, h * 0.35)).named("footrest", frame, 1.2))
     return out
 
@@ -242,12 +217,12 @@ def bench(rng: Rng, tone: Tone) -> list[Piece]:
         out.append(boxes([(w, d / n - 0.015, 0.03, 0, (k + 0.5) * d / n - d / 2, h - 0.03) for k in range(n)]).named("seat", mat.along(0)))
     else:
         out += [box(w, d, 0.06, (0, 0, h - 0.13), 0.01).named("seat", mat.along(0)), cushion(w, d, 0.1, (0, 0, h - 0.08), 0.2).named("cushion", tone.textile(0.1))]
-    if style == 1 or _chance(rng, 0.25):
+    if style == 1 or chance(rng, 0.25):
         slats = [(w, 0.025, 0.08, 0, d / 2, h + 0.12 + 0.13 * k) for k in range(3)]
         posts = [(0.05, 0.05, 0.95 - h + h, s * (w / 2 - 0.1), d / 2 + 0.03, 0) for s in (-1, 1)]
         out += [boxes(slats).named("back", mat.along(0)), boxes([(a, b, 0.88, x, y, z) for a, b, _, x, y, z in posts]).named("leg", mat.along(2))]
-    if _chance(rng, 0.5):
-        out.append(legs4(w - 0.06, d - 0.02, h - 0.05, 0.055).named("leg", (mat if _chance(rng, 0.6) else tone.metal()).along(2)))
+    if chance(rng, 0.5):
+        out.append(legs4(w - 0.06, d - 0.02, h - 0.05, 0.055).named("leg", (mat if chance(rng, 0.6) else tone.metal()).along(2)))
     else:
         out.append(boxes([(0.05, d - 0.02, h - 0.05, s * (w / 2 - 0.12), 0, 0) for s in (-1, 1)]).named("leg", mat.along(2)))
     return out
@@ -256,12 +231,12 @@ def bench(rng: Rng, tone: Tone) -> list[Piece]:
 @kind("ottoman", ((0.4, 0.9), (0.4, 0.8), (0.28, 0.5)), synonyms=("pouf", "pouffe", "hassock"), palette="fabric")
 def ottoman(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, mat = rng.uniform(0.45, 0.75), rng.uniform(0.34, 0.45), tone.textile(0.07, 0.4)
-    if _chance(rng, 0.4):
+    if chance(rng, 0.4):
         seams = [rod((0.25 * w * np.cos(a), 0.25 * w * np.sin(a), h * 0.97), (0.499 * w * np.cos(a), 0.499 * w * np.sin(a), h / 2), 0.004) for a in np.linspace(0, 6.28, 9)[:-1]]
         return [blob_seat(w, h).named("seat", mat), join(*seams).named("seam", mat.shaded(0.6))]
     d, foot = w * rng.uniform(0.7, 1.0), rng.uniform(0.05, 0.14)
     return [box(w, d, h - foot - 0.1, (0, 0, foot), 0.02).named("base", mat), cushion(w * 1.01, d * 1.01, 0.15, (0, 0, h - 0.15), 0.2).named("seat", mat),
-            _tapered_legs(rng, w, d, foot, 0.045).named("leg", tone.frame(), 1.2)]  # fmt: skip
+            tapered_legs(rng, w, d, foot, 0.045).named("leg", tone.frame(), 1.2)]  # fmt: skip
 
 
 def blob_seat(w: float, h: float) -> Piece:
@@ -272,7 +247,7 @@ def blob_seat(w: float, h: float) -> Piece:
 @kind("bed", ((0.85, 1.95), (1.85, 2.3), (0.5, 1.5)), synonyms=("double bed", "single bed", "cot"), palette="fabric", against_wall=True)
 def bed(rng: Rng, tone: Tone) -> list[Piece]:
     w, d = float(rng.choice([0.95, 1.4, 1.65])) + rng.uniform(0, 0.15), rng.uniform(2.0, 2.15)
-    base, frame = rng.uniform(0.26, 0.36), tone.wood() if _chance(rng, 0.7) else tone.plain(str(rng.choice(["#e9e6df", "#2c2b2c", "#6f7278"])))
+    base, frame = rng.uniform(0.26, 0.36), tone.wood() if chance(rng, 0.7) else tone.plain(str(rng.choice(["#e9e6df", "#2c2b2c", "#6f7278"])))
     cover, linen = tone.textile(0.18, 0.55), tone.plain(str(rng.choice(["#f4f1ea", "#e9edf2", "#f2e9dc"])))
     style, head = int(rng.integers(4)), rng.uniform(0.85, 1.25)
     out = [box(w, d, 0.16, (0, 0, base - 0.16), 0.01).named("frame", frame.along(1)),
@@ -289,57 +264,27 @@ def bed(rng: Rng, tone: Tone) -> list[Piece]:
         out += [join(*pads).named("headboard", cover), box(w, 0.04, head, (0, y, 0)).named("headboard", frame)]
     else:
         plate = extrude(rounded_rectangle(w, head * 1.2, 0.35), 0.06, 0.02).turned("x", 90).moved(0, y + 0.03, head * 0.4)
-        out += [_above(plate, 0.0).named("headboard", frame.along(0))]
-    fold = rng.uniform(0.3, 0.55)
-    over = d - fold - 0.12
-    t, u = np.linspace(0, 1, 15)[:, None], np.linspace(-1, 1, 21)[None]
-    drop = rng.uniform(0.12, base + 0.1)
-    side = np.clip(np.abs(u) * (w / 2 + drop) - (w / 2 + 0.005), 0, None)
-    x = np.sign(u) * np.minimum(np.abs(u) * (w / 2 + drop), w / 2 + 0.005 + 0.04 * np.sqrt(np.clip(side, 0, 1)))
-    z = base + 0.235 - side + 0.012 * np.sin(9 * u + 7 * t) * (np.abs(u) < 0.8) - 0.02 * (t < 0.02)
-    grid = np.stack([x + 0 * t, -d / 2 - 0.02 + t * over + 0 * u, z], axis=-1)
-    from .shapes import surface
-
-    out.append(surface(grid[:, ::-1] if False else grid).named("blanket", cover))
-    out.append(quad_front(w, d, base, drop).named("blanket", cover))
+        out.append(clipped_below(plate, 0.0).named("headboard", frame.along(0)))
+    over = d - rng.uniform(0.4, 0.62)
+    out.append(drape(w - 0.01, over, base + 0.232, rng.uniform(0.12, base + 0.1)).moved(0, (over - d) / 2 - 0.005).named("blanket", cover))
     n = 1 if w < 1.2 else 2
     for k in range(n):
         p = pillow(min(w / n - 0.06, 0.68), 0.42, 0.17).turned("x", 14).moved((k - (n - 1) / 2) * w / n, d / 2 - 0.34, base + 0.31)
-        out.append(p.named("pillow", linen if _chance(rng, 0.6) else cover))
+        out.append(p.named("pillow", linen if chance(rng, 0.6) else cover))
     out.append(legs4(w - 0.06, d - 0.06, base - 0.1, 0.07).named("leg", frame.along(2)))
     return out
-
-
-def quad_front(w: float, d: float, base: float, drop: float) -> Piece:
-    """The part of a blanket that hangs over the foot end."""
-    from .shapes import quad
-
-    y, top, low = -d / 2 - 0.02, base + 0.235, max(base + 0.235 - drop, 0.03)
-    return quad([(w / 2, y, low), (-w / 2, y, low), (w / 2, y, top), (-w / 2, y, top)])
-
-
-def _above(piece: Piece, z: float) -> Piece:
-    """Flatten what lies below `z` onto it."""
-    from dataclasses import replace
-
-    def cut(points: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
-        out = points.copy()
-        out[..., 2] = np.maximum(out[..., 2], z)
-        return out
-
-    return replace(piece, sheets=tuple(replace(s, points=cut(s.points)) for s in piece.sheets))
 
 
 @kind("cushion", ((0.3, 0.62), (0.08, 0.28), (0.28, 0.6)), support="surface", synonyms=("pillow", "throw pillow"), palette="any")
 def throw_cushion(rng: Rng, tone: Tone) -> list[Piece]:
     w, thick, mat = rng.uniform(0.36, 0.5), rng.uniform(0.13, 0.19), tone.textile(0.06, 0.35)
-    if _chance(rng, 0.2):
+    if chance(rng, 0.2):
         return [cylinder(w * 0.22, w, bevel=0.05).turned("y", 90).moved(-w / 2, 0, w * 0.22).named("cushion", mat),
                 ring(w * 0.22, 0.006, (-w / 2 + 0.04, 0, w * 0.22), "x").named("piping", mat.shaded(0.6)),
                 ring(w * 0.22, 0.006, (w / 2 - 0.04, 0, w * 0.22), "x").named("piping", mat.shaded(0.6))]  # fmt: skip
-    h = w if _chance(rng, 0.6) else w * 0.68
+    h = w if chance(rng, 0.6) else w * 0.68
     body = pillow(w, h, thick).turned("x", 72).moved(0, 0, h / 2)
     out = [body.named("cushion", mat)]
-    if _chance(rng, 0.35):
+    if chance(rng, 0.35):
         out.append(ball(0.014, (0, -thick * 0.48, h * 0.5 + 0.02)).named("button", mat.shaded(0.55), 1.5))
     return out
