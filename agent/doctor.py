@@ -1,7 +1,7 @@
 """Which back ends are usable on this machine, and what to install for the rest.
 
-Knows names of distributions and how each is known to break. Looks at metadata; imports a package only where nothing else tells
-(torchvision against a CPU torch). Changes nothing and fetches nothing.
+Knows names of distributions and how each is known to break. Looks at metadata; imports a package only where nothing
+else tells (torchvision beside a CPU torch). Changes nothing and fetches nothing.
 """
 
 from __future__ import annotations
@@ -62,7 +62,10 @@ NEEDED = {
 def examine() -> list[Finding]:
     """Every finding, the needed ones first."""
     needed = [_distribution(name, serves, needed=True, fix=_REINSTALL) for name, serves in NEEDED.items()]
-    return [*needed, *(check() for check in (_cuda, _encoder, _torchvision, _open_clip, _transformers, _charts, _ffmpeg))]
+    return [
+        *needed,
+        *(check() for check in (_cuda, _encoder, _torchvision, _open_clip, _transformers, _charts, _ffmpeg)),
+    ]
 
 
 def machine() -> dict[str, Any]:
@@ -113,13 +116,17 @@ def _encoder() -> Finding:
     home = Path(__file__).resolve().parent.parent / "gaussians" / "language"
     weights = sorted(home.rglob("*.onnx"))
     usable = bool(weights) and bool(_version("onnxruntime"))
-    detail = f"{len(weights)} files, {sum(w.stat().st_size for w in weights) / 1e6:.1f} MB" if weights else "its .onnx files are missing"
+    detail = (
+        f"{len(weights)} files, {sum(w.stat().st_size for w in weights) / 1e6:.1f} MB"
+        if weights
+        else "its .onnx files are missing"
+    )
     serves = "text and image embedding without a download"
     return Finding("embedded encoder", serves, usable, True, "", detail, "" if usable else _REINSTALL)
 
 
 def _torchvision() -> Finding:
-    """torchvision from the usual index is a CUDA build; beside a CPU torch its import fails, and takes others with it."""
+    """torchvision on PyPI is a CUDA build; beside a CPU torch its import fails, and takes others with it."""
     serves, version, torch = "transforms of open_clip and transformers", _version("torchvision"), _version("torch")
     if not version:
         return Finding("torchvision", serves, False, False, "", "not installed", _MODELS)
@@ -153,10 +160,14 @@ def _transformers() -> Finding:
 
 
 def _charts() -> Finding:
-    return _distribution("matplotlib", "charts of `scenewright bench`", needed=False, fix='pip install "scenewright[bench]"')
+    return _distribution(
+        "matplotlib", "charts of `scenewright bench`", needed=False, fix='pip install "scenewright[bench]"'
+    )
 
 
 def _ffmpeg() -> Finding:
     path = shutil.which("ffmpeg")
     detail = path or "not on the path"
-    return Finding("ffmpeg", "turning pictures into video", bool(path), False, "", detail, "" if path else "apt-get install ffmpeg")
+    return Finding(
+        "ffmpeg", "turning pictures into video", bool(path), False, "", detail, "" if path else "apt-get install ffmpeg"
+    )

@@ -42,7 +42,7 @@ def depth_of(stream: Stream, env: Mapping[str, str] | None = None) -> Depth:
 def draw(image: Picture, columns: int, rows: int, depth: Depth = "truecolor") -> str:
     """Text of at most `columns` x `rows` cells showing `image [H, W, 3]` with its aspect kept.
 
-    Every line ends in a reset, so that the picture never colours what follows. A cell is taken to be twice as high as wide.
+    Every line ends in a reset, so that the picture never colours what follows. A cell is twice as high as wide.
     """
     height, width = image.shape[:2]
     shrink = min(columns / width, 2 * rows / height)

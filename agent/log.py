@@ -6,6 +6,7 @@ what a plan or a receipt means: it stores what it is given as plain JSON. Secret
 Schema version 1. Every record has `v`, `seq` (1, 2, ... through the file), `time` (UTC, ISO 8601) and `kind`:
 
     open    scenewright, scene (path or null), gaussians, digest     a session begins; undo never crosses it
+    embed   encoder, things, before, after                           language was laid over the scene; no edit
     do      text, plan, receipts, before, after, seconds             an instruction was carried out
     failed  text, plan (or null), error, message, before             an instruction was refused; nothing was changed
     undo    text, before, after                                      the last `do` was taken back

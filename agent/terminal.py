@@ -8,10 +8,12 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Mapping
-from typing import Any, TextIO
+from collections.abc import Mapping, Sequence
+from typing import Any, NoReturn, TextIO
 
-from ..gaussians.errors import ScenewrightError, UserError
+import typer
+
+from ..gaussians.errors import InstructionError, ScenewrightError, UserError
 
 
 class Terminal:
@@ -49,8 +51,13 @@ class Terminal:
         """A remark for a person."""
         self._write(self.err, text)
 
+    def picture(self, drawn: str) -> None:
+        """A picture in text; left out where the output is for a program."""
+        if not self.as_json:
+            self._write(self.out, drawn)
+
     def progress(self, stage: str, fraction: float) -> None:
-        """How far a long piece of work is, `fraction` in [0, 1]; drawn on a terminal only, at most ten times a second."""
+        """How far long work is, `fraction` in [0, 1]; drawn on a terminal only, at most ten times a second."""
         if not self.err.isatty():
             return
         now = time.monotonic()
@@ -74,6 +81,18 @@ class Terminal:
         self.clear()
         stream.write(text + "\n")
         stream.flush()
+
+    def refuse(self, error: InstructionError, data: Mapping[str, Any], choices: Sequence[str] = ()) -> NoReturn:
+        """An instruction that was not carried out: the reason, what it hesitated between, and exit code 3."""
+        if self.as_json:
+            self.row(data)
+        self.say(str(error))
+        for number, choice in enumerate(choices, start=1):
+            self.say(f"  {number}. {choice}")
+        raise typer.Exit(error.exit_code)
+
+
+terminal = Terminal()  # the process has one standard output; options set its flags, commands write to it
 
 
 def explain(error: ScenewrightError) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """Scenewright: edit, build and question 3D Gaussian Splatting scenes in plain words.
 
-The public API. Names are imported on first use, so that `import scenewright` and the command line start at once; nothing
-here computes anything. `__all__` is the whole promise: what is not in it may change without notice.
+The public API. Names are imported on first use, so that `import scenewright` and the command line start at once.
+`__all__` is the whole promise: what is not in it may change without notice.
 """
 
 from __future__ import annotations

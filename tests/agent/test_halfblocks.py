@@ -23,7 +23,13 @@ class _Stream:
         return self._tty
 
 
-@given(st.integers(1, 90), st.integers(1, 60), st.integers(1, 50), st.integers(1, 30), st.sampled_from(["truecolor", "256", "ascii"]))
+@given(
+    st.integers(1, 90),
+    st.integers(1, 60),
+    st.integers(1, 50),
+    st.integers(1, 30),
+    st.sampled_from(["truecolor", "256", "ascii"]),
+)
 def test_the_picture_fits(width: int, height: int, columns: int, rows: int, depth: str) -> None:
     image = np.random.default_rng(0).integers(0, 256, (height, width, 3), dtype=np.uint8)
     lines = _ESCAPE.sub("", draw(image, columns, rows, depth)).split("\n")  # type: ignore[arg-type]
@@ -41,7 +47,9 @@ def test_a_colour_is_not_repeated() -> None:
     assert draw(image, 5, 1).count("\x1b[38") == 1
 
 
-@pytest.mark.parametrize(("color", "code"), [((255, 0, 0), 196), ((0, 0, 0), 16), ((255, 255, 255), 231), ((128, 128, 128), 244)])
+@pytest.mark.parametrize(
+    ("color", "code"), [((255, 0, 0), 196), ((0, 0, 0), 16), ((255, 255, 255), 231), ((128, 128, 128), 244)]
+)
 def test_palette_of_xterm(color: tuple[int, int, int], code: int) -> None:
     image = np.full((2, 1, 3), color, dtype=np.uint8)
     assert f"38;5;{code};48;5;{code}" in draw(image, 1, 1, "256")

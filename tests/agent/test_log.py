@@ -19,7 +19,13 @@ from hypothesis import strategies as st
 from scenewright.agent.log import SCHEMA_VERSION, SessionLog, read_log, scrub
 from scenewright.gaussians.errors import FileError
 
-_leaves = st.none() | st.booleans() | st.integers(-(2**53), 2**53) | st.floats(allow_nan=False, allow_infinity=False) | st.text(max_size=40)
+_leaves = (
+    st.none()
+    | st.booleans()
+    | st.integers(-(2**53), 2**53)
+    | st.floats(allow_nan=False, allow_infinity=False)
+    | st.text(max_size=40)
+)
 _fields = st.dictionaries(
     st.text(min_size=1, max_size=12).filter(lambda k: k not in ("v", "seq", "time", "kind")),
     st.recursive(_leaves, lambda x: st.lists(x, max_size=3) | st.dictionaries(st.text(max_size=5), x, max_size=3)),

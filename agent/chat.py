@@ -1,0 +1,309 @@
+"""The conversation: a line in, an edit and a picture out.
+
+Knows commands that begin with a slash, how to ask back, and what to show. Refuses to know how an instruction is carried
+out: that is the session's. Works on a terminal with history and completion, and on a pipe line by line.
+"""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..gaussians.errors import InstructionError, ScenewrightError, UserError
+from .halfblocks import depth_of, draw
+from .resolved import candidate_json, selection_json, verdict_of
+
+if TYPE_CHECKING:
+    from prompt_toolkit import PromptSession
+    from prompt_toolkit.input import Input
+    from prompt_toolkit.output import Output as ScreenOutput
+
+    from .result import Result
+    from .session import Session
+    from .terminal import Terminal
+
+COMMANDS = {
+    "/help": "what can be said",
+    "/undo": "take the last instruction back",
+    "/redo": "do again what was taken back",
+    "/plan": "TEXT: what an instruction would do, without doing it; alone: the last plan",
+    "/select": "TEXT: what a phrase means; 'it' then means that",
+    "/show": "a picture of the current view; /show 2 looks through the scene's camera 2",
+    "/things": "what is in the scene",
+    "/history": "the instructions that led here",
+    "/save": "FILE [--force]: write the scene",
+    "/quit": "end the conversation",
+}
+_EXAMPLES = (
+    "make the armchair teal and remove the coffee table",
+    "move the plant 50 cm to the left",
+    "put a red ball on the table",
+)
+
+
+class Chat:
+    """One conversation.
+
+    Args:
+        session: what is talked about.
+        terminal: where answers go.
+        input, output: prompt_toolkit's, for tests; by default the process's terminal, or its pipe.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        terminal: Terminal,
+        input: Input | None = None,
+        output: ScreenOutput | None = None,
+    ) -> None:
+        self.session = session
+        self.terminal = terminal
+        self._pipe_input, self._screen = input, output
+        self._result: Result | None = None
+        self._saved = True
+
+    # -- the loop ---------------------------------------------------------------------------------------------------
+
+    def run(self) -> None:
+        """Read lines until /quit or the end of input. Ctrl-C ends the instruction, not the conversation."""
+        if self._interactive():
+            self._greet()
+        for line in self._lines():
+            if line.strip() in ("/quit", "/exit"):
+                break
+            if line.strip():
+                self.say(line.strip())
+        if not self._saved:
+            self.terminal.say("the edited scene was not saved")
+
+    def say(self, line: str) -> None:
+        """One line: a command, an answer to an open question, or an instruction. Errors become one sentence."""
+        try:
+            if line.startswith("/"):
+                self._command(line)
+            else:
+                self._instruction(line)
+        except KeyboardInterrupt:
+            self._tell("cancelled; nothing was changed", {"verdict": "cancelled"})
+        except InstructionError as error:
+            self._ask_back(error)
+        except ScenewrightError as error:
+            if self.terminal.debug:
+                raise
+            self._tell(str(error), {"verdict": verdict_of_any(error), "reason": str(error)})
+
+    def _instruction(self, text: str) -> None:
+        if self.session.question is not None and self.session.question.selection.verdict == "ambiguous":
+            try:
+                result = self.session.answer(text)
+            except UserError:
+                result = self.session.do(text)  # not an answer: a new instruction, which drops the question
+        else:
+            result = self.session.do(text)
+        self._show_result(result)
+
+    def _show_result(self, result: Result) -> None:
+        self._result, self._saved = result, False
+        lines = list(result.sentences()) or [f"{result.text}: done"]
+        if sum(result.seconds.values()) > 0:
+            lines.append(f"({sum(result.seconds.values()):.2f} s)")
+        self._tell("\n".join(lines), result.to_json())
+        if self._interactive():
+            self._picture()
+
+    def _ask_back(self, error: InstructionError) -> None:
+        question = self.session.question
+        candidates = question.candidates if question else ()
+        lines = [str(error)]
+        lines += [f"  {i}. {c.describe()}" for i, c in enumerate(candidates, start=1)]
+        if question is not None and question.selection.verdict == "ambiguous":
+            lines.append("Which one? A number, 'all', or for example 'the left one'.")
+        data = {
+            "verdict": verdict_of(error),
+            "reason": str(error),
+            "candidates": [candidate_json(c) for c in candidates],
+        }
+        self._tell("\n".join(lines), data)
+
+    # -- commands ---------------------------------------------------------------------------------------------------
+
+    def _command(self, line: str) -> None:
+        name, _, rest = line.partition(" ")
+        handlers: dict[str, Callable[[str], None]] = {
+            "/help": self._help,
+            "/undo": lambda _: self._show_result(self.session.undo()),
+            "/redo": lambda _: self._show_result(self.session.redo()),
+            "/plan": self._plan,
+            "/select": self._select,
+            "/show": self._show,
+            "/things": self._things,
+            "/history": self._history,
+            "/save": self._save,
+        }
+        if name not in handlers:
+            raise UserError(f"there is no command {name}; /help lists them")
+        handlers[name](rest.strip())
+
+    def _help(self, _: str) -> None:
+        from ..tools.registry import describe
+
+        lines = ["Say what to do, for example:", *(f"  {e}" for e in _EXAMPLES), "", "Operations:"]
+        lines += [f"  {name:<10} {words}" for name, _doc, words, _json in describe()]
+        lines += ["", "Commands:", *(f"  {name:<10} {text}" for name, text in COMMANDS.items())]
+        self._tell("\n".join(lines), {"commands": COMMANDS})
+
+    def _plan(self, text: str) -> None:
+        import json
+
+        if text:
+            result = self.session.preview(text)
+            lines = [*result.sentences(), "(not done)"]
+            self._tell("\n".join([_pretty(result.plan), *lines]), result.to_json())
+            return
+        if self._result is None:
+            raise UserError("nothing was planned yet; /plan TEXT shows what an instruction would do")
+        self._tell(_pretty(self._result.plan), json.loads(self._result.plan.model_dump_json()))
+
+    def _select(self, text: str) -> None:
+        if not text:
+            raise UserError("say what to select: /select the red chair")
+        found = self.session.select(text)
+        if found.verdict == "found":
+            things = ", ".join(c.describe() for c in found.candidates) or found.query.describe()
+            self._tell(f"{len(found):,} Gaussians: {things}", selection_json(found))
+            return
+        lines = [found.reason, *(f"  {i}. {c.describe()}" for i, c in enumerate(found.candidates, start=1))]
+        self._tell("\n".join(lines), selection_json(found))
+
+    def _show(self, view: str) -> None:
+        from .views import choose_view
+
+        if view:
+            self.session.viewer = choose_view(self.session.scene, view)
+        self._picture()
+
+    def _things(self, _: str) -> None:
+        from ..gaussians.color import name_of
+
+        language = self.session.embed().language
+        assert language is not None
+        rows = [
+            (g.id, f"{name_of(g.lab)} {g.label or 'unnamed thing'}", g.count) for g in language.objects() if g.count
+        ]
+        data = {"things": [{"group": i, "name": name, "gaussians": n} for i, name, n in rows]}
+        self._tell("\n".join(f"  {i:>4}  {name} ({n:,} Gaussians)" for i, name, n in rows), data)
+
+    def _history(self, _: str) -> None:
+        done = self.session.done
+        self._tell(
+            "\n".join(f"  {i}. {t}" for i, t in enumerate(done, 1)) or "nothing was done yet", {"done": list(done)}
+        )
+
+    def _save(self, arguments: str) -> None:
+        words = shlex.split(arguments)
+        names = [w for w in words if w != "--force"]
+        if len(names) != 1:
+            raise UserError("say where to: /save out.ply (add --force to overwrite)")
+        self.session.save(names[0], force="--force" in words)
+        self._saved = True
+        self._tell(f"wrote {names[0]}", {"verdict": "ok", "path": names[0]})
+
+    # -- what the user sees -----------------------------------------------------------------------------------------
+
+    def _tell(self, text: str, data: dict[str, Any]) -> None:
+        self.terminal.result(text, data)
+
+    def _picture(self) -> None:
+        """The current view, as large as the terminal allows and the eye needs."""
+        from ..gaussians.language.views import fit_camera
+        from ..gaussians.render import render
+
+        size = shutil.get_terminal_size((80, 24))
+        columns, rows = min(size.columns, 100), min(size.lines - 4, 40)
+        camera = fit_camera(self.session.viewer, 4 * columns, 4 * round(columns * 2 / 3))
+        image = render(self.session.scene.cloud, camera).to_uint8()
+        self.terminal.picture(draw(image, columns, max(rows, 8), depth_of(self.terminal.out)))
+
+    def _greet(self) -> None:
+        path, count = self.session.scene.path, len(self.session.scene.cloud)
+        self.terminal.say(
+            f"{path.name if path else 'scene'}: {count:,} Gaussians. Say what to change; /help lists more."
+        )
+        self._picture()
+
+    # -- reading lines ----------------------------------------------------------------------------------------------
+
+    def _interactive(self) -> bool:
+        if self.terminal.as_json:
+            return False
+        return self._pipe_input is not None or (sys.stdin.isatty() and sys.stdout.isatty())
+
+    def _lines(self) -> Iterator[str]:
+        if not self._interactive():
+            for line in sys.stdin:
+                yield line.rstrip("\n")
+            return
+        prompt = self._prompt()
+        while True:
+            try:
+                yield prompt.prompt("› ")
+            except KeyboardInterrupt:
+                continue
+            except EOFError:
+                return
+
+    def _prompt(self) -> PromptSession[str]:
+        from prompt_toolkit import PromptSession
+        from prompt_toolkit.auto_suggest import AutoSuggestFromHistory
+        from prompt_toolkit.history import FileHistory, History, InMemoryHistory
+
+        from .completion import ChatCompleter
+
+        history: History = InMemoryHistory()
+        if self._pipe_input is None and (file := history_file()) is not None:
+            history = FileHistory(str(file))
+        return PromptSession(
+            history=history,
+            auto_suggest=AutoSuggestFromHistory(),
+            completer=ChatCompleter(tuple(COMMANDS), self._words),
+            complete_while_typing=False,
+            input=self._pipe_input,
+            output=self._screen,
+        )
+
+    def _words(self) -> Iterable[str]:
+        """What may be completed in an instruction: operations, and the names of things in the scene."""
+        from ..tools.registry import OPS
+
+        language = self.session.scene.language
+        labels = {g.label for g in language.groups if g.label and g.count} if language else set()
+        return sorted({*OPS, *labels})
+
+
+def history_file() -> Path | None:
+    """Where typed lines are kept between conversations; None if that folder cannot be made."""
+    root = Path(os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state") / "scenewright"
+    try:
+        root.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return None
+    return root / "chat_history" if os.access(root, os.W_OK) else None
+
+
+def verdict_of_any(error: ScenewrightError) -> str:
+    """As `verdict_of`, with "failed" for files and back ends."""
+    return verdict_of(error) if isinstance(error, InstructionError | UserError) else "failed"
+
+
+def _pretty(plan: Any) -> str:
+    import json
+
+    return "\n".join(
+        json.dumps(op.model_dump(mode="json", exclude_defaults=True), ensure_ascii=False) for op in plan.ops
+    )

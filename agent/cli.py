@@ -1,0 +1,88 @@
+"""The command line: which verbs there are, and how errors become exit codes and one line.
+
+Knows no verb's work. Nothing heavy is imported here, nor by the verbs' modules at module level.
+
+Exit codes: 0 done; 2 the command was wrong; 3 the instruction could not be carried out as said and nothing was changed;
+4 a file or back end failed; 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from typing import Annotated, Any, NoReturn
+
+import typer
+
+from ..gaussians.errors import ScenewrightError
+from .terminal import explain, terminal
+
+VERBS = ("info", "embed", "select", "plan", "edit", "chat", "render", "convert", "doctor")
+
+app = typer.Typer(
+    name="scenewright",
+    help="Edit, build and question 3D Gaussian Splatting scenes in plain words.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _version(value: bool) -> None:
+    if value:
+        from .. import __version__
+
+        print(f"scenewright {__version__}")
+        raise typer.Exit()
+
+
+@app.callback()
+def _root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Edit, build and question 3D Gaussian Splatting scenes in plain words."""
+
+
+def _add(verb: str) -> None:
+    module = importlib.import_module(f".commands.{verb}", __package__)
+    app.command(verb)(module.command)
+
+
+for _verb in VERBS:
+    _add(_verb)
+
+
+def main(arguments: list[str] | None = None) -> NoReturn:
+    """Run the command line on `arguments` (by default those of the process) and exit with its code."""
+    terminal.as_json = terminal.debug = False
+    try:
+        app(arguments)
+    except ScenewrightError as error:
+        if terminal.debug:
+            raise
+        _report(explain(error))
+        sys.exit(error.exit_code)
+    except KeyboardInterrupt:
+        terminal.say("interrupted")
+        sys.exit(130)
+    except BrokenPipeError:
+        sys.stderr.close()  # whoever read our output has gone; nothing is left to say, not even at exit
+        sys.exit(0)
+    except Exception as error:
+        if terminal.debug:
+            raise
+        note = f"internal error ({type(error).__name__}: {error}); run again with --debug and report it"
+        _report({"verdict": "internal", "reason": note, "exit_code": 4})
+        sys.exit(4)
+    sys.exit(0)
+
+
+def _report(told: dict[str, Any]) -> None:
+    """The error as one line on stderr and, with --json, as an object on stdout."""
+    if terminal.as_json:
+        terminal.row(told)
+    terminal.say(f"scenewright: {told['reason']}")

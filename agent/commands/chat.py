@@ -1,0 +1,27 @@
+"""`scenewright chat SCENE`: a conversation about one scene."""
+
+from __future__ import annotations
+
+from ..options import Debug, Encoder, Json, Log, Planner, SceneFile, Seed, View
+from ..terminal import terminal
+
+
+def command(
+    scene: SceneFile,
+    planner: Planner = "auto",
+    encoder: Encoder = "auto",
+    view: View = "auto",
+    log: Log = None,
+    seed: Seed = 0,
+    as_json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Talk to a scene: instructions in words, /help for the rest. With --json, one JSON object for each line said."""
+    from ..chat import Chat
+    from ..opening import Opening, open_session
+
+    session, _ = open_session(Opening(scene, planner, encoder, view, None, log, seed))
+    try:
+        Chat(session, terminal).run()
+    finally:
+        session.close()

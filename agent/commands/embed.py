@@ -1,0 +1,45 @@
+"""`scenewright embed SCENE`: lay language over a scene and keep it beside the file."""
+
+from __future__ import annotations
+
+import time
+
+from ..options import Debug, Encoder, Force, Json, SceneFile
+from ..terminal import terminal
+
+
+def command(
+    scene: SceneFile,
+    encoder: Encoder = "auto",
+    force: Force = False,
+    as_json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Embed language in a scene and save the field beside it, so that later commands start at once.
+
+    A saved field is used as long as the scene file is the very one it was made for. --force embeds again.
+    """
+    from ...gaussians.files import load
+    from ...gaussians.language import embed, encoders
+    from ...gaussians.language.store import load_field, save_field
+
+    started = time.perf_counter()
+    loaded, chosen = load(scene), encoders.load(encoder)
+    known = None if force else load_field(loaded, scene, chosen.fingerprint)
+    embedded = known or embed(loaded, chosen, progress=terminal.progress)
+    path = None if known else save_field(embedded, scene)
+    language = embedded.language
+    assert language is not None
+    things = [{"group": g.id, "label": g.label, "gaussians": g.count} for g in language.objects()]
+    seconds = round(time.perf_counter() - started, 2)
+    data = {
+        "path": str(path) if path else None,
+        "things": things,
+        "encoder": language.encoder,
+        "notes": list(language.notes),
+        "seconds": seconds,
+        "was_there": known is not None,
+    }
+    names = ", ".join(sorted(g.label or "unnamed thing" for g in language.objects()))
+    told = "was embedded already (--force does it again)" if known else f"embedded in {seconds} s, saved as {path}"
+    terminal.result("\n".join([f"{scene}: {told}", f"{len(things)} things: {names}", *language.notes]), data)

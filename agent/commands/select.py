@@ -1,0 +1,98 @@
+"""`scenewright select SCENE "TEXT"`: which Gaussians a phrase means."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ..options import Batch, Debug, Encoder, Force, Json, Planner, SceneFile, View
+from ..terminal import read_batch, terminal
+
+if TYPE_CHECKING:
+    from ...gaussians.language.selection import Selection
+    from ..session import Session
+
+Ids = Annotated[
+    Path | None,
+    typer.Option(
+        "--ids", metavar="FILE", help="Write the Gaussians' row numbers (.npy); with --batch a folder of <id>.npy."
+    ),
+]
+
+
+def command(
+    scene: SceneFile,
+    text: Annotated[str | None, typer.Argument(metavar="TEXT", help="What to select, e.g. 'the red chair'.")] = None,
+    ids: Ids = None,
+    batch: Batch = None,
+    encoder: Encoder = "auto",
+    planner: Planner = "auto",
+    view: View = "auto",
+    force: Force = False,
+    as_json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Find what a phrase means: found, ambiguous (with the candidates) or absent (with the nearest)."""
+    from ...gaussians.errors import UserError
+    from ..opening import Opening, open_session
+
+    if (text is None) == (batch is None):
+        raise UserError('give either TEXT or --batch FILE: scenewright select SCENE "the red chair"')
+    rows = read_batch(str(batch)) if batch else [{"id": None, "text": text}]
+    targets = [_target(ids, row["id"], batch is not None) for row in rows]
+    session, _ = open_session(Opening(scene, planner, encoder, view))
+    if batch is None:
+        _one(session, str(text), targets[0], force)
+        return
+    if ids is not None:
+        ids.mkdir(parents=True, exist_ok=True)
+    for row, target in zip(rows, targets, strict=True):
+        session.recall(row.get("context"))
+        terminal.row({"id": row["id"], **_answer(session, row["text"], target, force)[1]})
+
+
+def _target(ids: Path | None, row: Any, batch: bool) -> Path | None:
+    """Where the rows of one answer go; an id that is no plain file name is refused."""
+    from ...gaussians.errors import UserError
+
+    if ids is None or not batch:
+        return ids
+    name = f"{row}.npy"
+    if Path(name).name != name or name.startswith("."):
+        raise UserError(f"the id {row!r} cannot be a file name; use letters, digits, '-' and '_'")
+    return ids / name
+
+
+def _one(session: Session, text: str, target: Path | None, force: bool) -> None:
+    selection, data = _answer(session, text, target, force)
+    if selection is None or selection.verdict != "found":
+        terminal.result(data["reason"], data)
+        for number, c in enumerate(selection.candidates if selection else (), start=1):
+            terminal.say(f"  {number}. {c.describe()}, score {c.score:.2f}")
+        raise typer.Exit(3)
+    things = ", ".join(c.describe() for c in selection.candidates) or selection.query.describe()
+    note = f" ({selection.reason})" if selection.reason else ""
+    terminal.result(f"{len(selection):,} Gaussians: {things}{note}", data)
+
+
+def _answer(session: Session, text: str, target: Path | None, force: bool) -> tuple[Selection | None, dict[str, Any]]:
+    """The selection, and the answer as data; the rows are written where something was found."""
+    import numpy as np
+
+    from ...gaussians.errors import UserError
+    from ...gaussians.files import writing
+    from ..resolved import selection_json
+
+    started = time.perf_counter()
+    try:
+        selection = session.select(text)
+    except UserError as error:
+        refused = {"verdict": "not_understood", "gaussians": 0, "groups": [], "candidates": [], "reason": str(error)}
+        return None, {**refused, "seconds": round(time.perf_counter() - started, 4)}
+    if target is not None:
+        with writing(target, force) as file:
+            np.save(file, selection.ids.cpu().numpy(), allow_pickle=False)
+    return selection, {**selection_json(selection), "seconds": round(time.perf_counter() - started, 4)}

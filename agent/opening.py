@@ -1,0 +1,82 @@
+"""From a path on the command line to a session: load, take the saved language field if it fits, tell of repairs.
+
+Knows files and options. Refuses to know what is done with the session.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .terminal import terminal
+
+if TYPE_CHECKING:
+    from ..gaussians.language.encoders import Encoder
+    from ..gaussians.scene import Scene
+    from .session import Session
+
+
+@dataclass(frozen=True)
+class Opening:
+    """How a scene is to be opened.
+
+    Attributes:
+        path: scene file or folder.
+        planner, encoder: names of back ends.
+        view, size: the viewer, as `views.choose_view` takes them.
+        log: session log to append to, or None.
+        seed: what varies between two inserted things of a kind.
+    """
+
+    path: Path
+    planner: str = "auto"
+    encoder: str = "auto"
+    view: str = "auto"
+    size: str | None = None
+    log: Path | None = None
+    seed: int = 0
+
+
+def open_session(opening: Opening) -> tuple[Session, bool]:
+    """A session over the scene, and whether it came with a saved language field.
+
+    Raises:
+        FileError: the scene cannot be read.
+        UserError: the view or size is none.
+        BackendError: no such planner.
+    """
+    from ..gaussians.files import load_with_report
+    from .session import Session
+    from .views import choose_view
+
+    scene, report = load_with_report(opening.path)
+    for note in report.notes:
+        terminal.say(f"note: {note}")
+    scene, encoder = _with_saved_field(scene, opening)
+    session = Session(
+        scene,
+        planner=opening.planner,
+        encoder=encoder,
+        log=opening.log,
+        progress=terminal.progress,
+        seed=opening.seed,
+    )
+    if opening.view != "auto" or opening.size is not None:
+        session.viewer = choose_view(session.scene, opening.view, opening.size)
+    return session, scene.language is not None
+
+
+def _with_saved_field(scene: Scene, opening: Opening) -> tuple[Scene, str | Encoder]:
+    """The scene with its saved field if there is one of this encoder; and the encoder, loaded if it had to be."""
+    from ..gaussians.language import encoders
+    from ..gaussians.language.store import load_field
+
+    embedded = load_field(scene, opening.path)
+    if embedded is None or embedded.language is None:
+        return scene, opening.encoder
+    encoder = encoders.load(opening.encoder)
+    if embedded.language.encoder == encoder.fingerprint:
+        return embedded, encoder
+    terminal.say(f"note: the saved language field is of encoder {embedded.language.encoder}; embedding again")
+    return scene, encoder

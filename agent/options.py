@@ -1,0 +1,47 @@
+"""Options that several verbs share, declared once. Knows names and help texts; nothing else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .terminal import terminal
+
+
+def _json(value: bool) -> bool:
+    terminal.as_json = value
+    return value
+
+
+def _debug(value: bool) -> bool:
+    terminal.debug = value
+    return value
+
+
+SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="A scene file or folder (see `convert --help`).")]
+Output = Annotated[Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to write the scene (.ply).")]
+Json = Annotated[bool, typer.Option("--json", callback=_json, is_eager=True, help="Print the result as JSON.")]
+Debug = Annotated[
+    bool, typer.Option("--debug", callback=_debug, is_eager=True, help="Let errors through with their traceback.")
+]
+Force = Annotated[bool, typer.Option("--force", help="Overwrite files that exist.")]
+Encoder = Annotated[str, typer.Option("--encoder", metavar="NAME", help="Text and image encoder; 'auto' is our own.")]
+Planner = Annotated[str, typer.Option("--planner", metavar="NAME", help="Who reads instructions; 'auto' or 'grammar'.")]
+Batch = Annotated[
+    Path | None,
+    typer.Option(
+        "--batch", metavar="FILE", help='JSON Lines of {"id", "text", "context"?}; one answer a line. - is stdin.'
+    ),
+]
+Log = Annotated[Path | None, typer.Option("--log", metavar="FILE", help="Session log to append to (JSON Lines).")]
+View = Annotated[
+    str,
+    typer.Option(
+        "--view", metavar="VIEW",
+        help="The viewer: a camera of the scene by number or name, or 'EYE:TARGET' as 'x,y,z:x,y,z'; 'auto' chooses.",
+    ),
+]  # fmt: skip
+Size = Annotated[str | None, typer.Option("--size", metavar="WxH", help="Size of pictures in pixels, e.g. 1280x720.")]
+Seed = Annotated[int, typer.Option("--seed", help="What varies between two runs; the same seed gives the same bytes.")]

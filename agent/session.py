@@ -1,0 +1,467 @@
+"""A session: one scene, instructions in a straight line, undo, redo, a log and replay.
+
+    do(text) -> planner.plan -> EditPlan -> for each operation: resolve, apply, check -> Receipt -> log -> Result
+
+Knows the order of things and what to keep. Refuses to know grammar, pixels and tensors. An instruction is carried out
+whole or not at all, and its record is on the disk before the session moves on.
+"""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..gaussians.camera import Camera
+from ..gaussians.errors import AbsentError, AmbiguousError, FileError, ScenewrightError, UserError
+from ..gaussians.language.query import Query
+from ..gaussians.language.selection import Selection
+from ..gaussians.scene import Scene
+from .clarify import Question, answered, find_question, queries
+from .history import History, State
+from .log import Record, SessionLog, read_log
+from .result import Result
+
+if TYPE_CHECKING:
+    from ..gaussians.language.encoders import Encoder
+    from ..planners.plan import EditPlan
+    from ..tools.base import Context, EditOp
+    from ..tools.receipt import Receipt
+
+Progress = Callable[[str, float], None]  # stage in words, share done in [0, 1]
+
+_UNDO = re.compile(
+    r"(please )?(undo|take (that|it|this) back|revert)( (that|it|this|the last (one|step|edit|change)))?", re.I
+)
+_REDO = re.compile(r"(please )?(redo|do (that|it) again)( (that|it|this))?", re.I)
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """One instruction of a replay: what it did here, or why it could not be done."""
+
+    text: str
+    result: Result | None
+    error: ScenewrightError | None
+
+
+class Session:
+    """A conversation about one scene.
+
+    Args:
+        scene: where it starts; never changed in place.
+        planner: "auto" or "grammar" (both: the grammar, which abstains when it does not understand).
+        encoder: which encoder words are compared with: a name that `gaussians.language.encoders.load` takes, or one.
+        log: path of a session log to append to, or None.
+        viewer: whose left and right are meant, and what `Result.render` shows; by default the scene's first camera,
+            or a view chosen from the scene.
+        progress: told how far long work is.
+        seed: what varies between two inserted things of a kind.
+
+    Raises:
+        BackendError: no such planner.
+        FileError: the log cannot be opened.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        planner: str = "auto",
+        encoder: str | Encoder = "auto",
+        log: str | Path | None = None,
+        viewer: Camera | None = None,
+        *,
+        progress: Progress | None = None,
+        seed: int = 0,
+    ) -> None:
+        from ..planners import load as load_planner
+
+        self._planner = load_planner(planner)
+        self._encoder = encoder
+        self._viewer = viewer
+        self._progress = progress or (lambda stage, fraction: None)
+        self._seed = seed
+        self._history = History(State(scene))
+        self._log = SessionLog(log) if log is not None else None
+        self.question: Question | None = None
+        self._write("open", lambda: self._opening())
+
+    # -- what it is now ---------------------------------------------------------------------------------------------
+
+    @property
+    def scene(self) -> Scene:
+        """The scene as it stands."""
+        return self._history.present.scene
+
+    @property
+    def last(self) -> Selection | None:
+        """What "it" means."""
+        return self._history.present.last
+
+    @property
+    def viewer(self) -> Camera:
+        """Whose left and right are meant."""
+        if self._viewer is None:
+            from .views import default_view
+
+            self._viewer = default_view(self.scene)
+        return self._viewer
+
+    @viewer.setter
+    def viewer(self, camera: Camera) -> None:
+        self._viewer = camera
+
+    @property
+    def encoder(self) -> Encoder:
+        """The encoder, loaded when first needed."""
+        if isinstance(self._encoder, str):
+            from ..gaussians.language import encoders
+
+            self._encoder = encoders.load(self._encoder)
+        return self._encoder
+
+    @property
+    def done(self) -> tuple[str, ...]:
+        """The instructions that led to the present scene, oldest first."""
+        states = [*self._history.past, self._history.present]
+        return tuple(s.text for s in states if s.text)
+
+    # -- one instruction --------------------------------------------------------------------------------------------
+
+    def do(self, text: str) -> Result:
+        """Carry out an instruction, whole or not at all. "undo" and "redo" in words are understood too.
+
+        Raises:
+            UserError: the words were not understood; the message says which.
+            AbsentError: what is named is not there. `question` holds the nearest things.
+            AmbiguousError: several things match. `question` holds them; `answer` says which.
+            CheckFailedError: an operation failed its own check and everything was rolled back.
+            InstructionError: it cannot be done as said.
+        """
+        said = text.strip().rstrip(".!")
+        if _UNDO.fullmatch(said):
+            return self.undo()
+        if _REDO.fullmatch(said):
+            return self.redo()
+        started = time.perf_counter()
+        try:
+            plan = self.plan(text)
+        except ScenewrightError as error:
+            self.question = None
+            self._refused(text, None, error)
+            raise
+        return self.apply(plan, planned_in=time.perf_counter() - started)
+
+    def plan(self, text: str) -> EditPlan:
+        """What an instruction is taken to mean; nothing is looked up in the scene and nothing changes.
+
+        Raises:
+            UserError: the words were not understood.
+        """
+        return self._planner.plan(text)
+
+    def preview(self, instruction: str | EditPlan) -> Result:
+        """A dry run: the result as it would be. Nothing is edited and no edit logged; the scene may become embedded."""
+        plan = self.plan(instruction) if isinstance(instruction, str) else instruction
+        return self._carry_out(plan, {}, dry_run=True)[0]
+
+    def apply(self, plan: EditPlan, *, planned_in: float = 0.0) -> Result:
+        """Carry out a plan that was made before, whole or not at all; raises as `do`."""
+        seconds = {"plan": planned_in}
+        try:
+            result, state = self._carry_out(plan, seconds, dry_run=False)
+        except ScenewrightError as error:
+            self._refused(plan.instruction, plan, error)
+            raise
+        with _timed(seconds, "log"):
+            self._write("do", lambda: self._deed(result, state))
+        self._history.advance(state)
+        return result
+
+    def answer(self, text: str) -> Result:
+        """Say which of the things in `question` was meant: a number, "all", "the left one", "the red one".
+
+        Raises:
+            UserError: nothing was asked, or the answer is no choice. The question then stands.
+        """
+        if self.question is None or not self.question.candidates:
+            raise UserError("there is no open question; give an instruction")
+        return self.apply(answered(self.question, text, self._noun_phrase))
+
+    def select(self, phrase: str | Query) -> Selection:
+        """What a phrase means here, whatever the verdict; the scene does not change, and "it" means what was found.
+
+        Raises:
+            UserError: the phrase was not understood.
+        """
+        query = phrase if isinstance(phrase, Query) else self._noun_phrase(phrase)
+        if query is None:
+            raise UserError(f"{phrase!r} is no description of things; say for example 'the red chair'")
+        self.embed()
+        found = self._context(self.last).resolve(self.scene, query)
+        if found.verdict == "found":
+            present = self._history.present
+            self._history.amend(State(present.scene, found, present.text))
+        return found
+
+    def recall(self, text: str | None) -> None:
+        """Let "it" mean what an earlier instruction was about, without carrying that out; None forgets.
+
+        An instruction that cannot be read or found leaves "it" without a meaning.
+        """
+        present = self._history.present
+        last: Selection | None = None
+        if text:
+            try:
+                targets = [q for op in self._planner.plan(text).ops if (q := op.query()) is not None]
+            except ScenewrightError:
+                targets = []
+            if targets:
+                self.embed()
+                present = self._history.present
+                found = self._context(None).resolve(self.scene, targets[-1])
+                last = found if found.verdict == "found" else None
+        self._history.amend(State(present.scene, last, present.text))
+
+    def embed(self) -> Scene:
+        """The scene with its language field, made now if it has none."""
+        if self.scene.language is None:
+            from ..gaussians.language import embed
+
+            present = self._history.present
+            state = State(embed(present.scene, self.encoder, progress=self._progress), present.last, present.text)
+            self._write("embed", lambda: self._embedding(present, state))
+            self._history.amend(state)
+        return self.scene
+
+    # -- back and forth ---------------------------------------------------------------------------------------------
+
+    def undo(self) -> Result:
+        """Take the last instruction back: the scene is again the very value it was.
+
+        Raises:
+            UserError: there is nothing to undo.
+        """
+        return self._step("undo", self._history.behind(), self._history.present.text, self._history.back)
+
+    def redo(self) -> Result:
+        """Do again what was taken back.
+
+        Raises:
+            UserError: there is nothing to redo.
+        """
+        ahead = self._history.ahead()
+        return self._step("redo", ahead, ahead.text, self._history.forth)
+
+    def _step(self, kind: str, to: State, text: str, move: Callable[[], State]) -> Result:
+        before = self._history.present
+        self._write(kind, lambda: {"text": text, "before": before.digest, "after": to.digest})
+        move()
+        self.question = None
+        return Result(kind, _empty_plan(kind), (), before.scene, to.scene, self.viewer, to.last)
+
+    # -- files ------------------------------------------------------------------------------------------------------
+
+    def save(self, path: str | Path, force: bool = False) -> None:
+        """Write the scene to a file; an existing one only with `force`."""
+        from ..gaussians.files import save
+
+        save(self.scene, path, force=force)
+        self._write("save", lambda: {"path": str(path), "digest": self._history.present.digest})
+
+    def replay(self, log: str | Path, *, session: int = -1, skip_failed: bool = False) -> list[Replayed]:
+        """Carry out what another session did, here: words are resolved again, ids only where the scene is the same.
+
+        Instructions that were undone there are left out. Each becomes a step of its own that can be undone.
+
+        Args:
+            log: a session log.
+            session: which of the sessions in it, counted from the first (0) or the last (-1).
+            skip_failed: go on after an instruction that cannot be carried out here and report it; without it the
+                session is put back to where it was and the error is raised.
+
+        Raises:
+            FileError: the log cannot be read.
+            UserError: it holds no such session.
+        """
+        sessions = read_log(log).sessions()
+        if not -len(sessions) <= session < len(sessions):
+            raise UserError(f"{log} holds {len(sessions)} sessions; there is none number {session}")
+        outcome: list[Replayed] = []
+        for record in _standing(sessions[session]):
+            plan = self._portable(_read_plan(record, log), record)
+            try:
+                outcome.append(Replayed(record["text"], self.apply(plan), None))
+            except ScenewrightError as error:
+                if not skip_failed:
+                    for _ in outcome:
+                        self.undo()
+                    raise type(error)(
+                        f"replay stopped at {record['text']!r}, all of it was taken back: {error}"
+                    ) from error
+                outcome.append(Replayed(record["text"], None, error))
+        return outcome
+
+    def close(self) -> None:
+        """Close the log."""
+        if self._log is not None:
+            self._log.close()
+
+    # -- inside -----------------------------------------------------------------------------------------------------
+
+    def _carry_out(self, plan: EditPlan, seconds: dict[str, float], *, dry_run: bool) -> tuple[Result, State]:
+        from ..tools.run import carry_out
+
+        self.question = None
+        if any(True for op in plan.ops for _ in queries(op)):
+            with _timed(seconds, "embed"):
+                self.embed()
+        before = self._history.present
+        scene, last = before.scene, before.last
+        receipts: list[Receipt] = []
+        with _timed(seconds, "edit"):
+            for step, op in enumerate(plan.ops):
+                context = self._context(last)
+                try:
+                    scene, receipt, last = carry_out(scene, op, context)
+                except ScenewrightError as error:
+                    self.question = self._question(plan, step, error, scene, context)
+                    raise _in_plan(error, plan, step) from error
+                receipts.append(receipt)
+        state = State(scene, last, plan.instruction)
+        result = Result(
+            plan.instruction, plan, tuple(receipts), before.scene, scene, self.viewer, last, seconds, dry_run
+        )
+        return result, state
+
+    def _context(self, last: Selection | None) -> Context:
+        from ..tools.base import Context
+
+        encoder = self.encoder if self.scene.language is not None else None
+        return Context(viewer=self.viewer, last=last, encoder=encoder, seed=self._seed)
+
+    def _question(
+        self, plan: EditPlan, step: int, error: ScenewrightError, scene: Scene, context: Context
+    ) -> Question | None:
+        if not isinstance(error, AmbiguousError | AbsentError):
+            return None
+        verdict = "ambiguous" if isinstance(error, AmbiguousError) else "absent"
+        return find_question(plan, step, verdict, lambda query: context.resolve(scene, query))
+
+    def _noun_phrase(self, text: str) -> Query | None:
+        """A phrase as the planner reads it, or None."""
+        try:
+            ops: tuple[EditOp, ...] = self._planner.plan(f"select {text}").ops
+        except ScenewrightError:
+            return None
+        return ops[0].query() if len(ops) == 1 else None
+
+    def _portable(self, plan: EditPlan, record: Record) -> EditPlan:
+        """The plan without ids of groups, unless this is bit for bit the scene they were given in."""
+        if record.get("before") == self._history.present.digest:
+            return plan
+        from .clarify import exchange
+
+        ops = []
+        for op in plan.ops:
+            for path, query in list(queries(op)):
+                if query.groups:
+                    op = exchange(op, path, query.model_copy(update={"groups": ()}))
+            ops.append(op)
+        return plan.model_copy(update={"ops": tuple(ops)})
+
+    def _write(self, kind: str, fields: Callable[[], dict[str, Any]]) -> None:
+        if self._log is not None:
+            self._log.append(kind, fields())
+
+    def _opening(self) -> dict[str, Any]:
+        from .. import __version__
+
+        path, state = self.scene.path, self._history.present
+        return {
+            "scenewright": __version__,
+            "scene": str(path) if path else None,
+            "gaussians": len(self.scene.cloud),
+            "digest": state.digest,
+        }
+
+    def _embedding(self, before: State, after: State) -> dict[str, Any]:
+        language = after.scene.language
+        assert language is not None
+        things = len(language.objects())
+        return {"encoder": language.encoder, "things": things, "before": before.digest, "after": after.digest}
+
+    def _deed(self, result: Result, state: State) -> dict[str, Any]:
+        return {
+            "text": result.text,
+            "plan": result.plan.model_dump(mode="json"),
+            "receipts": [r.model_dump(mode="json") for r in result.receipts],
+            "before": self._history.present.digest,
+            "after": state.digest,
+            "seconds": dict(result.seconds),
+        }
+
+    def _refused(self, text: str, plan: EditPlan | None, error: ScenewrightError) -> None:
+        self._write(
+            "failed",
+            lambda: {
+                "text": text,
+                "plan": plan.model_dump(mode="json") if plan else None,
+                "error": type(error).__name__,
+                "message": str(error),
+                "before": self._history.present.digest,
+            },
+        )
+
+
+def _in_plan(error: ScenewrightError, plan: EditPlan, step: int) -> ScenewrightError:
+    """The error, saying where in a compound instruction it arose and that the whole of it was rolled back."""
+    if len(plan.ops) == 1:
+        return error
+    where = f"step {step + 1} of {len(plan.ops)} ({plan.ops[step].op}) failed, nothing was changed"
+    return type(error)(f"{where}: {error}")
+
+
+def _empty_plan(text: str) -> EditPlan:
+    from ..planners.plan import EditPlan
+
+    return EditPlan(instruction=text, ops=(), planner="session")
+
+
+def _standing(records: list[Record]) -> list[Record]:
+    """The `do` records of a session that were not undone in the end."""
+    done: list[Record] = []
+    undone: list[Record] = []
+    for record in records:
+        if record["kind"] == "do":
+            done.append(record)
+            undone.clear()
+        elif record["kind"] == "undo" and done:
+            undone.append(done.pop())
+        elif record["kind"] == "redo" and undone:
+            done.append(undone.pop())
+    return done
+
+
+def _read_plan(record: Record, source: str | Path) -> EditPlan:
+    from pydantic import ValidationError
+
+    from ..planners.plan import EditPlan
+
+    try:
+        return EditPlan.model_validate(record["plan"])
+    except (KeyError, ValidationError) as error:
+        raise FileError(f"{source}: record {record['seq']} holds no plan this version can read ({error})") from error
+
+
+@contextmanager
+def _timed(seconds: dict[str, float], stage: str) -> Iterator[None]:
+    started = time.perf_counter()
+    try:
+        yield
+    finally:
+        seconds[stage] = seconds.get(stage, 0.0) + time.perf_counter() - started

@@ -1,0 +1,166 @@
+"""The shape of the house: who may import whom, what a wheel holds, and what start-up costs."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import json
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import scenewright
+
+ROOT = Path(__file__).resolve().parents[1]
+ROOMS = ("gaussians", "tools", "planners", "agent", "prompts", "benchmarks")
+# Downstairs never imports upstairs; the benchmarks look at everything and nobody looks at them but the command line.
+MAY_IMPORT = {
+    "gaussians": {"gaussians"},
+    "tools": {"gaussians", "tools"},
+    "planners": {"gaussians", "tools", "prompts", "planners"},
+    "agent": {"gaussians", "tools", "planners", "prompts", "agent", "benchmarks"},
+    "prompts": {"prompts"},
+    "benchmarks": {"gaussians", "tools", "planners", "agent", "prompts", "benchmarks"},
+}
+
+
+def _modules(room: str) -> list[Path]:
+    return sorted((ROOT / room).rglob("*.py"))
+
+
+def _rooms_imported(path: Path) -> Iterator[tuple[str, int]]:
+    """Rooms that a module imports, absolutely or relatively, anywhere in it, with the line."""
+    package = ("scenewright", *path.relative_to(ROOT).parent.parts)
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        names: list[tuple[str, ...]] = []
+        if isinstance(node, ast.Import):
+            names = [tuple(alias.name.split(".")) for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else ()
+            base += tuple(node.module.split(".")) if node.module else ()
+            names = [(*base, alias.name) for alias in node.names]
+        for name in names:
+            if name[0] == "scenewright" and len(name) > 1:
+                yield name[1], node.lineno  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_rooms_import_only_downstairs(room: str) -> None:
+    wrong = [
+        f"{path.relative_to(ROOT)}:{line} imports {other}"
+        for path in _modules(room)
+        for other, line in _rooms_imported(path)
+        if other in ROOMS and other not in MAY_IMPORT[room]
+    ]
+    assert not wrong
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_every_file_says_what_it_knows(room: str) -> None:
+    silent = [p for p in _modules(room) if p.stat().st_size and not ast.get_docstring(ast.parse(p.read_text("utf-8")))]
+    assert not silent
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_every_folder_of_modules_is_a_package(room: str) -> None:
+    bare = {p.parent for p in _modules(room) if not (p.parent / "__init__.py").exists()}
+    assert not bare
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """Names in a wheel built from a copy without the editors' links, as a build on Windows would see it."""
+    if importlib.util.find_spec("setuptools") is None:
+        pytest.skip("setuptools is not installed in this environment; the wheel cannot be built")
+    copy = tmp_path_factory.mktemp("build")
+    for room in ROOMS:
+        shutil.copytree(ROOT / room, copy / room, ignore=shutil.ignore_patterns("__pycache__"))
+    (copy / "src" / "scenewright").mkdir(parents=True)
+    for file in (ROOT / "src" / "scenewright").iterdir():
+        if not file.is_symlink() and file.is_file():
+            shutil.copy(file, copy / "src" / "scenewright")
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, copy)
+    code = "from setuptools.build_meta import build_wheel; print(build_wheel('out'))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=copy, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    (built,) = (copy / "out").glob("*.whl")
+    return zipfile.ZipFile(built).namelist()
+
+
+def test_the_wheel_holds_every_room_with_its_data(wheel: list[str]) -> None:
+    wanted = {
+        f"scenewright/{path.relative_to(ROOT).as_posix()}"
+        for room in ROOMS
+        for path in (ROOT / room).rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+    wanted |= {"scenewright/__init__.py", "scenewright/__main__.py", "scenewright/py.typed"}
+    assert not wanted - set(wheel)
+
+
+def test_the_wheel_holds_nothing_else(wheel: list[str]) -> None:
+    assert not [n for n in wheel if not n.startswith(("scenewright/", "scenewright-"))]
+    assert not [n for n in wheel if "__pycache__" in n or n.startswith("scenewright/tests")]
+
+
+def test_no_room_is_importable_by_its_bare_name(tmp_path: Path) -> None:
+    code = (
+        "import importlib.util, json, sys; names = sys.argv[1:];"
+        "print(json.dumps({n: str(s.origin or list(s.submodule_search_locations or [])) for n in names"
+        " if (s := importlib.util.find_spec(n))}))"
+    )
+    env = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
+    done = subprocess.run(
+        [sys.executable, "-c", code, *ROOMS, "tests"], cwd=tmp_path, env=env, capture_output=True, text=True, check=True
+    )
+    # Another distribution may install a module called "tools" or "tests"; ours must not.
+    ours = {name: origin for name, origin in json.loads(done.stdout).items() if str(ROOT) in origin}
+    assert not ours
+
+
+def test_exported_members() -> None:
+    assert sorted(scenewright.__all__) == scenewright.__all__
+    assert set(scenewright.__all__) == set(scenewright._HOME)
+    for name in scenewright.__all__:
+        assert getattr(scenewright, name) is not None
+        assert name in dir(scenewright)
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        _ = scenewright.nonsense
+
+
+def test_exported_members_are_declared_for_type_checkers() -> None:
+    tree = ast.parse((ROOT / "src/scenewright/__init__.py").read_text("utf-8"))
+    block = next(n for n in tree.body if isinstance(n, ast.If))
+    declared = {
+        alias.name: f".{node.module}" for node in block.body if isinstance(node, ast.ImportFrom) for alias in node.names
+    }
+    assert declared == scenewright._HOME
+
+
+def _loaded_by(code: str) -> set[str]:
+    """Top-level modules in a fresh interpreter after `code`."""
+    report = "; import sys, json; print(json.dumps(sorted({m.split('.')[0] for m in sys.modules})), file=sys.stderr)"
+    done = subprocess.run([sys.executable, "-c", code + report], capture_output=True, text=True, check=True)
+    return set(json.loads(done.stderr.strip().splitlines()[-1]))
+
+
+HEAVY = {"torch", "numpy", "numba", "scipy", "trimesh", "onnxruntime", "PIL", "matplotlib", "lark", "prompt_toolkit"}
+
+
+def test_import_costs_nothing() -> None:
+    assert not _loaded_by("import scenewright") & (HEAVY | {"pydantic", "rich", "typer"})
+
+
+def test_help_loads_nothing_heavy() -> None:
+    code = (
+        "import sys; from scenewright.agent.cli import main; sys.argv = ['scenewright', '--help']\n"
+        "try: main()\nexcept SystemExit: pass\nTrue"
+    )
+    assert not _loaded_by(code) & (HEAVY | {"pydantic"})
