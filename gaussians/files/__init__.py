@@ -49,8 +49,10 @@ def _detect(path: Path) -> Format:
     """The format of what lies at `path`: by content first, by name second."""
     if not path.exists():
         raise FileError(f"no such file or folder: {path}")
+    if not (path.is_file() or path.is_dir()):
+        raise FileError(f"{path} is neither a file nor a folder")
     head = b""
-    if not path.is_dir():
+    if path.is_file():
         with open(path, "rb") as file:
             head = file.read(HEAD_BYTES)
     for known in formats():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import secrets
 import stat
 from collections.abc import Iterator
 from pathlib import Path
@@ -25,7 +26,7 @@ def writing(path: str | Path, force: bool = False) -> Iterator[BinaryIO]:
     """
     target = Path(os.path.realpath(path))
     _check_target(target, force)
-    part = target.with_name(f".{target.name[:200]}.{os.getpid()}.part")
+    part = target.with_name(f".{target.name[:100]}.{secrets.token_hex(6)}.part")  # nobody else's, whatever runs beside
     try:
         with open(part, "xb") as file:
             yield file

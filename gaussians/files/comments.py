@@ -12,7 +12,7 @@ A frame that was given by the user is one that comes from the file for whoever l
 from __future__ import annotations
 
 import json
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -32,6 +32,8 @@ class _Stored(BaseModel):
 
 
 class _Frame(_Stored):
+    """As `Frame`."""
+
     up: tuple[Finite, Finite, Finite]
     floor: Finite | None = None
     metres_per_unit: Finite | None = None
@@ -40,6 +42,8 @@ class _Frame(_Stored):
 
 
 class _Camera(_Stored):
+    """As `Camera`, in pairs; a size beyond a million pixels a side is a fault, and would exhaust a renderer."""
+
     name: Annotated[str, Field(max_length=500)] = ""
     size: tuple[Annotated[int, Field(ge=1, le=1 << 20)], Annotated[int, Field(ge=1, le=1 << 20)]]
     focal: Pair
@@ -49,27 +53,30 @@ class _Camera(_Stored):
 
 def describe(scene: Scene) -> tuple[str, ...]:
     """The comment lines of a scene; none for what is unknown."""
-    frame = scene.frame
-    lines: list[str] = []
-    if frame != Frame():
-        stored = _Frame(
-            up=frame.up,
-            floor=frame.floor,
-            metres_per_unit=frame.metres_per_unit,
-            up_source="file" if frame.up_source == "given" else frame.up_source,
-            scale_source="file" if frame.scale_source == "given" else frame.scale_source,
-        )
-        lines.append(_line("frame", stored))
-    for camera in scene.cameras:
-        stored_camera = _Camera(
-            name=camera.name[:500],
-            size=(camera.width, camera.height),
-            focal=(camera.fx, camera.fy),
-            center=(camera.cx, camera.cy),
-            world_to_camera=tuple(camera.world_to_camera.ravel().tolist()),
-        )
-        lines.append(_line("camera", stored_camera))
-    return tuple(lines)
+    frame = _describe_frame(scene.frame)
+    return (*([frame] if scene.frame != Frame() else []), *(_describe_camera(camera) for camera in scene.cameras))
+
+
+def _describe_frame(frame: Frame) -> str:
+    stored = {
+        "up": [float(c) for c in frame.up],
+        "floor": None if frame.floor is None else float(frame.floor),
+        "metres_per_unit": None if frame.metres_per_unit is None else float(frame.metres_per_unit),
+        "up_source": "file" if frame.up_source == "given" else frame.up_source,
+        "scale_source": "file" if frame.scale_source == "given" else frame.scale_source,
+    }
+    return _line("frame", stored)
+
+
+def _describe_camera(camera: Camera) -> str:
+    stored = {
+        "name": camera.name[:500],
+        "size": [int(camera.width), int(camera.height)],
+        "focal": [float(camera.fx), float(camera.fy)],
+        "center": [float(camera.cx), float(camera.cy)],
+        "world_to_camera": camera.world_to_camera.ravel().tolist(),
+    }
+    return _line("camera", stored)
 
 
 def parse(comments: tuple[str, ...]) -> tuple[Frame, tuple[Camera, ...], tuple[str, ...]]:
@@ -96,6 +103,6 @@ def _camera(stored: _Camera) -> Camera:
     return Camera(pose, *stored.focal, *stored.center, *stored.size, stored.name)
 
 
-def _line(what: str, stored: _Stored) -> str:
+def _line(what: str, stored: dict[str, Any]) -> str:
     """ASCII and on one line whatever a camera's name holds; numbers are written so that they read back exactly."""
-    return f"{_PREFIX} {what} {json.dumps(stored.model_dump())}"
+    return f"{_PREFIX} {what} {json.dumps(stored)}"

@@ -49,11 +49,12 @@ def read(path: Path) -> tuple[Scene, Report]:
     chunk = np.arange(count) // _CHUNK
     position, rotation, scale, color = words.T
     rgb = _between(bounds, _COLOR, chunk, _unpack(color, (8, 8, 8, 8))[:, :3])
-    sh = np.concatenate([((rgb - 0.5) / SH_C0).astype(np.float32)[:, None], rest], axis=1)
+    sh = np.concatenate([values.rounded((rgb - 0.5) / SH_C0)[:, None], rest], axis=1)
+    logs = _between(bounds, _SCALE, chunk, _unpack(scale, (11, 10, 11)))
     cloud, notes = values.sound_cloud(
-        _between(bounds, _POSITION, chunk, _unpack(position, (11, 10, 11))).astype(np.float32),
+        values.rounded(_between(bounds, _POSITION, chunk, _unpack(position, (11, 10, 11)))),
         _rotations(rotation),
-        values.scales_from_logs(_between(bounds, _SCALE, chunk, _unpack(scale, (11, 10, 11))).astype(np.float32)),
+        values.scales_from_logs(values.rounded(logs)),
         values.opacities_from_bytes(color & 255),
         sh,
     )

@@ -95,10 +95,10 @@ def _gather(blocks: Any, count: int, degree: int) -> tuple[values.Floats, ...]:
 
 def write(scene: Scene, file: BinaryIO) -> None:
     """Write the scene in row order, little-endian float32, with the zero normals that INRIA's viewer expects."""
-    cloud = scene.cloud.to("cpu")
-    k = int(cloud.sh.shape[1])
-    means, scales, opacities, sh = (c.numpy() for c in (cloud.means, cloud.scales, cloud.opacities, cloud.sh))
-    quats, _ = values.unit_quats(cloud.quats.numpy())
+    cloud = {name: column.detach().cpu().numpy() for name, column in scene.cloud.columns()}
+    means, scales, opacities, sh = (cloud[name] for name in ("means", "scales", "opacities", "sh"))
+    quats, _ = values.unit_quats(cloud["quats"])
+    k = sh.shape[1]
     names = [
         "x",
         "y",
@@ -112,9 +112,9 @@ def write(scene: Scene, file: BinaryIO) -> None:
         *(f"f_rest_{i}" for i in range(3 * (k - 1))),
     ]
     names += ["opacity", *(f"scale_{i}" for i in range(3)), *(f"rot_{i}" for i in range(4))]
-    file.write(_header(names, len(cloud), comments.describe(scene)))
+    file.write(_header(names, len(means), comments.describe(scene)))
     rest = 9 + 3 * (k - 1)
-    for start in range(0, len(cloud), ply.BLOCK_ROWS):
+    for start in range(0, len(means), ply.BLOCK_ROWS):
         span = slice(start, start + ply.BLOCK_ROWS)
         rows = np.zeros((len(means[span]), len(names)), "<f4")
         rows[:, 0:3] = means[span]

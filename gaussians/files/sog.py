@@ -194,9 +194,8 @@ def _means(images: _Images, means: _Means) -> values.Floats:
     low, high = (images.pixels(name)[:, :3].astype(np.float64) for name in means.files)
     mins, maxs = np.array(means.mins), np.array(means.maxs)
     logs = mins + (maxs - mins) * ((low + 256 * high) / 65535)
-    with np.errstate(over="ignore"):  # absurd bounds give infinite rows, which are dropped as such
-        positions: values.Floats = (np.sign(logs) * np.expm1(np.abs(logs))).astype(np.float32)
-    return positions
+    with np.errstate(over="ignore", invalid="ignore"):  # absurd bounds give infinite rows, which are dropped as such
+        return values.rounded(np.sign(logs) * np.expm1(np.abs(logs)))
 
 
 def _rotations(pixels: Bytes) -> values.Floats:
@@ -213,8 +212,7 @@ def _decode(path: Path, codebook: tuple[float, ...], codes: NDArray[Any]) -> val
     """The codebook's values at `codes`, float32."""
     if int(codes.max(initial=0)) >= len(codebook):
         raise FileError(f"{path}: a codebook of {len(codebook)} values is too short for the codes that use it")
-    with np.errstate(over="ignore"):
-        decoded: values.Floats = np.array(codebook).astype(np.float32)[codes]
+    decoded: values.Floats = values.rounded(np.array(codebook))[codes]
     return decoded
 
 

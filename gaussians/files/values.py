@@ -49,6 +49,12 @@ def logits_from_opacities(opacities: Floats) -> Floats:
     return _by_block(opacities, logit)
 
 
+def rounded(values: NDArray[np.float64]) -> Floats:
+    """To float32; what is too large becomes infinite, which `sound_cloud` reports."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return values.astype(np.float32)
+
+
 def opacities_from_bytes(codes: NDArray[np.integer]) -> Floats:
     """Opacities `[N]` strictly inside (0, 1) of linear bytes 0 to 255."""
     return np.clip(codes / 255, OPACITY_MIN, OPACITY_MAX).astype(np.float32)
