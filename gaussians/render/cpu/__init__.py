@@ -85,20 +85,20 @@ def _bin(columns: tuple[Array, ...], camera: Camera, top: int, bottom: int) -> B
     chunks = -(-n // project.CHUNK)
     records, corner, mask = np.empty((n, project.RECORD), np.float32), np.empty(n, np.uint32), np.empty(n, np.uint64)
     depth, visible, found = np.empty(n, np.int32), np.empty(n, np.int32), np.empty(chunks, np.int32)
-    view = project.view_vector(camera, top)
-    threads.run(project.project, *columns, view, size, (records, corner, mask, depth, visible, found), _counter())
+    view = project.make_view(camera, top, bottom)
+    threads.run(project.project, *columns, view, (records, corner, mask, depth, visible, found), _counter())
 
     scratch = np.empty((2, n), np.int32), np.empty((2, n), np.int32)
     rows = order.depth_order(depth, visible, found, project.CHUNK, *scratch)
     wide, high = (-(-side // project.TILE) for side in size)
     places = np.zeros((threads.workers(), wide * high), np.int64)
-    threads.run(order.count_tiles, rows, records, corner, mask, size, wide, places)
+    threads.run(order.count_tiles, rows, records, corner, mask, view, wide, places)
     first = np.empty(wide * high + 1, np.int64)
     total = order.starts(places, first)
     if total > MAX_ENTRIES and high > 1:
         return None
     entries = np.empty(total, np.int32)
-    threads.run(order.fill_tiles, rows, records, corner, mask, size, wide, places, entries)
+    threads.run(order.fill_tiles, rows, records, corner, mask, view, wide, places, entries)
     return Bins(records, first, entries)
 
 

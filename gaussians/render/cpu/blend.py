@@ -22,7 +22,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from .project import (
-    BLUE, DEPTH, EXTREME, GREEN, GROUP, KERNEL, L1, L2, L3, LIMIT, OPACITY, REACH_Y, RECORD, RED, SLOPE, TILE, WIDTH,
+    BLUE, DEPTH, EXTREME, GREEN, GROUP, INLINE, KERNEL, L1, L2, L3, LIMIT, OPACITY, REACH_Y, RECORD, RED, SLOPE, TILE, WIDTH,
     X, Y,
 )  # fmt: skip
 from .threads import fetch_add
@@ -343,7 +343,7 @@ def draw(worker, workers, first, entries, records, size, limits, background, out
         _finish(state, x, y, size, background, out)
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _begin(state, alive, stride, width, height):  # type: ignore[no-untyped-def]
     """A fresh tile: transmittance 1, nothing drawn. Pixels beyond the image (`width`, `height` left) begin finished."""
     bits = state.view(np.int32)
@@ -361,7 +361,7 @@ def _begin(state, alive, stride, width, height):  # type: ignore[no-untyped-def]
                 bits[place] = -1
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _gather(entries, start, count, stop, records, chunk, touched, x, y):  # type: ignore[no-untyped-def]
     """Copy `count` records into the chunk and note the blocks each touches."""
     for slot in range(count):
@@ -369,7 +369,7 @@ def _gather(entries, start, count, stop, records, chunk, touched, x, y):  # type
         touched[slot] = _take(records, entries[start + slot], chunk, slot, x, y)
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _list(touched, count, block, listed):  # type: ignore[no-untyped-def]
     """Slots of the chunk that touch a block, in order, without a branch to mispredict; returns how many."""
     found = 0
@@ -379,7 +379,7 @@ def _list(touched, count, block, listed):  # type: ignore[no-untyped-def]
     return found
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _draw_chunk(chunk, touched, count, listed, state, alive, limits):  # type: ignore[no-untyped-def]
     """Blend a chunk into every open block; returns whether the tile is finished."""
     finished = True
@@ -394,7 +394,7 @@ def _draw_chunk(chunk, touched, count, listed, state, alive, limits):  # type: i
     return finished
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _finish(state, x, y, size, background, out):  # type: ignore[no-untyped-def]
     """Write a tile's pixels, composited over the background."""
     rgb, alpha, depth, group = out
@@ -439,7 +439,7 @@ def weigh(worker, workers, first, entries, records, size, limits, share, counter
             start += count
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _weigh_chunk(chunk, touched, count, listed, state, alive, weights, limits):  # type: ignore[no-untyped-def]
     """Weigh a chunk in every open block; returns whether the tile is finished."""
     finished = True

@@ -14,7 +14,9 @@ from llvmlite import ir
 from numba import njit, types
 from numba.extending import intrinsic
 
-from .project import KERNEL, MASK_SIDE, tile_rows, tile_span
+from .project import (
+    EXTREME, INLINE, KERNEL, L3, LIMIT, MASK_SIDE, REACH_Y, SLOPE, WIDTH, Ellipse, X, Y, tile_rows, tile_span,
+)  # fmt: skip
 
 DIGIT = 11  # bits sorted at once: 2048 counters stay in the first-level cache
 BUCKETS = 1 << DIGIT
@@ -53,7 +55,7 @@ def depth_order(depth, visible, found, chunk, keys, rows):  # type: ignore[no-un
     return rows[source, :count]
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _scatter(tally, shift, count, keys, rows, source):  # type: ignore[no-untyped-def]
     """One stable pass by the digit at `shift`; returns False, having moved nothing, if all keys share that digit."""
     total = 0
@@ -74,17 +76,27 @@ def _scatter(tally, shift, count, keys, rows, source):  # type: ignore[no-untype
     return True
 
 
+@njit(**INLINE)
+def _ellipse(records, n):  # type: ignore[no-untyped-def]
+    """The ellipse that record `n` holds."""
+    return Ellipse(
+        records[n, X], records[n, Y], records[n, L3], records[n, LIMIT],
+        records[n, REACH_Y], records[n, SLOPE], records[n, WIDTH], records[n, EXTREME],
+    )  # fmt: skip
+
+
 @njit(**KERNEL)
-def count_tiles(worker, workers, order, records, corner, mask, size, tiles_wide, tally):  # type: ignore[no-untyped-def]
+def count_tiles(worker, workers, order, records, corner, mask, view, tiles_wide, tally):  # type: ignore[no-untyped-def]
     """Add this worker's share of `order` to `tally[worker]` `[tiles]` int32, which holds zeros."""
     mine = tally[worker]
     for k in range(order.shape[0] * worker // workers, order.shape[0] * (worker + 1) // workers):
         n = order[k]
         touched = mask[n]
         if touched == 0:
-            top, bottom = tile_rows(records, n, size)
+            ellipse = _ellipse(records, n)
+            top, bottom = tile_rows(ellipse, view.height)
             for row in range(top, bottom):
-                first, last = tile_span(records, n, row, size)
+                first, last = tile_span(ellipse, row, view.width)
                 for column in range(first, last):
                     mine[row * tiles_wide + column] += 1
         base = np.int64(corner[n] >> 16) * tiles_wide + np.int64(corner[n] & 0xFFFF)
@@ -109,16 +121,17 @@ def starts(tally, first):  # type: ignore[no-untyped-def]
 
 
 @njit(**KERNEL)
-def fill_tiles(worker, workers, order, records, corner, mask, size, tiles_wide, places, entries):  # type: ignore[no-untyped-def]
+def fill_tiles(worker, workers, order, records, corner, mask, view, tiles_wide, places, entries):  # type: ignore[no-untyped-def]
     """Write rows into `entries`, tile by tile and nearest first; walks exactly as `count_tiles` did."""
     mine = places[worker]
     for k in range(order.shape[0] * worker // workers, order.shape[0] * (worker + 1) // workers):
         n = order[k]
         touched = mask[n]
         if touched == 0:
-            top, bottom = tile_rows(records, n, size)
+            ellipse = _ellipse(records, n)
+            top, bottom = tile_rows(ellipse, view.height)
             for row in range(top, bottom):
-                first, last = tile_span(records, n, row, size)
+                first, last = tile_span(ellipse, row, view.width)
                 for column in range(first, last):
                     tile = row * tiles_wide + column
                     entries[mine[tile]] = n
