@@ -95,5 +95,5 @@ def from_axis_angle(axis: Tensor | Sequence[float], radians: Tensor | float) -> 
     length = torch.linalg.vector_norm(axis_, dim=-1, keepdim=True)
     if not bool((torch.isfinite(length) & (length > 0)).all()):
         raise UserError(f"a rotation axis must be finite and not zero, got {axis_.tolist()}")
-    unit = (axis_ / length).expand(*torch.broadcast_shapes(axis_.shape[:-1], half.shape[:-1]), 3)
-    return torch.cat([torch.cos(half).expand_as(unit[..., :1]), torch.sin(half) * unit], dim=-1)
+    half = half + torch.zeros_like(length)  # as many angles as axes
+    return torch.cat([torch.cos(half), torch.sin(half) * (axis_ / length)], dim=-1)
