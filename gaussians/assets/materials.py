@@ -368,6 +368,7 @@ class Tone:
         drawn = _jitter(rng, _pick(rng, PALETTES[palette]))  # drawn even if not used: the design stays the same
         wooden = palette == "wood" and (_is_brown(wanted) if wanted else _is_brown(drawn))
         self.color: Rgb = wanted if wanted is not None else drawn
+        self.asked = wanted is not None
         self.wooden = wooden
         self.seed = int(rng.integers(1 << 30))
         self.second: Rgb = self._companion()
