@@ -43,21 +43,24 @@ def render(cloud: GaussianCloud, camera: Camera, background: Vec3) -> Render:
         np.empty((h, w), np.int32),
     )  # fmt: skip
     columns, behind = _columns(cloud), np.array(background, dtype=np.float32)
+    scratch = blend.make_scratch(threads.workers())
     for top, bottom, bins in _strips(columns, camera, 0, h):
         strip = tuple(channel[top:bottom] for channel in out)
         size = (w, bottom - top)
-        threads.run(blend.draw, bins.first, bins.entries, bins.records, size, LIMITS, behind, strip, _counter())
+        threads.run(
+            blend.draw, bins.first, bins.entries, bins.records, size, LIMITS, behind, strip, scratch, _counter()
+        )
     return Render(*(torch.from_numpy(channel).to(cloud.device) for channel in out))
 
 
 def contributions(cloud: GaussianCloud, camera: Camera) -> Tensor:
     """See `scenewright.gaussians.render.contributions`."""
-    total = np.zeros(len(cloud), np.float64)
-    columns = _columns(cloud)
+    total, columns = np.zeros(len(cloud), np.float64), _columns(cloud)
+    scratch = blend.make_scratch(threads.workers())
     for top, bottom, bins in _strips(columns, camera, 0, camera.height):
         share = np.zeros(len(bins.entries), np.float32)
         size = (camera.width, bottom - top)
-        threads.run(blend.weigh, bins.first, bins.entries, bins.records, size, LIMITS, share, _counter())
+        threads.run(blend.weigh, bins.first, bins.entries, bins.records, size, LIMITS, share, scratch, _counter())
         blend.collect(bins.entries, share, total)
     return torch.from_numpy(total.astype(np.float32)).to(cloud.device)
 
@@ -88,8 +91,10 @@ def _bin(columns: tuple[Array, ...], camera: Camera, top: int, bottom: int) -> B
     view = project.make_view(camera, top, bottom)
     threads.run(project.project, *columns, view, (records, corner, mask, depth, visible, found), _counter())
 
-    scratch = np.empty((2, n), np.int32), np.empty((2, n), np.int32)
-    rows = order.depth_order(depth, visible, found, project.CHUNK, *scratch)
+    keys, sorted_rows = np.empty((2, n), np.int32), np.empty((2, n), np.int32)
+    tally = np.zeros((order.DIGITS, order.BUCKETS), np.int64)
+    half, seen = order.depth_order(depth, visible, found, project.CHUNK, keys, sorted_rows, tally)
+    rows = sorted_rows[half, :seen]
     wide, high = (-(-side // project.TILE) for side in size)
     places = np.zeros((threads.workers(), wide * high), np.int64)
     threads.run(order.count_tiles, rows, records, corner, mask, view, wide, places)

@@ -22,6 +22,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from .project import (
+    Array,
     BLUE, DEPTH, EXTREME, GREEN, GROUP, INLINE, KERNEL, L1, L2, L3, LIMIT, OPACITY, REACH_Y, RECORD, RED, SLOPE, TILE, WIDTH,
     X, Y,
 )  # fmt: skip
@@ -318,17 +319,30 @@ def _loop(v: _Lanes, chunk: Any, listed: Any, count: Any, before: list[ir.Value]
     return after, b.zext(alive, _I64)
 
 
+def make_scratch(workers: int) -> tuple[Array, ...]:
+    """What each worker writes while it draws: chunk, touched, listed, state, alive, weights, one row a worker."""
+    return (
+        np.empty((workers, CHUNK * RECORD), np.float32), np.empty((workers, CHUNK), np.int64),
+        np.empty((workers, CHUNK), np.uint8), np.empty((workers, BLOCKS * STATE), np.float32),
+        np.empty((workers, BLOCKS), np.bool_), np.empty((workers, CHUNK * LANES), np.float32),
+    )  # fmt: skip
+
+
 @njit(**KERNEL)
-def draw(worker, workers, first, entries, records, size, limits, background, out, counter):  # type: ignore[no-untyped-def]
+def draw(worker, workers, first, entries, records, size, limits, background, out, scratch, counter):  # type: ignore[no-untyped-def]
     """Draw tiles until none is left. Tile t's footprints are `entries[first[t]:first[t + 1]]`, nearest first.
 
     `size` is (width, height), `limits` (largest alpha, least transmittance), `out` (rgb `[H, W, 3]`, alpha `[H, W]`,
     depth `[H, W]`, group `[H, W]` int32), `counter` `[1]` int64 holding 0.
     """
     tiles_wide = (size[0] + TILE - 1) // TILE
-    chunk = np.empty(CHUNK * RECORD, np.float32)
-    touched, listed = np.empty(CHUNK, np.int64), np.empty(CHUNK, np.uint8)
-    state, alive = np.empty(BLOCKS * STATE, np.float32), np.empty(BLOCKS, np.bool_)
+    chunk, touched, listed, state, alive = (
+        scratch[0][worker],
+        scratch[1][worker],
+        scratch[2][worker],
+        scratch[3][worker],
+        scratch[4][worker],
+    )
     while True:
         tile = fetch_add(counter, 1)
         if tile >= first.shape[0] - 1:
@@ -413,12 +427,17 @@ def _finish(state, x, y, size, background, out):  # type: ignore[no-untyped-def]
 
 
 @njit(**KERNEL)
-def weigh(worker, workers, first, entries, records, size, limits, share, counter):  # type: ignore[no-untyped-def]
+def weigh(worker, workers, first, entries, records, size, limits, share, scratch, counter):  # type: ignore[no-untyped-def]
     """As `draw`, but write each entry's summed weight in its tile to `share` `[entries]`, which holds zeros."""
     tiles_wide = (size[0] + TILE - 1) // TILE
-    chunk, weights = np.empty(CHUNK * RECORD, np.float32), np.empty(CHUNK * LANES, np.float32)
-    touched, listed = np.empty(CHUNK, np.int64), np.empty(CHUNK, np.uint8)
-    state, alive = np.empty(BLOCKS * LANES, np.float32), np.empty(BLOCKS, np.bool_)
+    chunk, touched, listed, state, alive = (
+        scratch[0][worker],
+        scratch[1][worker],
+        scratch[2][worker],
+        scratch[3][worker],
+        scratch[4][worker],
+    )
+    weights = scratch[5][worker]
     while True:
         tile = fetch_add(counter, 1)
         if tile >= first.shape[0] - 1:

@@ -34,13 +34,13 @@ def _lowest_bit(typing_context: Any, value: Any) -> Any:
 
 
 @njit(**KERNEL)
-def depth_order(depth, visible, found, chunk, keys, rows):  # type: ignore[no-untyped-def]
-    """Rows in order of depth. `keys` and `rows` are `[2, N]` int32 scratch; returns a view of `rows`.
+def depth_order(depth, visible, found, chunk, keys, rows, tally):  # type: ignore[no-untyped-def]
+    """Sort rows by depth; returns which half of `rows` holds them and how many they are.
 
-    `visible` `[N]` holds rows packed to the front of chunks of `chunk`, `found[c]` of them in chunk c.
+    `visible` `[N]` holds rows packed to the front of chunks of `chunk`, `found[c]` of them in chunk c. `keys` and
+    `rows` are `[2, N]` int32, `tally` `[DIGITS, BUCKETS]` int64 holding zeros.
     """
     count = 0
-    tally = np.zeros((DIGITS, BUCKETS), np.int64)
     for c in range(found.shape[0]):
         for i in range(c * chunk, c * chunk + found[c]):
             key = depth[visible[i]]
@@ -52,7 +52,7 @@ def depth_order(depth, visible, found, chunk, keys, rows):  # type: ignore[no-un
     for digit in range(DIGITS):
         if _scatter(tally[digit], DIGIT * digit, count, keys, rows, source):
             source = 1 - source
-    return rows[source, :count]
+    return source, count
 
 
 @njit(**INLINE)

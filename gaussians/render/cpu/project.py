@@ -8,9 +8,6 @@ A footprint's exponent is kept as a sum of squares (Cholesky factor of the inver
 quadratic form, and each row of an ellipse is an interval in closed form:
 `dx in slope * dy -+ sqrt(limit - (l3 dy)^2) / l1`. alpha falls below its minimum where q > limit.
 Why 1/16: `blend.py` evaluates `exp(-8 q)` as the eighth power of a polynomial.
-
-Helpers take and return plain numbers: numba counts references of arrays at every call, which here would cost more than
-the work.
 """
 
 from __future__ import annotations
@@ -37,7 +34,11 @@ CHUNK = 2048  # rows a worker takes at a time
 
 # No "nnan", no "ninf": degenerate rows must compare as IEEE says, so every test is written to fail on NaN.
 FAST = {"contract", "reassoc", "arcp", "nsz", "afn"}
-KERNEL: dict[str, Any] = {"nogil": True, "cache": True, "fastmath": FAST, "error_model": "numpy", "boundscheck": False}
+# "_nrt": kernels allocate nothing, so numba need not count references. Counting them at every call of a helper that
+# takes an array cost more than the helpers' work; out-of-line calls, with a dozen words an array, did too.
+KERNEL: dict[str, Any] = {
+    "nogil": True, "cache": True, "fastmath": FAST, "error_model": "numpy", "boundscheck": False, "_nrt": False,
+}  # fmt: skip
 INLINE: dict[str, Any] = {**KERNEL, "forceinline": True}
 
 # Bare Python floats would promote float32 arithmetic to float64.
