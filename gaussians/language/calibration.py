@@ -41,7 +41,8 @@ class SizePrior:
         level = np.sort(sizes[:, :2], axis=1)[:, ::-1]
         logs = np.log(np.maximum(np.concatenate([level, sizes[:, 2:]], axis=1), 1e-3))
         z = (logs - np.array(self.mean)) / np.array(self.std)
-        return np.maximum(-0.5 * (z**2).sum(axis=1), -SIZE_CAP)
+        nats: Array = np.maximum(-0.5 * (z**2).sum(axis=1), -SIZE_CAP)
+        return nats
 
 
 @dataclass(frozen=True)
@@ -84,7 +85,7 @@ class Calibration:
 
 
 def doubt(encoder: Encoder, text: str) -> str | None:
-    """Why `probability` is 0 for this phrase whatever the scene holds, in a sentence; None if the phrase is understood."""
+    """Why `probability` is 0 for this phrase whatever the scene holds, in a sentence; None if it is understood."""
     unknown = encoder.unknown_words(text)
     if unknown:
         said = ", ".join(repr(w) for w in unknown)
@@ -97,8 +98,8 @@ def probability(
 ) -> Array:
     """How sure the encoder is that each thing is a `text`.
 
-    The phrase competes with all kinds it does not itself cover and with the captions of non-objects, in a softmax at the
-    encoder's calibrated scale. A phrase with a word the encoder does not know gets 0 everywhere (`doubt` says why).
+    The phrase competes with all kinds it does not itself cover and with the captions of non-objects, in a softmax at
+    the encoder's calibrated scale. A phrase with a word the encoder does not know gets 0 everywhere (`doubt` says why).
 
     Args:
         vectors: `[G, D]` mean image vectors of things; zero rows (never seen) get 0. They need not be unit.
@@ -113,7 +114,7 @@ def probability(
     units, seen = _units(encoder, vectors)
     if doubt(encoder, text) is not None:
         return np.zeros(len(units))
-    names, anchors = _anchors(encoder)
+    names, anchors = _anchors(encoder)  # type: ignore[arg-type]  # identity is what it is cached by
     covered = encoder.vocabulary.covered(text)
     asked = encoder.encode_text([text]).astype(np.float64)
     rivals = np.array([name not in covered for name in names])
@@ -143,7 +144,7 @@ def labels(
 
 
 def wholeness(encoder: Encoder, vectors: NDArray[np.floating]) -> Array:
-    """`[G]`: how sure the encoder is that each thing is one whole object, not a part, a merge or a piece of the room."""
+    """`[G]`: how sure the encoder is that each thing is one whole object, not a part, a merge or a piece of room."""
     units, seen = _units(encoder, vectors)
     kinds = len(encoder.vocabulary.names)
     return np.where(seen, _distribution(encoder, units, None)[:, :kinds].sum(axis=1), 0.0)
@@ -151,7 +152,7 @@ def wholeness(encoder: Encoder, vectors: NDArray[np.floating]) -> Array:
 
 def _distribution(encoder: Encoder, units: Array, sizes: NDArray[np.floating] | None) -> Array:
     """`[G, K + negatives]` softmax over the canonical names and the non-objects."""
-    names, anchors = _anchors(encoder)
+    names, anchors = _anchors(encoder)  # type: ignore[arg-type]  # identity is what it is cached by
     evidence = _size_evidence(encoder, names, sizes, len(units))
     return _softmax(encoder.calibration.scale * (units @ anchors.T) + evidence)
 
@@ -163,9 +164,7 @@ def _anchors(encoder: Encoder) -> tuple[tuple[str, ...], Array]:
     return names, encoder.encode_text(list(names)).astype(np.float64)
 
 
-def _size_evidence(
-    encoder: Encoder, names: tuple[str, ...], sizes: NDArray[np.floating] | None, count: int
-) -> Array:
+def _size_evidence(encoder: Encoder, names: tuple[str, ...], sizes: NDArray[np.floating] | None, count: int) -> Array:
     """`[G, K + negatives]` nats that the measured size adds to each name; zero where the size is not known."""
     rule = encoder.calibration
     evidence = np.zeros((count, len(names)))
@@ -187,7 +186,9 @@ def _units(encoder: Encoder, vectors: NDArray[np.floating]) -> tuple[Array, NDAr
     """Unit rows `[G, D]` and which rows were not zero `[G]`."""
     rows = np.asarray(vectors, dtype=np.float64)
     if rows.ndim != 2 or rows.shape[1] != encoder.dim:
-        raise BackendError(f"expected vectors of shape [G, {encoder.dim}], got {list(rows.shape)}; embed the scene again")
+        raise BackendError(
+            f"expected vectors of shape [G, {encoder.dim}], got {list(rows.shape)}; embed the scene again"
+        )
     norms = np.linalg.norm(rows, axis=1)
     seen = norms > 1e-8
     return rows / np.where(seen, norms, 1.0)[:, None], seen

@@ -1,0 +1,89 @@
+"""The names an encoder can propose and tell apart: kinds, their synonyms, broader terms and the non-objects.
+
+Knows words only. Refuses to know vectors, pictures and thresholds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Self
+
+from .words import normalise
+
+# Words after which a noun phrase only describes its head: "a table with drawers" is a table.
+_AFTER_HEAD = frozenset("with in on from for near at by without made having".split())  # noqa: SIM905
+
+
+@dataclass(frozen=True)
+class Vocabulary:
+    """What a text encoder is asked to choose between.
+
+    Attributes:
+        kinds: canonical name of each kind of whole object, to its synonyms (the name itself not among them).
+        broader: terms that cover several kinds ("lamp": floor lamp, table lamp); may also be the name of one kind,
+            which then is meant first.
+        negatives: captions of what is not one whole object ("part of something", "a piece of wall").
+        modifiers: single words that do not change what a thing is (colours, materials, sizes).
+    """
+
+    kinds: Mapping[str, tuple[str, ...]]
+    broader: Mapping[str, tuple[str, ...]]
+    negatives: tuple[str, ...]
+    modifiers: frozenset[str] = frozenset()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The canonical names, in their fixed order."""
+        return tuple(self.kinds)
+
+    @cached_property
+    def _phrases(self) -> dict[tuple[str, ...], frozenset[str]]:
+        """Normalised phrase to the kinds it names; a kind's own name beats a broader term, a synonym does not."""
+        table: dict[tuple[str, ...], frozenset[str]] = {}
+        for kind, synonyms in self.kinds.items():
+            for name in synonyms:
+                table[normalise(name)] = table.get(normalise(name), frozenset()) | {kind}
+        for term, kinds in self.broader.items():
+            table[normalise(term)] = table.get(normalise(term), frozenset()) | frozenset(kinds)
+        table.update({normalise(kind): frozenset({kind}) for kind in self.kinds})
+        return table
+
+    def covered(self, text: str, loose: bool = False) -> frozenset[str]:
+        """The kinds a noun phrase means, by its head: "small red couch" to {"sofa"}; empty if it names none.
+
+        With `loose`, a word that is both a kind and a broader term covers all of the broader term's kinds.
+        """
+        words = normalise(text)
+        cut = next((i for i, w in enumerate(words) if i and w in _AFTER_HEAD), len(words))
+        for phrase in (words, words[:cut]):
+            for start in range(len(phrase)):
+                found = self._phrases.get(phrase[start:])
+                if found:
+                    return found | (self._wider(phrase[start:]) if loose else frozenset())
+        return frozenset()
+
+    def _wider(self, phrase: tuple[str, ...]) -> frozenset[str]:
+        """Kinds of the broader term spelt like `phrase`, if there is one."""
+        terms = (kinds for term, kinds in self.broader.items() if normalise(term) == phrase)
+        return frozenset(kind for kinds in terms for kind in kinds)
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain lists and dictionaries, in a fixed order."""
+        return {
+            "kinds": {k: list(v) for k, v in self.kinds.items()},
+            "broader": {k: list(v) for k, v in self.broader.items()},
+            "negatives": list(self.negatives),
+            "modifiers": sorted(self.modifiers),
+        }
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Self:
+        """The inverse of `to_json`."""
+        return cls(
+            {k: tuple(v) for k, v in data["kinds"].items()},
+            {k: tuple(v) for k, v in data["broader"].items()},
+            tuple(data["negatives"]),
+            frozenset(data["modifiers"]),
+        )
