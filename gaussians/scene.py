@@ -42,6 +42,8 @@ class Frame:
         if not 0 < length < math.inf:
             raise UserError(f"Frame.up must be a finite non-zero vector, got {self.up}")
         object.__setattr__(self, "up", tuple(float(c) / length for c in self.up))
+        if self.floor is not None and not math.isfinite(self.floor):
+            raise UserError(f"Frame.floor must be a finite height, got {self.floor}")
         if self.metres_per_unit is not None and not 0 < self.metres_per_unit < math.inf:
             raise UserError(f"Frame.metres_per_unit must be positive, got {self.metres_per_unit}")
 
