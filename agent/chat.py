@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..gaussians.errors import InstructionError, ScenewrightError, UserError
 from .halfblocks import depth_of, draw
-from .resolved import candidate_json, selection_json, verdict_of
+from .refusal import verdict_of
+from .resolved import candidate_json, selection_json
 
 if TYPE_CHECKING:
     from prompt_toolkit import PromptSession
@@ -96,7 +97,7 @@ class Chat:
         except ScenewrightError as error:
             if self.terminal.debug:
                 raise
-            self._tell(str(error), {"verdict": verdict_of_any(error), "reason": str(error)})
+            self._tell(str(error), {"verdict": verdict_of(error), "reason": str(error)})
 
     def _instruction(self, text: str) -> None:
         if self.session.question is not None and self.session.question.selection.verdict == "ambiguous":
@@ -166,7 +167,7 @@ class Chat:
             lines = [*result.sentences(), "(not done)"]
             self._tell("\n".join([_pretty(result.plan), *lines]), result.to_json())
             return
-        if self._result is None:
+        if self._result is None or self._result.plan is None:
             raise UserError("nothing was planned yet; /plan TEXT shows what an instruction would do")
         self._tell(_pretty(self._result.plan), json.loads(self._result.plan.model_dump_json()))
 
@@ -294,11 +295,6 @@ def history_file() -> Path | None:
     except OSError:
         return None
     return root / "chat_history" if os.access(root, os.W_OK) else None
-
-
-def verdict_of_any(error: ScenewrightError) -> str:
-    """As `verdict_of`, with "failed" for files and back ends."""
-    return verdict_of(error) if isinstance(error, InstructionError | UserError) else "failed"
 
 
 def _pretty(plan: Any) -> str:

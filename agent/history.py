@@ -25,11 +25,13 @@ class State:
         scene: the scene.
         last: what "it" means, None at first.
         text: the instruction that led here, "" for the first state.
+        spoken: the instruction before, for "a bit more" and "the red one".
     """
 
     scene: Scene
     last: Selection | None = None
     text: str = ""
+    spoken: str = ""
 
     @cached_property
     def digest(self) -> str:

@@ -8,8 +8,9 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any
 
-from ..gaussians.errors import AbsentError, AmbiguousError, InstructionError, ScenewrightError, UserError
+from ..gaussians.errors import InstructionError, UserError
 from ..gaussians.language.selection import Candidate, Selection
+from .refusal import verdict_of
 
 if TYPE_CHECKING:
     from ..planners.plan import EditPlan
@@ -48,39 +49,39 @@ def resolved_plan(session: Session, text: str, context: str | None = None) -> di
         context: the instruction before, which says what "it" means.
     """
     started = time.perf_counter()
-    plan: EditPlan | None = None
+    session.recall(context)
+    plan = session.plan(text)
     steps: list[dict[str, Any]] = []
     verdict, reason = "ok", ""
     try:
-        session.recall(context)
-        plan = session.plan(text)
         receipts = session.preview(plan).receipts
         steps = [_step(op, r.selection.groups) for op, r in zip(plan.ops, receipts, strict=True)]
-    except ScenewrightError as error:
+    except (InstructionError, UserError) as error:
         verdict, reason = verdict_of(error), str(error)
-        steps = [_step(op, ()) for op in plan.ops] if plan is not None else []
-    question = session.question
+        steps = [_step(op, ()) for op in plan.ops]
+    candidates = session.question.candidates if session.question else ()
     return {
         "verdict": verdict,
         "steps": steps,
-        "candidates": [candidate_json(c) for c in question.candidates] if question else [],
+        "candidates": [candidate_json(c) for c in candidates],
         "reason": reason,
-        "planner": plan.planner if plan is not None else "grammar",
+        "unknown": list(plan.unknown),
+        "planner": plan.planner,
         "seconds": round(time.perf_counter() - started, 4),
     }
 
 
-def verdict_of(error: ScenewrightError) -> str:
-    """The one word for why an instruction was not carried out."""
-    own = getattr(error, "verdict", None)  # a planner's error says it itself: "not_an_edit", "unsafe", ...
-    if isinstance(own, str):
-        return own
-    for kind, verdict in ((AbsentError, "absent"), (AmbiguousError, "ambiguous"), (InstructionError, "impossible")):
-        if isinstance(error, kind):
-            return verdict
-    if isinstance(error, UserError):
-        return "not_understood"
-    raise error
+def plan_json(plan: EditPlan) -> dict[str, Any]:
+    """A plan of words alone, before any scene was looked at: targets are phrases."""
+    return {
+        "verdict": plan.verdict,
+        "steps": [op.model_dump(mode="json", exclude_none=True) for op in plan.ops],
+        "candidates": [],
+        "reason": plan.reason,
+        "unknown": list(plan.unknown),
+        "planner": plan.planner,
+        "seconds": round(plan.seconds, 4),
+    }
 
 
 def _step(op: Any, targets: tuple[int, ...]) -> dict[str, Any]:

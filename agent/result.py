@@ -24,7 +24,7 @@ class Result:
 
     Attributes:
         text: the instruction as said.
-        plan: what it was taken to mean.
+        plan: what it was taken to mean; None for undo and redo.
         receipts: one for each operation of the plan, in order.
         before, scene: the scene before and after; they share every column that did not change.
         viewer: the camera whose left and right were meant.
@@ -34,7 +34,7 @@ class Result:
     """
 
     text: str
-    plan: EditPlan
+    plan: EditPlan | None
     receipts: tuple[Receipt, ...]
     before: Scene
     scene: Scene
@@ -58,7 +58,7 @@ class Result:
         return {
             "verdict": "ok",
             "text": self.text,
-            "plan": self.plan.model_dump(mode="json"),
+            "plan": self.plan.model_dump(mode="json") if self.plan is not None else None,
             "receipts": [r.model_dump(mode="json") for r in self.receipts],
             "groups": list(self.selection.groups) if self.selection else [],
             "gaussians": len(self.scene.cloud),

@@ -12,7 +12,7 @@ import re
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +24,7 @@ from ..gaussians.scene import Scene
 from .clarify import Question, answered, find_question, queries
 from .history import History, State
 from .log import Record, SessionLog, read_log
+from .refusal import refusal
 from .result import Result
 
 if TYPE_CHECKING:
@@ -136,7 +137,8 @@ class Session:
         """Carry out an instruction, whole or not at all. "undo" and "redo" in words are understood too.
 
         Raises:
-            UserError: the words were not understood; the message says which.
+            NotUnderstoodError: the words were not understood; the message says which. (A UserError.)
+            ImpossibleError: understood, but there is no operation for it. (An InstructionError.)
             AbsentError: what is named is not there. `question` holds the nearest things.
             AmbiguousError: several things match. `question` holds them; `answer` says which.
             CheckFailedError: an operation failed its own check and everything was rolled back.
@@ -148,21 +150,18 @@ class Session:
         if _REDO.fullmatch(said):
             return self.redo()
         started = time.perf_counter()
-        try:
-            plan = self.plan(text)
-        except ScenewrightError as error:
-            self.question = None
-            self._refused(text, None, error)
-            raise
+        plan = self.plan(text)
         return self.apply(plan, planned_in=time.perf_counter() - started)
 
     def plan(self, text: str) -> EditPlan:
         """What an instruction is taken to mean; nothing is looked up in the scene and nothing changes.
 
+        Words that were not understood give a plan without operations; its `reason` says which.
+
         Raises:
-            UserError: the words were not understood.
+            UserError: the text is too long to be an instruction.
         """
-        return self._planner.plan(text)
+        return self._planner.plan(text, previous=self._history.present.spoken or None)
 
     def preview(self, instruction: str | EditPlan) -> Result:
         """A dry run: the result as it would be. Nothing is edited and no edit logged; the scene may become embedded."""
@@ -198,14 +197,13 @@ class Session:
         Raises:
             UserError: the phrase was not understood.
         """
-        query = phrase if isinstance(phrase, Query) else self._noun_phrase(phrase)
+        query = phrase if isinstance(phrase, Query) else self._noun_phrase(phrase, instruction=True)
         if query is None:
             raise UserError(f"{phrase!r} is no description of things; say for example 'the red chair'")
         self.embed()
         found = self._context(self.last).resolve(self.scene, query)
         if found.verdict == "found":
-            present = self._history.present
-            self._history.amend(State(present.scene, found, present.text))
+            self._history.amend(replace(self._history.present, last=found))
         return found
 
     def recall(self, text: str | None) -> None:
@@ -213,27 +211,21 @@ class Session:
 
         An instruction that cannot be read or found leaves "it" without a meaning.
         """
-        present = self._history.present
         last: Selection | None = None
-        if text:
-            try:
-                targets = [q for op in self._planner.plan(text).ops if (q := op.query()) is not None]
-            except ScenewrightError:
-                targets = []
-            if targets:
-                self.embed()
-                present = self._history.present
-                found = self._context(None).resolve(self.scene, targets[-1])
-                last = found if found.verdict == "found" else None
-        self._history.amend(State(present.scene, last, present.text))
+        targets = [q for op in self._planner.plan(text).ops if (q := op.query()) is not None] if text else []
+        if targets:
+            scene = self.embed()
+            found = self._context(None).resolve(scene, targets[-1])
+            last = found if found.verdict == "found" else None
+        self._history.amend(replace(self._history.present, last=last, spoken=text or ""))
 
     def embed(self) -> Scene:
         """The scene with its language field, made now if it has none."""
         if self.scene.language is None:
-            from ..gaussians.language import embed
+            from ..gaussians.language.embed import embed
 
             present = self._history.present
-            state = State(embed(present.scene, self.encoder, progress=self._progress), present.last, present.text)
+            state = replace(present, scene=embed(present.scene, self.encoder, progress=self._progress))
             self._write("embed", lambda: self._embedding(present, state))
             self._history.amend(state)
         return self.scene
@@ -262,7 +254,7 @@ class Session:
         self._write(kind, lambda: {"text": text, "before": before.digest, "after": to.digest})
         move()
         self.question = None
-        return Result(kind, _empty_plan(kind), (), before.scene, to.scene, self.viewer, to.last)
+        return Result(kind, None, (), before.scene, to.scene, self.viewer, to.last)
 
     # -- files ------------------------------------------------------------------------------------------------------
 
@@ -317,6 +309,8 @@ class Session:
         from ..tools.run import carry_out
 
         self.question = None
+        if not plan.ops:
+            raise refusal(plan)
         if any(True for op in plan.ops for _ in queries(op)):
             with _timed(seconds, "embed"):
                 self.embed()
@@ -332,7 +326,7 @@ class Session:
                     self.question = self._question(plan, step, error, scene, context)
                     raise _in_plan(error, plan, step) from error
                 receipts.append(receipt)
-        state = State(scene, last, plan.instruction)
+        state = State(scene, last, plan.instruction, plan.instruction)
         result = Result(
             plan.instruction, plan, tuple(receipts), before.scene, scene, self.viewer, last, seconds, dry_run
         )
@@ -352,13 +346,13 @@ class Session:
         verdict = "ambiguous" if isinstance(error, AmbiguousError) else "absent"
         return find_question(plan, step, verdict, lambda query: context.resolve(scene, query))
 
-    def _noun_phrase(self, text: str) -> Query | None:
-        """A phrase as the planner reads it, or None."""
-        try:
-            ops: tuple[EditOp, ...] = self._planner.plan(f"select {text}").ops
-        except ScenewrightError:
-            return None
-        return ops[0].query() if len(ops) == 1 else None
+    def _noun_phrase(self, text: str, *, instruction: bool = False) -> Query | None:
+        """A phrase as the planner reads it, or None; with `instruction`, what an instruction is about will do too."""
+        for words in (f"select {text}", *([text] if instruction else [])):
+            ops: tuple[EditOp, ...] = self._planner.plan(words).ops
+            if len(ops) == 1 and (query := ops[0].query()) is not None:
+                return query
+        return None
 
     def _portable(self, plan: EditPlan, record: Record) -> EditPlan:
         """The plan without ids of groups, unless this is bit for bit the scene they were given in."""
@@ -398,7 +392,7 @@ class Session:
     def _deed(self, result: Result, state: State) -> dict[str, Any]:
         return {
             "text": result.text,
-            "plan": result.plan.model_dump(mode="json"),
+            "plan": result.plan.model_dump(mode="json") if result.plan is not None else None,
             "receipts": [r.model_dump(mode="json") for r in result.receipts],
             "before": self._history.present.digest,
             "after": state.digest,
@@ -424,12 +418,6 @@ def _in_plan(error: ScenewrightError, plan: EditPlan, step: int) -> ScenewrightE
         return error
     where = f"step {step + 1} of {len(plan.ops)} ({plan.ops[step].op}) failed, nothing was changed"
     return type(error)(f"{where}: {error}")
-
-
-def _empty_plan(text: str) -> EditPlan:
-    from ..planners.plan import EditPlan
-
-    return EditPlan(instruction=text, ops=(), planner="session")
 
 
 def _standing(records: list[Record]) -> list[Record]:

@@ -47,6 +47,10 @@ class Terminal:
         """One JSON object on one line of stdout."""
         self._write(self.out, json.dumps(data, ensure_ascii=False, default=str))
 
+    def line(self, text: str) -> None:
+        """A line of a result that grows."""
+        self._write(self.out, text)
+
     def say(self, text: str) -> None:
         """A remark for a person."""
         self._write(self.err, text)

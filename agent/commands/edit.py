@@ -86,7 +86,8 @@ def _refuse_existing(output: Path | None, pictures: Path | None, force: bool) ->
 def _instruct(session: Session, text: str, dry_run: bool) -> dict[str, Any]:
     """Do what was said; the outcome as data, with the scenes for pictures under "before" and "after"."""
     from ...gaussians.errors import InstructionError
-    from ..resolved import candidate_json, verdict_of
+    from ..refusal import verdict_of
+    from ..resolved import candidate_json
 
     try:
         result = session.preview(text) if dry_run else session.do(text)

@@ -20,7 +20,8 @@ def command(
     A saved field is used as long as the scene file is the very one it was made for. --force embeds again.
     """
     from ...gaussians.files import load
-    from ...gaussians.language import embed, encoders
+    from ...gaussians.language import encoders
+    from ...gaussians.language.embed import embed
     from ...gaussians.language.store import load_field, save_field
 
     started = time.perf_counter()

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import json
-import time
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -33,7 +32,9 @@ def command(
     that the answer is what `edit` would do: {"verdict", "steps", "candidates", "reason", "planner", "seconds"}.
     """
     from ...gaussians.errors import UserError
+    from ...planners import load as load_planner
     from ..opening import Opening, open_session
+    from ..resolved import plan_json, resolved_plan
 
     given = arguments or []
     if len(given) > (1 if batch else 2) or (not given and batch is None):
@@ -45,31 +46,12 @@ def command(
         session, _ = open_session(Opening(path, planner, encoder, view))
     for row in rows:
         if session is not None:
-            from ..resolved import resolved_plan
-
             answer = resolved_plan(session, row["text"], row.get("context"))
         else:
-            answer = _words_alone(planner, row["text"])
+            answer = plan_json(load_planner(planner).plan(row["text"], previous=row.get("context")))
         if batch is not None:
             terminal.row({"id": row["id"], **answer})
             continue
         terminal.result(json.dumps(answer, indent=2, ensure_ascii=False), answer)
         if answer["verdict"] != "ok":
             raise typer.Exit(3)
-
-
-def _words_alone(planner: str, text: str) -> dict[str, Any]:
-    """The plan of an instruction without a scene: targets are phrases."""
-    from ...gaussians.errors import ScenewrightError
-    from ...planners import load as load_planner
-    from ..resolved import verdict_of
-
-    started = time.perf_counter()
-    answer: dict[str, Any] = {"verdict": "ok", "steps": [], "candidates": [], "reason": "", "planner": planner}
-    try:
-        plan = load_planner(planner).plan(text)
-        answer["steps"] = [op.model_dump(mode="json", exclude_none=True) for op in plan.ops]
-        answer["planner"] = plan.planner
-    except ScenewrightError as error:
-        answer["verdict"], answer["reason"] = verdict_of(error), str(error)
-    return {**answer, "seconds": round(time.perf_counter() - started, 4)}

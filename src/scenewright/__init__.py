@@ -26,14 +26,14 @@ if TYPE_CHECKING:
         UserError,
     )
     from .gaussians.files import load, save
-    from .gaussians.language import embed
+    from .gaussians.language.embed import embed
     from .gaussians.language.field import LanguageField
     from .gaussians.language.query import Query, Relation
     from .gaussians.language.selection import Selection
     from .gaussians.render import render
     from .gaussians.scene import Frame, Scene
     from .planners.plan import EditPlan
-    from .tools import EditOp
+    from .tools.base import EditOp
     from .tools.receipt import Receipt
 
 __version__ = "0.1.0"
@@ -44,7 +44,7 @@ _HOME = {
     "load": ".gaussians.files",
     "save": ".gaussians.files",
     "render": ".gaussians.render",
-    "embed": ".gaussians.language",
+    "embed": ".gaussians.language.embed",
     "kinds": ".gaussians.assets",
     "make": ".gaussians.assets",
     "furnish": ".gaussians.assets",
@@ -59,7 +59,7 @@ _HOME = {
     "Query": ".gaussians.language.query",
     "Relation": ".gaussians.language.query",
     "Selection": ".gaussians.language.selection",
-    "EditOp": ".tools",
+    "EditOp": ".tools.base",
     "Receipt": ".tools.receipt",
     "EditPlan": ".planners.plan",
     "ScenewrightError": ".gaussians.errors",

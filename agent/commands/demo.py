@@ -1,0 +1,41 @@
+"""`scenewright demo -o demo/`: the main job from end to end."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..options import Debug, Force, Json, Seed, Size
+from ..terminal import terminal
+
+
+def command(
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="Where to leave everything.")] = Path(
+        "demo"
+    ),
+    seed: Seed = 0,
+    size: Size = None,
+    force: Force = False,
+    as_json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Furnish a room, embed it, and hold a conversation with it.
+
+    Leaves before and after pictures of each step, the room before and after (.ply), the session log and a contact sheet.
+    """
+    from ..demo import Demo
+    from ..views import parse_size
+
+    demo = Demo(
+        output,
+        seed,
+        parse_size(size) if size else (640, 480),
+        force,
+        say=terminal.say if as_json else terminal.line,
+        progress=terminal.progress,
+    )
+    data = demo.run()
+    stages = ", ".join(f"{stage} {value:.1f}" for stage, value in data["seconds"].items())
+    terminal.result(f"seconds: {stages}\nsee {output / 'contact_sheet.png'}", data)

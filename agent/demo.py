@@ -1,0 +1,284 @@
+"""The main job from end to end: furnish a room, embed it, hold a conversation with it, leave everything behind.
+
+Knows the order of things and what to keep. Refuses to know which room it is in: what is said is derived from it (see
+script.py). The builder's own list of things is used to choose words a visitor would use and to check the answers
+afterwards; the selection never sees it.
+"""
+
+from __future__ import annotations
+
+import itertools
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..gaussians.camera import Camera
+from ..gaussians.errors import AbsentError, AmbiguousError, InstructionError, ScenewrightError, UserError
+from ..gaussians.scene import Scene
+from .look import Picture, numbered, picture, spotlight
+from .pictures import Tile, contact_sheet, save_png
+from .result import Result
+from .script import SCRIPT, Cast, Role, Thing, Turn
+from .session import Session
+
+if TYPE_CHECKING:
+    from ..gaussians.assets import Room
+
+TRIES = 14  # sentences a role may offer before it is left out
+VISIBLE = 0.002  # share of the picture from which a thing is worth speaking of
+FILES = ("room.ply", "edited.ply", "session.jsonl", "contact_sheet.png")
+
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Step:
+    """One thing that was said and what came of it.
+
+    Attributes:
+        number: from 1.
+        text: the instruction, with the answer that was given if it was asked back.
+        outcome: in a sentence.
+        good: whether the scene was edited (or looked at) as said.
+        seconds: from the words to the new scene, without pictures.
+        overlap: intersection over union of what was chosen with what the builder calls by those words; None if there
+            is nothing to compare.
+        files: its pictures.
+    """
+
+    number: int
+    text: str
+    outcome: str
+    good: bool
+    seconds: float
+    overlap: float | None
+    files: tuple[str, ...]
+
+
+@dataclass
+class Demo:
+    """A run of the demo.
+
+    Args:
+        folder: where everything is left.
+        seed: of the room.
+        size: width and height of the pictures, pixels.
+        force: overwrite what an earlier run left.
+        say: told what happens, line by line.
+        progress: told how far long work is.
+    """
+
+    folder: Path
+    seed: int = 0
+    size: tuple[int, int] = (640, 480)
+    force: bool = False
+    say: Say = print
+    progress: Callable[[str, float], None] = lambda stage, fraction: None
+    steps: list[Step] = field(default_factory=list)
+    seconds: dict[str, float] = field(default_factory=dict)
+    _tiles: list[Tile] = field(default_factory=list)
+
+    def run(self) -> dict[str, Any]:
+        """Do everything; what was done, as data.
+
+        Raises:
+            UserError: files of an earlier run are there and `force` is not set.
+        """
+        started = time.perf_counter()
+        self._prepare()
+        room = self._timed("furnish", lambda: _furnish(self.seed))
+        scene: Scene = room.scene
+        self.say(
+            f"furnished a room from seed {self.seed}: {len(scene.cloud):,} Gaussians, {len(room.truth.objects)} things"
+        )
+        self._timed("save", lambda: _save(scene, self.folder / "room.ply", self.force))
+        log = self.folder / "session.jsonl"
+        log.unlink(missing_ok=True)  # only with force: see _prepare
+        session = Session(scene, log=log, progress=self.progress, seed=self.seed)
+        session.viewer = _viewer(scene, self.size)
+        self._timed("embed", session.embed)
+        self._tell_things(session)
+        self._converse(session, room)
+        self._timed("save", lambda: session.save(self.folder / "edited.ply", force=self.force))
+        session.close()
+        self._sheet()
+        self.seconds["total"] = time.perf_counter() - started
+        return self._report()
+
+    # -- before and after the conversation --------------------------------------------------------------------------
+
+    def _prepare(self) -> None:
+        self.folder.mkdir(parents=True, exist_ok=True)
+        there = [name for name in FILES if (self.folder / name).exists()]
+        if there and not self.force:
+            raise UserError(f"{self.folder} holds {there[0]} of an earlier run; choose another folder, or --force")
+        for old in self.folder.glob("[0-9][0-9]-*.png") if self.force else ():
+            old.unlink()
+
+    def _timed(self, stage: str, work: Callable[[], Any]) -> Any:
+        mark = time.perf_counter()
+        value = work()
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - mark
+        return value
+
+    def _tell_things(self, session: Session) -> None:
+        language = session.scene.language
+        assert language is not None
+        names = sorted(g.label or "unnamed thing" for g in language.objects())
+        self.say(f"embedded in {self.seconds['embed']:.1f} s; it sees {len(names)} things: {', '.join(names)}")
+
+    def _sheet(self) -> None:
+        heading = f"Scenewright demo, seed {self.seed}: {len(self.steps)} instructions"
+        sheet = self._timed("pictures", lambda: contact_sheet(heading, self._tiles))
+        self._timed("pictures", lambda: save_png(sheet, self.folder / "contact_sheet.png", self.force))
+
+    def _report(self) -> dict[str, Any]:
+        return {
+            "folder": str(self.folder),
+            "seed": self.seed,
+            "steps": [step.__dict__ for step in self.steps],
+            "seconds": {stage: round(value, 3) for stage, value in self.seconds.items()},
+            "files": sorted(p.name for p in self.folder.iterdir()),
+        }
+
+    # -- the conversation -------------------------------------------------------------------------------------------
+
+    def _converse(self, session: Session, room: Room) -> None:
+        truth = np.asarray(room.truth.ids)
+        cast = _cast(room, session.viewer)
+        for name, role in SCRIPT:
+            turn = self._timed("choose what to say", lambda role=role: _first_that_fits(session, role, cast))
+            if turn is None:
+                self.say(f"-- left out: {name} (nothing in this room suits it)")
+                continue
+            self._play(session, turn, truth)
+            cast.used.update(t.id for t in turn.about)
+            if turn.text.startswith("remove") and turn.outcome == "edit":
+                cast.things = [t for t in cast.things if t not in turn.about]
+
+    def _play(self, session: Session, turn: Turn, truth: np.ndarray[Any, np.dtype[np.integer[Any]]]) -> None:
+        """Say it, answer if asked back, and keep pictures of before and after."""
+        number = len(self.steps) + 1
+        before = self._timed("pictures", lambda: picture(session.scene, session.viewer))
+        shots, text, answered = [before], turn.text, False
+        mark = time.perf_counter()
+        result: Result | None = None
+        try:
+            result = session.do(turn.text)
+            outcome = _sentence(result)
+        except AmbiguousError as error:
+            outcome = str(error)
+            if turn.answer and session.question is not None:
+                candidates = session.question.candidates
+                shots = [self._timed("pictures", lambda: numbered(session.scene, session.viewer, candidates))]
+                result, answered = session.answer(turn.answer), True
+                outcome = f"asked back: {len(candidates)} things match; answered '{turn.answer}': {_sentence(result)}"
+                text = f"{turn.text} … {turn.answer}"
+        except InstructionError as error:
+            outcome = f"refused, nothing was changed: {error}"
+        seconds = time.perf_counter() - mark
+        if result is not None:
+            shots.append(self._timed("pictures", lambda: _after(session, result)))
+        overlap = _overlap(result, turn, truth) if result is not None and not answered else None
+        files = self._keep(number, shots)
+        step = Step(number, text, outcome, result is not None, seconds, overlap, files)
+        self.steps.append(step)
+        self._tiles.append(Tile(text, outcome, tuple(shots), step.good))
+        check = f" (agrees with the builder: IoU {overlap:.2f})" if overlap is not None else ""
+        self.say(f"{number:>2}. {text}\n    {outcome}{check} [{seconds:.2f} s]")
+
+    def _keep(self, number: int, shots: list[Picture]) -> tuple[str, ...]:
+        names = ("before", "after")[: len(shots)]
+        files = tuple(f"{number:02d}-{name}.png" for name in names)
+        for file, shot in zip(files, shots, strict=True):
+            self._timed("pictures", lambda file=file, shot=shot: save_png(shot, self.folder / file, self.force))
+        return files
+
+
+def _furnish(seed: int) -> Room:
+    from ..gaussians.assets import furnish
+
+    return furnish(seed)
+
+
+def _save(scene: Scene, path: Path, force: bool) -> None:
+    from ..gaussians.files import save
+
+    save(scene, path, force=force)
+
+
+def _viewer(scene: Scene, size: tuple[int, int]) -> Camera:
+    from ..gaussians.language.views import default_viewer
+
+    return default_viewer(scene, *size)
+
+
+def _cast(room: Room, viewer: Camera) -> Cast:
+    """Who can be spoken of: things by the pixels they fill, and kinds that are not there."""
+    import torch
+
+    from ..gaussians.assets import kinds
+    from ..gaussians.render import render
+
+    ids = torch.as_tensor(np.asarray(room.truth.ids), dtype=torch.int32)
+    seen = render(room.scene.cloud.replace(group=ids), viewer).group
+    table = room.truth.objects
+    things = [Thing(o.id, o.kind, o.color, int((seen == o.id).sum())) for o in table]
+    visible = [t for t in things if t.pixels >= VISIBLE * viewer.width * viewer.height]
+    there = {t.kind for t in things}
+    # A "lamp" is not absent from a room with a floor lamp.
+    words = {word for kind in there for word in kind.split()}
+    absent = [k for k in kinds() if k not in there and not set(k.split()) & words]
+    return Cast(sorted(visible, key=lambda t: -t.pixels), absent, set())
+
+
+def _first_that_fits(session: Session, role: Role, cast: Cast) -> Turn | None:
+    """The first sentence of a role from which what ought to come of it comes, tried on a copy."""
+    return next((turn for turn in itertools.islice(role(cast), TRIES) if _fits(session, turn)), None)
+
+
+def _fits(session: Session, turn: Turn) -> bool:
+    if turn.outcome == "undo":
+        return len(session.done) > 0
+    try:
+        session.preview(turn.text)
+    except AmbiguousError:
+        return turn.outcome == "ambiguous"
+    except AbsentError:
+        return turn.outcome == "absent"
+    except ScenewrightError:
+        return False
+    return turn.outcome == "edit"
+
+
+def _after(session: Session, result: Result) -> Picture:
+    """The scene afterwards; a mere selection is lit, since nothing else shows it."""
+    if result.scene is result.before and result.selection is not None:
+        return spotlight(result.scene, session.viewer, result.selection)
+    return picture(result.scene, session.viewer)
+
+
+def _sentence(result: Result) -> str:
+    if not result.receipts:
+        return "the scene is again exactly as it was"
+    return "; ".join(r.sentence() for r in result.receipts)
+
+
+def _overlap(result: Result, turn: Turn, truth: np.ndarray[Any, np.dtype[np.integer[Any]]]) -> float | None:
+    """How well what was chosen agrees with the builder's list, over the Gaussians the room began with."""
+    language = result.before.language
+    if not turn.about or language is None:
+        return None
+    cloud = result.before.cloud
+    ids, column = cloud.ids.numpy(), cloud.group.numpy()
+    groups = {g for r in result.receipts for g in r.selection.groups}
+    leaves = [leaf for g in groups for leaf in language.leaves(g)]
+    original = ids < len(truth)
+    chosen = np.isin(column[original], leaves)
+    meant = np.isin(truth[ids[original]], [t.id for t in turn.about])
+    union = int((chosen | meant).sum())
+    return float((chosen & meant).sum() / union) if union else None

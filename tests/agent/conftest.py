@@ -1,0 +1,69 @@
+"""A small scene with a hand-made language field: a red box left, a green one in the middle, a red one right."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+from numpy.typing import NDArray
+
+from scenewright.gaussians.camera import Camera
+from scenewright.gaussians.cloud import GaussianCloud
+from scenewright.gaussians.color import rgb_to_lab
+from scenewright.gaussians.language.field import Box, Group, LanguageField
+from scenewright.gaussians.scene import Frame, Scene
+
+_AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+_BOXES = (  # colour in display space, centre, side, label
+    ((0.85, 0.05, 0.05), (-2.0, 0.0, 0.4), 0.8, "box"),
+    ((0.05, 0.6, 0.1), (0.0, 0.3, 0.3), 0.6, "box"),
+    ((0.8, 0.05, 0.1), (2.0, 0.0, 0.5), 1.0, "box"),
+)
+_FLOOR = ((0.5, 0.5, 0.5), (0.0, 0.0, 0.0), 8.0, "floor")
+
+
+class NamesOnly:
+    """The part of an encoder that a scene asked by colour needs: a fingerprint, and a vector for a name."""
+
+    fingerprint = "test:1"
+
+    def encode_text(self, texts: list[str]) -> NDArray[np.float32]:
+        return np.tile(np.float32([1, 0]), (len(texts), 1))
+
+
+def _points(center: tuple[float, float, float], side: float, level: bool) -> torch.Tensor:
+    steps = torch.linspace(-side / 2, side / 2, 12 if level else 7)
+    grid = torch.cartesian_prod(steps, steps, torch.zeros(1) if level else steps)
+    return grid + torch.tensor(center)
+
+
+@pytest.fixture
+def boxes() -> Scene:
+    clouds, groups = [], []
+    for i, (rgb, center, side, label) in enumerate((*_BOXES, _FLOOR)):
+        means = _points(center, side, level=label == "floor")
+        n = len(means)
+        dc = (torch.tensor(rgb) - 0.5) / 0.28209479
+        clouds.append((means, dc.expand(n, 1, 3), torch.full((n,), i, dtype=torch.int32), side))
+        lab = tuple(float(c) for c in rgb_to_lab(torch.tensor(rgb)))
+        size = (side, side, 0.01 if label == "floor" else side)
+        level = "structure" if label == "floor" else "object"
+        groups.append(Group(i, level, -1, label, 0.9, Box(center, _AXES, size), lab, n, 4, 1.0))  # type: ignore[arg-type]
+    means = torch.cat([c[0] for c in clouds])
+    cloud = GaussianCloud.create(
+        means,
+        torch.tensor([1.0, 0, 0, 0]).expand(len(means), 4).contiguous(),
+        torch.cat([torch.full((len(c[0]), 3), 0.12 if c[3] < 4 else 0.4) for c in clouds]),
+        torch.full((len(means),), 0.95),
+        torch.cat([c[1] for c in clouds]).contiguous(),
+        torch.cat([c[2] for c in clouds]),
+    )
+    field = LanguageField(tuple(groups), np.zeros((len(groups), 2), np.float32), NamesOnly.fingerprint)
+    camera = Camera.look_at([0, -8, 2.5], [0, 0, 0.4], [0, 0, 1], 96, 64, 50, "door")
+    frame = Frame((0, 0, 1), 0.0, 1.0, "given", "given")
+    return Scene(cloud, frame, (camera,), field)
+
+
+@pytest.fixture
+def encoder() -> NamesOnly:
+    return NamesOnly()
