@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.scene import Frame, Scene
