@@ -1,25 +1,21 @@
-"""Words to plans. Knows planners by name; each is imported when asked for."""
+"""Words and JSON: plans, scene graphs and the planners that make them. Knows no session and no pixels."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from ..gaussians.errors import UserError
+from .plan import EditPlan, Planner
 
-from ..gaussians.errors import BackendError
-
-if TYPE_CHECKING:
-    from .plan import Planner
-
-__all__ = ["load"]
+__all__ = ["EditPlan", "Planner", "load"]
 
 
 def load(spec: str = "auto") -> Planner:
-    """The planner called `spec`: "grammar", or "auto" for the cheapest that is here (the grammar).
+    """The planner that one string names: "auto" or "grammar".
 
     Raises:
-        BackendError: there is no such planner.
+        UserError: no planner has this name.
     """
     if spec in ("auto", "grammar"):
         from .grammar import GrammarPlanner
 
         return GrammarPlanner()
-    raise BackendError(f"there is no planner {spec!r}; choose 'auto' or 'grammar'")
+    raise UserError(f"unknown planner {spec!r}; planners are auto and grammar")

@@ -1,0 +1,359 @@
+"""Parsed clauses as operations: one method for each rule of grammar.lark that is a command.
+
+Knows the verbs. Refuses to know words and tokens (tagger.py), noun phrases (phrases.py), places (places.py) and
+amounts (changes.py). Every method gives operations as fields, which the registry of tools validates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+from ...gaussians.language.query import Query
+from . import changes, nouns, places
+from .phrases import Node, Noun, Phrases, Refusal, tokens, trees, union
+
+Fields = dict[str, Any]
+_MOTIONS = ("direction", "distance", "nudge", "toward", "to", "spot", "times")
+_SIDES = {"left": "leftmost", "right": "rightmost", "forward": "farthest", "backward": "nearest", "up": "highest",
+          "down": "lowest"}  # fmt: skip
+_SOME = 3  # "some cushions", as "a few"
+
+
+class Commands:
+    """Turns one clause's tree into operations. Keep one for an instruction: it remembers what "one" refers to."""
+
+    def __init__(self, antecedent: str = "") -> None:
+        self.phrases = Phrases(antecedent)
+
+    def read(self, tree: Node) -> list[Fields]:
+        """The operations of a clause.
+
+        Raises:
+            Refusal: it parses, but does not say enough or asks for what no operation does.
+        """
+        simple, *excluded = [c for c in tree.children if not hasattr(c, "type")]
+        method: Callable[[Node], list[Fields]] = getattr(self, f"_{str(simple.data).rstrip('_')}")
+        ops = method(simple)
+        for group in excluded:
+            out = union(self.phrases.group(group))
+            ops = [{**op, "target": _except(op.get("target"), out)} for op in ops]
+        return ops
+
+    # ---- helpers -------------------------------------------------------------------------------------------------
+
+    def _nouns(self, node: Node, index: int = 0) -> list[Noun]:
+        """The nouns of a clause; a direction behind them ("the chair to the left") is a side of the last one."""
+        found = self.phrases.targets(trees(node, "targets")[index])
+        if (side := tokens(node, "DIR")) and str(node.data) in ("delete", "select", "isolate", "hide"):
+            query = found[-1].query
+            if query.pick not in ("one", "any"):
+                raise Refusal("a side picks one thing; say which one", side[0].text)
+            found[-1] = replace(found[-1], query=query.model_copy(update={"pick": _SIDES[side[0].value]}))
+        return found
+
+    def _query(self, node: Node, index: int = 0) -> Query:
+        return union(self._nouns(node, index))
+
+    def _targeted(self, node: Node, op: str, **fields: Any) -> list[Fields]:
+        return [{"op": op, "target": self._query(node), **fields}]
+
+    # ---- seeing and removing -------------------------------------------------------------------------------------
+
+    def _delete(self, node: Node) -> list[Fields]:
+        return self._targeted(node, "delete")
+
+    def _clear(self, node: Node) -> list[Fields]:
+        found = self._nouns(node)
+        if any(nouns.head(n.query.text) in nouns.SURFACES and not n.posts for n in found):
+            raise Refusal("say whether to remove it or everything on it", "clear")
+        return [{"op": "delete", "target": union(found)}]
+
+    def _drop(self, node: Node) -> list[Fields]:
+        if trees(node, *_MOTIONS) or any(n.posts for n in self._nouns(node)):
+            raise Refusal("say put or delete", "drop")
+        return self._targeted(node, "delete")
+
+    def _take(self, node: Node) -> list[Fields]:
+        if not trees(node, *_MOTIONS):
+            raise Refusal("say where to, or take it away", "take")
+        return self._move(node)
+
+    def _select(self, node: Node) -> list[Fields]:
+        return self._targeted(node, "select")
+
+    def _isolate(self, node: Node) -> list[Fields]:
+        return self._targeted(node, "isolate")
+
+    def _hide(self, node: Node) -> list[Fields]:
+        return self._targeted(node, "opacity", value=0.0)
+
+    def _fade(self, node: Node) -> list[Fields]:
+        share = changes.share_of(node)
+        if share is None:
+            return self._targeted(node, **changes.opacity(changes.CLEARER[""]))
+        return self._targeted(node, **changes.opacity(share if tokens(node, "TO") else 1 - share))
+
+    def _switch(self, node: Node) -> list[Fields]:
+        raise Refusal("moving parts and switches cannot be operated", "turn " + tokens(node, "SWITCH")[0].text,
+                      verdict="impossible")  # fmt: skip
+
+    # ---- colour --------------------------------------------------------------------------------------------------
+
+    def _paint(self, node: Node) -> list[Fields]:
+        return [op for coat in trees(node, "coat") for op in self._give_color(coat)]
+
+    def _give_color(self, node: Node) -> list[Fields]:
+        return self._targeted(node, "recolor", color=changes.hue_of(trees(node, "hue")[-1]))
+
+    _change_color = _turn_color = _give_color
+
+    def _change_from(self, node: Node) -> list[Fields]:
+        found = self._nouns(node)
+        was = tokens(node, "HUE")[0].value
+        colored = [replace(n, query=n.query.model_copy(update={"colors": (*n.query.colors, was)})) for n in found]
+        return [{"op": "recolor", "target": union(colored), "color": changes.hue_of(trees(node, "hue")[-1])}]
+
+    def _tint(self, node: Node) -> list[Fields]:
+        return self._targeted(node, "recolor", adjust="toward", color=changes.hue_of(trees(node, "hue")[0]))
+
+    def _adjust(self, node: Node) -> list[Fields]:
+        kind = tokens(node, "ADJUST")[0].value[0]
+        return self._targeted(node, **changes.adjusted(kind, changes.degree_of(node), changes.share_of(node)))
+
+    def _change_opacity(self, node: Node) -> list[Fields]:
+        share = changes.share_of(node) or 0.0
+        solid = tokens(node, "OPACITYWORD")[0].value
+        return self._targeted(node, **changes.opacity(share if solid else 1 - share))
+
+    # ---- becoming ------------------------------------------------------------------------------------------------
+
+    def _make(self, node: Node) -> list[Fields]:
+        first, *others = trees(node)
+        change, *more = others
+        ops = [{**changes.change(change), "target": union(self.phrases.targets(first))}]
+        for also in more:
+            inner = trees(also)
+            target = union(self.phrases.targets(inner[0])) if inner[0].data == "targets" else Query(last=True)
+            ops.append({**changes.change(inner[-1]), "target": target})
+        return ops
+
+    def _it_becomes(self, node: Node) -> list[Fields]:
+        return [{**changes.change(c), "target": Query(last=True)} for c in trees(node)]
+
+    # ---- moving --------------------------------------------------------------------------------------------------
+
+    def _it_moves(self, node: Node) -> list[Fields]:
+        motion = places.read(trees(node), self.phrases)
+        if not motion.aims:
+            raise Refusal("say which way, or what to change")
+        return [{"op": "move", "target": Query(last=True), **motion.fields()}]
+
+    def _move(self, node: Node, verb: str = "MOVE") -> list[Fields]:
+        return self._moved(self._nouns(node), node, verb)
+
+    def _moved(self, found: list[Noun], node: Node, verb: str) -> list[Fields]:
+        motion = places.read(trees(node, *_MOTIONS), self.phrases, found[0])
+        if not motion.aims:
+            found[-1], motion.place = places.destination(found[-1], verb)
+            if motion.place is None:
+                raise Refusal("say where to: left, 30 cm up, onto the desk, next to the sofa")
+            if motion.distance is not None:
+                raise Refusal("a distance needs a direction")
+        return [{"op": "move", "target": union(found), **motion.fields()}]
+
+    def _raise(self, node: Node) -> list[Fields]:
+        lengths, degree = tokens(node, "LENGTH"), changes.degree_of(node)
+        distance = places.length(lengths[0].value) if lengths else None
+        if degree:
+            distance = places.LITTLE if degree == "little" else places.MUCH
+        fields = {"direction": tokens(node, "RAISE")[0].value, **({"distance": distance} if distance else {})}
+        return self._targeted(node, "move", **fields)
+
+    def _put(self, node: Node) -> list[Fields]:
+        found = self._nouns(node)
+        fresh = [n.article == "indef" or (n.article == "bare" and (n.number or n.plural)) for n in found]
+        if all(fresh):
+            return self._inserted(found, node, "PUT")
+        if any(fresh):
+            raise Refusal("name what to move and what to add in two clauses")
+        return self._moved(found, node, "PUT")
+
+    # ---- turning -------------------------------------------------------------------------------------------------
+
+    def _rotate(self, node: Node) -> list[Fields]:
+        turns = trees(node, "turning")
+        angle, clock, direction = (_only(turns, *kind) for kind in (("ANGLE", "NUMBER"), ("CLOCK",), ("DIR",)))
+        if any(tokens(t, "UPSIDE") for t in turns):
+            if len(turns) > 1:
+                raise Refusal("turning upside down is half a turn; leave the rest out")
+            return self._targeted(node, "rotate", degrees=180.0, axis="forward")
+        if direction is not None and direction not in ("left", "right"):
+            raise Refusal("things turn to the left or right, clockwise or counterclockwise")
+        if clock is not None and direction is not None:
+            raise Refusal("say either clockwise or a side")
+        around = any(tokens(t, "AROUND") for t in turns) or bool(tokens(node, "TURNROUND"))
+        sign = clock or {"left": 1, "right": -1}.get(direction or "", 1)
+        if angle is None and not around and clock is None and direction is None:
+            raise Refusal("say by how many degrees, or to the left, or around")
+        # A quarter turn is what "turn it to the left" means without a number; "around" is half a turn.
+        degrees = float(angle) if angle is not None else 180.0 if around else 90.0
+        return self._targeted(node, "rotate", degrees=sign * degrees)
+
+    def _flip(self, node: Node) -> list[Fields]:
+        if tokens(node, "AROUND"):
+            return self._targeted(node, "rotate", degrees=180.0)
+        return self._targeted(node, "rotate", degrees=180.0, axis="forward")
+
+    def _tilt(self, node: Node) -> list[Fields]:
+        turns = trees(node, "turning")
+        angle, clock, direction = (_only(turns, *kind) for kind in (("ANGLE",), ("CLOCK",), ("DIR",)))
+        if angle is None or (clock is None) == (direction is None):
+            raise Refusal("say by how many degrees and which way: tilt it 10 degrees to the left")
+        # Clockwise as the viewer sees it is counter-clockwise from the tip of "forward", which points away.
+        signs = {"left": ("forward", -1), "right": ("forward", 1), "forward": ("right", -1), "backward": ("right", 1)}
+        axis, sign = ("forward", -clock) if clock is not None else signs.get(direction or "", ("", 0))
+        if not sign:
+            raise Refusal("things tilt left, right, forward or backward")
+        return self._targeted(node, "rotate", degrees=sign * float(angle), axis=axis)
+
+    # ---- sizing --------------------------------------------------------------------------------------------------
+
+    def _factor(self, node: Node) -> tuple[float | None, float | None, bool, str]:
+        """Share, times, whether "to" was said, and degree of a clause's `factor`."""
+        for inner in trees(node, "factor", "degree_factor"):
+            times = tokens(inner, "TIMES", "NUMBER")
+            value = float(times[0].value) if times else None
+            return changes.share_of(inner), value, bool(tokens(inner, "TO")), changes.degree_of(inner)
+        return None, None, False, ""
+
+    def _scale(self, node: Node) -> list[Fields]:
+        share, times, to, degree = self._factor(node)
+        way = [t.value for t in tokens(node, "DIR")]
+        if way and way[0] in ("up", "down"):
+            return self._sized(node, "all", way[0] == "up", (share, times, to, degree))
+        if way or (share is None and times is None):
+            raise Refusal("say by how much: by 1.5, to 50 %, up by 20 %")
+        return self._targeted(node, **changes.scaled(times if times is not None else share or 0.0))
+
+    def _sized(
+        self, node: Node, axis: str, up: bool, factor: tuple[float | None, float | None, bool, str]
+    ) -> list[Fields]:
+        share, times, to, degree = factor
+        if to and (share is not None or times is not None):
+            return self._targeted(node, **changes.scaled(share if share is not None else times or 0.0, axis))
+        return self._targeted(node, **changes.grown(axis, up, share, times, degree))
+
+    def _grow(self, node: Node) -> list[Fields]:
+        axis, up = tokens(node, "GROW")[0].value
+        if axis == "prop":
+            raise Refusal("say what of it: its size, its height, its width", tokens(node, "GROW")[0].text)
+        return self._sized(node, axis, up, self._factor(node))
+
+    def _grow_prop(self, node: Node) -> list[Fields]:
+        _, up = tokens(node, "GROW")[0].value
+        return self._sized(node, tokens(node, "PROP")[0].value, up, self._factor(node))
+
+    def _multiply(self, node: Node) -> list[Fields]:
+        prop = tokens(node, "PROP")
+        return self._targeted(
+            node, **changes.scaled(tokens(node, "MULTIPLY")[0].value, prop[0].value if prop else "all")
+        )
+
+    # ---- new things ----------------------------------------------------------------------------------------------
+
+    def _insert(self, node: Node) -> list[Fields]:
+        return self._inserted(self._nouns(node), node, "ADD")
+
+    def _inserted(self, found: list[Noun], node: Node, verb: str) -> list[Fields]:
+        motion = places.read(trees(node, *_MOTIONS), self.phrases, found[0])
+        if motion.direction or motion.toward or motion.distance:
+            raise Refusal("say what it should stand next to, or on")
+        found[-1], place = (found[-1], motion.place) if motion.place else places.destination(found[-1], "PUT")
+        ops = []
+        for noun in found:
+            noun, own = places.destination(noun, "PUT")
+            where = own or place
+            count = self._count(noun)
+            ops.append({
+                "op": "insert", **self._asset(noun), **({"count": count} if count > 1 else {}),
+                **({"height": places.length(noun.height)} if noun.height else {}),
+                **({"place": where} if where else {}),
+            })  # fmt: skip
+        return ops
+
+    def _count(self, noun: Noun) -> int:
+        if noun.number is not None:
+            return places.whole(noun.number, str(noun.number))
+        if not noun.plural or nouns.singular(noun.query.text) in ("scissors", "stairs", "headphones"):
+            return 1
+        if noun.article == "indef":
+            return _SOME
+        raise Refusal("say how many", noun.query.text)
+
+    def _asset(self, noun: Noun) -> Fields:
+        """Name and colour of a new thing."""
+        query = noun.query
+        heights = [p for p in noun.posts if p.kind == "is_tall"]
+        if not noun.is_new or query.relations or query.not_colors or (noun.posts and not heights):
+            raise Refusal("a new thing is named by what it is: a red floor lamp", query.text)
+        if len(query.colors) > 1:
+            raise Refusal("a new thing has one colour", *query.colors)
+        name = " ".join([*noun.adjectives, query.text])
+        return {"asset": name, **({"color": query.colors[0]} if query.colors else {})}
+
+    def _replace(self, node: Node) -> list[Fields]:
+        return self._replaced(self._nouns(node, 0), self._nouns(node, 1))
+
+    def _substitute(self, node: Node) -> list[Fields]:
+        new = self._nouns(node, 0)
+        return self._replaced(self._nouns(node, 1), new)
+
+    def _replaced(self, old: list[Noun], new: list[Noun]) -> list[Fields]:
+        if len(new) != 1 or (new[0].number or 1) > 1:
+            raise Refusal("a thing is replaced by one new thing")
+        if new[0].article not in ("indef", "bare"):
+            raise Refusal("things cannot change places; a new thing is called a, not the", new[0].query.text,
+                          verdict="impossible")  # fmt: skip
+        return [{"op": "replace", "target": union(old), **self._asset(new[0])}]
+
+    def _swap(self, node: Node) -> list[Fields]:
+        if len(trees(node, "targets")) < 2:
+            raise Refusal("things cannot change places; say what to put there instead", "swap", verdict="impossible")
+        return self._replace(node)
+
+    def _duplicate(self, node: Node) -> list[Fields]:
+        motion = places.read(trees(node, *_MOTIONS), self.phrases)
+        if motion.toward or (motion.distance and not motion.direction):
+            raise Refusal("copies go left, right, forward, backward, or next to something")
+        return self._targeted(node, "duplicate", **_counted(motion.times), **motion.fields())
+
+    def _copies(self, node: Node) -> list[Fields]:
+        found = self._nouns(node)
+        motion = places.read(trees(node, *_MOTIONS), self.phrases)
+        if any(n.posts for n in found) and not motion.aims:
+            said = found[-1].posts[0].word
+            raise Refusal("it is not clear whether that is where the copy goes; copy it, then move it", said)
+        number = tokens(node, "NUMBER")
+        times = places.whole(number[0].value, number[0].text) if number else None
+        return [{"op": "duplicate", "target": union(found), **_counted(times), **motion.fields()}]
+
+
+def _counted(times: int | None) -> Fields:
+    return {"count": times} if times and times > 1 else {}
+
+
+def _only(nodes: Sequence[Node], *types: str) -> Any:
+    """The one value of these token types below the nodes, None if there is none."""
+    found = [t for n in nodes for t in tokens(n, *types)]
+    if len(found) > 1:
+        raise Refusal("two of one kind in one clause", *(t.text for t in found))
+    return found[0].value if found else None
+
+
+def _except(target: Query | None, out: Query) -> Query:
+    if target is None or len(target.exclude) >= 4:
+        raise Refusal("that cannot be left out here")
+    also = tuple(_except(a, out) for a in target.also)
+    return target.model_copy(update={"exclude": (*target.exclude, out), "also": also})

@@ -1,0 +1,362 @@
+"""The closed vocabulary: every phrase that is not a noun, and the word class it stands for.
+
+Knows spellings and what each one means ("get rid of" is DELETE, "to the left of" is PREP left_of). Refuses to know
+grammar: how the classes combine is in grammar.lark, which class wins in context is in tagger.py.
+
+Tables map a phrase to a value; `PHRASES` joins them into one trie-like table keyed by tuples of words.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .words import bag, phrases
+
+Entry = tuple[str, Any]  # word class, value
+
+
+def _same(value: Any, phrases: str) -> dict[str, Any]:
+    """Phrases separated by commas, all with one value."""
+    return {p.strip(): value for p in phrases.split(",")}
+
+
+# ---- verbs, read only where a clause begins ------------------------------------------------------------------------
+
+VERBS: dict[str, Entry] = {
+    **_same(
+        ("DELETE", None),
+        "delete, remove, erase, eliminate, discard, take away, take out, get rid of, throw away, throw out, chuck out, "
+        "chuck, chuck away, lose, clear away, clear out, zap, kill, nuke, dump, ditch, trash, scrap, destroy, banish, "
+        "dispose of, do away with, bin, axe, purge, expunge, wipe out, rub out, delete away, get out",
+    ),
+    **_same(("CLEAR", None), "clear, clear off, wipe"),
+    **_same(("DROP", None), "drop"),
+    **_same(("TAKE", None), "take, throw, get, tidy"),
+    **_same(
+        ("SELECT", None),
+        "select, highlight, find, find me, locate, pick, pick out, choose, show me, show, mark, point out, point to, "
+        "identify, focus on, outline",
+    ),
+    **_same(
+        ("ISOLATE", None),
+        "isolate, keep only, keep just, only keep, just keep, show only, show just, show me only, only show, "
+        "only show me, leave only, leave just, leave nothing but, keep nothing but, show nothing but, single out, solo",
+    ),
+    **_same(("HIDE", None), "hide, conceal, fade out"),
+    **_same(("FADE", None), "fade"),
+    **_same(
+        ("PAINT", None),
+        "paint, colour, color, recolor, recolour, dye, repaint, stain, spray paint, spray, coat, re paint",
+    ),
+    **_same(("TINT", None), "tint"),
+    **_same(("MAKE", None), "make, turn it to be, render"),
+    **_same(("TURN", None), "turn"),
+    **_same(("CHANGE", None), "change, convert, transform, set the, adjust"),
+    **_same(("GIVE", None), "give"),
+    **_same(("WANT", None), "i want, i would like, i need, we want, we need, i would love, i wish for"),
+    **_same(("ADJUST", ("darker", None)), "darken"),
+    **_same(("ADJUST", ("lighter", None)), "lighten, brighten, brighten up, lighten up"),
+    **_same(("ADJUST", ("less_saturated", None)), "desaturate, tone down, mute"),
+    **_same(("ADJUST", ("more_saturated", None)), "saturate"),
+    **_same(("ADJUST", ("warmer", None)), "warm up, warm"),
+    **_same(("ADJUST", ("cooler", None)), "cool down, cool"),
+    **_same(
+        ("MOVE", None),
+        "move, shift, slide, push, pull, bring, shove, drag, scoot, nudge, relocate, transfer, carry, reposition, "
+        "move over, shift over, budge, haul, scooch",
+    ),
+    **_same(("RAISE", "up"), "raise, lift, elevate, hoist, lift up, move up"),
+    **_same(("RAISE", "down"), "lower"),
+    **_same(
+        ("PUT", None),
+        "put, place, set, set down, put down, stick, position, pop, lay, stand, hang, hang up, mount, rest, park, "
+        "stack, plop, install, arrange, put up, lean",
+    ),
+    **_same(
+        ("ADD", None),
+        "add, insert, create, generate, spawn, introduce, bring in, throw in, put in, drop in, add in, give me, "
+        "place down, include",
+    ),
+    **_same(("COPY", None), "copy, clone, duplicate, replicate"),
+    **_same(("REPLACE", None), "replace, swap out, switch out"),
+    **_same(("SWAP", None), "swap, exchange, switch, trade, trade in"),
+    **_same(("SUBSTITUTE", None), "substitute"),
+    **_same(("ROTATE", None), "rotate, spin, revolve, pivot, twist, swivel, spin round"),
+    **_same(("TURNROUND", None), "turn around, spin around, turn round"),
+    **_same(("FLIP", None), "flip, flip over, turn over, topple, invert"),
+    **_same(("TILT", None), "tilt, tip, roll"),
+    **_same(("SCALE", None), "scale, resize, rescale"),
+    **_same(("GROW", ("all", True)), "enlarge, grow, expand, blow up, magnify, size up, scale up, upscale, upsize"),
+    **_same(("GROW", ("all", False)), "shrink, size down, downsize, scale down, downscale, minify"),
+    **_same(("GROW", ("prop", True)), "increase"),
+    **_same(("GROW", ("prop", False)), "decrease, reduce"),
+    **_same(("GROW", ("width", True)), "widen, broaden, lengthen"),
+    **_same(("GROW", ("width", False)), "narrow"),
+    **_same(("GROW", ("height", True)), "heighten"),
+    **_same(("GROW", ("height", False)), "flatten, shorten"),
+    **_same(("MULTIPLY", 2.0), "double"),
+    **_same(("MULTIPLY", 3.0), "triple, treble"),
+    **_same(("MULTIPLY", 4.0), "quadruple"),
+    **_same(("MULTIPLY", 0.5), "halve"),
+}
+
+# Verbs we know and cannot carry out: named, so that the answer says so instead of "not understood".
+UNSUPPORTED: dict[str, str] = {
+    **_same("moving parts and switches cannot be operated", "open, close, shut, turn on, turn off, switch on, "
+            "switch off, unlock, lock, fold, unfold, light up, dim"),
+    **_same("only whole scenes of what is there can be edited, not what happens to it", "break, smash, bend, burn, "
+            "fill, empty, clean, wash, dust, polish, animate, cook, play, eat, wear, throw a party"),
+    **_same("what was hidden comes back with undo", "unhide, reveal, restore, bring back"),
+    **_same("objects cannot be renamed or grouped", "rename, group, ungroup, merge, split, label"),
+    **_same("one thing cannot be turned to face another yet", "face, aim, orient, align"),
+}  # fmt: skip
+
+# What the session answers, not a planner; and words that ask for nothing.
+COMMANDS = frozenset({"undo", "redo", "save", "help", "quit", "exit", "load", "history", "render", "screenshot"})
+CHAT = bag(
+    "hello hi hey hiya greetings thanks thank bye goodbye cheers yes no yep nope ok okay cool great nice wow sorry "
+    "morning evening good lol"
+)
+QUESTION = bag(
+    "what where who whom whose which why how when is are am was were does do did has have had can could will would "
+    "shall should may might"
+)
+STATEMENT = bag("i we you he she they there my our your")
+
+# Nouns too: verbs only if an object follows.
+NOUN_VERBS = bag(
+    "plant light paint set stand copy clone duplicate mark place park drop bin mount rest tip roll change show pick "
+    "color colour tint stain dye coat spray swap switch trade slide push dump scrap trash lock play fold lift double "
+    "clear dust label group face hang cool warm spin twist flip turn scale grow narrow lower split light position"
+)
+
+# ---- words inside a clause -----------------------------------------------------------------------------------------
+
+RELATIONS: dict[str, str] = {
+    **_same("left_of", "to the left of, left of, on the left of, at the left of, to the left side of, "
+            "on the left side of, to the left hand side of, on the left hand side of"),
+    **_same("right_of", "to the right of, right of, on the right of, at the right of, to the right side of, "
+            "on the right side of, to the right hand side of, on the right hand side of"),
+    **_same("in_front_of", "in front of, to the front of, at the front of"),
+    **_same("behind", "behind, in back of, at the back of, to the back of, in the back of"),
+    **_same("on", "on, on top of, onto, on to, upon, atop, on the top of, to the top of"),
+    **_same("under", "under, underneath, beneath"),
+    **_same("below", "below"),
+    **_same("above", "above, over"),
+    **_same("inside", "inside, in, into, within, inside of"),
+    **_same("next_to", "next to, beside, by, near, near to, close to, alongside, adjacent to, at, at the side of, "
+            "to the side of, by the side of, right next to, right by, close by, right beside"),
+    **_same("against", "against, up against, along, flush against"),
+}  # fmt: skip
+
+INSIDE: dict[str, Entry] = {
+    **{phrase: ("PREP", name) for phrase, name in RELATIONS.items()},
+    **{f"over {p}": ("PREP", n) for p, n in RELATIONS.items() if p.startswith("to ")},
+    **{f"directly {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside",)},
+    **{f"just {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside",)},
+    **_same(("BETWEEN", None), "between, in between"),
+    **_same(("NEAR", "nearest_to"), "nearest, nearest to, closest to, closest, nearest from"),
+    **_same(("NEAR", "farthest_from"), "farthest from, furthest from, farthest away from, furthest away from"),
+    **_same(("FROM", None), "from, off, off of, out of"),
+    **_same(("OF", None), "of"),
+    **_same(("TO", None), "to, over to, up to"),
+    **_same(("TOWARD", None), "toward, towards, closer to, nearer to, nearer, in the direction of"),
+    **_same(("WITH", None), "with"),
+    **_same(("FOR", None), "for"),
+    **_same(("AS", None), "as"),
+    **_same(("NOT", None), "not"),
+    **_same(("AWAY", None), "away, out"),
+    **_same(("AROUND", None), "around, round, the other way around, the other way"),
+    **_same(("UPSIDE", None), "upside down, on its head"),
+    **_same(("APART", None), "apart"),
+    **_same(
+        ("BUT", None),
+        "but, but not, except, except for, excepting, excluding, other than, apart from, aside from, besides, "
+        "but leave, but keep, but do not touch, save for, bar, minus, and not",
+    ),
+    **_same(("AND", None), "and, &, and also, as well as, plus, along with, together with, and then"),
+    **_same(("SPOT", "corner"), "in the corner, in the corner of the room, to the corner, in a corner, "
+            "into the corner, to the corner of the room, "
+            "into a corner, in one corner, into the corner of the room, to a corner"),
+    **_same(("SPOT", "center"), "in the middle, in the middle of the room, in the center, in the centre, "
+            "to the center, to the centre, to the middle, "
+            "in the center of the room, in the centre of the room, "
+            "to the middle of the room, to the center of the room, to the centre of the room, into the middle, "
+            "into the middle of the room, into the center of the room, into the centre of the room"),
+    **_same(("CENTER", None), "in the middle of, in the center of, in the centre of, to the middle of, "
+            "to the center of, to the centre of, at the center of, at the centre of"),
+    **_same(("SIDE", "leftmost"), "on the left, on the left side, on the left hand side, at the left, on my left"),
+    **_same(("SIDE", "rightmost"), "on the right, on the right side, on the right hand side, at the right, "
+            "on my right"),
+    **_same(("SIDE", "nearest"), "in front, at the front, in the front, closest to me, nearest to me, nearest me, "
+            "closest to the camera, nearest to the camera, in the foreground"),
+    **_same(("SIDE", "farthest"), "at the back, in the back, farthest from me, furthest from me, farthest away, "
+            "furthest away, in the background"),
+    **_same(("SIDE", "highest"), "at the top, on the top"),
+    **_same(("SIDE", "lowest"), "at the bottom, on the bottom"),
+    **_same(("SIDE", "leftmost"), "on the left of the room, on the left side of the room"),
+    **_same(("SIDE", "rightmost"), "on the right of the room, on the right side of the room"),
+    **_same(("SIDE", "nearest"), "at the front of the room, in the front of the room"),
+    **_same(("SIDE", "farthest"), "at the back of the room, in the back of the room"),
+    **_same(("NOWHERE", None), "to the back of the room, to the front of the room, to the left of the room, "
+            "to the right of the room, to the left side of the room, to the right side of the room, "
+            "to the other side of the room, to the side"),
+    **_same(("COUNTED", "left"), "from the left, counting from the left, from left to right, from left"),
+    **_same(("DIR", "left"), "to the left, left, leftward, leftwards, to my left, over to the left, further left, "
+            "to the left side, more to the left, further to the left, farther left, over left"),
+    **_same(("DIR", "right"), "to the right, right, rightward, rightwards, to my right, over to the right, further "
+            "right, to the right side, more to the right, further to the right, farther right, over right"),
+    **_same(("DIR", "forward"), "forward, forwards, away from me, away from the viewer, away from the camera, further "
+            "away, farther away, to the back, back, further back, farther back, toward the back, towards the back"),
+    **_same(("DIR", "backward"), "backward, backwards, toward me, towards me, closer to me, nearer to me, toward the "
+            "viewer, toward the camera, towards the camera, towards the viewer, to the front, closer, nearer, to me, "
+            "closer to the camera, closer to the viewer, toward the front, towards the front"),
+    **_same(("DIR", "up"), "up, upward, upwards, higher up, further up"),
+    **_same(("DIR", "down"), "down, downward, downwards, lower down, further down"),
+    **_same(("CLOCK", -1), "clockwise"),
+    **_same(("CLOCK", 1), "counterclockwise, counter clockwise, anticlockwise, anti clockwise"),
+    **_same(("DEGREE", "little"), "a bit, a little, a little bit, slightly, somewhat, a touch, a tad, a smidge, "
+            "a tiny bit, a hair, ever so slightly, a wee bit"),
+    **_same(("DEGREE", "much"), "much, a lot, way, far, considerably, significantly, a great deal, a good deal, "
+            "substantially, lots, so much, very much"),
+    **_same(("MORE", None), "more, even more"),
+    **_same(("LESS", None), "less, even less"),
+    **_same(("LIGHT", "darker"), "darker"),
+    **_same(("LIGHT", "lighter"), "lighter, brighter, paler"),
+    **_same(("LIGHT", "warmer"), "warmer"),
+    **_same(("LIGHT", "cooler"), "cooler, colder"),
+    **_same(("LIGHT", "more_saturated"), "more vivid, more saturated, more colorful, more colourful, more vibrant, "
+            "more intense, richer"),
+    **_same(("LIGHT", "less_saturated"), "less vivid, less saturated, less colorful, less colourful, less vibrant, "
+            "less intense, more muted, duller, more washed out"),
+    **_same(("TOWARDHUE", "blue"), "bluer"), **_same(("TOWARDHUE", "red"), "redder"),
+    **_same(("TOWARDHUE", "green"), "greener"), **_same(("TOWARDHUE", "yellow"), "yellower"),
+    **_same(("TOWARDHUE", "pink"), "pinker"), **_same(("TOWARDHUE", "brown"), "browner"),
+    **_same(("TOWARDHUE", "white"), "whiter"), **_same(("TOWARDHUE", "black"), "blacker"),
+    **_same(("TOWARDHUE", "gray"), "greyer, grayer"),
+    **_same(("GROWN", ("all", True)), "bigger, larger, huger"),
+    **_same(("GROWN", ("all", False)), "smaller, tinier, littler"),
+    **_same(("GROWN", ("height", True)), "taller"),
+    **_same(("GROWN", ("height", False)), "shorter, flatter"),
+    **_same(("GROWN", ("width", True)), "wider, broader, longer"),
+    **_same(("GROWN", ("width", False)), "narrower, slimmer, thinner"),
+    **_same(("GROWN", ("depth", True)), "deeper"),
+    **_same(("PROP", "all"), "size, scale, in size, dimensions"),
+    **_same(("PROP", "height"), "height, in height"),
+    **_same(("PROP", "width"), "width, length, in width, in length"),
+    **_same(("PROP", "depth"), "depth, in depth"),
+    **_same(("COLORWORD", None), "colour, color, paint, hue, shade, colored, coloured, tint"),
+    **_same(("ASHADE", None), "a shade of, a nice shade of, a coat of, a lick of, a dash of"),
+    **_same(("OPACITYWORD", True), "opacity, alpha"),
+    **_same(("OPACITYWORD", False), "transparency"),
+    **_same(("CLEARLY", 0.3), "transparent, see through, translucent"),
+    **_same(("CLEARLY", 0.0), "invisible, completely transparent, fully transparent, totally transparent, hidden"),
+    **_same(("OPAQUE", None), "opaque, visible"),
+    **_same(("GONE", None), "gone, disappear, vanish, go away"),
+    **_same(("TOBE", None), "to be, be, become, look, to look"),
+    **_same(("COPIES", None), "copy of, copies of, duplicate of, duplicates of, clone of, clones of, more copies of, "
+            "another copy of, copies from, more of"),
+    **_same(("REL", None), "that is, that are, which is, which are, who is, that was"),
+    **_same(("DET", "def"), "the, my, our, your, this, that, these, those, the very, the whole, the entire"),
+    **_same(("DET", "indef"), "a, an, another, some, one more, a new, some new"),
+    **_same(("DET", "all"), "all, every, each, all the, all of the, every single, every one of the, each of the, "
+            "all these, all those, all of these, all of those, all my, all of my, any and all"),
+    **_same(("DET", "both"), "both, both the, both of the"),
+    **_same(("DET", "any"), "any, one of the, any of the, any one of the, either, either of the"),
+    **_same(("OTHER", None), "other, remaining"),
+    **_same(("PRON", "it"), "it, them, this one, that one, these ones, those ones, the same, the same one, "
+            "the same thing, the same object, the same ones, this thing, that thing, all of them, all of it, "
+            "both of them, each of them, the selection, the selected, the selected object, the selected objects, "
+            "the current selection, my selection, the selected one, the whole thing, him"),
+    **_same(("PRON", "any"), "one of them, any of them, either of them"),
+    **_same(("EVERYTHING", None), "everything, all things, all objects, the whole scene, the entire scene, anything, "
+            "every object, all the objects, the scene, the whole room, everything in the scene"),
+    **_same(("EVERYTHING", "else"), "everything else, the rest, all the rest, all else, anything else, "
+            "the rest of the scene, the rest of the room, the rest of it"),
+    **_same(("ONE", False), "one"),
+    **_same(("ONE", True), "ones"),
+    **_same(("OTHERS", None), "the others, all the others, all others, the other ones, all the other ones"),
+    **_same(("THING", False), "thing, object, item, part, piece, area, region, element, bit, stuff"),
+    **_same(("THING", True), "things, objects, items, parts, pieces, areas, regions, elements, bits"),
+}  # fmt: skip
+
+# Only before a noun ("the left chair"), or after a determiner where the noun is left out ("the largest").
+ATTRIBUTES: dict[str, Entry] = {
+    **_same(("SUP", "largest"), "largest, biggest, greatest"),
+    **_same(("SUP", "smallest"), "smallest, tiniest, littlest"),
+    **_same(("SUP", "tallest"), "tallest"),
+    **_same(("SUP", "shortest"), "shortest"),
+    **_same(("SUP", "nearest"), "nearest, closest, front, foremost"),
+    **_same(("SUP", "farthest"), "farthest, furthest, far, back, rear, rearmost, most distant"),
+    **_same(("SUP", "leftmost"), "leftmost, far left, furthest left, left most, left, left hand, left side"),
+    **_same(("SUP", "rightmost"), "rightmost, far right, furthest right, right most, right, right hand, right side"),
+    **_same(("SUP", "highest"), "highest, topmost, top, uppermost, upper"),
+    **_same(("SUP", "lowest"), "lowest, bottom, bottommost, lower"),
+    **_same(("SIZE", "small"), "small, little, tiny, mini, smaller"),
+    **_same(("SIZE", "large"), "big, large, huge, giant, enormous, massive, bigger, larger"),
+    **_same(("SIZE", "tall"), "tall, high, taller"),
+    **_same(("SIZE", "short"), "short, low, shorter"),
+    **_same(("SIZE", "wide"), "wide, long, broad, wider, longer"),
+    **_same(("SIZE", "narrow"), "narrow, thin, slim, skinny, narrower"),
+}  # fmt: skip
+
+# Dropped wherever they stand.
+FILLER = phrases(
+    "please, kindly, just, now, actually, for me, if you can, if possible, if you could, would you, will you, "
+    "thanks, thank you, thank you very much, ok, okay, well, so, hey, hi, hello, also, as well, right now, "
+    "straight away, go ahead and, from the scene, in the scene, from the room, in the room, from this scene, "
+    "in this scene, in here, from here, out of here, out of the room, out of the scene, in the picture, "
+    "in the image, in the view, from the picture, from the image, really, simply, instead, over there, "
+    "you see, you know, as it is now, as it is, as before, as now, than it is now, than before, than it is, "
+    "than now, than it was, as it was, as they are, as they are now, than they are, currently, too, if you "
+    "would, if you will, could you, can you, would you please, for now, from the view, this time, alone, "
+    "somewhere, mate, buddy, my friend, finally, lastly, afterwards, after that, entirely, altogether, again, "
+    "current"
+)
+
+# Dropped before a preposition ("the lamp standing on the desk").
+PARTICIPLES = bag("standing sitting located placed lying hanging situated positioned mounted leaning")
+
+# Dropped where a clause begins, before its verb.
+POLITE = phrases(
+    "could you, can you, would you, will you, could we, can we, shall we, i would like you to, i would like to, "
+    "i want you to, i want to, i need you to, i need to, we need to, we want to, let us, let me, you should, "
+    "you can, we should, you could, go and, try to, help me to, help me, i would love you to, i would love to, "
+    "may i ask you to, i wish you to, i am going to, we are going to, you have to, i have to, you must, "
+    "could i ask you to, be so kind and, first, first of all, second, secondly, firstly, to start, "
+    "to begin with, next, then, finally, lastly, after that, afterwards, and, so, but, next up, proceed to, "
+    "start by, i think you should, maybe, perhaps, oh, uh, um, hmm, alright, all right, right, good, great, "
+    "cool, perfect, nice, no, yes, yeah, yep, sure"
+)
+
+# Never part of a noun: words that carry structure or that would be dropped at a cost.
+STRUCTURE = bag(
+    "if unless until till while because since when whenever although though who whom whose which what where why how "
+    "that than so or nor yet no without like about through across during via be is are was were am been being do does "
+    "did done have has had can could will would shall should may might must i me we us you he she they him her "
+    "very quite rather too almost nearly only even ever never always often once again here there facing around "
+    "opposite beyond past before after during per same such much many few several enough whichever whatever "
+    "more less most least not none nothing nobody except but and to of from off with for as by in on at into onto "
+    "it its them their itself themselves myself another every each all both any some else maybe perhaps together apart"
+)
+ADVERB_NOUNS = bag(
+    "lily fly assembly jelly belly butterfly family dolly doily holly curly woolly ply july bully gully folly supply "
+    "wily oily bubbly cuddly friendly"
+)
+UNSAFE = (
+    "files", "password", "passwords", "sudo", "filesystem", "database", "credentials", "malware", "hard drive",
+    "system prompt", "api key", "rm rf", "previous instructions", "prior instructions", "your instructions",
+)  # fmt: skip
+ASKING = bag("tell describe list count explain name ask say answer imagine remember guess")
+
+
+def table(*tables: dict[str, Entry]) -> dict[tuple[str, ...], Entry]:
+    """The tables joined and keyed by tuples of words."""
+    return {tuple(phrase.split()): entry for t in tables for phrase, entry in t.items()}
+
+
+VERB_PHRASES = table(VERBS)
+INSIDE_PHRASES = table(INSIDE)
+ATTRIBUTE_PHRASES = table(ATTRIBUTES)
+UNSUPPORTED_PHRASES = {tuple(p.split()): reason for p, reason in UNSUPPORTED.items()}
+LONGEST = max(map(len, (*VERB_PHRASES, *INSIDE_PHRASES, *ATTRIBUTE_PHRASES, *FILLER, *POLITE)))

@@ -1,0 +1,318 @@
+"""Noun phrases as queries.
+
+Knows what a determiner, an attribute and a relation mean for a `Query`, and to which noun a prepositional phrase
+belongs. Refuses to know verbs.
+
+Preference: a prepositional phrase belongs to the nearest noun before it ("the lamp on the table next to the sofa" is
+about a table next to the sofa), unless "and" joins it to the one before ("left of the table and in front of the
+window" says two things about one noun).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+from lark import Token, Tree
+
+from ...gaussians.language.query import Query, Relation
+from . import nouns
+from .tagger import Tag
+
+Article = Literal["def", "indef", "all", "both", "any", "bare", "pronoun"]
+Node = Tree[Token]
+
+
+class Refusal(Exception):
+    """The clause cannot become a plan.
+
+    Attributes:
+        verdict: of the plan.
+        words: the words to blame, as written.
+    """
+
+    def __init__(self, reason: str, *words: str, verdict: str = "not_understood") -> None:
+        super().__init__(reason)
+        self.verdict = verdict
+        self.words = words
+
+
+@dataclass(frozen=True)
+class Post:
+    """What stands behind a noun: a relation to further nouns, or a property.
+
+    Attributes:
+        kind: the rule's name in grammar.lark.
+        value: the relation, side, spot or colour.
+        word: how it was said ("into").
+        anchors: the nouns it relates to, without anything behind them.
+        joined: whether "and" joins it to the one before.
+    """
+
+    kind: str
+    value: Any
+    word: str
+    anchors: tuple[Noun, ...] = ()
+    joined: bool = False
+
+
+@dataclass(frozen=True)
+class Noun:
+    """One noun phrase.
+
+    Attributes:
+        query: without what stands behind the noun.
+        article: how it is introduced.
+        plural: whether its form is plural.
+        number: "two chairs".
+        adjectives: words before the noun that no field of a query holds, for naming new things.
+        height: "1.8 m tall", value and unit.
+        posts: what stands behind it, flat.
+    """
+
+    query: Query
+    article: Article
+    plural: bool = False
+    number: int | None = None
+    adjectives: tuple[str, ...] = ()
+    height: tuple[float, str] | None = None
+    posts: tuple[Post, ...] = field(default=())
+
+    @property
+    def is_new(self) -> bool:
+        """Whether it can name something that is not there yet ("a lamp", "two lamps", "lamp")."""
+        plain = self.query.pick in ("one", "any", "all") and not self.query.exclude and not self.query.last
+        return plain and bool(self.query.text) and self.article in ("indef", "bare")
+
+    def full(self) -> Query:
+        """The query with everything behind the noun."""
+        return attach(self.query, self.posts)
+
+
+def tag_of(token: Token) -> Tag:
+    """The tag that a token of the grammar carries."""
+    value: Tag = token.value
+    return value
+
+
+def tokens(node: Node, *types: str) -> list[Tag]:
+    """The tags of these types directly below a node."""
+    return [tag_of(c) for c in node.children if isinstance(c, Token) and c.type in types]
+
+
+def trees(node: Node, *names: str) -> list[Node]:
+    """The children with these names."""
+    return [c for c in node.children if isinstance(c, Tree) and (not names or c.data in names)]
+
+
+class Phrases:
+    """Builds nouns; remembers the last head noun for "the green one"."""
+
+    def __init__(self, antecedent: str = "") -> None:
+        self.antecedent = antecedent
+
+    def targets(self, node: Node) -> list[Noun]:
+        """The nouns of a `targets` node; an exclusion is folded into each of them."""
+        groups = trees(node, "group")
+        found = self.group(groups[0])
+        return self.without(found, groups[1]) if len(groups) > 1 else found
+
+    def group(self, node: Node) -> list[Noun]:
+        return [self.noun(c) for c in trees(node, "np")]
+
+    def without(self, found: list[Noun], excluded: Node) -> list[Noun]:
+        """`found` except the nouns of a group."""
+        out = union(self.group(excluded))
+        return [replace(n, query=_update(n.query, exclude=(*n.query.exclude, out))) for n in found]
+
+    def noun(self, node: Node) -> Noun:
+        """A noun phrase with what stands behind it."""
+        core, *rest = node.children
+        assert isinstance(core, Tree)
+        head = self.core(core)
+        if head.query.text:
+            self.antecedent = head.query.text
+        posts: list[Post] = []
+        joined = False
+        for child in rest:
+            if isinstance(child, Token):
+                joined = True
+                continue
+            posts.append(self.post(child, joined))
+            joined = False
+        return replace(head, posts=(*head.posts, *posts))
+
+    def post(self, node: Node, joined: bool = False) -> Post:
+        first = next((tag_of(c) for c in node.children if isinstance(c, Token)), None)
+        anchors = tuple(self.core(c) for c in trees(node, "core"))
+        kind, value, word = str(node.data), first.value if first else None, first.text if first else ""
+        if kind == "unrelated":
+            value = tokens(node, "PREP")[0].value
+        elif kind in ("is_hue", "is_not_hue"):
+            value = tokens(node, "HUE")[0].value
+        elif kind == "is_tall":
+            value = tokens(node, "LENGTH")[0].value
+        return Post(kind, value, word, anchors, joined)
+
+    def core(self, node: Node) -> Noun:
+        """A noun without what stands behind it."""
+        if owner := trees(node, "core"):
+            return self._owned(node, self.core(owner[0]))
+        first = tag_of(node.children[0])  # type: ignore[arg-type]
+        if first.type == "PRON":
+            return Noun(Query(last=True, pick="any" if first.value == "any" else "one"), "pronoun")
+        if first.type == "EVERYTHING":
+            return Noun(Query(pick="all", exclude=(Query(last=True),) if first.value == "else" else ()), "all", True)
+        if first.type == "OTHERS":
+            return Noun(Query(text=self.antecedent, pick="all", exclude=(Query(last=True),)), "all", True)
+        return self._common(node)
+
+    def _owned(self, node: Node, owner: Noun) -> Noun:
+        """ "the table's legs"."""
+        part = self._common(node)
+        relation = Relation(name="part_of", anchors=(owner.full(),))
+        return replace(part, article="def", query=_update(part.query, relations=(relation,)))
+
+    def _common(self, node: Node) -> Noun:
+        tags = [tag_of(c) for c in node.children if isinstance(c, Token)]
+        text, plural = self._head(tags)
+        article: Article = next((t.value for t in tags if t.type == "DET"), "bare")
+        number = self._number(tags)
+        if tags[0].type == "NUMBER" and any(t.type == "OF" for t in tags):
+            raise Refusal("say which of them: the largest, the left one, or all", *_quote(tags))
+        adjectives = tuple(t.text for t in tags if t.type == "ADJ")
+        height = next((t.value for t in tags if t.type == "TALL"), None)
+        sizes = [t.value for t in tags if t.type == "SIZE"]
+        if len(sizes) > 1:
+            raise Refusal("one size word at a time is understood", *(t.text for t in tags if t.type == "SIZE"))
+        fields: dict[str, Any] = {
+            "text": " ".join([*adjectives, text]).strip(),
+            "colors": tuple(t.value for t in tags if t.type == "COLOR"),
+            "not_colors": tuple(t.value for t in tags if t.type == "NONCOLOR"),
+            "size": sizes[0] if sizes else None,
+            **_pick(tags, article, plural, number),
+        }
+        if any(t.type == "OTHER" for t in tags):
+            fields["exclude"] = (Query(last=True),)
+        words = tuple(t.text for t in tags if t.type == "SIZE")
+        return Noun(_update(Query(), **fields), article, plural, number, words, height)
+
+    def _head(self, tags: Sequence[Tag]) -> tuple[str, bool]:
+        """The noun's text, singular, and whether it was plural."""
+        last = tags[-1]
+        if last.type == "THING":
+            return "", bool(last.value)
+        if last.type == "ONE":
+            return self.antecedent, bool(last.value)
+        if last.type != "NOUN":
+            if last.type in ("SUP", "ORDINAL"):
+                return self.antecedent, False
+            raise Refusal("a noun is missing", *_quote(tags))
+        words = str(last.value).split()
+        plural = nouns.is_plural(words[-1])
+        return " ".join([*words[:-1], nouns.singular(words[-1])]), plural
+
+    def _number(self, tags: Sequence[Tag]) -> int | None:
+        numbers = [t for t in tags if t.type == "NUMBER"]
+        if not numbers:
+            return None
+        value = numbers[0].value
+        if len(numbers) > 1 or value != int(value) or not 1 <= value <= 1000:
+            raise Refusal("that is no number of things", *(t.text for t in numbers))
+        return int(value)
+
+
+def _pick(tags: Sequence[Tag], article: Article, plural: bool, number: int | None) -> dict[str, Any]:
+    """`pick`, `ordinal` and `count` of a query."""
+    superlatives = [t for t in tags if t.type == "SUP"]
+    ordinals = [t for t in tags if t.type == "ORDINAL"]
+    several = plural or (number or 1) > 1 or article in ("all", "both")
+    if superlatives or ordinals:
+        if several or len(superlatives) + len(ordinals) > 1:
+            raise Refusal("a superlative or a rank picks one thing; say which one", *_quote(tags))
+        if ordinals:
+            return {"pick": "nth", "ordinal": int(ordinals[0].value)}
+        return {"pick": superlatives[0].value}
+    if article == "both":
+        return {"pick": "all", "count": 2}
+    if article == "all":
+        return {"pick": "all", "count": number}
+    if article == "any" or (article == "indef" and not plural) or number == 1:
+        return {"pick": "any"}
+    return {"pick": "all" if several else "one", "count": number}
+
+
+def _quote(tags: Sequence[Tag]) -> tuple[str, ...]:
+    return (" ".join(t.text for t in tags),)
+
+
+def _update(query: Query, **fields: Any) -> Query:
+    """A validated copy.
+
+    Raises:
+        Refusal: more colours, relations or exclusions than a query holds.
+    """
+    try:
+        return Query(**{name: fields.get(name, getattr(query, name)) for name in Query.model_fields})
+    except ValueError as error:
+        raise Refusal("that is more than one phrase can hold; say it in parts") from error
+
+
+def union(found: Sequence[Noun]) -> Query:
+    """One query for several nouns."""
+    first, *rest = (n.full() for n in found)
+    return _update(first, also=(*first.also, *rest)) if rest else first
+
+
+def attach(query: Query, posts: Sequence[Post]) -> Query:
+    """`query` narrowed by what stands behind the noun, each phrase at the noun it belongs to."""
+    i = 0
+    while i < len(posts):
+        j = i + 1
+        while j < len(posts) and not posts[j].joined and posts[i].anchors:
+            j += 1
+        query = _narrow(query, posts[i], posts[i + 1 : j])
+        i = j
+    return query
+
+
+def _narrow(query: Query, post: Post, behind: Sequence[Post]) -> Query:
+    """`query` with one phrase behind it; `behind` belongs to that phrase's own (last) noun."""
+    anchors = [a.full() for a in post.anchors]
+    if anchors:
+        anchors[-1] = attach(anchors[-1], behind)
+    if post.kind == "unrelated":
+        bad = _update(query, relations=(*query.relations, _relation(post.value, anchors)), pick="all", count=None)
+        return _update(query, exclude=(*query.exclude, bad))
+    if name := _relation_name(post):
+        return _update(query, relations=(*query.relations, _relation(name, anchors)))
+    if post.kind == "is_hue":
+        return _update(query, colors=(*query.colors, post.value))
+    if post.kind == "is_not_hue":
+        return _update(query, not_colors=(*query.not_colors, post.value))
+    if post.kind == "side":
+        if query.pick not in ("one", "any"):
+            raise Refusal("a side picks one thing; say which one", post.word)
+        return _update(query, pick=post.value)
+    if post.kind == "counted":
+        if query.pick != "nth":
+            raise Refusal("counting needs a rank: the second chair from the left", post.word)
+        return query
+    if post.kind == "in_spot" and post.value == "corner":
+        return _update(query, relations=(*query.relations, _relation("inside", [Query(text="corner")])))
+    raise Refusal("things cannot be picked out by this", post.word)
+
+
+def _relation_name(post: Post) -> str:
+    """The relation a phrase says, "" if it says none."""
+    if post.kind == "related":
+        return "next_to" if post.value == "against" else str(post.value)
+    if post.kind == "off":
+        inside = nouns.head(post.anchors[0].query.text) in nouns.CONTAINERS
+        return "inside" if inside else "on"
+    return {"part": "part_of", "between": "between"}.get(post.kind, "")
+
+
+def _relation(name: str, anchors: Sequence[Query]) -> Relation:
+    return Relation(name=name, anchors=tuple(anchors))  # type: ignore[arg-type]

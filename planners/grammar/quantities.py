@@ -1,0 +1,193 @@
+"""Numbers, fractions, lengths, angles, percentages and "three times", in digits or in words.
+
+Knows how people say an amount. Refuses to know what the amount is of. Each reader takes the words from a position and
+gives the amount and how many words it took, or None.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+Kind = Literal["LENGTH", "ANGLE", "PERCENT", "TIMES", "FRACTION", "NUMBER", "ORDINAL"]
+
+UNITS: dict[str, str] = {
+    **dict.fromkeys(["m", "meter", "meters", "metre", "metres"], "m"),
+    **dict.fromkeys(["cm", "cms", "centimeter", "centimeters", "centimetre", "centimetres"], "cm"),
+    **dict.fromkeys(["mm", "millimeter", "millimeters", "millimetre", "millimetres"], "mm"),
+    **dict.fromkeys(["inch", "inches", '"'], "in"),
+    **dict.fromkeys(["ft", "foot", "feet", "'"], "ft"),
+    **dict.fromkeys(["unit", "units"], "units"),
+}  # fmt: skip
+_ONES = (
+    "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
+    "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen",
+)  # fmt: skip
+_TENS = ("twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety")
+_RANKS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
+NUMBERS: dict[str, int] = {w: i for i, w in enumerate(_ONES)} | {w: 10 * i for i, w in enumerate(_TENS, 2)}
+NUMBERS |= {"hundred": 100, "dozen": 12}
+FRACTIONS: dict[str, float] = {
+    "half": 0.5, "third": 1 / 3, "thirds": 1 / 3, "quarter": 0.25, "quarters": 0.25, "fifth": 0.2, "fifths": 0.2,
+    "tenth": 0.1,
+}  # fmt: skip
+ORDINALS: dict[str, int] = {w: i for i, w in enumerate(_RANKS, 1)}
+_ADVERBS = {"twice": 2.0, "thrice": 3.0}
+_DEGREES = {"degree", "degrees", "deg", "°"}
+_TURNS = {"turn", "turns", "rotation", "rotations", "revolution", "revolutions"}
+_HEDGES = {"about", "around", "approximately", "roughly", "exactly", "maybe", "some"}
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """An amount read from words.
+
+    Attributes:
+        kind: what it measures.
+        value: of a LENGTH in its `unit`, degrees, 0.2 for 20 %, 3 for "three times", 1/3 for "a third".
+        unit: of a LENGTH, else "".
+        taken: how many words it took.
+    """
+
+    kind: Kind
+    value: float
+    unit: str
+    taken: int
+
+
+def read(words: Sequence[str]) -> Quantity | None:
+    """The amount that `words` begin with, the longest reading."""
+    skip = 1 if len(words) > 1 and words[0] in _HEDGES and (words[1] in ("a", "half") or _whole(words[1:])) else 0
+    found = _read(words[skip:])
+    return Quantity(found.kind, found.value, found.unit, found.taken + skip) if found else None
+
+
+def _read(words: Sequence[str]) -> Quantity | None:
+    if not words:
+        return None
+    if words[0] in _ADVERBS:
+        return Quantity("TIMES", _ADVERBS[words[0]], "", 1)
+    if tuple(words[:3]) == ("a", "factor", "of") and (number := _number(words[3:])):
+        return Quantity("TIMES", number[0], "", 3 + number[1])
+    if number := _number(words):
+        return _with_unit(words, *number)
+    if words[0] in ("a", "an", "one") and len(words) > 1:
+        return _one_unit(words)
+    return _ordinal(words)
+
+
+def _with_unit(words: Sequence[str], value: float, taken: int) -> Quantity | None:
+    """A number and the unit after it, if there is one."""
+    rest = words[taken:]
+    unit = rest[0] if rest else ""
+    digits = words[0][0].isdigit()
+    if unit == "of" and len(rest) > 2 and rest[1] in ("a", "an") and (rest[2] in UNITS or rest[2] in _TURNS):
+        rest, unit, taken = rest[2:], rest[2], taken + 2
+    elif unit in ("a", "an") and len(rest) > 1 and (rest[1] in UNITS or rest[1] in _TURNS):
+        rest, unit, taken = rest[1:], rest[1], taken + 1
+    if unit in UNITS and (unit not in "'\"" or digits):
+        extra = _and_a_half(rest[1:])
+        return Quantity("LENGTH", value + extra[0], UNITS[unit], taken + 1 + extra[1])
+    if unit == "in" and digits and (len(rest) < 2 or rest[1] not in ("the", "a", "an", "front", "my", "its")):
+        return Quantity("LENGTH", value, "in", taken + 1)
+    if unit in _DEGREES:
+        return Quantity("ANGLE", value, "", taken + 1)
+    if unit in _TURNS:
+        return Quantity("ANGLE", 360 * value, "", taken + 1)
+    if unit in ("full", "complete") and len(rest) > 1 and rest[1] in _TURNS:
+        return Quantity("ANGLE", 360 * value, "", taken + 2)
+    if unit in ("%", "percent", "pct") or (unit == "per" and rest[1:2] == ["cent"]):
+        return Quantity("PERCENT", value / 100, "", taken + (2 if unit == "per" else 1))
+    if unit in ("times", "time") or (unit == "x" and digits):
+        return Quantity("TIMES", value, "", taken + 1)
+    if _is_fraction(words[:taken]):
+        return Quantity("FRACTION", value, "", taken)
+    return Quantity("NUMBER", value, "", taken)
+
+
+def _one_unit(words: Sequence[str]) -> Quantity | None:
+    """ "a metre (and a half)", "a quarter", "a full turn", "a degree"."""
+    unit = words[1]
+    if unit in UNITS and unit not in ("m", "'", '"'):
+        extra = _and_a_half(words[2:])
+        return Quantity("LENGTH", 1 + extra[0], UNITS[unit], 2 + extra[1])
+    if unit in ("full", "complete", "whole") and len(words) > 2 and words[2] in _TURNS:
+        return Quantity("ANGLE", 360, "", 3)
+    if unit in ("degree", "revolution"):
+        return Quantity("ANGLE", 1 if unit == "degree" else 360, "", 2)
+    return None
+
+
+def _and_a_half(words: Sequence[str]) -> tuple[float, int]:
+    if len(words) >= 3 and words[0] == "and" and words[1] == "a" and words[2] in ("half", "quarter"):
+        return FRACTIONS[words[2]], 3
+    return 0.0, 0
+
+
+def _number(words: Sequence[str]) -> tuple[float, int] | None:
+    """A number or a fraction: "2.5", "3/4", "two and a half", "half", "a third", "three quarters", "a couple of"."""
+    if not words:
+        return None
+    first = words[0]
+    if first == "half":
+        return 0.5, 1
+    if first in ("a", "one") and len(words) > 1:
+        if words[1] in FRACTIONS and words[1] not in ("thirds", "quarters"):
+            return FRACTIONS[words[1]], 2
+        if words[1] == "few":
+            return 3.0, 2 + (words[2:3] == ["of"])
+        if words[1] in ("couple", "pair"):
+            return 2.0, 2 + (words[2:3] == ["of"])
+        if words[1] in ("hundred", "dozen"):
+            return float(NUMBERS[words[1]]), 2
+    if not (whole := _whole(words)):
+        return None
+    value, taken = whole
+    if taken < len(words) and words[taken] in FRACTIONS and words[taken].endswith("s"):
+        return value * FRACTIONS[words[taken]], taken + 1
+    extra = _and_a_half(words[taken:])
+    return value + extra[0], taken + extra[1]
+
+
+def _whole(words: Sequence[str]) -> tuple[float, int] | None:
+    """Digits or number words without a fraction."""
+    first = words[0]
+    if first[0].isdigit():
+        value = _digits(first)
+        return None if value is None else (value, 1)
+    if first not in NUMBERS or first in ("hundred", "dozen"):
+        return None
+    value, taken = float(NUMBERS[first]), 1
+    if first in _TENS and len(words) > 1 and 0 < NUMBERS.get(words[1], 0) < 10:
+        value, taken = value + NUMBERS[words[1]], 2
+    if taken < len(words) and words[taken] in ("hundred", "dozen"):
+        value, taken = value * NUMBERS[words[taken]], taken + 1
+    return value, taken
+
+
+def _digits(text: str) -> float | None:
+    """ "1,000", "1,5" (a decimal comma), "3/4"; None if it is no finite number."""
+    above, _, below = text.replace(" ", "").partition("/")
+    values = []
+    for part in (above, below) if below else (above,):
+        grouped = part.count(",") and all(len(p) == 3 for p in part.split(",")[1:])
+        plain = part.replace(",", "" if grouped else ".")
+        if plain.count(".") > 1 or len(plain) > 12:
+            return None
+        values.append(float(plain))
+    if len(values) == 2 and values[1] == 0:
+        return None
+    value = values[0] / values[1] if len(values) == 2 else values[0]
+    return value if math.isfinite(value) else None
+
+
+def _is_fraction(words: Sequence[str]) -> bool:
+    return words[-1] in FRACTIONS and "and" not in words
+
+
+def _ordinal(words: Sequence[str]) -> Quantity | None:
+    if words[0] in ORDINALS:
+        return Quantity("ORDINAL", ORDINALS[words[0]], "", 1)
+    return None

@@ -1,0 +1,177 @@
+"""The scene graph: what stands where, as strict JSON that people, models and solvers share.
+
+Knows names, boxes and relations. Refuses to know Gaussians: it is read from a scene's language field, or written by
+hand.
+World frame: right-handed, z up, metres and degrees; the origin is the centre of the floor.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Annotated, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from ..gaussians.color import name_of
+from ..gaussians.errors import UserError
+
+if TYPE_CHECKING:
+    from ..gaussians.language.field import Group
+    from ..gaussians.scene import Scene
+
+Coordinate = Annotated[float, Field(ge=-1e5, le=1e5, allow_inf_nan=False)]
+Extent = Annotated[float, Field(ge=0, le=1e5, allow_inf_nan=False)]
+Size = tuple[Extent, Extent, Extent]
+Point = tuple[Coordinate, Coordinate, Coordinate]
+NodeId = Annotated[int, Field(ge=0, le=10**9)]
+Support = NodeId | Literal["floor", "wall", "ceiling"]
+
+# A thing stands on another if its underside is this near to the other's top, in shares of the smaller height,
+# and at least this share of its footprint's centre lies over it.
+_CONTACT = 0.12
+_WALL_FIXTURES = frozenset({"painting", "picture", "mirror", "window", "clock", "curtain", "poster", "door"})
+
+
+class Node(BaseModel):
+    """One object.
+
+    Attributes:
+        id: group id of the scene it was read from, or the author's own number.
+        label: what it is, "" if nobody could tell.
+        color: name of its main colour, "" if unknown.
+        size: width, depth, height of its own upright box, metres.
+        position: centre of that box.
+        yaw: degrees counter-clockwise seen from above, of the box's width against world x, in (-180, 180].
+        support: id of the node it stands on, or "floor", "wall", "ceiling".
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    id: NodeId
+    label: Annotated[str, Field(max_length=80)]
+    color: Annotated[str, Field(max_length=40)] = ""
+    size: Size
+    position: Point
+    yaw: Annotated[float, Field(gt=-360, le=360, allow_inf_nan=False)] = 0.0
+    support: Support = "floor"
+
+
+class RoomShape(BaseModel):
+    """The room: width, depth and height in metres, and where up is."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    size: Size
+    up: Point = (0.0, 0.0, 1.0)
+
+
+class SceneGraph(BaseModel):
+    """A room, its objects, and relations `[id, name, id]` between them that were stated or measured."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    room: RoomShape
+    nodes: Annotated[tuple[Node, ...], Field(max_length=4096)] = ()
+    relations: Annotated[
+        tuple[tuple[NodeId, Annotated[str, Field(max_length=40)], NodeId], ...], Field(max_length=65536)
+    ] = ()
+
+    @model_validator(mode="after")
+    def _closed(self) -> Self:
+        known = {n.id for n in self.nodes}
+        if len(known) != len(self.nodes):
+            raise ValueError("two nodes have the same id")
+        for node in self.nodes:
+            if isinstance(node.support, int) and (node.support not in known or node.support == node.id):
+                raise ValueError(f"node {node.id} stands on {node.support}, which is no other node")
+        for a, name, b in self.relations:
+            if a not in known or b not in known:
+                raise ValueError(f"relation {[a, name, b]} names a node that is not there")
+        return self
+
+    def node(self, id: int) -> Node:
+        """The node with this id.
+
+        Raises:
+            UserError: there is none.
+        """
+        for node in self.nodes:
+            if node.id == id:
+                return node
+        raise UserError(f"the graph has no node {id}; its ids are {', '.join(str(n.id) for n in self.nodes)}")
+
+    @classmethod
+    def from_scene(cls, scene: Scene) -> SceneGraph:
+        """The graph of an embedded scene: its objects as nodes, "on" relations from contact.
+
+        Lengths are metres where the scene knows its scale and scene units otherwise.
+
+        Raises:
+            UserError: the scene has no language field.
+        """
+        field = scene.language
+        if field is None:
+            raise UserError("the scene has no language field yet; run `scenewright embed` on it first")
+        place = _Placer(scene)
+        nodes = [place.node(g) for g in field.objects()]
+        nodes = [n.model_copy(update={"support": _support(n, nodes, place.height)}) for n in nodes]
+        stands = tuple((n.id, "on", n.support) for n in nodes if isinstance(n.support, int))
+        return cls(room=RoomShape(size=place.room), nodes=tuple(nodes), relations=stands)
+
+
+class _Placer:
+    """Maps world boxes into the graph's frame: z up, metres, origin at the centre of the floor."""
+
+    def __init__(self, scene: Scene) -> None:
+        assert scene.language is not None
+        self.basis: NDArray[np.float64] = scene.frame.basis()
+        self.scale = scene.frame.metres_per_unit or 1.0
+        groups = [g for g in scene.language.groups if g.level in ("object", "structure")]
+        corners = np.concatenate([g.box.corners() for g in groups]) @ self.basis.T if groups else np.zeros((1, 3))
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        floor = scene.frame.floor if scene.frame.floor is not None else float(low[2])
+        self.origin: NDArray[np.float64] = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, floor])
+        width, depth = ((high - low)[:2] * self.scale).tolist()
+        self.height = max(float(high[2] - floor), 0.0) * self.scale
+        self.room: Size = (width, depth, self.height)
+
+    def node(self, group: Group) -> Node:
+        center = (self.basis @ np.array(group.box.center) - self.origin) * self.scale
+        along = self.basis @ np.array(group.box.axes[0])
+        x, y, z = (float(c) for c in center)
+        width, depth, height = (float(s) * self.scale for s in group.box.size)
+        return Node(
+            id=group.id,
+            label=group.label,
+            color=name_of(group.lab),
+            size=(width, depth, height),
+            position=(x, y, z),
+            yaw=math.degrees(math.atan2(along[1], along[0])),
+        )
+
+
+def _support(node: Node, nodes: list[Node], room_height: float) -> Support:
+    """What a node rests on: the highest box whose top touches its underside, else floor, wall or ceiling."""
+    bottom = node.position[2] - node.size[2] / 2
+    below = [n for n in nodes if n.id != node.id and n.support != node.id and _carries(n, node, bottom)]
+    if below:
+        return max(below, key=lambda n: (n.position[2] + n.size[2] / 2, -n.id)).id
+    if bottom <= max(0.05 * room_height, 0.1 * node.size[2]):
+        return "floor"
+    if node.position[2] + node.size[2] / 2 >= 0.97 * room_height and node.label not in _WALL_FIXTURES:
+        return "ceiling"
+    return "wall" if node.label in _WALL_FIXTURES else "floor"
+
+
+def _carries(lower: Node, upper: Node, bottom: float) -> bool:
+    """Whether the top of `lower` touches the underside of `upper` below its centre."""
+    top = lower.position[2] + lower.size[2] / 2
+    gap = abs(bottom - top)
+    if lower.position[2] >= upper.position[2] or gap > _CONTACT * max(min(lower.size[2], upper.size[2]), 0.05):
+        return False
+    turn = math.radians(lower.yaw)
+    dx, dy = upper.position[0] - lower.position[0], upper.position[1] - lower.position[1]
+    x, y = dx * math.cos(turn) + dy * math.sin(turn), dy * math.cos(turn) - dx * math.sin(turn)
+    return abs(x) <= lower.size[0] / 2 and abs(y) <= lower.size[1] / 2
