@@ -22,7 +22,7 @@ from . import blend, order, project, threads
 
 Array = NDArray[Any]
 
-LIMITS = (np.float32(convention.ALPHA_MAX), np.float32(convention.T_MIN))
+LIMITS = (np.float32(convention.ALPHA_MAX), np.float32(convention.T_MIN), np.float32(project.Q_MAX))
 MAX_ENTRIES = 1 << 26  # footprints times tiles held at once (256 MB); a picture with more is drawn in strips
 
 
@@ -42,7 +42,7 @@ def render(cloud: GaussianCloud, camera: Camera, background: Vec3) -> Render:
         np.empty((h, w, 3), np.float32), np.empty((h, w), np.float32), np.empty((h, w), np.float32),
         np.empty((h, w), np.int32),
     )  # fmt: skip
-    columns, behind = _columns(cloud), np.array(background, dtype=np.float32)
+    columns, behind = _columns(cloud), tuple(np.float32(channel) for channel in background)
     scratch = blend.make_scratch(threads.workers())
     for top, bottom, bins in _strips(columns, camera, 0, h):
         strip = tuple(channel[top:bottom] for channel in out)

@@ -6,13 +6,15 @@ loop by themselves, so its body is written as LLVM vectors of 16 floats, which L
 A tile of 16x16 pixels is 16 blocks of 16 lanes. Its footprints are taken in chunks: each is copied next to its
 neighbours (`_take`) and marked with the blocks its ellipse really touches; then each block, with its whole state in
 registers, runs over its own list. Finished blocks cost nothing, and colour, depth and group share every exponential.
-A finished pixel keeps its transmittance with a negative sign, so one comparison is the whole mask.
+The only chain from one footprint to the next is one multiplication: the running transmittance simply goes on falling
+in a finished pixel, where comparing it with the least transmittance masks every weight; the last value above that is
+kept beside it.
 `exp(-8 q)` is the eighth power of a degree-5 polynomial in q: three squarings, no bit tricks, error about 1e-7.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -23,7 +25,7 @@ from numba.extending import intrinsic
 
 from .project import (
     Array,
-    BLUE, DEPTH, EXTREME, GREEN, GROUP, INLINE, KERNEL, L1, L2, L3, LIMIT, OPACITY, REACH_Y, RECORD, RED, SLOPE, TILE, WIDTH,
+    BLUE, DEPTH, EXTREME, GREEN, GROUP, INLINE, KERNEL, L1, L2, L3, LIMIT, SHIFT, REACH_Y, RECORD, RED, SLOPE, TILE, WIDTH,
     X, Y,
 )  # fmt: skip
 from .threads import fetch_add
@@ -32,8 +34,11 @@ LANES = 16
 BLOCK_WIDTH, BLOCK_HEIGHT = 8, 2
 BLOCKS_WIDE = TILE // BLOCK_WIDTH
 BLOCKS = TILE * TILE // LANES
-CHANNELS = 7  # of a block's state: transmittance, red, green, blue, depth, best weight, its group (bits of an int32)
+# A block's state: running transmittance, red, green, blue, depth, transmittance kept, best weight, its group (int32 bits).
+CHANNELS = 8
+REST, WINNER = 5 * LANES, 7 * LANES
 STATE = CHANNELS * LANES
+DIMMEST = 1e-30  # the running transmittance stops here: denormal numbers are slow
 CHUNK = 128  # footprints a tile takes at once: 8 KB of records, well inside the first-level cache
 AHEAD = 8  # records are fetched this many entries before they are needed
 
@@ -111,10 +116,10 @@ class _Lanes:
             e = self.mul(e, e)
         return e
 
-    def negative(self, x: ir.Value) -> ir.Value:
-        """`-|x|`: the sign bit set."""
-        sign = ir.Constant(_INTEGERS, [0x80000000] * LANES)
-        return self.b.bitcast(self.b.or_(self.b.bitcast(x, _INTEGERS), sign), _VECTOR)
+    def pick(self, x: ir.Value, y: ir.Value, lanes: Iterable[int]) -> ir.Value:
+        """A vector of the named lanes of x (0 to 15) and y (16 to 31)."""
+        chosen = [ir.Constant(_I32, lane) for lane in lanes]
+        return self.b.shuffle_vector(x, y, ir.Constant(ir.VectorType(_I32, len(chosen)), chosen))
 
     def bits(self, mask: ir.Value) -> ir.Value:
         """A mask as the low 16 bits of an int64."""
@@ -128,8 +133,11 @@ def _data(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any, i
 
 @intrinsic
 def _take(typing_context: Any, records: Any, row: Any, chunk: Any, slot: Any, x: Any, y: Any) -> Any:
-    """Copy record `row` into `chunk[slot]`, its centre relative to the tile's corner (x, y) px; returns a bit for each
-    block of the tile that the ellipse touches."""
+    """Copy record `row` into `chunk[slot]`; returns a bit for each block of the tile at (x, y) px that it touches.
+
+    In the copy, X and Y hold `-(l1 cx + l2 cy)` and `-l3 cy` for the centre c relative to the tile, so that two
+    multiply-adds a coordinate give the exponent anywhere in it.
+    """
     signature = types.int64(records, types.int64, chunk, types.int64, types.float32, types.float32)
 
     def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
@@ -144,8 +152,9 @@ def _take(typing_context: Any, records: Any, row: Any, chunk: Any, slot: Any, x:
 
         v.store(v.load(source), target)
         x, y = builder.fsub(field(X), x), builder.fsub(field(Y), y)
-        v.store(x, target)
-        v.store(y, builder.gep(target, [ir.Constant(_I64, Y)]))
+        along = builder.fneg(v.add(v.mul(field(L1), x), v.mul(field(L2), y)))
+        v.store(along, target)
+        v.store(builder.fneg(v.mul(field(L3), y)), builder.gep(target, [ir.Constant(_I64, Y)]))
         return v.bits(_touched(v, x, y, field))
 
     return signature, generate
@@ -198,55 +207,53 @@ def _fetch(typing_context: Any, records: Any, row: Any) -> Any:
     return types.void(records, types.int64), generate
 
 
-def _step(v: _Lanes, record: ir.Value, x: ir.Value, y: ir.Value, t: ir.Value, limits: tuple[ir.Value, ir.Value]) -> Any:
+def _step(v: _Lanes, record: ir.Value, x: ir.Value, y: ir.Value, t: ir.Value, limits: list[ir.Value]) -> Any:
     """Blend one footprint into 16 pixels: weight, new transmittance, mask of pixels still open, and the field reader."""
 
     def field(place: int, kind: ir.Type = _F32) -> ir.Value:
         return v.spread(v.load(v.b.gep(record, [ir.Constant(_I64, place)]), kind))
 
-    alpha_max, t_min = limits
-    dx, dy = v.sub(x, field(X)), v.sub(y, field(Y))
-    along = v.add(v.mul(field(L1), dx), v.mul(field(L2), dy))
-    across = v.mul(field(L3), dy)
-    q = v.add(v.mul(along, along), v.mul(across, across))
-    alpha = v.min(v.mul(field(OPACITY), v.exp_minus_8(q)), alpha_max)
-    alpha = v.b.select(v.b.fcmp_ordered("<=", q, field(LIMIT)), alpha, v.same(0))
-    weight = v.mul(t, alpha)
-    behind = v.sub(t, weight)
+    alpha_max, t_min, q_max = limits
+    along = v.add(v.mul(field(L1), x), v.add(v.mul(field(L2), y), field(X)))
+    across = v.add(v.mul(field(L3), y), field(Y))
+    q = v.add(v.mul(along, along), v.add(v.mul(across, across), field(SHIFT)))
+    alpha = v.min(v.exp_minus_8(q), alpha_max)
+    alpha = v.b.select(v.b.fcmp_ordered("<=", q, q_max), alpha, v.same(0))
+    behind = v.max(v.mul(t, v.sub(v.same(1), alpha)), v.same(DIMMEST))
     still_open = v.less(t_min, behind)
-    weight = v.b.select(still_open, weight, v.same(0))
-    return weight, v.b.select(still_open, behind, v.negative(t)), still_open, field
+    return v.b.select(still_open, v.mul(t, alpha), v.same(0)), behind, still_open, field
 
 
 @intrinsic
 def _blend_block(
-    typing_context: Any, chunk: Any, listed: Any, count: Any, state: Any, offset: Any, x: Any, y: Any, a: Any, t: Any
+    typing_context: Any, chunk: Any, listed: Any, count: Any, state: Any, offset: Any, x: Any, y: Any, limits: Any
 ) -> Any:
     """Blend the `count` > 0 records of `chunk` named in `listed` into the block whose state begins at `offset`.
 
-    (x, y) is the block's corner in the tile, a and t are the largest alpha and the least transmittance. Returns whether
+    (x, y) is the block's corner in the tile, `limits` a tuple of what `_step` takes. Returns whether
     any pixel is still open.
     """
     f = types.float32
-    signature = types.int64(chunk, listed, types.int64, state, types.int64, f, f, f, f)
+    signature = types.int64(chunk, listed, types.int64, state, types.int64, f, f, limits)
 
     def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
         v = _Lanes(builder)
         chunk, listed, state = (_data(context, builder, signature, arguments, i) for i in (0, 1, 3))
-        count, offset, x, y, a, t = (arguments[i] for i in (2, 4, 5, 6, 7, 8))
+        count, offset, x, y, limits = (arguments[i] for i in (2, 4, 5, 6, 7))
         x, y = _pixels(v, x, y)
-        limits = v.spread(a), v.spread(t)
+        limits = [v.spread(limit) for limit in cgutils.unpack_tuple(builder, limits)]
         before = [v.load(v.at(state, offset, channel * LANES)) for channel in range(CHANNELS - 1)]
-        before.append(v.load(v.at(state, offset, (CHANNELS - 1) * LANES), _INTEGERS))
+        before.append(v.load(v.at(state, offset, WINNER), _INTEGERS))
 
         def body(record: ir.Value, slot: ir.Value, values: list[ir.Value]) -> tuple[list[ir.Value], ir.Value]:
-            t, *sums, best, winner = values
+            t, *sums, rest, best, winner = values
             weight, t, still_open, field = _step(v, record, x, y, t, limits)
+            rest = builder.select(still_open, t, rest)
             places = (RED, GREEN, BLUE, DEPTH)
             sums = [v.add(total, v.mul(weight, field(p))) for total, p in zip(sums, places, strict=True)]
             heavier = v.less(best, weight)
             winner = builder.select(heavier, field(GROUP, _I32), winner)
-            return [t, *sums, builder.select(heavier, weight, best), winner], still_open
+            return [t, *sums, rest, builder.select(heavier, weight, best), winner], still_open
 
         after, alive = _loop(v, chunk, listed, count, before, body)
         for channel, value in enumerate(after):
@@ -259,18 +266,18 @@ def _blend_block(
 @intrinsic
 def _weigh_block(
     typing_context: Any, chunk: Any, listed: Any, count: Any, state: Any, offset: Any, weights: Any, x: Any, y: Any,
-    a: Any, t: Any,
+    limits: Any,
 ) -> Any:  # fmt: skip
     """As `_blend_block`, but add each footprint's weights to its row of `weights` `[CHUNK, LANES]`, not to colours."""
     f = types.float32
-    signature = types.int64(chunk, listed, types.int64, state, types.int64, weights, f, f, f, f)
+    signature = types.int64(chunk, listed, types.int64, state, types.int64, weights, f, f, limits)
 
     def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
         v = _Lanes(builder)
         chunk, listed, state, weights = (_data(context, builder, signature, arguments, i) for i in (0, 1, 3, 5))
-        count, offset, x, y, a, t = (arguments[i] for i in (2, 4, 6, 7, 8, 9))
+        count, offset, x, y, limits = (arguments[i] for i in (2, 4, 6, 7, 8))
         x, y = _pixels(v, x, y)
-        limits = v.spread(a), v.spread(t)
+        limits = [v.spread(limit) for limit in cgutils.unpack_tuple(builder, limits)]
 
         def body(record: ir.Value, slot: ir.Value, values: list[ir.Value]) -> tuple[list[ir.Value], ir.Value]:
             weight, t, still_open, _ = _step(v, record, x, y, values[0], limits)
@@ -290,6 +297,38 @@ def _pixels(v: _Lanes, x: ir.Value, y: ir.Value) -> tuple[ir.Value, ir.Value]:
     columns = v.constant([i % BLOCK_WIDTH + 0.5 for i in range(LANES)])
     rows = v.constant([i // BLOCK_WIDTH + 0.5 for i in range(LANES)])
     return v.add(v.spread(x), columns), v.add(v.spread(y), rows)
+
+
+@intrinsic
+def _store_block(
+    typing_context: Any, state: Any, offset: Any, rgb: Any, alpha: Any, depth: Any, group: Any, pixel: Any, width: Any,
+    red: Any, green: Any, blue: Any,
+) -> Any:  # fmt: skip
+    """Write the block whose state begins at `offset` to the image, its first pixel at index `pixel` of rows of `width`,
+    over a background colour."""
+    i, f = types.int64, types.float32
+    signature = types.void(state, i, rgb, alpha, depth, group, i, i, f, f, f)
+
+    def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
+        v = _Lanes(builder)
+        state, rgb, alpha, depth, group = (_data(context, builder, signature, arguments, n) for n in (0, 2, 3, 4, 5))
+        offset, pixel, width = arguments[1], arguments[6], arguments[7]
+        r, g, b, z, rest = (v.load(v.at(state, offset, channel * LANES)) for channel in range(1, 6))
+        winner = v.load(v.at(state, offset, WINNER), _INTEGERS)
+        cover = v.sub(v.same(1), rest)
+        z = builder.select(v.less(v.same(0), cover), builder.fdiv(z, cover), v.same(0))
+        r, g, b = (v.add(x, v.mul(rest, v.spread(c))) for x, c in zip((r, g, b), arguments[8:], strict=True))
+        for row in range(BLOCK_HEIGHT):
+            start = builder.add(pixel, builder.mul(width, ir.Constant(_I64, row)))
+            for target, value in ((alpha, cover), (depth, z), (group, winner)):
+                v.store(v.pick(value, value, range(row * BLOCK_WIDTH, (row + 1) * BLOCK_WIDTH)), v.at(target, start))
+            lanes = range(row * BLOCK_WIDTH, (row + 1) * BLOCK_WIDTH)
+            red_green = v.pick(r, g, [k for lane in lanes for k in (lane, lane + LANES)])
+            order = [k for n, lane in enumerate(lanes) for k in (2 * n, 2 * n + 1, LANES + lane)]
+            v.store(v.pick(red_green, b, order), v.at(rgb, builder.mul(start, ir.Constant(_I64, 3))))
+        return context.get_dummy_value()
+
+    return signature, generate
 
 
 def _loop(v: _Lanes, chunk: Any, listed: Any, count: Any, before: list[ir.Value], body: Any) -> Any:
@@ -332,7 +371,7 @@ def make_scratch(workers: int) -> tuple[Array, ...]:
 def draw(worker, workers, first, entries, records, size, limits, background, out, scratch, counter):  # type: ignore[no-untyped-def]
     """Draw tiles until none is left. Tile t's footprints are `entries[first[t]:first[t + 1]]`, nearest first.
 
-    `size` is (width, height), `limits` (largest alpha, least transmittance), `out` (rgb `[H, W, 3]`, alpha `[H, W]`,
+    `size` is (width, height), `limits` (largest alpha, least transmittance, largest q), `out` (rgb `[H, W, 3]`, alpha `[H, W]`,
     depth `[H, W]`, group `[H, W]` int32), `counter` `[1]` int64 holding 0.
     """
     tiles_wide = (size[0] + TILE - 1) // TILE
@@ -361,18 +400,23 @@ def draw(worker, workers, first, entries, records, size, limits, background, out
 def _begin(state, alive, stride, width, height):  # type: ignore[no-untyped-def]
     """A fresh tile: transmittance 1, nothing drawn. Pixels beyond the image (`width`, `height` left) begin finished."""
     bits = state.view(np.int32)
+    whole = width >= TILE and height >= TILE
     for block in range(BLOCKS):
         left, top = block % BLOCKS_WIDE * BLOCK_WIDTH, block // BLOCKS_WIDE * BLOCK_HEIGHT
         alive[block] = left < width and top < height
         base = block * stride
         for lane in range(LANES):
-            inside = left + lane % BLOCK_WIDTH < width and top + lane // BLOCK_WIDTH < height
-            state[base + lane] = ONE if inside else -ONE
+            state[base + lane] = ONE
+        if not whole:
+            for lane in range(LANES):
+                if left + lane % BLOCK_WIDTH >= width or top + lane // BLOCK_WIDTH >= height:
+                    state[base + lane] = ZERO
         if stride == STATE:
-            for place in range(base + LANES, base + STATE - LANES):
+            for place in range(base + LANES, base + STATE):
                 state[place] = ZERO
-            for place in range(base + STATE - LANES, base + STATE):
-                bits[place] = -1
+            for lane in range(LANES):
+                state[base + REST + lane] = ONE
+                bits[base + WINNER + lane] = -1
 
 
 @njit(**INLINE)
@@ -403,7 +447,7 @@ def _draw_chunk(chunk, touched, count, listed, state, alive, limits):  # type: i
         found = _list(touched, count, block, listed)
         if found > 0:
             x, y = f4(block % BLOCKS_WIDE * BLOCK_WIDTH), f4(block // BLOCKS_WIDE * BLOCK_HEIGHT)
-            alive[block] = _blend_block(chunk, listed, found, state, block * STATE, x, y, limits[0], limits[1]) != 0
+            alive[block] = _blend_block(chunk, listed, found, state, block * STATE, x, y, limits) != 0
         finished = finished and not alive[block]
     return finished
 
@@ -412,18 +456,30 @@ def _draw_chunk(chunk, touched, count, listed, state, alive, limits):  # type: i
 def _finish(state, x, y, size, background, out):  # type: ignore[no-untyped-def]
     """Write a tile's pixels, composited over the background."""
     rgb, alpha, depth, group = out
+    red, green, blue = background
+    for block in range(BLOCKS):
+        left, top = x + block % BLOCKS_WIDE * BLOCK_WIDTH, y + block // BLOCKS_WIDE * BLOCK_HEIGHT
+        if left + BLOCK_WIDTH <= size[0] and top + BLOCK_HEIGHT <= size[1]:
+            _store_block(state, block * STATE, rgb, alpha, depth, group, top * size[0] + left, size[0], red, green, blue)
+        else:
+            _store_pixels(state, block * STATE, left, top, size, background, out)
+
+
+@njit(**INLINE)
+def _store_pixels(state, offset, left, top, size, background, out):  # type: ignore[no-untyped-def]
+    """As `_store_block`, pixel by pixel, for a block that the image's border cuts."""
+    rgb, alpha, depth, group = out
     bits = state.view(np.int32)
-    for j in range(min(TILE, size[1] - y)):
-        for i in range(min(TILE, size[0] - x)):
-            block = j // BLOCK_HEIGHT * BLOCKS_WIDE + i // BLOCK_WIDTH
-            place = block * STATE + j % BLOCK_HEIGHT * BLOCK_WIDTH + i % BLOCK_WIDTH
-            rest = abs(state[place])
+    for y in range(top, min(top + BLOCK_HEIGHT, size[1])):
+        for x in range(left, min(left + BLOCK_WIDTH, size[0])):
+            place = offset + (y - top) * BLOCK_WIDTH + x - left
+            rest = state[place + REST]
             cover = ONE - rest
             for channel in range(3):
-                rgb[y + j, x + i, channel] = state[place + (channel + 1) * LANES] + rest * background[channel]
-            alpha[y + j, x + i] = cover
-            depth[y + j, x + i] = state[place + 4 * LANES] / cover if cover > ZERO else ZERO
-            group[y + j, x + i] = bits[place + 6 * LANES]
+                rgb[y, x, channel] = state[place + (channel + 1) * LANES] + rest * background[channel]
+            alpha[y, x] = cover
+            depth[y, x] = state[place + 4 * LANES] / cover if cover > ZERO else ZERO
+            group[y, x] = bits[place + WINNER]
 
 
 @njit(**KERNEL)
@@ -469,7 +525,7 @@ def _weigh_chunk(chunk, touched, count, listed, state, alive, weights, limits): 
         if found > 0:
             x, y = f4(block % BLOCKS_WIDE * BLOCK_WIDTH), f4(block // BLOCKS_WIDE * BLOCK_HEIGHT)
             at = block * LANES
-            alive[block] = _weigh_block(chunk, listed, found, state, at, weights, x, y, limits[0], limits[1]) != 0
+            alive[block] = _weigh_block(chunk, listed, found, state, at, weights, x, y, limits) != 0
         finished = finished and not alive[block]
     return finished
 

@@ -6,7 +6,8 @@ blending. Output is written at the row's own index, so nothing depends on which 
 A footprint's exponent is kept as a sum of squares (Cholesky factor of the inverse covariance), scaled by 1/16:
 `q = (l1 dx + l2 dy)^2 + (l3 dy)^2 = d' inv(cov) d / 16`. It cannot go negative by rounding, costs as little as the
 quadratic form, and each row of an ellipse is an interval in closed form:
-`dx in slope * dy -+ sqrt(limit - (l3 dy)^2) / l1`. alpha falls below its minimum where q > limit.
+`dx in slope * dy -+ sqrt(limit - (l3 dy)^2) / l1`, where limit is the q at which alpha falls to its minimum.
+Opacity goes into the exponent too: `alpha = exp(-8 (q + shift))`, so alpha's minimum is one constant, `Q_MAX`.
 Why 1/16: `blend.py` evaluates `exp(-8 q)` as the eighth power of a polynomial.
 """
 
@@ -28,9 +29,11 @@ Array = NDArray[Any]
 TILE = 16  # px, side of a tile
 RECORD = 16  # float32 in a footprint's record: one 64-byte cache line
 # Places in a record. GROUP holds the bits of an int32.
-X, Y, L1, L2, L3, OPACITY, LIMIT, REACH_Y, SLOPE, WIDTH, EXTREME, RED, GREEN, BLUE, DEPTH, GROUP = range(RECORD)
+X, Y, L1, L2, L3, SHIFT, LIMIT, REACH_Y, SLOPE, WIDTH, EXTREME, RED, GREEN, BLUE, DEPTH, GROUP = range(RECORD)
 MASK_SIDE = 8  # footprints of at most 8x8 tiles keep the tiles they touch as bits of a uint64, row by row
 CHUNK = 2048  # rows a worker takes at a time
+
+Q_MAX = math.log(1 / convention.ALPHA_MIN) / 8  # exp(-8 Q_MAX) is the least alpha
 
 # No "nnan", no "ninf": degenerate rows must compare as IEEE says, so every test is written to fail on NaN.
 FAST = {"contract", "reassoc", "arcp", "nsz", "afn"}
@@ -84,6 +87,7 @@ class View(NamedTuple):
     far: Any
     dilation: Any
     alpha_min: Any
+    q_max: Any
     max_determinant: Any
 
 
@@ -111,7 +115,7 @@ def make_view(camera: Camera, top: int, bottom: int) -> View:
         camera.fx, camera.fy, camera.cx, camera.cy - top, camera.width, bottom - top,
         (-camera.cx - margin_x) / camera.fx, (camera.width - camera.cx + margin_x) / camera.fx,
         (-camera.cy - margin_y) / camera.fy, (camera.height - camera.cy + margin_y) / camera.fy,
-        convention.NEAR, convention.FAR, convention.DILATION, convention.ALPHA_MIN, convention.MAX_DETERMINANT,
+        convention.NEAR, convention.FAR, convention.DILATION, convention.ALPHA_MIN, Q_MAX, convention.MAX_DETERMINANT,
     ]  # fmt: skip
     return View(*(np.float32(number) for number in numbers))
 
@@ -158,7 +162,7 @@ def project(worker, workers, means, quats, scales, opacities, sh, group, view, o
                 continue
             l1 = ONE / ellipse.width
             records[n, X], records[n, Y], records[n, L1] = ellipse.x, ellipse.y, l1
-            records[n, L2], records[n, L3], records[n, OPACITY] = -ellipse.slope * l1, ellipse.l3, opacity
+            records[n, L2], records[n, L3], records[n, SHIFT] = -ellipse.slope * l1, ellipse.l3, view.q_max - ellipse.limit
             records[n, LIMIT], records[n, REACH_Y], records[n, SLOPE] = ellipse.limit, ellipse.reach_y, ellipse.slope
             records[n, WIDTH], records[n, EXTREME], records[n, DEPTH] = ellipse.width, ellipse.extreme, z
             bits[n, GROUP] = group[n]
