@@ -79,7 +79,7 @@ def keyboard(rng: Rng, tone: Tone) -> list[Piece]:
             rows.append((step_x * 0.82, step_y * 0.82, 0.008, -w / 2 + 0.01 + step_x * (i + 0.5), -d / 2 + 0.01 + step_y * (j + 0.5), 0.015))
     rows.append((step_x * 5.7, step_y * 0.82, 0.008, -w / 2 + 0.01 + step_x * 7, -d / 2 + 0.01 + step_y * 0.5, 0.015))
     same = chance(rng, 0.35)
-    return [shell.named("case", tone.main), boxes(rows, 0.002).named("key", tone.main.shaded(1.25) if same else caps, 0.55)]
+    return [shell.named("case", tone.main), boxes(rows, 0.0).named("key", tone.main.shaded(1.25) if same else caps, 0.55)]
 
 
 @kind("computer mouse", ((0.05, 0.09), (0.08, 0.14), (0.025, 0.06)), support="surface", synonyms=("pc mouse", "trackball"), palette="any")

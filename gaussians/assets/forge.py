@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 SH_C0 = 0.28209479177387814  # Y_0^0, Kerbl et al. 2023
 OPACITY = 0.97
 COVER = 0.6  # standard deviation over cell length: cells a closed surface without holes, edges still crisp
+MOST = 6500  # Gaussians of one object at detail 1, roughly
 THIN = 0.06  # thickness against the shorter tangent
 
 
@@ -101,7 +102,7 @@ def make(
         raise UserError(f"size must be three lengths (w, d, h) between 0.005 and 50 metres, got {size}")
     pieces, tone = design(known, seed, colors.parse(color) if color is not None else None)
     pieces = _fit(pieces, known, size)
-    samples = surface.sample(pieces, spacing(pieces, detail))
+    samples = _sampled(pieces, detail)
     paint = surface.albedo(pieces, samples)
     sided = np.array([p.two_sided for p in pieces])[samples.piece]
     toward = light.SUN if sun is None else np.asarray(sun, dtype=np.float64)
@@ -141,14 +142,23 @@ def _fit(pieces: Sequence[Piece], known: registry.Kind, size: Vec3 | None) -> li
 def spacing(pieces: Sequence[Piece], detail: float) -> float:
     """Cell length, metres, so that an object gets about 1,000 to 6,000 Gaussians by its area."""
     total = surface.area(pieces)
-    count = float(np.clip(1300 + 900 * math.sqrt(total), 900, 4200)) * detail
+    count = float(np.clip(1900 + 900 * math.sqrt(total), 900, 4400)) * detail
     return math.sqrt(total / count)
+
+
+def _sampled(pieces: Sequence[Piece], detail: float) -> surface.Samples:
+    """Cells of an object; one of many small parts, which each take a cell a side, is cut again more coarsely."""
+    step = spacing(pieces, detail)
+    samples = surface.sample(pieces, step)
+    if (excess := len(samples.xyz) / (MOST * detail)) > 1:
+        samples = surface.sample(pieces, step * excess**0.5 * 1.05)
+    return samples[~surface.covered(samples)]
 
 
 def flat_gaussians(samples: surface.Samples, rgb: Array) -> GaussianCloud:
     """One flat Gaussian a cell, of SH degree 0; `rgb [N, 3]` is what it shows."""
     tangent = samples.size * COVER
-    tangent = np.maximum(tangent, 0.25 * tangent.max(axis=1, keepdims=True))  # no needles
+    tangent = np.maximum(tangent, 0.08 * tangent.max(axis=1, keepdims=True))  # no needles
     scales = np.concatenate([tangent, np.maximum(THIN * tangent.min(axis=1, keepdims=True), 2e-4)], axis=1)
     n = len(rgb)
     return GaussianCloud.create(

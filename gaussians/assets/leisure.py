@@ -77,13 +77,13 @@ def bicycle(rng: Rng, tone: Tone) -> list[Piece]:
     out: list[Piece] = []
     for y, z in (rear, front):
         spokes = [rod((0, y, z), (0, y + (r - 0.02) * np.cos(a), z + (r - 0.02) * np.sin(a)), 0.0018) for a in np.linspace(0, 2 * np.pi, 17)[:-1]]
-        out += [ring(r - 0.018, 0.018, (0, y, z), "x").named("tyre", tyre, 1.2), ring(r - 0.04, 0.009, (0, y, z), "x").named("rim", steel), join(*spokes).named("spoke", steel, 0.8), rod((-0.04, y, z), (0.04, y, z), 0.02).named("hub", steel)]
+        out += [ring(r - 0.018, 0.018, (0, y, z), "x").named("tyre", tyre, 0.8), ring(r - 0.04, 0.009, (0, y, z), "x").named("rim", steel, 0.7), join(*spokes).named("spoke", steel, 0.8), rod((-0.04, y, z), (0.04, y, z), 0.02).named("hub", steel)]
     crank, seat, head = (0.06, 0.28), (0.2, 0.74), (-0.34, 0.78)
     step = chance(rng, 0.3)
     top = (0.11, 0.5) if step else (0.19, 0.7)
     bars = [(crank, seat), (crank, (head[0], head[1] - 0.1)), (top, head if not step else (head[0], head[1] - 0.04)), (rear, crank), (rear, top)]
-    out.append(join(*(rod((0, *a), (0, *b), 0.016) for a, b in bars[:3]), *(rod((s * 0.03, *a), (s * 0.012, *b), 0.01) for a, b in bars[3:] for s in (-1, 1))).named("frame", frame, 1.2))
-    out.append(join(rod((0, head[0] - 0.02, head[1] + 0.09), (0, head[0] + 0.0, head[1] - 0.12), 0.018), *(tube([(s * 0.03, head[0], head[1] - 0.12), (s * 0.045, -gap / 2 + 0.05, 0.55), (s * 0.045, *front)], 0.011, smooth=9) for s in (-1, 1))).named("fork", frame, 1.2))
+    out.append(join(*(rod((0, *a), (0, *b), 0.019) for a, b in bars[:3]), *(rod((s * 0.03, *a), (s * 0.012, *b), 0.01) for a, b in bars[3:] for s in (-1, 1))).named("frame", frame, 1.6))
+    out.append(join(rod((0, head[0] - 0.02, head[1] + 0.09), (0, head[0] + 0.0, head[1] - 0.12), 0.018), *(tube([(s * 0.03, head[0], head[1] - 0.12), (s * 0.045, -gap / 2 + 0.05, 0.55), (s * 0.045, *front)], 0.011, smooth=9) for s in (-1, 1))).named("fork", frame, 1.6))
     bar_z = head[1] + 0.12
     if chance(rng, 0.4):  # dropped bars
         grip = [[(0, head[0] - 0.02, bar_z), (s * 0.2, head[0] - 0.03, bar_z), (s * 0.21, head[0] - 0.14, bar_z - 0.02), (s * 0.21, head[0] - 0.12, bar_z - 0.13), (s * 0.21, head[0] + 0.0, bar_z - 0.14)] for s in (-1, 1)]
@@ -114,8 +114,8 @@ def piano(rng: Rng, tone: Tone) -> list[Piece]:
 
     def keys(y: float) -> list[Piece]:
         n = 44
-        white = boxes([((w - 0.2) / n - 0.002, 0.15, 0.022, (k + 0.5 - n / 2) * (w - 0.2) / n, y, z) for k in range(n)], 0.002)
-        dark = boxes([(0.014, 0.09, 0.014, (k + 1 - n / 2) * (w - 0.2) / n, y + 0.03, z + 0.022) for k in range(n - 1) if k % 7 not in (2, 6)], 0.002)
+        white = boxes([((w - 0.2) / n - 0.002, 0.15, 0.022, (k + 0.5 - n / 2) * (w - 0.2) / n, y, z) for k in range(n)], 0.0)
+        dark = boxes([(0.014, 0.09, 0.014, (k + 1 - n / 2) * (w - 0.2) / n, y + 0.03, z + 0.022) for k in range(n - 1) if k % 7 not in (2, 6)], 0.0)
         return [white.named("key", ivory, 0.6), dark.named("key", black, 0.6)]
 
     if chance(rng, 0.3):  # a grand: a curved case on three legs

@@ -25,12 +25,11 @@ class Occupancy:
     step: float
 
     def at(self, points: Array) -> Array:
-        """Fullness at points `[N, 3]`, 0 outside."""
-        index = np.floor((points - self.origin) / self.step).astype(np.int64)
-        shape = np.array(self.cells.shape)
-        inside = ((index >= 0) & (index < shape)).all(axis=1)
-        i = np.where(inside[:, None], index, 0)
-        return np.where(inside, self.cells[i[:, 0], i[:, 1], i[:, 2]], 0.0)
+        """Fullness at points `[N, 3]`, between cell centres by trilinear interpolation, 0 outside."""
+        from scipy.ndimage import map_coordinates
+
+        index = (points - self.origin) / self.step - 0.5
+        return np.asarray(map_coordinates(self.cells, index.T, order=1, mode="constant", cval=0.0))
 
 
 def occupancy(points: Array, across: int = 22, step: float | None = None) -> Occupancy:

@@ -96,4 +96,4 @@ def row_of_books(rng: Rng, width: float, at: Point, deep: float, high: float, pa
         x += thick
         if rng.random() < 0.06:
             x += rng.uniform(0.02, 0.08)
-    return [boxes(r, 0.003).named("book", palette[k], 1.1) for k, r in rows.items()]
+    return [boxes(r, 0.0).named("book", palette[k]) for k, r in rows.items()]

@@ -162,9 +162,11 @@ def _cube(bevel: Array) -> Array:
 
 
 def box(w: float, d: float, h: float, at: Point = (0.0, 0.0, 0.0), bevel: float = 0.006) -> Piece:
-    """A block with bevelled edges standing on `at`, the centre of its bottom."""
+    """A block standing on `at`, the centre of its bottom; edges bevelled where `bevel` > 0."""
     half = np.array([w, d, h]) / 2
     cube = _cube(np.minimum(bevel / half, 0.45)) * half + np.array([at[0], at[1], at[2] + h / 2])
+    if bevel <= 0:
+        return Piece((Sheets(cube[:6]),))
     return Piece((Sheets(cube[:6]), Sheets(cube[6:], hard_u=False)))
 
 

@@ -46,6 +46,10 @@ class Samples:
         """`[N, 3]`."""
         return self.frame[:, :, 2]
 
+    def __getitem__(self, rows: NDArray[np.bool_]) -> Samples:
+        """The chosen rows of every column."""
+        return Samples(self.xyz[rows], self.frame[rows], self.size[rows], self.uv[rows], self.piece[rows])
+
 
 def sample(pieces: Sequence[Piece], spacing: float) -> Samples:
     """Cut all pieces into cells about `spacing` metres long, finer on dense pieces and fine patterns."""
@@ -92,6 +96,29 @@ def _cut(key: tuple[int, int, bool, bool, bool], rows: list[tuple[int, Sheets, f
     frame, slant = _frames(tangent_u, tangent_v)
     size = np.stack([wide_u[r] * length_u[r] * slant, wide_v * length_v], axis=1)
     return Samples(xyz, frame, size, np.stack([at_u[r], at_v], axis=1), piece[b][r])
+
+
+def covered(samples: Samples) -> NDArray[np.bool_]:
+    """Cells that lie just under a cell of another piece facing the same way: a label on a bottle, a cloth on a bed.
+
+    Gaussians are ordered by the depth of their centres, so two sheets closer than their cells are long would show
+    through each other.
+    """
+    from scipy.spatial import cKDTree
+
+    reach = samples.size.max(axis=1)
+    tree = cKDTree(samples.xyz)
+    lift = np.minimum(0.4 * reach, 0.02)
+    _, near = tree.query(samples.xyz + samples.normal * lift[:, None], k=4)
+    hidden = np.zeros(len(reach), dtype=bool)
+    for other in near.T:
+        gap = samples.xyz[other] - samples.xyz
+        height = np.einsum("ni,ni->n", gap, samples.normal)
+        beside = np.linalg.norm(gap - height[:, None] * samples.normal, axis=1)
+        alike = np.einsum("ni,ni->n", samples.normal[other], samples.normal) > 0.8
+        over = (height > 2e-4) & (height < np.minimum(1.1 * reach, 0.03)) & (beside < 0.75 * samples.size[other].max(axis=1))
+        hidden |= over & alike & (samples.piece[other] != samples.piece)
+    return hidden
 
 
 def _cells(length: Array, space: Array, hard: bool) -> NDArray[np.int64]:
