@@ -8,5 +8,8 @@ from __future__ import annotations
 from . import decor, electronics, kitchen, leisure, lighting, openings, plants, seating, storage, tables  # noqa: F401
 from .forge import Asset, Parts, kinds, make
 from .registry import KINDS, Kind, find
+from .rooms import Room, Truth, TruthObject, furnish, room_kinds
 
-__all__ = ["KINDS", "Asset", "Kind", "Parts", "find", "kinds", "make"]
+__all__ = [
+    "KINDS", "Asset", "Kind", "Parts", "Room", "Truth", "TruthObject", "find", "furnish", "kinds", "make", "room_kinds",
+]  # fmt: skip

@@ -57,6 +57,7 @@ class Asset:
         parts: part labels a Gaussian.
         main: `[N]` bool, the Gaussians that carry the main colour.
         seed: the design.
+        asked: the colour it was made in, as given to `make`, or None.
     """
 
     cloud: GaussianCloud
@@ -66,6 +67,7 @@ class Asset:
     parts: Parts
     main: Tensor
     seed: int
+    asked: str | None = None
 
 
 def kinds() -> tuple[str, ...]:
@@ -119,6 +121,7 @@ def make(
         parts=Parts(torch.from_numpy(labels), names),
         main=torch.from_numpy(main),
         seed=seed,
+        asked=color,
     )
 
 

@@ -223,6 +223,24 @@ def _rug(s: Surface, m: Material) -> Array:
     return _two(m, np.where(edge < 0.05, 1.0, np.where(edge < 0.09, 0.0, np.where(edge < 0.12, 0.8, lattice))))
 
 
+@pattern("planks")
+def _planks(s: Surface, m: Material) -> Array:
+    """Floor boards along x: each its own shade, thin dark joints, a little grain."""
+    row = np.floor(s.xyz[:, 1] / m.scale)
+    along = s.xyz[:, 0] / 1.3 + np.mod(row * 0.618, 1.0)
+    board = np.mod(np.sin(row * 12.9898 + np.floor(along) * 78.233 + m.seed % 97) * 43758.5453, 1.0)
+    joint = (np.mod(s.xyz[:, 1] / m.scale, 1.0) < 0.04) | (np.mod(along, 1.0) < 0.008)
+    grain = np.sin(s.xyz[:, 1] * 160 + 3 * np.sin(s.xyz[:, 0] * 2 + 9 * board))
+    return _tint(m.color, 0.22 * (board - 0.5) + 0.035 * grain - 0.2 * joint)
+
+
+@pattern("tiles")
+def _tiles(s: Surface, m: Material) -> Array:
+    """A chequered floor."""
+    p = np.floor(s.plane() / m.scale)
+    return _two(m, np.mod(p.sum(axis=1), 2))
+
+
 @pattern("rings")
 def _rings(s: Surface, m: Material) -> Array:
     """Concentric bands about the z axis (round rugs, plates)."""

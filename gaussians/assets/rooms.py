@@ -1,0 +1,282 @@
+"""`furnish`: a whole room as one scene, and the truth about it kept beside.
+
+Knows how a layout becomes Gaussians: walls, floor, contact shadows, cameras, object ids. The scene it returns holds no
+groups; who wants to measure looks into `Room.truth`.
+"""
+
+from __future__ import annotations
+
+import math
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+
+from ..camera import Camera, Vec3
+from ..cloud import GaussianCloud, concat
+from ..errors import UserError
+from ..scene import Frame, Scene
+from . import light, recipes, surface
+from .forge import Asset, flat_gaussians, make
+from .layout import Box, Layout, Placed
+from .materials import WOODS, Material, Tone
+from .registry import KINDS, find
+from .shapes import Piece, box, boxes, quad
+
+Array = NDArray[np.float64]
+STRUCTURE = -1  # truth id of floor, walls and ceiling
+WALLS = ("north", "west", "east", "south")
+
+
+@dataclass(frozen=True)
+class TruthObject:
+    """One object as it was placed.
+
+    Attributes:
+        id: its number in `Truth.ids`.
+        kind: canonical kind name.
+        color: basic name of its main colour.
+        size: (w, d, h) of its oriented box, metres.
+        position: centre of that box, world, metres.
+        yaw: degrees counter-clockwise from facing -y.
+        support: id of what it stands on, or "floor", "wall", "ceiling".
+        parts: part names.
+    """
+
+    id: int
+    kind: str
+    color: str
+    size: Vec3
+    position: Vec3
+    yaw: float
+    support: int | str
+    parts: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Truth:
+    """Ground truth beside a scene: `ids [N]` int32 object per Gaussian (-1: floor and walls), and the objects."""
+
+    ids: Tensor
+    objects: tuple[TruthObject, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Room:
+    """A furnished room: the scene to work on, the truth to measure with, its kind and inner size (w, d, h)."""
+
+    scene: Scene
+    truth: Truth
+    kind: str
+    size: Vec3
+
+
+def room_kinds() -> tuple[str, ...]:
+    """What `furnish` can furnish."""
+    return tuple(recipes.RECIPES)
+
+
+def furnish(
+    seed: int,
+    kind: str = "any",
+    objects: int | None = None,
+    detail: float = 1.0,
+    *,
+    include: Sequence[str] = (),
+    ceiling: bool = False,
+) -> Room:
+    """A furnished room; the same arguments give the same bytes.
+
+    Args:
+        seed: chooses everything.
+        kind: one of `room_kinds()`, or "any".
+        objects: the least number of objects to aim for (3 to 40); the recipe's own number if None, 10 at least.
+        detail: factor on the number of Gaussians (1: about 80,000 to 150,000 in all).
+        include: kinds that are added to what the recipe brings, where they fit.
+        ceiling: whether to close the room above.
+
+    Raises:
+        UserError: for an unknown kind of room or object, or a number out of range.
+    """
+    if kind != "any" and kind not in recipes.RECIPES:
+        raise UserError(f"unknown kind of room {kind!r}; known: any, {', '.join(recipes.RECIPES)}")
+    if objects is not None and not 3 <= objects <= 40:
+        raise UserError(f"objects must be between 3 and 40, got {objects}")
+    rng = np.random.default_rng([zlib.crc32(b"room"), seed & 0xFFFFFFFF])
+    names = tuple(recipes.RECIPES)
+    drawn = names[int(rng.integers(len(names)))]
+    name = drawn if kind == "any" else kind
+    recipe, widths, depths = recipes.RECIPES[name]
+    layout = Layout(
+        float(rng.uniform(*widths)), float(rng.uniform(*depths)), float(rng.uniform(2.5, 2.8)), _walls(rng), rng
+    )
+    get = recipes.Supplier(rng, detail)
+    recipes.openings(layout, get)
+    for extra in include:
+        _add(layout, get, find(extra).name)
+    recipe(layout, get)
+    recipes.fill_up(layout, get, objects or 10)
+    return _assemble(layout, name, rng, detail, ceiling)
+
+
+def _walls(rng: np.random.Generator) -> tuple[str, ...]:
+    """Two to four walls; the south is left open most often, for looking in."""
+    draw = rng.random()
+    if draw < 0.6:
+        return WALLS[:3]
+    if draw < 0.8:
+        return ("north", "west" if rng.random() < 0.5 else "east")
+    return WALLS
+
+
+def _add(layout: Layout, get: recipes.Supplier, name: str) -> None:
+    """Put something asked for where its kind lives."""
+    thing, known = get(name), KINDS[name]
+    if known.support == "wall":
+        for wall in layout.walls * 4:
+            length = layout.w if wall in ("north", "south") else layout.d
+            if layout.hang(thing, wall, float(layout.rng.uniform(-0.4, 0.4) * length), 1.2 if thing.size[2] < 1.2 else 0.0) is not None:
+                return
+    elif known.support == "surface":
+        stand = layout.against(get("cabinet"))
+        if stand is None or layout.on_top(thing, stand) is None:
+            layout.anywhere(thing, 0.1)
+    elif known.against_wall:
+        layout.against(thing)
+    else:
+        layout.anywhere(thing, 0.15, edge=False)
+
+
+# --- structure -------------------------------------------------------------------------------------------------------
+
+
+def _shell(layout: Layout, rng: np.random.Generator, ceiling: bool) -> list[Piece]:
+    """Floor, walls with skirting boards, perhaps a ceiling."""
+    tone = Tone(rng, "light")
+    w, d, h = layout.w, layout.d, layout.h
+    style = str(rng.choice(["planks", "planks", "tiles", "carpet", "plain"]))
+    wood = tone.plain(WOODS[int(rng.integers(len(WOODS) - 1))])
+    floor = {
+        "planks": Material(wood.color, "planks", scale=float(rng.uniform(0.12, 0.2)), seed=tone.seed),
+        "tiles": Material(*_pair(rng, (("#e8e4da", "#c9c2b4"), ("#d9dcdd", "#9aa3a8"), ("#efe9df", "#b98d6c"))), scale=float(rng.uniform(0.3, 0.5)), seed=tone.seed),
+        "carpet": tone.plain(str(rng.choice(["#a99f90", "#8d939b", "#b3a58c", "#7f8a86"])), "weave"),
+        "plain": tone.plain(str(rng.choice(["#b9b4aa", "#a7a29b", "#cfc7b8"]))),
+    }[style]  # fmt: skip
+    paint = tone.plain(str(rng.choice(["#ece7dc", "#dfe4e6", "#e6dccb", "#d5dfd6", "#e9dcd7", "#cfd8e2", "#f0ece4", "#d9cdbb"])))
+    if rng.random() < 0.2:
+        other = tuple(c * 0.93 for c in paint.color)
+        paint = Material(paint.color, "stripes", (other[0], other[1], other[2]), 0.3, 0)
+    out = [quad([(-w / 2, -d / 2, 0), (-w / 2, d / 2, 0), (w / 2, -d / 2, 0), (w / 2, d / 2, 0)]).named("floor", floor, 1.5)]
+    skirt = tone.plain("#f1efea")
+    for name in layout.walls:
+        length = w if name in ("north", "south") else d
+        x, y, yaw = layout.spot(name, 0.0, 0.0)
+        side = paint if yaw in (0.0, 180.0) else Material(paint.color, paint.pattern, paint.second, paint.scale, 1)
+        plate = quad([(length / 2, 0, 0), (-length / 2, 0, 0), (length / 2, 0, h), (-length / 2, 0, h)])
+        out.append(plate.turned("z", yaw).moved(x, y).named(f"{name} wall", side))
+        rail = box(length, 0.015, 0.08, (0, -0.0075, 0), 0.0)
+        out.append(rail.turned("z", yaw).moved(x, y).named("skirting", skirt, 1.2))
+    if ceiling:
+        lid = boxes([(w, d, 0.02, 0, 0, h)], 0.0)
+        out.append(lid.named("ceiling", tone.plain("#f4f2ee")))
+    return out
+
+
+def _pair(rng: np.random.Generator, table: tuple[tuple[str, str], ...]) -> tuple[Vec3, str, Vec3]:
+    from .. import color
+
+    a, b = table[int(rng.integers(len(table)))]
+    return color.parse(a), "tiles", color.parse(b)
+
+
+def _cut_openings(samples: surface.Samples, layout: Layout) -> surface.Samples:
+    """Take the wall away behind windows and doors."""
+    keep = np.ones(len(samples.xyz), dtype=bool)
+    for t in layout.things:
+        if t.asset.kind in ("window", "door"):
+            low = t.box.z if t.asset.kind == "door" else t.box.z + 0.06
+            local = (samples.xyz[:, :2] - np.array([t.box.x, t.box.y])) @ t.box.axes.T
+            inside = (np.abs(local[:, 0]) < t.box.w / 2 - 0.06) & (np.abs(local[:, 1]) < t.box.d / 2 + 0.03)
+            keep &= ~(inside & (samples.xyz[:, 2] > low) & (samples.xyz[:, 2] < t.box.z + t.box.h - 0.03))
+    return samples[keep]
+
+
+# --- assembly --------------------------------------------------------------------------------------------------------
+
+
+def _assemble(layout: Layout, name: str, rng: np.random.Generator, detail: float, ceiling: bool) -> Room:
+    """Everything as one cloud, lit together."""
+    azimuth = float(rng.uniform(0, 2 * math.pi))
+    sun = np.array([0.6 * math.cos(azimuth), 0.6 * math.sin(azimuth), 0.8])
+    shell = _shell(layout, rng, ceiling)
+    samples = _cut_openings(surface.sample(shell, 0.062 / math.sqrt(detail)), layout)
+    placed = [_stand(t, sun, detail) for t in layout.things]
+    solid = np.concatenate([samples.xyz, *(c.means.numpy().astype(np.float64) for c in placed)])
+    space = light.occupancy(solid, step=0.06)
+    bright = light.bake(samples.xyz, samples.normal, space, sun)
+    bright = np.where(samples.normal[:, 2] > 0.9, bright, 0.78 + 0.25 * (bright - 0.8)) * 0.97
+    structure = flat_gaussians(samples, surface.albedo(shell, samples) * bright[:, None])
+    clouds, ids, start = [structure], [torch.full((len(structure),), STRUCTURE, dtype=torch.int32)], len(structure)
+    for i, cloud in enumerate(placed):
+        clouds.append(cloud.replace(ids=torch.arange(start, start + len(cloud))))
+        ids.append(torch.full((len(cloud),), i, dtype=torch.int32))
+        start += len(cloud)
+    truth = Truth(torch.cat(ids), tuple(_describe(i, t) for i, t in enumerate(layout.things)))
+    frame = Frame((0.0, 0.0, 1.0), 0.0, 1.0, "given", "given")
+    scene = Scene(concat(clouds), frame, _cameras(layout))
+    return Room(scene, truth, name, (layout.w, layout.d, layout.h))
+
+
+def _stand(thing: Placed, sun: Array, detail: float) -> GaussianCloud:
+    """The asset under the room's lamp, turned and moved to its place."""
+    a, b = thing.asset, thing.box
+    c, s = math.cos(math.radians(b.yaw)), math.sin(math.radians(b.yaw))
+    local = (float(c * sun[0] + s * sun[1]), float(-s * sun[0] + c * sun[1]), float(sun[2]))
+    cloud = relit(a, local, detail)
+    turn = torch.tensor([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], dtype=torch.float32)
+    means = cloud.means @ turn.T + torch.tensor([b.x, b.y, b.z])
+    half = math.radians(b.yaw) / 2
+    qw, qz = math.cos(half), math.sin(half)
+    w, x, y, z = cloud.quats.unbind(1)
+    quats = torch.stack([qw * w - qz * z, qw * x - qz * y, qw * y + qz * x, qw * z + qz * w], dim=1)
+    return cloud.replace(means=means, quats=quats)
+
+
+def relit(asset: Asset, sun: Vec3, detail: float) -> GaussianCloud:
+    """The same design under another lamp."""
+    return make(asset.kind, asset.seed, color=asset.asked, detail=detail, sun=sun).cloud
+
+
+def _describe(index: int, thing: Placed) -> TruthObject:
+    b = thing.box
+    return TruthObject(
+        id=index,
+        kind=thing.asset.kind,
+        color=thing.asset.color,
+        size=(b.w, b.d, b.h),
+        position=(b.x, b.y, b.z + b.h / 2),
+        yaw=(b.yaw + 180) % 360 - 180,
+        support=thing.support,
+        parts=thing.asset.parts.names,
+    )
+
+
+def _cameras(layout: Layout) -> tuple[Camera, ...]:
+    """A wide view from the south first, then eye-height views from the corners inwards, and one from above."""
+    w, d, h = layout.w, layout.d, layout.h
+    spots = [(0.0, -d / 2 + 0.12), (-w / 2 + 0.25, -d / 2 + 0.25), (w / 2 - 0.25, -d / 2 + 0.25), (w / 2 - 0.3, d / 2 - 0.3), (-w / 2 + 0.3, d / 2 - 0.3)]
+    blocked = [t.box.grown(0.2) for t in layout.things if t.support != "wall"]
+    out = []
+    for k, (x, y) in enumerate(spots):
+        for pull in (1.0, 0.85, 0.7, 0.55):
+            eye = Box(x * pull, y * pull, 1.3, 0.1, 0.1, 0.4)
+            if not any(abs(eye.x - b.x) < b.w / 2 and abs(eye.y - b.y) < b.d / 2 and b.z + b.h > 1.2 for b in blocked):
+                break
+        target = (-0.35 * eye.x, -0.35 * eye.y + (0.15 * d if k == 0 else 0.0), 0.75)
+        out.append(Camera.look_at((eye.x, eye.y, 1.55), target, (0, 0, 1), 960, 640, 68.0, f"view {k + 1}"))
+    corner = Camera.look_at((0.46 * w, -0.48 * d, h - 0.15), (-0.1 * w, 0.12 * d, 0.35), (0, 0, 1), 960, 640, 72.0, "overview")
+    return (corner, *out)
