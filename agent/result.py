@@ -60,7 +60,7 @@ class Result:
             "text": self.text,
             "plan": self.plan.model_dump(mode="json") if self.plan is not None else None,
             "receipts": [r.model_dump(mode="json") for r in self.receipts],
-            "groups": list(self.selection.groups) if self.selection else [],
+            "groups": list(self.selection.groups) if self.selection is not None else [],
             "gaussians": len(self.scene.cloud),
             "seconds": {stage: round(s, 4) for stage, s in self.seconds.items()},
             "dry_run": self.dry_run,

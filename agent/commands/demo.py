@@ -23,7 +23,7 @@ def command(
 ) -> None:
     """Furnish a room, embed it, and hold a conversation with it.
 
-    Leaves before and after pictures of each step, the room before and after (.ply), the session log and a contact sheet.
+    Leaves before and after pictures of each step, the room before and after (.ply), the session log, a contact sheet.
     """
     from ..demo import Demo
     from ..views import parse_size

@@ -51,7 +51,10 @@ def command(
         ids.mkdir(parents=True, exist_ok=True)
     for row, target in zip(rows, targets, strict=True):
         session.recall(row.get("context"))
-        terminal.row({"id": row["id"], **_answer(session, row["text"], target, force)[1]})
+        selection, data = _answer(session, row["text"])
+        if target is not None:
+            _write_rows(selection, target, force)
+        terminal.row({"id": row["id"], **data})
 
 
 def _target(ids: Path | None, row: Any, batch: bool) -> Path | None:
@@ -67,23 +70,22 @@ def _target(ids: Path | None, row: Any, batch: bool) -> Path | None:
 
 
 def _one(session: Session, text: str, target: Path | None, force: bool) -> None:
-    selection, data = _answer(session, text, target, force)
+    selection, data = _answer(session, text)
     if selection is None or selection.verdict != "found":
         terminal.result(data["reason"], data)
-        for number, c in enumerate(selection.candidates if selection else (), start=1):
+        for number, c in enumerate(selection.candidates if selection is not None else (), start=1):
             terminal.say(f"  {number}. {c.describe()}, score {c.score:.2f}")
         raise typer.Exit(3)
+    if target is not None:
+        _write_rows(selection, target, force)
     things = ", ".join(c.describe() for c in selection.candidates) or selection.query.describe()
     note = f" ({selection.reason})" if selection.reason else ""
     terminal.result(f"{len(selection):,} Gaussians: {things}{note}", data)
 
 
-def _answer(session: Session, text: str, target: Path | None, force: bool) -> tuple[Selection | None, dict[str, Any]]:
-    """The selection, and the answer as data; the rows are written where something was found."""
-    import numpy as np
-
+def _answer(session: Session, text: str) -> tuple[Selection | None, dict[str, Any]]:
+    """The selection, None if the words were not understood, and the answer as data."""
     from ...gaussians.errors import UserError
-    from ...gaussians.files import writing
     from ..resolved import selection_json
 
     started = time.perf_counter()
@@ -92,7 +94,15 @@ def _answer(session: Session, text: str, target: Path | None, force: bool) -> tu
     except UserError as error:
         refused = {"verdict": "not_understood", "gaussians": 0, "groups": [], "candidates": [], "reason": str(error)}
         return None, {**refused, "seconds": round(time.perf_counter() - started, 4)}
-    if target is not None:
-        with writing(target, force) as file:
-            np.save(file, selection.ids.cpu().numpy(), allow_pickle=False)
     return selection, {**selection_json(selection), "seconds": round(time.perf_counter() - started, 4)}
+
+
+def _write_rows(selection: Selection | None, target: Path, force: bool) -> None:
+    """Row numbers of the selected Gaussians in the loaded file, int64; none where nothing was found."""
+    import numpy as np
+
+    from ...gaussians.files import writing
+
+    rows = selection.ids.cpu().numpy() if selection is not None else np.zeros(0, dtype=np.int64)
+    with writing(target, force) as file:
+        np.save(file, rows, allow_pickle=False)

@@ -43,12 +43,12 @@ def test_side_by_side() -> None:
 
 
 def test_the_spotlight_dims_all_but_the_selection(boxes: Scene) -> None:
-    camera = boxes.cameras[0]
+    camera = boxes.cameras[0].resized(480, 320)
     ids = (boxes.cloud.group == 1).nonzero().squeeze(1)
     plain = picture(boxes, camera)
     lit = spotlight(boxes, camera, Selection(Query(text="x"), "found", ids, (1,)))
     same = (plain == lit).all(axis=2)
-    green = (plain[..., 1].astype(int) - plain[..., 0]) > 40
+    green = (plain[..., 1].astype(int) - plain[..., 0]) > 90
     assert same[green].mean() > 0.8 and same[~green].mean() < 0.3
     assert torch.equal(boxes.cloud.group.unique(), torch.tensor([0, 1, 2, 3], dtype=torch.int32))
 
