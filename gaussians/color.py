@@ -36,6 +36,8 @@ BASIC: dict[str, str] = {
 }  # fmt: skip
 
 _TEXT_LIMIT = 80  # characters; no colour name with qualifiers is longer
+NAMING_LIGHTNESS = 0.45
+
 _WORDS = re.compile(r"[^a-z0-9#]+")
 _QUALIFIER = re.compile(r"^(very dark|dark|deep|very light|light|pale|bright|vivid) (.+)$")
 
@@ -173,16 +175,22 @@ def name_of(lab: tuple[float, float, float] | Tensor) -> str:
             if lightness < 72
             else ("light gray" if lightness < 86 else "white")
         )
-    best = min(_BASIC_LAB, key=lambda n: _term_distance((lightness, a, b), _BASIC_LAB[n]))
+    here = naming_space(torch.tensor([lightness, a, b], dtype=torch.float64))
+    best = min(_BASIC_NAMING, key=lambda n: float(torch.linalg.norm(here - _BASIC_NAMING[n])))
     gap = lightness - _BASIC_LAB[best][0]
     return (
         f"dark {best}" if gap < -18 and best != "black" else f"light {best}" if gap > 22 and best != "white" else best
     )
 
 
-def _term_distance(x: tuple[float, float, float], y: tuple[float, float, float]) -> float:
-    """Distance for naming: hue and chroma count fully, lightness at 0.55, as names tolerate shading."""
-    return math.sqrt((0.55 * (x[0] - y[0])) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2)
+def naming_space(lab: Tensor) -> Tensor:
+    """Lab `[..., 3]` to a space where distance follows what people call a colour rather than what they can tell apart.
+
+    Lightness is discounted, since names tolerate shading, and chroma is compressed, C' = 45 C / (C + 15), since a dull
+    dark purple is called purple by its hue long before it is as colourful as the paint of that name.
+    """
+    chroma = lab[..., 1:].norm(dim=-1, keepdim=True)
+    return torch.cat([NAMING_LIGHTNESS * lab[..., :1], lab[..., 1:] * (45.0 / (chroma + 15.0))], dim=-1)
 
 
 def _lab3(rgb: Rgb) -> tuple[float, float, float]:
@@ -191,3 +199,4 @@ def _lab3(rgb: Rgb) -> tuple[float, float, float]:
 
 
 _BASIC_LAB: dict[str, tuple[float, float, float]] = {name: _lab3(_hex(value)) for name, value in BASIC.items()}
+_BASIC_NAMING = {name: naming_space(torch.tensor(lab, dtype=torch.float64)) for name, lab in _BASIC_LAB.items()}

@@ -7,49 +7,55 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cache
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 
-from ..camera import Vec3
-from ..color import BASIC, parse, rgb_to_lab
+from ..color import BASIC, naming_space, parse, rgb_to_lab
 from .field import Group, LanguageField
 
-COLOR_SPREAD = 14.0  # how far (Lab, lightness discounted) one colour word reaches before its neighbours take over
-COLOR_LIMIT = 62.0  # farther than this it is not that colour, whatever the other names are
-LIGHTNESS = 0.55  # names tolerate shading
-DISTINCT = 20.0  # colour words closer than this to the asked one do not compete with it
+F64 = NDArray[np.float64]
+
+COLOR_SPREAD = 9.0  # how far (naming space) one colour word reaches before its neighbours take over
+COLOR_LIMIT = 36.0  # farther than this it is not that colour, whatever the other names are
+DISTINCT = 9.0  # colour words closer than this to the asked one do not compete with it
 COLOR_HOLDS = 0.35  # smallest score at which a colour word counts as true
 PART_SHARE = 0.25  # a part this large may give its colour to the object ("the white lamp" by its shade)
 
 
-def lab_of(word: str) -> Vec3:
-    """CIE Lab of a colour word or hex value.
+def color_scores(word: str, lab: NDArray[np.floating]) -> F64:
+    """How well measured Lab values `[..., 3]` answer to a colour word, against the basic terms that compete; `[...]`.
 
     Raises:
         UserError: unknown colour.
     """
-    lightness, a, b = rgb_to_lab(torch.tensor(parse(word), dtype=torch.float64)).tolist()
-    return (lightness, a, b)
+    asked, rivals = _terms(word)
+    here = naming_space(torch.from_numpy(np.asarray(lab, dtype=np.float64))).numpy()
+    distance = np.linalg.norm(here - asked, axis=-1)
+    others = np.linalg.norm(here[..., None, :] - rivals, axis=-1).min(axis=-1)
+    share = 1 / (1 + np.exp(np.clip((distance**2 - others**2) / (2 * COLOR_SPREAD**2), -50, 50)))
+    return np.where(distance > COLOR_LIMIT, 0.0, share)
 
 
-def color_score(word: str, lab: Vec3) -> float:
-    """How well a measured Lab value answers to a colour word, against the basic colour terms that compete with it."""
-    asked = lab_of(word)
-    distance = _distance(asked, lab)
-    if distance > COLOR_LIMIT:
-        return 0.0
-    rivals = [r for r in _basic_labs() if _distance(asked, r) > DISTINCT]
-    own = math.exp(-(distance**2) / (2 * COLOR_SPREAD**2))
-    others = max((math.exp(-(_distance(r, lab) ** 2) / (2 * COLOR_SPREAD**2)) for r in rivals), default=0.0)
-    return own / (own + others) if own + others > 1e-12 else float(distance < min(_distance(r, lab) for r in rivals))
+@cache
+def _terms(word: str) -> tuple[F64, F64]:
+    """The asked colour `[3]` and the basic terms that compete with it `[R, 3]`, in naming space."""
+    asked = naming_space(rgb_to_lab(torch.tensor(parse(word), dtype=torch.float64))).numpy()
+    basic = naming_space(rgb_to_lab(torch.tensor([parse(v) for v in BASIC.values()], dtype=torch.float64))).numpy()
+    own = BASIC.get(word)
+    if own is not None:  # a basic term means its typical shade, not the CSS value of that name
+        asked = naming_space(rgb_to_lab(torch.tensor(parse(own), dtype=torch.float64))).numpy()
+    return asked, basic[np.linalg.norm(basic - asked, axis=1) > DISTINCT]
 
 
 def group_color_score(field: LanguageField, group: Group, word: str) -> float:
     """Colour score of a group: its own colour, or at a small discount that of a part that makes up much of it."""
-    best = color_score(word, group.lab)
+    best = float(color_scores(word, np.array(group.lab)))
     for part in field.groups:
         if part.parent == group.id and part.count >= PART_SHARE * max(group.count, 1):
-            best = max(best, 0.9 * color_score(word, part.lab))
+            best = max(best, 0.9 * float(color_scores(word, np.array(part.lab))))
     return best
 
 
@@ -78,16 +84,3 @@ def size_scores(groups: Sequence[Group], word: str) -> list[float]:
     border = (low + high) / 2
     wants_large = word in ("large", "tall", "wide")
     return [float((s > border) == wants_large) for s in sizes]
-
-
-def _distance(x: Vec3, y: Vec3) -> float:
-    return math.sqrt((LIGHTNESS * (x[0] - y[0])) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2)
-
-
-def _basic_labs() -> list[Vec3]:
-    if not _BASIC_LABS:
-        _BASIC_LABS.extend(lab_of(value) for value in BASIC.values())
-    return _BASIC_LABS
-
-
-_BASIC_LABS: list[Vec3] = []

@@ -56,7 +56,7 @@ class Group:
         lab: measured colour, opacity-and-area-weighted median in CIE Lab.
         count: Gaussians in it.
         views: how many of the embedding views saw it.
-        confidence: share of its Gaussians that the segmentation is sure of, in [0, 1].
+        confidence: share of its Gaussians that lie on its skin; the others joined it by being near, in [0, 1].
     """
 
     id: int

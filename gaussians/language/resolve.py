@@ -13,14 +13,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 
 from ..camera import Camera
 from ..color import name_of
 from ..errors import BackendError
 from ..scene import Scene
 from . import attributes, relations
-from .calibration import probability
-from .field import Group, LanguageField
+from .calibration import doubt, probability
+from .field import Box, Group, LanguageField
+from .patches import Patch, patches
 from .query import Query, Relation
 from .selection import Candidate, Selection, nothing
 
@@ -36,7 +38,7 @@ STRUCTURE = {
 }  # fmt: skip
 CLEAR_LEAD = 0.55  # the second best match is a rival when it scores at least this share of the best
 SURE = 0.6  # a label this probable forbids reading the group as something else because of its colour
-NEAR = 0.12  # patches of one colour this share of the typical size apart are one thing
+RIVAL_PLACE = 0.4  # a second place of the colour with at least this share of the first's weight is a rival
 
 
 def resolve(
@@ -114,7 +116,11 @@ class _Resolver:
             return replace(anchors_problem, query=query)
         candidates = [r for r in ranked if isinstance(r, Candidate)]
         matches = [c for c in candidates if self._holds(c)]
-        if not matches and query.colors and (by_color := self._by_color_alone(query)) is not None:
+        if (
+            query.colors
+            and (query.text in PARTS or not matches)
+            and (by_color := self._by_color_alone(query)) is not None
+        ):
             return by_color
         if not matches:
             return nothing(query, self._why_absent(query, candidates), tuple(candidates[:3]))
@@ -184,7 +190,9 @@ class _Resolver:
             raise BackendError(f"finding {text!r} needs a text encoder; pass encoder='auto'")
         self.field.require_encoder(self.encoder.fingerprint)
         vectors = self.field.embeddings[[g.id for g in groups]]
-        return [float(p) for p in probability(self.encoder, text, vectors)]
+        metres = self.scene.frame.metres_per_unit
+        sizes = np.array([g.box.size for g in groups]) * metres if metres is not None else None
+        return [float(p) for p in probability(self.encoder, text, vectors, sizes)]
 
     def _anchors(self, relation: Relation) -> list[Group] | Selection:
         anchors: list[Group] = []
@@ -306,64 +314,61 @@ class _Resolver:
     # -- colour where words fail ------------------------------------------------------------------------------------
 
     def _by_color_alone(self, query: Query) -> Selection | None:
-        """A noun that the encoder cannot confirm, with a colour that only one place in the scene has.
+        """A noun that the encoder cannot confirm, with a colour that one place in the scene has, Gaussian by Gaussian.
 
-        Patches of that colour that lie together count as one thing. Objects whose own name the encoder is sure of
-        are left out: a red armchair is not a red bicycle.
+        Objects whose own name the encoder is sure of are left out (a red armchair is not a red bicycle), and so are
+        floor and walls. "Parts" are all such places.
         """
-        named = {g.id for g in self.field.groups if g.label_score >= SURE and g.level == "object"}
-        patches = [
-            _candidate(g, {f"color {w}": attributes.color_score(w, g.lab) for w in query.colors})
-            for g in self._alive("parts")
-            if g.id not in named and g.parent not in named
-        ]
-        clusters = self._clusters([c for c in patches if self._holds(c)])
-        clusters = [c for c in clusters if self._relations_hold(query, c)]
-        if query.pick not in ("one", "any", "all") or not clusters:
+        if query.pick not in ("one", "any", "all"):
             return None
-        weights = [sum(self.field.groups[c.group].count for c in cluster) for cluster in clusters]
-        if query.pick == "one" and len(clusters) > 1 and weights[1] > 0.4 * weights[0]:
-            tops = tuple(cluster[0] for cluster, w in zip(clusters, weights, strict=True) if w > 0.4 * weights[0])
-            reason = f"{query.describe()}: the name could not be confirmed and {len(tops)} places have that colour"
-            return replace(nothing(query, reason, tops), verdict="ambiguous")
-        chosen = [c for cluster in (clusters if query.pick == "all" else clusters[:1]) for c in cluster]
-        taken = self._take(query, chosen)
-        note = f"{query.text!r} could not be confirmed by the encoder; chosen by its colour alone"
-        return replace(taken, reason=note)
+        generic = query.text in PARTS
+        places = patches(self.scene.cloud, query.colors, self._unnamed(generic))
+        places = [p for p in places if self._place_holds(query, p)]
+        if not places:
+            return None
+        if generic or query.pick == "all":
+            return self._places(query, places, "" if generic else _unconfirmed(query))
+        rivals = [p for p in places if p.weight > RIVAL_PLACE * places[0].weight]
+        if len(rivals) > 1 and query.pick == "one":
+            reason = f"{_unconfirmed(query)}, and {len(rivals)} places have that colour; say where it is"
+            return replace(self._places(query, rivals, reason), verdict="ambiguous", ids=torch.zeros(0).long())
+        return self._places(query, places[:1], f"{_unconfirmed(query)}; chosen by its colour alone")
 
-    def _clusters(self, patches: list[Candidate]) -> list[list[Candidate]]:
-        """Patches joined where they come near each other, the cluster with most Gaussians first."""
-        clusters: list[list[Candidate]] = []
-        for patch in sorted(patches, key=lambda c: -self.field.groups[c.group].count):
-            group = self.field.groups[patch.group]
-            near = [
-                k
-                for k in clusters
-                if any(relations.distance(group, self.field.groups[c.group]) < NEAR * self.scale for c in k)
-            ]
-            clusters = [k for k in clusters if k not in near]
-            clusters.append([c for k in near for c in k] + [patch])
-        return sorted(clusters, key=lambda k: -sum(self.field.groups[c.group].count for c in k))
+    def _unnamed(self, everything: bool) -> NDArray[np.bool_]:
+        """Rows that may be taken by colour: not structure, nor (unless `everything`) of an object with a sure name."""
+        barred = [
+            leaf
+            for g in self.field.groups
+            if g.level == "structure" or (g.level == "object" and g.label_score >= SURE and not everything)
+            for leaf in self.field.leaves(g.id)
+        ]
+        column = self.scene.cloud.group
+        return ~torch.isin(column, torch.tensor(barred, dtype=torch.int32)).numpy()
 
-    def _relations_hold(self, query: Query, cluster: list[Candidate]) -> bool:
+    def _place_holds(self, query: Query, place: Patch) -> bool:
+        """Whether a place stands in every asked relation."""
+        stand_in = _as_group(place, self.scene.frame.basis())
         for relation in query.relations:
             anchors = self._anchors(relation)
-            if isinstance(anchors, Selection):
-                return False
-            group = self.field.groups[cluster[0].group]
-            if self._relation_term(relation, group, anchors) < relations.HOLDS:
+            if isinstance(anchors, Selection) or self._relation_term(relation, stand_in, anchors) < relations.HOLDS:
                 return False
         return True
+
+    def _places(self, query: Query, places: Sequence[Patch], reason: str) -> Selection:
+        color = query.colors[0]
+        rows = np.unique(np.concatenate([p.rows for p in places]))
+        candidates = tuple(
+            Candidate(-1, "region", color, p.center, p.size, p.score, {f"color {color}": p.score}) for p in places[:6]
+        )
+        ids = self.scene.cloud.ids[torch.from_numpy(rows)].sort().values
+        return Selection(query, "found", ids, (), candidates, reason)
 
     # -- results ----------------------------------------------------------------------------------------------------
 
     def _why_absent(self, query: Query, candidates: Sequence[Candidate]) -> str:
-        unknown = self.encoder.unknown_words(query.text) if self.encoder is not None and query.text else ()
-        if unknown and query.text not in STRUCTURE:
-            return (
-                f"{query.describe()}: the encoder does not know the word {', '.join(map(repr, unknown))}; "
-                "describe it by colour or place, or load a larger encoder"
-            )
+        named = query.text not in ANYTHING | PARTS and query.text not in STRUCTURE
+        if named and self.encoder is not None and (why := doubt(self.encoder, query.text)):
+            return f"{query.describe()}: {why}; describe it by colour or place, or load a larger encoder"
         nearest = candidates[0].describe() if candidates else "nothing"
         return f"{query.describe()} is not in this scene; the nearest match is {nearest}"
 
@@ -383,6 +388,17 @@ def _candidate(group: Group, terms: dict[str, float]) -> Candidate:
     return Candidate(
         group.id, group.label or "object", name_of(group.lab), group.box.center, group.box.size, score, terms
     )
+
+
+def _unconfirmed(query: Query) -> str:
+    return f"{query.text!r} could not be confirmed by the encoder"
+
+
+def _as_group(place: Patch, basis: NDArray[np.float64]) -> Group:
+    """A place of a colour as something that relations can be asked of."""
+    axes = tuple((float(x), float(y), float(z)) for x, y, z in basis)
+    box = Box(place.center, (axes[0], axes[1], axes[2]), place.size)
+    return Group(-1, "part", -1, "", 0.0, box, (0.0, 0.0, 0.0), len(place.rows), 0, 0.0)
 
 
 def _union(a: Selection, b: Selection) -> Selection:

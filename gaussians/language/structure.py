@@ -174,9 +174,7 @@ def _ceiling(surface: Surface, flat: Level, found: NDArray[np.int8]) -> _Plane |
     return _Plane(near, flat.points[:, :2]) if (size > 0.6 * extent[:2]).all() else None
 
 
-def _painted(
-    surface: Surface, labels: NDArray[np.int32], plane: _Plane, free: NDArray[np.bool_]
-) -> NDArray[np.bool_]:
+def _painted(surface: Surface, labels: NDArray[np.int32], plane: _Plane, free: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Points of a plane that carry its paint: the largest superpoint's colour, and colours spread all over it."""
     count = int(labels.max()) + 1
     total = np.bincount(labels, minlength=count)

@@ -1,4 +1,4 @@
-"""Over-segmentation: surface points to a few hundred superpoints, and the graph of who touches whom.
+"""Over-segmentation: surface points to a few hundred superpoints, and the links between touching points.
 
 The greedy graph merge of Felzenszwalb & Huttenlocher (IJCV 2004) over nearest neighbours in 3D. Knows geometry and
 colour only.
@@ -24,22 +24,20 @@ CONTACT = 4.0  # points farther apart than this many spacings do not touch
 
 
 @dataclass(frozen=True)
-class Contact:
-    """Superpoints that touch, as parallel arrays over E pairs.
+class Links:
+    """Neighbouring surface points that touch.
 
     Attributes:
-        pairs: `[E, 2]` int32 superpoint ids, first < second.
-        links: `[E]` int32, neighbour links across the border: how long it is.
-        weight: `[E]` float32, mean edge weight across the border.
+        pairs: `[E, 2]` int32 indices of points.
+        weight: `[E]` float32, how unlike the two ends are, in noise units.
     """
 
     pairs: NDArray[np.int32]
-    links: NDArray[np.int32]
     weight: NDArray[np.float32]
 
 
-def edges_of(surface: Surface) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
-    """Neighbour links `[E, 2]` that touch, and how unlike their ends are `[E]`."""
+def links_of(surface: Surface) -> Links:
+    """Neighbour links short enough to be contact, and how unlike their ends are."""
     m, k = surface.neighbours.shape
     first = np.repeat(np.arange(m, dtype=np.int32), k)
     second = surface.neighbours.ravel()
@@ -55,34 +53,28 @@ def edges_of(surface: Surface) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
     both_flat = surface.flatness[a] * surface.flatness[b]
     turn = (1 - np.abs((surface.normals[a] * surface.normals[b]).sum(1))) * both_flat
     weight = color / max(COLOR_UNIT, NOISE * _median(color)) + turn / max(NORMAL_UNIT, NOISE * _median(turn))
-    return np.stack([a, b], axis=1), weight.astype(np.float32)
+    return Links(np.stack([a, b], axis=1), weight.astype(np.float32))
 
 
 def _median(values: NDArray[np.floating]) -> float:
     return float(np.median(values)) if len(values) else 0.0
 
 
-def superpoints(surface: Surface, scale: float = SCALE) -> tuple[NDArray[np.int32], Contact]:
-    """Superpoint of each surface point `[M]`, numbered from 0, and their contacts."""
-    edges, weight = edges_of(surface)
-    order = np.argsort(weight, kind="stable")
-    labels = _merge(len(surface), edges[order], weight[order], np.float32(scale), MIN_POINTS)
-    labels = np.unique(labels, return_inverse=True)[1].astype(np.int32)
-    return labels, contacts(labels, edges, weight)
+def superpoints(surface: Surface, links: Links, scale: float = SCALE) -> NDArray[np.int32]:
+    """Superpoint of each surface point `[M]`, numbered from 0."""
+    order = np.argsort(links.weight, kind="stable")
+    labels = _merge(len(surface), links.pairs[order], links.weight[order], np.float32(scale), MIN_POINTS)
+    return np.unique(labels, return_inverse=True)[1].astype(np.int32)
 
 
-def contacts(labels: NDArray[np.int32], edges: NDArray[np.int32], weight: NDArray[np.float32]) -> Contact:
-    """Who touches whom under a labelling of the points."""
-    ends = np.sort(labels[edges], axis=1)
-    across = ends[:, 0] != ends[:, 1]
-    ends, crossing = ends[across], weight[across]
-    count = int(labels.max(initial=-1)) + 1
-    key, inverse, links = np.unique(
-        ends[:, 0].astype(np.int64) * count + ends[:, 1], return_inverse=True, return_counts=True
-    )
-    mean = np.bincount(inverse, weights=crossing, minlength=len(key)) / np.maximum(links, 1)
-    pairs = np.stack([key // max(count, 1), key % max(count, 1)], axis=1).astype(np.int32)
-    return Contact(pairs, links.astype(np.int32), mean.astype(np.float32))
+def touching(labels: NDArray[np.int32], links: Links) -> dict[int, set[int]]:
+    """The superpoints that each superpoint touches; those that touch none are left out."""
+    ends = np.unique(labels[links.pairs], axis=0)
+    near: dict[int, set[int]] = {}
+    for a, b in ends[ends[:, 0] != ends[:, 1]].tolist():
+        near.setdefault(a, set()).add(b)
+        near.setdefault(b, set()).add(a)
+    return near
 
 
 @njit(cache=True, nogil=True)

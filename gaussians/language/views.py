@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from scipy import ndimage
+from scipy.spatial import cKDTree
 
 from ..camera import Camera
 from ..cloud import GaussianCloud
@@ -20,7 +22,7 @@ from ..scene import Frame, Scene
 F64 = NDArray[np.float64]
 
 SIZE = 160  # pixels a side while choosing
-SEEN = 0.05  # summed blending weight (pixels at SIZE) from which a Gaussian counts as seen
+SEEN = 0.01  # summed blending weight (pixels at SIZE) from which a Gaussian counts as seen
 COVER = 0.985  # of what any candidate sees
 GAIN = 0.003  # a view that adds less than this share of all Gaussians is not worth its time
 MOST = 24
@@ -94,7 +96,7 @@ def candidates(cloud: GaussianCloud, frame: Frame, size: int) -> list[Camera]:
     basis = frame.basis()
     local = points @ basis.T
     low, high = np.quantile(local, 0.02, axis=0), np.quantile(local, 0.98, axis=0)
-    return _around(low, high, frame, size) + _inside(local, low, high, frame, size)
+    return _around(low, high, frame, size) + _inside(local, low, high, frame, size) + _toward(local, frame, size)
 
 
 def _around(low: F64, high: F64, frame: Frame, size: int) -> list[Camera]:
@@ -120,8 +122,6 @@ def _inside(local: F64, low: F64, high: F64, frame: Frame, size: int) -> list[Ca
     index = np.clip(((local[body, :2] - low[:2]) / cell).astype(int), 0, PLAN_CELLS - 1)
     taken = np.zeros((PLAN_CELLS, PLAN_CELLS), bool)
     taken[index[:, 0], index[:, 1]] = True
-    from scipy import ndimage
-
     clear = ndimage.distance_transform_edt(np.pad(~taken, 1))[1:-1, 1:-1]
     basis, cameras = frame.basis(), []
     for spot in range(5):
@@ -135,6 +135,21 @@ def _inside(local: F64, low: F64, high: F64, frame: Frame, size: int) -> list[Ca
             cameras.append(Camera.look_at(eye @ basis, aim @ basis, frame.up, size, size, 70.0, f"inside {spot}.{k}"))
         grid = np.stack(np.meshgrid(*[np.arange(PLAN_CELLS)] * 2, indexing="ij"), axis=-1)
         clear = np.where(np.linalg.norm(grid - [i, j], axis=-1) < PLAN_CELLS / 4, 0, clear)
+    return cameras
+
+
+def _toward(local: F64, frame: Frame, size: int) -> list[Camera]:
+    """Eyes around where the detail is densest, for captures of one spot in a larger room."""
+    above = local[local[:, 2] > np.quantile(local[:, 2], 0.35)]
+    focus = np.median(above, axis=0)
+    reach = float(np.median(np.linalg.norm(above - focus, axis=1))) + 1e-9
+    tree = cKDTree(local)
+    basis, cameras = frame.basis(), []
+    for k, distance in enumerate((1.0, 1.6)):
+        for azimuth in np.radians(np.arange(8) * 45.0 + 22.5 * k - 90.0):
+            eye = focus + distance * reach * np.array([np.cos(azimuth), np.sin(azimuth), 0.45])
+            if float(tree.query(eye)[0]) > 0.12 * reach:
+                cameras.append(Camera.look_at(eye @ basis, focus @ basis, frame.up, size, size, 55.0, "toward"))
     return cameras
 
 

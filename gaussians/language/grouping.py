@@ -1,0 +1,132 @@
+"""From superpoints to things: which nodes of the merge tree are whole objects, and which parts they have.
+
+Knows the tree, its affinities and a score for "this looks like one whole thing". Refuses to know where that score
+comes from.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .regions import LIGHTNESS, Node
+
+F64 = NDArray[np.float64]
+
+CONTESTED = (0.03, 0.995)  # merges outside these affinities are decided by geometry alone
+PATCH_COLOR = 15.0  # Lab difference up to which touching patches of one object are one part
+PATCH_POINTS = 30  # surface points; smaller patches join the touching one they resemble most
+PATCH_SHARE = 0.01  # of the object, likewise
+
+
+def contested(nodes: Sequence[Node], least: NDArray[np.bool_]) -> list[int]:
+    """Nodes that might be a whole object: not surely split inside, not surely swallowed by their parent.
+
+    Args:
+        least: `[len(nodes)]` bool, nodes large enough to be asked about.
+    """
+    low, high = CONTESTED
+    parent = np.full(len(nodes), 0.0)
+    for node in nodes:
+        for child in node.children:
+            parent[child] = node.affinity
+    return [
+        i
+        for i, node in enumerate(nodes)
+        if least[i] and (not node.children or node.affinity > low) and parent[i] < high
+    ]
+
+
+def best_cut(nodes: Sequence[Node], evidence: dict[int, float]) -> list[int]:
+    """The most probable set of disjoint nodes that covers every superpoint.
+
+    Each merge inside a chosen node contributes log(affinity), each merge above the cut log(1 - affinity), each chosen
+    node its evidence (log-odds of being one whole thing; 0 where none was asked for). Exact, bottom up.
+    """
+    best, whole, take = np.zeros(len(nodes)), np.zeros(len(nodes)), np.zeros(len(nodes), bool)
+    for i, node in enumerate(nodes):
+        if not node.children:
+            whole[i] = 0.0
+            best[i], take[i] = evidence.get(i, 0.0), True
+            continue
+        a = min(max(node.affinity, 1e-6), 1 - 1e-6)
+        whole[i] = np.log(a) + sum(whole[c] for c in node.children)
+        split = np.log(1 - a) + sum(best[c] for c in node.children)
+        joined = whole[i] + evidence.get(i, 0.0)
+        take[i] = joined >= split
+        best[i] = max(joined, split)
+    children = {c for node in nodes for c in node.children}
+    chosen: list[int] = []
+    stack = [i for i in range(len(nodes)) if i not in children]
+    while stack:
+        i = stack.pop()
+        if take[i]:
+            chosen.append(i)
+        else:
+            stack.extend(nodes[i].children)
+    return sorted(chosen)
+
+
+def parts_of(
+    members: Sequence[int], touching: dict[int, set[int]], lab: F64, count: NDArray[np.int64]
+) -> list[list[int]]:
+    """One object's superpoints as connected patches of one colour each, largest first.
+
+    Args:
+        members: superpoint ids.
+        touching: superpoints that each superpoint touches.
+        lab: `[S, 3]` mean colour of every superpoint.
+        count: `[S]` points of every superpoint.
+    """
+    patches = _Patches(members, touching, lab, count)
+    patches.join_alike()
+    patches.join_crumbs(max(PATCH_POINTS, PATCH_SHARE * sum(int(count[s]) for s in members)))
+    return sorted(patches.members.values(), key=lambda c: (-sum(int(count[s]) for s in c), c))
+
+
+class _Patches:
+    """Patches of one colour under merging; a merged patch gets a new number, so stale pairs are recognised."""
+
+    def __init__(
+        self, members: Sequence[int], touching: dict[int, set[int]], lab: F64, count: NDArray[np.int64]
+    ) -> None:
+        own = set(members)
+        self.members = {s: [s] for s in members}
+        self.lab = {s: lab[s] for s in members}
+        self.size = {s: max(int(count[s]), 1) for s in members}
+        self.near = {s: touching.get(s, set()) & own for s in members}
+        self.next = max(members, default=0) + 1
+
+    def join_alike(self) -> None:
+        """Merge touching patches, the most alike first, while they are one colour."""
+        heap = [(self.gap(s, t), s, t) for s in self.members for t in self.near[s] if s < t]
+        heapq.heapify(heap)
+        while heap and heap[0][0] <= PATCH_COLOR:
+            _, s, t = heapq.heappop(heap)
+            if s in self.members and t in self.members:
+                new = self.join(s, t)
+                for other in self.near[new]:
+                    heapq.heappush(heap, (self.gap(new, other), other, new))
+
+    def join_crumbs(self, least: float) -> None:
+        """Give each patch smaller than `least`, smallest first, to the touching patch it resembles most."""
+        while crumbs := [s for s in self.members if self.size[s] < least and self.near[s]]:
+            crumb = min(crumbs, key=lambda s: (self.size[s], s))
+            self.join(min(self.near[crumb], key=lambda t: (self.gap(crumb, t), t)), crumb)
+
+    def gap(self, s: int, t: int) -> float:
+        return float(np.linalg.norm((self.lab[s] - self.lab[t]) * np.array([LIGHTNESS, 1.0, 1.0])))
+
+    def join(self, s: int, t: int) -> int:
+        new, self.next = self.next, self.next + 1
+        a, b = self.size.pop(s), self.size.pop(t)
+        self.lab[new] = (self.lab.pop(s) * a + self.lab.pop(t) * b) / (a + b)
+        self.size[new] = a + b
+        self.members[new] = self.members.pop(s) + self.members.pop(t)
+        self.near[new] = (self.near.pop(s) | self.near.pop(t)) - {s, t}
+        for other in self.near[new]:
+            self.near[other] = (self.near[other] - {s, t}) | {new}
+        return new
