@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 import torch
@@ -78,7 +79,7 @@ def size_scores(groups: Sequence[Group], word: str) -> list[float]:
         return [1.0] * len(groups)
     sizes = [math.log(max(extent(g, word), 1e-12)) for g in groups]
     ordered = sorted(sizes)
-    gap, low, high = max((b - a, a, b) for a, b in zip(ordered, ordered[1:], strict=False))
+    gap, low, high = max((b - a, a, b) for a, b in pairwise(ordered))
     if gap < math.log(1.12):
         return [1.0] * len(groups)
     border = (low + high) / 2

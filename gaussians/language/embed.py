@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 
 from ..cloud import NO_GROUP, GaussianCloud
 from ..errors import UserError
-from ..scene import Frame, Scene
+from ..scene import Scene
 from . import grouping, structure
 from .calibration import labels as name_things
 from .calibration import wholeness
@@ -84,7 +84,7 @@ def embed(scene: Scene, encoder: Encoder, progress: Progress = lambda stage, sha
 def segment(
     scene: Scene, surface: Surface, encoder: Encoder, progress: Progress = lambda stage, share: None
 ) -> tuple[NDArray[np.int32], list[Thing]]:
-    """Superpoint of each surface point, and the things they make up: structure first, then objects, then their parts."""
+    """Superpoint of each surface point, and what they make up: structure first, then objects, then their parts."""
     frame = scene.frame
     flat = structure.level(surface, frame)
     links = links_of(surface)
@@ -94,19 +94,22 @@ def segment(
     count = int(labels.max(initial=-1)) + 1
     kind_of = np.zeros(count, np.int8)
     kind_of[labels] = kinds
-    graph = build_graph(labels, flat.points, surface.lab, flat.normals, links, kind_of == structure.NONE)
+    graph = build_graph(
+        labels, flat.points, surface.lab.astype(np.float64), flat.normals, links, kind_of == structure.NONE
+    )
     nodes = merge_tree(graph)
     size = np.bincount(labels, minlength=count)
     evidence = _evidence(scene, surface, labels, nodes, size, encoder, progress)
     objects = [nodes[i].members for i in grouping.best_cut(nodes, evidence)]
-    lab = np.stack([np.bincount(labels, weights=surface.lab[:, c], minlength=count) for c in range(3)], axis=1)
-    lab /= np.maximum(size, 1)[:, None]
+    total = np.stack([np.bincount(labels, weights=surface.lab[:, c], minlength=count) for c in range(3)], axis=1)
+    lab: F64 = total / np.maximum(size, 1)[:, None]
     return labels, _things(objects, kind_of, lab, size, touching(labels, links))
 
 
 def split_by(labels: NDArray[np.int32], kinds: NDArray[np.int8]) -> NDArray[np.int32]:
     """Superpoints that straddle structure and object become two."""
-    return np.unique(labels.astype(np.int64) * 8 + kinds, return_inverse=True)[1].astype(np.int32)
+    split: NDArray[np.int32] = np.unique(labels.astype(np.int64) * 8 + kinds, return_inverse=True)[1].astype(np.int32)
+    return split
 
 
 def _evidence(
@@ -118,9 +121,8 @@ def _evidence(
     asked = grouping.contested(nodes, points >= MIN_OBJECT)
     asked = sorted(sorted(asked, key=lambda i: -points[i])[:MOST_ASKED])
     rows = _rows_by_superpoint(surface, labels, len(size))
-    clouds = [
-        scene.cloud[torch.from_numpy(np.sort(np.concatenate([rows[s] for s in nodes[i].members])))] for i in asked
-    ]
+    owned = [np.sort(np.concatenate([rows[s] for s in nodes[i].members])) for i in asked]
+    clouds = [scene.cloud[torch.from_numpy(own)] for own in owned]
     middle = np.median(surface.points, axis=0).astype(np.float64)
     vectors = mean_vectors(encoder, clouds, scene.frame, middle, ASK_VIEWS, lambda share: progress("portraits", share))
     whole = np.clip(wholeness(encoder, vectors), 0.02, 0.98) if asked else np.zeros(0)

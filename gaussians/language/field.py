@@ -34,12 +34,16 @@ class Box:
 
     def local(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
         """World points `[M, 3]` in the box's frame, origin at its centre."""
-        return (np.asarray(points, dtype=np.float64) - np.array(self.center)) @ np.array(self.axes).T
+        local: NDArray[np.float64] = (np.asarray(points, dtype=np.float64) - np.array(self.center)) @ np.array(
+            self.axes
+        ).T
+        return local
 
     def corners(self) -> NDArray[np.float64]:
         """`[8, 3]` world corners; the first four are the lower ones."""
         signs = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], dtype=np.float64)
-        return np.array(self.center) + (signs * np.array(self.size) / 2) @ np.array(self.axes)
+        corners: NDArray[np.float64] = np.array(self.center) + (signs * np.array(self.size) / 2) @ np.array(self.axes)
+        return corners
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ def estimate_frame(surface: Surface, cameras: Sequence[Camera], known: Frame) ->
     frame = known
     if known.up_source == "unknown":
         up = _up_from_cameras(surface, cameras) if cameras else _up_from_surfaces(surface)
-        frame = replace(frame, up=tuple(float(c) for c in up), up_source="estimated")
+        frame = replace(frame, up=(float(up[0]), float(up[1]), float(up[2])), up_source="estimated")
     if frame.floor is None:
         frame = replace(frame, floor=_floor(surface, frame.up_vector))
     return frame
@@ -50,7 +50,7 @@ def _up_from_cameras(surface: Surface, cameras: Sequence[Camera]) -> F64:
 
 
 def _up_from_surfaces(surface: Surface) -> F64:
-    """The direction along which the scene is most layered, with a bonus near customary axes, which also give its sign."""
+    """The direction across which the scene is most layered; customary axes get a bonus and give it its sign."""
     around = _directions()[:DIRECTIONS]
     layering = _layering(surface, around)
     layering /= max(float(layering.max()), 1e-12)

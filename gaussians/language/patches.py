@@ -129,4 +129,5 @@ def _joined(points: F64, reach: float) -> NDArray[np.int64]:
         return np.zeros(0, np.int64)
     pairs = cKDTree(points).query_pairs(reach, output_type="ndarray")
     links = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2)
-    return connected_components(links, directed=False)[1].astype(np.int64)
+    label: NDArray[np.int64] = connected_components(links, directed=False)[1].astype(np.int64)
+    return label

@@ -102,4 +102,5 @@ def mean_vectors(
         progress((i + 1) / len(clouds))
     encode()
     norms = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return vectors / np.where(norms > 1e-8, norms, 1)
+    units: F32 = (vectors / np.where(norms > 1e-8, norms, 1)).astype(np.float32)
+    return units

@@ -71,7 +71,8 @@ def _lattice(box: Box) -> NDArray[np.float64]:
     """`[125, 3]` points spread through a box, so that a small box beside a long one finds it."""
     t = np.linspace(-0.5, 0.5, 5)
     grid = np.stack(np.meshgrid(t, t, t, indexing="ij"), axis=-1).reshape(-1, 3)
-    return np.array(box.center) + (grid * np.array(box.size)) @ np.array(box.axes)
+    points: NDArray[np.float64] = np.array(box.center) + (grid * np.array(box.size)) @ np.array(box.axes)
+    return points
 
 
 def _height(group: Group, up: NDArray[np.float64]) -> tuple[float, float]:

@@ -6,7 +6,7 @@ candidate carries the score of each of its terms.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -24,7 +24,7 @@ from .calibration import doubt, probability
 from .field import Box, Group, LanguageField
 from .patches import Patch, patches
 from .query import Query, Relation
-from .selection import Candidate, Selection, nothing
+from .selection import Candidate, Selection, Verdict, nothing
 
 if TYPE_CHECKING:
     from .encoders import Encoder
@@ -265,13 +265,13 @@ class _Resolver:
         if query.count is not None and query.count != len(matches):
             listed = ", ".join(c.describe() for c in matches[:6])
             reason = f"{query.describe()}: {query.count} were asked for, {len(matches)} match ({listed})"
-            verdict = "ambiguous" if len(matches) > query.count else "absent"
+            verdict: Verdict = "ambiguous" if len(matches) > query.count else "absent"
             return replace(nothing(query, reason, tuple(matches)), verdict=verdict)
         return self._take(query, matches)
 
     def _ordered(self, query: Query, matches: list[Candidate]) -> Selection:
         """Superlatives, and the n-th from the viewer's left."""
-        keys = {
+        keys: dict[str, Callable[[Candidate], float]] = {
             "largest": lambda c: -attributes.extent(self.field.groups[c.group], "large"),
             "smallest": lambda c: attributes.extent(self.field.groups[c.group], "large"),
             "tallest": lambda c: -c.size[2],

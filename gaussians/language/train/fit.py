@@ -1,7 +1,6 @@
 """Teaches the two towers: each crop shall be nearest to a phrase for what it is, among phrases for everything else.
 
-The loss is the question asked later (see `calibration.probability`): one phrase that is true of the picture against one
-phrase for each kind it does not cover. Knows crops and captions. Refuses to know files.
+The loss is the question asked later (see `calibration.probability`): the right name against all others. Knows crops and captions. Refuses to know files.
 """
 
 from __future__ import annotations
@@ -22,10 +21,13 @@ from ..encoders.embedded import tokenise
 from ..encoders.vocabulary import Vocabulary
 from . import captions
 from .augment import augment
-from .model import LENGTH, ImageTower, TextTower
+from .model import DIM, LENGTH, ImageTower, TextTower
 from .renders import Crops
 
-THINGS = 40  # a batch, each from all its views
+THINGS = 64  # a batch
+SHOWN = 2  # of the views of each, chosen anew each time: more things teach more than more views
+CAPTIONS = 192  # phrases a batch
+PEAK = 3e-3  # learning rate
 MAX_SCALE = 40.0  # of the cosines: sharper would make the calibration brittle
 
 
@@ -37,17 +39,13 @@ class Task:
         vocabulary: kinds and non-objects.
         index: word to number.
         classes: all labels, kinds first.
-        names: exact names of each label.
-        broader: for each label the broader terms that are true of it.
-        covers: phrase to `[C]` bool, the labels it must not compete with.
+        covers: every name to `[C]` bool, the labels it is true of.
         modifiers: words put before names.
     """
 
     vocabulary: Vocabulary
     index: dict[str, int]
     classes: tuple[str, ...]
-    names: dict[str, tuple[str, ...]]
-    broader: dict[str, tuple[str, ...]]
     covers: dict[str, NDArray[np.bool_]]
     modifiers: list[str]
 
@@ -55,13 +53,13 @@ class Task:
 def task(vocabulary: Vocabulary, words: list[str]) -> Task:
     """Tables from the vocabulary and the word list."""
     classes = (*vocabulary.names, *vocabulary.negatives)
-    names = {label: captions.names_of(vocabulary, label) for label in classes}
     pure = {t: k for t, k in vocabulary.broader.items() if t not in vocabulary.kinds}
-    broader = {label: tuple(t for t, kinds in pure.items() if label in kinds) for label in classes}
-    covers = {n: np.array([c == label for c in classes]) for label in classes for n in names[label]}
-    covers.update({t: np.array([c in kinds for c in classes]) for t, kinds in pure.items()})
+    covers = {t: np.array([c in kinds for c in classes]) for t, kinds in pure.items()}
+    covers |= {
+        n: np.array([c == label for c in classes]) for label in classes for n in captions.names_of(vocabulary, label)
+    }
     index = {word: i + 1 for i, word in enumerate(words)}
-    return Task(vocabulary, index, classes, names, broader, covers, sorted(vocabulary.modifiers))
+    return Task(vocabulary, index, classes, covers, sorted(vocabulary.modifiers))
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,82 +72,127 @@ class Towers:
     steps: int
 
 
-def train(
-    crops: Crops, job: Task, minutes: float, seed: int, report: Callable[[str], None], steps: int | None = None
-) -> Towers:
-    """Train for `minutes` of wall time (or exactly `steps`), returning the running mean of the weights.
+@dataclass(frozen=True)
+class Effort:
+    """How long and how to train.
 
-    With `steps` the result depends on the seed alone (on one machine and torch version); by time it also depends on how
-    many steps were done, which is recorded.
+    Attributes:
+        minutes: of wall time, if `steps` is not given.
+        steps: exactly so many. The result then depends on the seed alone, on one machine and torch version.
+        seed: of weights, batches, captions and augmentation.
+        half: convolutions in bfloat16: twice as fast on processors that know it, slower on others.
     """
-    torch.manual_seed(seed)
-    rng = np.random.default_rng(seed)
-    image, text = ImageTower(), TextTower(len(job.index))
-    image.to(memory_format=torch.channels_last)  # type: ignore[call-overload]  # twice as fast on CPUs
-    log_scale = nn.Parameter(torch.tensor(math.log(12.0)))
-    decayed = [p for m in (image, text) for p in m.parameters() if p.ndim > 1]
-    plain = [p for m in (image, text) for p in m.parameters() if p.ndim <= 1] + [log_scale]
+
+    minutes: float
+    steps: int | None
+    seed: int
+    half: bool
+
+    def progress(self, step: int, seconds: float) -> float:
+        """0 at the start, 1 when it is over."""
+        return step / self.steps if self.steps else seconds / (60 * self.minutes)
+
+
+def train(crops: Crops, job: Task, effort: Effort, report: Callable[[str], None]) -> Towers:
+    """Train both towers; what is returned is the running mean of their weights."""
+    torch.manual_seed(effort.seed)
+    pupil = Pupil(len(job.index), len(job.classes))
+    pupil.image.to(memory_format=torch.channels_last)  # type: ignore[call-overload]  # twice as fast on CPUs
+    mean = copy.deepcopy(pupil)
     optimizer = torch.optim.AdamW(
-        [{"params": decayed, "weight_decay": 0.03}, {"params": plain, "weight_decay": 0.0}], lr=1e-3
+        [
+            {"params": [p for p in pupil.parameters() if p.ndim > 1], "weight_decay": 0.03},
+            {"params": [p for p in pupil.parameters() if p.ndim <= 1], "weight_decay": 0.0},
+        ]
     )
-    mean = (copy.deepcopy(image), copy.deepcopy(text))
-    label = np.array([job.classes.index(name) for name in crops.labels])
-    weight = _balanced(label, len(job.classes))
+    lessons = Lessons(crops, job, effort.seed)
     start, step, running = time.monotonic(), 0, math.log(len(job.classes))
-    while (progress := step / steps if steps else (time.monotonic() - start) / (60 * minutes)) < 1:
+    while (progress := effort.progress(step, time.monotonic() - start)) < 1:
         for group in optimizer.param_groups:
-            group["lr"] = 2.5e-3 * min(1.0, (step + 1) / 60) * (0.5 + 0.5 * math.cos(math.pi * progress)) + 1e-5
-        rows = rng.choice(len(crops), size=THINGS, p=weight)
-        pictures = augment(torch.from_numpy(crops.pixels[rows]).flatten(0, 1), seed * 1_000_003 + step)
-        vectors = image(pictures.contiguous(memory_format=torch.channels_last)).view(
-            THINGS, -1, image.head.out_features
-        )
-        loss = _loss(vectors, text, log_scale.exp().clamp(max=MAX_SCALE), label[rows], job, rng)
+            group["lr"] = PEAK * min(1.0, (step + 1) / 60) * (0.5 + 0.5 * math.cos(math.pi * progress)) + 1e-5
+        loss, seen = _loss(pupil, lessons, step, effort.half)
         optimizer.zero_grad(set_to_none=True)
         loss.backward()  # type: ignore[no-untyped-call]
-        nn.utils.clip_grad_norm_([*image.parameters(), *text.parameters()], 2.0)
+        nn.utils.clip_grad_norm_(pupil.parameters(), 2.0)
         optimizer.step()
-        _follow(mean, (image, text), min(0.998, (step + 1) / (step + 10)))
-        running = 0.98 * running + 0.02 * float(loss.detach())
+        _follow(mean, pupil, min(0.995, (step + 1) / (step + 10)))
+        running = 0.98 * running + 0.02 * seen
         step += 1
         if step % 100 == 0:
-            report(f"step {step}, {100 * progress:.0f} %, loss {running:.3f}, scale {float(log_scale.exp()):.1f}")
-    return Towers(mean[0].eval(), mean[1].eval(), float(log_scale.exp().clamp(max=MAX_SCALE)), step)
+            report(f"step {step}, {100 * progress:.0f} %, picture loss {running:.3f}, scale {float(pupil.scale):.1f}")
+    return Towers(mean.image.eval(), mean.text.eval(), float(mean.scale), step)
 
 
-def _loss(
-    vectors: Tensor, text: TextTower, scale: Tensor, label: NDArray[np.int64], job: Task, rng: np.random.Generator
-) -> Tensor:
-    """Cross-entropy of the true phrase against a phrase for every label it does not cover, for single views `[M, V, D]`
-    and for means over a random number of them, and the other way round over the batch (Radford et al. 2021, with
-    several positives a phrase)."""
-    asked = [_true_phrase(job, int(k), rng) for k in label]
-    own_text = [captions.phrase(rng, name, job.modifiers) for name in asked]
-    class_text = [captions.phrase(rng, str(rng.choice(job.names[c])), job.modifiers) for c in job.classes]
-    tokens = torch.from_numpy(tokenise([*own_text, *class_text], job.index, LENGTH))
-    encoded = text(tokens)
-    own, rivals = encoded[: len(asked)], encoded[len(asked) :]  # [M, D], [C, D]
-    covered = torch.from_numpy(np.stack([job.covers[name] for name in asked]))  # [M, C]
-    some = vectors[:, : int(rng.integers(2, vectors.shape[1] + 1))]
-    pooled = functional.normalize(some.mean(dim=1, keepdim=True), dim=2)
-    total = torch.zeros(())
-    for seen, share in ((vectors, 0.5), (pooled, 0.5)):
-        against = (scale * seen @ rivals.T).masked_fill(covered[:, None], -torch.inf)  # [M, V, C]
-        logits = torch.cat([scale * (seen * own[:, None]).sum(dim=2, keepdim=True), against], dim=2)
-        target = torch.zeros(logits.shape[:2], dtype=torch.long)
-        total = total + share * functional.cross_entropy(logits.flatten(0, 1), target.flatten())
-    across = scale * own @ pooled[:, 0].T  # [phrase, thing]
-    fits = covered[:, torch.from_numpy(label)]  # [phrase, thing] bool
-    hits = torch.logsumexp(across.masked_fill(~fits, -torch.inf), dim=1)
-    return total + 0.25 * (torch.logsumexp(across, dim=1) - hits).mean()
+class Pupil(nn.Module):
+    """Both towers and what ties them: one unit vector a label, and the scale of the cosines.
+
+    Pictures are drawn to the vector of their label and away from all others; so are phrases. Each tower then learns at
+    its own pace, instead of pictures chasing phrases that are themselves still moving.
+    """
+
+    def __init__(self, words: int, labels: int) -> None:
+        super().__init__()
+        self.image, self.text = ImageTower(), TextTower(words)
+        self.table = nn.Parameter(torch.randn(labels, DIM))
+        self.log_scale = nn.Parameter(torch.tensor(math.log(12.0)))
+
+    @property
+    def anchors(self) -> Tensor:
+        """`[C, D]` unit rows."""
+        return functional.normalize(self.table, dim=1)
+
+    @property
+    def scale(self) -> Tensor:
+        """Of the cosines, at most `MAX_SCALE`."""
+        return self.log_scale.exp().clamp(max=MAX_SCALE)
 
 
-def _true_phrase(job: Task, label: int, rng: np.random.Generator) -> str:
-    """A name that is true of a label: its own, a synonym, or now and then a broader term."""
-    name = job.classes[label]
-    if job.broader[name] and rng.random() < 0.2:
-        return str(rng.choice(job.broader[name]))
-    return name if rng.random() < 0.4 else str(rng.choice(job.names[name]))
+class Lessons:
+    """Batches of pictures and phrases; the same seed and step give the same batch."""
+
+    def __init__(self, crops: Crops, job: Task, seed: int) -> None:
+        self.crops, self.job, self.seed = crops, job, seed
+        self.label = np.array([job.classes.index(name) for name in crops.labels])
+        self.weight = _balanced(self.label, len(job.classes))
+        covers = {name: row for name, row in job.covers.items() if row.any()}
+        self.phrases = list(covers)
+        self.covered = np.stack(list(covers.values()))  # [P, C]
+
+    def pictures(self, step: int) -> tuple[Tensor, Tensor]:
+        """`[THINGS * SHOWN, 3, S, S]` pictures and the label of each thing `[THINGS]`."""
+        rng = np.random.default_rng([self.seed, step])
+        rows = rng.choice(len(self.crops), size=THINGS, p=self.weight)
+        views = np.argsort(rng.random((THINGS, self.crops.pixels.shape[1])), axis=1)[:, :SHOWN]
+        shown = torch.from_numpy(self.crops.pixels[rows[:, None], views]).flatten(0, 1)
+        pictures = augment(shown, self.seed * 1_000_003 + step).contiguous(memory_format=torch.channels_last)
+        return pictures, torch.from_numpy(self.label[rows])
+
+    def captions(self, step: int) -> tuple[Tensor, Tensor]:
+        """Word numbers `[CAPTIONS, L]`, and for each phrase the share of each label in what it covers `[CAPTIONS, C]`."""
+        rng = np.random.default_rng([self.seed, step, 1])
+        rows = rng.integers(len(self.phrases), size=CAPTIONS)
+        said = [captions.phrase(rng, self.phrases[i], self.job.modifiers) for i in rows]
+        share = self.covered[rows] / self.covered[rows].sum(axis=1, keepdims=True)
+        return torch.from_numpy(tokenise(said, self.job.index, LENGTH)), torch.from_numpy(share.astype(np.float32))
+
+
+def _loss(pupil: Pupil, lessons: Lessons, step: int, half: bool) -> tuple[Tensor, float]:
+    """Cross-entropy of single pictures and of means over views against the labels' vectors, and of phrases likewise;
+    phrases shall also lie close to what they cover, since the scale alone does not demand it. The second number is the
+    pictures' part."""
+    pictures, label = lessons.pictures(step)
+    with torch.autocast("cpu", torch.bfloat16, enabled=half):
+        vectors = pupil.image(pictures)
+    vectors = vectors.float().view(THINGS, SHOWN, -1)
+    pooled = functional.normalize(vectors.mean(dim=1), dim=1)
+    anchors, scale = pupil.anchors, pupil.scale
+    single = functional.cross_entropy(scale * vectors.flatten(0, 1) @ anchors.T, label.repeat_interleave(SHOWN))
+    seen = 0.5 * single + 0.5 * functional.cross_entropy(scale * pooled @ anchors.T, label)
+    tokens, share = lessons.captions(step)
+    encoded, fixed = pupil.text(tokens), anchors.detach()
+    said = functional.cross_entropy(scale.detach() * encoded @ fixed.T, share)
+    near = (1 - (encoded * functional.normalize(share @ fixed, dim=1)).sum(dim=1)).mean()
+    return seen + said + near, float(seen.detach())
 
 
 def _balanced(label: NDArray[np.int64], classes: int) -> NDArray[np.float64]:
@@ -162,12 +205,11 @@ def _balanced(label: NDArray[np.int64], classes: int) -> NDArray[np.float64]:
     return result
 
 
-def _follow(mean: tuple[nn.Module, nn.Module], live: tuple[nn.Module, nn.Module], decay: float) -> None:
+def _follow(mean: nn.Module, live: nn.Module, decay: float) -> None:
     """Move the running mean of weights and statistics towards the live ones."""
     with torch.no_grad():
-        for slow, fast in zip(mean, live, strict=True):
-            for a, b in zip(slow.state_dict().values(), fast.state_dict().values(), strict=True):
-                if a.dtype.is_floating_point:
-                    a.lerp_(b, 1 - decay)
-                else:
-                    a.copy_(b)
+        for slow, fast in zip(mean.state_dict().values(), live.state_dict().values(), strict=True):
+            if slow.dtype.is_floating_point:
+                slow.lerp_(fast, 1 - decay)
+            else:
+                slow.copy_(fast)

@@ -87,7 +87,8 @@ class TextTower(nn.Module):
         weights = q @ k.transpose(-1, -2) / math.sqrt(each)  # [T, heads, L, L]
         weights = weights - 1e4 * (1.0 - real)[:, None, None, :]
         mixed = torch.softmax(weights, dim=-1) @ v
-        return self.out(mixed.transpose(1, 2).reshape(count, length, width))
+        result: Tensor = self.out(mixed.transpose(1, 2).reshape(count, length, width))
+        return result
 
 
 class ImageGraph(nn.Module):
