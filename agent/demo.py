@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..gaussians.camera import Camera
 from ..gaussians.errors import AbsentError, AmbiguousError, InstructionError, ScenewrightError, UserError
@@ -24,6 +25,7 @@ from .pictures import Tile, contact_sheet, save_png
 from .result import Result
 from .script import SCRIPT, Cast, Role, Thing, Turn
 from .session import Session
+from .stopwatch import timed
 
 if TYPE_CHECKING:
     from ..gaussians.assets import Room
@@ -33,6 +35,7 @@ VISIBLE = 0.002  # share of the picture from which a thing is worth speaking of
 FILES = ("room.ply", "edited.ply", "session.jsonl", "contact_sheet.png")
 
 Say = Callable[[str], None]
+Ids = NDArray[np.int32]
 
 
 @dataclass(frozen=True)
@@ -90,20 +93,24 @@ class Demo:
         """
         started = time.perf_counter()
         self._prepare()
-        room = self._timed("furnish", lambda: _furnish(self.seed))
+        with timed(self.seconds, "furnish"):
+            room = _furnish(self.seed)
         scene: Scene = room.scene
         self.say(
             f"furnished a room from seed {self.seed}: {len(scene.cloud):,} Gaussians, {len(room.truth.objects)} things"
         )
-        self._timed("save", lambda: _save(scene, self.folder / "room.ply", self.force))
+        with timed(self.seconds, "save"):
+            _save(scene, self.folder / "room.ply", self.force)
         log = self.folder / "session.jsonl"
         log.unlink(missing_ok=True)  # only with force: see _prepare
         session = Session(scene, log=log, progress=self.progress, seed=self.seed)
         session.viewer = _viewer(scene, self.size)
-        self._timed("embed", session.embed)
+        with timed(self.seconds, "embed"):
+            session.embed()
         self._tell_things(session)
         self._converse(session, room)
-        self._timed("save", lambda: session.save(self.folder / "edited.ply", force=self.force))
+        with timed(self.seconds, "save"):
+            session.save(self.folder / "edited.ply", force=self.force)
         session.close()
         self._sheet()
         self.seconds["total"] = time.perf_counter() - started
@@ -119,12 +126,6 @@ class Demo:
         for old in self.folder.glob("[0-9][0-9]-*.png") if self.force else ():
             old.unlink()
 
-    def _timed(self, stage: str, work: Callable[[], Any]) -> Any:
-        mark = time.perf_counter()
-        value = work()
-        self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - mark
-        return value
-
     def _tell_things(self, session: Session) -> None:
         language = session.scene.language
         assert language is not None
@@ -133,8 +134,8 @@ class Demo:
 
     def _sheet(self) -> None:
         heading = f"Scenewright demo, seed {self.seed}: {len(self.steps)} instructions"
-        sheet = self._timed("pictures", lambda: contact_sheet(heading, self._tiles))
-        self._timed("pictures", lambda: save_png(sheet, self.folder / "contact_sheet.png", self.force))
+        with timed(self.seconds, "pictures"):
+            save_png(contact_sheet(heading, self._tiles), self.folder / "contact_sheet.png", self.force)
 
     def _report(self) -> dict[str, Any]:
         return {
@@ -151,7 +152,8 @@ class Demo:
         truth = np.asarray(room.truth.ids)
         cast = _cast(room, session.viewer)
         for name, role in SCRIPT:
-            turn = self._timed("choose what to say", lambda role=role: _first_that_fits(session, role, cast))
+            with timed(self.seconds, "choose what to say"):
+                turn = _first_that_fits(session, role, cast)
             if turn is None:
                 self.say(f"-- left out: {name} (nothing in this room suits it)")
                 continue
@@ -160,29 +162,35 @@ class Demo:
             if turn.text.startswith("remove") and turn.outcome == "edit":
                 cast.things = [t for t in cast.things if t not in turn.about]
 
-    def _play(self, session: Session, turn: Turn, truth: np.ndarray[Any, np.dtype[np.integer[Any]]]) -> None:
+    def _play(self, session: Session, turn: Turn, truth: Ids) -> None:
         """Say it, answer if asked back, and keep pictures of before and after."""
         number = len(self.steps) + 1
-        before = self._timed("pictures", lambda: picture(session.scene, session.viewer))
+        with timed(self.seconds, "pictures"):
+            before = picture(session.scene, session.viewer)
         shots, text, answered = [before], turn.text, False
-        mark = time.perf_counter()
+        spent: dict[str, float] = {}
         result: Result | None = None
         try:
-            result = session.do(turn.text)
+            with timed(spent, "converse"):
+                result = session.do(turn.text)
             outcome = _sentence(result)
         except AmbiguousError as error:
             outcome = str(error)
             if turn.answer and session.question is not None:
                 candidates = session.question.candidates
-                shots = [self._timed("pictures", lambda: numbered(session.scene, session.viewer, candidates))]
-                result, answered = session.answer(turn.answer), True
+                with timed(self.seconds, "pictures"):
+                    shots = [numbered(session.scene, session.viewer, candidates)]
+                with timed(spent, "converse"):
+                    result, answered = session.answer(turn.answer), True
                 outcome = f"asked back: {len(candidates)} things match; answered '{turn.answer}': {_sentence(result)}"
                 text = f"{turn.text} … {turn.answer}"
         except InstructionError as error:
             outcome = f"refused, nothing was changed: {error}"
-        seconds = time.perf_counter() - mark
+        seconds = spent["converse"]
+        self.seconds["converse"] = self.seconds.get("converse", 0.0) + seconds
         if result is not None:
-            shots.append(self._timed("pictures", lambda: _after(session, result)))
+            with timed(self.seconds, "pictures"):
+                shots.append(_after(session, result))
         overlap = _overlap(result, turn, truth) if result is not None and not answered else None
         files = self._keep(number, shots)
         step = Step(number, text, outcome, result is not None, seconds, overlap, files)
@@ -195,7 +203,8 @@ class Demo:
         names = ("before", "after")[: len(shots)]
         files = tuple(f"{number:02d}-{name}.png" for name in names)
         for file, shot in zip(files, shots, strict=True):
-            self._timed("pictures", lambda file=file, shot=shot: save_png(shot, self.folder / file, self.force))
+            with timed(self.seconds, "pictures"):
+                save_png(shot, self.folder / file, self.force)
         return files
 
 
@@ -268,7 +277,7 @@ def _sentence(result: Result) -> str:
     return "; ".join(r.sentence() for r in result.receipts)
 
 
-def _overlap(result: Result, turn: Turn, truth: np.ndarray[Any, np.dtype[np.integer[Any]]]) -> float | None:
+def _overlap(result: Result, turn: Turn, truth: Ids) -> float | None:
     """How well what was chosen agrees with the builder's list, over the Gaussians the room began with."""
     language = result.before.language
     if not turn.about or language is None:

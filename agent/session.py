@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,6 +25,7 @@ from .history import History, State
 from .log import Record, SessionLog, read_log
 from .refusal import refusal
 from .result import Result
+from .stopwatch import timed
 
 if TYPE_CHECKING:
     from ..gaussians.language.encoders import Encoder
@@ -176,7 +176,7 @@ class Session:
         except ScenewrightError as error:
             self._refused(plan.instruction, plan, error)
             raise
-        with _timed(seconds, "log"):
+        with timed(seconds, "log"):
             self._write("do", lambda: self._deed(result, state))
         self._history.advance(state)
         return result
@@ -312,12 +312,12 @@ class Session:
         if not plan.ops:
             raise refusal(plan)
         if any(True for op in plan.ops for _ in queries(op)):
-            with _timed(seconds, "embed"):
+            with timed(seconds, "embed"):
                 self.embed()
         before = self._history.present
         scene, last = before.scene, before.last
         receipts: list[Receipt] = []
-        with _timed(seconds, "edit"):
+        with timed(seconds, "edit"):
             for step, op in enumerate(plan.ops):
                 context = self._context(last)
                 try:
@@ -444,12 +444,3 @@ def _read_plan(record: Record, source: str | Path) -> EditPlan:
         return EditPlan.model_validate(record["plan"])
     except (KeyError, ValidationError) as error:
         raise FileError(f"{source}: record {record['seq']} holds no plan this version can read ({error})") from error
-
-
-@contextmanager
-def _timed(seconds: dict[str, float], stage: str) -> Iterator[None]:
-    started = time.perf_counter()
-    try:
-        yield
-    finally:
-        seconds[stage] = seconds.get(stage, 0.0) + time.perf_counter() - started

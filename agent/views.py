@@ -42,8 +42,12 @@ def choose_view(scene: Scene, view: str = "auto", size: str | None = None) -> Ca
 
 def default_view(scene: Scene) -> Camera:
     """The scene's first camera, or a view from which much of it can be seen."""
+    from ..gaussians.language.orient import estimate_frame
+    from ..gaussians.language.surface import surface_of
     from ..gaussians.language.views import default_viewer
 
+    if not scene.cameras and scene.frame.up_source == "unknown":
+        scene = scene.replace(frame=estimate_frame(surface_of(scene.cloud), scene.cameras, scene.frame))
     return default_viewer(scene, *PICTURE)
 
 
