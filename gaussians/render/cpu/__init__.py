@@ -18,7 +18,7 @@ from torch import Tensor
 from ...camera import Camera, Render, Vec3
 from ...cloud import GaussianCloud
 from .. import convention
-from . import blend, order, project, threads
+from . import blend, compiled, order, project
 
 Array = NDArray[Any]
 
@@ -43,11 +43,11 @@ def render(cloud: GaussianCloud, camera: Camera, background: Vec3) -> Render:
         np.empty((h, w), np.int32),
     )  # fmt: skip
     columns, behind = _columns(cloud), tuple(np.float32(channel) for channel in background)
-    scratch = blend.make_scratch(threads.workers())
+    scratch = blend.make_scratch(compiled.workers())
     for top, bottom, bins in _strips(columns, camera, 0, h):
         strip = tuple(channel[top:bottom] for channel in out)
         size = (w, bottom - top)
-        threads.run(
+        compiled.run(
             blend.draw, bins.first, bins.entries, bins.records, size, LIMITS, behind, strip, scratch, _counter()
         )
     return Render(*(torch.from_numpy(channel).to(cloud.device) for channel in out))
@@ -56,11 +56,11 @@ def render(cloud: GaussianCloud, camera: Camera, background: Vec3) -> Render:
 def contributions(cloud: GaussianCloud, camera: Camera) -> Tensor:
     """See `scenewright.gaussians.render.contributions`."""
     total, columns = np.zeros(len(cloud), np.float64), _columns(cloud)
-    scratch = blend.make_scratch(threads.workers())
+    scratch = blend.make_scratch(compiled.workers())
     for top, bottom, bins in _strips(columns, camera, 0, camera.height):
         share = np.zeros(len(bins.entries), np.float32)
         size = (camera.width, bottom - top)
-        threads.run(blend.weigh, bins.first, bins.entries, bins.records, size, LIMITS, share, scratch, _counter())
+        compiled.run(blend.weigh, bins.first, bins.entries, bins.records, size, LIMITS, share, scratch, _counter())
         blend.collect(bins.entries, share, total)
     return torch.from_numpy(total.astype(np.float32)).to(cloud.device)
 
@@ -89,21 +89,21 @@ def _bin(columns: tuple[Array, ...], camera: Camera, top: int, bottom: int) -> B
     records, corner, mask = np.empty((n, project.RECORD), np.float32), np.empty(n, np.uint32), np.empty(n, np.uint64)
     depth, visible, found = np.empty(n, np.int32), np.empty(n, np.int32), np.empty(chunks, np.int32)
     view = project.make_view(camera, top, bottom)
-    threads.run(project.project, *columns, view, (records, corner, mask, depth, visible, found), _counter())
+    compiled.run(project.project, *columns, view, (records, corner, mask, depth, visible, found), _counter())
 
     keys, sorted_rows = np.empty((2, n), np.int32), np.empty((2, n), np.int32)
     tally = np.zeros((order.DIGITS, order.BUCKETS), np.int64)
     half, seen = order.depth_order(depth, visible, found, project.CHUNK, keys, sorted_rows, tally)
     rows = sorted_rows[half, :seen]
     wide, high = (-(-side // project.TILE) for side in size)
-    places = np.zeros((threads.workers(), wide * high), np.int64)
-    threads.run(order.count_tiles, rows, records, corner, mask, view, wide, places)
+    places = np.zeros((compiled.workers(), wide * high), np.int64)
+    compiled.run(order.count_tiles, rows, records, corner, mask, view, wide, places)
     first = np.empty(wide * high + 1, np.int64)
     total = order.starts(places, first)
     if total > MAX_ENTRIES and high > 1:
         return None
     entries = np.empty(total, np.int32)
-    threads.run(order.fill_tiles, rows, records, corner, mask, view, wide, places, entries)
+    compiled.run(order.fill_tiles, rows, records, corner, mask, view, wide, places, entries)
     return Bins(records, first, entries)
 
 

@@ -11,11 +11,23 @@ from typing import Any
 
 import numpy as np
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.extending import intrinsic
 
+from .compiled import helper, kernel
 from .project import (
-    EXTREME, INLINE, KERNEL, L3, LIMIT, MASK_SIDE, REACH_Y, SLOPE, WIDTH, Ellipse, X, Y, tile_rows, tile_span,
+    EXTREME,
+    L3,
+    LIMIT,
+    MASK_SIDE,
+    REACH_Y,
+    SLOPE,
+    WIDTH,
+    Ellipse,
+    X,
+    Y,
+    tile_rows,
+    tile_span,
 )  # fmt: skip
 
 DIGIT = 11  # bits sorted at once: 2048 counters stay in the first-level cache
@@ -33,7 +45,7 @@ def _lowest_bit(typing_context: Any, value: Any) -> Any:
     return types.int64(types.uint64), generate
 
 
-@njit(**KERNEL)
+@kernel
 def depth_order(depth, visible, found, chunk, keys, rows, tally):  # type: ignore[no-untyped-def]
     """Sort rows by depth; returns which half of `rows` holds them and how many they are.
 
@@ -55,7 +67,7 @@ def depth_order(depth, visible, found, chunk, keys, rows, tally):  # type: ignor
     return source, count
 
 
-@njit(**INLINE)
+@helper
 def _scatter(tally, shift, count, keys, rows, source):  # type: ignore[no-untyped-def]
     """One stable pass by the digit at `shift`; returns False, having moved nothing, if all keys share that digit."""
     total = 0
@@ -76,7 +88,7 @@ def _scatter(tally, shift, count, keys, rows, source):  # type: ignore[no-untype
     return True
 
 
-@njit(**INLINE)
+@helper
 def _ellipse(records, n):  # type: ignore[no-untyped-def]
     """The ellipse that record `n` holds."""
     return Ellipse(
@@ -85,7 +97,7 @@ def _ellipse(records, n):  # type: ignore[no-untyped-def]
     )  # fmt: skip
 
 
-@njit(**KERNEL)
+@kernel
 def count_tiles(worker, workers, order, records, corner, mask, view, tiles_wide, tally):  # type: ignore[no-untyped-def]
     """Add this worker's share of `order` to `tally[worker]` `[tiles]` int32, which holds zeros."""
     mine = tally[worker]
@@ -106,9 +118,9 @@ def count_tiles(worker, workers, order, records, corner, mask, view, tiles_wide,
             mine[base + bit // MASK_SIDE * tiles_wide + bit % MASK_SIDE] += 1
 
 
-@njit(**KERNEL)
+@kernel
 def starts(tally, first):  # type: ignore[no-untyped-def]
-    """Turn counts `[workers, tiles]` into where each worker writes; `first[t]`: where tile t starts. Returns the total."""
+    """Turn counts `[workers, tiles]` into where each worker writes; fill `first` `[tiles + 1]`; returns the total."""
     total = 0
     for tile in range(tally.shape[1]):
         first[tile] = total
@@ -120,7 +132,7 @@ def starts(tally, first):  # type: ignore[no-untyped-def]
     return total
 
 
-@njit(**KERNEL)
+@kernel
 def fill_tiles(worker, workers, order, records, corner, mask, view, tiles_wide, places, entries):  # type: ignore[no-untyped-def]
     """Write rows into `entries`, tile by tile and nearest first; walks exactly as `count_tiles` did."""
     mine = places[worker]

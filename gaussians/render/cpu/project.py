@@ -17,12 +17,11 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from ...camera import Camera
 from .. import convention
-from .threads import fetch_add
+from .compiled import fetch_add, helper, kernel
 
 Array = NDArray[Any]
 
@@ -31,18 +30,10 @@ RECORD = 16  # float32 in a footprint's record: one 64-byte cache line
 # Places in a record. GROUP holds the bits of an int32.
 X, Y, L1, L2, L3, SHIFT, LIMIT, REACH_Y, SLOPE, WIDTH, EXTREME, RED, GREEN, BLUE, DEPTH, GROUP = range(RECORD)
 MASK_SIDE = 8  # footprints of at most 8x8 tiles keep the tiles they touch as bits of a uint64, row by row
+SMALL = 6  # boxes of so few tiles are taken whole
 CHUNK = 2048  # rows a worker takes at a time
 
 Q_MAX = math.log(1 / convention.ALPHA_MIN) / 8  # exp(-8 Q_MAX) is the least alpha
-
-# No "nnan", no "ninf": degenerate rows must compare as IEEE says, so every test is written to fail on NaN.
-FAST = {"contract", "reassoc", "arcp", "nsz", "afn"}
-# "_nrt": kernels allocate nothing, so numba need not count references. Counting them at every call of a helper that
-# takes an array cost more than the helpers' work; out-of-line calls, with a dozen words an array, did too.
-KERNEL: dict[str, Any] = {
-    "nogil": True, "cache": True, "fastmath": FAST, "error_model": "numpy", "boundscheck": False, "_nrt": False,
-}  # fmt: skip
-INLINE: dict[str, Any] = {**KERNEL, "forceinline": True}
 
 # Bare Python floats would promote float32 arithmetic to float64.
 f4 = np.float32
@@ -120,7 +111,7 @@ def make_view(camera: Camera, top: int, bottom: int) -> View:
     return View(*(np.float32(number) for number in numbers))
 
 
-@njit(**KERNEL)
+@kernel
 def project(worker, workers, means, quats, scales, opacities, sh, group, view, out, counter):  # type: ignore[no-untyped-def]
     """Project every row; all of `out` is written at the row's index.
 
@@ -162,7 +153,11 @@ def project(worker, workers, means, quats, scales, opacities, sh, group, view, o
                 continue
             l1 = ONE / ellipse.width
             records[n, X], records[n, Y], records[n, L1] = ellipse.x, ellipse.y, l1
-            records[n, L2], records[n, L3], records[n, SHIFT] = -ellipse.slope * l1, ellipse.l3, view.q_max - ellipse.limit
+            records[n, L2], records[n, L3], records[n, SHIFT] = (
+                -ellipse.slope * l1,
+                ellipse.l3,
+                view.q_max - ellipse.limit,
+            )
             records[n, LIMIT], records[n, REACH_Y], records[n, SLOPE] = ellipse.limit, ellipse.reach_y, ellipse.slope
             records[n, WIDTH], records[n, EXTREME], records[n, DEPTH] = ellipse.width, ellipse.extreme, z
             bits[n, GROUP] = group[n]
@@ -174,7 +169,7 @@ def project(worker, workers, means, quats, scales, opacities, sh, group, view, o
         found[chunk] = fill - start
 
 
-@njit(**INLINE)
+@helper
 def _footprint(dx, dy, dz, z, quat, scale, opacity, view):  # type: ignore[no-untyped-def]
     """Ellipse of a Gaussian at offset (dx, dy, dz) from the eye, half its width (px), and whether it can be seen."""
     inverse = ONE / z
@@ -191,7 +186,7 @@ def _footprint(dx, dy, dz, z, quat, scale, opacity, view):  # type: ignore[no-un
     return ellipse, reach_x, inside and determinant < view.max_determinant
 
 
-@njit(**INLINE)
+@helper
 def _covariance(quat, scale, inverse, u, v, view):  # type: ignore[no-untyped-def]
     """2-D covariance (xx, xy, yy) with dilation, px^2, and its determinant summed from squares (Cauchy-Binet):
     `xx * yy - xy * xy` would lose every digit of a long thin footprint. `inverse` is 1 / depth."""
@@ -217,7 +212,7 @@ def _covariance(quat, scale, inverse, u, v, view):  # type: ignore[no-untyped-de
     return xx + dilation, xy, yy + dilation, determinant
 
 
-@njit(**INLINE)
+@helper
 def span(e, low, high):  # type: ignore[no-untyped-def]
     """Interval of x (px) that ellipse `e` covers over the pixel-centre rows `low` to `high`; empty: first > second."""
     d0, d1 = max(low - e.y, -e.reach_y), min(high - e.y, e.reach_y)
@@ -229,14 +224,14 @@ def span(e, low, high):  # type: ignore[no-untyped-def]
     return HUGE if missed else e.x + left, -HUGE if missed else e.x + right
 
 
-@njit(**INLINE)
+@helper
 def tile_rows(e, height):  # type: ignore[no-untyped-def]
     """First and one past the last row of tiles that the box of ellipse `e` touches, in an image of `height` px."""
     first = int(max(e.y - e.reach_y, ZERO) * PER_TILE)
     return first, int(min(e.y + e.reach_y, height - HALF) * PER_TILE) + 1
 
 
-@njit(**INLINE)
+@helper
 def tile_span(e, row, width):  # type: ignore[no-untyped-def]
     """First and one past the last tile of a row of tiles that ellipse `e` touches; empty: first >= second.
 
@@ -247,36 +242,34 @@ def tile_span(e, row, width):  # type: ignore[no-untyped-def]
     return math.ceil((low + HALF) * PER_TILE) - 1, math.floor((high - HALF) * PER_TILE) + 1
 
 
-@njit(**INLINE)
+@helper
 def _tiles(e, reach_x, view):  # type: ignore[no-untyped-def]
     """First column and row of the tiles that ellipse `e` touches, the mask of tiles from there (0: more than a mask
-    holds), and whether there are any. A box of one or two tiles is taken whole: testing costs more than it saves."""
+    holds), and whether there are any. A box of few tiles is taken whole: testing it costs more than it saves."""
     top, bottom = tile_rows(e, view.height)
     left = int(max(e.x - reach_x, ZERO) * PER_TILE)
     right = int(min(e.x + reach_x, view.width - HALF) * PER_TILE) + 1
     wide, high = right - left, bottom - top
-    mask, any_ = np.uint64(0), True
-    if wide * high <= 2:
-        mask = BIT | (BIT << np.uint64((wide - 1) + (high - 1) * MASK_SIDE))
-    elif wide <= MASK_SIDE and high <= MASK_SIDE:
+    mask = np.uint64(0)
+    if wide <= MASK_SIDE and high <= MASK_SIDE:
         for row in range(top, bottom):
-            first, last = tile_span(e, row, view.width)
-            first, last = max(first, left), min(last, left + MASK_SIDE)
-            if first < last:
-                run = (BIT << np.uint64(last - first)) - BIT
-                mask |= run << np.uint64((row - top) * MASK_SIDE + first - left)
-        any_ = mask != np.uint64(0)
-    return left, top, mask, any_
+            first, last = left, right
+            if wide * high > SMALL:
+                first, last = tile_span(e, row, view.width)
+                first, last = max(first, left), min(last, right)
+            run = (BIT << np.uint64(max(last - first, 0))) - BIT
+            mask |= run << np.uint64((row - top) * MASK_SIDE + max(first - left, 0))
+    return left, top, mask, mask != np.uint64(0) or wide > MASK_SIDE or high > MASK_SIDE
 
 
-@njit(**INLINE)
+@helper
 def _unit(x, y, z):  # type: ignore[no-untyped-def]
     """The vector scaled to length 1."""
     inverse = ONE / math.sqrt(x * x + y * y + z * z)
     return x * inverse, y * inverse, z * inverse
 
 
-@njit(**INLINE)
+@helper
 def _harmonics(n, c, sh, x, y, z):  # type: ignore[no-untyped-def]
     """Channel `c` of the harmonics of row `n` in the unit direction (x, y, z)."""
     value = C0 * sh[n, 0, c]

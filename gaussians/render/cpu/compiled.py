@@ -1,0 +1,116 @@
+"""How kernels are compiled, kept and run: numba's machine code on plain threads.
+
+Knows compiler options, the cache and the cores. Refuses to know what the kernels compute.
+
+numba's own threading layers are not used: its portable one is not safe to enter from two threads, and its OpenMP one
+spins against torch's OpenMP between kernels. Kernels release the interpreter lock, so plain threads have neither fault
+and compile faster.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import torch
+from llvmlite import ir
+from numba import njit, types
+from numba.extending import intrinsic
+
+log = logging.getLogger(__name__)
+
+# fastmath without "nnan" and "ninf": degenerate rows must compare as IEEE says; tests are written to fail on NaN.
+# _nrt: kernels allocate nothing, so references need no counting; counting them at every call of a helper that takes an
+# array cost more than the helpers' work.
+_OPTIONS: dict[str, Any] = {
+    "nogil": True, "error_model": "numpy", "boundscheck": False, "_nrt": False,
+    "fastmath": {"contract", "reassoc", "arcp", "nsz", "afn"},
+}  # fmt: skip
+
+
+def _fingerprint() -> str:
+    """Digest of all that machine code depends on: numba itself looks only at the file of the function it caches, and
+    would keep code that inlined a helper or a constant of another file after that one has changed."""
+    digest = hashlib.sha256()
+    folder = Path(__file__).parent
+    for path in [*sorted(folder.glob("*.py")), folder.parent / "convention.py"]:
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+FINGERPRINT = _fingerprint()
+
+
+def kernel(function: Callable[..., Any]) -> Any:
+    """Decorate a function that `run` calls: compiled on first use for this CPU and kept on disk for later processes."""
+    function.__qualname__ += f"_{FINGERPRINT}"  # numba names the cached file after it
+    try:
+        return njit(**_OPTIONS, cache=True)(function)
+    except RuntimeError:  # neither the package's folder nor the user's cache folder can be written
+        return njit(**_OPTIONS)(function)
+
+
+def helper(function: Callable[..., Any]) -> Any:
+    """Decorate a function that kernels call: always inlined, as an out-of-line call passes a dozen words an array."""
+    return njit(**_OPTIONS, forceinline=True)(function)
+
+
+def workers() -> int:
+    """How many threads kernels run on: as many as torch uses, so that one setting rules both."""
+    return max(1, torch.get_num_threads())
+
+
+def run(kernel: Any, *arguments: Any) -> None:
+    """Call `kernel(worker, workers(), *arguments)` for every worker number at the same time; wait for all."""
+    if not kernel.overloads:
+        _announce()
+    count = workers()
+    others = [_pool(os.getpid(), count).submit(kernel, worker, count, *arguments) for worker in range(1, count)]
+    kernel(0, count, *arguments)
+    for other in others:
+        other.result()
+
+
+@cache
+def _announce() -> None:
+    """Say once that the renderer is compiled now, if it is."""
+    try:
+        kept = any(_cache_folder().glob(f"*{FINGERPRINT}*.nbi"))
+    except OSError:
+        kept = False
+    if not kept:
+        log.info("compiling the renderer for this CPU: about 5 seconds, once")
+
+
+def _cache_folder() -> Path:
+    """Where numba keeps this package's machine code."""
+    return Path(_probe.stats.cache_path or os.devnull)
+
+
+@kernel
+def _probe() -> None:
+    """Never called: its place in the cache is everyone's."""
+
+
+@cache
+def _pool(process: int, count: int) -> ThreadPoolExecutor:
+    """A pool for this process: threads do not survive a fork, so a child makes its own."""
+    del process  # only part of the cache's key
+    return ThreadPoolExecutor(max(1, count - 1), thread_name_prefix="scenewright-render")
+
+
+@intrinsic
+def fetch_add(typing_context: Any, counter: Any, amount: Any) -> Any:
+    """Add `amount` to `counter[0]` (int64 array) as one step no other thread can split; returns the value before."""
+
+    def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
+        array = context.make_array(signature.args[0])(context, builder, arguments[0])
+        return builder.atomic_rmw("add", array.data, arguments[1], "monotonic")
+
+    return types.int64(counter, types.int64), generate
