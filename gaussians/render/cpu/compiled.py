@@ -20,8 +20,7 @@ from typing import Any
 
 import torch
 from llvmlite import ir
-from numba import njit, types
-from numba.extending import intrinsic
+from numba import extending, njit, types
 
 log = logging.getLogger(__name__)
 
@@ -59,6 +58,11 @@ def kernel(function: Callable[..., Any]) -> Any:
 def helper(function: Callable[..., Any]) -> Any:
     """Decorate a function that kernels call: always inlined, as an out-of-line call passes a dozen words an array."""
     return njit(**_OPTIONS, forceinline=True)(function)
+
+
+def intrinsic(function: Callable[..., Any]) -> Any:
+    """Decorate a function that emits LLVM code: called from kernels, without the typing context it is declared with."""
+    return extending.intrinsic(function)
 
 
 def workers() -> int:

@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 from llvmlite import ir
 from numba import types
-from numba.extending import intrinsic
 
-from .compiled import helper, kernel
+from .compiled import helper, intrinsic, kernel
 from .project import (
     EXTREME,
     L3,

@@ -18,8 +18,8 @@ import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.extending import intrinsic
 
+from .compiled import intrinsic
 from .project import (
     BLUE,
     DEPTH,
@@ -78,6 +78,10 @@ class _Lanes:
         first = self.b.insert_element(nothing, scalar, ir.Constant(_I32, 0))
         return self.b.shuffle_vector(first, nothing, ir.Constant(_INTEGERS, [0] * LANES))
 
+    def spread_all(self, numbers: ir.Value) -> list[ir.Value]:
+        """Each number of a tuple in every lane of its own vector."""
+        return [self.spread(number) for number in cgutils.unpack_tuple(self.b, numbers)]  # type: ignore[no-untyped-call]
+
     def at(self, base: ir.Value, offset: ir.Value, step: int = 0) -> ir.Value:
         """Pointer to element `offset + step`."""
         return self.b.gep(base, [self.b.add(offset, ir.Constant(_I64, step))])
@@ -110,7 +114,9 @@ class _Lanes:
 
     def sqrt(self, x: ir.Value) -> ir.Value:
         kind = ir.FunctionType(_VECTOR, [_VECTOR])
-        return self.b.call(cgutils.get_or_insert_function(self.b.module, kind, f"llvm.sqrt.v{LANES}f32"), [x])
+        name = f"llvm.sqrt.v{LANES}f32"
+        function = cgutils.get_or_insert_function(self.b.module, kind, name)  # type: ignore[no-untyped-call]
+        return self.b.call(function, [x])
 
     def exp_minus_8(self, q: ir.Value) -> ir.Value:
         """`exp(-8 q)` for q in [0, Q_MAX]; finite or infinite nonsense beyond."""
@@ -204,7 +210,7 @@ def fetch(typing_context: Any, records: Any, row: Any) -> Any:
         pointer = v.at(base, builder.mul(arguments[1], ir.Constant(_I64, RECORD)))
         byte = ir.IntType(8).as_pointer()
         kind = ir.FunctionType(ir.VoidType(), [byte, _I32, _I32, _I32])
-        function = cgutils.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0")
+        function = cgutils.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0")  # type: ignore[no-untyped-call]
         read, keep, data = (ir.Constant(_I32, n) for n in (0, 3, 1))
         builder.call(function, [builder.bitcast(pointer, byte), read, keep, data])
         return context.get_dummy_value()
@@ -213,7 +219,7 @@ def fetch(typing_context: Any, records: Any, row: Any) -> Any:
 
 
 def _step(v: _Lanes, record: ir.Value, x: ir.Value, y: ir.Value, t: ir.Value, limits: list[ir.Value]) -> Any:
-    """One footprint in 16 pixels: weight, new transmittance, mask of pixels still open, reader of the record's fields."""
+    """One footprint in 16 pixels: weight, new transmittance, mask of pixels still open, reader of its fields."""
 
     def field(place: int, kind: ir.Type = _F32) -> ir.Value:
         return v.spread(v.load(v.b.gep(record, [ir.Constant(_I64, place)]), kind))
@@ -246,7 +252,7 @@ def blend_block(
         chunk, listed, state = (_data(context, builder, signature, arguments, i) for i in (0, 1, 3))
         count, offset, x, y, limits = (arguments[i] for i in (2, 4, 5, 6, 7))
         x, y = _pixels(v, x, y)
-        limits = [v.spread(limit) for limit in cgutils.unpack_tuple(builder, limits)]
+        limits = v.spread_all(limits)
         before = [v.load(v.at(state, offset, channel * LANES)) for channel in range(CHANNELS - 1)]
         before.append(v.load(v.at(state, offset, WINNER), _INTEGERS))
 
@@ -282,7 +288,7 @@ def weigh_block(
         chunk, listed, state, weights = (_data(context, builder, signature, arguments, i) for i in (0, 1, 3, 5))
         count, offset, x, y, limits = (arguments[i] for i in (2, 4, 6, 7, 8))
         x, y = _pixels(v, x, y)
-        limits = [v.spread(limit) for limit in cgutils.unpack_tuple(builder, limits)]
+        limits = v.spread_all(limits)
 
         def body(record: ir.Value, slot: ir.Value, values: list[ir.Value]) -> tuple[list[ir.Value], ir.Value]:
             weight, t, still_open, _ = _step(v, record, x, y, values[0], limits)
