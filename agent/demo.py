@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from ..gaussians.camera import Camera
 from ..gaussians.errors import AbsentError, AmbiguousError, InstructionError, ScenewrightError, UserError
 from ..gaussians.scene import Scene
-from .look import Picture, numbered, picture, spotlight
+from .look import Picture, after, numbered, picture
 from .pictures import Tile, contact_sheet, save_png
 from .result import Result
 from .script import SCRIPT, Cast, Role, Thing, Turn
@@ -103,7 +103,7 @@ class Demo:
             _save(scene, self.folder / "room.ply", self.force)
         log = self.folder / "session.jsonl"
         log.unlink(missing_ok=True)  # only with force: see _prepare
-        session = Session(scene, log=log, progress=self.progress, seed=self.seed)
+        session = Session(scene, log=log, progress=self.progress, seed=self.seed, pixel_checks=True)
         session.viewer = _viewer(scene, self.size)
         with timed(self.seconds, "embed"):
             session.embed()
@@ -190,7 +190,7 @@ class Demo:
         self.seconds["converse"] = self.seconds.get("converse", 0.0) + seconds
         if result is not None:
             with timed(self.seconds, "pictures"):
-                shots.append(_after(session, result))
+                shots.append(after(result, session.viewer))
         overlap = _overlap(result, turn, truth) if result is not None and not answered else None
         files = self._keep(number, shots)
         step = Step(number, text, outcome, result is not None, seconds, overlap, files)
@@ -262,13 +262,6 @@ def _fits(session: Session, turn: Turn) -> bool:
     except ScenewrightError:
         return False
     return turn.outcome == "edit"
-
-
-def _after(session: Session, result: Result) -> Picture:
-    """The scene afterwards; a mere selection is lit, since nothing else shows it."""
-    if result.scene is result.before and result.selection is not None:
-        return spotlight(result.scene, session.viewer, result.selection)
-    return picture(result.scene, session.viewer)
 
 
 def _sentence(result: Result) -> str:

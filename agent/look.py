@@ -14,6 +14,7 @@ from ..gaussians.camera import Camera
 from ..gaussians.language.selection import Candidate, Selection
 from ..gaussians.render import render
 from ..gaussians.scene import Scene
+from .result import Result
 
 Picture = NDArray[np.uint8]  # [H, W, 3], display space
 
@@ -34,6 +35,13 @@ def spotlight(scene: Scene, camera: Camera, selection: Selection) -> Picture:
     shown: Picture = np.where(lit[..., None], image, image // 3 + 20).astype(np.uint8)
     shown[_edge(lit)] = _MARK
     return shown
+
+
+def after(result: Result, camera: Camera) -> Picture:
+    """The scene after an instruction; a mere selection is lit, since nothing else would show it."""
+    if result.scene is result.before and result.selection is not None:
+        return spotlight(result.scene, camera, result.selection)
+    return picture(result.scene, camera)
 
 
 def numbered(scene: Scene, camera: Camera, candidates: Sequence[Candidate]) -> Picture:

@@ -27,6 +27,7 @@ class Opening:
         view, size: the viewer, as `views.choose_view` takes them.
         log: session log to append to, or None.
         seed: what varies between two inserted things of a kind.
+        pixel_checks: compare the viewer's pictures before and after each operation.
     """
 
     path: Path
@@ -36,6 +37,7 @@ class Opening:
     size: str | None = None
     log: Path | None = None
     seed: int = 0
+    pixel_checks: bool = False
 
 
 def open_session(opening: Opening) -> tuple[Session, bool]:
@@ -61,6 +63,7 @@ def open_session(opening: Opening) -> tuple[Session, bool]:
         log=opening.log,
         progress=terminal.progress,
         seed=opening.seed,
+        pixel_checks=opening.pixel_checks,
     )
     if opening.view != "auto" or opening.size is not None:
         session.viewer = choose_view(session.scene, opening.view, opening.size)

@@ -62,6 +62,7 @@ class Session:
             or a view chosen from the scene.
         progress: told how far long work is.
         seed: what varies between two inserted things of a kind.
+        pixel_checks: also compare the viewer's picture before and after each operation.
 
     Raises:
         BackendError: no such planner.
@@ -78,6 +79,7 @@ class Session:
         *,
         progress: Progress | None = None,
         seed: int = 0,
+        pixel_checks: bool = False,
     ) -> None:
         from ..planners import load as load_planner
 
@@ -86,6 +88,7 @@ class Session:
         self._viewer = viewer
         self._progress = progress or (lambda stage, fraction: None)
         self._seed = seed
+        self._pixel_checks = pixel_checks
         self._history = History(State(scene))
         self._log = SessionLog(log) if log is not None else None
         self.question: Question | None = None
@@ -325,7 +328,7 @@ class Session:
                 except ScenewrightError as error:
                     self.question = self._question(plan, step, error, scene, context)
                     raise _in_plan(error, plan, step) from error
-                receipts.append(receipt)
+                receipts.append(receipt.model_copy(update={"dry_run": dry_run}))
         state = State(scene, last, plan.instruction, plan.instruction)
         result = Result(
             plan.instruction, plan, tuple(receipts), before.scene, scene, self.viewer, last, seconds, dry_run
@@ -336,7 +339,7 @@ class Session:
         from ..tools.base import Context
 
         encoder = self.encoder if self.scene.language is not None else None
-        return Context(viewer=self.viewer, last=last, encoder=encoder, seed=self._seed)
+        return Context(viewer=self.viewer, last=last, encoder=encoder, seed=self._seed, pixel_checks=self._pixel_checks)
 
     def _question(
         self, plan: EditPlan, step: int, error: ScenewrightError, scene: Scene, context: Context

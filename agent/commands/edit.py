@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -14,6 +14,7 @@ from ..options import Debug, Encoder, Force, Json, Log, Output, Planner, SceneFi
 from ..terminal import terminal
 
 if TYPE_CHECKING:
+    from ..result import Result
     from ..session import Session
 
 
@@ -61,15 +62,21 @@ def command(
         raise UserError('give either TEXT or --replay LOG: scenewright edit SCENE "make the sofa teal" -o out.ply')
     if output is None and not dry_run:
         raise UserError("say where to write the edited scene: -o out.ply (or look first with --dry-run)")
-    _refuse_existing(output, pictures, force or dry_run)
+    _refuse_existing(None if dry_run else output, pictures, force)
     started = time.perf_counter()
-    opening = Opening(scene, planner, encoder, view, size, None if dry_run else log, seed)
+    opening = Opening(scene, planner, encoder, view, size, None if dry_run else log, seed, pixel_checks=True)
     session, had_field = open_session(opening)
-    seconds = {"open": time.perf_counter() - started}
+    seconds = {"open": round(time.perf_counter() - started, 3)}
     targets = _Targets(None if dry_run else output, pictures, force, had_field)
-    outcome = _replay(session, replay, dry_run) if replay is not None else _instruct(session, str(text), dry_run)
-    _leave(session, outcome, targets, seconds, started)
+    results = [_instruct(session, str(text), dry_run)] if replay is None else _replay(session, replay)
+    lines, data = _told(results, replay is not None, dry_run)
+    _write(session, results, targets, data)
     session.close()
+    data["seconds"] = {**seconds, **data.get("seconds", {}), "total": round(time.perf_counter() - started, 3)}
+    lines += ["dry run: no scene was written"] if dry_run else [f"wrote {data['output']}"]
+    lines += [f"wrote {path}" for path in data.get("pictures", ())]
+    lines.append("seconds: " + ", ".join(f"{stage} {value:.2f}" for stage, value in data["seconds"].items()))
+    terminal.result("\n".join(lines), data)
 
 
 def _refuse_existing(output: Path | None, pictures: Path | None, force: bool) -> None:
@@ -83,69 +90,60 @@ def _refuse_existing(output: Path | None, pictures: Path | None, force: bool) ->
             raise UserError(f"{path} exists; choose another name, or overwrite it with --force")
 
 
-def _instruct(session: Session, text: str, dry_run: bool) -> dict[str, Any]:
-    """Do what was said; the outcome as data, with the scenes for pictures under "before" and "after"."""
+def _instruct(session: Session, text: str, dry_run: bool) -> Result:
+    """Do what was said, or say why not and what it hesitated between."""
     from ...gaussians.errors import InstructionError
     from ..refusal import verdict_of
     from ..resolved import candidate_json
 
     try:
-        result = session.preview(text) if dry_run else session.do(text)
+        return session.preview(text) if dry_run else session.do(text)
     except InstructionError as error:
         candidates = session.question.candidates if session.question else ()
         data = {"verdict": verdict_of(error), "reason": str(error), "exit_code": error.exit_code,
                 "candidates": [candidate_json(c) for c in candidates]}  # fmt: skip
         terminal.refuse(error, data, [c.describe() for c in candidates])
-    return {"before": result.before, "after": result.scene, "lines": result.sentences(), "data": result.to_json()}
 
 
-def _replay(session: Session, log: Path, dry_run: bool) -> dict[str, Any]:
-    """Replay a log; on a dry run everything is taken back again by dropping the session."""
-    before = session.scene
-    replayed = session.replay(log)
-    results = [r.result for r in replayed if r.result is not None]
+def _replay(session: Session, log: Path) -> list[Result]:
+    """What the last session in a log did, done here; a dry run simply writes nothing of it."""
+    from ...gaussians.errors import UserError
+
+    results = [r.result for r in session.replay(log) if r.result is not None]
+    if not results:
+        raise UserError(f"the last session in {log} did nothing that could be replayed")
+    return results
+
+
+def _told(results: Sequence[Result], replayed: bool, dry_run: bool) -> tuple[list[str], dict[str, Any]]:
+    """What was done, as lines and as data."""
+    if not replayed:
+        return list(results[0].sentences()), results[0].to_json()
     lines = [line for result in results for line in (f"> {result.text}", *result.sentences())]
-    data = {"verdict": "ok", "replayed": [r.to_json() for r in results], "dry_run": dry_run,
-            "gaussians": len(session.scene.cloud)}  # fmt: skip
-    return {"before": before, "after": session.scene, "lines": lines, "data": data}
+    rows = [r.to_json() for r in results]
+    return lines, {"verdict": "ok", "replayed": rows, "dry_run": dry_run, "gaussians": rows[-1]["gaussians"]}
 
 
-def _leave(
-    session: Session, outcome: Mapping[str, Any], targets: _Targets, seconds: dict[str, float], started: float
-) -> None:
-    """Write what was asked for and tell what was done."""
+def _write(session: Session, results: Sequence[Result], targets: _Targets, data: dict[str, Any]) -> None:
+    """Write what was asked for, and note it in `data`."""
     from ...gaussians.language.store import save_field
 
-    data: dict[str, Any] = dict(outcome["data"])
     if targets.output is not None:
-        mark = time.perf_counter()
         session.save(targets.output, force=targets.force)
+        data["output"] = str(targets.output)
         if targets.keep_field and session.scene.language is not None:
             data["field"] = str(save_field(session.scene, targets.output))
-        seconds["save"] = time.perf_counter() - mark
-        data["output"] = str(targets.output)
     if targets.pictures is not None:
-        mark = time.perf_counter()
-        data["pictures"] = _draw(session, outcome, targets.pictures, targets.force)
-        seconds["pictures"] = time.perf_counter() - mark
-    seconds["total"] = time.perf_counter() - started
-    data["seconds"] = {**data.get("seconds", {}), **{k: round(v, 3) for k, v in seconds.items()}}
-    lines = [*outcome["lines"]]
-    if data["dry_run"]:
-        lines.append("dry run: nothing was written")
-    lines += [f"wrote {data['output']}"] if "output" in data else []
-    lines += [f"wrote {path}" for path in data.get("pictures", ())]
-    lines.append("seconds: " + ", ".join(f"{stage} {value:.2f}" for stage, value in data["seconds"].items()))
-    terminal.result("\n".join(lines), data)
+        data["pictures"] = _draw(session, results, targets.pictures, targets.force)
 
 
-def _draw(session: Session, outcome: Mapping[str, Any], folder: Path, force: bool) -> list[str]:
-    from ...gaussians.render import render
+def _draw(session: Session, results: Sequence[Result], folder: Path, force: bool) -> list[str]:
+    """before.png and after.png, as the viewer sees them."""
+    from ..look import after, picture
     from ..pictures import save_png
 
     folder.mkdir(parents=True, exist_ok=True)
-    written = []
-    for name in ("before", "after"):
-        save_png(render(outcome[name].cloud, session.viewer).to_uint8(), folder / f"{name}.png", force)
-        written.append(str(folder / f"{name}.png"))
-    return written
+    shots = {"before": picture(results[0].before, session.viewer), "after": after(results[-1], session.viewer)}
+    for name, shot in shots.items():
+        save_png(shot, folder / f"{name}.png", force)
+    return [str(folder / f"{name}.png") for name in shots]

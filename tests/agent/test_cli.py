@@ -197,7 +197,7 @@ def test_a_dry_run_writes_nothing(call: Any, room: Path, tmp_path: Path) -> None
     answer = call(
         "edit", room, "delete the green thing", "--dry-run", "-o", tmp_path / "o.ply", "--log", tmp_path / "l"
     )
-    assert answer.code == 0 and "343 removed" in answer.out and "nothing was written" in answer.out
+    assert answer.code == 0 and "343 removed" in answer.out and "no scene was written" in answer.out
     assert sorted(tmp_path.rglob("*")) == there
 
 
