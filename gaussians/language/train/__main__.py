@@ -18,7 +18,7 @@ import torch
 from ... import assets
 from ...assets import registry
 from ..encoders.embedded import Embedded
-from . import captions, export, fit, measure, renders
+from . import captions, export, fit, measure, renders, strangers
 
 CALIBRATION_SEEDS, MEASURING_SEEDS = 10_000, 20_000
 HELD_OUT = 8  # seeds of each kind for calibration, and as many for measurement
@@ -42,13 +42,24 @@ def main(argv: list[str] | None = None) -> int:
         renders.cached(name, kinds, range(first, first + HELD_OUT), cache, report)
         for name, first in (("calibrate", CALIBRATION_SEEDS), ("measure", MEASURING_SEEDS))
     ]
+    effort = fit.Effort(options.minutes, options.steps, options.seed, options.bf16)
     rendered = time.monotonic() - start
-    towers = fit.train(shown, job, fit.Effort(options.minutes, options.steps, options.seed, options.bf16), report)
+    towers = fit.train(shown, job, effort, report)
     export.write_weights(options.out, towers, job)
-    encoder = Embedded(options.out)
-    rule = measure.calibrate(encoder, held[0], measure.size_priors(shown), towers.scale)
+    rule = measure.calibrate(Embedded(options.out), held[0], measure.size_priors(shown), towers.scale)
     export.write_calibration(options.out, rule)
-    card = _card(options, Embedded(options.out), held[1], towers, len(shown), rendered, time.monotonic() - start)
+    card = {
+        "seed": effort.seed,
+        "bf16": effort.half,
+        "steps": towers.steps,
+        "training_minutes": effort.minutes,
+        "designs_per_kind": options.assets,
+        "things": len(shown),
+        "pictures": len(shown) * renders.VIEWS,
+        "cores": os.cpu_count(),
+        "render_seconds": round(rendered, 1),
+        "total_seconds": round(time.monotonic() - start, 1),
+    } | _measured(Embedded(options.out), held[1], options.strangers)
     export.write_calibration(options.out, replace(rule, measured=card["figures"]))
     export.write_json(options.out / "measured.json", card)
     for key, value in card["figures"].items():
@@ -64,6 +75,7 @@ def _options(argv: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--bf16", action="store_true", help="convolutions in bfloat16: faster on recent processors")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--assets", type=int, default=60, help="designs of each kind to learn from")
+    parser.add_argument("--strangers", type=Path, help="folder of meshes by others to measure on as well")
     parser.add_argument("--threads", type=int, default=os.cpu_count() or 1, help="fewer where the machine is shared")
     parser.add_argument(
         "--cache", type=Path, help=f"where rendered pictures are kept (default {renders.cache_folder()})"
@@ -71,36 +83,22 @@ def _options(argv: list[str] | None) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-def _card(
-    options: argparse.Namespace,
-    encoder: Embedded,
-    crops: renders.Crops,
-    towers: fit.Towers,
-    things: int,
-    rendered: float,
-    total: float,
-) -> dict[str, Any]:
-    """Everything the encoder card states."""
+def _measured(encoder: Embedded, crops: renders.Crops, meshes: Path | None) -> dict[str, Any]:
+    """What the encoder card states about the encoder itself."""
     image_ms, text_ms = measure.milliseconds(encoder)
     files = ("image.onnx", "text.onnx", "words.json")
-    return {
+    result = {
         "fingerprint": encoder.fingerprint,
-        "seed": options.seed,
-        "designs_per_kind": options.assets,
-        "things": things,
-        "pictures": things * renders.VIEWS,
-        "steps": towers.steps,
-        "bf16": options.bf16,
-        "training_minutes": options.minutes,
-        "render_seconds": round(rendered, 1),
-        "total_seconds": round(total, 1),
-        "cores": os.cpu_count(),
         "bytes": {name: (encoder.folder / name).stat().st_size for name in files},
         "milliseconds_per_image": round(image_ms, 3),
         "milliseconds_per_phrase": round(text_ms, 3),
         "figures": {k: round(v, 4) for k, v in measure.figures(encoder, crops).items()},
+        "simulated": {"rooms": measure.ROOMS, "room": measure.ROOM, "merges": measure.MERGES},
         "kinds": measure.confusions(encoder, crops),
     }
+    if meshes is not None:
+        result["strangers"] = strangers.summary(strangers.judge(encoder, meshes), encoder.calibration.threshold)
+    return result
 
 
 if __name__ == "__main__":

@@ -143,11 +143,11 @@ _MATERIALS = normalise(
     "wicker woven bamboo rattan paper cardboard brass copper silver gold golden chrome oak pine walnut linen silk"
 )
 _LOOKS = normalise(
-    "old new modern antique vintage classic rustic simple plain comfy comfortable cozy cosy soft hard shiny bright dark "
-    "light pale striped patterned dotted checkered colorful colourful empty open closed pretty nice beautiful ugly "
-    "elegant fancy minimalist decorative painted upholstered folding dining living kitchen office bedroom bathroom garden room "
-    "wall floor corner standing hanging framed full single double whole complete other one first second last same "
-    "left right middle only entire"
+    "old new modern antique vintage classic rustic simple plain comfy comfortable cozy cosy soft hard shiny bright "
+    "dark light pale striped patterned dotted checkered colorful colourful empty open closed pretty nice beautiful "
+    "ugly elegant fancy minimalist decorative painted upholstered folding dining living kitchen office bedroom "
+    "bathroom garden room wall floor corner standing hanging framed full single double whole complete other one "
+    "first second last same left right middle only entire"
 )
 _SHOWN = ("", "", "", "", "photo of ", "picture of the ", "one ")
 

@@ -1,6 +1,6 @@
-"""Teaches the two towers: each crop shall be nearest to a phrase for what it is, among phrases for everything else.
+"""Teaches the two towers: each crop, and each phrase, shall be nearest to the vector of what it is among all labels.
 
-The loss is the question asked later (see `calibration.probability`): the right name against all others. Knows crops and captions. Refuses to know files.
+Knows crops and captions. Refuses to know files.
 """
 
 from __future__ import annotations
@@ -119,8 +119,8 @@ def train(crops: Crops, job: Task, effort: Effort, report: Callable[[str], None]
         running = 0.98 * running + 0.02 * seen
         step += 1
         if step % 100 == 0:
-            report(f"step {step}, {100 * progress:.0f} %, picture loss {running:.3f}, scale {float(pupil.scale):.1f}")
-    return Towers(mean.image.eval(), mean.text.eval(), float(mean.scale), step)
+            report(f"step {step}, {100 * progress:.0f} %, picture loss {running:.3f}, scale {pupil.scale.item():.1f}")
+    return Towers(mean.image.eval(), mean.text.eval(), mean.scale.item(), step)
 
 
 class Pupil(nn.Module):
@@ -168,7 +168,7 @@ class Lessons:
         return pictures, torch.from_numpy(self.label[rows])
 
     def captions(self, step: int) -> tuple[Tensor, Tensor]:
-        """Word numbers `[CAPTIONS, L]`, and for each phrase the share of each label in what it covers `[CAPTIONS, C]`."""
+        """Word numbers `[CAPTIONS, L]`, and the share of each label in what a phrase covers `[CAPTIONS, C]`."""
         rng = np.random.default_rng([self.seed, step, 1])
         rows = rng.integers(len(self.phrases), size=CAPTIONS)
         said = [captions.phrase(rng, self.phrases[i], self.job.modifiers) for i in rows]

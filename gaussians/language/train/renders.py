@@ -7,6 +7,7 @@ thing, and encoders. A set is a function of its seeds and is kept in a cache fol
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 import math
 import os
@@ -23,6 +24,7 @@ from ...assets import registry
 from ...camera import Camera
 from ...cloud import GaussianCloud
 from ...render import render
+from .. import portraits
 from ..encoders.framing import square_rgba
 from . import damage
 from .captions import FLOOR, PART, SEVERAL, WALL
@@ -30,7 +32,7 @@ from .captions import FLOOR, PART, SEVERAL, WALL
 CROP = 80  # px, side of the stored crops: a quarter more than the encoder's input, room for augmentation
 CANVAS = 112  # px, side of the renders they are cut from
 VIEWS = 4  # of each thing
-VERSION = 1  # of this file's choices; part of the cache's name
+VERSION = 2  # of this file's choices; part of the cache's name
 
 WHOLE, DAMAGED, NONE = "whole", "damaged", "not an object"
 # A cut-off piece of these still looks like one of them, so cuts of them say nothing about being incomplete.
@@ -189,26 +191,44 @@ def pictures(thing: Thing, rng: np.random.Generator) -> NDArray[np.uint8] | None
 
 
 def cameras(thing: Thing, rng: np.random.Generator) -> list[Camera]:
-    """Cameras as an embedding chooses them: around the thing, from where there is room to stand."""
+    """Cameras around the thing: for half of the things as embedding a scene places them, for the others more freely."""
     low, high = damage.extent(thing.cloud)
     middle, size = (low + high) / 2, high - low
     radius = float(np.linalg.norm(size)) / 2
-    flat = size[2] < 0.15 * max(size[0], size[1])
-    start, step = rng.uniform(0, 2 * math.pi), math.radians(rng.uniform(25, 90))
     result = []
-    for i in range(VIEWS):
-        azimuth = start + i * step + rng.normal() * 0.15  # from the front, which faces -y
-        if thing.against_wall and rng.random() < 0.92:
-            azimuth = math.radians(rng.uniform(-75, 75))
-        elevation = math.radians(_elevation(rng, thing.support, flat))
-        fov = rng.uniform(25, 60)
-        distance = radius / math.sin(math.radians(fov) / 2) * rng.uniform(0.85, 1.4)
+    for azimuth, elevation, fov in _portrait(thing, rng) if rng.random() < 0.5 else _free(thing, rng, size):
+        distance = radius / math.sin(fov / 2) * rng.uniform(0.85, 1.3)
         ground = math.cos(elevation)
         eye = middle + distance * np.array(
             [ground * math.sin(azimuth), -ground * math.cos(azimuth), math.sin(elevation)]
         )
         up = np.array([rng.normal() * 0.04, rng.normal() * 0.04, 1.0])
-        result.append(Camera.look_at(eye, middle, up, CANVAS, CANVAS, fov))
+        result.append(Camera.look_at(eye, middle, up, CANVAS, CANVAS, math.degrees(fov)))
+    return result
+
+
+def _portrait(thing: Thing, rng: np.random.Generator) -> list[tuple[float, float, float]]:
+    """Azimuth from the front (-y), elevation and field of view, radians, about as `portraits` looks at a
+    group: from the open side of the room, the front of what stands against a wall and any side of the rest."""
+    front = rng.normal() * 0.35 if thing.against_wall else rng.uniform(0, 2 * math.pi)
+    jitter = rng.normal(size=(VIEWS, 2)) * 0.12
+    return [
+        (front + math.radians(a) + da, math.radians(e) + de, math.radians(portraits.FOV))
+        for (a, e), (da, de) in zip(itertools.islice(itertools.cycle(portraits.ANGLES), VIEWS), jitter, strict=True)
+    ]
+
+
+def _free(thing: Thing, rng: np.random.Generator, size: NDArray[np.float64]) -> list[tuple[float, float, float]]:
+    """The same three numbers, from wherever there is room to stand."""
+    flat = bool(size[2] < 0.15 * max(size[0], size[1]))
+    start, step = rng.uniform(0, 2 * math.pi), math.radians(rng.uniform(25, 90))
+    result = []
+    for i in range(VIEWS):
+        azimuth = start + i * step + rng.normal() * 0.15
+        if thing.against_wall and rng.random() < 0.92:
+            azimuth = math.radians(rng.uniform(-75, 75))
+        elevation = math.radians(_elevation(rng, thing.support, flat))
+        result.append((azimuth, elevation, math.radians(rng.uniform(25, 60))))
     return result
 
 
