@@ -10,8 +10,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
+from lark import Token, Tree
+
 from ...gaussians.language.query import Query
-from . import changes, nouns, places
+from . import changes, nouns, places, sizes
 from .phrases import Node, Noun, Phrases, Refusal, tokens, trees, union
 
 Fields = dict[str, Any]
@@ -54,7 +56,7 @@ class Commands:
         return found
 
     def _query(self, node: Node, index: int = 0) -> Query:
-        return union(self._nouns(node, index))
+        return _known(self._nouns(node, index))
 
     def _targeted(self, node: Node, op: str, **fields: Any) -> list[Fields]:
         return [{"op": op, "target": self._query(node), **fields}]
@@ -66,7 +68,7 @@ class Commands:
 
     def _clear(self, node: Node) -> list[Fields]:
         found = self._nouns(node)
-        if any(nouns.head(n.query.text) in nouns.SURFACES and not n.posts for n in found):
+        if any(nouns.head(n.query.text) in nouns.SURFACES for n in found):
             raise Refusal("say whether to remove it or everything on it", "clear")
         return [{"op": "delete", "target": union(found)}]
 
@@ -81,6 +83,9 @@ class Commands:
         return self._move(node)
 
     def _select(self, node: Node) -> list[Fields]:
+        said = tokens(node, "SELECT")[0].text
+        if said == "show" and self._query(node) == Query(pick="all"):
+            raise Refusal("what was hidden comes back with undo", said, verdict="impossible")
         return self._targeted(node, "select")
 
     def _isolate(self, node: Node) -> list[Fields]:
@@ -132,11 +137,15 @@ class Commands:
     def _make(self, node: Node) -> list[Fields]:
         first, *others = trees(node)
         change, *more = others
-        ops = [{**changes.change(change), "target": union(self.phrases.targets(first))}]
+        ops = [{**changes.change(change), "target": _known(self.phrases.targets(first))}]
         for also in more:
             inner = trees(also)
-            target = union(self.phrases.targets(inner[0])) if inner[0].data == "targets" else Query(last=True)
-            ops.append({**changes.change(inner[-1]), "target": target})
+            same = inner[0].data != "targets"
+            fields = changes.change(inner[-1])
+            if same and "color" in fields and "color" in ops[-1]:
+                raise Refusal("one colour at a time", fields["color"])
+            target = Query(last=True) if same else _known(self.phrases.targets(inner[0]))
+            ops.append({**fields, "target": target})
         return ops
 
     def _it_becomes(self, node: Node) -> list[Fields]:
@@ -150,18 +159,30 @@ class Commands:
             raise Refusal("say which way, or what to change")
         return [{"op": "move", "target": Query(last=True), **motion.fields()}]
 
-    def _move(self, node: Node, verb: str = "MOVE") -> list[Fields]:
-        return self._moved(self._nouns(node), node, verb)
+    def _move(self, node: Node) -> list[Fields]:
+        return self._moved(self._nouns(node), node, "MOVE")
+
+    def _centering(self, node: Node) -> list[Fields]:
+        return self._targeted(node, "move", place={"relation": "center"})
+
+    def _keep(self, node: Node) -> list[Fields]:
+        """ "keep the sofa and delete the rest": what is kept is what the next step leaves out (see `keeps`)."""
+        return self._targeted(node, "select", kept=True)
 
     def _moved(self, found: list[Noun], node: Node, verb: str) -> list[Fields]:
-        motion = places.read(trees(node, *_MOTIONS), self.phrases, found[0])
+        first, second = _split_at_and(node)
+        motion = places.read(first, self.phrases, found[0])
         if not motion.aims:
             found[-1], motion.place = places.destination(found[-1], verb)
             if motion.place is None:
                 raise Refusal("say where to: left, 30 cm up, onto the desk, next to the sofa")
             if motion.distance is not None:
                 raise Refusal("a distance needs a direction")
-        return [{"op": "move", "target": union(found), **motion.fields()}]
+        ops = [{"op": "move", "target": _known(found), **motion.fields()}]
+        if second:
+            more = places.read(second, self.phrases, found[0])
+            ops.append({"op": "move", "target": Query(last=True), **more.fields()})
+        return ops
 
     def _raise(self, node: Node) -> list[Fields]:
         lengths, degree = tokens(node, "LENGTH"), changes.degree_of(node)
@@ -185,6 +206,8 @@ class Commands:
     def _rotate(self, node: Node) -> list[Fields]:
         turns = trees(node, "turning")
         angle, clock, direction = (_only(turns, *kind) for kind in (("ANGLE", "NUMBER"), ("CLOCK",), ("DIR",)))
+        if angle is None and (share := _only(turns, "FRACTION")) is not None:
+            angle = 360 * share
         if any(tokens(t, "UPSIDE") for t in turns):
             if len(turns) > 1:
                 raise Refusal("turning upside down is half a turn; leave the rest out")
@@ -266,6 +289,12 @@ class Commands:
     def _insert(self, node: Node) -> list[Fields]:
         return self._inserted(self._nouns(node), node, "ADD")
 
+    def _make_new(self, node: Node) -> list[Fields]:
+        found = self._nouns(node)
+        if not all(n.article == "indef" for n in found):
+            raise Refusal("it does not say what it should become", found[-1].query.text.rsplit(" ", 1)[-1])
+        return self._inserted(found, node, "ADD")
+
     def _inserted(self, found: list[Noun], node: Node, verb: str) -> list[Fields]:
         motion = places.read(trees(node, *_MOTIONS), self.phrases, found[0])
         if motion.direction or motion.toward or motion.distance:
@@ -273,7 +302,7 @@ class Commands:
         found[-1], place = (found[-1], motion.place) if motion.place else places.destination(found[-1], "PUT")
         ops = []
         for noun in found:
-            noun, own = places.destination(noun, "PUT")
+            noun, own = places.destination(_with_height(noun), "PUT")
             where = own or place
             count = self._count(noun)
             ops.append({
@@ -282,6 +311,15 @@ class Commands:
                 **({"place": where} if where else {}),
             })  # fmt: skip
         return ops
+
+    def _more_like(self, node: Node) -> list[Fields]:
+        """ "add two more chairs like this one": copies of what was spoken of."""
+        found = self._nouns(node)
+        motion = places.read(trees(node, *_MOTIONS), self.phrases)
+        if len(found) != 1 or found[0].article not in ("indef", "bare") or found[0].posts:
+            raise Refusal("say how many copies of it")
+        count = self._count(found[0])
+        return [{"op": "duplicate", "target": Query(last=True), **_counted(count), **motion.fields()}]
 
     def _count(self, noun: Noun) -> int:
         if noun.number is not None:
@@ -295,13 +333,16 @@ class Commands:
     def _asset(self, noun: Noun) -> Fields:
         """Name and colour of a new thing."""
         query = noun.query
-        heights = [p for p in noun.posts if p.kind == "is_tall"]
-        if not noun.is_new or query.relations or query.not_colors or (noun.posts and not heights):
+        if not noun.is_new or query.relations or query.not_colors or noun.posts:
             raise Refusal("a new thing is named by what it is: a red floor lamp", query.text)
         if len(query.colors) > 1:
             raise Refusal("a new thing has one colour", *query.colors)
-        name = " ".join([*noun.adjectives, query.text])
-        return {"asset": name, **({"color": query.colors[0]} if query.colors else {})}
+        fields: Fields = {"asset": query.text}
+        if query.size and not noun.height and (height := sizes.usual_height(query.text, query.size)):
+            fields["height"] = {"value": height, "unit": "m"}
+        elif noun.adjectives:
+            fields["asset"] = " ".join([*noun.adjectives, query.text])
+        return {**fields, **({"color": query.colors[0]} if query.colors else {})}
 
     def _replace(self, node: Node) -> list[Fields]:
         return self._replaced(self._nouns(node, 0), self._nouns(node, 1))
@@ -320,14 +361,18 @@ class Commands:
 
     def _swap(self, node: Node) -> list[Fields]:
         if len(trees(node, "targets")) < 2:
-            raise Refusal("things cannot change places; say what to put there instead", "swap", verdict="impossible")
+            said = tokens(node, "SWAP")[0].text
+            raise Refusal("things cannot change places; say what to put there instead", said, verdict="impossible")
         return self._replace(node)
 
     def _duplicate(self, node: Node) -> list[Fields]:
+        found = self._nouns(node)
         motion = places.read(trees(node, *_MOTIONS), self.phrases)
         if motion.toward or (motion.distance and not motion.direction):
             raise Refusal("copies go left, right, forward, backward, or next to something")
-        return self._targeted(node, "duplicate", **_counted(motion.times), **motion.fields())
+        if not motion.aims:
+            found[-1], motion.place = places.destination(found[-1], "COPY")
+        return [{"op": "duplicate", "target": _known(found), **_counted(motion.times), **motion.fields()}]
 
     def _copies(self, node: Node) -> list[Fields]:
         found = self._nouns(node)
@@ -338,6 +383,27 @@ class Commands:
         number = tokens(node, "NUMBER")
         times = places.whole(number[0].value, number[0].text) if number else None
         return [{"op": "duplicate", "target": union(found), **_counted(times), **motion.fields()}]
+
+
+def _known(found: Sequence[Noun]) -> Query:
+    """The query for things that are there already; "some chairs" does not say which."""
+    if any(n.article == "indef" and n.plural and n.number is None for n in found):
+        raise Refusal("say which, or how many", "some")
+    return union(found)
+
+
+def _with_height(noun: Noun) -> Noun:
+    """A new thing's height, said behind it ("a lamp, 1.5 m tall"), as if said before it."""
+    said = [p for p in noun.posts if p.kind == "is_tall"]
+    rest = tuple(p for p in noun.posts if p.kind != "is_tall")
+    return replace(noun, height=said[0].value, posts=rest) if said else noun
+
+
+def _split_at_and(node: Node) -> tuple[list[Node], list[Node]]:
+    """The motions before and behind "and" ("1 m to the right and 50 cm up")."""
+    at = next((i for i, c in enumerate(node.children) if isinstance(c, Token) and c.type == "AND"), len(node.children))
+    before, behind = Tree("motions", node.children[:at]), Tree("motions", node.children[at:])
+    return trees(before, *_MOTIONS), trees(behind, *_MOTIONS)
 
 
 def _counted(times: int | None) -> Fields:

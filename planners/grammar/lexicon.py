@@ -25,13 +25,15 @@ def _same(value: Any, phrases: str) -> dict[str, Any]:
 VERBS: dict[str, Entry] = {
     **_same(
         ("DELETE", None),
-        "delete, remove, erase, eliminate, discard, take away, take out, get rid of, throw away, throw out, chuck out, "
-        "chuck, chuck away, lose, clear away, clear out, zap, kill, nuke, dump, ditch, trash, scrap, destroy, banish, "
+        "delete, remove, erase, eliminate, discard, take away, take out, get rid of, throw away, throw out, "
+        "chuck out, "
+        "chuck, chuck away, lose, clear away, clear out, zap, kill, nuke, dump, ditch, trash, scrap, destroy, "
+        "banish, "
         "dispose of, do away with, bin, axe, purge, expunge, wipe out, rub out, delete away, get out",
     ),
     **_same(("CLEAR", None), "clear, clear off, wipe"),
     **_same(("DROP", None), "drop"),
-    **_same(("TAKE", None), "take, throw, get, tidy"),
+    **_same(("TAKE", None), "take, throw, get"),
     **_same(
         ("SELECT", None),
         "select, highlight, find, find me, locate, pick, pick out, choose, show me, show, mark, point out, point to, "
@@ -40,7 +42,8 @@ VERBS: dict[str, Entry] = {
     **_same(
         ("ISOLATE", None),
         "isolate, keep only, keep just, only keep, just keep, show only, show just, show me only, only show, "
-        "only show me, leave only, leave just, leave nothing but, keep nothing but, show nothing but, single out, solo",
+        "only show me, leave only, leave just, leave nothing but, keep nothing but, show nothing but, "
+        "single out, solo",
     ),
     **_same(("HIDE", None), "hide, conceal, fade out"),
     **_same(("FADE", None), "fade"),
@@ -49,11 +52,11 @@ VERBS: dict[str, Entry] = {
         "paint, colour, color, recolor, recolour, dye, repaint, stain, spray paint, spray, coat, re paint",
     ),
     **_same(("TINT", None), "tint"),
-    **_same(("MAKE", None), "make, turn it to be, render"),
+    **_same(("MAKE", None), "make, render, let"),
     **_same(("TURN", None), "turn"),
     **_same(("CHANGE", None), "change, convert, transform, set the, adjust"),
     **_same(("GIVE", None), "give"),
-    **_same(("WANT", None), "i want, i would like, i need, we want, we need, i would love, i wish for"),
+    **_same(("WANT", None), "want, need, i want, i would like, i need, we want, we need, i would love, i wish for"),
     **_same(("ADJUST", ("darker", None)), "darken"),
     **_same(("ADJUST", ("lighter", None)), "lighten, brighten, brighten up, lighten up"),
     **_same(("ADJUST", ("less_saturated", None)), "desaturate, tone down, mute"),
@@ -65,6 +68,8 @@ VERBS: dict[str, Entry] = {
         "move, shift, slide, push, pull, bring, shove, drag, scoot, nudge, relocate, transfer, carry, reposition, "
         "move over, shift over, budge, haul, scooch",
     ),
+    **_same(("CENTERING", None), "center, centre"),
+    **_same(("KEEP", None), "keep, leave"),
     **_same(("RAISE", "up"), "raise, lift, elevate, hoist, lift up, move up"),
     **_same(("RAISE", "down"), "lower"),
     **_same(
@@ -127,7 +132,8 @@ STATEMENT = bag("i we you he she they there my our your")
 NOUN_VERBS = bag(
     "plant light paint set stand copy clone duplicate mark place park drop bin mount rest tip roll change show pick "
     "color colour tint stain dye coat spray swap switch trade slide push dump scrap trash lock play fold lift double "
-    "clear dust label group face hang cool warm spin twist flip turn scale grow narrow lower split light position"
+    "clear dust label group face hang cool warm spin twist flip turn scale grow narrow lower split light position "
+    "center centre keep leave"
 )
 
 # ---- words inside a clause -----------------------------------------------------------------------------------------
@@ -200,13 +206,16 @@ INSIDE: dict[str, Entry] = {
     **_same(("SIDE", "farthest"), "at the back of the room, in the back of the room"),
     **_same(("NOWHERE", None), "to the back of the room, to the front of the room, to the left of the room, "
             "to the right of the room, to the left side of the room, to the right side of the room, "
-            "to the other side of the room, to the side"),
+            "to the other side of the room, to the side, on its side, on its back, on their side, on their sides, "
+            "side by side, every other, every second, in a line, in a circle, in a row, in rows"),
+    **_same(("COUNTED", "right"), "from the right, counting from the right, from right to left, from right"),
     **_same(("COUNTED", "left"), "from the left, counting from the left, from left to right, from left"),
     **_same(("DIR", "left"), "to the left, left, leftward, leftwards, to my left, over to the left, further left, "
             "to the left side, more to the left, further to the left, farther left, over left"),
     **_same(("DIR", "right"), "to the right, right, rightward, rightwards, to my right, over to the right, further "
             "right, to the right side, more to the right, further to the right, farther right, over right"),
-    **_same(("DIR", "forward"), "forward, forwards, away from me, away from the viewer, away from the camera, further "
+    **_same(("DIR", "forward"), "forward, forwards, away from me, away from the viewer, away from the camera, "
+            "further "
             "away, farther away, to the back, back, further back, farther back, toward the back, towards the back"),
     **_same(("DIR", "backward"), "backward, backwards, toward me, towards me, closer to me, nearer to me, toward the "
             "viewer, toward the camera, towards the camera, towards the viewer, to the front, closer, nearer, to me, "
@@ -250,10 +259,13 @@ INSIDE: dict[str, Entry] = {
     **_same(("OPACITYWORD", True), "opacity, alpha"),
     **_same(("OPACITYWORD", False), "transparency"),
     **_same(("CLEARLY", 0.3), "transparent, see through, translucent"),
+    **_same(("CLEARLY", 0.5), "semi transparent, half see through"),
     **_same(("CLEARLY", 0.0), "invisible, completely transparent, fully transparent, totally transparent, hidden"),
     **_same(("OPAQUE", None), "opaque, visible"),
     **_same(("GONE", None), "gone, disappear, vanish, go away"),
     **_same(("TOBE", None), "to be, be, become, look, to look"),
+    **_same(("SHOULD", None), "should be, needs to be, need to be, must be, has to be, have to be, ought to be, "
+            "should become, should look"),
     **_same(("COPIES", None), "copy of, copies of, duplicate of, duplicates of, clone of, clones of, more copies of, "
             "another copy of, copies from, more of"),
     **_same(("REL", None), "that is, that are, which is, which are, who is, that was"),
@@ -264,10 +276,14 @@ INSIDE: dict[str, Entry] = {
     **_same(("DET", "both"), "both, both the, both of the"),
     **_same(("DET", "any"), "any, one of the, any of the, any one of the, either, either of the"),
     **_same(("OTHER", None), "other, remaining"),
-    **_same(("PRON", "it"), "it, them, this one, that one, these ones, those ones, the same, the same one, "
+    **_same(("PRON", "it"), "it, them, them all, them both, it all, this one, that one, these ones, those ones, "
+    "the same, the same one, "
             "the same thing, the same object, the same ones, this thing, that thing, all of them, all of it, "
             "both of them, each of them, the selection, the selected, the selected object, the selected objects, "
-            "the current selection, my selection, the selected one, the whole thing, him"),
+            "the current selection, my selection, the copy, the copies, the duplicate, the clone, the new one, "
+            "the new ones, the selected one, the whole thing, him"),
+    **_same(("LIKEIT", None), "like it, like this, like that, like this one, like that one, like these, like those, "
+            "like them, just like it"),
     **_same(("PRON", "any"), "one of them, any of them, either of them"),
     **_same(("EVERYTHING", None), "everything, all things, all objects, the whole scene, the entire scene, anything, "
             "every object, all the objects, the scene, the whole room, everything in the scene"),
@@ -276,8 +292,8 @@ INSIDE: dict[str, Entry] = {
     **_same(("ONE", False), "one"),
     **_same(("ONE", True), "ones"),
     **_same(("OTHERS", None), "the others, all the others, all others, the other ones, all the other ones"),
-    **_same(("THING", False), "thing, object, item, part, piece, area, region, element, bit, stuff"),
-    **_same(("THING", True), "things, objects, items, parts, pieces, areas, regions, elements, bits"),
+    **_same(("THING", False), "thing, object, item, part, piece, area, region, element, bit"),
+    **_same(("THING", True), "things, objects, items, parts, pieces, areas, regions, elements, bits, stuff"),
 }  # fmt: skip
 
 # Only before a noun ("the left chair"), or after a determiner where the noun is left out ("the largest").
@@ -310,12 +326,19 @@ FILLER = phrases(
     "you see, you know, as it is now, as it is, as before, as now, than it is now, than before, than it is, "
     "than now, than it was, as it was, as they are, as they are now, than they are, currently, too, if you "
     "would, if you will, could you, can you, would you please, for now, from the view, this time, alone, "
-    "somewhere, mate, buddy, my friend, finally, lastly, afterwards, after that, entirely, altogether, again, "
+    "somewhere, mate, buddy, my friend, finally, lastly, afterwards, after that, entirely, altogether, "
+    "even, still, "
     "current"
 )
 
 # Dropped before a preposition ("the lamp standing on the desk").
 PARTICIPLES = bag("standing sitting located placed lying hanging situated positioned mounted leaning")
+
+# Dropped before words that carry on ("no, darker").
+INTERJECTIONS = bag("no yes yeah yep hmm oh ok okay and so but well maybe perhaps")
+
+# Before a verb in -ing ("would you mind removing the mug").
+GERUND_OPENERS = phrases("would you mind, do you mind, how about, what about, what if we try, try, start by, consider")
 
 # Dropped where a clause begins, before its verb.
 POLITE = phrases(
@@ -323,19 +346,23 @@ POLITE = phrases(
     "i want you to, i want to, i need you to, i need to, we need to, we want to, let us, let me, you should, "
     "you can, we should, you could, go and, try to, help me to, help me, i would love you to, i would love to, "
     "may i ask you to, i wish you to, i am going to, we are going to, you have to, i have to, you must, "
-    "could i ask you to, be so kind and, first, first of all, second, secondly, firstly, to start, "
+    "could i ask you to, is it possible to, would it be possible to, is it possible for you to, could you possibly, "
+    "would you be able to, are you able to, would you be so kind as to, do you think you could, be so kind and, "
+    "first, first of all, second, secondly, firstly, to start, "
     "to begin with, next, then, finally, lastly, after that, afterwards, and, so, but, next up, proceed to, "
-    "start by, i think you should, maybe, perhaps, oh, uh, um, hmm, alright, all right, right, good, great, "
+    "i think you should, maybe, perhaps, oh, uh, um, hmm, alright, all right, right, good, great, "
     "cool, perfect, nice, no, yes, yeah, yep, sure"
 )
 
 # Never part of a noun: words that carry structure or that would be dropped at a cost.
 STRUCTURE = bag(
     "if unless until till while because since when whenever although though who whom whose which what where why how "
-    "that than so or nor yet no without like about through across during via be is are was were am been being do does "
+    "that than so middle last next previous former latter or nor yet no without "
+    "like about through across during via be is are was were am been being do does "
     "did done have has had can could will would shall should may might must i me we us you he she they him her "
     "very quite rather too almost nearly only even ever never always often once again here there facing around "
-    "opposite beyond past before after during per same such much many few several enough whichever whatever "
+    "opposite beyond past before after during per same such something someone somebody neither "
+    "much many few several enough whichever whatever "
     "more less most least not none nothing nobody except but and to of from off with for as by in on at into onto "
     "it its them their itself themselves myself another every each all both any some else maybe perhaps together apart"
 )

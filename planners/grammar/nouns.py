@@ -42,6 +42,7 @@ SURFACES = bag(
     "sideboard mantel mantelpiece bench stand stool tray rug carpet mat pedestal plinth sofa couch"
 )
 CONTAINERS = bag("box basket bin bag drawer bowl bucket crate jar cup mug vase wardrobe closet chest sink")
+SEATS = bag("chair armchair sofa couch bed stool bench recliner loveseat")
 FURNITURE = bag(
     "sofa couch armchair chair bed table desk wardrobe cabinet bookshelf bookcase dresser sideboard bench stool shelf "
     "ottoman nightstand door window wall fireplace piano fridge oven stove bathtub toilet sink counter "

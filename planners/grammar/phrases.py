@@ -133,6 +133,7 @@ class Phrases:
         head = self.core(core)
         if head.query.text:
             self.antecedent = head.query.text
+        headless = not tokens(core, "NOUN", "ONE", "THING") and bool(tokens(core, "SUP", "ORDINAL"))
         posts: list[Post] = []
         joined = False
         for child in rest:
@@ -141,7 +142,16 @@ class Phrases:
                 continue
             posts.append(self.post(child, joined))
             joined = False
+        if headless and posts and posts[0].kind == "part":
+            return self._chosen(head, posts)
         return replace(head, posts=(*head.posts, *posts))
+
+    def _chosen(self, head: Noun, posts: list[Post]) -> Noun:
+        """ "the largest of the red chairs"."""
+        among = posts[0].anchors[0]
+        picked = {"pick": head.query.pick, "ordinal": head.query.ordinal, "count": None}
+        self.antecedent = among.query.text or self.antecedent
+        return replace(head, query=_update(among.query, **picked), posts=tuple(posts[1:]))
 
     def post(self, node: Node, joined: bool = False) -> Post:
         first = next((tag_of(c) for c in node.children if isinstance(c, Token)), None)
@@ -152,7 +162,7 @@ class Phrases:
         elif kind in ("is_hue", "is_not_hue"):
             value = tokens(node, "HUE")[0].value
         elif kind == "is_tall":
-            value = tokens(node, "LENGTH")[0].value
+            value = tokens(node, "TALLER")[0].value
         return Post(kind, value, word, anchors, joined)
 
     def core(self, node: Node) -> Noun:
@@ -193,6 +203,8 @@ class Phrases:
             "size": sizes[0] if sizes else None,
             **_pick(tags, article, plural, number),
         }
+        if tags[-1].type == "ONE" and len(tags) == 1 and not plural:  # "all but one"
+            fields["pick"] = "any"
         if any(t.type == "OTHER" for t in tags):
             fields["exclude"] = (Query(last=True),)
         words = tuple(t.text for t in tags if t.type == "SIZE")
@@ -298,6 +310,10 @@ def _narrow(query: Query, post: Post, behind: Sequence[Post]) -> Query:
     if post.kind == "counted":
         if query.pick != "nth":
             raise Refusal("counting needs a rank: the second chair from the left", post.word)
+        if post.value == "right":
+            if query.ordinal != 1:
+                raise Refusal("things are counted from the left", post.word, verdict="impossible")
+            return _update(query, pick="rightmost", ordinal=None)
         return query
     if post.kind == "in_spot" and post.value == "corner":
         return _update(query, relations=(*query.relations, _relation("inside", [Query(text="corner")])))
@@ -307,11 +323,17 @@ def _narrow(query: Query, post: Post, behind: Sequence[Post]) -> Query:
 def _relation_name(post: Post) -> str:
     """The relation a phrase says, "" if it says none."""
     if post.kind == "related":
-        return "next_to" if post.value == "against" else str(post.value)
+        return "next_to" if post.value == "against" else in_or_on(post)
     if post.kind == "off":
         inside = nouns.head(post.anchors[0].query.text) in nouns.CONTAINERS
         return "inside" if inside else "on"
     return {"part": "part_of", "between": "between"}.get(post.kind, "")
+
+
+def in_or_on(post: Post) -> str:
+    """The relation of a prepositional phrase; one sits "in" a chair by being on it."""
+    seat = post.value == "inside" and nouns.head(post.anchors[0].query.text) in nouns.SEATS
+    return "on" if seat else str(post.value)
 
 
 def _relation(name: str, anchors: Sequence[Query]) -> Relation:

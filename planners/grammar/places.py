@@ -6,6 +6,7 @@ Preferences:
 - A direction ("to the left") or a goal ("to the floor") settles it: what stands behind the noun describes the noun.
 - "move X P1 P2": the last phrase is the destination. "put X P1 P2": the first one opens it, unless the last says
   "into" or "onto", or repeats the relation of the first ("put the book on the table on the shelf").
+- "copy X P": the phrase says which X, unless it begins with "into" or "onto".
 - "on A next to B" is next to the B that is on A, if B is a small thing; with furniture it is the A next to B.
 """
 
@@ -16,7 +17,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from . import nouns
-from .phrases import Node, Noun, Phrases, Post, Refusal, attach, tag_of, tokens, trees
+from .phrases import Node, Noun, Phrases, Post, Refusal, attach, in_or_on, tag_of, tokens, trees
 
 Fields = dict[str, Any]
 LITTLE: Fields = {"value": 20, "unit": "cm"}
@@ -133,6 +134,8 @@ def _opens(posts: Sequence[Post], verb: str) -> int | None:
     explicit = [i for i in goals if posts[i].word.split()[0] in ("into", "onto", "to", "against", "up")]
     if explicit:
         return explicit[0]
+    if verb == "COPY":
+        return None  # a copy needs no place, so "copy the lamp on the desk" says which lamp
     first, last = goals[0], goals[-1]
     repeats = first != last and posts[last].value in (posts[first].value, "inside")
     return last if verb == "MOVE" or repeats else first
@@ -175,4 +178,7 @@ def _spot(post: Post) -> str:
         return "center"
     if post.value == "above":
         raise Refusal("nothing can be put in mid-air above something; say on it", post.word, verdict="impossible")
-    return {"below": "under", "nearest_to": "next_to"}.get(post.value, str(post.value))
+    relation = {"below": "under", "nearest_to": "next_to"}.get(post.value, in_or_on(post))
+    if relation in ("on", "inside") and post.anchors[0].query.pick == "all":
+        raise Refusal("one place at a time; name one", post.word)
+    return relation

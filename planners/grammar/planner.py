@@ -6,6 +6,7 @@ does not parse is named with the words to blame, and then nothing of the instruc
 
 from __future__ import annotations
 
+import difflib
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -18,13 +19,15 @@ from lark.exceptions import UnexpectedInput, UnexpectedToken
 from lark.lexer import Lexer
 
 from ...gaussians.errors import UserError
+from ...gaussians.language.query import Query
 from ...tools.base import EditOp
 from ...tools.registry import parse as parse_op
 from ..plan import MAX_OPS, EditPlan
 from . import lexicon, nouns
 from .commands import Commands
-from .phrases import Node, Refusal
-from .tagger import Clause, Tag, Tagger, color_at, sentences
+from .phrases import Node, Refusal, trees
+from .reading import color_at
+from .tagger import Clause, Tag, Tagger, sentences
 from .words import Word, clean, split
 
 if TYPE_CHECKING:
@@ -65,7 +68,7 @@ class GrammarPlanner:
 
     def __init__(self) -> None:
         # Everything that is made once is made here, so that the first instruction is as quick as the others.
-        _understand("paint it red", None)
+        _understand("paint it red and add a small mug", None)
 
     def plan(self, text: str, *, previous: str | None = None, graph: SceneGraph | None = None) -> EditPlan:
         """The plan for an instruction; see `Planner.plan`. The scene (`graph`) is not looked at.
@@ -115,6 +118,7 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
                 if refusal.verdict != "not_an_edit" or (idle and not _is_chat(refusal)):
                     raise
                 idle = refusal
+    _refuse_idle_keeping(ops)
     if not ops:
         raise idle or Refusal("there are no words in it", verdict="not_an_edit")
     if idle and not _is_chat(idle):
@@ -122,6 +126,16 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     if len(ops) > MAX_OPS:
         raise Refusal(f"that is more than {MAX_OPS} steps; say it in parts")
     return _Outcome(tuple(_merge_copies(ops)), commands.phrases.antecedent)
+
+
+def _refuse_idle_keeping(ops: list[dict[str, Any]]) -> None:
+    """ "keep the sofa" is an edit only together with "delete everything else"; drops the mark that says so."""
+    for i, op in enumerate(ops):
+        if not op.pop("kept", False):
+            continue
+        rest = ops[i + 1].get("target") if i + 1 < len(ops) else None
+        if rest is None or Query(last=True) not in rest.exclude:
+            raise Refusal("it says what to keep, and asks for no change", "keep", verdict="not_an_edit")
 
 
 def _is_chat(refusal: Refusal) -> bool:
@@ -158,7 +172,7 @@ def _carry(
         raise Refusal(f"“{said}”: {clause.unsupported}", clause.tags[0].text, verdict="impossible")
     try:
         tree = _parse(clause)
-        if not clause.verb and not follows:
+        if not follows and any(t.data in ("it_becomes", "it_moves") for t in trees(tree)):
             raise Refusal("it does not say what to do, or to what", *_first_words(clause))
         return commands.read(tree)
     except Refusal as refusal:
@@ -186,6 +200,8 @@ def _refuse_idle(clause: Clause, sentence: Sequence[Word], mark: str) -> None:
         raise Refusal(f"{first} is a command of the session, not an edit", first, verdict="not_an_edit")
     if all(t in polite for t in texts) and any(t in lexicon.CHAT for t in texts):
         raise Refusal(_CHAT, verdict="not_an_edit")
+    if texts[:3] == ["do", "the", "same"] or any(t.type == "SHOULD" for t in clause.tags):
+        return
     if first in lexicon.QUESTION or first in lexicon.ASKING or mark == "?":
         raise Refusal("this is a question, not an edit", first, verdict="not_an_edit")
     if first in lexicon.STATEMENT or any(t in ("is", "are", "was", "were", "should") for t in texts):
@@ -206,7 +222,7 @@ def _blame(clause: Clause, at: int | None) -> Refusal:
     """Which words to name: `at` is the index of the token that did not fit, None for the end of the clause."""
     tags = clause.tags
     if not clause.verb:
-        return Refusal(f"“{_first_words(clause)[0]}” is no verb this planner knows", *_first_words(clause))
+        return _unknown_verb(_first_words(clause)[0])
     if at is None:
         tail = _unknown_tail(tags[-1]) if tags else ()
         if tail:
@@ -219,6 +235,13 @@ def _blame(clause: Clause, at: int | None) -> Refusal:
         strange = (t for t in tags[at + 1 :] if t.type == "UNKNOWN" or (t.type == "NOUN" and not _is_known(t)))
         found = next(strange, found)
     return Refusal(f"“{found.text}” is not understood here", found.text)
+
+
+def _unknown_verb(word: str) -> Refusal:
+    verbs = [v[0] for v in lexicon.VERB_PHRASES if len(v) == 1]
+    close = difflib.get_close_matches(word, verbs, n=1, cutoff=0.75)
+    hint = f"; did you mean {close[0]}?" if close else ""
+    return Refusal(f"“{word}” is no verb this planner knows{hint}", word)
 
 
 def _first_words(clause: Clause) -> tuple[str, ...]:

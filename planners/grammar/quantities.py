@@ -154,7 +154,7 @@ def _number(words: Sequence[str]) -> tuple[float, int] | None:
 def _whole(words: Sequence[str]) -> tuple[float, int] | None:
     """Digits or number words without a fraction."""
     first = words[0]
-    if first[0].isdigit():
+    if first[0].isdigit() and not first[-1].isalpha():
         value = _digits(first)
         return None if value is None else (value, 1)
     if first not in NUMBERS or first in ("hundred", "dozen"):
@@ -188,6 +188,9 @@ def _is_fraction(words: Sequence[str]) -> bool:
 
 
 def _ordinal(words: Sequence[str]) -> Quantity | None:
-    if words[0] in ORDINALS:
-        return Quantity("ORDINAL", ORDINALS[words[0]], "", 1)
+    word = words[0]
+    if word in ORDINALS:
+        return Quantity("ORDINAL", ORDINALS[word], "", 1)
+    if word[0].isdigit() and word[-2:] in ("st", "nd", "rd", "th") and word[:-2].isdecimal() and len(word) < 6:
+        return Quantity("ORDINAL", int(word[:-2]), "", 1)
     return None

@@ -15,19 +15,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cache
 from typing import Any
 
-from ...gaussians import color as colors
-from . import lexicon, nouns, quantities
-from .words import Word, bag
+from . import lexicon, quantities
+from .reading import NOUN_COLORS, Reading, color_at, compounds, is_plain, match, verb_classes
+from .words import Word
 
-# Colours that are things as well ("delete the orange").
-NOUN_COLORS = bag("orange rose peach apricot olive lime tomato salmon plum chocolate snow sand coral orchid wine mint")
-_QUALIFIERS = ("very dark", "very light", "dark", "deep", "light", "pale", "bright", "vivid")
-_OPENERS = frozenset({"DET", "PRON", "EVERYTHING", "NUMBER", "OTHERS"})
 _NOUNISH = frozenset({"NOUN", "ONE", "THING"})
-_BOUNDARIES = frozenset(".;!?\n:")
+_BOUNDARIES = frozenset(".;!?\n")
+_REPEATABLE = ("DELETE", "SELECT", "HIDE", "ISOLATE")
 MAX_NOUN_WORDS = 4
 
 
@@ -69,66 +65,23 @@ def sentences(words: Sequence[Word]) -> Iterator[tuple[tuple[Word, ...], str]]:
         yield tuple(words[start:]), ""
 
 
-@cache
-def _color_names() -> frozenset[str]:
-    return frozenset(n.replace(" ", "") for n in colors.names()) - {"transparent"}
-
-
-def color_at(texts: Sequence[str], i: int) -> tuple[str, int] | None:
-    """The colour phrase at `i` and how many words it has."""
-    for taken in (4, 3, 2, 1):
-        if i + taken > len(texts):
-            continue
-        phrase = " ".join(texts[i : i + taken])
-        if _is_color(phrase):
-            return phrase, taken
-    return None
-
-
-def _is_color(phrase: str) -> bool:
-    joined = phrase.replace(" ", "").replace("grey", "gray")
-    if joined in _color_names() or phrase.startswith("#"):
-        return len(phrase) < 30
-    for qualifier in _QUALIFIERS:
-        if phrase.startswith(qualifier + " "):
-            return _is_color(phrase[len(qualifier) + 1 :])
-    if phrase.endswith("ish") and " " not in phrase:
-        stem = phrase[:-3]
-        return stem in _color_names() or stem.removesuffix("d") in _color_names()
-    return False
-
-
-def _match(table: Any, texts: Sequence[str], i: int) -> tuple[Any, int] | None:
-    """The longest phrase of `table` (a dict or a set of word tuples) at `i`, with its entry and length."""
-    for taken in range(min(lexicon.LONGEST, len(texts) - i), 0, -1):
-        key = tuple(texts[i : i + taken])
-        if key in table:
-            return (table[key] if isinstance(table, dict) else key), taken
-    return None
-
-
-def is_plain(text: str) -> bool:
-    """Whether a word may be (part of) a noun as far as its own form goes."""
-    if not text[0].isalpha() or text in lexicon.STRUCTURE:
-        return False
-    return not (text.endswith("ly") and len(text) > 3 and text not in lexicon.ADVERB_NOUNS)
-
-
 class Tagger:
     """Reads one sentence; `clauses()` gives its clauses."""
 
     def __init__(self, words: Sequence[Word]) -> None:
         self.words = tuple(words)
         self.texts = tuple(w.text for w in words)
+        self.read = Reading(self.texts)
         self.clause = Clause()
         self.done: list[Clause] = []
+        self.particles: set[int] = set()
 
     # ---- clauses -------------------------------------------------------------------------------------------------
 
     def clauses(self) -> list[Clause]:
         i = self._open(0)
         while i < len(self.texts):
-            i = self._boundary(i) or self._step(i)
+            i = i + 1 if i in self.particles else self._boundary(i) or self._step(i)
         self._close()
         return self.done
 
@@ -141,56 +94,31 @@ class Tagger:
 
     def _open(self, i: int) -> int:
         """Begin a clause at `i`: drop politeness, read its verb; the position behind."""
-        j, negated = self._skip_polite(i)
+        j, negated = self.read.skip_polite(i)
         if negated:
             self.clause.negated = True
             self.clause.tags.append(Tag("NEGATION", None, self.words[i : j + 1]))
-        found = _match(lexicon.VERB_PHRASES, self.texts, j)
-        unsupported = _match(lexicon.UNSUPPORTED_PHRASES, self.texts, j)
+        found = self.read.verb(j)
+        unsupported = match(lexicon.UNSUPPORTED_PHRASES, self.texts, j)
         if unsupported and (not found or unsupported[1] > found[1]):
             self.clause.unsupported = unsupported[0]
             self.clause.tags.append(Tag("UNSUPPORTED", unsupported[0], self.words[j : j + unsupported[1]]))
             return j + unsupported[1]
-        if not found or (j + found[1] < len(self.texts) and self._verb_is_noun(j, found[1])):
-            return i if not negated else j
-        (kind, value), taken = found
+        if not found or (j + found[1] < len(self.texts) and self.read.verb_is_noun(j, found[1])):
+            return j
+        (kind, value), taken, particle = found
+        if particle is not None:
+            self.particles.add(particle)
         self.clause.verb = kind
         self.clause.tags.append(Tag(kind, value, self.words[j : j + taken]))
         return j + taken
-
-    def _verb_is_noun(self, i: int, taken: int) -> bool:
-        """ "light blue" or "cool colours" where a clause begins: an attribute, not a verb."""
-        return taken == 1 and (found := color_at(self.texts, i)) is not None and found[1] > 1
-
-    def _skip_polite(self, i: int) -> tuple[int, bool]:
-        """Behind politeness, if a verb follows it, and whether the clause forbids; else `i` itself."""
-        j = i
-        while j < len(self.texts):
-            texts = self.texts
-            if texts[j] == "never" or texts[j : j + 2] == ("do", "not"):
-                return j + (1 if texts[j] == "never" else 2), True
-            verb = _match(lexicon.VERB_PHRASES, texts, j)
-            polite = _match(lexicon.POLITE, texts, j) or _match(lexicon.FILLER, texts, j)
-            if polite and (not verb or polite[1] > verb[1]):
-                j += polite[1]
-            elif texts[j] in (",", "to") and j > i:
-                j += 1
-            else:
-                known = verb or _match(lexicon.UNSUPPORTED_PHRASES, texts, j)
-                return (j, False) if known else (self._skip_filler(i), False)
-        return self._skip_filler(i), False
-
-    def _skip_filler(self, i: int) -> int:
-        while found := _match(lexicon.FILLER, self.texts, i):
-            i += found[1]
-        return i
 
     def _boundary(self, i: int) -> int | None:
         """The position behind the verb of a new clause, if one begins at `i`."""
         texts = self.texts
         j = i
         if texts[j] in (",", "and", "&", "then", "but", "plus"):
-            if texts[j] == "but" and _match(lexicon.INSIDE_PHRASES, texts, j) != (("BUT", None), 1):
+            if texts[j] == "but" and self.read.phrase(j) != (("BUT", None), 1):
                 return None
             while j < len(texts) and texts[j] in (",", "and", "&", "then", "but", "also", "plus"):
                 j += 1
@@ -199,35 +127,15 @@ class Tagger:
         forced = "then" in texts[i:j]
         if j >= len(texts):
             return j if forced else None
-        if not forced and not self._verb_begins(j):
+        if not forced and not self.read.verb_begins(j):
             return None
         self._close()
-        return self._open(j)
-
-    def _verb_begins(self, j: int) -> bool:
-        """Whether a clause with a verb begins at `j`, behind "and" or a comma."""
-        k, negated = self._skip_polite(j)
-        if negated:
-            return True
-        if k < len(self.texts) and self.texts[k] == "first" and k == j:
-            return False
-        found = _match(lexicon.VERB_PHRASES, self.texts, k) or _match(lexicon.UNSUPPORTED_PHRASES, self.texts, k)
-        if not found:
-            return False
-        taken = found[1]
-        if taken > 1 or self.texts[k] not in lexicon.NOUN_VERBS:
-            return True
-        if _match(_compounds(), self.texts, k) or self._verb_is_noun(k, taken):
-            return False
-        return self._object_follows(k + 1)
-
-    def _object_follows(self, i: int) -> bool:
-        if i >= len(self.texts):
-            return False
-        found = _match(lexicon.INSIDE_PHRASES, self.texts, i)
-        if found and found[0][0] in _OPENERS:
-            return True
-        return not found and (self._nouny(i) or quantities.read(self.texts[i:]) is not None)
+        behind = self._open(j)
+        before = self.done[-1] if self.done else None
+        if forced and not self.clause.tags and before and before.verb in _REPEATABLE:
+            # "delete the chair, then the table": the verb is said once.
+            self.clause = Clause([before.tags[0]], before.verb)
+        return behind
 
     # ---- tokens --------------------------------------------------------------------------------------------------
 
@@ -244,15 +152,17 @@ class Tagger:
         texts = self.texts
         if texts[i] == ",":
             return self._comma(i)
-        phrase = _match(lexicon.INSIDE_PHRASES, texts, i)
+        if texts[i] == ":" and self._before in verb_classes():
+            return i + 1
+        phrase = self.read.phrase(i)
         length = phrase[1] if phrase else 0
         for reader in (self._special, self._quantity, self._compound, self._color, self._attribute):
             if (found := reader(i, length)) is not None:
                 return found
-        filler = _match(lexicon.FILLER, texts, i)
+        filler = match(lexicon.FILLER, texts, i)
         if filler and filler[1] > length:
             return i + filler[1]
-        if texts[i] in lexicon.PARTICIPLES and self._preposition_at(i + 1):
+        if texts[i] in lexicon.PARTICIPLES and self.read.preposition_at(i + 1):
             return i + 1
         if phrase:
             return self._phrase(i, *phrase)
@@ -262,53 +172,27 @@ class Tagger:
         after = self.texts[i + 1 : i + 2]
         if not after or after[0] in ("and", "&", ",") or not self.clause.tags or self._before in ("AND", "COMMA"):
             return i + 1
-        rest = _match(lexicon.INSIDE_PHRASES, self.texts, i + 1)
-        if rest and rest[0][0] in ("BUT", "NOT", "REL", "WITH", "BY", "CLOCK", "DIR") and self._before != "":
+        rest = self.read.phrase(i + 1)
+        if rest and rest[0][0] in ("BUT", "NOT", "REL", "WITH", "BY", "CLOCK", "DIR", "PREP", "BETWEEN"):
             return i + 1
         return self._put("COMMA", None, i, 1)
-
-    def _preposition_at(self, i: int) -> bool:
-        found = _match(lexicon.INSIDE_PHRASES, self.texts, i) if i < len(self.texts) else None
-        return bool(found) and found[0][0] in ("PREP", "BETWEEN", "NEAR", "SIDE", "SPOT", "CENTER")  # type: ignore[index]
-
-    def _nouny(self, i: int) -> bool:
-        """Whether a noun stands at `i`, perhaps behind further attributes."""
-        while i < len(self.texts):
-            if self.texts[i] in ("one", "ones") or _match(_compounds(), self.texts, i):
-                return True
-            phrase = _match(lexicon.INSIDE_PHRASES, self.texts, i)
-            if phrase and phrase[0][0] == "THING":
-                return True
-            step = color_at(self.texts, i) or _match(lexicon.ATTRIBUTE_PHRASES, self.texts, i)
-            number = quantities.read(self.texts[i:])
-            if step:
-                i += step[1]
-            elif number and number.kind in ("NUMBER", "ORDINAL"):
-                i += number.taken
-            else:
-                filler = _match(lexicon.FILLER, self.texts, i)
-                return not phrase and not number and not filler and is_plain(self.texts[i])
-        return False
 
     def _special(self, i: int, length: int) -> int | None:
         """Words whose class depends on the verb or on the very next word."""
         text, rest = self.texts[i], self.texts[i + 1 :]
         after = rest[0] if rest else ""
         verb = self.clause.verb
-        if text == "'s":
-            return self._put("POSS", None, i, 1)
-        if text in ("its", "their") and after:
-            self._put("PRON", "it", i, 1)
-            return self._put("POSS", None, i, 1)
-        if text == "by" and after and (quantities.read(rest) or after in ("a", "half")) and length == 1:
-            return self._put("BY", None, i, 1)
+        if text in ("'s", "its", "their") and after:
+            return self._owner(i)
         if text == "by" and verb in ("REPLACE", "SUBSTITUTE"):
             return self._put("WITH", None, i, 1)
+        if text == "by" and after and (quantities.read(rest) or after in ("a", "half")) and length == 1:
+            return self._put("BY", None, i, 1)
         if text == "into" and verb in ("TURN", "CHANGE", "MAKE"):
             return self._put("INTO", None, i, 1)
-        if text == "from" and verb == "CHANGE" and self._hue_follows(i + 1):
+        if text == "from" and verb == "CHANGE" and self.read.hue_follows(i + 1):
             return self._put("FROMHUE", None, i, 1)
-        if text in ("in", "with") and verb in ("PAINT", "TINT", "GIVE", "MAKE") and self._hue_follows(i + 1):
+        if text in ("in", "with") and verb in ("PAINT", "TINT", "GIVE", "MAKE") and self.read.hue_follows(i + 1):
             return i + 1 + (after in ("a", "an"))
         if text in ("on", "off") and not rest and verb == "TURN":
             return self._put("SWITCH", None, i, 1)
@@ -316,16 +200,30 @@ class Tagger:
             return self._put("UPSIDE", None, i, 1)
         if text in ("away", "out") and length == 1 and verb not in ("TAKE", "") and not rest:
             return self._put("DIR", "forward", i, 1) if verb in ("MOVE", "PUT") else None
-        if text in ("higher", "lower") and verb in ("MOVE", "PUT", "") and not self._nouny(i + 1):
+        if text in ("higher", "lower") and verb in ("MOVE", "PUT", "") and not self.read.nouny(i + 1):
             return self._put("DIR", "up" if text == "higher" else "down", i, 1)
-        if text == "more" and self._before == "NUMBER" and self._nouny(i + 1):
+        if text == "in" and rest[:2] == ("a", "row") and verb in ("COPY", "MAKE", "ADD"):
+            return i + 3
+        if text == "back" and length == 1 and self._returns():
+            return self._put("UNKNOWN", None, i, 1)
+        if text == "again" and verb != "SELECT":
+            return i + 1
+        if text == "more" and self._before == "NUMBER" and self.read.nouny(i + 1):
             return i + 1
         return None
 
-    def _hue_follows(self, i: int) -> bool:
-        i += self.texts[i : i + 1] in (("a",), ("an",))
-        found = color_at(self.texts, i)
-        return bool(found) and not self._nouny(i + found[1])  # type: ignore[index]
+    def _owner(self, i: int) -> int:
+        """ "'s", "its": of a part ("its legs") or of a property ("its size")."""
+        if self.texts[i] != "'s":
+            self._put("PRON", "it", i, 1)
+        j = self.read.skip_filler(i + 1)
+        owned = self.read.phrase(j) if j < len(self.texts) else None
+        of_property = owned is not None and owned[0][0] in ("COLORWORD", "OPACITYWORD", "PROP")
+        return self._put("OWN" if of_property else "POSS", None, i, 1)
+
+    def _returns(self) -> bool:
+        """Whether "back" may mean where it was ("put the book back on the shelf") and not a direction."""
+        return self.clause.verb in ("PUT", "TAKE") or (self.clause.verb == "MOVE" and self._before == "PRON")
 
     def _quantity(self, i: int, length: int) -> int | None:
         found = quantities.read(self.texts[i:])
@@ -333,16 +231,21 @@ class Tagger:
             return None
         behind = i + found.taken
         headed = self._before in ("COLOR", "SIZE", "SUP", "ORDINAL", "ADJ", "OTHER")
-        if self.texts[i] == "one" and found.kind == "NUMBER" and (headed or not self._nouny(behind)):
+        if self.texts[i] == "one" and found.kind == "NUMBER" and (headed or not self.read.nouny(behind)):
             return None
         if found.kind == "LENGTH":
-            if self.texts[behind : behind + 1] in (("tall",), ("high",)) and self._nouny(behind + 1):
-                return self._put("TALL", (found.value, found.unit), i, found.taken + 1)
+            if self.texts[behind : behind + 1] in (("tall",), ("high",)):
+                before_noun = self.read.nouny(behind + 1)
+                if before_noun or self.clause.verb in ("ADD", "PUT", "WANT"):
+                    if self._before == "COMMA":
+                        self.clause.tags.pop()
+                    kind = "TALL" if before_noun else "TALLER"
+                    return self._put(kind, (found.value, found.unit), i, found.taken + 1)
             return self._put("LENGTH", (found.value, found.unit), i, found.taken)
         return self._put(found.kind, found.value, i, found.taken)
 
     def _compound(self, i: int, length: int) -> int | None:
-        found = _match(_compounds(), self.texts, i)
+        found = match(compounds(), self.texts, i)
         return self._noun(i, found[1]) if found and found[1] >= length else None
 
     def _color(self, i: int, length: int) -> int | None:
@@ -350,30 +253,32 @@ class Tagger:
         if not found or found[1] < length:
             return None
         name, taken = found
-        if self._nouny(i + taken):
+        if self.read.nouny(i + taken):
             return self._put("COLOR", name, i, taken)
         follows_det = self._before in ("DET", "SIZE", "SUP", "ORDINAL") or (
-            self._before in ("", *lexicon_verbs()) and self.clause.verb != ""
+            self._before in ("", *verb_classes()) and self.clause.verb != ""
         )
         if follows_det and self.texts[i] == "light" and taken == 2:
             return self._put("NOUN", "light", i, 1)
         if follows_det and taken == 1 and name in NOUN_COLORS and not self._indefinite_hue(i):
             return self._put("NOUN", name, i, 1)
+        if self._before == "EVERYTHING" and self.clause.verb in ("DELETE", "SELECT", "HIDE", "ISOLATE", "MOVE", "KEEP"):
+            self._put("REL", None, i, 0)  # "everything red" is everything that is red
         return self._put("HUE", name, i, taken)
 
     def _indefinite_hue(self, i: int) -> bool:
         """ "give it an orange colour": the article belongs to the colour word behind."""
-        found = _match(lexicon.INSIDE_PHRASES, self.texts, i + 1)
+        found = self.read.phrase(i + 1)
         return bool(found) and found[0][0] == "COLORWORD"  # type: ignore[index]
 
     def _attribute(self, i: int, length: int) -> int | None:
-        found = _match(lexicon.ATTRIBUTE_PHRASES, self.texts, i)
+        found = match(lexicon.ATTRIBUTE_PHRASES, self.texts, i)
         if not found or found[1] < length:
             return None
         (kind, value), taken = found
         behind = self.texts[i + taken : i + taken + 1]
         after_det = self._before in ("DET", "POSS", "NUMBER", "ORDINAL")
-        if self._nouny(i + taken) and (after_det or self._before not in _NOUNISH):
+        if self.read.nouny(i + taken) and (after_det or self._before not in _NOUNISH):
             return self._put(kind, value, i, taken)
         if after_det and self.texts[i] in ("back", "top", "front", "bottom", "left", "right") and behind == ("of",):
             return self._put("NOUN", self.texts[i], i, 1)
@@ -389,14 +294,19 @@ class Tagger:
         text, behind = self.texts[i], i + taken
         if kind == "DET" and taken == 1:
             return self._determiner(i, value)
-        if kind == "ONE" and not value and self._nouny(behind) and self._before not in ("COLOR", "SIZE", "SUP", "DET"):
+        if (
+            kind == "ONE"
+            and not value
+            and self.read.nouny(behind)
+            and self._before not in ("COLOR", "SIZE", "SUP", "DET")
+        ):
             return self._put("NUMBER", 1.0, i, 1)
         if kind == "NOT" and self._before != "REL":
-            return self._put("NOT" if self._preposition_at(behind) else "BUT", None, i, taken)
-        if kind == "REL" and self._preposition_at(behind):
+            return self._put("NOT" if self.read.preposition_at(behind) else "BUT", None, i, taken)
+        if kind == "REL" and self.read.preposition_at(behind):
             return behind
         if kind == "AND":
-            if self._preposition_at(behind):
+            if self.read.preposition_at(behind):
                 return self._put("ANDREL", None, i, taken)
             if text == "and" and self._before in ("AND", "COMMA"):
                 return behind
@@ -409,7 +319,7 @@ class Tagger:
     def _determiner(self, i: int, value: str) -> int:
         """ "this" or "all": a determiner before a noun, a pronoun otherwise."""
         text = self.texts[i]
-        noun_follows = self._nouny(i + 1) or self._opens_noun(i + 1)
+        noun_follows = self.read.nouny(i + 1) or self.read.opens_noun(i + 1)
         if text in ("this", "that", "these", "those") and not noun_follows:
             return self._put("PRON", "it", i, 1)
         if text == "all" and not noun_follows:
@@ -417,15 +327,6 @@ class Tagger:
         if text == "both" and not noun_follows:
             return self._put("PRON", "it", i, 1)
         return self._put("DET", value, i, 1)
-
-    def _opens_noun(self, i: int) -> bool:
-        """Whether "all" goes on as a noun phrase at `i` ("all non-red chairs", "all other chairs")."""
-        if i >= len(self.texts):
-            return False
-        if self.texts[i] in ("non", "other", "remaining"):
-            return True
-        number = quantities.read(self.texts[i:])
-        return number is not None and number.kind in ("NUMBER", "ORDINAL", "LENGTH")
 
     def _noun(self, i: int, at_least: int = 0) -> int:
         """A run of plain words: a noun, or adjectives if a colour or size follows before the noun."""
@@ -437,7 +338,12 @@ class Tagger:
         while j < len(self.texts) and self._continues_noun(j):
             j += 1
         kind = "NOUN" if j - i <= MAX_NOUN_WORDS else "UNKNOWN"
-        if kind == "NOUN" and color_at(self.texts, j) and self._nouny(j) and self._before in ("DET", "COLOR", "SIZE"):
+        if (
+            kind == "NOUN"
+            and color_at(self.texts, j)
+            and self.read.nouny(j)
+            and self._before in ("DET", "COLOR", "SIZE")
+        ):
             kind = "ADJ"
         return self._put(kind, " ".join(self.texts[i:j]), i, j - i)
 
@@ -446,19 +352,6 @@ class Tagger:
         if not is_plain(texts[j]) or texts[j] == ",":
             return False
         tables = (lexicon.INSIDE_PHRASES, lexicon.FILLER)
-        if any(_match(t, texts, j) for t in tables) or texts[j] in lexicon.PARTICIPLES:
+        if any(match(t, texts, j) for t in tables) or texts[j] in lexicon.PARTICIPLES:
             return False
         return not color_at(texts, j) and not quantities.read(texts[j:])
-
-
-@cache
-def lexicon_verbs() -> frozenset[str]:
-    """The classes of verbs."""
-    return frozenset(kind for kind, _ in lexicon.VERB_PHRASES.values())
-
-
-@cache
-def _compounds() -> frozenset[tuple[str, ...]]:
-    """The compounds, with a singular and a plural head ("wine glasses")."""
-    plural = {c[-1]: c[-1] + ("es" if c[-1].endswith(("s", "x", "sh", "ch")) else "s") for c in nouns.COMPOUNDS}
-    return nouns.COMPOUNDS | {(*c[:-1], plural[c[-1]]) for c in nouns.COMPOUNDS}

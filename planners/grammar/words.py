@@ -30,6 +30,7 @@ _CONTRACTIONS = {
 }  # fmt: skip
 _TOKEN = re.compile(
     r"#[0-9a-f]{3}(?:[0-9a-f]{3})?(?![0-9a-z])"
+    r"|\d+(?:st|nd|rd|th)\b"
     r"|\d+(?:[.,]\d+)*(?:\s*/\s*\d+)?"
     r"|[^\W\d_]+(?:'[^\W\d_]+)*"
     r"|[.;!?,:%°\"'\n]"

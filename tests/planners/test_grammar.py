@@ -147,9 +147,9 @@ def test_what_is_too_long_is_refused_with_the_limit(text: str) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "select " + " and ".join(["the red chair"] * 60),
-        "select " + "the lamp on " * 60 + "the table",
-        "select everything " + "but the chair " * 60,
+        "select " + " and ".join(["the red chair"] * 50),
+        "select " + "the lamp on " * 50 + "the table",
+        "select everything " + "but the chair " * 50,
         "make it " + "red and " * 90 + "blue",
         "delete it. " * 60,
         "and " * 190,
