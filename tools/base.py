@@ -22,6 +22,7 @@ from ..gaussians.language.query import Query
 from ..gaussians.language.selection import Selection
 from ..gaussians.scene import Frame, Scene
 from .receipt import Check, Pixels, Receipt, SelectionSummary
+from .rows import mask_of
 
 __all__ = [
     "Affine", "Check", "ColorName", "Context", "Direction", "EditOp", "Encoder", "Length", "Outcome", "Pixels",
@@ -134,9 +135,9 @@ class Context:
 
     def resolve(self, scene: Scene, query: Query) -> Selection:
         """What `query` means in `scene`; the verdict is not judged here (see `Selection.require`)."""
-        resolver = self.resolver
-        if resolver is None:
-            from ..gaussians.language.resolve import resolve as resolver
+        from ..gaussians.language.resolve import resolve
+
+        resolver: Resolver = self.resolver or resolve
         return resolver(scene, query, self.viewer, encoder=self.encoder, last=self.last)
 
 
@@ -202,7 +203,16 @@ class EditOp(BaseModel):
         """What the operation is about, or None if it needs no target."""
         return None
 
-    # @abstractmethod
+    def subject(self) -> str:
+        """What it is about, in words: "the red chair"."""
+        query = self.query()
+        return query.describe() if query is not None else ""
+
+    def may_change(self, scene: Scene, selection: Selection) -> Tensor:
+        """`[N]` bool: the Gaussians that may change or go; the others must come out bit for bit."""
+        return mask_of(scene.cloud, selection.ids)
+
+    @abstractmethod
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         """The edited scene; never touches `scene` in place.
 
@@ -210,7 +220,7 @@ class EditOp(BaseModel):
             InstructionError: it cannot be done as said.
         """
 
-    # @abstractmethod
+    @abstractmethod
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         """The operation's own post-conditions, measured on the two scenes."""
 

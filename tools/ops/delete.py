@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from ..base import TargetedOp
+from ...gaussians.errors import ScenewrightError
+from ...gaussians.language.selection import Selection
+from ...gaussians.scene import Scene
+from ..base import Context, Outcome, TargetedOp
+from ..bookkeeping import thinned
+from ..checks import counted, gone
+from ..receipt import Check, report
+from ..rows import mask_of
 
 
 class Delete(TargetedOp):
@@ -15,3 +22,25 @@ class Delete(TargetedOp):
         {"op": "delete", "target": {"text": "coffee table"}},
     )
     op: Literal["delete"] = "delete"
+
+    def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
+        go = mask_of(scene.cloud, selection.ids)
+        cloud = scene.cloud[~go]
+        after = scene.replace(cloud=cloud, language=thinned(scene, cloud, selection.ids))
+        return Outcome(after, removed=scene.cloud.ids[go])
+
+    def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
+        checks = [gone(outcome.scene, outcome), counted(before, outcome.scene, outcome)]
+        if self.target.text or self.target.colors:
+            checks.append(self._asked_again(outcome.scene, context))
+        return tuple(checks)
+
+    def _asked_again(self, after: Scene, context: Context) -> Check:
+        """How many things the same words find now; others of the kind may be left, so nothing is demanded."""
+        every = self.target.model_copy(update={"pick": "all", "count": None, "ordinal": None})
+        try:
+            found = context.resolve(after, every)
+        except ScenewrightError as error:
+            return report("asked again", 0, "things", f"asking again gave: {error}")
+        things = len(found.groups) if found.verdict == "found" else 0
+        return report("asked again", things, "things", f"{every.describe()}: {things} left")

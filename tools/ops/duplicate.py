@@ -4,9 +4,22 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal, Self
 
+import numpy as np
+import torch
 from pydantic import Field, model_validator
+from torch import Tensor
 
-from ..base import Direction, Length, Placement, TargetedOp
+from ...gaussians.language.selection import Selection
+from ...gaussians.scene import Scene
+from ..base import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
+from ..checks import bumps, carried_as_asked, collision_free, counted, supported
+from ..measure import solid_points
+from ..place import Placer
+from ..receipt import Check
+from ..rows import Draft, selection_of
+from ..shape import shift
+from ..space import Array, Body, bodies_of, centimetre, extent_along, heading, shifted_box
+from ..stock import Arrivals
 
 
 class Duplicate(TargetedOp):
@@ -32,3 +45,57 @@ class Duplicate(TargetedOp):
         if self.distance is not None and self.direction is None:
             raise ValueError("a distance needs the direction it goes in")
         return self
+
+    def may_change(self, scene: Scene, selection: Selection) -> Tensor:
+        return torch.zeros(len(scene.cloud), dtype=torch.bool, device=scene.cloud.device)
+
+    def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
+        bodies = bodies_of(scene, selection)
+        arrivals, moved = Arrivals(scene), []
+        notes = self.distance.assumption(scene.frame) if self.distance is not None else ()
+        for body, offset, support in self._copies(scene, bodies, context):
+            original = scene.cloud[body.rows]
+            draft = Draft(original)
+            shift(draft, torch.arange(len(original), device=original.device), offset)
+            like = body.group if scene.language is not None and body.group >= 0 else None
+            ids = arrivals.add(draft.done(), body.label, like)
+            moved.append(Affine(ids, np.eye(3), offset, original.ids, support))
+        after, groups = arrivals.enter(context)
+        added = torch.cat([m.ids for m in moved])
+        if self.direction is not None:
+            notes += bumps(after, tuple(moved), set(groups))
+        said = f"{len(moved)} new of {self.target.describe()}"
+        focus = selection_of(selection, added, groups, said)
+        return Outcome(after, added=added, moved=tuple(moved), notes=notes, focus=focus)
+
+    def _copies(self, scene: Scene, bodies: list[Body], context: Context) -> list[tuple[Body, Array, float | None]]:
+        """For each copy its original, its offset, and the height it stands on if it was placed."""
+        if self.direction is not None:
+            way = heading(context.viewer, scene.frame, self.direction)
+            step = self._step(scene, bodies, way)
+            return [(b, way * step * (i + 1), None) for i in range(self.count) for b in bodies]
+        up, placer, found = scene.frame.up_vector, Placer(scene, context), []
+        place = self.place
+        for body in [b for _ in range(self.count) for b in bodies]:
+            if place is not None:
+                spot = placer.find(body.box.size, body.box.axes, place, body.foot(up))
+            else:
+                spot = placer.beside(body)
+            offset = spot.foot - body.foot(up)
+            placer.take(solid_points(scene.cloud, body.rows) + offset, shifted_box(body.box, offset))
+            found.append((body, offset, spot.support))
+        return [(body, offset, support) for body, offset, support in found]
+
+    def _step(self, scene: Scene, bodies: list[Body], way: Array) -> float:
+        """From one copy to the next: as said, or the extent of all originals together and a hand's breadth."""
+        if self.distance is not None:
+            return self.distance.in_units(scene.frame)
+        corners = np.concatenate([b.box.corners() for b in bodies]) @ way
+        largest = max(extent_along(b.box, way) for b in bodies)
+        return float(np.ptp(corners)) + 8 * centimetre(scene.frame, largest)
+
+    def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
+        after = outcome.scene
+        checks = [carried_as_asked(before, after, outcome.moved), counted(before, after, outcome)]
+        checks += [c for c in (supported(after, outcome.moved), collision_free(after, outcome.moved)) if c is not None]
+        return tuple(checks)

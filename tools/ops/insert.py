@@ -4,9 +4,19 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal
 
+import torch
 from pydantic import Field
+from torch import Tensor
 
-from ..base import AssetName, ColorName, EditOp, Length, Placement
+from ...gaussians.language.query import Query
+from ...gaussians.language.selection import Selection
+from ...gaussians.scene import Scene
+from ..base import AssetName, ColorName, Context, EditOp, Length, Outcome, Placement
+from ..checks import collision_free, counted, supported
+from ..place import Placer, gaze
+from ..receipt import Check, at_least
+from ..rows import rows_of
+from ..stock import Arrivals, Wish, as_moved, fetch, find_spot, metre, set_down, taken_by
 
 
 class Insert(EditOp):
@@ -27,3 +37,41 @@ class Insert(EditOp):
     height: Length | None = None
     """How tall it is to be; otherwise as tall as such things are."""
     place: Placement | None = None
+
+    def subject(self) -> str:
+        return f"{self.count} {self.asset}" if self.count > 1 else self.asset
+
+    def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
+        placer, arrivals, moved = Placer(scene, context), Arrivals(scene), []
+        anchors = placer.anchors(self.place) if self.place is not None else []
+        scale, start, notes = metre(scene, anchors), gaze(placer), dict[str, None]()
+        for index in range(self.count):
+            wish = Wish(self.asset, self.color, context.seed + index, scale, self.height)
+            piece = fetch(scene, wish)
+            spot = find_spot(placer, piece, self.place, start)
+            cloud = set_down(piece, spot.foot, spot.axes)
+            taken_by(cloud, scene, placer)
+            hangs = self.place is None and piece.support in ("wall", "ceiling")
+            moved.append(as_moved(cloud, arrivals.add(cloud, piece.label), None if hangs else spot.support))
+            notes |= dict.fromkeys(piece.notes)
+        after, groups = arrivals.enter(context)
+        added = torch.cat([m.ids for m in moved])
+        query = Query(text=moved_label(arrivals), groups=groups)
+        focus = Selection(query, "found", added, groups, (), f"{self.subject()}, just inserted")
+        return Outcome(after, added=added, moved=tuple(moved), notes=tuple(notes), focus=focus)
+
+    def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
+        after = outcome.scene
+        there = len(rows_of(after.cloud, outcome.added))
+        checks = [at_least("inserted", there, 1, "Gaussians", f"{there:,} Gaussians of {self.subject()} are there")]
+        checks.append(counted(before, after, outcome))
+        checks += [c for c in (supported(after, outcome.moved), collision_free(after, outcome.moved)) if c is not None]
+        return tuple(checks)
+
+    def may_change(self, scene: Scene, selection: Selection) -> Tensor:
+        return torch.zeros(len(scene.cloud), dtype=torch.bool, device=scene.cloud.device)
+
+
+def moved_label(arrivals: Arrivals) -> str:
+    """What the new things are called."""
+    return arrivals.newcomers[0].label

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from ..base import TargetedOp
+from torch import Tensor
+
+from ...gaussians.language.selection import Selection
+from ...gaussians.scene import Scene
+from ..base import Context, Outcome, TargetedOp
+from ..bookkeeping import thinned
+from ..checks import counted, gone
+from ..receipt import Check
+from ..rows import mask_of
 
 
 class Isolate(TargetedOp):
@@ -15,3 +23,15 @@ class Isolate(TargetedOp):
         {"op": "isolate", "target": {"text": "guitar"}},
     )
     op: Literal["isolate"] = "isolate"
+
+    def may_change(self, scene: Scene, selection: Selection) -> Tensor:
+        return ~mask_of(scene.cloud, selection.ids)
+
+    def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
+        keep = mask_of(scene.cloud, selection.ids)
+        cloud, removed = scene.cloud[keep], scene.cloud.ids[~keep]
+        after = scene.replace(cloud=cloud, language=thinned(scene, cloud, removed))
+        return Outcome(after, removed=removed)
+
+    def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
+        return gone(outcome.scene, outcome), counted(before, outcome.scene, outcome)

@@ -4,10 +4,23 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal, Self
 
+import numpy as np
+import torch
 from pydantic import model_validator
 
+from ...gaussians.errors import InstructionError
 from ...gaussians.language.query import Query
-from ..base import Direction, Length, Placement, TargetedOp
+from ...gaussians.language.selection import Selection
+from ...gaussians.scene import Scene
+from ..base import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
+from ..bookkeeping import carried
+from ..checks import bumps, carried_as_asked, collision_free, counted, supported
+from ..measure import solid_points
+from ..place import Placer
+from ..receipt import Check, at_most
+from ..rows import Draft, mask_of
+from ..shape import shift
+from ..space import Array, Body, bodies_of, centimetre, extent_along, heading, shifted_box
 
 
 class Move(TargetedOp):
@@ -36,3 +49,90 @@ class Move(TargetedOp):
         if self.place is not None and self.distance is not None:
             raise ValueError("a distance goes with a direction or toward, not with a place")
         return self
+
+    def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
+        bodies = bodies_of(scene, selection)
+        moved, notes = self._moves(scene, bodies, selection, context)
+        draft = Draft(scene.cloud)
+        for body, asked in zip(bodies, moved, strict=True):
+            shift(draft, body.rows, asked.offset)
+        cloud = draft.done()
+        after = scene.replace(cloud=cloud, language=carried(scene, cloud, moved))
+        if self.place is None:
+            notes += bumps(after, tuple(moved), {b.group for b in bodies})
+        return Outcome(after, touched=selection.ids, moved=tuple(moved), notes=notes)
+
+    def _moves(
+        self, scene: Scene, bodies: list[Body], selection: Selection, context: Context
+    ) -> tuple[list[Affine], tuple[str, ...]]:
+        """What is asked of each body, and notes."""
+        said = self.distance.assumption(scene.frame) if self.distance is not None else ()
+        if self.place is not None:
+            return self._placed(scene, bodies, selection, context, self.place), said
+        if self.toward is not None:
+            goals = bodies_of(scene, context.resolve(scene, self.toward).require())
+            return [self._asked(scene, b, self._approach(scene, b, goals)) for b in bodies], said
+        assert self.direction is not None
+        way = heading(context.viewer, scene.frame, self.direction)
+        if self.distance is not None:
+            step = self.distance.in_units(scene.frame)
+        else:
+            step = max(extent_along(b.box, way) for b in bodies)
+            said = (f"no distance was given: moved by its own extent, {step:.3g} units",)
+        return [self._asked(scene, b, way * step) for b in bodies], said
+
+    def _approach(self, scene: Scene, body: Body, goals: list[Body]) -> Array:
+        """Level offset toward the nearest of the goals, by the distance asked or until just before it."""
+        up = scene.frame.up_vector
+        ways = [g.center - body.center for g in goals]
+        ways = [w - up * (w @ up) for w in ways]
+        nearest = int(np.argmin([np.linalg.norm(w) for w in ways]))
+        length = float(np.linalg.norm(ways[nearest]))
+        if length < 1e-9:
+            raise InstructionError("it is already there: name a direction instead")
+        way = ways[nearest] / length
+        if self.distance is not None:
+            return np.asarray(way * self.distance.in_units(scene.frame))
+        gap = 3 * centimetre(scene.frame, max(body.box.size))
+        room = length - (extent_along(body.box, way) + extent_along(goals[nearest].box, way)) / 2 - gap
+        if room <= 0:
+            raise InstructionError("it already stands beside it: give a distance to move it anyway")
+        return np.asarray(way * room)
+
+    def _placed(
+        self, scene: Scene, bodies: list[Body], selection: Selection, context: Context, place: Placement
+    ) -> list[Affine]:
+        """Each body on a free spot of its own."""
+        up = scene.frame.up_vector
+        groups = frozenset(b.group for b in bodies)
+        placer = Placer(scene, context, mask_of(scene.cloud, selection.ids), groups)
+        moved = []
+        for body in bodies:
+            spot = placer.find(body.box.size, body.box.axes, place, body.foot(up))
+            offset = spot.foot - body.foot(up)
+            placer.take(solid_points(scene.cloud, body.rows) + offset, shifted_box(body.box, offset))
+            moved.append(self._asked(scene, body, offset, spot.support))
+        return moved
+
+    def _asked(self, scene: Scene, body: Body, offset: Array, support: float | None = None) -> Affine:
+        ids = scene.cloud.ids[body.rows]
+        return Affine(ids, np.eye(3), np.asarray(offset, dtype=np.float64), ids, support)
+
+    def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
+        after = outcome.scene
+        checks = [carried_as_asked(before, after, outcome.moved), counted(before, after, outcome)]
+        if self.distance is not None:
+            checks.append(self._distance_kept(before, outcome))
+        checks += [c for c in (supported(after, outcome.moved), collision_free(after, outcome.moved)) if c is not None]
+        return tuple(checks)
+
+    def _distance_kept(self, before: Scene, outcome: Outcome) -> Check:
+        """The mean of the centres went as far as was said."""
+        assert self.distance is not None
+        asked, mask = self.distance.in_units(before.frame), mask_of(before.cloud, outcome.touched)
+        step = outcome.scene.cloud.means[mask].to(torch.float64) - before.cloud.means[mask].to(torch.float64)
+        measured = float(torch.linalg.vector_norm(step, dim=1).mean()) if len(step) else 0.0
+        # float32 centres: a millionth of the coordinates, which may be far larger than the step.
+        bound = 1e-5 * max(1.0, asked, float(before.cloud.means[mask].abs().max()))
+        said = f"it moved {measured:.4g} of {asked:.4g} units"
+        return at_most("distance", abs(measured - asked), bound, "units", said)

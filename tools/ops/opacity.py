@@ -4,9 +4,17 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal
 
+import torch
 from pydantic import Field
 
-from ..base import TargetedOp
+from ...gaussians.language.selection import Selection
+from ...gaussians.scene import Scene
+from ..base import Context, Outcome, TargetedOp
+from ..checks import counted
+from ..receipt import Check, at_most
+from ..rows import Draft, rows_of
+
+HIDDEN = 1e-6  # opacity lies in (0, 1); this is invisible on any display and survives a file's logit
 
 
 class Opacity(TargetedOp):
@@ -18,3 +26,16 @@ class Opacity(TargetedOp):
     )
     op: Literal["opacity"] = "opacity"
     value: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
+
+    def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
+        draft = Draft(scene.cloud)
+        draft.map("opacities", rows_of(scene.cloud, selection.ids), lambda o: (o * self.value).clamp(min=HIDDEN))
+        return Outcome(scene.replace(cloud=draft.done()), touched=selection.ids)
+
+    def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
+        was = before.cloud.opacities[rows_of(before.cloud, selection.ids)].to(torch.float64)
+        now = outcome.scene.cloud.opacities[rows_of(outcome.scene.cloud, selection.ids)].to(torch.float64)
+        off = float((now - (was * self.value).clamp(min=HIDDEN)).abs().max()) if len(was) else 0.0
+        said = f"mean opacity went from {float(was.mean()):.3f} to {float(now.mean()):.3f}"
+        # One float32 rounding of a number below one.
+        return at_most("opacity", off, 1e-7, "1", said), counted(before, outcome.scene, outcome)

@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, ClassVar, Literal, Self
 
+import torch
 from pydantic import Field, model_validator
+from torch import Tensor
 
-from ..base import ColorName, TargetedOp
+from ...gaussians.color import parse, rgb_to_lab
+from ...gaussians.language.selection import Selection
+from ...gaussians.scene import Scene
+from ..base import ColorName, Context, Outcome, TargetedOp
+from ..bookkeeping import remeasured
+from ..checks import counted
+from ..measure import Sample, lightness_spread, mean_lab, sample
+from ..paint import NEAR, ColorMap, distance, saturation, toward_color, warmth
+from ..receipt import Check, at_least, at_most, report
+from ..rows import Draft, rows_of
+from ..space import bodies_of
 
 Adjust = Literal["darker", "lighter", "more_saturated", "less_saturated", "warmer", "cooler", "toward"]
+ALIKE = 20.0  # Lab distance, lightness counted half, below which things share a coat of paint
 
 
 class Recolor(TargetedOp):
@@ -39,3 +53,100 @@ class Recolor(TargetedOp):
         if self.adjust not in (None, "toward") and self.color is not None:
             raise ValueError(f'give either a color or adjust "{self.adjust}", not both')
         return self
+
+    def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
+        asked = self._asked()
+        draft = Draft(scene.cloud)
+        for rows in coats(scene, selection):
+            change = self._map(sample(scene.cloud, rows), asked)
+            draft.map("sh", rows, change.on_harmonics)
+        after = scene.replace(cloud=draft.done())
+        return Outcome(after.replace(language=remeasured(after, selection.ids, lab=True)), touched=selection.ids)
+
+    def _asked(self) -> Tensor | None:
+        """Lab of the named colour."""
+        return rgb_to_lab(torch.tensor(parse(self.color), dtype=torch.float64)) if self.color is not None else None
+
+    def _map(self, taken: Sample, asked: Tensor | None) -> ColorMap:
+        """The map for one coat of paint."""
+        if self.adjust is None:
+            assert asked is not None
+            return toward_color(taken, asked)
+        if self.adjust in ("more_saturated", "less_saturated"):
+            return saturation(1 + 1.5 * self.amount if self.adjust == "more_saturated" else 1 - self.amount)
+        if self.adjust in ("warmer", "cooler"):
+            return warmth(self.amount if self.adjust == "warmer" else -self.amount)
+        return toward_color(taken, self._shifted(mean_lab(taken), asked), keep_pattern=True)
+
+    def _shifted(self, mean: Tensor, asked: Tensor | None) -> Tensor:
+        """The mean colour it is to have: along lightness at constant hue and chroma, or part of the way to a colour."""
+        if asked is not None:
+            return mean + self.amount * (asked - mean)
+        lightness = float(mean[0])
+        new = (
+            lightness * (1 - 0.75 * self.amount)
+            if self.adjust == "darker"
+            else (lightness + 0.75 * self.amount * (100 - lightness))
+        )
+        # Chroma follows a darkening as it does in shadow; a display has no room for it in very light colours either.
+        chroma = (
+            min(1.0, new / max(lightness, 1.0))
+            if self.adjust == "darker"
+            else (min(1.0, 1.6 * (100 - new) / max(100 - lightness, 1.0)))
+        )
+        return torch.stack([torch.tensor(new, dtype=torch.float64), mean[1] * chroma, mean[2] * chroma])
+
+    def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
+        was, now = (sample(s.cloud, rows_of(s.cloud, selection.ids)) for s in (before, outcome.scene))
+        old, new = mean_lab(was), mean_lab(now)
+        checks = [self._arrived(old, new), counted(before, outcome.scene, outcome)]
+        if self.adjust is None:
+            texture, kept = lightness_spread(was), lightness_spread(now)
+            said = f"spread of lightness (shading, texture) went from {texture:.1f} to {kept:.1f}"
+            if texture > 2:  # a twentieth of it is left even of a pure colour at the end of the display's range
+                checks.append(at_least("texture kept", kept / texture, 0.05, "1", said))
+            else:
+                checks.append(report("texture kept", kept / max(texture, 1e-9), "1", said))
+        return tuple(checks)
+
+    def _arrived(self, old: Tensor, new: Tensor) -> Check:
+        """The mean has the asked colour, or moved the asked way."""
+        if self.adjust is None:
+            asked = self._asked()
+            assert asked is not None
+            off = float(distance(new, asked))
+            return at_most("colour", off, NEAR, "ΔE94", f"its mean colour is {off:.1f} from {self.color}")
+        step = self._progress(old, new)
+        said = f"its mean colour moved by {step:.1f} in Lab"
+        return at_least(f"{self.adjust.replace('_', ' ')}", step, 0.2, "ΔE", said)
+
+    def _progress(self, old: Tensor, new: Tensor) -> float:
+        """How far the mean moved the asked way, in Lab."""
+        step = new - old
+        if self.adjust in ("darker", "lighter"):
+            return float(step[0]) * (1 if self.adjust == "lighter" else -1)
+        if self.adjust in ("more_saturated", "less_saturated"):
+            gain = math.hypot(float(new[1]), float(new[2])) - math.hypot(float(old[1]), float(old[2]))
+            return gain if self.adjust == "more_saturated" else -gain
+        if self.adjust in ("warmer", "cooler"):
+            return float(step[2]) * (1 if self.adjust == "warmer" else -1)
+        asked = self._asked()
+        assert asked is not None
+        return float(torch.linalg.vector_norm(old - asked) - torch.linalg.vector_norm(new - asked))
+
+
+def coats(scene: Scene, selection: Selection) -> list[Tensor]:
+    """Rows that share one map: things of nearly one colour are painted alike, others against their own mean.
+
+    So patches of one cloth keep their shading against each other, while a white and a black chair both turn red.
+    """
+    found: list[tuple[Tensor, list[Tensor]]] = []
+    for body in bodies_of(scene, selection):
+        mean = mean_lab(sample(scene.cloud, body.rows, 2048))
+        for other, rows in found:
+            if float(torch.linalg.vector_norm((mean - other) * torch.tensor([0.5, 1, 1]))) < ALIKE:
+                rows.append(body.rows)
+                break
+        else:
+            found.append((mean, [body.rows]))
+    return [torch.cat(rows).sort().values for _, rows in found]

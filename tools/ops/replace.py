@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from ..base import AssetName, ColorName, TargetedOp
+import torch
+
+from ...gaussians.language.selection import Selection
+from ...gaussians.scene import Scene
+from ..base import AssetName, ColorName, Context, Outcome, TargetedOp
+from ..bookkeeping import thinned
+from ..checks import collision_free, counted, gone, supported
+from ..place import Placer, Spot, standing_axes
+from ..receipt import Check
+from ..rows import mask_of, selection_of
+from ..space import Body, bodies_of
+from ..stock import Arrivals, Piece, Wish, as_moved, fetch, metre, set_down, taken_by
 
 
 class Replace(TargetedOp):
@@ -18,3 +29,36 @@ class Replace(TargetedOp):
     asset: AssetName
     """Kind of the new object, singular."""
     color: ColorName | None = None
+
+    def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
+        bodies = bodies_of(scene, selection)
+        go = mask_of(scene.cloud, selection.ids)
+        left = scene.cloud[~go]
+        # Ids of what goes are not given out again: the arrivals are numbered above those of the whole scene.
+        arrivals, moved, notes = Arrivals(scene), [], dict[str, None]()
+        placer = Placer(scene, context, go, frozenset(b.group for b in bodies))
+        for index, body in enumerate(bodies):
+            wish = Wish(self.asset, self.color, context.seed + index, metre(scene, [body]))
+            piece = fetch(scene, wish)
+            spot = self._spot(placer, piece, body)
+            cloud = set_down(piece, spot.foot, spot.axes)
+            taken_by(cloud, scene, placer)
+            moved.append(as_moved(cloud, arrivals.add(cloud, piece.label), spot.support))
+            notes |= dict.fromkeys((*piece.notes, *spot.notes))
+        arrivals.scene = scene.replace(language=thinned(scene, left, scene.cloud.ids[go]))
+        after, groups = arrivals.enter(context, left)
+        added = torch.cat([m.ids for m in moved])
+        focus = selection_of(selection, added, groups, f"the new {self.asset}")
+        return Outcome(
+            after, added=added, removed=scene.cloud.ids[go], moved=tuple(moved), notes=tuple(notes), focus=focus
+        )
+
+    def _spot(self, placer: Placer, piece: Piece, body: Body) -> Spot:
+        """Where the old thing stood, or as near to it as there is room."""
+        return placer.near(piece.size, standing_axes(placer, [body]), body)
+
+    def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
+        after = outcome.scene
+        checks = [gone(after, outcome), counted(before, after, outcome)]
+        checks += [c for c in (supported(after, outcome.moved), collision_free(after, outcome.moved)) if c is not None]
+        return tuple(checks)

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from ..base import TargetedOp
+import torch
+from torch import Tensor
+
+from ...gaussians.language.selection import Selection
+from ...gaussians.scene import Scene
+from ..base import Context, Outcome, TargetedOp
+from ..receipt import Check, at_most
 
 
 class Select(TargetedOp):
@@ -15,3 +21,13 @@ class Select(TargetedOp):
         {"op": "select", "target": {"text": "chair", "pick": "all"}},
     )
     op: Literal["select"] = "select"
+
+    def may_change(self, scene: Scene, selection: Selection) -> Tensor:
+        return torch.zeros(len(scene.cloud), dtype=torch.bool, device=scene.cloud.device)
+
+    def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
+        return Outcome(scene)
+
+    def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
+        same = outcome.scene is before
+        return (at_most("scene unchanged", float(not same), 0, "1", "selecting leaves the scene as it is"),)

@@ -1,0 +1,198 @@
+"""New objects for a scene: taken from the asset library, scaled to the scene, set down and entered in its table.
+
+Knows assets and scenes. Refuses to know which operation wants them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from ..gaussians import assets
+from ..gaussians.camera import Vec3
+from ..gaussians.cloud import NO_GROUP, GaussianCloud, concat
+from ..gaussians.errors import InstructionError, UserError
+from ..gaussians.scene import Scene
+from . import bookkeeping
+from .base import Affine, Context, Length, Placement
+from .bookkeeping import Newcomer
+from .grid import obstacle_points
+from .measure import reach, solid_points
+from .place import Placer, Spot, standing_axes
+from .rows import fresh_ids
+from .shape import transformed
+from .space import Array, Body, as_vec, box_of
+
+_ROOM = 4.5  # metres across, taken for a scene that gives no other hint of its scale
+_HANGING = 1.5  # metres above the floor of the centre of what hangs on a wall
+_STANDING = 1.6  # metres: taller wall things (doors, curtains, wardrobes) reach down to the floor
+
+
+@dataclass(frozen=True)
+class Metre:
+    """How many scene units a metre has, and what had to be assumed to say so."""
+
+    units: float
+    notes: tuple[str, ...] = ()
+
+
+def metre(scene: Scene, anchors: Sequence[Body] = ()) -> Metre:
+    """The scene's scale: known; or from things whose usual height is known; or as if the scene were one room."""
+    if scene.frame.metres_per_unit is not None:
+        return Metre(1 / scene.frame.metres_per_unit)
+    known = [(b.label, b.box.size[2]) for b in anchors]
+    if scene.language is not None and not any(_usual_height(label) for label, _ in known):
+        known = [(g.label, g.box.size[2]) for g in scene.language.objects() if g.count and g.label_score > 0.5]
+    ratios = sorted(size / usual for label, size in known if (usual := _usual_height(label)))
+    if ratios:
+        names = ", ".join(dict.fromkeys(label for label, _ in known if _usual_height(label)))
+        said = f"the scene's scale is unknown; it was judged by the usual height of: {names}"
+        return Metre(ratios[len(ratios) // 2], (said,))
+    across = _across(scene)
+    return Metre(across / _ROOM, (f"the scene's scale is unknown; it was taken to be {_ROOM:g} m across",))
+
+
+def _usual_height(label: str) -> float | None:
+    """Middle of the usual heights of a kind, metres; None for things the library does not know."""
+    try:
+        low, high = assets.find(label).sizes[2] if label else (0.0, 0.0)
+    except UserError:
+        return None
+    return (low * high) ** 0.5 if low > 0 else None
+
+
+def _across(scene: Scene) -> float:
+    """Level extent of the scene, the outer fifth left out at each side, as backgrounds reach far."""
+    east, north, _ = scene.frame.basis()
+    points = scene.cloud.means[:: max(1, len(scene.cloud) // 50_000)].to(torch.float64).cpu().numpy()
+    if not len(points):
+        return _ROOM
+    spans = [float(np.subtract(*np.quantile(points @ a, [0.9, 0.1]))) for a in (east, north)]
+    return max(*spans, 1e-6)
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """An asset in scene units: standing on the origin, +z up, its front along -y.
+
+    Attributes:
+        cloud: of the scene's harmonic degree.
+        label: its kind.
+        size: (width, depth, height) of its solid Gaussians, scene units.
+        support: what such things stand on or hang from.
+        notes: for the receipt.
+    """
+
+    cloud: GaussianCloud
+    label: str
+    size: Vec3
+    support: str
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What is wanted from the library: kind, colour, design seed, height, and the scale to make it in."""
+
+    kind: str
+    color: str | None
+    seed: int
+    metre: Metre
+    height: Length | None = None
+
+
+def fetch(scene: Scene, wish: Wish) -> Piece:
+    """Make the wished asset in scene units.
+
+    Raises:
+        UserError: the library has no such kind, or the colour is unknown.
+    """
+    made = assets.make(wish.kind, wish.seed, color=wish.color)
+    factor, notes = wish.metre.units, wish.metre.notes
+    if wish.height is not None:
+        factor = wish.height.in_units(scene.frame) / made.size[2]
+        notes = wish.height.assumption(scene.frame)
+    cloud = transformed(made.cloud, np.eye(3) * factor, np.zeros(3)).with_degree(scene.cloud.degree)
+    cloud = cloud.to(scene.cloud.device)
+    points = solid_points(cloud, torch.arange(len(cloud), device=cloud.device))
+    spans = [reach(points[:, i]) for i in range(3)]
+    center = np.array([-(low + high) / 2 for low, high in spans[:2]] + [-spans[2][0]])
+    cloud = transformed(cloud, np.eye(3), center)
+    size = as_vec(np.array([max(high - low, 1e-6) for low, high in spans]))
+    return Piece(cloud, made.kind, size, assets.find(wish.kind).support, notes)
+
+
+def set_down(piece: Piece, foot: Array, axes: tuple[Vec3, Vec3, Vec3]) -> GaussianCloud:
+    """The piece turned so that its width, depth and height run along `axes`, standing at `foot`."""
+    return transformed(piece.cloud, np.array(axes).T, foot)
+
+
+def find_spot(placer: Placer, piece: Piece, place: Placement | None, start: Array) -> Spot:
+    """A spot for a piece, facing the viewer; things for walls and ceilings hang there unless told otherwise.
+
+    Raises:
+        InstructionError: there is none.
+    """
+    unit = piece.size[2]
+    placer.back = piece.support == "wall" or (place is not None and place.relation == "against" and not place.anchors)
+    placer.lift = 0.0
+    if place is None and piece.support == "wall":
+        place = Placement(relation="against")
+        metre_units = metre(placer.scene).units
+        placer.lift = max(0.0, _HANGING * metre_units - unit / 2) if unit < _STANDING * metre_units else 0.0
+    if place is None and piece.support == "ceiling":
+        heights = placer.solid @ placer.up.astype(np.float32)
+        placer.lift = max(0.0, float(np.quantile(heights, 0.995)) - placer.floor - unit) if len(heights) else 0.0
+    anchors = placer.anchors(place) if place is not None else []
+    axes = standing_axes(placer, anchors)
+    for _ in range(3 if placer.back else 0):  # another wall is as good
+        try:
+            return placer.find(piece.size, axes, place, start)
+        except InstructionError:
+            axes = (axes[1], as_vec(-np.array(axes[0])), axes[2])
+    return placer.find(piece.size, axes, place, start)
+
+
+@dataclass(eq=False)
+class Arrivals:
+    """New objects being collected; `enter` makes the new scene of them in one go."""
+
+    scene: Scene
+    clouds: list[GaussianCloud] = field(default_factory=list)
+    newcomers: list[Newcomer] = field(default_factory=list)
+
+    def add(self, cloud: GaussianCloud, label: str, like: int | None = None) -> Tensor:
+        """One more object, its Gaussians in place; the ids they get."""
+        top = self.clouds[-1] if self.clouds else self.scene.cloud
+        ids = fresh_ids(top, len(cloud))
+        group = torch.full((len(cloud),), NO_GROUP, dtype=torch.int32, device=cloud.device)
+        self.clouds.append(cloud.replace(ids=ids, group=group))
+        self.newcomers.append(Newcomer(self.clouds[-1], label, None, like))
+        return ids
+
+    def enter(self, context: Context, base: GaussianCloud | None = None) -> tuple[Scene, tuple[int, ...]]:
+        """The scene (or its remaining Gaussians `base`) with the arrivals, and the group each got."""
+        scene = self.scene
+        table, groups = bookkeeping.enter(scene.language, self.newcomers, scene.frame, context.encoder)
+        filed = [
+            cloud.replace(group=torch.full_like(cloud.group, group))
+            for cloud, group in zip(self.clouds, groups, strict=True)
+        ]
+        cloud = concat([scene.cloud if base is None else base, *filed])
+        return scene.replace(cloud=cloud, language=table), tuple(g for g in groups if g >= 0)
+
+
+def taken_by(cloud: GaussianCloud, scene: Scene, placer: Placer) -> None:
+    """Tell the placer that a new object stands there."""
+    points = obstacle_points(cloud)
+    if len(points):
+        placer.take(points.astype(np.float64), box_of(points.astype(np.float64), scene.frame))
+
+
+def as_moved(cloud: GaussianCloud, ids: Tensor, support: float | None) -> Affine:
+    """A new object for the checks: nothing it could be compared with, only where it stands."""
+    return Affine(ids, np.eye(3), np.zeros(3), ids, support)
