@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import zlib
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import torch
@@ -46,6 +46,21 @@ class Parts:
 
 
 @dataclass(frozen=True, eq=False)
+class Unlit:
+    """An object before light: cells, their colours `[N, 3]`, and which of them are lit from both sides `[N]`."""
+
+    samples: surface.Samples
+    albedo: Array
+    two_sided: NDArray[np.bool_]
+
+    def cloud(self, sun: Array) -> GaussianCloud:
+        """Gaussians under a lamp in the direction `sun`, object frame."""
+        s = self.samples
+        bright = light.bake(s.xyz, s.normal, light.occupancy(s.xyz), sun, self.two_sided)
+        return flat_gaussians(s, self.albedo * bright[:, None])
+
+
+@dataclass(frozen=True, eq=False)
 class Asset:
     """One made thing, standing on z = 0, centred in x and y, its front facing -y, metres.
 
@@ -57,7 +72,7 @@ class Asset:
         parts: part labels a Gaussian.
         main: `[N]` bool, the Gaussians that carry the main colour.
         seed: the design.
-        asked: the colour it was made in, as given to `make`, or None.
+        unlit: what `relit` starts from.
     """
 
     cloud: GaussianCloud
@@ -67,7 +82,11 @@ class Asset:
     parts: Parts
     main: Tensor
     seed: int
-    asked: str | None = None
+    unlit: Unlit
+
+    def relit(self, sun: Vec3) -> GaussianCloud:
+        """The same object under another lamp; `sun` points towards it, object frame."""
+        return self.unlit.cloud(np.asarray(sun, dtype=np.float64))
 
 
 def kinds() -> tuple[str, ...]:
@@ -82,17 +101,15 @@ def make(
     color: str | None = None,
     size: Vec3 | None = None,
     detail: float = 1.0,
-    sun: Vec3 | None = None,
 ) -> Asset:
     """One object of a kind; the same arguments give the same bytes.
 
     Args:
         kind: a name from `kinds()` or a synonym.
         seed: chooses design, proportions, colours and patterns.
-        color: main colour, as `color.parse` takes it; drawn from the seed if None.
+        color: main colour: a basic term in its typical shade, anything else as `color.parse` takes it; drawn from the seed if None.
         size: (w, d, h) in metres to stretch the design to; its own if None.
         detail: factor on the number of Gaussians, 0.05 to 8.
-        sun: towards the lamp in the object's frame; the default lights the front.
 
     Raises:
         UserError: for an unknown kind or colour, or a size or detail out of range.
@@ -102,26 +119,24 @@ def make(
         raise UserError(f"detail must be between 0.05 and 8, got {detail:g}")
     if size is not None and not all(0.005 <= s <= 50 for s in size):
         raise UserError(f"size must be three lengths (w, d, h) between 0.005 and 50 metres, got {size}")
-    pieces, tone = design(known, seed, colors.parse(color) if color is not None else None)
+    pieces, tone = design(known, seed, _shade_of(color) if color is not None else None)
     pieces = _fit(pieces, known, size)
     samples = _sampled(pieces, detail)
-    paint = surface.albedo(pieces, samples)
     sided = np.array([p.two_sided for p in pieces])[samples.piece]
-    toward = light.SUN if sun is None else np.asarray(sun, dtype=np.float64)
-    bright = light.bake(samples.xyz, samples.normal, light.occupancy(samples.xyz), toward, sided)
+    unlit = Unlit(samples, surface.albedo(pieces, samples), sided)
     low, high = shapes.bounds(pieces)
     names = tuple(dict.fromkeys(p.part for p in pieces))
     labels = np.array([names.index(p.part) for p in pieces], dtype=np.int32)[samples.piece]
     main = np.array([bool(p.material and p.material.main) for p in pieces])[samples.piece]
     return Asset(
-        cloud=flat_gaussians(samples, paint * bright[:, None]),
+        cloud=unlit.cloud(light.SUN),
         kind=known.name,
         size=(float(high[0] - low[0]), float(high[1] - low[1]), float(high[2] - low[2])),
         color=basic_name(tone.color),
         parts=Parts(torch.from_numpy(labels), names),
         main=torch.from_numpy(main),
         seed=seed,
-        asked=color,
+        unlit=unlit,
     )
 
 
@@ -130,6 +145,11 @@ def design(known: registry.Kind, seed: int, wanted: Rgb | None = None) -> tuple[
     rng = np.random.default_rng([zlib.crc32(known.name.encode()), seed & 0xFFFFFFFF])
     tone = Tone(rng, known.palette, wanted)
     return known.build(rng, tone), tone
+
+
+def _shade_of(color: str) -> Rgb:
+    """RGB of a colour word: a basic term as furniture wears it (CSS "blue" is a glowing #0000ff), else as parsed."""
+    return colors.parse(colors.BASIC.get(color.strip().lower(), color))
 
 
 def _fit(pieces: Sequence[Piece], known: registry.Kind, size: Vec3 | None) -> list[Piece]:

@@ -96,7 +96,11 @@ class Layout:
     def free(self, box: Box, on_wall: bool = False, ignore: tuple[int, ...] = ()) -> bool:
         """Whether a box lies inside the room and touches nothing."""
         c = box.corners()
-        if np.abs(c[:, 0]).max() > self.w / 2 + 1e-6 or np.abs(c[:, 1]).max() > self.d / 2 + 1e-6 or box.z + box.h > self.h:
+        if (
+            np.abs(c[:, 0]).max() > self.w / 2 + 1e-6
+            or np.abs(c[:, 1]).max() > self.d / 2 + 1e-6
+            or box.z + box.h > self.h
+        ):
             return False
         if any(overlap(box, t.box) for i, t in enumerate(self.things) if i not in ignore):
             return False
@@ -124,7 +128,9 @@ class Layout:
         ignore = (support,) if isinstance(support, int) else ()
         return self.put(asset, box, support) if self.free(box.grown(margin), ignore=ignore) else None
 
-    def against(self, asset: Asset, walls: tuple[str, ...] | None = None, at: float | None = None, front: float = 0.45) -> int | None:
+    def against(
+        self, asset: Asset, walls: tuple[str, ...] | None = None, at: float | None = None, front: float = 0.45
+    ) -> int | None:
         """Back to a wall, at the fraction `at` of its length or anywhere, with `front` metres free before it."""
         w, d, _ = asset.size
         names = [n for n in (walls or self.walls) if n in self.walls]
@@ -172,7 +178,9 @@ class Layout:
         box = Box(x, y, low, w, d, h, yaw)
         return self.put(asset, box, "wall") if self.free(box, on_wall=True) else None
 
-    def near(self, asset: Asset, anchor: int, right: float, back: float, turn: float = 0.0, margin: float = 0.0) -> int | None:
+    def near(
+        self, asset: Asset, anchor: int, right: float, back: float, turn: float = 0.0, margin: float = 0.0
+    ) -> int | None:
         """Stand it at an offset along the anchor's own axes, turned by `turn` against it."""
         box = self.things[anchor].box
         x, y = box.at(right, back)
@@ -202,7 +210,9 @@ class Layout:
                 return index
         return None
 
-    def on_top(self, asset: Asset, anchor: int, right: float | None = None, back: float | None = None, turn: float = 0.0) -> int | None:
+    def on_top(
+        self, asset: Asset, anchor: int, right: float | None = None, back: float | None = None, turn: float = 0.0
+    ) -> int | None:
         """On the anchor's upper face, at an offset along its axes or anywhere that carries all of it."""
         base = self.things[anchor].box
         w, d, h = asset.size
@@ -239,7 +249,9 @@ def rest_height(asset: Asset, x: float, y: float, w: float, d: float) -> float |
         return None
     top = float(means[above, 2].max())
     face = means[above & (means[:, 2] > top - 0.006)][:, :2]
-    grid = np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2) * np.array([w, d]) * 0.46 + np.array([x, y])
+    grid = np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2) * np.array([w, d]) * 0.46 + np.array(
+        [x, y]
+    )
     gap = np.linalg.norm(grid[:, None] - face[None], axis=2).min(axis=1)
     reach = 0.75 * float(asset.cloud.scales[:, :2].max()) / 0.6
     return top if gap.max() < max(reach, 0.03) else None

@@ -71,6 +71,6 @@ def bake(points: Array, normals: Array, space: Occupancy, sun: Array = SUN, two_
     up = 0.5 + 0.5 * normals[:, 2]
     height = points[:, 2] - points[:, 2].min()
     ground = np.exp(-height / 0.12) * (1 - up)
-    sky = (0.60 + 0.14 * up) * (1 - 0.65 * np.clip(1.6 * blocked, 0, 1)) * (1 - 0.35 * ground)
-    lamp = 0.42 * np.clip(facing + 0.15, 0, None) / 1.15 * (1 - 0.75 * np.clip(1.8 * shadow, 0, 1))
+    sky = (0.70 + 0.14 * up) * (1 - 0.60 * np.clip(1.6 * blocked - 0.1, 0, 1)) * (1 - 0.30 * ground)
+    lamp = 0.40 * np.clip(facing + 0.15, 0, None) / 1.15 * (1 - 0.75 * np.clip(1.8 * shadow, 0, 1))
     return np.asarray(sky + lamp)

@@ -131,15 +131,25 @@ def _plain(s: Surface, m: Material) -> Array:
     return _tint(m.color, 0.025 * _noise(s.xyz / 0.15, m.seed, 1))
 
 
+@pattern("flat")
+def _flat(s: Surface, m: Material) -> Array:
+    return np.broadcast_to(np.array(m.color), (len(s.xyz), 3))
+
+
 @pattern("wood")
 def _wood(s: Surface, m: Material) -> Array:
-    """Grain: rings of a slightly bent trunk that runs along the axis."""
-    across = np.delete(s.xyz, m.axis, axis=1)
+    """Boards side by side, each its own shade, with a wavy grain along the axis."""
+    first, second = [k for k in range(3) if k != m.axis]
+    facing = np.abs(s.normal[:, first]) > np.abs(s.normal[:, second])
+    across = np.where(facing, s.xyz[:, second], s.xyz[:, first])
     run = s.xyz[:, m.axis]
-    warp = 0.35 * np.sin(run * 5 + m.seed % 7) + 0.25 * np.sin(run * 13 + m.seed % 5)
-    rings = np.linalg.norm(across / 0.045 + np.array([2.3 + m.seed % 3, 1.1]), axis=1) + warp
-    grain = np.sin(2 * np.pi * rings) + 0.5 * np.sin(2 * np.pi * rings * 2.7 + 1)
-    return _tint(m.color, 0.07 * grain)
+    board = np.floor(across / 0.14 + 0.37 * (m.seed % 5))
+    tone = np.mod(np.sin(board * 12.9898 + m.seed % 89) * 43758.5453, 1.0) - 0.5
+    wave = 0.55 * np.sin(run * 3.1 + 4 * tone) + 0.3 * np.sin(run * 7.3 + m.seed % 7 + 9 * tone)
+    grain = np.sin(2 * np.pi * (across / 0.075 + 0.45 * wave + tone)) + 0.4 * np.sin(
+        2 * np.pi * (across / 0.031 + wave)
+    )
+    return _tint(m.color, 0.055 * grain + 0.09 * tone)
 
 
 @pattern("stripes")
@@ -164,7 +174,9 @@ def _dots(s: Surface, m: Material) -> Array:
 @pattern("weave")
 def _weave(s: Surface, m: Material) -> Array:
     p = s.plane() / 0.02
-    return _tint(m.color, 0.05 * np.sin(2 * np.pi * p[:, 0]) * np.sin(2 * np.pi * p[:, 1]) + 0.04 * _noise(s.xyz / 0.08, m.seed))
+    return _tint(
+        m.color, 0.05 * np.sin(2 * np.pi * p[:, 0]) * np.sin(2 * np.pi * p[:, 1]) + 0.04 * _noise(s.xyz / 0.08, m.seed)
+    )
 
 
 @pattern("leaves")
@@ -251,8 +263,13 @@ def _rings(s: Surface, m: Material) -> Array:
 @pattern("glass")
 def _glass(s: Surface, m: Material) -> Array:
     """A pane or mirror: a cool gradient with slanted light streaks."""
-    streak = np.mod((s.uv[:, 0] + s.uv[:, 1]) * 1.7 + (m.seed % 10) / 10, 1.0)
-    return _two(m, 0.25 * s.uv[:, 0] + 0.45 * ((streak > 0.35) & (streak < 0.5)) + 0.3 * ((streak > 0.56) & (streak < 0.6)))
+    p = s.plane()
+    span = np.maximum(np.ptp(p, axis=0), 1e-6)
+    p = (p - p.min(axis=0)) / span
+    streak = np.mod((p[:, 0] + p[:, 1]) * 1.3 + (m.seed % 10) / 10, 1.0)
+    return _two(
+        m, 0.25 * p[:, 1] + 0.45 * ((streak > 0.35) & (streak < 0.5)) + 0.3 * ((streak > 0.56) & (streak < 0.6))
+    )
 
 
 @pattern("sky")

@@ -48,7 +48,9 @@ def clipped_below(piece: Piece, z: float) -> Piece:
     return replace(piece, sheets=tuple(replace(s, points=cut(s.points)) for s in piece.sheets))
 
 
-def fronts(rng: Rng, w: float, h: float, at: Point, columns: int, rows: int, mat: Material, knob: Material) -> list[Piece]:
+def fronts(
+    rng: Rng, w: float, h: float, at: Point, columns: int, rows: int, mat: Material, knob: Material
+) -> list[Piece]:
     """Doors or drawers on a front plane at y = at[1] facing -y, with knobs or bars to pull."""
     x0, y, z0 = at
     cw, rh = w / columns, h / rows
@@ -92,7 +94,9 @@ def row_of_books(rng: Rng, width: float, at: Point, deep: float, high: float, pa
         if x + thick > at[0] + width:
             break
         h, d = high * rng.uniform(0.72, 0.97), deep * rng.uniform(0.75, 0.95)
-        rows.setdefault(int(rng.integers(len(palette))), []).append((thick - 0.002, d, h, x + thick / 2, at[1] + d / 2, at[2]))
+        rows.setdefault(int(rng.integers(len(palette))), []).append(
+            (thick - 0.002, d, h, x + thick / 2, at[1] + d / 2, at[2])
+        )
         x += thick
         if rng.random() < 0.06:
             x += rng.uniform(0.02, 0.08)

@@ -15,15 +15,30 @@ def _pot(rng: Rng, r: float, h: float, mat: Material) -> list[Piece]:
     style = int(rng.integers(4))
     soil = disc(r * 0.9, (0, 0, h * 0.9)).named("soil", Material((0.22, 0.15, 0.1)))
     if style == 0:
-        wall = lathe([(0, 0), (r * 0.7, 0), (r * 0.95, h * 0.82), (r * 1.05, h * 0.82), (r * 1.05, h), (r * 0.9, h), (r * 0.88, h * 0.85)])
+        wall = lathe(
+            [
+                (0, 0),
+                (r * 0.7, 0),
+                (r * 0.95, h * 0.82),
+                (r * 1.05, h * 0.82),
+                (r * 1.05, h),
+                (r * 0.9, h),
+                (r * 0.88, h * 0.85),
+            ]
+        )
     elif style == 1:
         wall = lathe([(0, 0), (r * 0.98, 0), (r, h), (r * 0.92, h), (r * 0.9, h * 0.85)])
     elif style == 2:
         wall = lathe([(0, 0), (r * 0.6, 0), (r * 1.1, h * 0.5), (r * 0.92, h), (r * 0.86, h * 0.88)], smooth=15)
     else:
         s = 1.75 * r
-        walls = [box(s, 0.02, h, (0, k * (s / 2 - 0.01), 0)) for k in (-1, 1)] + [box(0.02, s, h, (k * (s / 2 - 0.01), 0, 0)) for k in (-1, 1)]
-        return [join(*walls, box(s - 0.02, s - 0.02, 0.02)).named("pot", mat), box(s - 0.03, s - 0.03, 0.02, (0, 0, h * 0.86)).named("soil", soil.material or mat)]
+        walls = [box(s, 0.02, h, (0, k * (s / 2 - 0.01), 0)) for k in (-1, 1)] + [
+            box(0.02, s, h, (k * (s / 2 - 0.01), 0, 0)) for k in (-1, 1)
+        ]
+        return [
+            join(*walls, box(s - 0.02, s - 0.02, 0.02)).named("pot", mat),
+            box(s - 0.03, s - 0.03, 0.02, (0, 0, h * 0.86)).named("soil", soil.material or mat),
+        ]
     return [wall.named("pot", mat), soil]
 
 
@@ -53,11 +68,18 @@ def _crown(rng: Rng, count: int, r: float, at: tuple[float, float, float], lengt
     return join(*out)
 
 
-@kind("potted plant", ((0.2, 1.2), (0.2, 1.2), (0.3, 1.9)), synonyms=("plant", "houseplant", "pot plant", "fern", "palm", "ficus"), palette="leaf")
+@kind(
+    "potted plant",
+    ((0.2, 1.2), (0.2, 1.2), (0.3, 1.9)),
+    synonyms=("plant", "houseplant", "pot plant", "fern", "palm", "ficus"),
+    palette="leaf",
+)
 def potted_plant(rng: Rng, tone: Tone) -> list[Piece]:
     style, green = int(rng.integers(7)), Material(tone.color, seed=tone.seed, main=True)
     big = chance(rng, 0.6)
-    r, h = (rng.uniform(0.14, 0.2), rng.uniform(0.22, 0.34)) if big else (rng.uniform(0.08, 0.12), rng.uniform(0.12, 0.18))
+    r, h = (
+        (rng.uniform(0.14, 0.2), rng.uniform(0.22, 0.34)) if big else (rng.uniform(0.08, 0.12), rng.uniform(0.12, 0.18))
+    )
     s = r / 0.15
     clay = tone.plain("#b5623c") if chance(rng, 0.3) else tone.accent()
     out, top = _pot(rng, r, h, clay), h * 0.9
@@ -65,19 +87,28 @@ def potted_plant(rng: Rng, tone: Tone) -> list[Piece]:
     if style == 0:  # broad leaves from the soil
         out.append(_leaves(rng, 18, 0.45 * s, 0.13 * s, top, 1.1, 0.9).named("leaf", green))
     elif style == 1:  # sword leaves, upright
-        out.append(_leaves(rng, 14, 0.16 * s, 0.06 * s, 0, 4.2, 0.1).stretched(1, 1, 1).moved(0, 0, top).named("leaf", green))
+        out.append(
+            _leaves(rng, 14, 0.16 * s, 0.06 * s, 0, 4.2, 0.1).stretched(1, 1, 1).moved(0, 0, top).named("leaf", green)
+        )
     elif style == 2:  # palm: fronds on a trunk
         trunk = rng.uniform(0.3, 0.6) * s
         out += [tube([(0, 0, top), (0.02, 0, top + trunk / 2), (0, 0.02, top + trunk)], 0.02 * s, smooth=9).named("trunk", stem),
                 _leaves(rng, 24, 0.5 * s, 0.06 * s, top + trunk, 1.0, 1.2).named("leaf", green)]  # fmt: skip
     elif style == 3:  # little tree
         trunk = rng.uniform(0.35, 0.7) * s
-        out += [rod((0, 0, top), (0, 0, top + trunk), 0.016 * s).named("trunk", stem), _crown(rng, 70, 0.22 * s, (0, 0, top + trunk + 0.12 * s), 0.13 * s, 0.07 * s).named("leaf", green)]
+        out += [
+            rod((0, 0, top), (0, 0, top + trunk), 0.016 * s).named("trunk", stem),
+            _crown(rng, 70, 0.22 * s, (0, 0, top + trunk + 0.12 * s), 0.13 * s, 0.07 * s).named("leaf", green),
+        ]
     elif style == 4:  # cactus
         tall = rng.uniform(0.25, 0.5) * s
         out += [blob(0.16 * s, 0.16 * s, tall * 1.1, (0, 0, top + tall / 2), 1.0, 0.6).named("stem", green)]
         for k in (-1, 1)[: int(rng.integers(0, 3))]:
-            arm = [(k * 0.05 * s, 0, top + tall * 0.45), (k * 0.14 * s, 0, top + tall * 0.5), (k * 0.15 * s, 0, top + tall * 0.85)]
+            arm = [
+                (k * 0.05 * s, 0, top + tall * 0.45),
+                (k * 0.14 * s, 0, top + tall * 0.5),
+                (k * 0.15 * s, 0, top + tall * 0.85),
+            ]
             out.append(tube(arm, 0.035 * s, smooth=9).named("stem", green))
         if chance(rng, 0.4):
             out.append(ball(0.03 * s, (0, 0, top + tall * 1.06)).named("flower", tone.plain("#e8559a")))
@@ -91,12 +122,22 @@ def potted_plant(rng: Rng, tone: Tone) -> list[Piece]:
             out.append(rod((0, 0, top), tip, 0.01 * s).named("trunk", stem))
             for k in range(7):
                 t = 0.25 + 0.75 * k / 6
-                one = leaf(0.2 * s, 0.1 * s, 0.5, 0.6).turned("z", 137.5 * (k + 3 * j)).moved(tip[0] * t, tip[1] * t, top + tall * t)
+                one = (
+                    leaf(0.2 * s, 0.1 * s, 0.5, 0.6)
+                    .turned("z", 137.5 * (k + 3 * j))
+                    .moved(tip[0] * t, tip[1] * t, top + tall * t)
+                )
                 out.append(one.named("leaf", green))
     return out
 
 
-@kind("flowers", ((0.12, 0.5), (0.12, 0.5), (0.22, 0.65)), support="surface", synonyms=("bouquet", "vase of flowers", "flower", "tulips", "roses"), palette="any")
+@kind(
+    "flowers",
+    ((0.12, 0.5), (0.12, 0.5), (0.22, 0.65)),
+    support="surface",
+    synonyms=("bouquet", "vase of flowers", "flower", "tulips", "roses"),
+    palette="any",
+)
 def flowers(rng: Rng, tone: Tone) -> list[Piece]:
     h, n = rng.uniform(0.14, 0.2), int(rng.integers(5, 12))
     green, bloom = Material((0.2, 0.45, 0.2)), tone.main
@@ -115,13 +156,23 @@ def flowers(rng: Rng, tone: Tone) -> list[Piece]:
                 petals.append(leaf(0.042, 0.03, 0.5, 0.35).turned("z", 60 * j + a).moved(*tip))
             hearts.append(ball(0.012, (tip[0], tip[1], tip[2] + 0.004)))
     greens = [leaf(0.13, 0.035, 0.5, 1.4).turned("z", 100 * k + 20).moved(0, 0, h * 0.9) for k in range(4)]
-    out += [join(*stems).named("stem", green), join(*greens).named("leaf", green), join(*petals).named("petal", bloom, 1.5)]
+    out += [
+        join(*stems).named("stem", green),
+        join(*greens).named("leaf", green),
+        join(*petals).named("petal", bloom, 1.5),
+    ]
     if hearts:
         out.append(join(*hearts).named("heart", Material((0.95, 0.78, 0.2))))
     return out
 
 
-@kind("vase", ((0.08, 0.4), (0.08, 0.4), (0.14, 0.7)), support="surface", synonyms=("urn", "jar", "amphora"), palette="any")
+@kind(
+    "vase",
+    ((0.08, 0.4), (0.08, 0.4), (0.14, 0.7)),
+    support="surface",
+    synonyms=("urn", "jar", "amphora"),
+    palette="any",
+)
 def vase(rng: Rng, tone: Tone) -> list[Piece]:
     h, style, mat = rng.uniform(0.2, 0.42), int(rng.integers(6)), tone.glazed(rng.uniform(0.04, 0.1))
     r = h * rng.uniform(0.2, 0.32)
@@ -131,7 +182,15 @@ def vase(rng: Rng, tone: Tone) -> list[Piece]:
         [(0, 0), (r, h * 0.02), (r * 1.1, h * 0.3), (r * 0.18, h * 0.55), (r * 0.16, h)],
         [(0, 0), (r * 0.7, 0), (r * 0.6, h * 0.5), (r * 0.9, h)],
         [(0, 0), (r * 0.7, 0), (r * 0.72, h * 0.96), (r * 0.68, h)],
-        [(0, 0), (r * 0.5, 0), (r * 0.8, h * 0.18), (r * 0.5, h * 0.4), (r * 0.85, h * 0.65), (r * 0.35, h * 0.88), (r * 0.5, h)],
+        [
+            (0, 0),
+            (r * 0.5, 0),
+            (r * 0.8, h * 0.18),
+            (r * 0.5, h * 0.4),
+            (r * 0.85, h * 0.65),
+            (r * 0.35, h * 0.88),
+            (r * 0.5, h),
+        ],
     ]
     outer = profiles[style]
     rim = outer[-1][0]
@@ -144,10 +203,14 @@ def vase(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind("flower pot", ((0.12, 0.5), (0.12, 0.5), (0.1, 0.5)), synonyms=("planter", "plant pot", "empty pot"), palette="any")
+@kind(
+    "flower pot", ((0.12, 0.5), (0.12, 0.5), (0.1, 0.5)), synonyms=("planter", "plant pot", "empty pot"), palette="any"
+)
 def flower_pot(rng: Rng, tone: Tone) -> list[Piece]:
     r, h = rng.uniform(0.1, 0.18), rng.uniform(0.14, 0.3)
     out = _pot(rng, r, h, tone.glazed(0.05))
     if chance(rng, 0.5):
-        out = [p.moved(0, 0, 0.012) for p in out] + [cylinder(r * 1.1, 0.015, top=r * 1.2).named("saucer", tone.main.shaded(0.8))]
+        out = [p.moved(0, 0, 0.012) for p in out] + [
+            cylinder(r * 1.1, 0.015, top=r * 1.2).named("saucer", tone.main.shaded(0.8))
+        ]
     return out

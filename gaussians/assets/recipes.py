@@ -22,7 +22,22 @@ SMALL = {
     "counter": ("kettle", "toaster", "microwave", "cooking pot", "banana", "bottle", "bowl", "plate", "mug", "apple"),
     "stove": ("cooking pot", "kettle"),
 }  # fmt: skip
-LOOSE = ("ball", "basket", "box", "bin", "backpack", "suitcase", "shoe", "umbrella", "drum", "fan", "ottoman", "flower pot", "guitar", "teddy bear")
+LOOSE = (
+    "ball",
+    "basket",
+    "box",
+    "bin",
+    "backpack",
+    "suitcase",
+    "shoe",
+    "umbrella",
+    "drum",
+    "fan",
+    "ottoman",
+    "flower pot",
+    "guitar",
+    "teddy bear",
+)
 
 
 class Supplier:
@@ -38,7 +53,11 @@ class Supplier:
 
     def odd_color(self) -> str:
         """A colour word for the one that differs."""
-        return str(self.rng.choice(["red", "orange", "yellow", "green", "teal", "blue", "purple", "pink", "brown", "white", "black"]))
+        return str(
+            self.rng.choice(
+                ["red", "orange", "yellow", "green", "teal", "blue", "purple", "pink", "brown", "white", "black"]
+            )
+        )
 
 
 def chance(rng: Rng, p: float) -> bool:
@@ -82,7 +101,9 @@ def pictures(room: Layout, get: Supplier, count: int) -> None:
     """Paintings, mirrors and clocks at eye height, where the wall is free."""
     for _ in range(count):
         thing = get(str(room.rng.choice(["painting", "painting", "painting", "mirror", "clock"])))
-        low = {"clock": 1.65, "mirror": max(0.55, 1.55 - thing.size[2] / 2)}.get(thing.kind, max(0.95, 1.55 - thing.size[2] / 2))
+        low = {"clock": 1.65, "mirror": max(0.55, 1.55 - thing.size[2] / 2)}.get(
+            thing.kind, max(0.95, 1.55 - thing.size[2] / 2)
+        )
         for _ in range(8):
             wall = str(room.rng.choice(room.walls))
             length = room.w if wall in ("north", "south") else room.d
@@ -98,7 +119,10 @@ def around_table(room: Layout, get: Supplier, table: int, kind: str, count: int)
     chair_w, chair_d, _ = first.size
     long = max(int((box.w - 0.1) // (chair_w + 0.12)), 1)
     seats = [(k, -1) for k in range(long)] + [(k, 1) for k in range(long)]
-    places = [((k - (long - 1) / 2) * (box.w / long) * 0.95, s * (box.d / 2 + chair_d / 2 + 0.04), 180.0 if s < 0 else 0.0) for k, s in seats]
+    places = [
+        ((k - (long - 1) / 2) * (box.w / long) * 0.95, s * (box.d / 2 + chair_d / 2 + 0.04), 180.0 if s < 0 else 0.0)
+        for k, s in seats
+    ]
     places += [(-(box.w / 2 + chair_d / 2 + 0.04), 0.0, 90.0), (box.w / 2 + chair_d / 2 + 0.04, 0.0, -90.0)]
     order = list(room.rng.permutation(len(places)))
     done = 0
@@ -227,7 +251,13 @@ def kitchen(room: Layout, get: Supplier) -> None:
         index = room.try_put(thing, x, y, yaw)
         t += w + 0.015
         if index is not None and kind in ("cabinet", "stove"):
-            dress(room, get, index, "counter" if kind == "cabinet" else "stove", int(rng.integers(1, 4)) if kind == "cabinet" else 1)
+            dress(
+                room,
+                get,
+                index,
+                "counter" if kind == "cabinet" else "stove",
+                int(rng.integers(1, 4)) if kind == "cabinet" else 1,
+            )
     _dining(room, get, int(rng.integers(2, 5)))
     room.corner(get("bin"))
     _extras(room, get, rugs=False)
@@ -251,7 +281,14 @@ def dining_room(room: Layout, get: Supplier) -> None:
     rng = room.rng
     _dining(room, get, int(rng.integers(3, 7)))
     dress(room, get, room.against(get("cabinet")), "cabinet", int(rng.integers(2, 4)))
-    for kind, p in (("cabinet", 0.5), ("bookshelf", 0.4), ("fireplace", 0.35), ("piano", 0.3), ("floor lamp", 0.5), ("armchair", 0.3)):
+    for kind, p in (
+        ("cabinet", 0.5),
+        ("bookshelf", 0.4),
+        ("fireplace", 0.35),
+        ("piano", 0.3),
+        ("floor lamp", 0.5),
+        ("armchair", 0.3),
+    ):
         if chance(rng, p):
             room.against(get(kind))
     _extras(room, get)
@@ -260,7 +297,15 @@ def dining_room(room: Layout, get: Supplier) -> None:
 def studio(room: Layout, get: Supplier) -> None:
     """A place to play: instruments, easel-like screens, toys, a bicycle, stools, a desk."""
     rng = room.rng
-    for kind, p in (("piano", 0.6), ("desk", 0.7), ("bookshelf", 0.6), ("sofa", 0.6), ("bench", 0.4), ("armchair", 0.5), ("bicycle", 0.7)):
+    for kind, p in (
+        ("piano", 0.6),
+        ("desk", 0.7),
+        ("bookshelf", 0.6),
+        ("sofa", 0.6),
+        ("bench", 0.4),
+        ("armchair", 0.5),
+        ("bicycle", 0.7),
+    ):
         if not chance(rng, p):
             continue
         index = room.against(get(kind), front=0.5)

@@ -21,7 +21,7 @@ from ..cloud import GaussianCloud, concat
 from ..errors import UserError
 from ..scene import Frame, Scene
 from . import light, recipes, surface
-from .forge import Asset, flat_gaussians, make
+from .forge import flat_gaussians
 from .layout import Box, Layout, Placed
 from .materials import WOODS, Material, Tone
 from .registry import KINDS, find
@@ -94,7 +94,7 @@ def furnish(
     Args:
         seed: chooses everything.
         kind: one of `room_kinds()`, or "any".
-        objects: the least number of objects to aim for (3 to 40); the recipe's own number if None, 10 at least.
+        objects: the least number of objects to aim for (3 to 40); the recipe's own number if None, 12 at least.
         detail: factor on the number of Gaussians (1: about 80,000 to 150,000 in all).
         include: kinds that are added to what the recipe brings, where they fit.
         ceiling: whether to close the room above.
@@ -119,7 +119,7 @@ def furnish(
     for extra in include:
         _add(layout, get, find(extra).name)
     recipe(layout, get)
-    recipes.fill_up(layout, get, objects or 10)
+    recipes.fill_up(layout, get, objects or int(rng.integers(12, 18)))
     return _assemble(layout, name, rng, detail, ceiling)
 
 
@@ -139,7 +139,12 @@ def _add(layout: Layout, get: recipes.Supplier, name: str) -> None:
     if known.support == "wall":
         for wall in layout.walls * 4:
             length = layout.w if wall in ("north", "south") else layout.d
-            if layout.hang(thing, wall, float(layout.rng.uniform(-0.4, 0.4) * length), 1.2 if thing.size[2] < 1.2 else 0.0) is not None:
+            if (
+                layout.hang(
+                    thing, wall, float(layout.rng.uniform(-0.4, 0.4) * length), 1.2 if thing.size[2] < 1.2 else 0.0
+                )
+                is not None
+            ):
                 return
     elif known.support == "surface":
         stand = layout.against(get("cabinet"))
@@ -164,14 +169,21 @@ def _shell(layout: Layout, rng: np.random.Generator, ceiling: bool) -> list[Piec
         "planks": Material(wood.color, "planks", scale=float(rng.uniform(0.12, 0.2)), seed=tone.seed),
         "tiles": Material(*_pair(rng, (("#e8e4da", "#c9c2b4"), ("#d9dcdd", "#9aa3a8"), ("#efe9df", "#b98d6c"))), scale=float(rng.uniform(0.3, 0.5)), seed=tone.seed),
         "carpet": tone.plain(str(rng.choice(["#a99f90", "#8d939b", "#b3a58c", "#7f8a86"])), "weave"),
-        "plain": tone.plain(str(rng.choice(["#b9b4aa", "#a7a29b", "#cfc7b8"]))),
+        "plain": tone.plain(str(rng.choice(["#b9b4aa", "#a7a29b", "#cfc7b8"])), "flat"),
     }[style]  # fmt: skip
-    paint = tone.plain(str(rng.choice(["#ece7dc", "#dfe4e6", "#e6dccb", "#d5dfd6", "#e9dcd7", "#cfd8e2", "#f0ece4", "#d9cdbb"])))
+    paint = tone.plain(
+        str(rng.choice(["#ece7dc", "#dfe4e6", "#e6dccb", "#d5dfd6", "#e9dcd7", "#cfd8e2", "#f0ece4", "#d9cdbb"])),
+        "flat",
+    )
     if rng.random() < 0.2:
         other = tuple(c * 0.93 for c in paint.color)
         paint = Material(paint.color, "stripes", (other[0], other[1], other[2]), 0.3, 0)
-    out = [quad([(-w / 2, -d / 2, 0), (-w / 2, d / 2, 0), (w / 2, -d / 2, 0), (w / 2, d / 2, 0)]).named("floor", floor, 1.5)]
-    skirt = tone.plain("#f1efea")
+    out = [
+        quad([(-w / 2, -d / 2, 0), (-w / 2, d / 2, 0), (w / 2, -d / 2, 0), (w / 2, d / 2, 0)]).named(
+            "floor", floor, 1.5
+        )
+    ]
+    skirt = tone.plain("#f1efea", "flat")
     for name in layout.walls:
         length = w if name in ("north", "south") else d
         x, y, yaw = layout.spot(name, 0.0, 0.0)
@@ -182,7 +194,7 @@ def _shell(layout: Layout, rng: np.random.Generator, ceiling: bool) -> list[Piec
         out.append(rail.turned("z", yaw).moved(x, y).named("skirting", skirt, 1.2))
     if ceiling:
         lid = boxes([(w, d, 0.02, 0, 0, h)], 0.0)
-        out.append(lid.named("ceiling", tone.plain("#f4f2ee")))
+        out.append(lid.named("ceiling", tone.plain("#f4f2ee", "flat")))
     return out
 
 
@@ -214,11 +226,11 @@ def _assemble(layout: Layout, name: str, rng: np.random.Generator, detail: float
     sun = np.array([0.6 * math.cos(azimuth), 0.6 * math.sin(azimuth), 0.8])
     shell = _shell(layout, rng, ceiling)
     samples = _cut_openings(surface.sample(shell, 0.062 / math.sqrt(detail)), layout)
-    placed = [_stand(t, sun, detail) for t in layout.things]
+    placed = [_stand(t, sun) for t in layout.things]
     solid = np.concatenate([samples.xyz, *(c.means.numpy().astype(np.float64) for c in placed)])
     space = light.occupancy(solid, step=0.06)
     bright = light.bake(samples.xyz, samples.normal, space, sun)
-    bright = np.where(samples.normal[:, 2] > 0.9, bright, 0.78 + 0.25 * (bright - 0.8)) * 0.97
+    bright = np.where(samples.normal[:, 2] > 0.9, 0.84 * bright, 0.86 + 0.3 * (bright - 0.85))
     structure = flat_gaussians(samples, surface.albedo(shell, samples) * bright[:, None])
     clouds, ids, start = [structure], [torch.full((len(structure),), STRUCTURE, dtype=torch.int32)], len(structure)
     for i, cloud in enumerate(placed):
@@ -231,12 +243,12 @@ def _assemble(layout: Layout, name: str, rng: np.random.Generator, detail: float
     return Room(scene, truth, name, (layout.w, layout.d, layout.h))
 
 
-def _stand(thing: Placed, sun: Array, detail: float) -> GaussianCloud:
+def _stand(thing: Placed, sun: Array) -> GaussianCloud:
     """The asset under the room's lamp, turned and moved to its place."""
     a, b = thing.asset, thing.box
     c, s = math.cos(math.radians(b.yaw)), math.sin(math.radians(b.yaw))
     local = (float(c * sun[0] + s * sun[1]), float(-s * sun[0] + c * sun[1]), float(sun[2]))
-    cloud = relit(a, local, detail)
+    cloud = a.relit(local)
     turn = torch.tensor([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], dtype=torch.float32)
     means = cloud.means @ turn.T + torch.tensor([b.x, b.y, b.z])
     half = math.radians(b.yaw) / 2
@@ -244,11 +256,6 @@ def _stand(thing: Placed, sun: Array, detail: float) -> GaussianCloud:
     w, x, y, z = cloud.quats.unbind(1)
     quats = torch.stack([qw * w - qz * z, qw * x - qz * y, qw * y + qz * x, qw * z + qz * w], dim=1)
     return cloud.replace(means=means, quats=quats)
-
-
-def relit(asset: Asset, sun: Vec3, detail: float) -> GaussianCloud:
-    """The same design under another lamp."""
-    return make(asset.kind, asset.seed, color=asset.asked, detail=detail, sun=sun).cloud
 
 
 def _describe(index: int, thing: Placed) -> TruthObject:
@@ -266,17 +273,51 @@ def _describe(index: int, thing: Placed) -> TruthObject:
 
 
 def _cameras(layout: Layout) -> tuple[Camera, ...]:
-    """A wide view from the south first, then eye-height views from the corners inwards, and one from above."""
+    """An overview first (from beyond the open side where there is one), then the clearest eye-height views."""
     w, d, h = layout.w, layout.d, layout.h
-    spots = [(0.0, -d / 2 + 0.12), (-w / 2 + 0.25, -d / 2 + 0.25), (w / 2 - 0.25, -d / 2 + 0.25), (w / 2 - 0.3, d / 2 - 0.3), (-w / 2 + 0.3, d / 2 - 0.3)]
-    blocked = [t.box.grown(0.2) for t in layout.things if t.support != "wall"]
-    out = []
-    for k, (x, y) in enumerate(spots):
-        for pull in (1.0, 0.85, 0.7, 0.55):
-            eye = Box(x * pull, y * pull, 1.3, 0.1, 0.1, 0.4)
-            if not any(abs(eye.x - b.x) < b.w / 2 and abs(eye.y - b.y) < b.d / 2 and b.z + b.h > 1.2 for b in blocked):
-                break
-        target = (-0.35 * eye.x, -0.35 * eye.y + (0.15 * d if k == 0 else 0.0), 0.75)
-        out.append(Camera.look_at((eye.x, eye.y, 1.55), target, (0, 0, 1), 960, 640, 68.0, f"view {k + 1}"))
-    corner = Camera.look_at((0.46 * w, -0.48 * d, h - 0.15), (-0.1 * w, 0.12 * d, 0.35), (0, 0, 1), 960, 640, 72.0, "overview")
-    return (corner, *out)
+    ring = [(math.cos(a), math.sin(a)) for a in np.linspace(-math.pi / 2, 1.5 * math.pi, 17)[:-1]]
+    spots = []
+    for cx, cy in ring:
+        reach = min(0.5 * w / max(abs(cx), 1e-6), 0.5 * d / max(abs(cy), 1e-6)) - 0.35
+        eye = (cx * reach, cy * reach, 1.55)
+        spots.append((_clear(layout, eye), eye))
+    spots.sort(key=lambda s: -s[0])
+    eyes = [spots[0][1]]
+    for _, eye in spots[1:]:  # clear ones, apart from each other
+        if len(eyes) < 5 and all(math.dist(eye, e) > 0.3 * w for e in eyes):
+            eyes.append(eye)
+    views = [
+        Camera.look_at(e, (-0.4 * e[0], -0.4 * e[1], 0.7), (0, 0, 1), 960, 640, 62.0, f"view {k + 1}")
+        for k, e in enumerate(eyes)
+    ]
+    side = (
+        1.0
+        if _clear(layout, (0.42 * w, -0.45 * d, h - 0.3)) >= _clear(layout, (-0.42 * w, -0.45 * d, h - 0.3))
+        else -1.0
+    )
+    if "south" in layout.walls:
+        eye, target, fov = (side * 0.46 * w, -0.47 * d, h - 0.12), (-side * 0.12 * w, 0.15 * d, 0.4), 70.0
+    else:
+        eye, target, fov = (side * 0.28 * w, -0.5 * d - 2.1, h + 0.25), (-side * 0.03 * w, 0.02 * d, 0.75), 52.0
+    return (Camera.look_at(eye, target, (0, 0, 1), 960, 640, fov, "overview"), *views)
+
+
+def _clear(layout: Layout, eye: Vec3) -> float:
+    """How far one sees from an eye towards the middle, metres, averaged over a fan of rays; -1 inside something."""
+    tall = [t.box for t in layout.things if t.support != "wall"]
+    if any(_inside(b.grown(0.15), eye) for b in tall):
+        return -1.0
+    ahead = math.atan2(-eye[1], -eye[0])
+    total = 0.0
+    for turn in np.radians([-30, -20, -10, 0, 10, 20, 30]):
+        for slope in (-0.05, -0.25):
+            step, reach = np.array([math.cos(ahead + turn), math.sin(ahead + turn), slope]), 0.1
+            while reach < 3.0 and not any(_inside(b, tuple(np.array(eye) + reach * step)) for b in tall):
+                reach += 0.2
+            total += reach
+    return total / 14
+
+
+def _inside(b: Box, p: Vec3) -> bool:
+    local = b.axes @ np.array([p[0] - b.x, p[1] - b.y])
+    return bool(abs(local[0]) < b.w / 2 and abs(local[1]) < b.d / 2 and b.z < p[2] < b.z + b.h)

@@ -137,7 +137,6 @@ def from_trimesh(mesh: trimesh.Trimesh) -> Piece:
 # --- flat pieces -----------------------------------------------------------------------------------------------------
 
 
-
 def _cube(bevel: Array) -> Array:
     """`[18, 2, 2, 3]` sides then bevels of the cube [-1, 1]^3, bevelled by a fraction of each half side."""
     sides = []
@@ -271,7 +270,10 @@ def tube(path: ArrayLike, radius: ArrayLike, closed: bool = False, segments: int
     grid = p[:, None] + r[:, None, None] * ring
     sheets = [Sheets(grid[None], hard_u=not closed and not smooth, hard_v=False, closed=True)]
     if not closed:
-        caps = [np.stack([np.broadcast_to(p[0], grid[0].shape), grid[0]]), np.stack([grid[-1], np.broadcast_to(p[-1], grid[0].shape)])]
+        caps = [
+            np.stack([np.broadcast_to(p[0], grid[0].shape), grid[0]]),
+            np.stack([grid[-1], np.broadcast_to(p[-1], grid[0].shape)]),
+        ]
         sheets.append(Sheets(np.stack(caps), hard_u=False, hard_v=False, closed=True))
     return Piece(tuple(sheets))
 
@@ -305,7 +307,8 @@ def blob(w: float, d: float, h: float, at: Point = (0.0, 0.0, 0.0), square: floa
     lon = np.linspace(0, -2 * np.pi, ROUND + 9)[None]
     c, s = _signed(np.cos(lat), flat), _signed(np.sin(lat), flat)
     grid = np.stack(
-        [c * _signed(np.cos(lon), square) * w / 2, c * _signed(np.sin(lon), square) * d / 2, s * h / 2 + 0 * lon], axis=-1
+        [c * _signed(np.cos(lon), square) * w / 2, c * _signed(np.sin(lon), square) * d / 2, s * h / 2 + 0 * lon],
+        axis=-1,
     )
     return Piece((Sheets(grid[None] + np.asarray(at), hard_u=False, hard_v=False, closed=True),))
 
@@ -364,7 +367,12 @@ def extrude(outline: ArrayLike, thick: float, rounding: float = 0.0) -> Piece:
 def rounded_rectangle(w: float, d: float, r: float, steps: int = 6) -> Array:
     """`[4 * steps, 2]` outline, counter-clockwise, corners of radius `r`."""
     r = min(r, w / 2, d / 2)
-    corners = [(w / 2 - r, d / 2 - r, 0), (-w / 2 + r, d / 2 - r, 90), (-w / 2 + r, -d / 2 + r, 180), (w / 2 - r, -d / 2 + r, 270)]
+    corners = [
+        (w / 2 - r, d / 2 - r, 0),
+        (-w / 2 + r, d / 2 - r, 90),
+        (-w / 2 + r, -d / 2 + r, 180),
+        (w / 2 - r, -d / 2 + r, 270),
+    ]
     out = []
     for x, y, start in corners:
         a = np.radians(np.linspace(start, start + 90, steps))

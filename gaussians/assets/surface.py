@@ -116,7 +116,11 @@ def covered(samples: Samples) -> NDArray[np.bool_]:
         height = np.einsum("ni,ni->n", gap, samples.normal)
         beside = np.linalg.norm(gap - height[:, None] * samples.normal, axis=1)
         alike = np.einsum("ni,ni->n", samples.normal[other], samples.normal) > 0.8
-        over = (height > 2e-4) & (height < np.minimum(1.1 * reach, 0.03)) & (beside < 0.75 * samples.size[other].max(axis=1))
+        over = (
+            (height > 2e-4)
+            & (height < np.minimum(1.1 * reach, 0.03))
+            & (beside < 0.75 * samples.size[other].max(axis=1))
+        )
         hidden |= over & alike & (samples.piece[other] != samples.piece)
     return hidden
 

@@ -32,10 +32,15 @@ def _base(rng: Rng, style: int, w: float, d: float, h: float, mat: Material) -> 
         return join(legs4(w * 0.92, d * 0.9, h, t), boxes(apron)).named("leg", mat.along(2))
     if style == 2:
         r = min(w, d)
-        foot = lathe([(0, 0), (r * 0.3, 0), (r * 0.3, 0.02), (r * 0.08, 0.06), (0.045, h * 0.35), (0.04, h * 0.8), (0.09, h)], smooth=21)
+        foot = lathe(
+            [(0, 0), (r * 0.3, 0), (r * 0.3, 0.02), (r * 0.08, 0.06), (0.045, h * 0.35), (0.04, h * 0.8), (0.09, h)],
+            smooth=21,
+        )
         return foot.named("pedestal", mat)
     if style == 3:
-        rows = [(0.07, d * 0.8, 0.06, s * w * 0.34, 0, 0) for s in (-1, 1)] + [(0.08, d * 0.28, h - 0.06, s * w * 0.34, 0, 0.06) for s in (-1, 1)]
+        rows = [(0.07, d * 0.8, 0.06, s * w * 0.34, 0, 0) for s in (-1, 1)] + [
+            (0.08, d * 0.28, h - 0.06, s * w * 0.34, 0, 0.06) for s in (-1, 1)
+        ]
         return boxes([*rows, (w * 0.68, 0.03, 0.09, 0, 0, h * 0.4)]).named("leg", mat.along(2))
     if style == 4:
         pins = []
@@ -49,7 +54,11 @@ def _base(rng: Rng, style: int, w: float, d: float, h: float, mat: Material) -> 
         rows = [(t, d * 0.85, t, s * w * 0.42, 0, z) for s in (-1, 1) for z in (0.0, h - t)]
         rows += [(t, t, h - 2 * t, sx * w * 0.42, sy * (d * 0.425 - t / 2), t) for sx in (-1, 1) for sy in (-1, 1)]
         return boxes(rows).named("leg", mat.along(2))
-    bars = [rod((sx * w * 0.36, sy * d * 0.4, 0.01), (sx * w * 0.36, -sy * d * 0.36, h), 0.025) for sx in (-1, 1) for sy in (-1, 1)]
+    bars = [
+        rod((sx * w * 0.36, sy * d * 0.4, 0.01), (sx * w * 0.36, -sy * d * 0.36, h), 0.025)
+        for sx in (-1, 1)
+        for sy in (-1, 1)
+    ]
     return join(*bars, rod((-w * 0.36, 0, h / 2), (w * 0.36, 0, h / 2), 0.018)).named("leg", mat)
 
 
@@ -76,7 +85,10 @@ def coffee_table(rng: Rng, tone: Tone) -> list[Piece]:
         w = d = rng.uniform(0.65, 0.9)
         return [_top(rng, "round", w, d, h, 0.03, mat), _base(rng, int(rng.choice([0, 2, 4])), w, d, h - 0.03, under)]
     if style == 1:
-        return [box(w, d, h, (0, 0, 0), 0.01).named("body", mat), box(w * 0.4, 0.01, h * 0.3, (0, -d / 2, h * 0.4)).named("drawer", mat.shaded(0.75))]
+        return [
+            box(w, d, h, (0, 0, 0), 0.01).named("body", mat),
+            box(w * 0.4, 0.01, h * 0.3, (0, -d / 2, h * 0.4)).named("drawer", mat.shaded(0.75)),
+        ]
     shape = str(rng.choice(["box", "rounded", "oval"]))
     out = [_top(rng, shape, w, d, h, 0.035, mat), _base(rng, int(rng.choice([0, 1, 4, 5, 6])), w, d, h - 0.035, under)]
     if chance(rng, 0.5):
@@ -88,25 +100,68 @@ def coffee_table(rng: Rng, tone: Tone) -> list[Piece]:
 def side_table(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, mat, style = rng.uniform(0.38, 0.52), rng.uniform(0.45, 0.6), tone.main, int(rng.integers(4))
     if style == 0:
-        return [_top(rng, "round", w, w, h, 0.022, mat), _base(rng, 2, w, w, h - 0.022, mat if chance(rng, 0.5) else tone.metal())]
+        return [
+            _top(rng, "round", w, w, h, 0.022, mat),
+            _base(rng, 2, w, w, h - 0.022, mat if chance(rng, 0.5) else tone.metal()),
+        ]
     if style == 1:
-        bars = [rod((0.85 * w / 2 * np.cos(a), 0.85 * w / 2 * np.sin(a), 0), (0.3 * w * np.cos(a), 0.3 * w * np.sin(a), h - 0.02), 0.014, 0.02) for a in (0.5, 2.6, 4.7)]
+        bars = [
+            rod(
+                (0.85 * w / 2 * np.cos(a), 0.85 * w / 2 * np.sin(a), 0),
+                (0.3 * w * np.cos(a), 0.3 * w * np.sin(a), h - 0.02),
+                0.014,
+                0.02,
+            )
+            for a in (0.5, 2.6, 4.7)
+        ]
         return [_top(rng, "round", w, w, h, 0.025, mat), join(*bars).named("leg", mat, 1.2)]
     if style == 2:
         t = 0.022
-        return [boxes([(w, w, t, 0, 0, h - t), (w, w, t, 0, 0, 0), (w, t, h - 2 * t, 0, w / 2 - t / 2, t)]).named("body", mat.along(0))]
-    return [_top(rng, "box", w, w, h, 0.025, mat), _base(rng, 1, w, w, h - 0.025, mat), _top(rng, "box", w * 0.84, w * 0.84, h * 0.35, 0.018, mat).named("shelf", mat)]
+        return [
+            boxes([(w, w, t, 0, 0, h - t), (w, w, t, 0, 0, 0), (w, t, h - 2 * t, 0, w / 2 - t / 2, t)]).named(
+                "body", mat.along(0)
+            )
+        ]
+    return [
+        _top(rng, "box", w, w, h, 0.025, mat),
+        _base(rng, 1, w, w, h - 0.025, mat),
+        _top(rng, "box", w * 0.84, w * 0.84, h * 0.35, 0.018, mat).named("shelf", mat),
+    ]
 
 
-@kind("nightstand", ((0.35, 0.65), (0.3, 0.55), (0.4, 0.7)), synonyms=("bedside table", "night table"), palette="wood", against_wall=True)
+@kind(
+    "nightstand",
+    ((0.35, 0.65), (0.3, 0.55), (0.4, 0.7)),
+    synonyms=("bedside table", "night table"),
+    palette="wood",
+    against_wall=True,
+)
 def nightstand(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.42, 0.55), rng.uniform(0.36, 0.44), rng.uniform(0.48, 0.62), tone.main
     foot = rng.uniform(0.06, 0.2)
-    out = [box(w, d, h - foot, (0, 0, foot), 0.008).named("body", mat.along(0)), tapered_legs(rng, w, d, foot + 0.01, 0.04).named("leg", mat.along(2))]
-    return out + fronts(rng, w - 0.03, h - foot - 0.04, (0, -d / 2, foot + 0.02), 1, int(rng.integers(1, 4)), mat.shaded(1.08).along(0), tone.metal())
+    out = [
+        box(w, d, h - foot, (0, 0, foot), 0.008).named("body", mat.along(0)),
+        tapered_legs(rng, w, d, foot + 0.01, 0.04).named("leg", mat.along(2)),
+    ]
+    return out + fronts(
+        rng,
+        w - 0.03,
+        h - foot - 0.04,
+        (0, -d / 2, foot + 0.02),
+        1,
+        int(rng.integers(1, 4)),
+        mat.shaded(1.08).along(0),
+        tone.metal(),
+    )
 
 
-@kind("desk", ((1.0, 1.8), (0.5, 0.9), (0.7, 1.1)), synonyms=("writing desk", "workstation", "bureau"), palette="wood", against_wall=True)
+@kind(
+    "desk",
+    ((1.0, 1.8), (0.5, 0.9), (0.7, 1.1)),
+    synonyms=("writing desk", "workstation", "bureau"),
+    palette="wood",
+    against_wall=True,
+)
 def desk(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(1.15, 1.65), rng.uniform(0.58, 0.78), rng.uniform(0.72, 0.76), tone.main
     under, style = mat if chance(rng, 0.6) else tone.frame(), int(rng.integers(5))
@@ -116,13 +171,33 @@ def desk(rng: Rng, tone: Tone) -> list[Piece]:
     for side, bw in block:
         x = side * (w / 2 - bw / 2 - 0.02)
         out.append(box(bw, d - 0.06, z, (x, 0, 0)).named("drawers", mat.along(2)))
-        out += fronts(rng, bw - 0.02, z - 0.06, (x, -d / 2 + 0.03, 0.04), 1, int(rng.integers(2, 5)), mat.shaded(1.08), tone.metal())
+        out += fronts(
+            rng,
+            bw - 0.02,
+            z - 0.06,
+            (x, -d / 2 + 0.03, 0.04),
+            1,
+            int(rng.integers(2, 5)),
+            mat.shaded(1.08),
+            tone.metal(),
+        )
     if style in (0, 3):
         out.append(box(0.035, d - 0.06, z, (w / 2 - 0.05, 0, 0)).named("leg", under.along(2)))
     elif style == 2:
-        out += [_base(rng, int(rng.choice([0, 5, 6])), w, d, z, under), *fronts(rng, w * 0.7, 0.1, (0, -d * 0.42, z - 0.11), 3, 1, mat, tone.metal())]
+        out += [
+            _base(rng, int(rng.choice([0, 5, 6])), w, d, z, under),
+            *fronts(rng, w * 0.7, 0.1, (0, -d * 0.42, z - 0.11), 3, 1, mat, tone.metal()),
+        ]
     elif style == 4:
         out += [_base(rng, 4 if chance(rng, 0.5) else 1, w, d, z, under)]
     if style == 3 or chance(rng, 0.15):
-        out.append(boxes([(w, 0.2, 0.02, 0, d / 2 - 0.1, h + 0.28), (0.02, 0.2, 0.28, -w / 2 + 0.01, d / 2 - 0.1, h), (0.02, 0.2, 0.28, w / 2 - 0.01, d / 2 - 0.1, h)]).named("hutch", mat))
+        out.append(
+            boxes(
+                [
+                    (w, 0.2, 0.02, 0, d / 2 - 0.1, h + 0.28),
+                    (0.02, 0.2, 0.28, -w / 2 + 0.01, d / 2 - 0.1, h),
+                    (0.02, 0.2, 0.28, w / 2 - 0.01, d / 2 - 0.1, h),
+                ]
+            ).named("hutch", mat)
+        )
     return out
