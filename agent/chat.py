@@ -6,6 +6,7 @@ out: that is the session's. Works on a terminal with history and completion, and
 
 from __future__ import annotations
 
+import json
 import os
 import shlex
 import shutil
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from prompt_toolkit.input import Input
     from prompt_toolkit.output import Output as ScreenOutput
 
+    from ..planners.plan import EditPlan
     from .result import Result
     from .session import Session
     from .terminal import Terminal
@@ -66,7 +68,7 @@ class Chat:
         self.session = session
         self.terminal = terminal
         self._pipe_input, self._screen = input, output
-        self._result: Result | None = None
+        self._planned: EditPlan | None = None
         self._saved = True
 
     # -- the loop ---------------------------------------------------------------------------------------------------
@@ -110,8 +112,8 @@ class Chat:
         self._show_result(result)
 
     def _show_result(self, result: Result) -> None:
-        self._result, self._saved = result, False
-        lines = list(result.sentences()) or [f"{result.text}: done"]
+        self._planned, self._saved = result.plan or self._planned, False
+        lines = list(result.sentences()) or [result.text]
         if sum(result.seconds.values()) > 0:
             lines.append(f"({sum(result.seconds.values()):.2f} s)")
         self._tell("\n".join(lines), result.to_json())
@@ -160,16 +162,14 @@ class Chat:
         self._tell("\n".join(lines), {"commands": COMMANDS})
 
     def _plan(self, text: str) -> None:
-        import json
-
         if text:
             result = self.session.preview(text)
-            lines = [*result.sentences(), "(not done)"]
-            self._tell("\n".join([_pretty(result.plan), *lines]), result.to_json())
+            planned = _pretty(result.plan) if result.plan is not None else ""
+            self._tell("\n".join([planned, *result.sentences(), "(not done)"]), result.to_json())
             return
-        if self._result is None or self._result.plan is None:
+        if self._planned is None:
             raise UserError("nothing was planned yet; /plan TEXT shows what an instruction would do")
-        self._tell(_pretty(self._result.plan), json.loads(self._result.plan.model_dump_json()))
+        self._tell(_pretty(self._planned), self._planned.model_dump(mode="json"))
 
     def _select(self, text: str) -> None:
         if not text:
@@ -297,9 +297,7 @@ def history_file() -> Path | None:
     return root / "chat_history" if os.access(root, os.W_OK) else None
 
 
-def _pretty(plan: Any) -> str:
-    import json
-
-    return "\n".join(
-        json.dumps(op.model_dump(mode="json", exclude_defaults=True), ensure_ascii=False) for op in plan.ops
-    )
+def _pretty(plan: EditPlan) -> str:
+    """A plan, one operation a line, without what is left at its default."""
+    rows = [{"op": op.op, **op.model_dump(mode="json", exclude_defaults=True)} for op in plan.ops]
+    return "\n".join(json.dumps(row, ensure_ascii=False) for row in rows)

@@ -111,16 +111,21 @@ def _choice(
 ) -> Query | None:
     number = _NUMBER.fullmatch(answer)
     if number and 1 <= int(number[1]) <= len(candidates):
-        return Query(text=query.text, groups=(candidates[int(number[1]) - 1].group,))
+        return _picked(query, candidates[int(number[1]) - 1])
     if answer in ("all", "all of them", "both", "every one", "each"):
         return query.model_copy(update={"pick": "all"})
     words = re.fullmatch(rf"(?:the\s+)?(\w+)(?:\s+(?:one|{re.escape(query.text or 'one')}))?", answer)
     if words and words[1] in _SIDES and _SIDES[words[1]]:
         return query.model_copy(update={"pick": _SIDES[words[1]]})
     if words and words[1] in _ORDINALS[: len(candidates)]:
-        return Query(text=query.text, groups=(candidates[_ORDINALS.index(words[1])].group,))
+        return _picked(query, candidates[_ORDINALS.index(words[1])])
     said = parse(answer)
     return merge(query, said) if said is not None else None
+
+
+def _picked(query: Query, candidate: Candidate) -> Query:
+    """The candidate itself; the words stay for messages only."""
+    return Query(text=query.text, colors=query.colors, size=query.size, groups=(candidate.group,))
 
 
 def merge(query: Query, said: Query) -> Query:

@@ -257,7 +257,7 @@ class Session:
         self._write(kind, lambda: {"text": text, "before": before.digest, "after": to.digest})
         move()
         self.question = None
-        return Result(kind, None, (), before.scene, to.scene, self.viewer, to.last)
+        return Result(f"{kind}: {text}", None, (), before.scene, to.scene, self.viewer, to.last)
 
     # -- files ------------------------------------------------------------------------------------------------------
 

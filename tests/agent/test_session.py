@@ -23,7 +23,7 @@ from scenewright.gaussians.scene import Scene
 
 @pytest.fixture
 def session(boxes: Scene, encoder: Any) -> Session:
-    return Session(boxes, encoder=encoder)
+    return Session(boxes, encoder=encoder, viewer=boxes.cameras[0])
 
 
 def test_an_instruction_changes_what_it_names_and_leaves_the_given_scene_alone(session: Session, boxes: Scene) -> None:
@@ -60,7 +60,7 @@ def test_a_new_instruction_forgets_what_was_undone(session: Session) -> None:
     [
         ("delete the purple thing", AbsentError),
         ("delete the red thing", AmbiguousError),
-        ("make the green thing blue and delete the purple thing", AbsentError),
+        ("make the green thing blue and delete the yellow thing", AbsentError),
         ("delete the green thing, then make the red thing blue", AmbiguousError),
         ("flurble the green thing", UserError),
     ],
@@ -77,7 +77,7 @@ def test_what_cannot_be_done_changes_nothing(
 
 def test_a_compound_instruction_says_which_step_failed(session: Session) -> None:
     with pytest.raises(AbsentError, match=r"step 2 of 2 \(delete\) failed, nothing was changed"):
-        session.do("make the green thing blue and delete the purple thing")
+        session.do("make the green thing blue and delete the yellow thing")
 
 
 def test_a_failed_check_rolls_everything_back(session: Session, boxes: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -165,7 +165,7 @@ def test_the_log_is_a_chain_of_digests(boxes: Scene, encoder: Any, tmp_path: Pat
     session = Session(boxes, encoder=encoder, log=tmp_path / "log.jsonl")
     session.do("make the green thing blue")
     with pytest.raises(AbsentError):
-        session.do("delete the purple thing")
+        session.do("delete the yellow thing")
     session.do("delete the blue thing")
     session.undo()
     session.redo()
