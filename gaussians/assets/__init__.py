@@ -5,7 +5,20 @@
 
 from __future__ import annotations
 
-from . import decor, electronics, kitchen, leisure, lighting, openings, plants, seating, storage, tables  # noqa: F401
+from . import (  # noqa: F401
+    appliances,
+    carried,
+    decor,
+    electronics,
+    kitchen,
+    leisure,
+    lighting,
+    openings,
+    plants,
+    seating,
+    storage,
+    tables,
+)  # fmt: skip
 from .forge import Asset, Parts, kinds, make
 from .registry import KINDS, Kind, find
 from .rooms import Room, Truth, TruthObject, furnish, room_kinds

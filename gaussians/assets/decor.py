@@ -260,5 +260,11 @@ def sculpture(rng: Rng, tone: Tone) -> list[Piece]:
         rod((sx * 0.1, sy * 0.035, 0.05), (sx * 0.085, sy * 0.03, 0.2), 0.014, 0.02) for sx in (-1, 1) for sy in (-1, 1)
     ]
     neck = tube([(-0.08, 0, 0.22), (-0.13, 0, 0.3), (-0.15, 0, 0.36)], [0.045, 0.035, 0.028], smooth=9)
-    return [box(0.32, 0.13, 0.05).named("plinth", plinth.material or mat), blob(0.28, 0.11, 0.12, (0, 0, 0.24)).named("body", mat), join(*legs).named("leg", mat), neck.named("neck", mat),
-            blob(0.12, 0.05, 0.06, (-0.18, 0, 0.36)).named("head", mat), tube([(0.13, 0, 0.25), (0.18, 0, 0.22), (0.19, 0, 0.12)], 0.012, smooth=9).named("tail", mat)]  # fmt: skip
+    return [
+        box(0.32, 0.13, 0.05).named("plinth", plinth.material or mat),
+        blob(0.28, 0.11, 0.12, (0, 0, 0.24)).named("body", mat),
+        join(*legs).named("leg", mat),
+        neck.named("neck", mat),
+        blob(0.12, 0.05, 0.06, (-0.18, 0, 0.36)).named("head", mat),
+        tube([(0.13, 0, 0.25), (0.18, 0, 0.22), (0.19, 0, 0.12)], 0.012, smooth=9).named("tail", mat),
+    ]

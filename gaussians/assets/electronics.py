@@ -344,8 +344,12 @@ def record_player(rng: Rng, tone: Tone) -> list[Piece]:
     ]
     z = h + 0.02
     disc_ = Material((0.07, 0.07, 0.08), "rings", (0.14, 0.14, 0.15), 0.012)
-    out += [cylinder(d * 0.42, 0.012, (-w * 0.1, 0, z)).moved(w * 0.1, 0, 0).named("platter", disc_).moved(-w * 0.1, 0, 0), cylinder(d * 0.13, 0.002, (-w * 0.1, 0, z + 0.012)).named("label", tone.accent()),
-            rod((w * 0.38, d * 0.3, z + 0.03), (w * 0.12, -d * 0.1, z + 0.022), 0.005).named("arm", tone.metal(), 1.2), cylinder(0.02, 0.03, (w * 0.38, d * 0.3, z)).named("arm", tone.metal())]  # fmt: skip
+    out += [
+        cylinder(d * 0.42, 0.012, (-w * 0.1, 0, z)).moved(w * 0.1, 0, 0).named("platter", disc_).moved(-w * 0.1, 0, 0),
+        cylinder(d * 0.13, 0.002, (-w * 0.1, 0, z + 0.012)).named("label", tone.accent()),
+        rod((w * 0.38, d * 0.3, z + 0.03), (w * 0.12, -d * 0.1, z + 0.022), 0.005).named("arm", tone.metal(), 1.2),
+        cylinder(0.02, 0.03, (w * 0.38, d * 0.3, z)).named("arm", tone.metal()),
+    ]
     out += [ball(0.014, (w * 0.38, -d * 0.35, z + 0.006)).named("knob", tone.metal(), 1.2)]
     if chance(rng, 0.5):
         out.append(

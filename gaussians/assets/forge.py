@@ -107,7 +107,8 @@ def make(
     Args:
         kind: a name from `kinds()` or a synonym.
         seed: chooses design, proportions, colours and patterns.
-        color: main colour: a basic term in its typical shade, anything else as `color.parse` takes it; drawn from the seed if None.
+        color: main colour: a basic term in its typical shade, anything else as `color.parse` takes it; drawn from
+            the seed if None.
         size: (w, d, h) in metres to stretch the design to; its own if None.
         detail: factor on the number of Gaussians, 0.05 to 8.
 

@@ -159,7 +159,7 @@ class Layout:
         return [i for i, t in enumerate(self.things) if t.asset.kind == "rug"]
 
     def spot(self, wall: str, along: float, out: float) -> tuple[float, float, float]:
-        """Position `along` a wall from its middle (rightwards as one looks at it) and `out` of it; the yaw facing in."""
+        """Position `along` a wall from its middle (rightwards as one looks at it), `out` of it; the yaw facing in."""
         if wall == "north":
             return along, self.d / 2 - out, 0.0
         if wall == "south":
@@ -238,7 +238,7 @@ class Layout:
 
 
 def rest_height(asset: Asset, x: float, y: float, w: float, d: float) -> float | None:
-    """Height of the asset's surface under a w x d footprint at (x, y) in its frame, or None if that is not flat or ends.
+    """Height of the asset's surface under a w x d footprint at (x, y) in its frame, None if that is not flat.
 
     The nine points of a 3 x 3 grid over the footprint must each have a Gaussian of the upper face nearby.
     """

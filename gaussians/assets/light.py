@@ -46,7 +46,9 @@ def occupancy(points: Array, across: int = 22, step: float | None = None) -> Occ
     return Occupancy(cells, origin, step)
 
 
-def bake(points: Array, normals: Array, space: Occupancy, sun: Array = SUN, two_sided: Array | None = None) -> Array:
+def bake(
+    points: Array, normals: Array, space: Occupancy, sun: Array = SUN, two_sided: NDArray[np.bool_] | None = None
+) -> Array:
     """Brightness `[N]`, about 0.45 in the dark and 1.1 in full light, 0.9 on average.
 
     Args:

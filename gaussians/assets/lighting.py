@@ -16,9 +16,13 @@ def _shade(rng: Rng, r: float, h: float, at: Point, tone: Tone, style: int) -> l
     if style == 2:
         return [ball(r * 0.85, (at[0], at[1], at[2] + r * 0.85)).named("shade", lit)]
     profile = {
-        0: [(r, 0), (r * 0.35, h)], 1: [(r * 0.9, 0), (r * 0.9, h)], 3: [(r, 0), (r * 0.93, h * 0.4), (r * 0.6, h * 0.75), (r * 0.12, h * 0.9)],
-        4: [(r, 0), (r * 0.72, h * 0.3), (r * 0.55, h * 0.7), (r * 0.5, h)], 5: [(r, 0), (r * 0.6, h)], 6: [(r * 0.95, 0), (r * 0.7, h)],
-    }[style]  # fmt: skip
+        0: [(r, 0), (r * 0.35, h)],
+        1: [(r * 0.9, 0), (r * 0.9, h)],
+        3: [(r, 0), (r * 0.93, h * 0.4), (r * 0.6, h * 0.75), (r * 0.12, h * 0.9)],
+        4: [(r, 0), (r * 0.72, h * 0.3), (r * 0.55, h * 0.7), (r * 0.5, h)],
+        5: [(r, 0), (r * 0.6, h)],
+        6: [(r * 0.95, 0), (r * 0.7, h)],
+    }[style]
     wall = lathe(profile, at, smooth=11 if style in (3, 4) else 0)
     out = [
         wall.named("shade", lit),
@@ -239,5 +243,11 @@ def lantern(rng: Rng, tone: Tone) -> list[Piece]:
     roof = cylinder(w * 0.62, w * 0.4, (0, 0, h + 0.03), top=w * 0.12)
     glow = Material((1.0, 0.86, 0.5), "glow", (1.0, 0.97, 0.8))
     bars = join(*(box(w, 0.012, 0.014, (0, s * (w / 2 - 0.006), z), 0.002) for s in (-1, 1) for z in (0.02, h)))
-    return [extrude(rounded_rectangle(w * 1.1, w * 1.1, 0.02), 0.025, 0.004).named("base", mat), posts.named("frame", mat), bars.named("frame", mat), roof.named("roof", mat),
-            cylinder(w * 0.2, h * 0.55, (0, 0, 0.03)).named("candle", glow), ring(w * 0.24, 0.005, (0, 0, h + w * 0.55 + 0.03), "y").named("handle", mat, 1.3)]  # fmt: skip
+    return [
+        extrude(rounded_rectangle(w * 1.1, w * 1.1, 0.02), 0.025, 0.004).named("base", mat),
+        posts.named("frame", mat),
+        bars.named("frame", mat),
+        roof.named("roof", mat),
+        cylinder(w * 0.2, h * 0.55, (0, 0, 0.03)).named("candle", glow),
+        ring(w * 0.24, 0.005, (0, 0, h + w * 0.55 + 0.03), "y").named("handle", mat, 1.3),
+    ]

@@ -1,4 +1,4 @@
-"""Parts that several families of furniture share: legs, drawer fronts, books, blankets. Knows shapes and chance only."""
+"""Parts that families of furniture share: legs, drawer fronts, books, blankets. Knows shapes and chance only."""
 
 from __future__ import annotations
 

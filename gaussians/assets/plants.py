@@ -92,8 +92,12 @@ def potted_plant(rng: Rng, tone: Tone) -> list[Piece]:
         )
     elif style == 2:  # palm: fronds on a trunk
         trunk = rng.uniform(0.3, 0.6) * s
-        out += [tube([(0, 0, top), (0.02, 0, top + trunk / 2), (0, 0.02, top + trunk)], 0.02 * s, smooth=9).named("trunk", stem),
-                _leaves(rng, 24, 0.5 * s, 0.06 * s, top + trunk, 1.0, 1.2).named("leaf", green)]  # fmt: skip
+        out += [
+            tube([(0, 0, top), (0.02, 0, top + trunk / 2), (0, 0.02, top + trunk)], 0.02 * s, smooth=9).named(
+                "trunk", stem
+            ),
+            _leaves(rng, 24, 0.5 * s, 0.06 * s, top + trunk, 1.0, 1.2).named("leaf", green),
+        ]
     elif style == 3:  # little tree
         trunk = rng.uniform(0.35, 0.7) * s
         out += [

@@ -17,7 +17,7 @@ SMALL = {
     "side table": ("table lamp", "flowers", "mug", "books", "vase", "telephone", "candle", "lantern"),
     "nightstand": ("table lamp", "books", "mug", "candle", "wine glass", "telephone"),
     "desk": ("laptop", "monitor", "keyboard", "desk lamp", "mug", "books", "globe", "speaker", "table lamp", "radio"),
-    "cabinet": ("vase", "record player", "radio", "sculpture", "globe", "table lamp", "speaker", "lantern", "flowers", "bowl"),
+    "cabinet": ("vase", "record player", "radio", "sculpture", "globe", "table lamp", "speaker", "lantern", "flowers"),
     "dresser": ("table lamp", "sculpture", "vase", "books", "radio", "candle", "teddy bear", "flowers"),
     "counter": ("kettle", "toaster", "microwave", "cooking pot", "banana", "bottle", "bowl", "plate", "mug", "apple"),
     "stove": ("cooking pot", "kettle"),
@@ -159,7 +159,7 @@ def seating_group(room: Layout, get: Supplier) -> None:
     for k in (-1, 1)[: int(rng.integers(1, 3))]:
         turn = float(k * rng.uniform(55, 80))
         other = chair if chance(rng, 0.6) else get("armchair")
-        room.near(other, sofa, -k * (box.w / 2 + 0.35), forward - 0.45, 180.0 - turn if k < 0 else 180.0 - turn)
+        room.near(other, sofa, -k * (box.w / 2 + 0.35), forward - 0.45, 180.0 - turn)
 
 
 def living_room(room: Layout, get: Supplier) -> None:

@@ -167,10 +167,14 @@ def _shell(layout: Layout, rng: np.random.Generator, ceiling: bool) -> list[Piec
     wood = tone.plain(WOODS[int(rng.integers(len(WOODS) - 1))])
     floor = {
         "planks": Material(wood.color, "planks", scale=float(rng.uniform(0.12, 0.2)), seed=tone.seed),
-        "tiles": Material(*_pair(rng, (("#e8e4da", "#c9c2b4"), ("#d9dcdd", "#9aa3a8"), ("#efe9df", "#b98d6c"))), scale=float(rng.uniform(0.3, 0.5)), seed=tone.seed),
+        "tiles": Material(
+            *_pair(rng, (("#e8e4da", "#c9c2b4"), ("#d9dcdd", "#9aa3a8"), ("#efe9df", "#b98d6c"))),
+            scale=float(rng.uniform(0.3, 0.5)),
+            seed=tone.seed,
+        ),
         "carpet": tone.plain(str(rng.choice(["#a99f90", "#8d939b", "#b3a58c", "#7f8a86"])), "weave"),
         "plain": tone.plain(str(rng.choice(["#b9b4aa", "#a7a29b", "#cfc7b8"])), "flat"),
-    }[style]  # fmt: skip
+    }[style]
     paint = tone.plain(
         str(rng.choice(["#ece7dc", "#dfe4e6", "#e6dccb", "#d5dfd6", "#e9dcd7", "#cfd8e2", "#f0ece4", "#d9cdbb"])),
         "flat",

@@ -41,7 +41,7 @@ def _star_base(r: float, h: float, metal: Material, wheels: Material) -> list[Pi
 
 def _chair_back(rng: Rng, style: int, w: float, d: float, z: float, h: float, mat: Material) -> list[Piece]:
     """A chair's back rising from z by h at y = d/2: solid, slatted, ladder, spindles, padded, or ring."""
-    y, t = d / 2 - 0.02, 0.03
+    y = d / 2 - 0.02
     posts = boxes([(0.035, 0.035, h, s * (w / 2 - 0.018), y, z) for s in (-1, 1)])
     if style == 0:
         parts = box(w, 0.025, h * 0.75, (0, y, z + h * 0.25), 0.01), posts
@@ -63,7 +63,8 @@ def _chair_back(rng: Rng, style: int, w: float, d: float, z: float, h: float, ma
         ]
         parts = join(*spindles), tube(arc, 0.016, smooth=17)
     elif style == 4:
-        parts = (extrude(rounded_rectangle(w, h * 0.62, 0.12), 0.04, 0.015).turned("x", 90).moved(0, y + 0.02, z + h * 0.69),
+        pad = extrude(rounded_rectangle(w, h * 0.62, 0.12), 0.04, 0.015).turned("x", 90)
+        parts = (pad.moved(0, y + 0.02, z + h * 0.69),
                  boxes([(0.03, 0.02, h * 0.5, s * w * 0.3, y + 0.01, z) for s in (-1, 1)]))  # fmt: skip
     else:
         parts = (
@@ -98,8 +99,10 @@ def chair(rng: Rng, tone: Tone) -> list[Piece]:
         plate = extrude(rounded_rectangle(w, d, 0.13), 0.03, 0.012).moved(0, 0, seat - 0.03)
         out.append(plate.named("seat", mat.along(1)))
     else:
-        out += [box(w, d, 0.03, (0, 0, seat - 0.05)).named("seat", mat),
-                cushion(w * 0.96, d * 0.94, 0.07, (0, -0.01, seat - 0.025)).named("cushion", tone.textile(0.06))]  # fmt: skip
+        out += [
+            box(w, d, 0.03, (0, 0, seat - 0.05)).named("seat", mat),
+            cushion(w * 0.96, d * 0.94, 0.07, (0, -0.01, seat - 0.025)).named("cushion", tone.textile(0.06)),
+        ]
     under = int(rng.integers(4))
     if under == 0:
         rails = (
@@ -141,8 +144,10 @@ def office_chair(rng: Rng, tone: Tone) -> list[Piece]:
         .turned("x", 90)
         .moved(0, d / 2 + 0.03, seat + 0.08 + h / 2)
     )
-    out += [back.turned("x", -8, (0, d / 2, seat)).named("back", mat),
-            rod((0, d * 0.2, seat - 0.06), (0, d / 2 + 0.08, seat + 0.2), 0.02).named("frame", metal)]  # fmt: skip
+    out += [
+        back.turned("x", -8, (0, d / 2, seat)).named("back", mat),
+        rod((0, d * 0.2, seat - 0.06), (0, d / 2 + 0.08, seat + 0.2), 0.02).named("frame", metal),
+    ]
     if chance(rng, 0.65):
         for s in (-1, 1):
             x = s * (w / 2 + 0.03)
@@ -169,8 +174,13 @@ def _sofa_body(rng: Rng, tone: Tone, w: float, seats: int) -> list[Piece]:
         out += [box(arm, d, high - foot, (s * (w - arm) / 2, 0, foot), 0.025).named("arm", mat) for s in (-1, 1)]
     elif style == 1:  # rolled arms
         for s in (-1, 1):
-            out += [box(arm * 0.75, d, high - foot - arm / 2, (s * (w - arm) / 2, 0, foot), 0.02).named("arm", mat),
-                    cylinder(arm * 0.58, d, bevel=0.02).turned("x", -90).moved(s * (w - arm * 1.1) / 2, -d / 2, high - arm * 0.5).named("arm", mat)]  # fmt: skip
+            out += [
+                box(arm * 0.75, d, high - foot - arm / 2, (s * (w - arm) / 2, 0, foot), 0.02).named("arm", mat),
+                cylinder(arm * 0.58, d, bevel=0.02)
+                .turned("x", -90)
+                .moved(s * (w - arm * 1.1) / 2, -d / 2, high - arm * 0.5)
+                .named("arm", mat),
+            ]
     elif style == 2:  # soft
         out += [
             cushion(arm * 1.15, d, high - foot, (s * (w - arm) / 2, 0, foot), 0.4).named("arm", mat) for s in (-1, 1)
@@ -236,8 +246,12 @@ def armchair(rng: Rng, tone: Tone) -> list[Piece]:
             grid = np.stack([rr * np.cos(a) + 0 * t, rr * np.sin(a) + 0 * t, z], axis=-1)
             walls.append(shell(grid if flip < 0 else grid[::-1]))
         lip = tube(np.stack([(r - 0.045) * np.cos(a[0]), (r - 0.045) * np.sin(a[0]), top[0]], 1), 0.05)
-        return [join(*walls, lip).named("shell", mat), cushion(2 * r - 0.16, 2 * r - 0.14, 0.18, (0, -0.05, seat - 0.16), 0.6).named("seat", mat),
-                cylinder(r - 0.02, 0.2, (0, 0, 0.1)).named("base", mat), legs4(0.5, 0.5, 0.12, 0.04).named("leg", tone.wood())]  # fmt: skip
+        return [
+            join(*walls, lip).named("shell", mat),
+            cushion(2 * r - 0.16, 2 * r - 0.14, 0.18, (0, -0.05, seat - 0.16), 0.6).named("seat", mat),
+            cylinder(r - 0.02, 0.2, (0, 0, 0.1)).named("base", mat),
+            legs4(0.5, 0.5, 0.12, 0.04).named("leg", tone.wood()),
+        ]
     return _sofa_body(rng, tone, rng.uniform(0.75, 0.98), 1)
 
 
@@ -270,8 +284,11 @@ def stool(rng: Rng, tone: Tone) -> list[Piece]:
         top = box(2.4 * r, 1.5 * r, 0.05, (0, 0, h - 0.05), 0.015)
     out = [top.named("seat", mat.along(1))]
     if style == 2 and chance(rng, 0.6):
-        out += [cylinder(0.025, h - 0.08, (0, 0, 0.02)).named("column", tone.metal()), cylinder(r * 1.05, 0.025, bevel=0.01).named("base", tone.metal()),
-                ring(r * 0.8, 0.01, (0, 0, h * 0.35)).named("footrest", tone.metal())]  # fmt: skip
+        out += [
+            cylinder(0.025, h - 0.08, (0, 0, 0.02)).named("column", tone.metal()),
+            cylinder(r * 1.05, 0.025, bevel=0.01).named("base", tone.metal()),
+            ring(r * 0.8, 0.01, (0, 0, h * 0.35)).named("footrest", tone.metal()),
+        ]
         return out
     count, splay = int(rng.choice([3, 4, 4])), rng.uniform(0.0, 0.06)
     turns = [2 * np.pi * (k + 0.5) / count for k in range(count)]
@@ -342,8 +359,11 @@ def ottoman(rng: Rng, tone: Tone) -> list[Piece]:
         ]
         return [blob_seat(w, h).named("seat", mat), join(*seams).named("seam", mat.shaded(0.6))]
     d, foot = w * rng.uniform(0.7, 1.0), rng.uniform(0.05, 0.14)
-    return [box(w, d, h - foot - 0.1, (0, 0, foot), 0.02).named("base", mat), cushion(w * 1.01, d * 1.01, 0.15, (0, 0, h - 0.15), 0.2).named("seat", mat),
-            tapered_legs(rng, w, d, foot, 0.045).named("leg", tone.frame(), 1.2)]  # fmt: skip
+    return [
+        box(w, d, h - foot - 0.1, (0, 0, foot), 0.02).named("base", mat),
+        cushion(w * 1.01, d * 1.01, 0.15, (0, 0, h - 0.15), 0.2).named("seat", mat),
+        tapered_legs(rng, w, d, foot, 0.045).named("leg", tone.frame(), 1.2),
+    ]
 
 
 def blob_seat(w: float, h: float) -> Piece:
@@ -367,8 +387,10 @@ def bed(rng: Rng, tone: Tone) -> list[Piece]:
     frame = tone.main if painted else frame
     cover, linen = tone.textile(0.18, 0.55), tone.plain(str(rng.choice(["#f4f1ea", "#e9edf2", "#f2e9dc"])))
     style, head = int(rng.integers(4)), rng.uniform(0.85, 1.25)
-    out = [box(w, d, 0.16, (0, 0, base - 0.16), 0.01).named("frame", frame.along(1)),
-           cushion(w - 0.04, d - 0.08, 0.24, (0, -0.01, base - 0.02), 0.12).named("mattress", linen)]  # fmt: skip
+    out = [
+        box(w, d, 0.16, (0, 0, base - 0.16), 0.01).named("frame", frame.along(1)),
+        cushion(w - 0.04, d - 0.08, 0.24, (0, -0.01, base - 0.02), 0.12).named("mattress", linen),
+    ]
     y = d / 2 - 0.03
     if style == 0:
         out.append(box(w, 0.05, head, (0, y, 0), 0.012).named("headboard", frame.along(0)))
@@ -417,9 +439,11 @@ def bed(rng: Rng, tone: Tone) -> list[Piece]:
 def throw_cushion(rng: Rng, tone: Tone) -> list[Piece]:
     w, thick, mat = rng.uniform(0.36, 0.5), rng.uniform(0.13, 0.19), tone.textile(0.06, 0.35)
     if chance(rng, 0.2):
-        return [cylinder(w * 0.22, w, bevel=0.05).turned("y", 90).moved(-w / 2, 0, w * 0.22).named("cushion", mat),
-                ring(w * 0.22, 0.006, (-w / 2 + 0.04, 0, w * 0.22), "x").named("piping", mat.shaded(0.6)),
-                ring(w * 0.22, 0.006, (w / 2 - 0.04, 0, w * 0.22), "x").named("piping", mat.shaded(0.6))]  # fmt: skip
+        return [
+            cylinder(w * 0.22, w, bevel=0.05).turned("y", 90).moved(-w / 2, 0, w * 0.22).named("cushion", mat),
+            ring(w * 0.22, 0.006, (-w / 2 + 0.04, 0, w * 0.22), "x").named("piping", mat.shaded(0.6)),
+            ring(w * 0.22, 0.006, (w / 2 - 0.04, 0, w * 0.22), "x").named("piping", mat.shaded(0.6)),
+        ]
     h = w if chance(rng, 0.6) else w * 0.68
     body = pillow(w, h, thick).turned("x", 72).moved(0, 0, h / 2)
     out = [body.named("cushion", mat)]

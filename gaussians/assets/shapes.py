@@ -169,7 +169,7 @@ def box(w: float, d: float, h: float, at: Point = (0.0, 0.0, 0.0), bevel: float 
     return Piece((Sheets(cube[:6]), Sheets(cube[6:], hard_u=False)))
 
 
-def boxes(rows: Sequence[tuple[float, float, float, float, float, float]], bevel: float = 0.004) -> Piece:
+def boxes(rows: Sequence[Sequence[float]], bevel: float = 0.004) -> Piece:
     """Several blocks `(w, d, h, x, y, z)` as one piece."""
     return join(*(box(w, d, h, (x, y, z), bevel) for w, d, h, x, y, z in rows))
 
@@ -233,9 +233,9 @@ def cylinder(r: float, h: float, at: Point = (0.0, 0.0, 0.0), top: float | None 
     return turned_parts(*caps, [(r, 0), (t, h)], *([[(t, h), (0, h)]] if t > 0 else []), at=at)
 
 
-def rod(a: ArrayLike, b: ArrayLike, r: float, top: float | None = None) -> Piece:
+def rod(a: Sequence[float], b: Sequence[float], r: float, top: float | None = None) -> Piece:
     """A straight round bar from `a` to `b`, of radius `r` at `a`."""
-    return tube([a, b], [r, r if top is None else top])
+    return tube(np.array([a, b]), [r, r if top is None else top])
 
 
 def curve(points: ArrayLike, count: int) -> Array:
@@ -243,7 +243,7 @@ def curve(points: ArrayLike, count: int) -> Array:
     p = np.asarray(points, dtype=np.float64)
     if len(p) < 3:
         t = np.linspace(0, 1, count)[:, None]
-        return p[0] * (1 - t) + p[-1] * t
+        return np.asarray(p[0] * (1 - t) + p[-1] * t)
     ext = np.concatenate([[2 * p[0] - p[1]], p, [2 * p[-1] - p[-2]]])
     t = np.linspace(0, len(p) - 1, count)
     i = np.minimum(t.astype(int), len(p) - 2)
@@ -253,7 +253,7 @@ def curve(points: ArrayLike, count: int) -> Array:
 
 
 def tube(path: ArrayLike, radius: ArrayLike, closed: bool = False, segments: int = 12, smooth: int = 0) -> Piece:
-    """A round bar along `path` `[M, 3]`; `radius` a number or one a point. A closed path is a ring, an open one is capped."""
+    """A round bar along `path` `[M, 3]`, `radius` a number or one a point. Closed paths are rings, open ones capped."""
     p = np.asarray(path, dtype=np.float64)
     r = np.broadcast_to(np.asarray(radius, dtype=np.float64), (len(p),))
     if smooth:
@@ -302,7 +302,7 @@ def ring(r: float, thick: float, at: Point = (0.0, 0.0, 0.0), axis: str = "z", s
 
 
 def blob(w: float, d: float, h: float, at: Point = (0.0, 0.0, 0.0), square: float = 1.0, flat: float = 1.0) -> Piece:
-    """A superellipsoid centred on `at`: 1 is an ellipsoid, towards 0 it is a box; `square` seen from above, `flat` from the side."""
+    """A superellipsoid centred on `at`: 1 is an ellipsoid, towards 0 a box; `square` seen from above, `flat` aside."""
     lat = np.linspace(-np.pi / 2, np.pi / 2, 15)[:, None]
     lon = np.linspace(0, -2 * np.pi, ROUND + 9)[None]
     c, s = _signed(np.cos(lat), flat), _signed(np.sin(lat), flat)

@@ -27,8 +27,15 @@ from .shapes import (
 
 def _open_box(w: float, d: float, h: float, t: float, z: float = 0.0) -> Piece:
     """Bottom and four walls."""
-    return boxes([(w, d, t, 0, 0, z), (w, t, h - t, 0, d / 2 - t / 2, z + t), (w, t, h - t, 0, -d / 2 + t / 2, z + t),
-                  (t, d - 2 * t, h - t, w / 2 - t / 2, 0, z + t), (t, d - 2 * t, h - t, -w / 2 + t / 2, 0, z + t)])  # fmt: skip
+    return boxes(
+        [
+            (w, d, t, 0, 0, z),
+            (w, t, h - t, 0, d / 2 - t / 2, z + t),
+            (w, t, h - t, 0, -d / 2 + t / 2, z + t),
+            (t, d - 2 * t, h - t, w / 2 - t / 2, 0, z + t),
+            (t, d - 2 * t, h - t, -w / 2 + t / 2, 0, z + t),
+        ]
+    )
 
 
 @kind(
@@ -76,8 +83,13 @@ def cabinet(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, mat = 0.15 + columns * rng.uniform(0.4, 0.5), rng.uniform(0.36, 0.46), tone.main
     h = rng.uniform(0.65, 0.85) if columns > 1 else rng.uniform(0.8, 1.15)
     foot = rng.uniform(0.05, 0.2)
-    out = [box(w, d, h - foot, (0, 0, foot), 0.008).named("body", mat.along(0)), tapered_legs(rng, w, d, foot + 0.01, 0.05).named("leg", mat.along(2) if chance(rng, 0.6) else tone.metal(), 1.2),
-           box(w + 0.03, d + 0.02, 0.025, (0, 0, h - 0.02), 0.008).named("top", mat.along(0))]  # fmt: skip
+    out = [
+        box(w, d, h - foot, (0, 0, foot), 0.008).named("body", mat.along(0)),
+        tapered_legs(rng, w, d, foot + 0.01, 0.05).named(
+            "leg", mat.along(2) if chance(rng, 0.6) else tone.metal(), 1.2
+        ),
+        box(w + 0.03, d + 0.02, 0.025, (0, 0, h - 0.02), 0.008).named("top", mat.along(0)),
+    ]
     front = mat.shaded(rng.uniform(0.82, 1.25))
     return out + fronts(
         rng, w - 0.04, h - foot - 0.06, (0, -d / 2, foot + 0.02), columns, int(rng.integers(1, 3)), front, tone.metal()
@@ -193,8 +205,11 @@ def storage_box(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, style = rng.uniform(0.25, 0.5), rng.uniform(0.22, 0.4), rng.uniform(0.18, 0.42), int(rng.integers(4))
     mat = tone.main
     if style == 0:  # closed, with a lid
-        return [box(w, d, h * 0.8).named("body", mat), box(w + 0.015, d + 0.015, h * 0.22, (0, 0, h * 0.78)).named("lid", mat.shaded(rng.uniform(0.75, 1.2))),
-                box(0.08, 0.006, 0.03, (0, -d / 2 - 0.001, h * 0.45)).named("label", tone.plain("#f2eddc"))]  # fmt: skip
+        return [
+            box(w, d, h * 0.8).named("body", mat),
+            box(w + 0.015, d + 0.015, h * 0.22, (0, 0, h * 0.78)).named("lid", mat.shaded(rng.uniform(0.75, 1.2))),
+            box(0.08, 0.006, 0.03, (0, -d / 2 - 0.001, h * 0.45)).named("label", tone.plain("#f2eddc")),
+        ]
     if style == 1:  # cardboard with open flaps
         out = [_open_box(w, d, h, 0.008).named("body", mat)]
         for s in (-1, 1):
@@ -203,7 +218,9 @@ def storage_box(rng: Rng, tone: Tone) -> list[Piece]:
         return out
     if style == 2:  # slatted crate
         n = 3
-        rows = [(w, 0.014, h / n - 0.02, 0, s * d / 2, k * h / n + 0.01) for k in range(n) for s in (-1, 1)]
+        rows: list[tuple[float, ...]] = [
+            (w, 0.014, h / n - 0.02, 0, s * d / 2, k * h / n + 0.01) for k in range(n) for s in (-1, 1)
+        ]
         rows += [(0.014, d, h / n - 0.02, s * w / 2, 0, k * h / n + 0.01) for k in range(n) for s in (-1, 1)]
         return [
             boxes([*rows, (w, d, 0.012, 0, 0, 0.005)]).named("slat", mat.along(0)),
@@ -274,8 +291,15 @@ def waste_bin(rng: Rng, tone: Tone) -> list[Piece]:
         ]
     if style == 2:  # swing top
         w, h = 2 * r, h * 1.5
-        return [box(w, w * 0.8, h, (0, 0, 0), 0.02).named("wall", mat), extrude(rounded_rectangle(w * 0.8, w * 0.7, w * 0.34), w, 0.01).turned("x", 90).turned("z", 90).moved(-w / 2, 0, h).named("lid", mat.shaded(0.7)),
-                box(w * 0.5, 0.01, h * 0.16, (0, -w * 0.4, h * 0.6)).named("label", tone.plain("#f2f2f2"))]  # fmt: skip
+        return [
+            box(w, w * 0.8, h, (0, 0, 0), 0.02).named("wall", mat),
+            extrude(rounded_rectangle(w * 0.8, w * 0.7, w * 0.34), w, 0.01)
+            .turned("x", 90)
+            .turned("z", 90)
+            .moved(-w / 2, 0, h)
+            .named("lid", mat.shaded(0.7)),
+            box(w * 0.5, 0.01, h * 0.16, (0, -w * 0.4, h * 0.6)).named("label", tone.plain("#f2f2f2")),
+        ]
     bars = [
         rod((r * 0.8 * np.cos(a), r * 0.8 * np.sin(a), 0), (r * np.cos(a), r * np.sin(a), h), 0.004)
         for a in np.linspace(0, 2 * np.pi, 25)[:-1]

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .materials import FINE, Surface, paint
+from .patterns import FINE, Surface, paint
 from .shapes import Piece, Sheets
 
 Array = NDArray[np.float64]
@@ -85,7 +85,7 @@ def _cut(key: tuple[int, int, bool, bool, bool], rows: list[tuple[int, Sheets, f
     number = _cells(along_v.sum(axis=1), space[b], hard_v)
     if closed:  # a bar keeps its roundness, except where it shrinks to a point
         number = np.where(along_v.sum(axis=1) > 0.25 * space[b], np.maximum(number, LEAST_AROUND), number)
-    r, c, at_v, wide_v = _divide(number, hard_v)  # [N]
+    r, _, at_v, wide_v = _divide(number, hard_v)  # [N]
     if not hard_v:
         at_v = np.mod(at_v + 0.5 * wide_v * (k[r] % 2), 1.0) if closed else at_v
     j, g, length_v = _locate(along_v, r, at_v)

@@ -22,12 +22,12 @@ def _top(rng: Rng, shape: str, w: float, d: float, z: float, thick: float, mat: 
 
 
 def _base(rng: Rng, style: int, w: float, d: float, h: float, mat: Material) -> Piece:
-    """What holds a plate at height h: 0 legs, 1 frame and apron, 2 pedestal, 3 trestles, 4 hairpins, 5 sled, 6 cross."""
+    """What holds a plate at height h: 0 legs, 1 frame, 2 pedestal, 3 trestles, 4 hairpins, 5 sled, 6 cross."""
     if style == 0:
         return tapered_legs(rng, w * 0.92, d * 0.9, h, rng.uniform(0.045, 0.075)).named("leg", mat.along(2))
     if style == 1:
         t = rng.uniform(0.05, 0.08)
-        apron = [(w * 0.86, 0.02, 0.08, 0, s * (d * 0.43 - 0.01), h - 0.08) for s in (-1, 1)]
+        apron: list[tuple[float, ...]] = [(w * 0.86, 0.02, 0.08, 0, s * (d * 0.43 - 0.01), h - 0.08) for s in (-1, 1)]
         apron += [(0.02, d * 0.84, 0.08, s * (w * 0.44 - 0.01), 0, h - 0.08) for s in (-1, 1)]
         return join(legs4(w * 0.92, d * 0.9, h, t), boxes(apron)).named("leg", mat.along(2))
     if style == 2:
@@ -38,10 +38,10 @@ def _base(rng: Rng, style: int, w: float, d: float, h: float, mat: Material) -> 
         )
         return foot.named("pedestal", mat)
     if style == 3:
-        rows = [(0.07, d * 0.8, 0.06, s * w * 0.34, 0, 0) for s in (-1, 1)] + [
+        beams: list[tuple[float, ...]] = [(0.07, d * 0.8, 0.06, s * w * 0.34, 0, 0) for s in (-1, 1)] + [
             (0.08, d * 0.28, h - 0.06, s * w * 0.34, 0, 0.06) for s in (-1, 1)
         ]
-        return boxes([*rows, (w * 0.68, 0.03, 0.09, 0, 0, h * 0.4)]).named("leg", mat.along(2))
+        return boxes([*beams, (w * 0.68, 0.03, 0.09, 0, 0, h * 0.4)]).named("leg", mat.along(2))
     if style == 4:
         pins = []
         for sx in (-1, 1):
@@ -51,7 +51,7 @@ def _base(rng: Rng, style: int, w: float, d: float, h: float, mat: Material) -> 
         return join(*pins).named("leg", mat, 1.2)
     if style == 5:
         t = 0.035
-        rows = [(t, d * 0.85, t, s * w * 0.42, 0, z) for s in (-1, 1) for z in (0.0, h - t)]
+        rows: list[tuple[float, ...]] = [(t, d * 0.85, t, s * w * 0.42, 0, z) for s in (-1, 1) for z in (0.0, h - t)]
         rows += [(t, t, h - 2 * t, sx * w * 0.42, sy * (d * 0.425 - t / 2), t) for sx in (-1, 1) for sy in (-1, 1)]
         return boxes(rows).named("leg", mat.along(2))
     bars = [
