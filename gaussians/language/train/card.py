@@ -114,9 +114,10 @@ def _strangers(found: dict[str, Any] | None) -> str:
     if not found:
         return ""
     wrong = ", ".join(f"{name} as {guess}" for name, guess in found["wrong"].items())
-    nameless = f"; of {found['without_name']} it has no name for, refused {100 * (found['refused'] or 0):.0f} %"
+    rate = 100 * (found["refused"] or 0)
+    nameless = f"; of {found['without_name']} it has no name for, refused {rate:.0f} %"
     return (
-        f"\nOn {found['named']} low-poly meshes made by others (Kenney Furniture Kit; measured, never trained on): top-1 "
+        f"\nOn {found['named']} low-poly meshes made by others (Kenney Furniture Kit; never trained on): top-1 "
         f"{100 * found['top1']:.0f} %, found at the threshold {100 * found['found']:.0f} %"
         + (nameless if found["without_name"] else "")
         + f".\nMistaken: {wrong}.\n"
