@@ -53,6 +53,14 @@ def _hue(node: Node) -> Fields:
     return {"op": "recolor", "color": hue_of(trees(node, "hue")[0])}
 
 
+def _shade(node: Node) -> Fields:
+    """ "a darker blue" is dark blue."""
+    way, color = tokens(node, "LIGHT")[0], tokens(node, "HUE")[0].value
+    if way.value not in ("darker", "lighter"):
+        raise Refusal("say the colour it should become", way.text)
+    return {"op": "recolor", "color": f"{'dark' if way.value == 'darker' else 'light'} {color}"}
+
+
 def _toward(node: Node) -> Fields:
     if tokens(node, "LESS"):
         raise Refusal("a colour can be added, not taken away; name the colour it should become", "less")
@@ -165,6 +173,7 @@ def _upside(_node: Node) -> Fields:
 _CHANGES: dict[str, Callable[[Node], Fields]] = {
     "become_hue": _hue,
     "toward_hue": _toward,
+    "become_shade": _shade,
     "become_light": _light,
     "become_size": _size,
     "absolute_size": _absolute,

@@ -78,9 +78,10 @@ class Commands:
         return self._targeted(node, "delete")
 
     def _take(self, node: Node) -> list[Fields]:
+        found = self._nouns(node)
         if not trees(node, *_MOTIONS):
-            raise Refusal("say where to, or take it away", "take")
-        return self._move(node)
+            return [{"op": "select", "target": _known(found), "held": "taken"}]
+        return self._moved(found, node, "MOVE")
 
     def _select(self, node: Node) -> list[Fields]:
         said = tokens(node, "SELECT")[0].text
@@ -166,8 +167,8 @@ class Commands:
         return self._targeted(node, "move", place={"relation": "center"})
 
     def _keep(self, node: Node) -> list[Fields]:
-        """ "keep the sofa and delete the rest": what is kept is what the next step leaves out (see `keeps`)."""
-        return self._targeted(node, "select", kept=True)
+        """ "keep the sofa and delete the rest": what is kept is what the next step leaves out."""
+        return self._targeted(node, "select", held="kept")
 
     def _moved(self, found: list[Noun], node: Node, verb: str) -> list[Fields]:
         first, second = _split_at_and(node)
@@ -270,6 +271,8 @@ class Commands:
 
     def _grow(self, node: Node) -> list[Fields]:
         axis, up = tokens(node, "GROW")[0].value
+        if axis == "prop" and trees(node, "factor"):
+            axis = "all"
         if axis == "prop":
             raise Refusal("say what of it: its size, its height, its width", tokens(node, "GROW")[0].text)
         return self._sized(node, axis, up, self._factor(node))

@@ -33,7 +33,7 @@ VERBS: dict[str, Entry] = {
     ),
     **_same(("CLEAR", None), "clear, clear off, wipe"),
     **_same(("DROP", None), "drop"),
-    **_same(("TAKE", None), "take, throw, get"),
+    **_same(("TAKE", None), "take, throw, get, pick up, grab"),
     **_same(
         ("SELECT", None),
         "select, highlight, find, find me, locate, pick, pick out, choose, show me, show, mark, point out, point to, "
@@ -117,7 +117,23 @@ UNSUPPORTED: dict[str, str] = {
 }  # fmt: skip
 
 # What the session answers, not a planner; and words that ask for nothing.
-COMMANDS = frozenset({"undo", "redo", "save", "help", "quit", "exit", "load", "history", "render", "screenshot"})
+COMMANDS = frozenset(
+    {
+        "undo",
+        "redo",
+        "save",
+        "help",
+        "quit",
+        "exit",
+        "load",
+        "history",
+        "render",
+        "screenshot",
+        "cancel",
+        "stop",
+        "revert",
+    }
+)
 CHAT = bag(
     "hello hi hey hiya greetings thanks thank bye goodbye cheers yes no yep nope ok okay cool great nice wow sorry "
     "morning evening good lol"
@@ -159,6 +175,7 @@ INSIDE: dict[str, Entry] = {
     **{phrase: ("PREP", name) for phrase, name in RELATIONS.items()},
     **{f"over {p}": ("PREP", n) for p, n in RELATIONS.items() if p.startswith("to ")},
     **{f"directly {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside",)},
+    **{f"right {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside", "right_of", "left_of")},
     **{f"just {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside",)},
     **_same(("BETWEEN", None), "between, in between"),
     **_same(("NEAR", "nearest_to"), "nearest, nearest to, closest to, closest, nearest from"),
@@ -332,7 +349,11 @@ FILLER = phrases(
 )
 
 # Dropped before a preposition ("the lamp standing on the desk").
-PARTICIPLES = bag("standing sitting located placed lying hanging situated positioned mounted leaning")
+PARTICIPLES = bag(
+    "standing sitting located placed lying hanging situated positioned mounted leaning resting "
+    "hung propped found seated attached "
+    "tucked kept parked"
+)
 
 # Dropped before words that carry on ("no, darker").
 INTERJECTIONS = bag("no yes yeah yep hmm oh ok okay and so but well maybe perhaps")
@@ -357,7 +378,7 @@ POLITE = phrases(
 # Never part of a noun: words that carry structure or that would be dropped at a cost.
 STRUCTURE = bag(
     "if unless until till while because since when whenever although though who whom whose which what where why how "
-    "that than so middle last next previous former latter or nor yet no without "
+    "that than then so middle last next previous former latter or nor yet no without "
     "like about through across during via be is are was were am been being do does "
     "did done have has had can could will would shall should may might must i me we us you he she they him her "
     "very quite rather too almost nearly only even ever never always often once again here there facing around "

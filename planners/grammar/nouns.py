@@ -43,6 +43,7 @@ SURFACES = bag(
 )
 CONTAINERS = bag("box basket bin bag drawer bowl bucket crate jar cup mug vase wardrobe closet chest sink")
 SEATS = bag("chair armchair sofa couch bed stool bench recliner loveseat")
+EVERYWHERE = bag("floor ground wall ceiling room")
 FURNITURE = bag(
     "sofa couch armchair chair bed table desk wardrobe cabinet bookshelf bookcase dresser sideboard bench stool shelf "
     "ottoman nightstand door window wall fireplace piano fridge oven stove bathtub toilet sink counter "
@@ -66,7 +67,8 @@ COMPOUNDS: frozenset[tuple[str, ...]] = phrases(
     "orange tree; orange juice; tomato plant; olive tree; mint plant; lime tree; plum tree; peach tree; "
     "salmon fillet; chocolate bar; wheat field; snow man; light bulb; light switch; light fixture; place mat; "
     "paint brush; paint bucket; paint can; plant pot; plant stand; coat rack; coat stand; coat hanger; bin bag; "
-    "trash can; trash bag; dust bin; mark board; picture frame; show case; roll top; rocking chair; "
+    "trash can; garbage can; tin can; watering can; soda can; spray paint can; rubbish bin; trash bag; "
+    "dust bin; mark board; picture frame; show case; roll top; rocking chair; "
     "swivel chair; change table; stand mixer; copy machine; spray bottle; spray can; push pin; tip jar; "
     "lamp shade; front door; back door; high chair; front desk; back rest; wide screen; "
     "kitchen scale; bathroom scale; "

@@ -5,7 +5,7 @@ belongs. Refuses to know verbs.
 
 Preference: a prepositional phrase belongs to the nearest noun before it ("the lamp on the table next to the sofa" is
 about a table next to the sofa), unless "and" joins it to the one before ("left of the table and in front of the
-window" says two things about one noun).
+window" says two things about one noun) or that noun is a floor or a wall.
 """
 
 from __future__ import annotations
@@ -282,11 +282,16 @@ def attach(query: Query, posts: Sequence[Post]) -> Query:
     i = 0
     while i < len(posts):
         j = i + 1
-        while j < len(posts) and not posts[j].joined and posts[i].anchors:
+        while j < len(posts) and not posts[j].joined and _takes_more(posts[i]):
             j += 1
         query = _narrow(query, posts[i], posts[i + 1 : j])
         i = j
     return query
+
+
+def _takes_more(post: Post) -> bool:
+    """Whether what follows may belong to this phrase's noun; floors and walls are everywhere, so not to theirs."""
+    return bool(post.anchors) and nouns.head(post.anchors[-1].query.text) not in nouns.EVERYWHERE
 
 
 def _narrow(query: Query, post: Post, behind: Sequence[Post]) -> Query:
@@ -295,7 +300,8 @@ def _narrow(query: Query, post: Post, behind: Sequence[Post]) -> Query:
     if anchors:
         anchors[-1] = attach(anchors[-1], behind)
     if post.kind == "unrelated":
-        bad = _update(query, relations=(*query.relations, _relation(post.value, anchors)), pick="all", count=None)
+        wrong = _relation(_relation_name(replace(post, kind="related")), anchors)
+        bad = _update(query, relations=(*query.relations, wrong), pick="all", count=None)
         return _update(query, exclude=(*query.exclude, bad))
     if name := _relation_name(post):
         return _update(query, relations=(*query.relations, _relation(name, anchors)))

@@ -152,6 +152,9 @@ def placement(posts: Sequence[Post]) -> Fields:
         if rest:
             raise Refusal("a place is one phrase", rest[0].word)
         return {"relation": first.value}
+    on_floor = first.value == "on" and nouns.head(first.anchors[0].query.text) in ("floor", "ground")
+    if on_floor and rest and rest[0].kind in ("related", "between"):
+        return placement(rest)  # "on the floor in front of the sofa": being on the floor goes without saying
     if any(p.joined for p in rest):
         raise Refusal("a place is one phrase; name one of the two", rest[0].word)
     anchors = [a.full() for a in first.anchors]

@@ -118,7 +118,7 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
                 if refusal.verdict != "not_an_edit" or (idle and not _is_chat(refusal)):
                     raise
                 idle = refusal
-    _refuse_idle_keeping(ops)
+    ops = _release(ops)
     if not ops:
         raise idle or Refusal("there are no words in it", verdict="not_an_edit")
     if idle and not _is_chat(idle):
@@ -128,14 +128,28 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     return _Outcome(tuple(_merge_copies(ops)), commands.phrases.antecedent)
 
 
-def _refuse_idle_keeping(ops: list[dict[str, Any]]) -> None:
-    """ "keep the sofa" is an edit only together with "delete everything else"; drops the mark that says so."""
+def _release(ops: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Settle clauses that are half a sentence: "keep the sofa (and delete the rest)", "take the cup (and put …)".
+
+    Raises:
+        Refusal: the other half is missing.
+    """
+    settled: list[dict[str, Any]] = []
+    taken: Query | None = None
     for i, op in enumerate(ops):
-        if not op.pop("kept", False):
-            continue
-        rest = ops[i + 1].get("target") if i + 1 < len(ops) else None
-        if rest is None or Query(last=True) not in rest.exclude:
+        held, fields = op.get("held"), {k: v for k, v in op.items() if k != "held"}
+        after = ops[i + 1].get("target") if i + 1 < len(ops) else None
+        if held == "kept" and (after is None or Query(last=True) not in after.exclude):
             raise Refusal("it says what to keep, and asks for no change", "keep", verdict="not_an_edit")
+        if held == "taken":
+            if after != Query(last=True) or ops[i + 1]["op"] != "move":
+                raise Refusal("say where to, or take it away", "take")
+            taken = op["target"]
+            continue
+        if taken is not None:
+            fields, taken = {**fields, "target": taken}, None
+        settled.append(fields)
+    return settled
 
 
 def _is_chat(refusal: Refusal) -> bool:

@@ -82,13 +82,13 @@ def _with_unit(words: Sequence[str], value: float, taken: int) -> Quantity | Non
     """A number and the unit after it, if there is one."""
     rest = words[taken:]
     unit = rest[0] if rest else ""
-    digits = words[0][0].isdigit()
+    digits = words[0][-1].isdigit()
     if unit == "of" and len(rest) > 2 and rest[1] in ("a", "an") and (rest[2] in UNITS or rest[2] in _TURNS):
         rest, unit, taken = rest[2:], rest[2], taken + 2
     elif unit in ("a", "an") and len(rest) > 1 and (rest[1] in UNITS or rest[1] in _TURNS):
         rest, unit, taken = rest[1:], rest[1], taken + 1
     if unit in UNITS and (unit not in "'\"" or digits):
-        extra = _and_a_half(rest[1:])
+        extra = _and_a_half(rest[1:]) if UNITS[unit] != "ft" else _and_inches(rest[1:])
         return Quantity("LENGTH", value + extra[0], UNITS[unit], taken + 1 + extra[1])
     if unit == "in" and digits and (len(rest) < 2 or rest[1] not in ("the", "a", "an", "front", "my", "its")):
         return Quantity("LENGTH", value, "in", taken + 1)
@@ -98,7 +98,7 @@ def _with_unit(words: Sequence[str], value: float, taken: int) -> Quantity | Non
         return Quantity("ANGLE", 360 * value, "", taken + 1)
     if unit in ("full", "complete") and len(rest) > 1 and rest[1] in _TURNS:
         return Quantity("ANGLE", 360 * value, "", taken + 2)
-    if unit in ("%", "percent", "pct") or (unit == "per" and rest[1:2] == ["cent"]):
+    if unit in ("%", "percent", "pct") or (unit == "per" and tuple(rest[1:2]) == ("cent",)):
         return Quantity("PERCENT", value / 100, "", taken + (2 if unit == "per" else 1))
     if unit in ("times", "time") or (unit == "x" and digits):
         return Quantity("TIMES", value, "", taken + 1)
@@ -126,20 +126,30 @@ def _and_a_half(words: Sequence[str]) -> tuple[float, int]:
     return 0.0, 0
 
 
+def _and_inches(words: Sequence[str]) -> tuple[float, int]:
+    """The inches behind feet (5'6", "five feet six inches"), in feet, or "and a half"."""
+    number = _whole(words) if words else None
+    if number and tuple(words[number[1] : number[1] + 1]) in (("inches",), ("inch",), ("in",), ('"',)):
+        return number[0] / 12, number[1] + 1
+    return _and_a_half(words)
+
+
 def _number(words: Sequence[str]) -> tuple[float, int] | None:
     """A number or a fraction: "2.5", "3/4", "two and a half", "half", "a third", "three quarters", "a couple of"."""
     if not words:
         return None
     first = words[0]
+    if tuple(words[:3]) == ("half", "a", "dozen"):
+        return 6.0, 3
     if first == "half":
         return 0.5, 1
     if first in ("a", "one") and len(words) > 1:
         if words[1] in FRACTIONS and words[1] not in ("thirds", "quarters"):
             return FRACTIONS[words[1]], 2
         if words[1] == "few":
-            return 3.0, 2 + (words[2:3] == ["of"])
+            return 3.0, 2 + (tuple(words[2:3]) == ("of",))
         if words[1] in ("couple", "pair"):
-            return 2.0, 2 + (words[2:3] == ["of"])
+            return 2.0, 2 + (tuple(words[2:3]) == ("of",))
         if words[1] in ("hundred", "dozen"):
             return float(NUMBERS[words[1]]), 2
     if not (whole := _whole(words)):
@@ -154,7 +164,7 @@ def _number(words: Sequence[str]) -> tuple[float, int] | None:
 def _whole(words: Sequence[str]) -> tuple[float, int] | None:
     """Digits or number words without a fraction."""
     first = words[0]
-    if first[0].isdigit() and not first[-1].isalpha():
+    if (first[0].isdigit() or (first[0] == "-" and len(first) > 1)) and not first[-1].isalpha():
         value = _digits(first)
         return None if value is None else (value, 1)
     if first not in NUMBERS or first in ("hundred", "dozen"):

@@ -181,6 +181,8 @@ class Reading:
                 return True
             step = color_at(self.texts, i) or match(lexicon.ATTRIBUTE_PHRASES, self.texts, i)
             number = quantities.read(self.texts[i:])
+            if step and step[1] == 2 and self.texts[i] == "light" and not self.nouny(i + 2):
+                return True  # a light and its new colour
             if step:
                 i += step[1]
             elif number and number.kind in ("NUMBER", "ORDINAL"):

@@ -200,13 +200,15 @@ class Tagger:
             return self._put("UPSIDE", None, i, 1)
         if text in ("away", "out") and length == 1 and verb not in ("TAKE", "") and not rest:
             return self._put("DIR", "forward", i, 1) if verb in ("MOVE", "PUT") else None
+        if text in ("closer", "nearer") and after == "to" and length == 2 and verb not in ("", "MOVE", "PUT", "TAKE"):
+            return self._put("NEAR", "nearest_to", i, 2)
         if text in ("higher", "lower") and verb in ("MOVE", "PUT", "") and not self.read.nouny(i + 1):
             return self._put("DIR", "up" if text == "higher" else "down", i, 1)
         if text == "in" and rest[:2] == ("a", "row") and verb in ("COPY", "MAKE", "ADD"):
             return i + 3
         if text == "back" and length == 1 and self._returns():
             return self._put("UNKNOWN", None, i, 1)
-        if text == "again" and verb != "SELECT":
+        if text == "again" and verb != "SELECT" and not rest:
             return i + 1
         if text == "more" and self._before == "NUMBER" and self.read.nouny(i + 1):
             return i + 1
@@ -255,7 +257,7 @@ class Tagger:
         name, taken = found
         if self.read.nouny(i + taken):
             return self._put("COLOR", name, i, taken)
-        follows_det = self._before in ("DET", "SIZE", "SUP", "ORDINAL") or (
+        follows_det = self._before in ("DET", "SIZE", "SUP", "ORDINAL", "COLOR") or (
             self._before in ("", *verb_classes()) and self.clause.verb != ""
         )
         if follows_det and self.texts[i] == "light" and taken == 2:
@@ -301,6 +303,12 @@ class Tagger:
             and self._before not in ("COLOR", "SIZE", "SUP", "DET")
         ):
             return self._put("NUMBER", 1.0, i, 1)
+        if kind == "NOT" and self._before in ("EVERYTHING", "NOUN", "THING") and self.read.hue_follows(behind):
+            self._put("REL", None, i, 0)
+            return self._put("NOT", None, i, taken)
+        if kind in ("DIR", "SIDE", "SPOT") and self.texts[i + 1 : i + 2] == ("the",) and self.read.nouny(behind):
+            # "to the left wall": the side belongs to the noun.
+            return self._phrase(i, lexicon.INSIDE_PHRASES[text,], 1)
         if kind == "NOT" and self._before != "REL":
             return self._put("NOT" if self.read.preposition_at(behind) else "BUT", None, i, taken)
         if kind == "REL" and self.read.preposition_at(behind):

@@ -15,7 +15,9 @@ from ...gaussians.errors import UserError
 MAX_CHARS = 1000
 MAX_WORDS = 200
 
-_QUOTES = str.maketrans({"‘": "'", "’": "'", "ʼ": "'", "`": "'", "´": "'", "“": '"', "”": '"', "„": '"', "…": "."})
+_QUOTES = str.maketrans(
+    {"‘": "'", "’": "'", "ʼ": "'", "`": "'", "´": "'", "“": '"', "”": '"', "„": '"', "…": ".", "−": "-"}
+)
 _VULGAR = {"½": 0.5, "¼": 0.25, "¾": 0.75, "⅓": 1 / 3, "⅔": 2 / 3, "⅛": 0.125}
 _VULGAR_FORM = re.compile(rf"([0-9]{{0,4}})\s?([{''.join(_VULGAR)}])")
 _CONTRACTIONS = {
@@ -27,10 +29,12 @@ _CONTRACTIONS = {
     "what's": "what is", "where's": "where is", "who's": "who is", "how's": "how is", "there's": "there is",
     "here's": "here is", "let's": "let us", "lets": "let us", "gimme": "give me", "lemme": "let me",
     "wanna": "want to", "gonna": "going to", "pls": "please", "plz": "please", "thx": "thanks", "u": "you",
+    "teh": "the", "hte": "the", "adn": "and", "nad": "and",
 }  # fmt: skip
 _TOKEN = re.compile(
     r"#[0-9a-f]{3}(?:[0-9a-f]{3})?(?![0-9a-z])"
     r"|\d+(?:st|nd|rd|th)\b"
+    r"|(?<!\S)-(?=\d)\d+(?:\.\d+)?"
     r"|\d+(?:[.,]\d+)*(?:\s*/\s*\d+)?"
     r"|[^\W\d_]+(?:'[^\W\d_]+)*"
     r"|[.;!?,:%°\"'\n]"
