@@ -26,7 +26,7 @@ from .encoders import Encoder
 from .field import Group, LanguageField, Level
 from .measure import box_of, lab_of_cloud
 from .orient import estimate_frame
-from .portraits import mean_vectors
+from .portraits import mean_vectors, one_thread
 from .regions import Node, build_graph, merge_tree
 from .superpoints import links_of, superpoints, touching
 from .surface import Surface, surface_of
@@ -73,12 +73,13 @@ def embed(scene: Scene, encoder: Encoder, progress: Progress = lambda stage, sha
     progress("views", 0.0)
     seen = choose_views(scene, most=views)
     progress("segments", 0.0)
-    labels, things = segment(scene, surface, encoder, progress)
-    column = _assign(scene.cloud, surface, _thing_of_superpoint(things, int(labels.max(initial=-1)) + 1)[labels])
-    progress("table", 0.0)
-    on_skin = np.zeros(len(scene.cloud), bool)
-    on_skin[surface.rows] = True
-    return _with_table(scene, things, column, on_skin, seen, encoder)
+    with one_thread():
+        labels, things = segment(scene, surface, encoder, progress)
+        column = _assign(scene.cloud, surface, _thing_of_superpoint(things, int(labels.max(initial=-1)) + 1)[labels])
+        progress("table", 0.0)
+        on_skin = np.zeros(len(scene.cloud), bool)
+        on_skin[surface.rows] = True
+        return _with_table(scene, things, column, on_skin, seen, encoder)
 
 
 def segment(
@@ -117,16 +118,18 @@ def _evidence(
     encoder: Encoder, progress: Progress,
 ) -> dict[int, float]:  # fmt: skip
     """Log-odds that a node is one whole thing, by its portraits, for the contested nodes."""
-    points = np.array([sum(int(size[s]) for s in n.members) for n in nodes])
-    asked = grouping.contested(nodes, points >= MIN_OBJECT)
-    asked = sorted(sorted(asked, key=lambda i: -points[i])[:MOST_ASKED])
+    points = np.array([sum(int(size[s]) for s in n.members) for n in nodes], dtype=np.int64)
+    wanted = grouping.contested(nodes, points >= MIN_OBJECT)
+    same = grouping.alike(nodes, points)
+    asked = sorted({int(same[i]) for i in wanted}, key=lambda i: (-points[i], i))[:MOST_ASKED]
     rows = _rows_by_superpoint(surface, labels, len(size))
     owned = [np.sort(np.concatenate([rows[s] for s in nodes[i].members])) for i in asked]
     clouds = [scene.cloud[torch.from_numpy(own)] for own in owned]
     middle = np.median(surface.points, axis=0).astype(np.float64)
     vectors = mean_vectors(encoder, clouds, scene.frame, middle, ASK_VIEWS, lambda share: progress("portraits", share))
     whole = np.clip(wholeness(encoder, vectors), 0.02, 0.98) if asked else np.zeros(0)
-    return {i: EVIDENCE * float(np.log(w / (1 - w))) for i, w in zip(asked, whole, strict=True)}
+    odds = {i: EVIDENCE * float(np.log(w / (1 - w))) for i, w in zip(asked, whole, strict=True)}
+    return {i: odds[int(same[i])] for i in wanted if int(same[i]) in odds}
 
 
 def _rows_by_superpoint(surface: Surface, labels: NDArray[np.int32], count: int) -> list[NDArray[np.int64]]:

@@ -16,7 +16,8 @@ from .regions import LIGHTNESS, Node
 
 F64 = NDArray[np.float64]
 
-CONTESTED = (0.03, 0.995)  # merges outside these affinities are decided by geometry alone
+CONTESTED = (0.03, 0.985)  # merges outside these affinities are decided by geometry alone
+SAME_SHARE = 0.92  # a node that holds this much of another looks the same
 PATCH_COLOR = 15.0  # Lab difference up to which touching patches of one object are one part
 PATCH_POINTS = 30  # surface points; smaller patches join the touching one they resemble most
 PATCH_SHARE = 0.01  # of the object, likewise
@@ -38,6 +39,16 @@ def contested(nodes: Sequence[Node], least: NDArray[np.bool_]) -> list[int]:
         for i, node in enumerate(nodes)
         if least[i] and (not node.children or node.affinity > low) and parent[i] < high
     ]
+
+
+def alike(nodes: Sequence[Node], points: NDArray[np.int64]) -> NDArray[np.int64]:
+    """For each node the largest node above it that is nearly the same thing, or itself: one portrait serves both."""
+    same = np.arange(len(nodes))
+    for i in range(len(nodes) - 1, -1, -1):
+        for child in nodes[i].children:
+            if points[child] >= SAME_SHARE * points[same[i]]:
+                same[child] = same[i]
+    return same
 
 
 def best_cut(nodes: Sequence[Node], evidence: dict[int, float]) -> list[int]:

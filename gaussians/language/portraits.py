@@ -6,7 +6,8 @@ Knows clouds, cameras, the renderer and an encoder. Refuses to know how the grou
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
 import numpy as np
 import torch
@@ -72,6 +73,17 @@ def portraits(cloud: GaussianCloud, frame: Frame, middle: F64, size: int, count:
         if (picture := crop(seen.rgb, seen.alpha, size)) is not None:
             pictures.append(picture)
     return pictures
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Torch on one thread: thousands of small operations spend their time waking threads, not computing."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
 
 
 def mean_vectors(

@@ -24,6 +24,8 @@ OUTSIDE = 0.02  # share of the scene that may lie behind a wall
 WALL_LENGTH = 0.3  # of the scene's extent: shorter upright planes are furniture
 WALL_HEIGHT = 0.55
 SAME_COLOR = 11.0  # Lab difference within which pieces of a plane are the same paint
+GRID = 40  # cells along each side of a plane
+TIGHT = 0.3  # of the spacing: how far from a clean plane a piece of it may lie
 SPREAD = 0.6  # a colour that spans this much of a plane both ways belongs to its pattern
 
 
@@ -58,9 +60,10 @@ def structures(surface: Surface, labels: NDArray[np.int32], frame: Frame) -> NDA
 
 @dataclass(frozen=True)
 class _Plane:
-    """Points near a plane `[M]` bool, and their two coordinates along it `[M, 2]`."""
+    """Points near a plane `[M]` bool, their signed distance from it `[M]` and two coordinates along it `[M, 2]`."""
 
     near: NDArray[np.bool_]
+    off: NDArray[np.float64]
     along: NDArray[np.float64]
 
 
@@ -98,7 +101,9 @@ def _ground(surface: Surface, labels: NDArray[np.int32], flat: Level) -> NDArray
     near = np.abs(flat.points[:, 2] - offset) < max(1.5 * surface.spacing, 0.003 * max(extent))
     if near.sum() < 0.02 * len(surface):
         return np.zeros(len(surface), bool)
-    return _painted(surface, labels, _Plane(near, flat.points[:, :2]), np.ones(len(surface), bool))
+    return _painted(
+        surface, labels, _Plane(near, flat.points[:, 2] - offset, flat.points[:, :2]), np.ones(len(surface), bool)
+    )
 
 
 def _fill(grid: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -117,6 +122,15 @@ def _mode(values: NDArray[np.floating], weight: NDArray[np.floating]) -> float:
     return float(np.median(values[near]))
 
 
+def _outermost(values: NDArray[np.floating], weight: NDArray[np.floating]) -> float:
+    """The largest value at which much lies: at least a third of what lies at the densest."""
+    bins = np.histogram_bin_edges(values, 200)
+    share = np.convolve(np.histogram(values, bins, weights=weight)[0], np.ones(3), mode="same")
+    last = int(np.flatnonzero(share >= share.max() / 3)[-1])
+    near = (values >= bins[max(last - 2, 0)]) & (values <= bins[min(last + 2, len(bins) - 1)])
+    return _mode(values[near], weight[near])
+
+
 def _walls(surface: Surface, flat: Level, found: NDArray[np.int8]) -> list[_Plane]:
     """Upright planes at the scene's edge, long and high enough."""
     extent = _extent(flat)
@@ -129,7 +143,7 @@ def _walls(surface: Surface, flat: Level, found: NDArray[np.int8]) -> list[_Plan
         facing = upright & (np.abs(flat.normals @ normal) > 0.9)
         if facing.sum() < 100:
             continue
-        offset = _mode(flat.points[facing] @ normal, surface.area[facing])
+        offset = _outermost(flat.points[facing] @ normal, surface.area[facing])
         tolerance = max(2.0 * surface.spacing, 0.004 * float(max(extent)))
         behind = float((inside @ normal > offset + 2 * tolerance).mean())
         before = float((inside @ normal < offset - 2 * tolerance).mean())
@@ -139,7 +153,7 @@ def _walls(surface: Surface, flat: Level, found: NDArray[np.int8]) -> list[_Plan
             continue
         size = np.ptp(np.quantile(along[near & facing], [0.02, 0.98], axis=0), axis=0)
         if size[0] >= WALL_LENGTH * max(extent[:2]) and size[1] >= WALL_HEIGHT * extent[2]:
-            planes.append(_Plane(near, along))
+            planes.append(_Plane(near, flat.points @ normal - offset, along))
     return planes
 
 
@@ -171,31 +185,80 @@ def _ceiling(surface: Surface, flat: Level, found: NDArray[np.int8]) -> _Plane |
     if near.sum() < 0.03 * len(surface):
         return None
     size = np.ptp(np.quantile(flat.points[near, :2], [0.05, 0.95], axis=0), axis=0)
-    return _Plane(near, flat.points[:, :2]) if (size > 0.6 * extent[:2]).all() else None
+    return _Plane(near, flat.points[:, 2] - top, flat.points[:, :2]) if (size > 0.6 * extent[:2]).all() else None
 
 
 def _painted(surface: Surface, labels: NDArray[np.int32], plane: _Plane, free: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Points of a plane that carry its paint: the largest superpoint's colour, and colours spread all over it."""
+    """Points of a plane that carry its paint: the broadest superpoint's colour, and colours spread all over it.
+
+    Walls are sampled more coarsely than what hangs on them, so breadth is counted in cells of the plane, not in points.
+    """
     count = int(labels.max()) + 1
-    total = np.bincount(labels, minlength=count)
-    inside = np.bincount(labels[plane.near], minlength=count)
-    area = np.bincount(labels[plane.near], weights=surface.area[plane.near], minlength=count)
-    lab = np.stack(
-        [np.bincount(labels, weights=surface.lab[:, c], minlength=count) / np.maximum(total, 1) for c in range(3)], 1
-    )
-    member = inside > 0.5 * np.maximum(total, 1)
+    near = np.flatnonzero(plane.near)
+    own, along = labels[near], plane.along[near]
+    cell = _plane_cells(along)
+    off = plane.off[near] - _tilt(plane.off[near], along, cell)
+    total = np.maximum(np.bincount(labels, minlength=count), 1)
+    inside = np.bincount(own, minlength=count)
+    lab = np.stack([np.bincount(labels, weights=surface.lab[:, c], minlength=count) / total for c in range(3)], axis=1)
+    breadth = np.bincount(np.unique(own.astype(np.int64) * GRID**2 + cell) // GRID**2, minlength=count)
+    member = inside > 0.5 * total
     if not member.any():
         return np.zeros(len(surface), bool)
-    span = np.ptp(np.quantile(plane.along[plane.near], [0.02, 0.98], axis=0), axis=0)
+    main = int(np.argmax(np.where(member, breadth, -1)))
+    member &= _in_plane(off, own, count, main, TIGHT * surface.spacing)
+    span = np.ptp(np.quantile(along, [0.02, 0.98], axis=0), axis=0)
     kept = np.zeros(count, bool)
-    for piece in np.argsort(-area * member):
+    for piece in np.argsort(-np.where(member, breadth, -1), kind="stable"):
         if not member[piece] or kept[piece]:
             continue
         alike = member & (np.linalg.norm((lab - lab[piece]) * [0.6, 1, 1], axis=1) < SAME_COLOR)
-        where = plane.near & alike[labels]
-        reach = np.ptp(np.quantile(plane.along[where], [0.02, 0.98], axis=0), axis=0)
-        if not kept.any() or (reach > SPREAD * span).all():
+        reach = np.ptp(np.quantile(along[alike[own]], [0.02, 0.98], axis=0), axis=0)
+        if piece == main or (reach > SPREAD * span).all():
             kept |= alike
-        elif area[piece] < 0.01 * area.sum():
+        elif breadth[piece] < 0.01 * breadth.sum():
             break
-    return kept[labels] & free & (plane.near | (inside > 0.9 * np.maximum(total, 1))[labels])
+    return kept[labels] & free & (plane.near | (inside > 0.9 * total)[labels])
+
+
+def _plane_cells(along: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Cell `[M]` in 0..GRID² of each point's place in the plane."""
+    low, high = along.min(axis=0), along.max(axis=0)
+    index = ((along - low) / (high - low + 1e-9) * GRID).astype(np.int64).clip(0, GRID - 1)
+    cell: NDArray[np.int64] = index[:, 0] * GRID + index[:, 1]
+    return cell
+
+
+def _tilt(off: NDArray[np.float64], along: NDArray[np.float64], cell: NDArray[np.int64]) -> NDArray[np.float64]:
+    """The plane's true distance at each point: a trimmed linear fit to the cells' medians, so that dense things on a
+    sparse wall do not draw it towards them."""
+    order = np.lexsort((off, cell))
+    starts = np.flatnonzero(np.r_[True, np.diff(cell[order]) > 0])
+    middle = order[starts + np.diff(np.r_[starts, len(order)]) // 2]
+    design = np.column_stack([np.ones(len(middle)), along[middle]])
+    values, keep = off[middle], np.ones(len(middle), bool)
+    fit = np.array([float(np.median(values)), 0.0, 0.0])
+    for _ in range(6):
+        gap = np.abs(values - design @ fit)
+        keep = gap <= max(2.5 * float(np.median(gap[keep])), 1e-4)
+        if keep.sum() < 10:
+            break
+        fit = np.linalg.lstsq(design[keep], values[keep], rcond=None)[0]
+    tilt: NDArray[np.float64] = np.column_stack([np.ones(len(along)), along]) @ fit
+    return tilt
+
+
+def _in_plane(
+    off: NDArray[np.float64], own: NDArray[np.int32], count: int, main: int, tight: float
+) -> NDArray[np.bool_]:
+    """Superpoints that lie in the plane itself, not a finger's breadth before it as pictures and rugs do, `[S]`.
+
+    The tolerance follows the roughness of the broadest piece, so that it is tight where the surface is clean.
+    """
+    order = np.lexsort((off, own))
+    middle = np.full(count, np.inf)
+    starts = np.flatnonzero(np.r_[True, np.diff(own[order]) > 0])
+    sizes = np.diff(np.r_[starts, len(order)])
+    middle[own[order][starts]] = off[order][starts + sizes // 2]
+    spread = float(np.median(np.abs(off[own == main] - middle[main])))
+    return np.abs(middle - middle[main]) < max(4 * spread, tight)
