@@ -18,7 +18,9 @@ from ..cloud import NO_GROUP, GaussianCloud
 from . import convention as c
 
 TILE = 16  # px, side of a tile
-CHUNK = 512  # Gaussians blended at once in a tile: bounds memory, and lets a finished tile stop early
+CHUNK = (
+    128  # Gaussians blended at once in a tile: a finished tile stops early, and torch does not split such small work
+)
 
 
 @dataclass(frozen=True)
@@ -133,8 +135,8 @@ def _pose(camera: Camera, device: torch.device) -> tuple[Tensor, Tensor]:
 
 def _finite_rows(cloud: GaussianCloud) -> Tensor:
     """`[N]` bool: every number of the Gaussian is finite."""
-    columns = (cloud.means, cloud.quats, cloud.scales, cloud.opacities, cloud.sh)
-    return torch.stack([torch.isfinite(x.reshape(len(cloud), -1)).all(dim=1) for x in columns]).all(dim=0)
+    columns = (cloud.means, cloud.quats, cloud.scales, cloud.opacities[:, None], cloud.sh)
+    return torch.stack([torch.isfinite(x).flatten(1).all(dim=1) for x in columns]).all(dim=0)
 
 
 def _footprint(

@@ -7,6 +7,7 @@ The public API. Names are imported on first use, so that `import scenewright` an
 from __future__ import annotations
 
 import importlib
+import os
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -37,6 +38,10 @@ if TYPE_CHECKING:
     from .tools.receipt import Receipt
 
 __version__ = "0.1.0"
+
+# Read once by OpenMP when torch is loaded: idle threads sleep instead of spinning. Spinning ones take the cores from
+# our own kernels, and on a busy machine slow torch's small operations by a factor of ten.
+os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 
 _HOME = {
     "Session": ".agent.session",
