@@ -33,7 +33,7 @@ from .shapes import (
 
 @kind("rug", ((1.0, 3.2), (0.8, 2.4), (0.006, 0.03)), synonyms=("carpet", "mat", "area rug"), palette="fabric")
 def rug(rng: Rng, tone: Tone) -> list[Piece]:
-    w, d, h = rng.uniform(1.5, 2.6), rng.uniform(1.1, 1.8), 0.012
+    w, d, h = rng.uniform(1.5, 2.6), rng.uniform(1.1, 1.8), 0.018
     name = str(rng.choice(["rug", "rug", "stripes", "checks", "weave", "dots", "leaves"]))
     soft = mix(tone.color, tone.second, 0.7)
     mat = Material(tone.color, name, soft, rng.uniform(0.12, 0.3), int(rng.integers(0, 2)), tone.seed, True)

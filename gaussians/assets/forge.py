@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 SH_C0 = 0.28209479177387814  # Y_0^0, Kerbl et al. 2023
 OPACITY = 0.97
 COVER = 0.6  # standard deviation over cell length: cells a closed surface without holes, edges still crisp
-MOST = 6500  # Gaussians of one object at detail 1, roughly
+MOST = 8500  # Gaussians of one object at detail 1, roughly
 THIN = 0.06  # thickness against the shorter tangent
 
 
@@ -166,7 +166,7 @@ def _fit(pieces: Sequence[Piece], known: registry.Kind, size: Vec3 | None) -> li
 def spacing(pieces: Sequence[Piece], detail: float) -> float:
     """Cell length, metres, so that an object gets about 1,000 to 6,000 Gaussians by its area."""
     total = surface.area(pieces)
-    count = float(np.clip(1900 + 900 * math.sqrt(total), 900, 4400)) * detail
+    count = float(np.clip(1900 + 900 * math.sqrt(total), 900, 7000)) * detail
     return math.sqrt(total / count)
 
 

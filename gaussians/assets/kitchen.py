@@ -308,15 +308,20 @@ def banana(rng: Rng, tone: Tone) -> list[Piece]:
         tone.color = ripe
     skin = Material(tone.color, main=True)
     n = int(rng.integers(1, 5))
-    a = np.linspace(-0.95, 0.95, 11)
+    bend, long = rng.uniform(0.7, 1.1), rng.uniform(0.085, 0.11)
+    a = np.linspace(-bend, bend, 11)
     fat = 0.018 * np.array([0.35, 0.75, 0.95, 1, 1.05, 1.05, 1.05, 1, 0.9, 0.6, 0.3])
-    path = np.stack([0.1 * np.sin(a), 0 * a, 0.1 * (1 - np.cos(a)) + 0.018], 1)
+    reach = long / bend
+    path = np.stack([reach * np.sin(a), 0 * a, reach * (1 - np.cos(a)) + 0.018], 1)
+    end = path[-1]
     out = []
     for k in range(n):
-        one = tube(path, fat, smooth=15).turned("x", 24 * (k - (n - 1) / 2), (0, 0, 0.08))
+        lean = 24 * (k - (n - 1) / 2)
+        one = tube(path, fat, smooth=15).turned("x", lean, (0, 0, 0.08))
+        tip = ball(0.008, (end[0], end[1], end[2])).turned("x", lean, (0, 0, 0.08))
         out += [
             one.moved(0, 0.03 * (k - (n - 1) / 2), 0).named("skin", skin),
-            ball(0.007, (0.083, 0.03 * (k - (n - 1) / 2), 0.062)).named("tip", tone.plain("#4a3a1a")),
+            tip.moved(0, 0.03 * (k - (n - 1) / 2), 0).named("tip", tone.plain("#4a3a1a")),
         ]
     return out
 

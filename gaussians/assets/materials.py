@@ -68,10 +68,11 @@ METALS = ("#b9bcc0", "#8f9398", "#3a3b3e", "#c0a062", "#a8643c", "#d7d9db")
 PALETTES: dict[str, tuple[str, ...]] = {
     # two or three shades of each basic colour term, so that colour words can be learnt and measured
     "any": ("#c8201e", "#a61c28", "#f07c1c", "#e06a2a", "#f2d31b", "#e3bc2e", "#3c9a3f", "#2f7d46", "#6fae4a",
-            "#128080", "#2a9a94", "#2a5ac8", "#3f79c9", "#1f3f8f", "#7d3fa6", "#6a3a8c", "#f08fb4", "#e87aa4", "#7a4a26",
-            "#d9c4a0", "#202024", "#808080", "#6c7076", "#f2f2f2", "#e8e6e0"),
+            "#128080", "#2a9a94", "#2a5ac8", "#3f79c9", "#1f3f8f", "#7d3fa6", "#6a3a8c", "#f08fb4", "#e87aa4",
+            "#7a4a26", "#d9c4a0", "#202024", "#808080", "#6c7076", "#f2f2f2", "#e8e6e0"),
     "fabric": ("#c8201e", "#8f2430", "#e07b30", "#e3bc2e", "#3c7a4a", "#5f8f5a", "#128080", "#2a5ac8", "#33508a",
-               "#6f8fb8", "#7d3fa6", "#e58fae", "#7a4a26", "#d9c4a0", "#c9b48f", "#2a2a2e", "#808080", "#5e6166", "#ece8df"),
+               "#6f8fb8", "#7d3fa6", "#e58fae", "#7a4a26", "#d9c4a0", "#c9b48f", "#2a2a2e", "#808080", "#5e6166",
+               "#ece8df"),
     "wood": (*WOODS, *WOODS[:4], "#ece9e2", "#2a2826", "#4d6a8a", "#5d7d60", "#8d8f92"),
     "appliance": ("#f0f0ee", "#e6e6e4", "#b9bcc0", "#2a2b2e", "#b02a2a", "#9fc9c2", "#e8d9b0", "#4a6fa5"),
     "dark": ("#1d1e21", "#26272b", "#3a3b3f", "#8f9398", "#c9cbce", "#ededeb"),

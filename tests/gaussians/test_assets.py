@@ -12,7 +12,7 @@ from scenewright.gaussians import assets, color
 from scenewright.gaussians.assets import forge, shapes, surface
 from scenewright.gaussians.errors import UserError
 
-SEEDS = (0, 1, 2, 3, 4, 5)
+SEEDS = (0, 1, 2, 3)
 SH_C0 = 0.28209479177387814
 
 
@@ -158,6 +158,6 @@ def test_detail_of_surfaces_under_a_label_is_dropped() -> None:
     label = shapes.panel(0.5, 0.5, (0, -0.502, 0.25)).named("label", Material((1.0, 0.0, 0.0)))
     samples = surface.sample([body, label], 0.05)
     hidden = samples.xyz[surface.covered(samples)]
-    assert len(hidden) > 50 and (hidden[:, 1] == pytest.approx(-0.5)) if len(hidden) else False
+    assert len(hidden) > 50 and np.allclose(hidden[:, 1], -0.5)
     # up to one cell beyond the label's border
     assert (np.abs(hidden[:, 0]) < 0.31).all() and (np.abs(hidden[:, 2] - 0.5) < 0.31).all()
