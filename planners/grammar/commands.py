@@ -111,7 +111,10 @@ class Commands:
         return [op for coat in trees(node, "coat") for op in self._give_color(coat)]
 
     def _give_color(self, node: Node) -> list[Fields]:
-        return self._targeted(node, "recolor", color=changes.hue_of(trees(node, "hue")[-1]))
+        hue = trees(node, "hue")[-1]
+        if any(t.text == "tint" for t in tokens(hue, "COLORWORD")):
+            return self._tint(node)
+        return self._targeted(node, "recolor", color=changes.hue_of(hue))
 
     _change_color = _turn_color = _give_color
 
@@ -164,7 +167,10 @@ class Commands:
         return self._moved(self._nouns(node), node, "MOVE")
 
     def _centering(self, node: Node) -> list[Fields]:
-        return self._targeted(node, "move", place={"relation": "center"})
+        found = self._nouns(node)
+        if any(n.posts for n in found):
+            raise Refusal("say put it there; centring is in the middle of the room", found[-1].posts[0].word)
+        return [{"op": "move", "target": _known(found), "place": {"relation": "center"}}]
 
     def _keep(self, node: Node) -> list[Fields]:
         """ "keep the sofa and delete the rest": what is kept is what the next step leaves out."""
@@ -340,6 +346,8 @@ class Commands:
             raise Refusal("a new thing is named by what it is: a red floor lamp", query.text)
         if len(query.colors) > 1:
             raise Refusal("a new thing has one colour", *query.colors)
+        if any(a.endswith("er") for a in noun.adjectives):
+            raise Refusal("say how tall, or make the one that is there bigger", *noun.adjectives)
         fields: Fields = {"asset": query.text}
         if query.size and not noun.height and (height := sizes.usual_height(query.text, query.size)):
             fields["height"] = {"value": height, "unit": "m"}

@@ -70,7 +70,7 @@ VERBS: dict[str, Entry] = {
     ),
     **_same(("CENTERING", None), "center, centre"),
     **_same(("KEEP", None), "keep, leave"),
-    **_same(("RAISE", "up"), "raise, lift, elevate, hoist, lift up, move up"),
+    **_same(("RAISE", "up"), "raise, lift, elevate, hoist, lift up"),
     **_same(("RAISE", "down"), "lower"),
     **_same(
         ("PUT", None),
@@ -112,6 +112,8 @@ UNSUPPORTED: dict[str, str] = {
     **_same("only whole scenes of what is there can be edited, not what happens to it", "break, smash, bend, burn, "
             "fill, empty, clean, wash, dust, polish, animate, cook, play, eat, wear, throw a party"),
     **_same("what was hidden comes back with undo", "unhide, reveal, restore, bring back"),
+    **_same("say what to select instead", "clear the selection, invert the selection, clear selection, "
+            "invert selection, deselect, unselect, select none, select nothing, reset the selection"),
     **_same("objects cannot be renamed or grouped", "rename, group, ungroup, merge, split, label"),
     **_same("one thing cannot be turned to face another yet", "face, aim, orient, align"),
 }  # fmt: skip
@@ -173,7 +175,7 @@ RELATIONS: dict[str, str] = {
 
 INSIDE: dict[str, Entry] = {
     **{phrase: ("PREP", name) for phrase, name in RELATIONS.items()},
-    **{f"over {p}": ("PREP", n) for p, n in RELATIONS.items() if p.startswith("to ")},
+    **{f"over {p}": ("PREP", n) for p, n in RELATIONS.items()},
     **{f"directly {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside",)},
     **{f"right {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside", "right_of", "left_of")},
     **{f"just {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside",)},
@@ -224,7 +226,8 @@ INSIDE: dict[str, Entry] = {
     **_same(("NOWHERE", None), "to the back of the room, to the front of the room, to the left of the room, "
             "to the right of the room, to the left side of the room, to the right side of the room, "
             "to the other side of the room, to the side, on its side, on its back, on their side, on their sides, "
-            "side by side, every other, every second, in a line, in a circle, in a row, in rows"),
+            "side by side, on either side of, on each side of, on both sides of, every other, every second, "
+            "in a line, in a circle, in a row, in rows"),
     **_same(("COUNTED", "right"), "from the right, counting from the right, from right to left, from right"),
     **_same(("COUNTED", "left"), "from the left, counting from the left, from left to right, from left"),
     **_same(("DIR", "left"), "to the left, left, leftward, leftwards, to my left, over to the left, further left, "
@@ -302,7 +305,8 @@ INSIDE: dict[str, Entry] = {
     **_same(("LIKEIT", None), "like it, like this, like that, like this one, like that one, like these, like those, "
             "like them, just like it"),
     **_same(("PRON", "any"), "one of them, any of them, either of them"),
-    **_same(("EVERYTHING", None), "everything, all things, all objects, the whole scene, the entire scene, anything, "
+    **_same(("EVERYTHING", None), "whatever is, what is, everything, all things, all objects, the whole scene, "
+            "the entire scene, anything, "
             "every object, all the objects, the scene, the whole room, everything in the scene"),
     **_same(("EVERYTHING", "else"), "everything else, the rest, all the rest, all else, anything else, "
             "the rest of the scene, the rest of the room, the rest of it"),

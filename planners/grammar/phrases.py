@@ -5,7 +5,7 @@ belongs. Refuses to know verbs.
 
 Preference: a prepositional phrase belongs to the nearest noun before it ("the lamp on the table next to the sofa" is
 about a table next to the sofa), unless "and" joins it to the one before ("left of the table and in front of the
-window" says two things about one noun) or that noun is a floor or a wall.
+window" says two things about one noun), it is denied ("not against the window"), or that noun is a floor or a wall.
 """
 
 from __future__ import annotations
@@ -188,6 +188,8 @@ class Phrases:
         tags = [tag_of(c) for c in node.children if isinstance(c, Token)]
         text, plural = self._head(tags)
         article: Article = next((t.value for t in tags if t.type == "DET"), "bare")
+        if article == "both" and not plural:
+            article = "def"  # "both the vase and the candle"
         number = self._number(tags)
         if tags[0].type == "NUMBER" and any(t.type == "OF" for t in tags):
             raise Refusal("say which of them: the largest, the left one, or all", *_quote(tags))
@@ -282,7 +284,7 @@ def attach(query: Query, posts: Sequence[Post]) -> Query:
     i = 0
     while i < len(posts):
         j = i + 1
-        while j < len(posts) and not posts[j].joined and _takes_more(posts[i]):
+        while j < len(posts) and not posts[j].joined and posts[j].kind != "unrelated" and _takes_more(posts[i]):
             j += 1
         query = _narrow(query, posts[i], posts[i + 1 : j])
         i = j

@@ -120,12 +120,22 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
                 idle = refusal
     ops = _release(ops)
     if not ops:
-        raise idle or Refusal("there are no words in it", verdict="not_an_edit")
+        raise idle or _empty(words)
     if idle and not _is_chat(idle):
         raise Refusal(f"this part is not an edit, so nothing was planned: {idle}", *idle.words)
     if len(ops) > MAX_OPS:
         raise Refusal(f"that is more than {MAX_OPS} steps; say it in parts")
     return _Outcome(tuple(_merge_copies(ops)), commands.phrases.antecedent)
+
+
+def _empty(words: Sequence[Word]) -> Refusal:
+    """The refusal of an instruction in which nothing but filler stands."""
+    said = tuple(w.text for w in words if w.text[0].isalpha())
+    if any(w in lexicon.CHAT for w in said):
+        return Refusal(_CHAT, verdict="not_an_edit")
+    return (
+        Refusal("it does not say what to do", *said) if said else Refusal("there are no words", verdict="not_an_edit")
+    )
 
 
 def _release(ops: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -203,7 +213,7 @@ def _refuse_idle(clause: Clause, sentence: Sequence[Word], mark: str) -> None:
     """Raise if the clause is a question, a statement, chat, a session command or a prohibition."""
     if clause.negated:
         raise Refusal("it says what not to do, and asks for no change", "not", verdict="not_an_edit")
-    if clause.verb == "SELECT" and len(clause.tags) > 1 and clause.tags[1].text in lexicon.QUESTION:
+    if clause.verb == "SELECT" and len(clause.tags) > 1 and clause.tags[1].words[0].text in lexicon.QUESTION:
         raise Refusal("this is a question, not an edit", clause.tags[1].text, verdict="not_an_edit")
     if clause.verb or clause.unsupported:
         return

@@ -33,8 +33,15 @@ def color_at(texts: Sequence[str], i: int) -> tuple[str, int] | None:
             continue
         phrase = " ".join(texts[i : i + taken])
         if _is_color(phrase):
-            return phrase, taken
+            return _without_basic(phrase, taken, texts[i + taken : i + taken + 1])
     return None
+
+
+def _without_basic(phrase: str, taken: int, behind: Sequence[str]) -> tuple[str, int]:
+    """ "navy blue" and "mint green" are navy and mint."""
+    precise = phrase not in colors.BASIC and phrase not in ("grey", *_QUALIFIERS) and not phrase.startswith("#")
+    doubled = taken == 1 and precise and bool(behind) and behind[0] in (*colors.BASIC, "grey")
+    return phrase, taken + doubled
 
 
 def _is_color(phrase: str) -> bool:

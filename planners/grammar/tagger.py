@@ -23,6 +23,9 @@ from .words import Word
 
 _NOUNISH = frozenset({"NOUN", "ONE", "THING"})
 _BOUNDARIES = frozenset(".;!?\n")
+# "the smaller of the two" picks as a superlative does.
+_COMPARATIVES = {"bigger": "largest", "larger": "largest", "smaller": "smallest", "taller": "tallest",
+                 "shorter": "shortest"}  # fmt: skip
 _REPEATABLE = ("DELETE", "SELECT", "HIDE", "ISOLATE")
 MAX_NOUN_WORDS = 4
 
@@ -190,7 +193,7 @@ class Tagger:
             return self._put("BY", None, i, 1)
         if text == "into" and verb in ("TURN", "CHANGE", "MAKE"):
             return self._put("INTO", None, i, 1)
-        if text == "from" and verb == "CHANGE" and self.read.hue_follows(i + 1):
+        if text == "from" and verb in ("CHANGE", "PAINT", "TURN") and self.read.hue_follows(i + 1):
             return self._put("FROMHUE", None, i, 1)
         if text in ("in", "with") and verb in ("PAINT", "TINT", "GIVE", "MAKE") and self.read.hue_follows(i + 1):
             return i + 1 + (after in ("a", "an"))
@@ -260,8 +263,8 @@ class Tagger:
         follows_det = self._before in ("DET", "SIZE", "SUP", "ORDINAL", "COLOR") or (
             self._before in ("", *verb_classes()) and self.clause.verb != ""
         )
-        if follows_det and self.texts[i] == "light" and taken == 2:
-            return self._put("NOUN", "light", i, 1)
+        if follows_det and taken == 2 and (self.texts[i] == "light" or self.texts[i] in NOUN_COLORS):
+            return self._put("NOUN", self.texts[i], i, 1)
         if follows_det and taken == 1 and name in NOUN_COLORS and not self._indefinite_hue(i):
             return self._put("NOUN", name, i, 1)
         if self._before == "EVERYTHING" and self.clause.verb in ("DELETE", "SELECT", "HIDE", "ISOLATE", "MOVE", "KEEP"):
@@ -284,6 +287,8 @@ class Tagger:
             return self._put(kind, value, i, taken)
         if after_det and self.texts[i] in ("back", "top", "front", "bottom", "left", "right") and behind == ("of",):
             return self._put("NOUN", self.texts[i], i, 1)
+        if kind == "SIZE" and self._before == "DET" and behind == ("of",) and self.texts[i] in _COMPARATIVES:
+            return self._put("SUP", _COMPARATIVES[self.texts[i]], i, taken)
         if kind == "SUP" and after_det and (self._before == "DET" or self._before == "ORDINAL"):
             return self._put(kind, value, i, taken)
         if kind == "SIZE" and not length:
