@@ -8,6 +8,7 @@ import numpy as np
 
 from .forge import Asset, make
 from .layout import GAP, Box, Layout
+from .parts import chance
 from .registry import KINDS
 
 Rng = np.random.Generator
@@ -58,11 +59,6 @@ class Supplier:
                 ["red", "orange", "yellow", "green", "teal", "blue", "purple", "pink", "brown", "white", "black"]
             )
         )
-
-
-def chance(rng: Rng, p: float) -> bool:
-    """True with probability `p`."""
-    return bool(rng.random() < p)
 
 
 def dress(room: Layout, get: Supplier, anchor: int | None, like: str, count: int) -> None:

@@ -6,6 +6,7 @@ groups; who wants to measure looks into `Room.truth`.
 
 from __future__ import annotations
 
+import itertools
 import math
 import zlib
 from collections.abc import Sequence
@@ -182,11 +183,7 @@ def _shell(layout: Layout, rng: np.random.Generator, ceiling: bool) -> list[Piec
     if rng.random() < 0.2:
         other = tuple(c * 0.93 for c in paint.color)
         paint = Material(paint.color, "stripes", (other[0], other[1], other[2]), 0.3, 0)
-    out = [
-        quad([(-w / 2, -d / 2, 0), (-w / 2, d / 2, 0), (w / 2, -d / 2, 0), (w / 2, d / 2, 0)]).named(
-            "floor", floor, 1.5
-        )
-    ]
+    out = _floor(layout, floor)
     skirt = tone.plain("#f1efea", "flat")
     for name in layout.walls:
         length = w if name in ("north", "south") else d
@@ -199,6 +196,25 @@ def _shell(layout: Layout, rng: np.random.Generator, ceiling: bool) -> list[Piec
     if ceiling:
         lid = boxes([(w, d, 0.02, 0, 0, h)], 0.0)
         out.append(lid.named("ceiling", tone.plain("#f4f2ee", "flat")))
+    return out
+
+
+def _floor(layout: Layout, material: Material) -> list[Piece]:
+    """The floor in rectangles, finer under rugs: large cells just below a thin sheet would show through it."""
+    xs, ys = [-layout.w / 2, layout.w / 2], [-layout.d / 2, layout.d / 2]
+    covers = []
+    for t in (layout.things[i] for i in layout.rugs()):
+        low, high = t.box.corners().min(axis=0), t.box.corners().max(axis=0)
+        covers.append((low, high))
+        xs += [float(np.clip(v, xs[0], xs[1])) for v in (low[0], high[0])]
+        ys += [float(np.clip(v, ys[0], ys[1])) for v in (low[1], high[1])]
+    out = []
+    for x0, x1 in itertools.pairwise(sorted(set(xs))):
+        for y0, y1 in itertools.pairwise(sorted(set(ys))):
+            x, y = (x0 + x1) / 2, (y0 + y1) / 2
+            under = any(a[0] < x < b[0] and a[1] < y < b[1] for a, b in covers)
+            patch = quad([(x0, y0, 0), (x0, y1, 0), (x1, y0, 0), (x1, y1, 0)])
+            out.append(patch.named("floor", material, 2.8 if under else 1.5))
     return out
 
 
