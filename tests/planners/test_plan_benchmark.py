@@ -1,0 +1,49 @@
+"""The benchmark of planners: an abstention is not a wrong edit, and the shares add up."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from scenewright.benchmarks import plan as bench
+from scenewright.gaussians.errors import FileError
+from scenewright.planners import EditPlan
+from scenewright.planners.grammar import GrammarPlanner
+from scenewright.tools import registry
+
+
+def plan(*ops: dict[str, object], verdict: str = "ok") -> EditPlan:
+    parsed = tuple(registry.parse(op) for op in ops)
+    return EditPlan(instruction="x", planner="test", ops=parsed, verdict=verdict)  # type: ignore[arg-type]
+
+
+CHAIR = {"op": "delete", "target": {"text": "chair"}}
+SOFA = {"op": "delete", "target": {"text": "sofa"}}
+
+
+@pytest.mark.parametrize(
+    ("given", "case", "outcome"),
+    [
+        (plan(CHAIR), {"ops": [CHAIR]}, "right"),
+        (plan(SOFA), {"ops": [CHAIR]}, "wrong"),
+        (plan(CHAIR, SOFA), {"ops": [CHAIR]}, "wrong"),
+        (plan(CHAIR), {"verdict": "not_an_edit"}, "wrong"),
+        (plan(verdict="not_understood"), {"ops": [CHAIR]}, "abstained"),
+        (plan(verdict="not_understood"), {"verdict": "not_understood"}, "right"),
+    ],
+)
+def test_judgement(given: EditPlan, case: dict[str, object], outcome: str) -> None:
+    assert bench.judge(given, case) == outcome
+
+
+def test_rows_of_the_written_set() -> None:
+    answers = bench.measure(GrammarPlanner(), bench.cases()[::10], repeat=1)
+    figures = {key: value for key, value, *_ in bench.rows(answers)}
+    assert figures["right"] + figures["abstained"] + figures["wrong_edits"] == pytest.approx(1.0)
+    assert 0 < figures["ms.p50"] <= figures["ms.p95"] <= figures["ms.max"]
+
+
+def test_missing_set_is_told(tmp_path: Path) -> None:
+    with pytest.raises(FileError, match="checkout"):
+        bench.cases(tmp_path / "none.jsonl")
