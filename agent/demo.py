@@ -30,7 +30,8 @@ from .stopwatch import timed
 if TYPE_CHECKING:
     from ..gaussians.assets import Room
 
-TRIES = 14  # sentences a role may offer before it is left out
+TRIES = 40  # sentences a role may offer before it is left out
+AGREES = 0.5  # intersection over union from which a choice counts as the thing that was meant
 VISIBLE = 0.002  # share of the picture from which a thing is worth speaking of
 FILES = ("room.ply", "edited.ply", "session.jsonl", "contact_sheet.png")
 
@@ -71,6 +72,7 @@ class Demo:
         seed: of the room.
         size: width and height of the pictures, pixels.
         force: overwrite what an earlier run left.
+        encoder: text and image encoder.
         say: told what happens, line by line.
         progress: told how far long work is.
     """
@@ -79,9 +81,11 @@ class Demo:
     seed: int = 0
     size: tuple[int, int] = (640, 480)
     force: bool = False
+    encoder: str = "auto"
     say: Say = print
     progress: Callable[[str, float], None] = lambda stage, fraction: None
     steps: list[Step] = field(default_factory=list)
+    passed_over: list[str] = field(default_factory=list)
     seconds: dict[str, float] = field(default_factory=dict)
     _tiles: list[Tile] = field(default_factory=list)
 
@@ -103,7 +107,7 @@ class Demo:
             _save(scene, self.folder / "room.ply", self.force)
         log = self.folder / "session.jsonl"
         log.unlink(missing_ok=True)  # only with force: see _prepare
-        session = Session(scene, log=log, progress=self.progress, seed=self.seed, pixel_checks=True)
+        session = Session(scene, encoder=self.encoder, log=log, progress=self.progress, seed=self.seed)
         session.viewer = _viewer(scene, self.size)
         with timed(self.seconds, "embed"):
             session.embed()
@@ -112,6 +116,8 @@ class Demo:
         with timed(self.seconds, "save"):
             session.save(self.folder / "edited.ply", force=self.force)
         session.close()
+        if self.passed_over:
+            self.say(f"passed over, since other things would have been taken: {'; '.join(self.passed_over)}")
         self._sheet()
         self.seconds["total"] = time.perf_counter() - started
         return self._report()
@@ -141,6 +147,7 @@ class Demo:
         return {
             "folder": str(self.folder),
             "seed": self.seed,
+            "passed_over": self.passed_over,
             "steps": [step.__dict__ for step in self.steps],
             "seconds": {stage: round(value, 3) for stage, value in self.seconds.items()},
             "files": sorted(p.name for p in self.folder.iterdir()),
@@ -153,7 +160,7 @@ class Demo:
         cast = _cast(room, session.viewer)
         for name, role in SCRIPT:
             with timed(self.seconds, "choose what to say"):
-                turn = _first_that_fits(session, role, cast)
+                turn = self._first_that_fits(session, role, cast, truth)
             if turn is None:
                 self.say(f"-- left out: {name} (nothing in this room suits it)")
                 continue
@@ -161,6 +168,20 @@ class Demo:
             cast.used.update(t.id for t in turn.about)
             if turn.text.startswith("remove") and turn.outcome == "edit":
                 cast.things = [t for t in cast.things if t not in turn.about]
+
+    def _first_that_fits(self, session: Session, role: Role, cast: Cast, truth: Ids) -> Turn | None:
+        """The first sentence of a role from which what ought to come of it comes, tried on a copy.
+
+        A sentence that would be misunderstood is passed over, and counted.
+        """
+        for turn in itertools.islice(role(cast), TRIES):
+            fits, result = _tried(session, turn)
+            overlap = _overlap(result, turn, truth) if result is not None else None
+            if fits and (overlap is None or overlap >= AGREES):
+                return turn
+            if fits:
+                self.passed_over.append(f"{turn.text} (IoU {overlap:.2f})")
+        return None
 
     def _play(self, session: Session, turn: Turn, truth: Ids) -> None:
         """Say it, answer if asked back, and keep pictures of before and after."""
@@ -171,6 +192,7 @@ class Demo:
         spent: dict[str, float] = {}
         result: Result | None = None
         try:
+            session.pixel_checks = True
             with timed(spent, "converse"):
                 result = session.do(turn.text)
             outcome = _sentence(result)
@@ -186,6 +208,7 @@ class Demo:
                 text = f"{turn.text} … {turn.answer}"
         except InstructionError as error:
             outcome = f"refused, nothing was changed: {error}"
+        session.pixel_checks = False  # not needed for trying sentences
         seconds = spent["converse"]
         self.seconds["converse"] = self.seconds.get("converse", 0.0) + seconds
         if result is not None:
@@ -245,23 +268,27 @@ def _cast(room: Room, viewer: Camera) -> Cast:
     return Cast(sorted(visible, key=lambda t: -t.pixels), absent, set())
 
 
-def _first_that_fits(session: Session, role: Role, cast: Cast) -> Turn | None:
-    """The first sentence of a role from which what ought to come of it comes, tried on a copy."""
-    return next((turn for turn in itertools.islice(role(cast), TRIES) if _fits(session, turn)), None)
-
-
-def _fits(session: Session, turn: Turn) -> bool:
+def _tried(session: Session, turn: Turn) -> tuple[bool, Result | None]:
+    """Whether a sentence leads where it ought to, and the result it would have."""
     if turn.outcome == "undo":
-        return len(session.done) > 0
+        return len(session.done) > 0, None
     try:
-        session.preview(turn.text)
+        result = session.preview(turn.text)
+        return turn.outcome == "edit", result
     except AmbiguousError:
-        return turn.outcome == "ambiguous"
+        return turn.outcome == "ambiguous" and _answer_helps(session, turn.answer), None
     except AbsentError:
-        return turn.outcome == "absent"
+        return turn.outcome == "absent", None
+    except ScenewrightError:
+        return False, None
+
+
+def _answer_helps(session: Session, answer: str) -> bool:
+    try:
+        session.preview(session.answered(answer))
     except ScenewrightError:
         return False
-    return turn.outcome == "edit"
+    return True
 
 
 def _sentence(result: Result) -> str:

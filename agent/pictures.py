@@ -71,7 +71,8 @@ def contact_sheet(heading: str, tiles: Sequence[Tile], columns: int = 2, tile_wi
 
 
 def _draw_tile(number: int, tile: Tile, width: int) -> Image.Image:
-    strip = Image.fromarray(beside(tile.pictures))
+    blank = np.full_like(tile.pictures[0], _PAPER)
+    strip = Image.fromarray(beside((*tile.pictures, blank)[:2]))
     strip = strip.resize((width, round(strip.height * width / strip.width)), Image.Resampling.LANCZOS)
     title = _wrapped(f"{number}. {tile.title}", _font(19), width)
     outcome = _wrapped(tile.outcome, _font(15), width)[:3]

@@ -99,14 +99,15 @@ def _recolor(cast: Cast) -> Iterator[Turn]:
 
 
 def _delete(cast: Cast) -> Iterator[Turn]:
-    for t in reversed(cast.single(movable=True)[:6]):
-        if t.id not in cast.used:
-            yield Turn(f"remove the {t.kind}", about=(t,))
+    fresh = [t for t in cast.single(movable=True) if t.id not in cast.used]
+    spoken_of = [t for t in cast.single(movable=True) if t.id in cast.used]
+    for t in (*reversed(fresh), *spoken_of):
+        yield Turn(f"remove the {t.kind}", about=(t,))
 
 
 def _move(cast: Cast) -> Iterator[Turn]:
-    for t in cast.single(movable=True):
-        for distance in ("60 cm", "30 cm"):
+    for distance in ("60 cm", "30 cm"):
+        for t in cast.single(movable=True):
             yield from (Turn(f"move the {t.kind} {distance} {way}", about=(t,)) for way in _WAYS)
 
 

@@ -88,7 +88,7 @@ class Session:
         self._viewer = viewer
         self._progress = progress or (lambda stage, fraction: None)
         self._seed = seed
-        self._pixel_checks = pixel_checks
+        self.pixel_checks = pixel_checks
         self._history = History(State(scene))
         self._log = SessionLog(log) if log is not None else None
         self.question: Question | None = None
@@ -190,9 +190,13 @@ class Session:
         Raises:
             UserError: nothing was asked, or the answer is no choice. The question then stands.
         """
+        return self.apply(self.answered(text))
+
+    def answered(self, text: str) -> EditPlan:
+        """The plan that an answer to `question` makes of the one it was asked about; raises as `answer`."""
         if self.question is None or not self.question.candidates:
             raise UserError("there is no open question; give an instruction")
-        return self.apply(answered(self.question, text, self._noun_phrase))
+        return answered(self.question, text, self._noun_phrase)
 
     def select(self, phrase: str | Query) -> Selection:
         """What a phrase means here, whatever the verdict; the scene does not change, and "it" means what was found.
@@ -339,7 +343,7 @@ class Session:
         from ..tools.base import Context
 
         encoder = self.encoder if self.scene.language is not None else None
-        return Context(viewer=self.viewer, last=last, encoder=encoder, seed=self._seed, pixel_checks=self._pixel_checks)
+        return Context(viewer=self.viewer, last=last, encoder=encoder, seed=self._seed, pixel_checks=self.pixel_checks)
 
     def _question(
         self, plan: EditPlan, step: int, error: ScenewrightError, scene: Scene, context: Context

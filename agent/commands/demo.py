@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..options import Debug, Force, Json, Seed, Size
+from ..options import Debug, Encoder, Force, Json, Seed, Size
 from ..terminal import terminal
 
 
@@ -17,6 +17,7 @@ def command(
     ),
     seed: Seed = 0,
     size: Size = None,
+    encoder: Encoder = "auto",
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
@@ -33,6 +34,7 @@ def command(
         seed,
         parse_size(size) if size else (640, 480),
         force,
+        encoder,
         say=terminal.say if as_json else terminal.line,
         progress=terminal.progress,
     )
