@@ -14,8 +14,9 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from ..gaussians.camera import Vec3
 from ..gaussians.cloud import GaussianCloud
-from ..gaussians.language.field import Box, Group, LanguageField
+from ..gaussians.language.field import Group, LanguageField
 from ..gaussians.scene import Frame, Scene
 from .base import Affine, Encoder
 from .measure import median_lab, sample, solid_points
@@ -131,13 +132,13 @@ class Newcomer:
     Attributes:
         cloud: its Gaussians, in place.
         label: what it is.
-        axes: a box whose axes it keeps; None finds its own.
+        axes: of its box, its front along -y; None finds the smallest box.
         like: the group it is a copy of, or None.
     """
 
     cloud: GaussianCloud
     label: str
-    axes: Box | None = None
+    axes: tuple[Vec3, Vec3, Vec3] | None = None
     like: int | None = None
 
 
@@ -162,8 +163,7 @@ def enter(
 
 def _row(field: LanguageField, new: Newcomer, index: int, frame: Frame) -> Group:
     every = torch.arange(len(new.cloud), device=new.cloud.device)
-    axes = new.axes.axes if new.axes is not None else None
-    box = box_of(solid_points(new.cloud, every), frame, axes)
+    box = box_of(solid_points(new.cloud, every), frame, new.axes)
     lab = median_lab(sample(new.cloud, every))
     if new.like is not None:
         original = field.groups[new.like]

@@ -83,9 +83,9 @@ def histogram(points: Array, origin: Array, cell: float, shape: NDArray[np.int_]
     return np.bincount(flat, minlength=int(shape[0] * shape[1])).reshape(shape)
 
 
-def grown(mask: Bool) -> Bool:
-    """A mask grown by one cell: surfaces are sampled by points, not cells."""
-    grown: Bool = window_sum(np.pad(mask, 1).astype(np.int64), np.array([3, 3]), list(mask.shape)) > 0
+def grown(mask: Bool, by: int) -> Bool:
+    """A mask grown by some cells: surfaces are sampled by points, not cells."""
+    grown: Bool = window_sum(np.pad(mask, by).astype(np.int64), np.array([2 * by + 1] * 2), list(mask.shape)) > 0
     return grown
 
 

@@ -25,9 +25,10 @@ from .grid import Bool, grown, histogram, levels, obstacle_points, window_sum
 from .measure import OPAQUE
 from .space import Array, Body, as_vec, bodies_of, centimetre, extent_along, heading, neighbours
 
+Cost = Callable[[Array], Array]  # plan positions `[..., 2]` to costs `[...]`
 _CELLS = 220  # most cells along a side of the grid
 _FOOT_CELLS = 10  # cells along the shorter side of a footprint, if the region is small enough
-_CARRIED = 0.6  # share of the footprint that must lie over the support's surface
+_CARRIED = 0.75  # share of the footprint that must lie over the support's surface
 FLOOR_WORDS = frozenset({"floor", "ground", "carpet", "room"})
 WALL_WORDS = frozenset({"wall", "walls"})
 SIDES: dict[str, Direction] = {"left_of": "left", "right_of": "right", "in_front_of": "backward", "behind": "forward"}
@@ -63,7 +64,7 @@ class Region:
 
     low: Array
     high: Array
-    cost: Callable[[Array], Array]
+    cost: Cost
     height: float
     surface: Array | None
 
@@ -77,7 +78,7 @@ class Placer:
         context: viewer and resolver.
         moving: `[N]` bool, Gaussians that are being moved and so are not in the way.
         moving_groups: their groups.
-        back: whether the thing's own +y side, its back, is what "against a wall" must bring to the wall.
+        back: `[3]` where the thing's back points, which "against a wall" then brings to the wall; None takes any side.
         lift: height above the floor of what hangs on a wall or from the ceiling, scene units.
     """
 
@@ -85,7 +86,7 @@ class Placer:
     context: Context
     moving: Tensor | None = None
     moving_groups: frozenset[int] = frozenset()
-    back: bool = False
+    back: Array | None = None
     lift: float = 0.0
     taken: list[Box] = field(default_factory=list)
 
@@ -223,26 +224,45 @@ class Placer:
         return [self._beside_region(size, plan, anchor, relation, start)]
 
     def _room_region(self, size: Vec3, plan: Array, relation: str, start: Array | None) -> Region:
-        low, high = self._room_bounds(plan)
-        half = np.array(size[:2]) / 2
-        low, high = low + half, high - half
-        if (low > high).any():
-            low = high = (low + high) / 2
+        room = np.array(self.room_axes[:2])
+        low, high, to_room = *self._room_for(size, plan), room @ plan.T
         middle = (low + high) / 2
-        wanted = plan @ start if start is not None else middle
-        costs: dict[str, Callable[[Array], Array]] = {
-            "center": lambda p: np.linalg.norm(p - middle, axis=-1),
-            "corner": lambda p: 4 * np.linalg.norm(np.minimum(p - low, high - p), axis=-1) + _far(p, wanted),
+        wanted = room @ start if start is not None else middle
+        costs: dict[str, Cost] = {
+            "center": lambda p: _far(p, middle),
+            "corner": lambda p: np.asarray(
+                4 * np.linalg.norm(np.minimum(p - low, high - p), axis=-1) + _far(p, wanted)
+            ),
             "against": lambda p: 4 * self._to_wall(p, low, high) + _far(p, wanted),
         }
-        return Region(low, high, costs.get(relation, lambda p: _far(p, wanted)), self.floor + self.lift, None)
+
+        def cost(p: Array) -> Array:
+            local: Array = p @ to_room.T
+            return costs[relation](local) if relation in costs else _far(local, wanted)
+
+        corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])]) @ to_room
+        return Region(corners.min(axis=0), corners.max(axis=0), cost, self.floor + self.lift, None)
 
     def _to_wall(self, p: Array, low: Array, high: Array) -> Array:
         """Distance of a footprint from the nearest wall, or from the wall behind it."""
-        return np.asarray((high - p)[..., 1] if self.back else np.minimum(p - low, high - p).min(axis=-1))
+        if self.back is None:
+            return np.asarray(np.minimum(p - low, high - p).min(axis=-1))
+        way = np.array(self.room_axes[:2]) @ self.back
+        return np.asarray(np.where(way > 0, high - p, p - low) @ np.abs(way))
 
-    def _room_bounds(self, plan: Array) -> tuple[Array, Array]:
-        """Extent of what lies about floor height, stray points left out; of everything if little lies there."""
+    def _room_for(self, size: Vec3, plan: Array) -> tuple[Array, Array]:
+        """Bounds, along the room's axes, of the centre of a footprint along `plan` that stays in the room."""
+        low, high = self._room_bounds
+        turn = np.abs(np.array(self.room_axes[:2]) @ plan.T)
+        half = turn @ np.array(size[:2]) / 2
+        low, high = low + half, high - half
+        tight = low > high
+        return np.where(tight, (low + high) / 2, low), np.where(tight, (low + high) / 2, high)
+
+    @cached_property
+    def _room_bounds(self) -> tuple[Array, Array]:
+        """Extent along the room's axes of what lies about floor height, stray points left out."""
+        plan = np.array(self.room_axes[:2])
         heights = self.solid @ self.up.astype(np.float32)
         span = float(np.ptp(np.quantile(heights, [0.01, 0.99]))) if len(heights) else 1.0
         near = self.solid[np.abs(heights - self.floor) < 0.05 * span]
@@ -270,7 +290,7 @@ class Placer:
         regions = []
         for level, near in levels(points @ self.up, local, self._tolerance(anchor)):
             surface = np.column_stack([local[near], np.full(int(near.sum()), level)])
-            regions.append(Region(low, high, cost, level, surface))
+            regions.append(Region(low, high, self._within(anchor, plan, cost), level, surface))
         return regions
 
     def _inner_regions(self, size: Vec3, plan: Array, anchor: Body) -> list[Region]:
@@ -291,7 +311,8 @@ class Placer:
             near = (heights >= edges[i]) & (heights <= edges[i + 1])
             level = float(np.quantile(heights[near], 0.9)) if near.any() else anchor.bottom(self.up)
             surface = np.column_stack([local[near], np.full(int(near.sum()), level)])
-            regions.append(Region(low, high, lambda p: _far(p, middle), level, surface))
+            cost = self._within(anchor, plan, lambda p: _far(p, middle))
+            regions.append(Region(low, high, cost, level, surface))
         return regions
 
     def _under_region(self, plan: Array, anchor: Body) -> Region:
@@ -299,7 +320,18 @@ class Placer:
         low, high = np.quantile(local, [0.01, 0.99], axis=0)
         middle = (low + high) / 2
         height, surface = self._base(anchor, plan)
-        return Region(low, high, lambda p: _far(p, middle), height, surface)
+        return Region(low, high, self._within(anchor, plan, lambda p: _far(p, middle)), height, surface)
+
+    def _within(self, anchor: Body, plan: Array, cost: Cost) -> Cost:
+        """A cost that forbids what is outside the anchor's own footprint (which need not run along `plan`)."""
+        axes, half = np.array(anchor.box.axes[:2]), np.array(anchor.box.size[:2]) / 2
+        turn, middle = axes @ plan.T, axes @ anchor.center
+
+        def bounded(p: Array) -> Array:
+            inside = (np.abs(p @ turn.T - middle) <= half).all(axis=-1)
+            return np.asarray(np.where(inside, cost(p), np.inf))
+
+        return bounded
 
     def _between_region(self, size: Vec3, plan: Array, first: Body, second: Body) -> Region:
         a, b = plan @ first.center, plan @ second.center
@@ -384,6 +416,7 @@ class Placer:
         origin = region.low - half
         clear = self._clear(size)
         blocked = self._occupied(basis, origin, cell, shape, (region.height + clear, region.height + size[2]))
+        blocked = grown(blocked, max(1, round(centimetre(self.frame, max(size)) / cell)))  # things do not touch
         foot = np.maximum(np.ceil(2 * half / cell).astype(int), 1)  # cells of the footprint
         counts = [np.maximum(s - f + 1, 1) for s, f in zip(shape, foot, strict=True)]
         corner = np.stack(np.meshgrid(*(np.arange(c) for c in counts), indexing="ij"), axis=-1)
@@ -391,8 +424,12 @@ class Placer:
         possible = (centers >= region.low - cell).all(axis=-1) & (centers <= region.high + cell).all(axis=-1)
         if region.surface is not None:
             carried = histogram(region.surface[:, :2], origin, cell, shape) > 0
-            share = window_sum(grown(carried).astype(np.int64), foot, counts) / float(foot.prod())
-            possible &= share >= _CARRIED
+            share = window_sum(grown(carried, self._reach(region.surface, cell)).astype(np.int64), foot, counts)
+            possible &= share / float(foot.prod()) >= _CARRIED
+        else:
+            low, high = self._room_for(size, basis[:2])
+            placed = centers @ (np.array(self.room_axes[:2]) @ basis[:2].T).T
+            possible &= ((placed >= low - cell) & (placed <= high + cell)).all(axis=-1)
         some = bool(possible.any())
         possible &= window_sum(blocked.astype(np.int64), foot, counts) == 0
         cost = np.where(possible, region.cost(centers), np.inf)
@@ -401,6 +438,11 @@ class Placer:
         if not np.isfinite(cost[best]):
             return None, some
         return centers[best] @ basis[:2] + region.height * self.up, some
+
+    def _reach(self, surface: Array, cell: float) -> int:
+        """Cells by which points of a surface are grown so that they close: their spacing, but for sparse ones."""
+        area = float(np.prod(np.ptp(surface[:, :2], axis=0))) if len(surface) > 1 else 0.0
+        return int(np.clip(np.ceil((area / max(len(surface), 1)) ** 0.5 / cell), 1, 6))
 
     def _clear(self, size: Vec3) -> float:
         """Height above the support below which points do not count: rugs, unevenness, the support's own thickness."""

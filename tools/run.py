@@ -9,11 +9,12 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import NamedTuple
 
 import torch
 
-from ..gaussians.errors import CheckFailedError
+from ..gaussians.errors import AbsentError, CheckFailedError
 from ..gaussians.language.query import Query
 from ..gaussians.language.selection import Selection
 from ..gaussians.scene import Scene
@@ -53,6 +54,8 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
     seconds: dict[str, float] = {}
     with _stage(seconds, "resolve"):
         chosen = (selection or _resolve(scene, op, context)).require()
+        if op.query() is not None:
+            chosen = _living(scene, chosen)
     with _stage(seconds, "apply"):
         outcome = op.apply(scene, chosen, context)
     with _stage(seconds, "check"):
@@ -84,6 +87,19 @@ def _resolve(scene: Scene, op: EditOp, context: Context) -> Selection:
     if query is None:  # an operation that makes its own target
         return Selection(Query(), "found", torch.zeros(0, dtype=torch.int64))
     return context.resolve(scene, query)
+
+
+def _living(scene: Scene, selection: Selection) -> Selection:
+    """The selection without Gaussians that are gone since ("it" after a deletion).
+
+    Raises:
+        AbsentError: none is left.
+    """
+    there = mask_of(scene.cloud, selection.ids)
+    left = int(there.sum())
+    if left == 0:
+        raise AbsentError(f"nothing is left of {selection.query.describe()}: select something that is in the scene")
+    return selection if left == len(selection) else replace(selection, ids=scene.cloud.ids[there].sort().values)
 
 
 @contextmanager

@@ -138,7 +138,6 @@ def find_spot(placer: Placer, piece: Piece, place: Placement | None, start: Arra
         InstructionError: there is none.
     """
     unit = piece.size[2]
-    placer.back = piece.support == "wall" or (place is not None and place.relation == "against" and not place.anchors)
     placer.lift = 0.0
     if place is None and piece.support == "wall":
         place = Placement(relation="against")
@@ -149,11 +148,16 @@ def find_spot(placer: Placer, piece: Piece, place: Placement | None, start: Arra
         placer.lift = max(0.0, float(np.quantile(heights, 0.995)) - placer.floor - unit) if len(heights) else 0.0
     anchors = placer.anchors(place) if place is not None else []
     axes = standing_axes(placer, anchors)
-    for _ in range(3 if placer.back else 0):  # another wall is as good
+    if place is None or place.relation != "against" or anchors:
+        placer.back = None
+        return placer.find(piece.size, axes, place, start)
+    for _ in range(3):  # another wall is as good
         try:
+            placer.back = np.array(axes[1])
             return placer.find(piece.size, axes, place, start)
         except InstructionError:
             axes = (axes[1], as_vec(-np.array(axes[0])), axes[2])
+    placer.back = np.array(axes[1])
     return placer.find(piece.size, axes, place, start)
 
 
@@ -165,13 +169,15 @@ class Arrivals:
     clouds: list[GaussianCloud] = field(default_factory=list)
     newcomers: list[Newcomer] = field(default_factory=list)
 
-    def add(self, cloud: GaussianCloud, label: str, like: int | None = None) -> Tensor:
-        """One more object, its Gaussians in place; the ids they get."""
+    def add(
+        self, cloud: GaussianCloud, label: str, axes: tuple[Vec3, Vec3, Vec3] | None, like: int | None = None
+    ) -> Tensor:
+        """One more object, its Gaussians in place, its box along `axes`; the ids they get."""
         top = self.clouds[-1] if self.clouds else self.scene.cloud
         ids = fresh_ids(top, len(cloud))
         group = torch.full((len(cloud),), NO_GROUP, dtype=torch.int32, device=cloud.device)
         self.clouds.append(cloud.replace(ids=ids, group=group))
-        self.newcomers.append(Newcomer(self.clouds[-1], label, None, like))
+        self.newcomers.append(Newcomer(self.clouds[-1], label, axes, like))
         return ids
 
     def enter(self, context: Context, base: GaussianCloud | None = None) -> tuple[Scene, tuple[int, ...]]:

@@ -58,7 +58,7 @@ class Duplicate(TargetedOp):
             draft = Draft(original)
             shift(draft, torch.arange(len(original), device=original.device), offset)
             like = body.group if scene.language is not None and body.group >= 0 else None
-            ids = arrivals.add(draft.done(), body.label, like)
+            ids = arrivals.add(draft.done(), body.label, body.box.axes, like)
             moved.append(Affine(ids, np.eye(3), offset, original.ids, support))
         after, groups = arrivals.enter(context)
         added = torch.cat([m.ids for m in moved])

@@ -52,7 +52,7 @@ class Insert(EditOp):
             cloud = set_down(piece, spot.foot, spot.axes)
             taken_by(cloud, scene, placer)
             hangs = self.place is None and piece.support in ("wall", "ceiling")
-            moved.append(as_moved(cloud, arrivals.add(cloud, piece.label), None if hangs else spot.support))
+            moved.append(as_moved(cloud, arrivals.add(cloud, piece.label, spot.axes), None if hangs else spot.support))
             notes |= dict.fromkeys(piece.notes)
         after, groups = arrivals.enter(context)
         added = torch.cat([m.ids for m in moved])

@@ -9,7 +9,7 @@ import torch
 from pydantic import Field, model_validator
 from torch import Tensor
 
-from ...gaussians.color import parse, rgb_to_lab
+from ...gaussians.color import BASIC, parse, rgb_to_lab
 from ...gaussians.language.selection import Selection
 from ...gaussians.scene import Scene
 from ..base import ColorName, Context, Outcome, TargetedOp
@@ -64,8 +64,14 @@ class Recolor(TargetedOp):
         return Outcome(after.replace(language=remeasured(after, selection.ids, lab=True)), touched=selection.ids)
 
     def _asked(self) -> Tensor | None:
-        """Lab of the named colour."""
-        return rgb_to_lab(torch.tensor(parse(self.color), dtype=torch.float64)) if self.color is not None else None
+        """Lab of the named colour; a basic colour word means what people picture, not the corner of the RGB cube.
+
+        CSS blue and red leave a display no room for light and shadow, and CSS blue measures as purple.
+        """
+        if self.color is None:
+            return None
+        word = self.color.lower().strip().replace("grey", "gray")
+        return rgb_to_lab(torch.tensor(parse(BASIC.get(word, self.color)), dtype=torch.float64))
 
     def _map(self, taken: Sample, asked: Tensor | None) -> ColorMap:
         """The map for one coat of paint."""

@@ -43,7 +43,7 @@ class Replace(TargetedOp):
             spot = self._spot(placer, piece, body)
             cloud = set_down(piece, spot.foot, spot.axes)
             taken_by(cloud, scene, placer)
-            moved.append(as_moved(cloud, arrivals.add(cloud, piece.label), spot.support))
+            moved.append(as_moved(cloud, arrivals.add(cloud, piece.label, spot.axes), spot.support))
             notes |= dict.fromkeys((*piece.notes, *spot.notes))
         arrivals.scene = scene.replace(language=thinned(scene, left, scene.cloud.ids[go]))
         after, groups = arrivals.enter(context, left)

@@ -1,0 +1,272 @@
+"""Operations on furniture with a language field: placements, receipts, roll-back, and a table that stays true."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+
+from scenewright.gaussians.color import name_of
+from scenewright.gaussians.errors import AbsentError, AmbiguousError, CheckFailedError, InstructionError, UserError
+from scenewright.gaussians.language.field import Group
+from scenewright.gaussians.scene import Frame, Scene
+from scenewright.tools import run
+from scenewright.tools.base import Context
+from scenewright.tools.measure import reach, solid_points
+from scenewright.tools.ops.opacity import Opacity
+from scenewright.tools.receipt import Receipt, at_most
+from scenewright.tools.registry import OPS, parse
+from scenewright.tools.run import Done, carry_out, preview
+from scenewright.tools.space import box_of, overlap
+
+TABLE, CHAIR, ARMCHAIR, VASE, FLOOR = range(5)  # as the `corner` fixture numbers them
+NEW = 5
+
+
+def a(text: str) -> dict[str, Any]:
+    return {"text": text}
+
+
+def do(scene: Scene, context: Context, op: str, **fields: Any) -> Done:
+    return carry_out(scene, parse({"op": op, **fields}), context)
+
+
+def group(scene: Scene, index: int) -> Group:
+    assert scene.language is not None
+    return scene.language.groups[index]
+
+
+def assert_true_table(scene: Scene) -> None:
+    """Counts and boxes of the table are those of the Gaussians."""
+    assert scene.language is not None
+    for g in scene.language.groups:
+        rows = (scene.cloud.group == g.id).nonzero().squeeze(1)
+        assert g.count == len(rows), g.label
+        if not g.count:
+            continue
+        measured = box_of(solid_points(scene.cloud, rows), scene.frame, g.box.axes)
+        # The fixture's boxes hold all solid centres; moving them costs float32 roundings, measuring them none.
+        assert np.allclose(measured.center, g.box.center, atol=1e-4) and np.allclose(
+            measured.size, g.box.size, atol=2e-4
+        )
+
+
+PLACES = [
+    ("chair", "next_to", "table"), ("chair", "left_of", "table"), ("chair", "right_of", "armchair"),
+    ("chair", "in_front_of", "table"), ("chair", "behind", "table"), ("chair", "against", "armchair"),
+    ("vase", "on", "table"), ("vase", "on", "chair"), ("vase", "on", "armchair"), ("vase", "under", "table"),
+    ("vase", "center", "table"), ("vase", "corner", "table"), ("vase", "on", "floor"), ("vase", "next_to", "chair"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("thing", "relation", "anchor"), PLACES)
+def test_a_placement_is_what_it_says(corner: Scene, context: Context, thing: str, relation: str, anchor: str) -> None:
+    done = do(corner, context, "move", target=a(thing), place={"relation": relation, "anchors": [a(anchor)]})
+    assert {"supported", "no collision"} <= {c.name for c in done.receipt.checks}
+    index = CHAIR if thing == "chair" else VASE
+    placed = group(done.scene, index).box
+    there = next(g for g in done.scene.language.groups if g.label == anchor).box  # type: ignore[union-attr]
+    offset = np.array(placed.center) - np.array(there.center)
+    bottom = placed.center[2] - placed.size[2] / 2
+    if relation in ("on", "center", "corner") and anchor != "floor":
+        assert np.all(np.abs(offset[:2]) <= np.array(there.size[:2]))
+        assert bottom > there.center[2] - there.size[2] / 2 + 0.2  # on its seat or top, not on its legs
+    else:
+        assert abs(bottom) < 0.01  # on the floor, which is at zero
+    sides = {"left_of": -offset[0], "right_of": offset[0], "in_front_of": -offset[1], "behind": offset[1]}
+    if relation in sides:
+        assert sides[relation] > 0.9 * np.linalg.norm(offset[:2]) * np.cos(np.radians(45))
+    for g in done.scene.language.objects():  # type: ignore[union-attr]
+        if g.id != index and g.label != anchor:
+            assert overlap(placed, g.box) < 0.02
+    assert_true_table(done.scene)
+
+
+def test_what_does_not_fit_is_refused_and_says_why(corner: Scene, context: Context) -> None:
+    digest = corner.cloud.digest()
+    for place in ({"relation": "under", "anchors": [a("table")]}, {"relation": "inside", "anchors": [a("vase")]}):
+        with pytest.raises(InstructionError, match=r"no room|does not fit"):
+            do(corner, context, "move", target=a("armchair"), place=place)
+    with pytest.raises(InstructionError, match="no room on"):
+        do(corner, context, "duplicate", target=a("vase"), count=40, place={"relation": "on", "anchors": [a("chair")]})
+    assert corner.cloud.digest() == digest
+
+
+def test_directions_are_the_viewers_on_level_ground(corner: Scene, context: Context) -> None:
+    for way, axis in (("right", [1, 0, 0]), ("forward", [0, 1, 0]), ("down", [0, 0, -1])):
+        done = do(corner, context, "move", target=a("chair"), direction=way, distance={"value": 40, "unit": "cm"})
+        step = np.array(group(done.scene, CHAIR).box.center) - np.array(group(corner, CHAIR).box.center)
+        assert np.allclose(step, 0.4 * np.array(axis), atol=1e-6)
+
+
+def test_toward_stops_beside_what_it_goes_to(corner: Scene, context: Context) -> None:
+    done = do(corner, context, "move", target=a("chair"), toward=a("table"))
+    assert overlap(group(done.scene, CHAIR).box, group(done.scene, TABLE).box) == 0
+    with pytest.raises(InstructionError, match="already"):
+        do(done.scene, context, "move", target=a("chair"), toward=a("table"))
+
+
+def test_turning_keeps_the_spot_and_turns_the_box(corner: Scene, context: Context) -> None:
+    done = do(corner, context, "rotate", target=a("chair"), degrees=90)
+    was, now = group(corner, CHAIR).box, group(done.scene, CHAIR).box
+    assert np.allclose(now.center, was.center, atol=1e-6)
+    assert np.allclose(now.axes[0], was.axes[1], atol=1e-6)  # counter-clockwise seen from above
+    tilted = do(corner, context, "rotate", target=a("chair"), degrees=90, axis="right").scene
+    rows = (tilted.cloud.group == CHAIR).nonzero().squeeze(1)
+    low = [reach(solid_points(s.cloud, rows)[:, 2])[0] for s in (corner, tilted)]
+    assert low[0] == pytest.approx(low[1], abs=1e-5)  # it lies where it stood
+
+
+def test_scaling_keeps_the_foot(corner: Scene, context: Context) -> None:
+    for axis, factors in (("all", (2, 2, 2)), ("height", (1, 1, 2)), ("width", (2, 1, 1)), ("depth", (1, 2, 1))):
+        done = do(corner, context, "scale", target=a("armchair"), factor=2, axis=axis)
+        was, now = group(corner, ARMCHAIR).box, group(done.scene, ARMCHAIR).box
+        assert np.allclose(now.size, np.array(was.size) * factors, rtol=1e-4)
+        assert np.allclose(now.center[:2], was.center[:2], atol=1e-5)
+        assert now.center[2] - now.size[2] / 2 == pytest.approx(was.center[2] - was.size[2] / 2, abs=1e-5)
+        assert_true_table(done.scene)
+
+
+def test_recolour_is_measured_and_told_to_the_table(corner: Scene, context: Context) -> None:
+    done = do(corner, context, "recolor", target=a("armchair"), color="blue")
+    assert "blue" in name_of(group(done.scene, ARMCHAIR).lab)
+    assert group(done.scene, CHAIR) == group(corner, CHAIR)
+    for adjust in ("darker", "lighter", "less_saturated", "warmer", "cooler"):
+        do(corner, context, "recolor", target=a("armchair"), adjust=adjust)
+    do(corner, context, "recolor", target=a("armchair"), adjust="toward", color="blue", amount=0.25)
+    with pytest.raises(UserError, match="unknown colour"):
+        do(corner, context, "recolor", target=a("chair"), color="blurple-ish thing")
+
+
+def test_deletion_empties_the_row_and_asks_again(corner: Scene, context: Context) -> None:
+    done = do(corner, context, "delete", target=a("chair"))
+    assert group(done.scene, CHAIR).count == 0 and not bool((done.scene.cloud.group == CHAIR).any())
+    again = next(c for c in done.receipt.checks if c.name == "asked again")
+    assert again.value == 0
+    with pytest.raises(AbsentError):
+        do(done.scene, context, "delete", target=a("chair"))
+    with pytest.raises(AbsentError, match="nothing is left"):
+        do(done.scene, replace(context, last=done.selection), "delete", target={"last": True})
+    assert_true_table(done.scene)
+
+
+def test_inserted_things_stand_named_and_found(corner: Scene, context: Context) -> None:
+    place = {"relation": "on", "anchors": [a("table")]}
+    done = do(corner, context, "insert", asset="mug", count=3, color="red", place=place)
+    assert done.selection.groups == (NEW, NEW + 1, NEW + 2) and len(done.selection) == done.receipt.added
+    field = done.scene.language
+    assert field is not None and all(field.groups[i].label == "mug" for i in done.selection.groups)
+    assert np.allclose(np.linalg.norm(field.embeddings[NEW:], axis=1), 1)  # from the encoder of the table
+    boxes = [field.groups[i].box for i in done.selection.groups]
+    assert all(overlap(p, q) == 0 for i, p in enumerate(boxes) for q in boxes[:i])
+    assert_true_table(done.scene)
+    moved = do(done.scene, replace(context, last=done.selection), "recolor", target={"last": True}, color="blue")
+    assert "blue" in name_of(group(moved.scene, NEW).lab)
+
+
+@pytest.mark.parametrize(
+    ("asset", "place"),
+    [("stool", None), ("painting", None), ("bookshelf", {"relation": "against"}), ("box", {"relation": "corner"})],
+)
+def test_things_go_where_such_things_go(
+    corner: Scene, context: Context, asset: str, place: dict[str, Any] | None
+) -> None:
+    done = do(corner, context, "insert", asset=asset, place=place)
+    box = group(done.scene, NEW).box
+    edge = 3.0 - np.abs(np.array(box.center[:2])) - np.array(box.size[:2]) / 2  # the floor is six metres wide
+    assert (edge > -0.05).all()
+    if asset in ("painting", "bookshelf"):
+        assert edge.min() < 0.25  # at a wall
+    if asset == "painting":
+        assert 1.2 < box.center[2] < 1.8
+
+
+def test_a_height_is_kept_and_an_unknown_scale_is_told(corner: Scene, context: Context) -> None:
+    done = do(corner, context, "insert", asset="floor lamp", height={"value": 1.2, "unit": "m"})
+    assert group(done.scene, NEW).box.size[2] == pytest.approx(1.2, rel=0.03)
+    unknown = corner.replace(frame=Frame((0, 0, 1), 0.0, None))
+    done = do(unknown, context, "insert", asset="stool")
+    assert any("scale is unknown" in note for note in done.receipt.notes)
+    # The furniture is life-size, so a scale judged by it is near one unit a metre.
+    assert 0.2 < group(done.scene, NEW).box.size[2] < 1.4
+    with pytest.raises(UserError, match="no asset"):
+        do(corner, context, "insert", asset="flux capacitor")
+
+
+def test_replacing_takes_the_spot(corner: Scene, context: Context) -> None:
+    done = do(corner, context, "replace", target=a("chair"), asset="stool", color="green")
+    assert group(done.scene, CHAIR).count == 0 and group(done.scene, NEW).label == "stool"
+    was, now = group(corner, CHAIR).box.center, group(done.scene, NEW).box.center
+    assert np.allclose(was[:2], now[:2], atol=0.1)
+    assert int(done.scene.cloud.ids[-1]) > int(corner.cloud.ids.max())
+    assert_true_table(done.scene)
+
+
+def test_copies_are_objects_of_their_own(corner: Scene, context: Context) -> None:
+    done = do(corner, context, "duplicate", target=a("armchair"), count=2)
+    assert done.selection.groups == (NEW, NEW + 1)
+    assert group(done.scene, NEW).label == "armchair" and group(done.scene, NEW).count == group(corner, ARMCHAIR).count
+    assert_true_table(done.scene)
+
+
+def test_part_of_an_object_moves_and_the_table_measures_the_rest(corner: Scene, context: Context) -> None:
+    rows = (corner.cloud.group == ARMCHAIR).nonzero().squeeze(1)
+    high = rows[corner.cloud.means[rows, 2] > 0.5]
+    selection = replace(
+        context.resolve(corner, parse({"op": "select", "target": a("armchair")}).query()), ids=corner.cloud.ids[high]
+    )  # type: ignore[arg-type]
+    op = parse({"op": "move", "target": a("armchair"), "direction": "up", "distance": {"value": 1, "unit": "m"}})
+    done = carry_out(corner, op, context, selection)
+    assert_true_table(done.scene)
+    assert group(done.scene, ARMCHAIR).box.size[2] == pytest.approx(group(corner, ARMCHAIR).box.size[2] + 1, abs=0.05)
+
+
+def test_a_failed_check_is_told_and_nothing_changes(
+    corner: Scene, context: Context, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    digest = corner.cloud.digest()
+    failing = (at_most("opacity", 0.5, 0.1, "1", "it stayed opaque"),)
+    monkeypatch.setattr(Opacity, "check", lambda *_: failing)
+    with pytest.raises(CheckFailedError, match=r"opacity: measured 0\.5"):
+        do(corner, context, "opacity", target=a("chair"), value=0.5)
+    assert corner.cloud.digest() == digest
+
+
+def test_an_operation_that_touches_its_surroundings_is_caught(
+    corner: Scene, context: Context, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(run, "mask_of", run.mask_of)
+    monkeypatch.setattr(Opacity, "may_change", lambda _, scene, __: torch.zeros(len(scene.cloud), dtype=torch.bool))
+    with pytest.raises(CheckFailedError, match="outside unchanged: measured"):
+        do(corner, context, "opacity", target=a("chair"), value=0.5)
+
+
+def test_absent_and_ambiguous_targets_and_anchors_are_refused(corner: Scene, context: Context) -> None:
+    with pytest.raises(AbsentError):
+        do(corner, context, "delete", target=a("piano"))
+    with pytest.raises(AbsentError):
+        do(corner, context, "move", target=a("chair"), place={"relation": "next_to", "anchors": [a("piano")]})
+    two = do(corner, context, "duplicate", target=a("chair")).scene
+    with pytest.raises(AmbiguousError):
+        do(two, context, "delete", target=a("chair"))
+
+
+def test_a_receipt_survives_json_and_a_preview_changes_nothing(corner: Scene, context: Context) -> None:
+    digest = corner.cloud.digest()
+    for _, data in (OPS[name].example for name in ("select", "delete", "recolor")):
+        op = parse({**data, "target": a("armchair")})
+        receipt = preview(corner, op, context)
+        assert receipt.dry_run and Receipt.model_validate_json(receipt.to_json()) == receipt
+        assert set(receipt.seconds) == {"resolve", "apply", "check"} and receipt.sentence()
+    assert corner.cloud.digest() == digest
+
+
+def test_pixels_change_only_within_the_silhouette(corner: Scene, context: Context) -> None:
+    looking = replace(context, pixel_checks=True, pixel_width=96, renderer="reference")
+    for op, fields in (("delete", {}), ("recolor", {"color": "yellow"}), ("move", {"direction": "left"})):
+        done = do(corner, looking, op, target=a("armchair"), **fields)
+        pixels = done.receipt.pixels
+        assert pixels is not None and pixels.changed > 50 and pixels.changed_outside == 0
