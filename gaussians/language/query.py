@@ -73,21 +73,26 @@ class Query(BaseModel):
 
     def describe(self) -> str:
         """The query in words, for messages: "the red chair left of the sofa"."""
-        if self.last:
-            return "it"
-        words = [*([self.size] if self.size else []), *self.colors, self.text or "thing"]
-        said = " ".join([*(f"not {c}" for c in self.not_colors), *words])
-        if self.pick not in ("one", "all", "any", "nth", "rest"):
-            said = f"{self.pick} {said}"
-        if self.pick == "nth" and self.ordinal:
-            said = f"{said} number {self.ordinal}"
-        said = f"{ {'all': 'all', 'any': 'any', 'rest': 'everything but'}.get(self.pick, 'the') } {said}"
-        for r in self.relations:
-            said += f" {r.name.replace('_', ' ')} " + " and ".join(a.describe() for a in r.anchors)
+        said = "it" if self.last else self._own_words()
         for q in self.exclude:
             said += f" but not {q.describe()}"
         for q in self.also:
             said += f" and {q.describe()}"
+        return said
+
+    def _own_words(self) -> str:
+        """The query in words without its set algebra."""
+        said = " ".join([*([self.size] if self.size else []), *self.colors, self.text or "thing"])
+        if self.pick not in ("one", "all", "any", "nth", "rest"):
+            said = f"{self.pick} {said}"
+        if self.pick == "nth" and self.ordinal:
+            said = f"{said} number {self.ordinal}"
+        if self.text != "everything":
+            said = f"{ {'all': 'every', 'any': 'any', 'rest': 'everything but the'}.get(self.pick, 'the') } {said}"
+        if self.not_colors:
+            said += f" that is not {' or '.join(self.not_colors)}"
+        for r in self.relations:
+            said += f" {r.name.replace('_', ' ')} " + " and ".join(a.describe() for a in r.anchors)
         return said
 
 
