@@ -21,6 +21,8 @@ SMALL = {
     "cabinet": ("vase", "record player", "radio", "sculpture", "globe", "table lamp", "speaker", "lantern", "flowers"),
     "dresser": ("table lamp", "sculpture", "vase", "books", "radio", "candle", "teddy bear", "flowers"),
     "counter": ("kettle", "toaster", "microwave", "cooking pot", "banana", "bottle", "bowl", "plate", "mug", "apple"),
+    "bench": ("cushion", "books", "teddy bear"),
+    "ottoman": ("cushion", "books", "plate"),
     "stove": ("cooking pot", "kettle"),
 }  # fmt: skip
 LOOSE = (
@@ -330,8 +332,15 @@ def _extras(room: Layout, get: Supplier, rugs: bool = True) -> None:
             room.anywhere(plant, 0.12)
     if chance(rng, 0.4):
         room.against(get("floor lamp"), front=0.0)
+    if chance(rng, 0.2):
+        drape = get("curtain")
+        wall = str(rng.choice(room.walls))
+        room.hang(drape, wall, float(rng.uniform(-0.8, 0.8)), min(0.25, room.h - drape.size[2] - 0.05))
     for _ in range(int(rng.integers(1, 4))):
         room.anywhere(get(str(rng.choice(LOOSE))), 0.15)
+    for index, thing in enumerate(tuple(room.things)):
+        if thing.asset.kind in ("bench", "ottoman") and chance(rng, 0.7):
+            dress(room, get, index, thing.asset.kind, 1)
 
 
 RECIPES: dict[str, tuple[Callable[[Layout, Supplier], None], tuple[float, float], tuple[float, float]]] = {

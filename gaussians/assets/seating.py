@@ -1,4 +1,4 @@
-"""Things to sit and lie on. Each builder returns the pieces of one design; `rng` is the only source of variety."""
+"""Things to sit and lie on. Each builder returns the pieces of one design."""
 
 from __future__ import annotations
 
@@ -157,8 +157,11 @@ def office_chair(rng: Rng, tone: Tone) -> list[Piece]:
                 )
             )
     if chance(rng, 0.3):
-        head = cushion(0.28, 0.16, 0.07).turned("x", 90).moved(0, d / 2 - 0.05, seat + h + 0.24)
-        out.append(head.named("headrest", mat))
+        y, z = d / 2 + 0.03, seat + 0.05 + h
+        head = cushion(0.28, 0.16, 0.07).turned("x", 90).moved(0, y + 0.03, z + 0.12)
+        stem = rod((0, y, z - 0.1), (0, y, z + 0.1), 0.014)
+        out += [head.turned("x", -8, (0, d / 2, seat)).named("headrest", mat)]
+        out += [stem.turned("x", -8, (0, d / 2, seat)).named("headrest stem", metal, 1.2)]
     return out
 
 
