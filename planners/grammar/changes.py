@@ -99,7 +99,7 @@ def scaled(factor: float, axis: str = "all") -> Fields:
     """
     if not 0.01 <= factor <= 100:
         raise Refusal("things are scaled by 0.01 to 100 times", f"{factor:g}")
-    return {"op": "scale", "factor": factor, **({} if axis == "all" else {"axis": axis})}
+    return {"op": "scale", "factor": round(factor, 9), **({} if axis == "all" else {"axis": axis})}
 
 
 def _size(node: Node) -> Fields:
@@ -135,7 +135,7 @@ def opacity(value: float) -> Fields:
     """
     if not 0 <= value <= 1:
         raise Refusal("opacity goes from 0 to 100 %", f"{value:.0%}")
-    return {"op": "opacity", "value": value}
+    return {"op": "opacity", "value": round(value, 9)}
 
 
 def _clear(node: Node) -> Fields:

@@ -227,6 +227,8 @@ class Commands:
         sign = clock or {"left": 1, "right": -1}.get(direction or "", 1)
         if angle is None and not around and clock is None and direction is None:
             raise Refusal("say by how many degrees, or to the left, or around")
+        if _only(turns, "DEGREE") is not None and angle is None:
+            angle = _slight(turns)
         # A quarter turn is what "turn it to the left" means without a number; "around" is half a turn.
         degrees = float(angle) if angle is not None else 180.0 if around else 90.0
         return self._targeted(node, "rotate", degrees=sign * degrees)
@@ -341,18 +343,19 @@ class Commands:
 
     def _asset(self, noun: Noun) -> Fields:
         """Name and colour of a new thing."""
-        query = noun.query
-        if not noun.is_new or query.relations or query.not_colors or noun.posts:
+        query, posts = noun.query, noun.posts
+        contents = f" of {posts[0].anchors[0].said}" if len(posts) == 1 and posts[0].kind == "part" else ""
+        if not noun.is_new or query.relations or query.not_colors or (posts and not contents.strip(" of")):
             raise Refusal("a new thing is named by what it is: a red floor lamp", query.text)
         if len(query.colors) > 1:
             raise Refusal("a new thing has one colour", *query.colors)
         if any(a.endswith("er") for a in noun.adjectives):
             raise Refusal("say how tall, or make the one that is there bigger", *noun.adjectives)
-        fields: Fields = {"asset": query.text}
+        fields: Fields = {"asset": query.text + contents}
         if query.size and not noun.height and (height := sizes.usual_height(query.text, query.size)):
             fields["height"] = {"value": height, "unit": "m"}
         elif noun.adjectives:
-            fields["asset"] = " ".join([*noun.adjectives, query.text])
+            fields["asset"] = " ".join([*noun.adjectives, query.text + contents])
         return {**fields, **({"color": query.colors[0]} if query.colors else {})}
 
     def _replace(self, node: Node) -> list[Fields]:
@@ -427,6 +430,13 @@ def _only(nodes: Sequence[Node], *types: str) -> Any:
     if len(found) > 1:
         raise Refusal("two of one kind in one clause", *(t.text for t in found))
     return found[0].value if found else None
+
+
+def _slight(turns: Sequence[Node]) -> float:
+    """Degrees of "turn it slightly to the left"."""
+    if _only(turns, "DEGREE") != "little":
+        raise Refusal("say by how many degrees", "much")
+    return 15.0
 
 
 def _except(target: Query | None, out: Query) -> Query:

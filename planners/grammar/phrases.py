@@ -69,6 +69,7 @@ class Noun:
         adjectives: words before the noun that no field of a query holds, for naming new things.
         height: "1.8 m tall", value and unit.
         posts: what stands behind it, flat.
+        said: the noun as said, plural and all ("books").
     """
 
     query: Query
@@ -78,6 +79,7 @@ class Noun:
     adjectives: tuple[str, ...] = ()
     height: tuple[float, str] | None = None
     posts: tuple[Post, ...] = field(default=())
+    said: str = ""
 
     @property
     def is_new(self) -> bool:
@@ -210,7 +212,8 @@ class Phrases:
         if any(t.type == "OTHER" for t in tags):
             fields["exclude"] = (Query(last=True),)
         words = tuple(t.text for t in tags if t.type == "SIZE")
-        return Noun(_update(Query(), **fields), article, plural, number, words, height)
+        said = tags[-1].text if tags[-1].type == "NOUN" else ""
+        return Noun(_update(Query(), **fields), article, plural, number, words, height, said=said)
 
     def _head(self, tags: Sequence[Tag]) -> tuple[str, bool]:
         """The noun's text, singular, and whether it was plural."""

@@ -105,6 +105,7 @@ def anchor_only(phrases: Phrases, node: Node) -> Noun:
 def _to(goal: Noun, moved: Noun | None) -> Fields:
     """ "to the floor" is on it, "to the wall" against it, "to the window" next to it; "to the table" depends."""
     name = nouns.head(goal.query.text)
+    _refuse_some_corner(goal)
     big = moved is not None and nouns.head(moved.query.text) in nouns.FURNITURE
     if name == "wall":
         relation = "against"
@@ -115,6 +116,11 @@ def _to(goal: Noun, moved: Noun | None) -> Fields:
     else:
         relation = "next_to"
     return {"relation": relation, "anchors": (goal.full(),)}
+
+
+def _refuse_some_corner(goal: Noun) -> None:
+    if goal.query.text == "corner":
+        raise Refusal("one corner cannot be told from another; say the corner, or next to what", "corner")
 
 
 def destination(found: Noun, verb: str) -> tuple[Noun, Fields | None]:
@@ -158,6 +164,8 @@ def placement(posts: Sequence[Post]) -> Fields:
     if any(p.joined for p in rest):
         raise Refusal("a place is one phrase; name one of the two", rest[0].word)
     anchors = [a.full() for a in first.anchors]
+    for anchor in first.anchors:
+        _refuse_some_corner(anchor)
     if _refines(first, rest):
         beside = replace(rest[0].anchors[0], posts=(first,))
         return {"relation": _spot(rest[0]), "anchors": (attach(beside.full(), rest[1:]),)}

@@ -209,7 +209,7 @@ class Tagger:
             return self._put("DIR", "up" if text == "higher" else "down", i, 1)
         if text == "in" and rest[:2] == ("a", "row") and verb in ("COPY", "MAKE", "ADD"):
             return i + 3
-        if text == "back" and length == 1 and self._returns():
+        if text == "back" and length == 1 and self._returns() and not self.read.nouny(i + 1):
             return self._put("UNKNOWN", None, i, 1)
         if text == "again" and verb != "SELECT" and not rest:
             return i + 1
