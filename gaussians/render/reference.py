@@ -50,22 +50,20 @@ class Splats:
         return Splats(**{name: column[index] for name, column in vars(self).items()})
 
 
-def render(cloud: GaussianCloud, camera: Camera, background: Vec3) -> Render:
-    """See `scenewright.gaussians.render.render`."""
-    splats = project(cloud, camera)
-    h, w, device = camera.height, camera.width, cloud.device
-    rgb = torch.tensor(background, dtype=torch.float32, device=device).repeat(h, w, 1)
-    alpha, depth = torch.zeros(h, w, device=device), torch.zeros(h, w, device=device)
-    group = torch.full((h, w), NO_GROUP, dtype=torch.int32, device=device)
+def render(cloud: GaussianCloud, camera: Camera, background: Vec3, dtype: torch.dtype = torch.float32) -> Render:
+    """See `scenewright.gaussians.render.render`. With `dtype` float64 all arithmetic is, and the picture's channels."""
+    splats = project(cloud, camera, dtype)
+    h, w, like = camera.height, camera.width, splats.center
+    rgb = like.new_tensor(background).repeat(h, w, 1)
+    alpha, depth = like.new_zeros(h, w), like.new_zeros(h, w)
+    group = torch.full((h, w), NO_GROUP, dtype=torch.int32, device=like.device)
     for y, x, index in _tiles(splats, camera):
         tile = splats.take(index)
         box = (slice(y, min(y + TILE, h)), slice(x, min(x + TILE, w)))
-        pixels = _pixel_centers(box, device)
+        pixels = _pixel_centers(box, like)
         features = torch.cat([tile.color, tile.depth[:, None]], dim=1)  # [L, 4]
-        total = torch.zeros(len(pixels), 4, device=device)
-        best = torch.zeros(len(pixels), device=device)
-        winner = torch.full((len(pixels),), NO_GROUP, dtype=torch.int32, device=device)
-        T = torch.ones(len(pixels), device=device)
+        total, best, T = pixels.new_zeros(len(pixels), 4), pixels.new_zeros(len(pixels)), pixels.new_ones(len(pixels))
+        winner = torch.full((len(pixels),), NO_GROUP, dtype=torch.int32, device=like.device)
         for part, weights, behind in _blend(tile, pixels):
             T = behind
             total = total + weights @ features[part]
@@ -87,16 +85,16 @@ def contributions(cloud: GaussianCloud, camera: Camera) -> Tensor:
     total = torch.zeros(len(cloud), dtype=torch.float64, device=cloud.device)
     for y, x, index in _tiles(splats, camera):
         tile = splats.take(index)
-        pixels = _pixel_centers((slice(y, min(y + TILE, h)), slice(x, min(x + TILE, w))), cloud.device)
+        pixels = _pixel_centers((slice(y, min(y + TILE, h)), slice(x, min(x + TILE, w))), splats.center)
         for part, weights, _ in _blend(tile, pixels):
             rows = tile.row[part]  # no row occurs twice in a tile, so this assignment loses nothing
             total[rows] = total[rows] + weights.sum(dim=0, dtype=torch.float64)
     return total.float()
 
 
-def project(cloud: GaussianCloud, camera: Camera) -> Splats:
+def project(cloud: GaussianCloud, camera: Camera, dtype: torch.dtype = torch.float32) -> Splats:
     """The Gaussians that can touch the image, sorted by depth. Rows that are not finite are dropped."""
-    rotation, eye = _pose(camera, cloud.device)
+    rotation, eye = _pose(camera, cloud.device, dtype)
     toward = cloud.means - eye  # [N, 3]: subtracting the eye first keeps precision far from the origin
     local = toward @ rotation.T
     z = local[:, 2]
@@ -106,7 +104,7 @@ def project(cloud: GaussianCloud, camera: Camera) -> Splats:
     cloud, toward, local, z = cloud[row], toward[row], local[row], z[row]
 
     xx, xy, yy, determinant = _footprint(cloud, camera, rotation, local)
-    opacity = cloud.opacities.clamp(max=1)
+    opacity = cloud.opacities.to(dtype).clamp(max=1)
     # alpha >= ALPHA_MIN  <=>  d' inv(cov) d / 2 <= log(opacity / ALPHA_MIN): an ellipse with this bounding box.
     limit = 2 * torch.log(opacity / c.ALPHA_MIN)
     center = local[:, :2] / z[:, None] * local.new_tensor([camera.fx, camera.fy]) + local.new_tensor(
@@ -118,7 +116,7 @@ def project(cloud: GaussianCloud, camera: Camera) -> Splats:
         conic=torch.stack([yy, -xy, xx], dim=1) / determinant[:, None],
         reach=torch.sqrt(limit[:, None] * torch.stack([xx, yy], dim=1)),
         opacity=opacity,
-        color=harmonics.to_color(cloud.sh, torch.nn.functional.normalize(toward, dim=1)),
+        color=harmonics.to_color(cloud.sh.to(dtype), torch.nn.functional.normalize(toward, dim=1)),
         depth=z,
     )
     size = center.new_tensor([camera.width, camera.height])
@@ -126,11 +124,11 @@ def project(cloud: GaussianCloud, camera: Camera) -> Splats:
     return splats.take((seen & (determinant < c.MAX_DETERMINANT)).nonzero().squeeze(1))
 
 
-def _pose(camera: Camera, device: torch.device) -> tuple[Tensor, Tensor]:
-    """World-to-camera rotation `[3, 3]` and the eye `[3]` in the world, float32."""
+def _pose(camera: Camera, device: torch.device, dtype: torch.dtype) -> tuple[Tensor, Tensor]:
+    """World-to-camera rotation `[3, 3]` and the eye `[3]` in the world."""
     pose = torch.from_numpy(camera.world_to_camera[:3, :3].copy())
     eye = torch.from_numpy(camera.position.copy())
-    return pose.to(device, torch.float32), eye.to(device, torch.float32)
+    return pose.to(device, dtype), eye.to(device, dtype)
 
 
 def _finite_rows(cloud: GaussianCloud) -> Tensor:
@@ -153,7 +151,7 @@ def _footprint(
     jacobian = torch.stack(
         [camera.fx / z, zero, -camera.fx * u / z, zero, camera.fy / z, -camera.fy * v / z], dim=1
     ).reshape(-1, 2, 3)
-    axes = rotations.to_matrix(rotations.normalize(cloud.quats)) * cloud.scales[:, None, :]  # [M, 3, 3]
+    axes = rotations.to_matrix(rotations.normalize(cloud.quats.to(local.dtype))) * cloud.scales[:, None, :]  # [M, 3, 3]
     p, q = (jacobian @ rotation @ axes).unbind(dim=1)  # [M, 3] each: the principal axes seen along x and along y
     xx, xy, yy = (p * p).sum(dim=1), (p * q).sum(dim=1), (q * q).sum(dim=1)
     minors = torch.linalg.cross(p, q).square().sum(dim=1)
@@ -179,10 +177,10 @@ def _tiles(splats: Splats, camera: Camera) -> Iterator[tuple[int, int, Tensor]]:
                 yield ty * TILE, tx * TILE, index
 
 
-def _pixel_centers(box: tuple[slice, slice], device: torch.device) -> Tensor:
-    """`[P, 2]` x, y of the pixel centres in a box of rows and columns, row by row."""
-    y = torch.arange(box[0].start, box[0].stop, device=device) + 0.5
-    x = torch.arange(box[1].start, box[1].stop, device=device) + 0.5
+def _pixel_centers(box: tuple[slice, slice], like: Tensor) -> Tensor:
+    """`[P, 2]` x, y of the pixel centres in a box of rows and columns, row by row; type and device as of `like`."""
+    y = torch.arange(box[0].start, box[0].stop, dtype=like.dtype, device=like.device) + 0.5
+    x = torch.arange(box[1].start, box[1].stop, dtype=like.dtype, device=like.device) + 0.5
     return torch.stack(torch.meshgrid(x, y, indexing="xy"), dim=-1).reshape(-1, 2)
 
 
@@ -192,7 +190,7 @@ def _blend(tile: Splats, pixels: Tensor) -> Iterator[tuple[slice, Tensor, Tensor
     Yields:
         the chunk as a slice of the splats, its weights `[P, l]`, and the transmittance `[P]` left behind it.
     """
-    T = torch.ones(len(pixels), device=pixels.device)
+    T = pixels.new_ones(len(pixels))
     open_ = torch.ones(len(pixels), dtype=torch.bool, device=pixels.device)
     for start in range(0, len(tile.row), CHUNK):
         part = slice(start, start + CHUNK)

@@ -43,25 +43,25 @@ def render(cloud: GaussianCloud, camera: Camera, background: Vec3) -> Render:
         np.empty((h, w), np.int32),
     )  # fmt: skip
     columns, behind = _columns(cloud), tuple(np.float32(channel) for channel in background)
-    scratch = blend.make_scratch(compiled.workers())
-    for top, bottom, bins in _strips(columns, camera, 0, h):
+    count = compiled.workers()
+    scratch = blend.make_scratch(count)
+    for top, bottom, bins in _strips(columns, camera, count, 0, h):
         strip = tuple(channel[top:bottom] for channel in out)
-        size = (w, bottom - top)
-        compiled.run(
-            blend.draw, bins.first, bins.entries, bins.records, size, LIMITS, behind, strip, scratch, _counter()
-        )
+        drawn = bins.first, bins.entries, bins.records, (w, bottom - top), LIMITS
+        compiled.run(blend.draw, count, *drawn, behind, strip, scratch, _counter())
     return Render(*(torch.from_numpy(channel).to(cloud.device) for channel in out))
 
 
 def contributions(cloud: GaussianCloud, camera: Camera) -> Tensor:
     """See `scenewright.gaussians.render.contributions`."""
     total, columns = np.zeros(len(cloud), np.float64), _columns(cloud)
-    scratch = blend.make_scratch(compiled.workers())
-    for top, bottom, bins in _strips(columns, camera, 0, camera.height):
+    count = compiled.workers()
+    scratch = blend.make_scratch(count)
+    for top, bottom, bins in _strips(columns, camera, count, 0, camera.height):
         share = np.zeros(len(bins.entries), np.float32)
-        size = (camera.width, bottom - top)
-        compiled.run(blend.weigh, bins.first, bins.entries, bins.records, size, LIMITS, share, scratch, _counter())
-        blend.collect(bins.entries, share, total)
+        drawn = bins.first, bins.entries, bins.records, (camera.width, bottom - top), LIMITS
+        compiled.run(blend.weigh, count, *drawn, share, scratch, _counter())
+        compiled.run_alone(blend.collect, bins.entries, share, total)
     return torch.from_numpy(total.astype(np.float32)).to(cloud.device)
 
 
@@ -71,39 +71,41 @@ def _columns(cloud: GaussianCloud) -> tuple[Array, ...]:
     return tuple(column.detach().cpu().contiguous().numpy() for column in columns)
 
 
-def _strips(columns: tuple[Array, ...], camera: Camera, top: int, bottom: int) -> Iterator[tuple[int, int, Bins]]:
+def _strips(
+    columns: tuple[Array, ...], camera: Camera, count: int, top: int, bottom: int
+) -> Iterator[tuple[int, int, Bins]]:
     """The image rows from `top` to `bottom` in as few strips as memory allows, each with its sorted footprints."""
-    bins = _bin(columns, camera, top, bottom)
+    bins = _bin(columns, camera, count, top, bottom)
     if bins is not None:
         yield top, bottom, bins
         return
     middle = top + (bottom - top) // (2 * project.TILE) * project.TILE
-    yield from _strips(columns, camera, top, middle)
-    yield from _strips(columns, camera, middle, bottom)
+    yield from _strips(columns, camera, count, top, middle)
+    yield from _strips(columns, camera, count, middle, bottom)
 
 
-def _bin(columns: tuple[Array, ...], camera: Camera, top: int, bottom: int) -> Bins | None:
+def _bin(columns: tuple[Array, ...], camera: Camera, count: int, top: int, bottom: int) -> Bins | None:
     """Project and sort for some image rows; None if that takes too much memory and the rows can be divided."""
     n, size = len(columns[0]), (camera.width, bottom - top)
     chunks = -(-n // project.CHUNK)
     records, corner, mask = np.empty((n, project.RECORD), np.float32), np.empty(n, np.uint32), np.empty(n, np.uint64)
     depth, visible, found = np.empty(n, np.int32), np.empty(n, np.int32), np.empty(chunks, np.int32)
     view = project.make_view(camera, top, bottom)
-    compiled.run(project.project, *columns, view, (records, corner, mask, depth, visible, found), _counter())
+    compiled.run(project.project, count, *columns, view, (records, corner, mask, depth, visible, found), _counter())
 
     keys, sorted_rows = np.empty((2, n), np.int32), np.empty((2, n), np.int32)
     tally = np.zeros((order.DIGITS, order.BUCKETS), np.int64)
-    half, seen = order.depth_order(depth, visible, found, project.CHUNK, keys, sorted_rows, tally)
+    half, seen = compiled.run_alone(order.depth_order, depth, visible, found, project.CHUNK, keys, sorted_rows, tally)
     rows = sorted_rows[half, :seen]
     wide, high = (-(-side // project.TILE) for side in size)
-    places = np.zeros((compiled.workers(), wide * high), np.int64)
-    compiled.run(order.count_tiles, rows, records, corner, mask, view, wide, places)
+    places = np.zeros((count, wide * high), np.int64)
+    compiled.run(order.count_tiles, count, rows, records, corner, mask, view, wide, places)
     first = np.empty(wide * high + 1, np.int64)
-    total = order.starts(places, first)
+    total = compiled.run_alone(order.starts, places, first)
     if total > MAX_ENTRIES and high > 1:
         return None
     entries = np.empty(total, np.int32)
-    compiled.run(order.fill_tiles, rows, records, corner, mask, view, wide, places, entries)
+    compiled.run(order.fill_tiles, count, rows, records, corner, mask, view, wide, places, entries)
     return Bins(records, first, entries)
 
 

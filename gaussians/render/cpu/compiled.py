@@ -12,8 +12,11 @@ from __future__ import annotations
 import hashlib
 import logging
 import os
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -66,19 +69,49 @@ def intrinsic(function: Callable[..., Any]) -> Any:
 
 
 def workers() -> int:
-    """How many threads kernels run on: as many as torch uses, so that one setting rules both."""
+    """How many threads to run kernels on: as many as torch uses, so that one setting rules both."""
     return max(1, torch.get_num_threads())
 
 
-def run(kernel: Any, *arguments: Any) -> None:
-    """Call `kernel(worker, workers(), *arguments)` for every worker number at the same time; wait for all."""
+def run(kernel: Any, count: int, *arguments: Any) -> None:
+    """Call `kernel(worker, count, *arguments)` for every worker number below `count` at once; wait for all."""
+    start = time.perf_counter()
     if not kernel.overloads:
         _announce()
-    count = workers()
     others = [_pool(os.getpid(), count).submit(kernel, worker, count, *arguments) for worker in range(1, count)]
     kernel(0, count, *arguments)
     for other in others:
         other.result()
+    _note(kernel, start)
+
+
+def run_alone(kernel: Any, *arguments: Any) -> Any:
+    """Call `kernel(*arguments)` here, for work that does not divide; returns what it returns."""
+    start = time.perf_counter()
+    value = kernel(*arguments)
+    _note(kernel, start)
+    return value
+
+
+_times: ContextVar[dict[str, float] | None] = ContextVar("times", default=None)
+
+
+@contextmanager
+def stage_times() -> Iterator[dict[str, float]]:
+    """Collect, while the block runs, the seconds spent in each kernel by its name (of this thread's renders)."""
+    times: dict[str, float] = {}
+    token = _times.set(times)
+    try:
+        yield times
+    finally:
+        _times.reset(token)
+
+
+def _note(kernel: Any, start: float) -> None:
+    """Add the time since `start` to the kernel's."""
+    times = _times.get()
+    if times is not None:
+        times[kernel.__name__] = times.get(kernel.__name__, 0.0) + time.perf_counter() - start
 
 
 @cache

@@ -1,0 +1,230 @@
+"""The one measuring harness: what a benchmark returns, how it is found, run, and told as JSON, Markdown and a chart.
+
+Knows results and their surroundings (machine, versions, revision). Refuses to know what is measured: that is one file
+a benchmark. A benchmark fills a `Result`; `run` stamps on it where and on what it was measured.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import math
+import pkgutil
+import time
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any, Literal, Self
+
+from ..gaussians.errors import BackendError, FileError, UserError
+
+Direction = Literal["lower", "higher", "neither"]
+
+
+@dataclass(frozen=True)
+class Metric:
+    """One measured figure.
+
+    Attributes:
+        key: dotted name, stable between versions, e.g. "guitar.512x512.cpu".
+        value: the figure, finite.
+        unit: "ms", "dB", "x", "count", ...
+        direction: which way is better; "neither" for figures that describe and do not judge.
+        tolerance: relative change in the bad direction that is noise, e.g. 0.1. Times do not carry over to other
+            machines; ratios and accuracies do.
+    """
+
+    key: str
+    value: float
+    unit: str
+    direction: Direction = "neither"
+    tolerance: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.value):
+            raise ValueError(f"metric {self.key} is {self.value}; cap it where it is measured")
+
+    def worse_than(self, earlier: Metric) -> bool:
+        """Whether this is worse than `earlier` by more than the tolerance."""
+        change = self.value - earlier.value if self.direction == "lower" else earlier.value - self.value
+        return self.direction != "neither" and change > self.tolerance * abs(earlier.value)
+
+
+@dataclass(frozen=True)
+class Point:
+    """One way to do the job, on the chart of time against accuracy.
+
+    Attributes:
+        method: the family, drawn in one colour: "cpu", "reference", ...
+        setting: what was chosen within it: "full", "half size", ...
+        seconds: > 0, for one job.
+        accuracy: finite, larger is better, in the result's `accuracy`.
+        bytes: what the method holds in memory or on disk for the job.
+        default: whether this is what users get unless they ask.
+    """
+
+    method: str
+    setting: str
+    seconds: float
+    accuracy: float
+    bytes: int
+    default: bool = False
+
+    def __post_init__(self) -> None:
+        if not (0 < self.seconds < math.inf and math.isfinite(self.accuracy)):
+            raise ValueError(f"point {self.method} {self.setting}: {self.seconds} s, accuracy {self.accuracy}")
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a benchmark found, and where.
+
+    Attributes:
+        title: a sentence, what was measured.
+        accuracy: what the points' accuracy is, with its unit.
+        metrics, points: the figures.
+        notes: what a reader must know to judge them, a sentence each.
+        seeds: seeds of everything random.
+        name, quick, seconds, machine, versions, revision: stamped by `run`.
+    """
+
+    title: str
+    accuracy: str
+    metrics: tuple[Metric, ...]
+    points: tuple[Point, ...]
+    notes: tuple[str, ...] = ()
+    seeds: tuple[int, ...] = ()
+    name: str = ""
+    quick: bool = False
+    seconds: float = 0.0
+    machine: dict[str, Any] = field(default_factory=dict)
+    versions: dict[str, str] = field(default_factory=dict)
+    revision: str | None = None
+
+    def __post_init__(self) -> None:
+        keys = [metric.key for metric in self.metrics]
+        if len(set(keys)) < len(keys):
+            raise ValueError(f"metric keys must differ: {sorted(key for key in keys if keys.count(key) > 1)}")
+
+    def to_json(self) -> str:
+        """The whole result as JSON; `from_json` reads it back."""
+        return json.dumps(asdict(self), indent=2, allow_nan=False)
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """Read what `to_json` wrote.
+
+        Raises:
+            FileError: the text is not such a result.
+        """
+        try:
+            data = json.loads(text)
+            data["metrics"] = tuple(Metric(**metric) for metric in data["metrics"])
+            data["points"] = tuple(Point(**point) for point in data["points"])
+            return cls(**{**data, "notes": tuple(data["notes"]), "seeds": tuple(data["seeds"])})
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            raise FileError(f"not the JSON of a benchmark's result ({error}); write one with --json") from error
+
+    def regressions(self, earlier: Result) -> tuple[str, ...]:
+        """Sentences about metrics that got worse than in `earlier` by more than their tolerance."""
+        before = {metric.key: metric for metric in earlier.metrics}
+        return tuple(
+            f"{metric.key}: {before[metric.key].value:.4g} -> {metric.value:.4g} {metric.unit}"
+            for metric in self.metrics
+            if metric.key in before and metric.worse_than(before[metric.key])
+        )
+
+    def front(self) -> tuple[Point, ...]:
+        """The Pareto front, fastest first: points that no other beats in both time and accuracy."""
+        best: list[Point] = []
+        for point in sorted(self.points, key=lambda p: (p.seconds, -p.accuracy)):
+            if not best or point.accuracy > best[-1].accuracy:
+                best.append(point)
+        return tuple(best)
+
+    def to_markdown(self) -> str:
+        """Two tables and the surroundings, as a section of a page."""
+        lines = [f"## {self.name or 'benchmark'}: {self.title}", ""]
+        front = self.front()
+        if self.points:
+            lines += [
+                f"| method | setting | time | {self.accuracy} | memory | |",
+                "| --- | --- | ---: | ---: | ---: | --- |",
+            ]
+            lines += [
+                f"| {p.method} | {p.setting} | {_duration(p.seconds)} | {p.accuracy:.4g} | {_size(p.bytes)} "
+                f"| {', '.join(['default'] * p.default + ['on the front'] * (p in front))} |"
+                for p in self.points
+            ]
+            lines.append("")
+        if self.metrics:
+            lines += ["| figure | value | better | noise |", "| --- | ---: | --- | ---: |"]
+            lines += [
+                f"| {m.key} | {m.value:.4g} {m.unit} | {'' if m.direction == 'neither' else m.direction} "
+                f"| {f'{m.tolerance:.0%}' if m.direction != 'neither' else ''} |"
+                for m in self.metrics
+            ]
+            lines.append("")
+        lines += [f"- {note}" for note in self.notes] + self._surroundings()
+        return "\n".join(lines) + "\n"
+
+    def _surroundings(self) -> list[str]:
+        """Where it was measured, as Markdown list items."""
+        facts = [", ".join(f"{key} {value}" for key, value in part.items()) for part in (self.machine, self.versions)]
+        facts += [f"seeds {', '.join(map(str, self.seeds))}"] if self.seeds else []
+        facts += [f"revision {self.revision}"] if self.revision else []
+        facts += [f"measured in {self.seconds:.0f} s{', quick: rougher than the full run' if self.quick else ''}"]
+        return [f"- {fact}" for fact in facts if fact]
+
+    def chart(self, path: Path | str) -> Path:
+        """Draw time (logarithmic) against accuracy with the Pareto front, the default marked; PNG, SVG or PDF by name.
+
+        Raises:
+            BackendError: matplotlib is not installed.
+            UserError: the result has no points, or the file's ending is none of these.
+            FileError: the file cannot be written.
+        """
+        from . import _chart
+
+        return _chart.draw(self, Path(path))
+
+
+def names() -> tuple[str, ...]:
+    """The benchmarks there are."""
+    found = (module.name for module in pkgutil.iter_modules([str(Path(__file__).parent)]))
+    return tuple(sorted(name for name in found if not name.startswith("_") and name != "harness"))
+
+
+def run(name: str, quick: bool = False) -> Result:
+    """Run a benchmark and stamp the surroundings on what it found. `quick` trades steadiness for time.
+
+    Raises:
+        UserError: no benchmark has this name.
+        BackendError: a package that it needs is not installed.
+    """
+    if name not in names():
+        raise UserError(f"no benchmark is called {name!r}; choose {', '.join(names())}")
+    from . import _machine
+
+    try:
+        module = importlib.import_module(f".{name}", __package__)
+    except ImportError as error:
+        raise BackendError(f"benchmark {name} cannot start ({error}); try: pip install 'scenewright[bench]'") from error
+    start = time.perf_counter()
+    result: Result = module.run(quick)
+    return replace(
+        result,
+        name=name,
+        quick=quick,
+        seconds=time.perf_counter() - start,
+        machine=_machine.describe(),
+        versions=_machine.versions(),
+        revision=_machine.revision(),
+    )
+
+
+def _duration(seconds: float) -> str:
+    return f"{seconds * 1e3:.3g} ms" if seconds < 1 else f"{seconds:.3g} s"
+
+
+def _size(count: int) -> str:
+    return f"{count / 1e6:.3g} MB" if count >= 1e5 else f"{count} B"
