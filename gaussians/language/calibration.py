@@ -126,6 +126,15 @@ def probability(
     return np.where(seen, _softmax(logits)[:, 0], 0.0)
 
 
+def distribution(encoder: Encoder, vectors: NDArray[np.floating], sizes: NDArray[np.floating] | None = None) -> Array:
+    """`[G, K + negatives]`: for each thing the share of each canonical name, kinds first, then non-objects, in the
+    vocabulary's order; rows that were never seen are 0. Arguments as for `probability`."""
+    units, seen = _units(encoder, vectors)
+    names, anchors = _anchors(encoder)  # type: ignore[arg-type]  # identity is what it is cached by
+    evidence = _size_evidence(encoder, names, sizes, len(units))
+    return np.where(seen[:, None], _softmax(encoder.calibration.scale * (units @ anchors.T) + evidence), 0.0)
+
+
 def labels(
     encoder: Encoder, vectors: NDArray[np.floating], sizes: NDArray[np.floating] | None = None
 ) -> list[tuple[str, float]]:
@@ -133,28 +142,17 @@ def labels(
 
     Rows that were never seen get `("", 0.0)`.
     """
-    units, seen = _units(encoder, vectors)
     kinds = encoder.vocabulary.names
-    share = _distribution(encoder, units, sizes)[:, : len(kinds)]
-    best = share.argmax(axis=1) if len(kinds) else np.zeros(len(units), dtype=int)
-    return [
-        (kinds[k], float(share[i, k])) if known else ("", 0.0)
-        for i, (k, known) in enumerate(zip(best, seen, strict=True))
-    ]
+    share = distribution(encoder, vectors, sizes)
+    best = share[:, : len(kinds)].argmax(axis=1)
+    return [(kinds[k], float(row[k])) if row.any() else ("", 0.0) for k, row in zip(best, share, strict=True)]
 
 
 def wholeness(encoder: Encoder, vectors: NDArray[np.floating]) -> Array:
     """`[G]`: how sure the encoder is that each thing is one whole object, not a part, a merge or a piece of room."""
-    units, seen = _units(encoder, vectors)
     kinds = len(encoder.vocabulary.names)
-    return np.where(seen, _distribution(encoder, units, None)[:, :kinds].sum(axis=1), 0.0)
-
-
-def _distribution(encoder: Encoder, units: Array, sizes: NDArray[np.floating] | None) -> Array:
-    """`[G, K + negatives]` softmax over the canonical names and the non-objects."""
-    names, anchors = _anchors(encoder)  # type: ignore[arg-type]  # identity is what it is cached by
-    evidence = _size_evidence(encoder, names, sizes, len(units))
-    return _softmax(encoder.calibration.scale * (units @ anchors.T) + evidence)
+    whole: Array = distribution(encoder, vectors)[:, :kinds].sum(axis=1)
+    return whole
 
 
 @lru_cache(maxsize=8)

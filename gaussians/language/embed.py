@@ -201,7 +201,7 @@ def _with_table(
     rows = tuple(
         Group(
             id=i, level=t.level, parent=t.parent, label=t.label or name, label_score=1.0 if t.label else float(sure),
-            box=box, lab=lab_of_cloud(c), count=len(c), views=_views_of(seen, own),
+            box=box, lab=lab_of_cloud(c), count=len(c), views=seen.count_of(np.isin(column, _leaves(things, i))),
             confidence=float(on_skin[own].mean()) if len(own) else 0.0,
         )
         for i, (t, c, box, own, (name, sure)) in enumerate(zip(things, clouds, boxes, whole, named, strict=True))
@@ -212,13 +212,6 @@ def _with_table(
 
 def _leaves(things: list[Thing], i: int) -> list[int]:
     return [i, *(j for j, t in enumerate(things) if t.parent == i)]
-
-
-def _views_of(seen: Views, rows: NDArray[np.int64]) -> int:
-    """How many views see at least a twentieth of these rows."""
-    if not len(rows) or not len(seen.cameras):
-        return 0
-    return int((seen.seen_by[:, rows].mean(axis=1) > 0.05).sum())
 
 
 def _notes(scene: Scene, column: NDArray[np.int32], seen: Views) -> tuple[str, ...]:

@@ -24,7 +24,7 @@ F64 = NDArray[np.float64]
 CELLS = 260  # voxels along the scene's robust diagonal: the grain at which colour is averaged
 CERTAIN = 0.5  # colour score of the cells a place starts from: no other basic term is nearer
 LIKELY = 0.08  # score down to which it grows into the cells beside it: folds and shadows of the same stuff
-TOGETHER = 0.022  # of the diagonal: cells this near each other are one place
+TOGETHER = 0.012  # of the diagonal: cells this near each other are one place
 EDGE = 0.03  # score of a Gaussian's own colour below which it is something else that shares the cell
 
 
@@ -66,8 +66,7 @@ def patches(cloud: GaussianCloud, words: tuple[str, ...], among: NDArray[np.bool
     footprint = (ordered[:, 0] * ordered[:, 1] * part.opacities).double().numpy()
     weight = np.minimum(footprint, np.quantile(footprint, 0.98))
     points = part.means.double().numpy()
-    low, high = np.quantile(points, [0.02, 0.98], axis=0)
-    diagonal = float(np.linalg.norm(high - low)) + 1e-12
+    diagonal = _diagonal(cloud)
     cell, place, mean = _cells(points, lab, weight, diagonal / CELLS)
     score = np.min([color_scores(w, mean) for w in words], axis=0)
     own = np.min([color_scores(w, lab) for w in words], axis=0)
@@ -77,6 +76,13 @@ def patches(cloud: GaussianCloud, words: tuple[str, ...], among: NDArray[np.bool
     total = float(weight.sum()) + 1e-20
     made = [_patch(rows[k], points[k], own[k], weight[k], total, len(cloud)) for k in found if len(k)]
     return sorted(made, key=lambda p: (-p.weight, int(p.rows[0])))
+
+
+def _diagonal(cloud: GaussianCloud) -> float:
+    """Of the box that holds the scene but for the outermost 2 % on each side, scene units."""
+    sample = cloud.means[:: max(1, len(cloud) // 50_000)].double().numpy()
+    low, high = np.quantile(sample, [0.02, 0.98], axis=0)
+    return float(np.linalg.norm(high - low)) + 1e-12
 
 
 def _patch(

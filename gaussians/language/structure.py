@@ -20,6 +20,7 @@ NAMES = {FLOOR: "floor", WALL: "wall", CEILING: "ceiling"}
 
 CELLS = 64  # of the height map across the larger side
 ROUGH = 0.012  # ground whose height varies by more than this share of the scene is terrain, not a floor
+KNOLL = 0.03  # of the scene: bumps, stones and low plants up to this height are terrain
 OUTSIDE = 0.02  # share of the scene that may lie behind a wall
 WALL_LENGTH = 0.3  # of the scene's extent: shorter upright planes are furniture
 WALL_HEIGHT = 0.55
@@ -96,7 +97,10 @@ def _ground(surface: Surface, labels: NDArray[np.int32], flat: Level) -> NDArray
     weight = close & is_level
     rough = float(np.median(np.abs(above[weight] - np.median(above[weight]))))
     if rough > ROUGH * max(extent) * 0.25:
-        return (above < np.median(above[weight]) + 3.0 * rough) & (above < 0.08 * max(extent))
+        low: NDArray[np.bool_] = above < np.median(above[weight]) + min(
+            max(3.0 * rough, KNOLL * max(extent)), 0.08 * max(extent)
+        )
+        return low
     offset = _mode(flat.points[weight, 2], surface.area[weight])
     near = np.abs(flat.points[:, 2] - offset) < max(1.5 * surface.spacing, 0.003 * max(extent))
     if near.sum() < 0.02 * len(surface):
@@ -261,4 +265,5 @@ def _in_plane(
     sizes = np.diff(np.r_[starts, len(order)])
     middle[own[order][starts]] = off[order][starts + sizes // 2]
     spread = float(np.median(np.abs(off[own == main] - middle[main])))
-    return np.abs(middle - middle[main]) < max(4 * spread, tight)
+    level: NDArray[np.bool_] = np.abs(middle - middle[main]) < max(4 * spread, tight)
+    return level

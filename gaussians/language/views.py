@@ -5,7 +5,6 @@ Knows clouds, cameras and the renderer's blending weights. Refuses to know masks
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,6 +25,8 @@ SEEN = 0.01  # summed blending weight (pixels at SIZE) from which a Gaussian cou
 COVER = 0.985  # of what any candidate sees
 GAIN = 0.003  # a view that adds less than this share of all Gaussians is not worth its time
 MOST = 24
+SAMPLE = 160_000  # Gaussians looked for; more do not change the choice of views
+ABOVE = 0.12  # of the scene's height: what is lower is ground and what lies on it
 EYE_HEIGHT = 0.55  # of the scene's height, for eyes inside
 PLAN_CELLS = 24
 
@@ -36,35 +37,51 @@ class Views:
 
     Attributes:
         cameras: best first.
-        seen_by: `[V, N]` bool, which Gaussians each camera sees.
-        unseen: share of all Gaussians that no candidate sees.
+        rows: `[S]` int64, the rows of the cloud that were looked for: all, or an even sample of a large cloud.
+        seen_by: `[V, S]` bool, which of them each camera sees.
+        unseen: share of them that no candidate sees.
     """
 
     cameras: tuple[Camera, ...]
+    rows: NDArray[np.int64]
     seen_by: NDArray[np.bool_]
     unseen: float
+
+    def count_of(self, mask: NDArray[np.bool_]) -> int:
+        """How many views see at least a twentieth of the Gaussians in `mask [N]`."""
+        within = mask[self.rows]
+        return int((self.seen_by[:, within].mean(axis=1) > 0.05).sum()) if within.any() else 0
 
 
 def choose_views(scene: Scene, most: int = MOST, size: int = SIZE) -> Views:
     """Greedy set cover over the scene's own cameras if it has enough, else over eyes around and inside it."""
+    rows, cloud = _sample(scene.cloud)
     own = [_small(c, size) for c in scene.cameras]
     pool = own if len(own) >= most else own + candidates(scene.cloud, scene.frame, size)
-    if not len(scene.cloud) or not pool:
-        return Views((), np.zeros((0, len(scene.cloud)), bool), 0.0)
+    if not len(cloud) or not pool:
+        return Views((), rows, np.zeros((0, len(rows)), bool), 0.0)
     if len(pool) > 4 * most:
         pool = [pool[i] for i in np.linspace(0, len(pool) - 1, 4 * most).astype(int)]
-    seen = np.stack([(contributions(scene.cloud, c) > SEEN).numpy() for c in pool])
+    seen = np.stack([(contributions(cloud, c) > SEEN).numpy() for c in pool])
     visible = int(seen.any(axis=0).sum())
-    covered = np.zeros(len(scene.cloud), bool)
+    covered = np.zeros(len(cloud), bool)
     chosen: list[int] = []
     while len(chosen) < most and covered.sum() < COVER * visible:
         gain = (seen & ~covered).sum(axis=1)
         best = int(np.argmax(gain))
-        if chosen and gain[best] < GAIN * len(scene.cloud):
+        if chosen and gain[best] < GAIN * len(cloud):
             break
         chosen.append(best)
         covered |= seen[best]
-    return Views(tuple(pool[i] for i in chosen), seen[chosen], 1 - visible / len(scene.cloud))
+    return Views(tuple(pool[i] for i in chosen), rows, seen[chosen], 1 - visible / len(cloud))
+
+
+def _sample(cloud: GaussianCloud) -> tuple[NDArray[np.int64], GaussianCloud]:
+    """Rows and cloud of at most SAMPLE Gaussians, grown so that the fewer still cover what all covered."""
+    step = max(1, -(-len(cloud) // SAMPLE))
+    rows = np.arange(0, len(cloud), step)
+    part = cloud[::step]
+    return rows, part.replace(scales=part.scales * float(np.sqrt(step)))
 
 
 def default_viewer(scene: Scene, width: int = 640, height: int = 480) -> Camera:
@@ -74,7 +91,11 @@ def default_viewer(scene: Scene, width: int = 640, height: int = 480) -> Camera:
     pool = candidates(scene.cloud, scene.frame, 96)
     if not pool:
         return Camera.look_at([0, -3, 1], [0, 0, 0], scene.frame.up, width, height)
-    weight = [_interest(scene.cloud, c) for c in pool]
+    _, cloud = _sample(scene.cloud)
+    heights = scene.frame.heights(cloud.means.numpy())
+    low, high = np.quantile(heights, [0.02, 0.98])
+    raised = torch.from_numpy(heights > low + ABOVE * (high - low))
+    weight = [_interest(cloud, c, raised) for c in pool]
     return fit_camera(pool[int(np.argmax(weight))], width, height)
 
 
@@ -153,29 +174,14 @@ def _toward(local: F64, frame: Frame, size: int) -> list[Camera]:
     return cameras
 
 
-def _interest(cloud: GaussianCloud, camera: Camera) -> float:
-    """How many Gaussians a view sees, discounted by how much of the picture stays empty."""
+def _interest(cloud: GaussianCloud, camera: Camera, raised: torch.Tensor) -> float:
+    """Share of what stands above the ground that a view sees, discounted by how much of the picture stays empty."""
     weight = contributions(cloud, camera)
-    seen = float((weight > SEEN).sum()) / max(len(cloud), 1)
+    seen = float((weight[raised] > SEEN).sum()) / max(int(raised.sum()), 1)
     filled = float(weight.sum()) / (camera.width * camera.height)
-    return seen * min(1.0, 0.4 + filled)
+    return seen * min(1.0, 0.6 + filled)
 
 
 def _small(camera: Camera, size: int) -> Camera:
     gain = size / max(camera.width, camera.height)
     return camera.resized(max(1, round(camera.width * gain)), max(1, round(camera.height * gain)))
-
-
-def visible_rows(views: Views, count: int) -> torch.Tensor:
-    """`[count]` bool: seen by any of the chosen views."""
-    return torch.from_numpy(views.seen_by.any(axis=0)) if len(views.cameras) else torch.zeros(count, dtype=torch.bool)
-
-
-def best_of(cameras: Sequence[Camera], target: F64) -> Camera | None:
-    """The camera that looks most straight at a world point, None if all look away."""
-    facing = [
-        (float((target - c.position) @ c.forward / max(float(np.linalg.norm(target - c.position)), 1e-9)), i)
-        for i, c in enumerate(cameras)
-    ]
-    best = max(facing, default=(0.0, -1))
-    return cameras[best[1]] if best[0] > 0.5 else None

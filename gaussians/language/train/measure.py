@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..calibration import Calibration, SizePrior, labels, probability, wholeness
+from ..calibration import Calibration, SizePrior, distribution, labels, wholeness
 from ..encoders import Encoder
 from ..encoders.embedded import Embedded
 from .augment import plain
@@ -152,9 +152,8 @@ def _log_loss(encoder: Encoder, crops: Crops, pooled: NDArray[np.float32]) -> fl
 
 
 def _table(encoder: Encoder, crops: Crops, pooled: NDArray[np.float32], sized: bool) -> Array:
-    """`[M, K]` probability that each thing is each kind."""
-    sizes = crops.sizes if sized else None
-    return np.stack([probability(encoder, kind, pooled, sizes) for kind in encoder.vocabulary.names], axis=1)
+    """`[M, K]` probability that each thing is each kind: what `probability` gives for canonical names, all at once."""
+    return distribution(encoder, pooled, crops.sizes if sized else None)[:, : len(encoder.vocabulary.names)]
 
 
 def _rooms(encoder: Encoder, crops: Crops, table: Array, grid: Array, seed: int) -> tuple[Array, Array]:
