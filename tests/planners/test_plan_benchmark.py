@@ -37,11 +37,18 @@ def test_judgement(given: EditPlan, case: dict[str, object], outcome: str) -> No
     assert bench.judge(given, case) == outcome
 
 
-def test_rows_of_the_written_set() -> None:
+def test_shares_add_up() -> None:
     answers = bench.measure(GrammarPlanner(), bench.cases()[::10], repeat=1)
-    figures = {key: value for key, value, *_ in bench.rows(answers)}
+    figures = {m.key: m.value for m in bench.metrics(answers)}
     assert figures["right"] + figures["abstained"] + figures["wrong_edits"] == pytest.approx(1.0)
     assert 0 < figures["ms.p50"] <= figures["ms.p95"] <= figures["ms.max"]
+
+
+@pytest.mark.slow
+def test_whole_benchmark() -> None:
+    result = bench.run(quick=True)
+    with_context, without = result.points
+    assert with_context.default and with_context.accuracy >= without.accuracy
 
 
 def test_missing_set_is_told(tmp_path: Path) -> None:
