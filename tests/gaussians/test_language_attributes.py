@@ -13,8 +13,13 @@ from hypothesis import strategies as st
 from scenewright.gaussians.color import BASIC, parse, rgb_to_lab
 from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.language.attributes import (
-    COLOR_HOLDS, PART_SHARE, color_scores, extent, group_color_score, size_scores,
-)  # fmt: skip
+    COLOR_HOLDS,
+    PART_SHARE,
+    color_scores,
+    extent,
+    group_color_score,
+    size_scores,
+)
 from scenewright.gaussians.language.field import Box, Group, LanguageField, Level
 
 AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -53,7 +58,7 @@ def test_a_hued_word_wins_on_its_paint_in_shade_and_in_light(name: str, shade: f
     assert float(color_scores(name, np.array(shown))) >= COLOR_HOLDS
 
 
-@pytest.mark.parametrize("pair", itertools.permutations(HUED, 2))
+@pytest.mark.parametrize("pair", list(itertools.permutations(HUED, 2)))
 def test_no_hued_word_holds_on_the_paint_of_another(pair: tuple[str, str]) -> None:
     word, other = pair
     assert float(color_scores(word, np.array(paint(other)))) < COLOR_HOLDS
