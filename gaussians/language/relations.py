@@ -34,8 +34,8 @@ class Stand:
 def viewer_stand(camera: Camera, up: NDArray[np.float64], scale: float) -> Stand:
     """The camera's right and forward, levelled. A camera looking straight down keeps its image's right and top."""
     right = camera.right - up * (camera.right @ up)
-    if np.linalg.norm(right) < 1e-6:
-        right = camera.forward - up * (camera.forward @ up)
+    if np.linalg.norm(right) < 1e-6:  # a picture taken upright: its right is up or down, but it still looks ahead
+        right = np.cross(camera.forward, up)
     right = right / np.linalg.norm(right)
     return Stand(right, np.cross(up, right), up, camera.position, scale)
 
@@ -61,14 +61,27 @@ def score(name: str, candidate: Group, anchors: Sequence[Group], stand: Stand) -
 
 
 def distance(a: Group, b: Group) -> float:
-    """Gap between two boxes, world units; 0 where they touch or overlap (sampled on corners, edges and centres)."""
-    samples = np.concatenate([a.box.corners(), _lattice(a.box)])
-    outside = np.maximum(np.abs(b.box.local(samples)) - np.array(b.box.size) / 2, 0)
-    return float(np.linalg.norm(outside, axis=1).min())
+    """Gap between two boxes of one scene, scene units; 0 where they touch or overlap.
+
+    Exact: both stand upright, so that the gap in plan and the gap in height do not depend on each other.
+    """
+    rise = abs(float((np.array(a.box.center) - np.array(b.box.center)) @ np.array(b.box.axes[2])))
+    over = max(0.0, rise - (a.box.size[2] + b.box.size[2]) / 2)
+    return math.hypot(_plan_gap(a.box, b.box), over)
+
+
+def _plan_gap(a: Box, b: Box) -> float:
+    """Gap between two rectangles: where they are apart, a corner of one of them is at an end of the shortest way."""
+    gaps, apart = [], False
+    for one, other in ((a, b), (b, a)):
+        corners, half = other.local(one.corners()[:4])[:, :2], np.array(other.size[:2]) / 2
+        apart |= bool((corners.min(axis=0) > half).any() or (corners.max(axis=0) < -half).any())
+        gaps.append(float(np.linalg.norm(np.maximum(np.abs(corners) - half, 0), axis=1).min()))
+    return min(gaps) if apart else 0.0
 
 
 def _lattice(box: Box) -> NDArray[np.float64]:
-    """`[125, 3]` points spread through a box, so that a small box beside a long one finds it."""
+    """`[125, 3]` points spread through a box."""
     t = np.linspace(-0.5, 0.5, 5)
     grid = np.stack(np.meshgrid(t, t, t, indexing="ij"), axis=-1).reshape(-1, 3)
     points: NDArray[np.float64] = np.array(box.center) + (grid * np.array(box.size)) @ np.array(box.axes)
@@ -82,7 +95,7 @@ def _height(group: Group, up: NDArray[np.float64]) -> tuple[float, float]:
 
 
 def _beside(name: str, candidate: Group, anchor: Group, stand: Stand) -> float:
-    """Cosine-shaped cone of 60 degrees half angle about the asked direction, between the boxes' centres."""
+    """Cosine of the angle to the asked direction, between the boxes' centres: a relation reaches 60 degrees aside."""
     offset = np.array(candidate.box.center) - np.array(anchor.box.center)
     level = offset - stand.up * (offset @ stand.up)
     reach = float(np.linalg.norm(level))
@@ -96,8 +109,7 @@ def _beside(name: str, candidate: Group, anchor: Group, stand: Stand) -> float:
         "in_front_of": toward_front,
         "behind": -toward_front,
     }[name]
-    along = float(level @ aim) / reach
-    return max(0.0, along) ** 1.0 if along < 1 else 1.0
+    return min(max(float(level @ aim) / reach, 0.0), 1.0)
 
 
 def _overlap(candidate: Group, anchor: Group) -> float:
@@ -116,7 +128,8 @@ def _vertical(name: str, candidate: Group, anchor: Group, stand: Stand) -> float
     under = _overlap(anchor, candidate)
     slack = max(TOUCH * stand.scale, 0.1 * (top - base))
     if name == "on":
-        rests = low > base + 0.02 * (top - base) and low < top + slack  # on a shelf is within the shelf's height
+        # On a shelf is within the shelf's height; a rug or a floor is thinner than a box is precise.
+        rests = min(base + 0.02 * (top - base), top - slack) < low < top + slack
         smaller = (high - low) <= 1.5 * (top - base) or over > 0.9
         return over if rests and smaller and (low + high) / 2 > (base + top) / 2 - 0.5 * (top - base) else 0.0
     if name == "above":
@@ -133,7 +146,7 @@ def _inside(candidate: Group, anchor: Group, stand: Stand) -> float:
 
 
 def _next_to(candidate: Group, anchor: Group, stand: Stand) -> float:
-    """1 when touching, 0.5 at a gap of one typical size of the two, falling beyond."""
+    """1 when touching, 0.5 at a gap of 0.6 times the mean of their largest extents, falling beyond."""
     reach = 0.5 * (max(candidate.box.size) + max(anchor.box.size))
     return 1 / (1 + (distance(candidate, anchor) / max(0.6 * reach, 1e-9)) ** 2)
 
