@@ -19,6 +19,7 @@ from ..gaussians.errors import InstructionError, ScenewrightError, UserError
 from .halfblocks import depth_of, draw
 from .refusal import verdict_of
 from .resolved import candidate_json, selection_json
+from .tables import coloured, table
 
 if TYPE_CHECKING:
     from prompt_toolkit import PromptSession
@@ -99,7 +100,7 @@ class Chat:
         except ScenewrightError as error:
             if self.terminal.debug:
                 raise
-            self._tell(str(error), {"verdict": verdict_of(error), "reason": str(error)})
+            self._tell(str(error), {"verdict": verdict_of(error), "reason": str(error)}, "red")
 
     def _instruction(self, text: str) -> None:
         if self.session.question is not None and self.session.question.selection.verdict == "ambiguous":
@@ -116,7 +117,7 @@ class Chat:
         lines = list(result.sentences()) or [result.text]
         if sum(result.seconds.values()) > 0:
             lines.append(f"({sum(result.seconds.values()):.2f} s)")
-        self._tell("\n".join(lines), result.to_json())
+        self._tell("\n".join(lines), result.to_json(), "green")
         if self._interactive():
             self._picture()
 
@@ -132,7 +133,7 @@ class Chat:
             "reason": str(error),
             "candidates": [candidate_json(c) for c in candidates],
         }
-        self._tell("\n".join(lines), data)
+        self._tell("\n".join(lines), data, "yellow")
 
     # -- commands ---------------------------------------------------------------------------------------------------
 
@@ -156,10 +157,10 @@ class Chat:
     def _help(self, _: str) -> None:
         from ..tools.registry import describe
 
-        lines = ["Say what to do, for example:", *(f"  {e}" for e in _EXAMPLES), "", "Operations:"]
-        lines += [f"  {name:<10} {words}" for name, _doc, words, _json in describe()]
-        lines += ["", "Commands:", *(f"  {name:<10} {text}" for name, text in COMMANDS.items())]
-        self._tell("\n".join(lines), {"commands": COMMANDS})
+        operations = table(("operation", "for example"), [(name, words) for name, _, words, _ in describe()])
+        commands = table(("command", "does"), list(COMMANDS.items()))
+        said = "\n".join(["Say what to do, for example:", *(f"  {e}" for e in _EXAMPLES)])
+        self._tell(f"{said}\n\n{operations}\n\n{commands}", {"commands": COMMANDS})
 
     def _plan(self, text: str) -> None:
         if text:
@@ -198,7 +199,8 @@ class Chat:
             (g.id, f"{name_of(g.lab)} {g.label or 'unnamed thing'}", g.count) for g in language.objects() if g.count
         ]
         data = {"things": [{"group": i, "name": name, "gaussians": n} for i, name, n in rows]}
-        self._tell("\n".join(f"  {i:>4}  {name} ({n:,} Gaussians)" for i, name, n in rows), data)
+        shown = [(i, name, f"{n:,}") for i, name, n in rows]
+        self._tell(table(("group", "thing", "Gaussians"), shown), data)
 
     def _history(self, _: str) -> None:
         done = self.session.done
@@ -217,8 +219,9 @@ class Chat:
 
     # -- what the user sees -----------------------------------------------------------------------------------------
 
-    def _tell(self, text: str, data: dict[str, Any]) -> None:
-        self.terminal.result(text, data)
+    def _tell(self, text: str, data: dict[str, Any], style: str = "default") -> None:
+        """An answer, its first line in a colour that says how it went."""
+        self.terminal.result(coloured(text, style, self.terminal.out), data)
 
     def _picture(self) -> None:
         """The current view, as large as the terminal allows and the eye needs."""

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..options import Debug, Encoder, Force, Json, Log, Output, Planner, SceneFile, Seed, Size, View
+from ..stopwatch import timed
 from ..terminal import terminal
 
 if TYPE_CHECKING:
@@ -64,15 +65,18 @@ def command(
         raise UserError("say where to write the edited scene: -o out.ply (or look first with --dry-run)")
     _refuse_existing(None if dry_run else output, pictures, force)
     started = time.perf_counter()
+    seconds: dict[str, float] = {}
     opening = Opening(scene, planner, encoder, view, size, None if dry_run else log, seed, pixel_checks=True)
-    session, had_field = open_session(opening)
-    seconds = {"open": round(time.perf_counter() - started, 3)}
+    with timed(seconds, "open"):
+        session, had_field = open_session(opening)
     targets = _Targets(None if dry_run else output, pictures, force, had_field)
     results = [_instruct(session, str(text), dry_run)] if replay is None else _replay(session, replay)
     lines, data = _told(results, replay is not None, dry_run)
-    _write(session, results, targets, data)
+    with timed(seconds, "write"):
+        _write(session, results, targets, data)
     session.close()
-    data["seconds"] = {**seconds, **data.get("seconds", {}), "total": round(time.perf_counter() - started, 3)}
+    spent = {**data.pop("seconds", {}), **seconds, "total": time.perf_counter() - started}
+    data["seconds"] = {stage: round(value, 3) for stage, value in spent.items()}
     lines += ["dry run: no scene was written"] if dry_run else [f"wrote {data['output']}"]
     lines += [f"wrote {path}" for path in data.get("pictures", ())]
     lines.append("seconds: " + ", ".join(f"{stage} {value:.2f}" for stage, value in data["seconds"].items()))
