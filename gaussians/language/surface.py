@@ -125,7 +125,7 @@ def _smoothed_normals(cloud: GaussianCloud, neighbours: NDArray[np.int32]) -> tu
     offsets = cloud.means[index] - cloud.means[:, None, :]  # [M, K, 3]
     scatter = torch.einsum("mki,mkj->mij", offsets, offsets)
     scatter = scatter / scatter.diagonal(dim1=1, dim2=2).sum(1).clamp(min=1e-20)[:, None, None]
-    values, vectors = torch.linalg.eigh(tensor / (1 + len(neighbours[0])) - scatter)
+    values, vectors = torch.linalg.eigh(tensor / (1 + neighbours.shape[1]) - scatter)
     flat = ((values[:, 2] - values[:, 1]) / (values[:, 2] - values[:, 0]).clamp(min=1e-9)).clamp(0, 1)
     return vectors[:, :, 2].contiguous().numpy(), flat.numpy()
 

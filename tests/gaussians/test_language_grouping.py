@@ -1,0 +1,185 @@
+"""The best cut of a merge tree against brute force; portraits shared by look-alikes; parts as patches of one colour."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scenewright.gaussians.language.grouping import (
+    CONTESTED,
+    PATCH_COLOR,
+    PATCH_POINTS,
+    SAME_SHARE,
+    alike,
+    best_cut,
+    contested,
+    parts_of,
+)
+from scenewright.gaussians.language.regions import Node
+
+
+@st.composite
+def forests(draw: st.DrawFn) -> list[Node]:
+    """Merge trees as `merge_tree` makes them: leaves first, then merges of two roots, at most eight leaves."""
+    leaves = draw(st.integers(1, 8))
+    nodes = [Node((i,), (), 1.0) for i in range(leaves)]
+    roots = list(range(leaves))
+    for _ in range(draw(st.integers(0, leaves - 1))):
+        a = roots.pop(draw(st.integers(0, len(roots) - 1)))
+        b = roots.pop(draw(st.integers(0, len(roots) - 1)))
+        nodes.append(Node(nodes[a].members + nodes[b].members, (a, b), draw(st.floats(0, 1))))
+        roots.append(len(nodes) - 1)
+    return nodes
+
+
+def roots_of(nodes: Sequence[Node]) -> list[int]:
+    return sorted(set(range(len(nodes))) - {c for n in nodes for c in n.children})
+
+
+def cuts(nodes: Sequence[Node], roots: list[int]) -> Iterator[list[int]]:
+    """Every set of disjoint nodes that covers all leaves below `roots`."""
+    if not roots:
+        yield []
+        return
+    first, rest = roots[0], roots[1:]
+    for others in cuts(nodes, rest):
+        yield [first, *others]
+    if nodes[first].children:
+        yield from cuts(nodes, [*nodes[first].children, *rest])
+
+
+def worth(nodes: Sequence[Node], cut: list[int], evidence: dict[int, float]) -> float:
+    """The score of a cut, straight from the definition: every merge is either inside a chosen node or above the cut."""
+    inside: set[int] = set()
+    stack = list(cut)
+    while stack:
+        i = stack.pop()
+        inside.add(i)
+        stack.extend(nodes[i].children)
+    total = sum(evidence.get(i, 0.0) for i in cut)
+    for i, node in enumerate(nodes):
+        if node.children:
+            a = min(max(node.affinity, 1e-6), 1 - 1e-6)  # a certain merge is still only nearly certain
+            total += math.log(a if i in inside else 1 - a)
+    return total
+
+
+@given(forests(), st.dictionaries(st.integers(0, 14), st.floats(-6, 6)))
+def test_the_best_cut_is_the_best_of_all_cuts(nodes: list[Node], evidence: dict[int, float]) -> None:
+    chosen = best_cut(nodes, evidence)
+    assert chosen in [sorted(c) for c in cuts(nodes, roots_of(nodes))]
+    best = max(worth(nodes, c, evidence) for c in cuts(nodes, roots_of(nodes)))
+    assert worth(nodes, chosen, evidence) == pytest.approx(best, abs=1e-9)  # sums of a few logarithms in float64
+
+
+@given(forests(), st.dictionaries(st.integers(0, 14), st.floats(-6, 6)))
+def test_a_cut_covers_every_superpoint_exactly_once(nodes: list[Node], evidence: dict[int, float]) -> None:
+    members = [m for i in best_cut(nodes, evidence) for m in nodes[i].members]
+    assert sorted(members) == sorted(m for i in roots_of(nodes) for m in nodes[i].members)
+
+
+def test_without_evidence_geometry_decides_and_strong_evidence_overrules_it() -> None:
+    nodes = [Node((0,), (), 1.0), Node((1,), (), 1.0), Node((0, 1), (0, 1), 0.8)]
+    assert best_cut(nodes, {}) == [2]
+    assert best_cut(nodes, {2: -2.0}) == [0, 1]  # log(0.8) - 2 is less than log(0.2)
+    assert best_cut(nodes, {0: 2.0}) == [0, 1]
+    assert best_cut([], {}) == []
+
+
+def test_only_what_is_neither_surely_split_nor_surely_swallowed_is_contested() -> None:
+    low, high = CONTESTED
+    leaf = [Node((i,), (), 1.0) for i in range(3)]
+    for affinity, ask_children, ask_whole in ((high, False, True), (0.5, True, True), (low, True, False)):
+        nodes = [*leaf[:2], Node((0, 1), (0, 1), affinity)]
+        asked = contested(nodes, np.array([True, True, True]))
+        assert (0 in asked, 2 in asked) == (ask_children, ask_whole)
+    assert contested([*leaf], np.array([True, False, True])) == [0, 2]
+
+
+@given(forests(), st.lists(st.integers(1, 60), min_size=8, max_size=8))
+def test_alike_points_upwards_to_much_the_same_points(nodes: list[Node], weights: list[int]) -> None:
+    points = np.array([sum(weights[m] for m in n.members) for n in nodes], dtype=np.int64)
+    same = alike(nodes, points)
+    parent = {c: i for i, n in enumerate(nodes) for c in n.children}
+    for i, target in enumerate(same.tolist()):
+        above = {i}
+        while (last := max(above)) in parent:
+            above.add(parent[last])
+        assert target in above
+        assert same[target] == target  # whose portrait is taken answers for itself
+        assert points[i] >= SAME_SHARE * points[target]
+
+
+def test_alike_follows_a_chain_of_small_additions_no_farther_than_the_share() -> None:
+    nodes = [Node((0,), (), 1.0), Node((1,), (), 1.0), Node((0, 1), (0, 1), 0.5), Node((2,), (), 1.0)]
+    nodes.append(Node((0, 1, 2), (2, 3), 0.5))
+    assert alike(nodes, np.array([96, 4, 100, 2, 102])).tolist() == [4, 1, 4, 3, 4]
+    assert alike(nodes, np.array([94, 6, 100, 5, 105])).tolist() == [0, 1, 4, 3, 4]  # 94 of 105 is too little
+
+
+@st.composite
+def patchworks(draw: st.DrawFn) -> tuple[list[int], dict[int, set[int]], np.ndarray, np.ndarray]:
+    count = draw(st.integers(1, 12))
+    pairs = draw(st.sets(st.tuples(st.integers(0, count - 1), st.integers(0, count - 1)), max_size=30))
+    near: dict[int, set[int]] = {}
+    for a, b in pairs:
+        if a != b:
+            near.setdefault(a, set()).add(b)
+            near.setdefault(b, set()).add(a)
+    lab = np.array(draw(st.lists(st.tuples(*[st.floats(0, 60)] * 3), min_size=count, max_size=count)))
+    size = np.array(draw(st.lists(st.integers(1, 200), min_size=count, max_size=count)), dtype=np.int64)
+    members = draw(st.sets(st.integers(0, count - 1), min_size=1))
+    return sorted(members), near, lab, size
+
+
+def connected(members: list[int], near: dict[int, set[int]]) -> bool:
+    reached, stack = {members[0]}, [members[0]]
+    while stack:
+        for other in near.get(stack.pop(), set()) & set(members) - reached:
+            reached.add(other)
+            stack.append(other)
+    return reached == set(members)
+
+
+@given(patchworks())
+def test_parts_keep_every_member_once_and_are_connected(
+    world: tuple[list[int], dict[int, set[int]], np.ndarray, np.ndarray],
+) -> None:
+    members, near, lab, size = world
+    before = {k: set(v) for k, v in near.items()}
+    parts = parts_of(members, near, lab, size)
+    assert sorted(m for part in parts for m in part) == members
+    assert all(connected(part, near) for part in parts)
+    weights = [sum(int(size[m]) for m in part) for part in parts]
+    assert weights == sorted(weights, reverse=True)
+    assert near == before  # an argument is never changed
+    assert parts_of(members, near, lab, size) == parts
+
+
+@given(patchworks())
+def test_a_crumb_remains_only_where_it_touches_nothing(
+    world: tuple[list[int], dict[int, set[int]], np.ndarray, np.ndarray],
+) -> None:
+    members, near, lab, size = world
+    parts = parts_of(members, near, lab, size)
+    for part in parts:
+        alone = not any(near.get(m, set()) & set(members) - set(part) for m in part)
+        assert alone or sum(int(size[m]) for m in part) >= PATCH_POINTS
+
+
+def test_a_lamp_is_its_shade_and_its_foot() -> None:
+    red, gray = [45.0, 60.0, 40.0], [50.0, 0.0, 0.0]
+    lab = np.array([red, red, gray, gray, red])
+    size = np.full(5, 100)
+    near = {0: {1}, 1: {0, 2}, 2: {1, 3}, 3: {2, 4}, 4: {3}}
+    # the last red piece touches only grey: one colour, but two patches
+    assert parts_of(range(5), near, lab, size) == [[0, 1], [2, 3], [4]]
+    assert parts_of(range(4), near, lab, size) == [[0, 1], [2, 3]]
+    close = lab + np.array([[0, 0, 0], [PATCH_COLOR - 1, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]])
+    assert parts_of([0, 1], near, close, size) == [[0, 1]]  # shading does not part a shade
+    assert parts_of([], near, lab, size) == []
