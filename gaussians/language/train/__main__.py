@@ -18,9 +18,10 @@ import torch
 from ... import assets
 from ...assets import registry
 from ..encoders.embedded import Embedded
-from . import captions, export, fit, measure, renders, strangers
+from . import captions, export, fit, insitu, measure, renders, strangers
 
 CALIBRATION_SEEDS, MEASURING_SEEDS = 10_000, 20_000
+ROOMS = 16  # furnished for measurement
 HELD_OUT = 8  # seeds of each kind for calibration, and as many for measurement
 
 
@@ -95,6 +96,7 @@ def _measured(encoder: Embedded, crops: renders.Crops, meshes: Path | None) -> d
         "figures": {k: round(v, 4) for k, v in measure.figures(encoder, crops).items()},
         "simulated": {"rooms": measure.ROOMS, "room": measure.ROOM, "merges": measure.MERGES},
         "kinds": measure.confusions(encoder, crops),
+        "rooms": insitu.judge(encoder, range(MEASURING_SEEDS, MEASURING_SEEDS + ROOMS)),
     }
     if meshes is not None:
         result["strangers"] = strangers.summary(strangers.judge(encoder, meshes), encoder.calibration.threshold)

@@ -65,7 +65,8 @@ def thinned(cloud: GaussianCloud, rng: np.random.Generator, drop: float) -> Gaus
     kept = cloud[torch.from_numpy(rng.random(len(cloud)) >= drop)]
     n = len(kept)
     shift = torch.from_numpy(rng.normal(size=(n, 3)).astype(np.float32)) * kept.scales.amax(dim=1, keepdim=True) * 0.4
-    grow = torch.from_numpy(rng.lognormal(0.2, 0.3, size=(n, 1)).astype(np.float32))
+    wider = (1 - drop) ** -0.45  # the fewer must cover nearly what all covered
+    grow = torch.from_numpy((wider * rng.lognormal(0.1, 0.3, size=(n, 1))).astype(np.float32))
     fade = torch.from_numpy(rng.uniform(0.55, 1.0, size=n).astype(np.float32))
     return kept.replace(means=kept.means + shift, scales=kept.scales * grow, opacities=kept.opacities * fade)
 

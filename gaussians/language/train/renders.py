@@ -32,7 +32,8 @@ from .captions import FLOOR, PART, SEVERAL, WALL
 CROP = 80  # px, side of the stored crops: a quarter more than the encoder's input, room for augmentation
 CANVAS = 112  # px, side of the renders they are cut from
 VIEWS = 4  # of each thing
-VERSION = 2  # of this file's choices; part of the cache's name
+STRETCH = 0.15  # deviation of the logarithm of an axis' stretch
+VERSION = 3  # of this file's choices; part of the cache's name
 
 WHOLE, DAMAGED, NONE = "whole", "damaged", "not an object"
 # A cut-off piece of these still looks like one of them, so cuts of them say nothing about being incomplete.
@@ -125,7 +126,7 @@ def render_set(kinds: tuple[str, ...], seeds: range, report: Callable[[str], Non
 def things_of_seed(kinds: tuple[str, ...], seed: int) -> Iterator[Thing]:
     """One of each kind, whole and damaged; pieces and heaps of them; a piece of wall and of floor."""
     rng = np.random.default_rng([seed, 7])
-    made = {kind: assets.make(kind, seed, detail=float(rng.choice([0.4, 0.7, 1.0]))) for kind in kinds}
+    made = {kind: _made(kind, seed, rng) for kind in kinds}
     for kind in kinds:
         asset, entry = made[kind], registry.KINDS[kind]
         hang = (entry.against_wall or entry.support == "wall", str(entry.support))
@@ -142,6 +143,17 @@ def things_of_seed(kinds: tuple[str, ...], seed: int) -> Iterator[Thing]:
         yield Thing(patch, WALL if upright else FLOOR, NONE, seed, upright, "wall" if upright else "floor")
 
 
+def _made(kind: str, seed: int, rng: np.random.Generator) -> assets.Asset:
+    """One design, half of the time stretched along each axis beyond its own proportions: others build differently."""
+    detail = float(rng.choice([0.4, 0.7, 1.0]))
+    asset = assets.make(kind, seed, detail=detail)
+    stretch = np.exp(rng.normal(size=3) * STRETCH)
+    if rng.random() < 0.5:
+        return asset
+    w, d, h = (max(0.006, s * f) for s, f in zip(asset.size, stretch.tolist(), strict=True))
+    return assets.make(kind, seed, size=(w, d, h), detail=detail)
+
+
 def damaged(cloud: GaussianCloud, neighbour: GaussianCloud, rng: np.random.Generator) -> GaussianCloud:
     """One to three mishaps that leave the thing recognisable."""
     result = cloud
@@ -154,7 +166,7 @@ def damaged(cloud: GaussianCloud, neighbour: GaussianCloud, rng: np.random.Gener
         elif mishap == 2:  # the underside was taken for floor
             result = damage.cut(result, rng, rng.uniform(0.75, 0.95), np.array([0.0, 0.0, -1.0]))
         elif mishap == 3:
-            result = damage.thinned(result, rng, rng.uniform(0.0, 0.5))
+            result = damage.thinned(result, rng, rng.uniform(0.0, 0.85))
         elif mishap == 4:
             result = damage.with_residue(result, rng)
         else:
