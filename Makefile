@@ -13,7 +13,7 @@ PYTEST_ARGS ?=
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --disable-pip-version-check $(PIP_ARGS)
 
-.PHONY: demo test lint format clean
+.PHONY: demo test lint format picture clean
 
 demo: $(VENV)/.ready
 	$(BIN)/scenewright demo -o $(DEMO) --seed $(SEED) --force
@@ -25,6 +25,13 @@ lint: $(VENV)/.ready-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy -p scenewright
+
+# The picture in the README: the demo's own contact sheet, smaller and with fewer colours.
+picture: $(VENV)/.ready
+	$(BIN)/scenewright demo -o $(DEMO) --seed $(SEED) --size 360x240 --force
+	$(BIN)/python -c "from PIL import Image; i = Image.open('$(DEMO)/contact_sheet.png').convert('RGB'); \
+	  i = i.resize((1000, round(i.height * 1000 / i.width)), Image.Resampling.LANCZOS); \
+	  i.quantize(96, dither=Image.Dither.NONE).save('docs/demo.png', optimize=True)"
 
 format: $(VENV)/.ready-dev
 	$(BIN)/ruff check --fix .

@@ -17,7 +17,7 @@ import typer
 from ..gaussians.errors import ScenewrightError
 from .terminal import explain, terminal
 
-VERBS = ("demo", "info", "embed", "select", "plan", "edit", "chat", "render", "convert", "doctor")
+VERBS = ("demo", "info", "embed", "select", "plan", "edit", "chat", "render", "convert", "bench", "doctor")
 
 app = typer.Typer(
     name="scenewright",

@@ -259,13 +259,19 @@ def _cast(room: Room, viewer: Camera) -> Cast:
     ids = torch.as_tensor(np.asarray(room.truth.ids), dtype=torch.int32)
     seen = render(room.scene.cloud.replace(group=ids), viewer).group
     table = room.truth.objects
-    things = [Thing(o.id, o.kind, o.color, int((seen == o.id).sum())) for o in table]
+    things = [Thing(o.id, o.kind, o.color, *_seen(seen.numpy() == o.id)) for o in table]
     visible = [t for t in things if t.pixels >= VISIBLE * viewer.width * viewer.height]
     there = {t.kind for t in things}
     # A "lamp" is not absent from a room with a floor lamp.
     words = {word for kind in there for word in kind.split()}
     absent = [k for k in kinds() if k not in there and not set(k.split()) & words]
     return Cast(sorted(visible, key=lambda t: -t.pixels), absent, set())
+
+
+def _seen(mask: NDArray[np.bool_]) -> tuple[int, float]:
+    """How many pixels, and their mean place from left to right."""
+    columns = mask.nonzero()[1]
+    return len(columns), float(columns.mean() / mask.shape[1]) if len(columns) else 0.5
 
 
 def _tried(session: Session, turn: Turn) -> tuple[bool, Result | None]:

@@ -27,12 +27,14 @@ class Thing:
         kind: "armchair".
         color: "brown".
         pixels: how many pixels of the view it fills; 0 if it is hidden.
+        across: where it is seen, from 0 at the picture's left edge to 1 at its right.
     """
 
     id: int
     kind: str
     color: str
     pixels: int
+    across: float = 0.5
 
 
 @dataclass(frozen=True)
@@ -76,10 +78,10 @@ class Cast:
         return sorted(lone, key=lambda t: t.id in self.used)
 
     def several(self) -> list[list[Thing]]:
-        """Kinds of which there is more than one, with their things."""
+        """Kinds of which there is more than one, with their things; what can be carried comes first."""
         kinds = list(dict.fromkeys(t.kind for t in self.things))
         groups = [[t for t in self.things if t.kind == kind] for kind in kinds]
-        return [g for g in groups if len(g) > 1]
+        return sorted((g for g in groups if len(g) > 1), key=lambda g: g[0].kind in KEEP)
 
 
 def _select(cast: Cast) -> Iterator[Turn]:
@@ -108,10 +110,9 @@ def _delete(cast: Cast) -> Iterator[Turn]:
 def _move(cast: Cast) -> Iterator[Turn]:
     for distance in ("60 cm", "30 cm"):
         for t in cast.single(movable=True):
-            yield from (Turn(f"move the {t.kind} {distance} {way}", about=(t,)) for way in _WAYS)
-
-
-_WAYS = ("to the left", "to the right", "forward", "backward")
+            inwards, outwards = ("right", "left") if t.across < 0.5 else ("left", "right")
+            ways = (f"to the {inwards}", "backward", "forward", f"to the {outwards}")
+            yield from (Turn(f"move the {t.kind} {distance} {way}", about=(t,)) for way in ways)
 
 
 def _insert(cast: Cast) -> Iterator[Turn]:

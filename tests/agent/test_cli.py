@@ -249,3 +249,25 @@ def test_a_field_of_another_encoder_is_not_used(
 def test_doctor(call: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     answer = call("doctor", "--json")
     assert answer.code == 0 and answer.data["machine"]["python"]
+
+
+def test_bench_lists_and_measures(call: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    from scenewright.benchmarks import harness
+
+    assert "render" in call("bench").out
+    assert call("bench", "nonsense").code == 2
+    values = iter([1.0, 1.0, 2.0])
+
+    def run(name: str, quick: bool) -> harness.Result:
+        metric = harness.Metric("a.seconds", next(values), "s", "lower", 0.1)
+        return harness.Result("a test", "PSNR (dB)", (metric,), (harness.Point("cpu", "full", 0.1, 50.0, 10, True),))
+
+    monkeypatch.setattr(harness, "run", run)
+    first = call("bench", "render", "--quick", "--json")
+    (tmp_path / "first.json").write_text(first.out)
+    assert first.data["metrics"][0]["value"] == 1.0
+    same = call("bench", "render", "--against", tmp_path / "first.json", "--chart", tmp_path / "chart.png")
+    assert same.code == 0 and "| a.seconds |" in same.out and (tmp_path / "chart.png").is_file()
+    worse = call("bench", "render", "--against", tmp_path / "first.json")
+    assert worse.code == 3 and "worse: a.seconds" in worse.err
+    assert call("bench", "render", "--chart", tmp_path / "chart.png").code == 2

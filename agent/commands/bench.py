@@ -1,0 +1,52 @@
+"""`scenewright bench NAME`: measure."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..options import Debug, Force, Json
+from ..terminal import terminal
+
+
+def command(
+    name: Annotated[str | None, typer.Argument(metavar="NAME", help="What to measure; without it, the list.")] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Rougher, and much sooner.")] = False,
+    chart: Annotated[
+        Path | None, typer.Option("--chart", metavar="FILE", help="Draw time against accuracy (.png, .svg, .pdf).")
+    ] = None,
+    against: Annotated[
+        Path | None, typer.Option("--against", metavar="FILE", help="An earlier --json result; exit 3 if worse.")
+    ] = None,
+    force: Force = False,
+    as_json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Measure something and tell it as a table (Markdown) or, with --json, as data.
+
+    Times do not carry over to other machines; ratios and accuracies do.
+    """
+    from ...benchmarks import harness
+    from ...gaussians.errors import FileError, UserError
+
+    if name is None:
+        terminal.result("\n".join(harness.names()), {"benchmarks": list(harness.names())})
+        return
+    if chart is not None and chart.exists() and not force:
+        raise UserError(f"{chart} exists; choose another name, or overwrite it with --force")
+    try:
+        earlier = harness.Result.from_json(against.read_text(encoding="utf-8")) if against else None
+    except OSError as error:
+        raise FileError(f"cannot read {against}: {error.strerror}") from error
+    result = harness.run(name, quick)
+    if chart is not None:
+        terminal.say(f"chart: {result.chart(chart)}")
+    terminal.result(result.to_markdown(), json.loads(result.to_json()))
+    worse = result.regressions(earlier) if earlier is not None else ()
+    for sentence in worse:
+        terminal.say(f"worse: {sentence}")
+    if worse:
+        raise typer.Exit(3)
