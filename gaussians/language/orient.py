@@ -21,6 +21,11 @@ F64 = NDArray[np.float64]
 AXES = ((np.array([0.0, -1.0, 0.0]), 1.0), (np.array([0.0, 0.0, 1.0]), 0.7), (np.array([0.0, 1.0, 0.0]), 0.4))
 AXIS_REACH = 12.0  # degrees within which a customary axis supports a direction
 AXIS_BONUS = 0.35  # of the strongest concentration
+TOP_REACH = 50.0  # degrees between up and the mean of the images' tops: cameras look down
+ROLL_REACH = 10.0  # degrees by which they are held askew
+LEADS = 8  # directions looked at closely
+APART = 6.0  # degrees between them
+FEWEST = 50  # surface points that say something about up
 GROUND_ASPECT = 2.5  # a floor plan longer than this many widths is no floor plan
 DIRECTIONS = 2500
 SAMPLES = 12_000
@@ -40,25 +45,48 @@ def estimate_frame(surface: Surface, cameras: Sequence[Camera], known: Frame) ->
 
 
 def _up_from_cameras(surface: Surface, cameras: Sequence[Camera]) -> F64:
-    """The mean of the images' tops, moved to the sharpest layering within 20 degrees of it."""
+    """The sharpest layering that agrees with how the pictures were held: tops up, and rights level.
+
+    The tops' mean alone leans forward where all cameras look down on the scene from one side.
+    """
     mean = -np.mean([c.world_to_camera[1, :3] for c in cameras], axis=0)
     mean /= max(float(np.linalg.norm(mean)), 1e-12)
-    around = _directions()
-    around = around[around @ mean > np.cos(np.radians(20))]
-    around = np.concatenate([around, mean[None]])
-    return _sharpen(surface, around[int(np.argmax(_layering(surface, around)))])
+    around = np.concatenate([mean[None], _directions()])
+    roll = np.sqrt(np.mean((around @ np.stack([c.right for c in cameras]).T) ** 2, axis=1))
+    upward = around @ mean > np.cos(np.radians(TOP_REACH))
+    level = roll < roll[upward].min(initial=1.0) + np.sin(np.radians(ROLL_REACH))
+    if len(surface) < FEWEST or not (upward & level).any():
+        return mean if mean.any() else AXES[0][0]
+    lines, layering = _leading(surface, around[upward & level])
+    return lines[int(np.argmax(layering))]
 
 
 def _up_from_surfaces(surface: Surface) -> F64:
     """The direction across which the scene is most layered; customary axes get a bonus and give it its sign."""
-    around = _directions()[:DIRECTIONS]
-    layering = _layering(surface, around)
-    layering /= max(float(layering.max()), 1e-12)
-    bonus = np.max([w * (np.abs(around @ a) > np.cos(np.radians(AXIS_REACH))) for a, w in AXES], axis=0)
-    line = _sharpen(surface, around[int(np.argmax(layering + AXIS_BONUS * bonus))])
+    if len(surface) < FEWEST:
+        return AXES[0][0]
+    lines, layering = _leading(surface, _directions()[:DIRECTIONS])
+    bonus = np.max([w * (np.abs(lines @ a) > np.cos(np.radians(AXIS_REACH))) for a, w in AXES], axis=0)
+    line = lines[int(np.argmax(layering / max(float(layering.max()), 1e-12) + AXIS_BONUS * bonus))]
     if not _is_ground_like(surface, line):
         return AXES[0][0]
     return max((line, -line), key=lambda up: max(w * float(up @ a) for a, w in AXES))
+
+
+def _leading(surface: Surface, directions: F64) -> tuple[F64, F64]:
+    """The most layered of some directions, well apart from each other and each sharpened `[L, 3]`, and how layered.
+
+    A floor seen two degrees askew loses most of its layering, and so much by chance that unsharpened directions cannot
+    be compared.
+    """
+    layering = _layering(surface, directions)
+    lines: list[F64] = []
+    while len(lines) < LEADS and layering.max() > 0:
+        best = directions[int(np.argmax(layering))]
+        lines.append(_sharpen(surface, best))
+        layering = np.where(np.abs(directions @ best) > np.cos(np.radians(APART)), 0.0, layering)
+    found = np.stack(lines) if lines else directions[:1]
+    return found, _layering(surface, found)
 
 
 def _is_ground_like(surface: Surface, up: F64) -> bool:
@@ -116,7 +144,7 @@ def _sharpen(surface: Surface, up: F64) -> F64:
 def _floor(surface: Surface, up: F64) -> float | None:
     """Height of the lowest large level surface along up, None where nothing is level."""
     level = np.abs(surface.normals @ up) > 0.85
-    if level.sum() < 50:
+    if level.sum() < FEWEST:
         return None
     heights, area = surface.points[level] @ up, surface.area[level] * surface.flatness[level]
     low, high = np.quantile(heights, [0.002, 0.998])
