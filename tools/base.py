@@ -146,14 +146,14 @@ class Affine:
     """What was asked of one body: `x -> matrix @ x + offset` on its centres.
 
     Attributes:
-        ids: `[M]` int64, the Gaussians that were to move.
+        rows: `[M]` int64 rows of the new cloud that were to move.
         matrix: `[3, 3]` float64.
         offset: `[3]` float64, scene units.
-        source: `[M]` int64, the Gaussians before the edit they are compared with; the same ids unless copied.
+        source: `[M]` int64 rows of the old cloud they come from; none for what was not there before.
         support: height along up of the surface it was put on, scene units; None if it was not put anywhere.
     """
 
-    ids: Tensor
+    rows: Tensor
     matrix: NDArray[np.float64]
     offset: NDArray[np.float64]
     source: Tensor

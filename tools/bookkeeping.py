@@ -70,14 +70,13 @@ def carried(before: Scene, cloud: GaussianCloud, moved: Sequence[Affine]) -> Lan
     sizes = _counts(before.cloud, len(field.groups))
     broken = []
     for body in moved:
-        inside = mask_of(before.cloud, body.ids)
-        filed = torch.bincount((before.cloud.group[inside] + 1).clamp(min=0), minlength=len(sizes) + 1)[1:]
+        filed = torch.bincount((before.cloud.group[body.source] + 1).clamp(min=0), minlength=len(sizes) + 1)[1:]
         for group in _touched(field, filed):
             leaves = field.leaves(group.id)
             if sum(int(filed[i]) for i in leaves) == sum(sizes[i] for i in leaves):
                 changed[group.id] = replace(group, box=moved_box(group.box, body.matrix, body.offset, before.frame))
             else:
-                broken.append(body.ids)
+                broken.append(before.cloud.ids[body.source])
                 break
     whole = _with(field, changed)
     after = before.replace(cloud=cloud, language=whole)

@@ -13,11 +13,12 @@ from .base import Affine, Outcome
 from .grid import hits, obstacle_points
 from .measure import reach, solid_points
 from .receipt import Check, at_most, report
-from .rows import mask_of, rows_of
+from .rows import mask_of
 from .space import Array, box_of, centimetre, neighbours, overlap
 
 # A body may pass through this share of its points' number of foreign points: floaters and touching surfaces.
 _TOUCHING = 0.01
+_BLOCK = 1 << 16  # rows compared at a time, so that float64 copies stay small
 
 
 def counted(before: Scene, after: Scene, outcome: Outcome) -> Check:
@@ -36,13 +37,12 @@ def carried_as_asked(before: Scene, after: Scene, moved: tuple[Affine, ...]) -> 
     """Every centre is where the asked map takes it."""
     worst, extent = 0.0, 0.0
     for body in moved:
-        was = before.cloud.means[rows_of(before.cloud, body.source)].to(torch.float64).cpu().numpy()
-        now = after.cloud.means[rows_of(after.cloud, body.ids)].to(torch.float64).cpu().numpy()
-        if was.shape != now.shape:
-            return at_most("moved as asked", float("inf"), 0.0, "units", "a body lost Gaussians while it moved")
-        if len(now):
-            worst = max(worst, float(np.abs(was @ body.matrix.T + body.offset - now).max()))
-            extent = max(extent, float(np.abs(now).max()))
+        for source, rows in zip(torch.split(body.source, _BLOCK), torch.split(body.rows, _BLOCK), strict=True):
+            was = before.cloud.means[source].to(torch.float64).cpu().numpy()
+            now = after.cloud.means[rows].to(torch.float64).cpu().numpy()
+            if len(now):
+                worst = max(worst, float(np.abs(was @ body.matrix.T + body.offset - now).max()))
+                extent = max(extent, float(np.abs(now).max()))
     # float32 keeps 24 bits of a coordinate; a few roundings later a millionth of the largest one is still safe.
     bound = 2e-6 * max(extent, 1.0)
     return at_most(
@@ -56,7 +56,7 @@ def supported(after: Scene, moved: tuple[Affine, ...]) -> Check | None:
     for body in moved:
         if body.support is None:
             continue
-        points = solid_points(after.cloud, rows_of(after.cloud, body.ids))
+        points = solid_points(after.cloud, body.rows)
         low, high = reach(points @ up)
         gaps.append(low - body.support)
         # Two centimetres, or 3 % of its height: splats reach about that far beyond their centres.
@@ -74,10 +74,11 @@ def collision_free(after: Scene, moved: tuple[Affine, ...]) -> Check | None:
         return None
     worst, bound = 0, 0.0
     for body in placed:
-        rows = rows_of(after.cloud, body.ids)
-        points = solid_points(after.cloud, rows)
+        points = solid_points(after.cloud, body.rows)
         box = box_of(points, after.frame)
-        others = obstacle_points(after.cloud, mask_of(after.cloud, body.ids))
+        own = torch.zeros(len(after.cloud), dtype=torch.bool, device=after.cloud.device)
+        own[body.rows] = True
+        others = obstacle_points(after.cloud, own)
         clear = max(0.15 * box.size[2], 1e-9)
         worst = max(worst, hits(points, others, box, min(clear, 4 * centimetre(after.frame, max(box.size)))))
         bound = max(bound, _TOUCHING * len(points), 3.0)
@@ -88,7 +89,7 @@ def bumps(after: Scene, moved: tuple[Affine, ...], groups: set[int]) -> tuple[st
     """Notes about objects whose boxes a freely moved thing now stands in; moving by a distance does not forbid it."""
     notes = []
     for body in moved:
-        points = solid_points(after.cloud, rows_of(after.cloud, body.ids))
+        points = solid_points(after.cloud, body.rows)
         if not len(points):
             continue
         box = box_of(points, after.frame)
@@ -105,8 +106,8 @@ def spread_of(points: Array) -> float:
 
 def size_changed(before: Scene, after: Scene, body: Affine) -> Check:
     """The ratio of a stretched body's volume to before is that of the map; measured on its covariance of centres."""
-    was = before.cloud.means[rows_of(before.cloud, body.source)].to(torch.float64).cpu().numpy()
-    now = after.cloud.means[rows_of(after.cloud, body.ids)].to(torch.float64).cpu().numpy()
+    was = before.cloud.means[body.source].to(torch.float64).cpu().numpy()
+    now = after.cloud.means[body.rows].to(torch.float64).cpu().numpy()
     if len(was) < 4:
         return report("size", float("nan"), "1", "too few Gaussians to measure a size")
     ratio = spread_of(now) / max(spread_of(was @ body.matrix.T), 1e-30)

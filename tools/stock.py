@@ -163,32 +163,43 @@ def find_spot(placer: Placer, piece: Piece, place: Placement | None, start: Arra
 
 @dataclass(eq=False)
 class Arrivals:
-    """New objects being collected; `enter` makes the new scene of them in one go."""
+    """New objects being collected; `enter` makes the new scene of them in one go.
+
+    Attributes:
+        scene: what they come into; ids are given out above all of its ids.
+        base: what is left of its Gaussians; the arrivals' rows follow these.
+    """
 
     scene: Scene
+    base: GaussianCloud
     clouds: list[GaussianCloud] = field(default_factory=list)
     newcomers: list[Newcomer] = field(default_factory=list)
 
     def add(
         self, cloud: GaussianCloud, label: str, axes: tuple[Vec3, Vec3, Vec3] | None, like: int | None = None
     ) -> Tensor:
-        """One more object, its Gaussians in place, its box along `axes`; the ids they get."""
+        """One more object, its Gaussians in place, its box along `axes`; the rows they get in the new cloud."""
         top = self.clouds[-1] if self.clouds else self.scene.cloud
         ids = fresh_ids(top, len(cloud))
         group = torch.full((len(cloud),), NO_GROUP, dtype=torch.int32, device=cloud.device)
         self.clouds.append(cloud.replace(ids=ids, group=group))
         self.newcomers.append(Newcomer(self.clouds[-1], label, axes, like))
-        return ids
+        first = len(self.base) + sum(len(c) for c in self.clouds[:-1])
+        return torch.arange(first, first + len(cloud), device=cloud.device)
 
-    def enter(self, context: Context, base: GaussianCloud | None = None) -> tuple[Scene, tuple[int, ...]]:
-        """The scene (or its remaining Gaussians `base`) with the arrivals, and the group each got."""
+    def ids(self) -> Tensor:
+        """Ids of all arrivals, ascending."""
+        return torch.cat([c.ids for c in self.clouds])
+
+    def enter(self, context: Context) -> tuple[Scene, tuple[int, ...]]:
+        """The scene with the arrivals, and the group each got."""
         scene = self.scene
         table, groups = bookkeeping.enter(scene.language, self.newcomers, scene.frame, context.encoder)
         filed = [
             cloud.replace(group=torch.full_like(cloud.group, group))
             for cloud, group in zip(self.clouds, groups, strict=True)
         ]
-        cloud = concat([scene.cloud if base is None else base, *filed])
+        cloud = concat([self.base, *filed])
         return scene.replace(cloud=cloud, language=table), tuple(g for g in groups if g >= 0)
 
 
@@ -199,6 +210,6 @@ def taken_by(cloud: GaussianCloud, scene: Scene, placer: Placer) -> None:
         placer.take(points.astype(np.float64), box_of(points.astype(np.float64), scene.frame))
 
 
-def as_moved(cloud: GaussianCloud, ids: Tensor, support: float | None) -> Affine:
-    """A new object for the checks: nothing it could be compared with, only where it stands."""
-    return Affine(ids, np.eye(3), np.zeros(3), ids, support)
+def as_moved(rows: Tensor, support: float | None) -> Affine:
+    """A new object (its rows of the new cloud) for the checks: nothing to compare it with, only where it stands."""
+    return Affine(rows, np.eye(3), np.zeros(3), rows[:0], support)

@@ -51,17 +51,17 @@ class Duplicate(TargetedOp):
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         bodies = bodies_of(scene, selection)
-        arrivals, moved = Arrivals(scene), []
+        arrivals, moved = Arrivals(scene, scene.cloud), []
         notes = self.distance.assumption(scene.frame) if self.distance is not None else ()
         for body, offset, support in self._copies(scene, bodies, context):
             original = scene.cloud[body.rows]
             draft = Draft(original)
             shift(draft, torch.arange(len(original), device=original.device), offset)
             like = body.group if scene.language is not None and body.group >= 0 else None
-            ids = arrivals.add(draft.done(), body.label, body.box.axes, like)
-            moved.append(Affine(ids, np.eye(3), offset, original.ids, support))
+            rows = arrivals.add(draft.done(), body.label, body.box.axes, like)
+            moved.append(Affine(rows, np.eye(3), offset, body.rows, support))
         after, groups = arrivals.enter(context)
-        added = torch.cat([m.ids for m in moved])
+        added = arrivals.ids()
         if self.direction is not None:
             notes += bumps(after, tuple(moved), set(groups))
         said = f"{len(moved)} new of {self.target.describe()}"

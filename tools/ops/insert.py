@@ -42,7 +42,7 @@ class Insert(EditOp):
         return f"{self.count} {self.asset}" if self.count > 1 else self.asset
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
-        placer, arrivals, moved = Placer(scene, context), Arrivals(scene), []
+        placer, arrivals, moved = Placer(scene, context), Arrivals(scene, scene.cloud), []
         anchors = placer.anchors(self.place) if self.place is not None else []
         scale, start, notes = metre(scene, anchors), gaze(placer), dict[str, None]()
         for index in range(self.count):
@@ -52,10 +52,10 @@ class Insert(EditOp):
             cloud = set_down(piece, spot.foot, spot.axes)
             taken_by(cloud, scene, placer)
             hangs = self.place is None and piece.support in ("wall", "ceiling")
-            moved.append(as_moved(cloud, arrivals.add(cloud, piece.label, spot.axes), None if hangs else spot.support))
+            moved.append(as_moved(arrivals.add(cloud, piece.label, spot.axes), None if hangs else spot.support))
             notes |= dict.fromkeys(piece.notes)
         after, groups = arrivals.enter(context)
-        added = torch.cat([m.ids for m in moved])
+        added = arrivals.ids()
         query = Query(text=moved_label(arrivals), groups=groups)
         focus = Selection(query, "found", added, groups, (), f"{self.subject()}, just inserted")
         return Outcome(after, added=added, moved=tuple(moved), notes=tuple(notes), focus=focus)

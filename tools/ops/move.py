@@ -71,7 +71,7 @@ class Move(TargetedOp):
             return self._placed(scene, bodies, selection, context, self.place), said
         if self.toward is not None:
             goals = bodies_of(scene, context.resolve(scene, self.toward).require())
-            return [self._asked(scene, b, self._approach(scene, b, goals)) for b in bodies], said
+            return [self._asked(b, self._approach(scene, b, goals)) for b in bodies], said
         assert self.direction is not None
         way = heading(context.viewer, scene.frame, self.direction)
         if self.distance is not None:
@@ -79,7 +79,7 @@ class Move(TargetedOp):
         else:
             step = max(extent_along(b.box, way) for b in bodies)
             said = (f"no distance was given: moved by its own extent, {step:.3g} units",)
-        return [self._asked(scene, b, way * step) for b in bodies], said
+        return [self._asked(b, way * step) for b in bodies], said
 
     def _approach(self, scene: Scene, body: Body, goals: list[Body]) -> Array:
         """Level offset toward the nearest of the goals, by the distance asked or until just before it."""
@@ -111,12 +111,11 @@ class Move(TargetedOp):
             spot = placer.find(body.box.size, body.box.axes, place, body.foot(up))
             offset = spot.foot - body.foot(up)
             placer.take(solid_points(scene.cloud, body.rows) + offset, shifted_box(body.box, offset))
-            moved.append(self._asked(scene, body, offset, spot.support))
+            moved.append(self._asked(body, offset, spot.support))
         return moved
 
-    def _asked(self, scene: Scene, body: Body, offset: Array, support: float | None = None) -> Affine:
-        ids = scene.cloud.ids[body.rows]
-        return Affine(ids, np.eye(3), np.asarray(offset, dtype=np.float64), ids, support)
+    def _asked(self, body: Body, offset: Array, support: float | None = None) -> Affine:
+        return Affine(body.rows, np.eye(3), np.asarray(offset, dtype=np.float64), body.rows, support)
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         after = outcome.scene
@@ -129,10 +128,12 @@ class Move(TargetedOp):
     def _distance_kept(self, before: Scene, outcome: Outcome) -> Check:
         """The mean of the centres went as far as was said."""
         assert self.distance is not None
-        asked, mask = self.distance.in_units(before.frame), mask_of(before.cloud, outcome.touched)
-        step = outcome.scene.cloud.means[mask].to(torch.float64) - before.cloud.means[mask].to(torch.float64)
-        measured = float(torch.linalg.vector_norm(step, dim=1).mean()) if len(step) else 0.0
-        # float32 centres: a millionth of the coordinates, which may be far larger than the step.
-        bound = 1e-5 * max(1.0, asked, float(before.cloud.means[mask].abs().max()))
+        asked, rows = self.distance.in_units(before.frame), torch.cat([body.rows for body in outcome.moved])
+        was, now = (s.cloud.means[rows] for s in (before, outcome.scene))
+        measured = float(torch.linalg.vector_norm((now - was).mean(dim=0, dtype=torch.float64)))
+        if len(outcome.moved) > 1 and self.toward is not None:  # each thing went its own way
+            measured = float(torch.linalg.vector_norm(now - was, dim=1).mean(dtype=torch.float64))
+        # float32 centres: a few millionths of the coordinates, which may be far larger than the step.
+        bound = 1e-5 * max(1.0, asked, float(was.abs().max()))
         said = f"it moved {measured:.4g} of {asked:.4g} units"
         return at_most("distance", abs(measured - asked), bound, "units", said)

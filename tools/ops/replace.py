@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-import torch
-
 from ...gaussians.language.selection import Selection
 from ...gaussians.scene import Scene
 from ..base import AssetName, ColorName, Context, Outcome, TargetedOp
@@ -35,7 +33,7 @@ class Replace(TargetedOp):
         go = mask_of(scene.cloud, selection.ids)
         left = scene.cloud[~go]
         # Ids of what goes are not given out again: the arrivals are numbered above those of the whole scene.
-        arrivals, moved, notes = Arrivals(scene), [], dict[str, None]()
+        arrivals, moved, notes = Arrivals(scene, left), [], dict[str, None]()
         placer = Placer(scene, context, go, frozenset(b.group for b in bodies))
         for index, body in enumerate(bodies):
             wish = Wish(self.asset, self.color, context.seed + index, metre(scene, [body]))
@@ -43,11 +41,11 @@ class Replace(TargetedOp):
             spot = self._spot(placer, piece, body)
             cloud = set_down(piece, spot.foot, spot.axes)
             taken_by(cloud, scene, placer)
-            moved.append(as_moved(cloud, arrivals.add(cloud, piece.label, spot.axes), spot.support))
+            moved.append(as_moved(arrivals.add(cloud, piece.label, spot.axes), spot.support))
             notes |= dict.fromkeys((*piece.notes, *spot.notes))
         arrivals.scene = scene.replace(language=thinned(scene, left, scene.cloud.ids[go]))
-        after, groups = arrivals.enter(context, left)
-        added = torch.cat([m.ids for m in moved])
+        after, groups = arrivals.enter(context)
+        added = arrivals.ids()
         focus = selection_of(selection, added, groups, f"the new {self.asset}")
         return Outcome(
             after, added=added, removed=scene.cloud.ids[go], moved=tuple(moved), notes=tuple(notes), focus=focus

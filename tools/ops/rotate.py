@@ -42,8 +42,7 @@ class Rotate(TargetedOp):
         for body in bodies:
             offset = self._offset(scene, body, matrix)
             turn(draft, body.rows, matrix, offset)
-            ids = scene.cloud.ids[body.rows]
-            moved.append(Affine(ids, matrix, offset, ids))
+            moved.append(Affine(body.rows, matrix, offset, body.rows))
         cloud = draft.done()
         after = scene.replace(cloud=cloud, language=carried(scene, cloud, moved))
         notes = bumps(after, tuple(moved), {b.group for b in bodies})
