@@ -27,7 +27,7 @@ from .project import (
     Y,
     tile_rows,
     tile_span,
-)  # fmt: skip
+)
 
 DIGIT = 11  # bits sorted at once: 2048 counters stay in the first-level cache
 BUCKETS = 1 << DIGIT

@@ -8,7 +8,7 @@ A footprint's exponent is kept as a sum of squares (Cholesky factor of the inver
 quadratic form, and each row of an ellipse is an interval in closed form:
 `dx in slope * dy -+ sqrt(limit - (l3 dy)^2) / l1`, where limit is the q at which alpha falls to its minimum.
 Opacity goes into the exponent too: `alpha = exp(-8 (q + shift))`, so alpha's minimum is one constant, `Q_MAX`.
-Why 1/16: `blend.py` evaluates `exp(-8 q)` as the eighth power of a polynomial.
+Why 1/16: `simd.py` evaluates `exp(-8 q)` as the eighth power of a polynomial.
 """
 
 from __future__ import annotations
@@ -143,23 +143,9 @@ def project(worker, workers, means, quats, scales, opacities, sh, group, view, o
             left, top, touched, some = _tiles(ellipse, reach_x, view)
             if not some:
                 continue
-            x, y, z_ = _unit(dx, dy, dz)
-            finite = True
-            for channel in range(3):
-                value = HALF + _harmonics(n, channel, sh, x, y, z_)
-                finite = finite and abs(value) < HUGE
-                records[n, RED + channel] = max(value, ZERO)
-            if not finite:
+            if not _shade(records, n, sh, dx, dy, dz):
                 continue
-            l1 = ONE / ellipse.width
-            records[n, X], records[n, Y], records[n, L1] = ellipse.x, ellipse.y, l1
-            records[n, L2], records[n, L3], records[n, SHIFT] = (
-                -ellipse.slope * l1,
-                ellipse.l3,
-                view.q_max - ellipse.limit,
-            )
-            records[n, LIMIT], records[n, REACH_Y], records[n, SLOPE] = ellipse.limit, ellipse.reach_y, ellipse.slope
-            records[n, WIDTH], records[n, EXTREME], records[n, DEPTH] = ellipse.width, ellipse.extreme, z
+            _record(records, n, ellipse, view.q_max, z)
             bits[n, GROUP] = group[n]
             corner[n] = np.uint32(left) | (np.uint32(top) << np.uint32(16))
             mask[n] = touched
@@ -263,10 +249,31 @@ def _tiles(e, reach_x, view):  # type: ignore[no-untyped-def]
 
 
 @helper
-def _unit(x, y, z):  # type: ignore[no-untyped-def]
-    """The vector scaled to length 1."""
+def _record(records, n, e, q_max, z):  # type: ignore[no-untyped-def]
+    """Write the geometry of row `n`, whose ellipse is `e` and whose depth is `z`."""
+    l1 = ONE / e.width
+    records[n, X], records[n, Y], records[n, DEPTH] = e.x, e.y, z
+    records[n, L1], records[n, L2], records[n, L3] = l1, -e.slope * l1, e.l3
+    records[n, SHIFT], records[n, LIMIT] = q_max - e.limit, e.limit
+    records[n, REACH_Y], records[n, SLOPE], records[n, WIDTH], records[n, EXTREME] = (
+        e.reach_y,
+        e.slope,
+        e.width,
+        e.extreme,
+    )
+
+
+@helper
+def _shade(records, n, sh, x, y, z):  # type: ignore[no-untyped-def]
+    """Write the colour of row `n` seen along (x, y, z), `max(0, 0.5 + harmonics)`; returns whether it is finite."""
     inverse = ONE / math.sqrt(x * x + y * y + z * z)
-    return x * inverse, y * inverse, z * inverse
+    x, y, z = x * inverse, y * inverse, z * inverse
+    finite = True
+    for channel in range(3):
+        value = HALF + _harmonics(n, channel, sh, x, y, z)
+        finite = finite and abs(value) < HUGE
+        records[n, RED + channel] = max(value, ZERO)
+    return finite
 
 
 @helper
