@@ -7,7 +7,7 @@ PYTHON ?= python3
 VENV ?= .venv
 PIP_ARGS ?=
 DEMO ?= demo
-SEED ?= 0
+SEED ?= 1
 PYTEST_ARGS ?=
 
 BIN := $(VENV)/bin

@@ -166,6 +166,7 @@ class Demo:
                 continue
             self._play(session, turn, truth)
             cast.used.update(t.id for t in turn.about)
+            cast.last = turn.about[-1] if turn.about else cast.last
             if turn.text.startswith("remove") and turn.outcome == "edit":
                 cast.things = [t for t in cast.things if t not in turn.about]
 
@@ -174,12 +175,16 @@ class Demo:
 
         A sentence that would be misunderstood is passed over, and counted.
         """
+        mistaken: set[int] = set()
         for turn in itertools.islice(role(cast), TRIES):
+            if mistaken & {t.id for t in turn.about}:
+                continue
             fits, result = _tried(session, turn)
             overlap = _overlap(result, turn, truth) if result is not None else None
             if fits and (overlap is None or overlap >= AGREES):
                 return turn
             if fits:
+                mistaken |= {t.id for t in turn.about}
                 self.passed_over.append(f"{turn.text} (IoU {overlap:.2f})")
         return None
 

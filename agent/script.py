@@ -65,11 +65,13 @@ class Cast:
         things: visible ones, largest in the picture first.
         absent: names of kinds that are not in the room.
         used: ids of things that were spoken of; a new role prefers others.
+        last: what was spoken of last.
     """
 
     things: Sequence[Thing]
     absent: Sequence[str]
     used: set[int]
+    last: Thing | None = None
 
     def single(self, movable: bool = False) -> list[Thing]:
         """Things that are the only one of their kind, unused ones first."""
@@ -92,12 +94,14 @@ def _select(cast: Cast) -> Iterator[Turn]:
 
 
 def _repaint(cast: Cast) -> Iterator[Turn]:
-    yield from (Turn(f"make it {paint}") for paint in PAINTS)
+    color = cast.last.color if cast.last else ""
+    yield from (Turn(f"make it {paint}") for paint in PAINTS if color not in paint or not color)
 
 
 def _recolor(cast: Cast) -> Iterator[Turn]:
-    for i, t in enumerate(cast.single()):
-        yield Turn(f"paint the {t.kind} {PAINTS[(i + 3) % len(PAINTS)]}", about=(t,))
+    for t in cast.single():
+        paint = next(p for p in ("orange", "dark green") if t.color not in p)
+        yield Turn(f"paint the {t.kind} {paint}", about=(t,))
 
 
 def _delete(cast: Cast) -> Iterator[Turn]:
