@@ -38,7 +38,6 @@ F64 = NDArray[np.float64]
 MIN_OBJECT = 40  # surface points; smaller things are not asked about and not offered
 MOST_ASKED = 700  # nodes whose portraits are taken: bounds the time of a messy scene
 ASK_VIEWS = 3
-EVIDENCE = 1.0  # weight of the encoder's log-odds against the geometry's
 REACH = 6.0  # spacings within which an unassigned Gaussian joins the surface point it is nearest to
 
 
@@ -100,8 +99,9 @@ def segment(
     )
     nodes = merge_tree(graph)
     size = np.bincount(labels, minlength=count)
-    evidence = _evidence(scene, surface, labels, nodes, size, encoder, progress)
-    objects = [nodes[i].members for i in grouping.best_cut(nodes, evidence)]
+    points = np.array([sum(int(size[s]) for s in n.members) for n in nodes], dtype=np.int64)
+    evidence = _evidence(scene, surface, labels, nodes, points, encoder, progress)
+    objects = [nodes[i].members for i in grouping.best_cut(nodes, points, evidence)]
     total = np.stack([np.bincount(labels, weights=surface.lab[:, c], minlength=count) for c in range(3)], axis=1)
     lab: F64 = total / np.maximum(size, 1)[:, None]
     return labels, _things(objects, kind_of, lab, size, touching(labels, links))
@@ -114,21 +114,20 @@ def split_by(labels: NDArray[np.int32], kinds: NDArray[np.int8]) -> NDArray[np.i
 
 
 def _evidence(
-    scene: Scene, surface: Surface, labels: NDArray[np.int32], nodes: list[Node], size: NDArray[np.int64],
+    scene: Scene, surface: Surface, labels: NDArray[np.int32], nodes: list[Node], points: NDArray[np.int64],
     encoder: Encoder, progress: Progress,
 ) -> dict[int, float]:  # fmt: skip
     """Log-odds that a node is one whole thing, by its portraits, for the contested nodes."""
-    points = np.array([sum(int(size[s]) for s in n.members) for n in nodes], dtype=np.int64)
     wanted = grouping.contested(nodes, points >= MIN_OBJECT)
     same = grouping.alike(nodes, points)
     asked = sorted({int(same[i]) for i in wanted}, key=lambda i: (-points[i], i))[:MOST_ASKED]
-    rows = _rows_by_superpoint(surface, labels, len(size))
+    rows = _rows_by_superpoint(surface, labels, int(labels.max(initial=-1)) + 1)
     owned = [np.sort(np.concatenate([rows[s] for s in nodes[i].members])) for i in asked]
     clouds = [scene.cloud[torch.from_numpy(own)] for own in owned]
     middle = np.median(surface.points, axis=0).astype(np.float64)
     vectors = mean_vectors(encoder, clouds, scene.frame, middle, ASK_VIEWS, lambda share: progress("portraits", share))
     whole = np.clip(wholeness(encoder, vectors), 0.02, 0.98) if asked else np.zeros(0)
-    odds = {i: EVIDENCE * float(np.log(w / (1 - w))) for i, w in zip(asked, whole, strict=True)}
+    odds = {i: float(np.log(w / (1 - w))) for i, w in zip(asked, whole, strict=True)}
     return {i: odds[int(same[i])] for i in wanted if int(same[i]) in odds}
 
 

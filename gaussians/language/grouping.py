@@ -17,6 +17,7 @@ from .regions import LIGHTNESS, Node
 F64 = NDArray[np.float64]
 
 CONTESTED = (0.03, 0.985)  # merges outside these affinities are decided by geometry alone
+GEOMETRY = 0.6  # weight of a merge's log-odds against the encoder's
 SAME_SHARE = 0.92  # a node that holds this much of another looks the same
 PATCH_COLOR = 15.0  # Lab difference up to which touching patches of one object are one part
 PATCH_POINTS = 30  # surface points; smaller patches join the touching one they resemble most
@@ -51,30 +52,31 @@ def alike(nodes: Sequence[Node], points: NDArray[np.int64]) -> NDArray[np.int64]
     return same
 
 
-def best_cut(nodes: Sequence[Node], evidence: dict[int, float]) -> list[int]:
-    """The most probable set of disjoint nodes that covers every superpoint.
+def best_cut(nodes: Sequence[Node], points: NDArray[np.int64], evidence: dict[int, float]) -> list[int]:
+    """Disjoint nodes that cover every superpoint: the things the tree is made of.
 
-    Each merge inside a chosen node contributes log(affinity), each merge above the cut log(1 - affinity), each chosen
-    node its evidence (log-odds of being one whole thing; 0 where none was asked for). Exact, bottom up.
+    Bottom up, a node stays whole if its own evidence, plus what geometry says for its last merge, is at least the mean
+    evidence of the best cut below it, weighted by points. A mean, not a sum: two halves that each look like something
+    must not outvote the one thing they make.
+
+    Args:
+        points: `[len(nodes)]` surface points of each node.
+        evidence: log-odds of being one whole thing; 0 where none was asked for.
     """
-    best, whole, take = np.zeros(len(nodes)), np.zeros(len(nodes)), np.zeros(len(nodes), bool)
+    value, whole = np.zeros(len(nodes)), np.ones(len(nodes), bool)
     for i, node in enumerate(nodes):
-        if not node.children:
-            whole[i] = 0.0
-            best[i], take[i] = evidence.get(i, 0.0), True
-            continue
-        a = min(max(node.affinity, 1e-6), 1 - 1e-6)
-        whole[i] = np.log(a) + sum(whole[c] for c in node.children)
-        split = np.log(1 - a) + sum(best[c] for c in node.children)
-        joined = whole[i] + evidence.get(i, 0.0)
-        take[i] = joined >= split
-        best[i] = max(joined, split)
+        value[i] = evidence.get(i, 0.0)
+        if node.children:
+            a = min(max(node.affinity, 1e-4), 1 - 1e-4)
+            below = sum(float(points[c]) * value[c] for c in node.children) / max(float(points[i]), 1.0)
+            whole[i] = value[i] + GEOMETRY * np.log(a / (1 - a)) >= below
+            value[i] = value[i] if whole[i] else below
     children = {c for node in nodes for c in node.children}
     chosen: list[int] = []
     stack = [i for i in range(len(nodes)) if i not in children]
     while stack:
         i = stack.pop()
-        if take[i]:
+        if whole[i]:
             chosen.append(i)
         else:
             stack.extend(nodes[i].children)

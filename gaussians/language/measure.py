@@ -12,6 +12,7 @@ from ..scene import Frame
 from .field import Box
 from .surface import base_lab
 
+LIT = 0.8  # quantile of lightness that stands for an object's lit faces
 TRIM = 0.01  # of the Gaussians on each side may lie outside the box
 ANGLES = np.radians(np.arange(0.0, 90.0, 3.0))
 
@@ -49,7 +50,10 @@ def _yaw(plan: NDArray[np.float64]) -> float:
 
 
 def lab_of_cloud(cloud: GaussianCloud) -> Vec3:
-    """Median CIE Lab of the Gaussians, weighted by footprint and opacity."""
+    """CIE Lab of the Gaussians, weighted by footprint and opacity: medians, but for the lightness an upper quantile.
+
+    Light falls off on an object's sides and in its folds; what people call its colour is that of its lit faces.
+    """
     if not len(cloud):
         return (0.0, 0.0, 0.0)
     step = max(1, len(cloud) // 20_000)
@@ -58,13 +62,13 @@ def lab_of_cloud(cloud: GaussianCloud) -> Vec3:
     ordered = part.scales.sort(dim=1, descending=True).values
     weight = ordered[:, 0] * ordered[:, 1] * part.opacities
     weight = weight.clamp(max=float(torch.quantile(weight, 0.95)))
-    return _vec([_weighted_median(lab[:, c], weight) for c in range(3)])
+    return _vec([_weighted_quantile(lab[:, c], weight, q) for c, q in enumerate((LIT, 0.5, 0.5))])
 
 
-def _weighted_median(values: torch.Tensor, weight: torch.Tensor) -> float:
+def _weighted_quantile(values: torch.Tensor, weight: torch.Tensor, share: float) -> float:
     order = values.argsort()
     total = weight[order].cumsum(0)
-    return float(values[order[int(torch.searchsorted(total, total[-1] / 2).clamp(max=len(order) - 1))]])
+    return float(values[order[int(torch.searchsorted(total, total[-1] * share).clamp(max=len(order) - 1))]])
 
 
 def _vec(values: NDArray[np.float64] | list[float]) -> Vec3:

@@ -97,10 +97,10 @@ def _ground(surface: Surface, labels: NDArray[np.int32], flat: Level) -> NDArray
     weight = close & is_level
     rough = float(np.median(np.abs(above[weight] - np.median(above[weight]))))
     if rough > ROUGH * max(extent) * 0.25:
-        low: NDArray[np.bool_] = above < np.median(above[weight]) + min(
+        terrain: NDArray[np.bool_] = above < np.median(above[weight]) + min(
             max(3.0 * rough, KNOLL * max(extent)), 0.08 * max(extent)
         )
-        return low
+        return terrain
     offset = _mode(flat.points[weight, 2], surface.area[weight])
     near = np.abs(flat.points[:, 2] - offset) < max(1.5 * surface.spacing, 0.003 * max(extent))
     if near.sum() < 0.02 * len(surface):

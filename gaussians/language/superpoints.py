@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from .surface import Surface
 
 SCALE = 3.0  # k of the paper, in units of edge weight times points: larger gives larger superpoints
-MIN_POINTS = 12
+MIN_POINTS = 40  # of a superpoint; anything smaller joins the neighbour it differs least from
 COLOR_UNIT = 10.0  # Lab difference that counts as one edge unit
 NORMAL_UNIT = 0.35  # 1 - |cos| that counts as one
 NOISE = 3.0  # a scene whose neighbours typically differ (a noisy capture) gets units this many medians wide
