@@ -103,13 +103,15 @@ class _Resolver:
     def _own(self, query: Query) -> Selection:
         """The query without its set algebra."""
         if query.last:
-            if self.last is None or not len(self.last):
-                return nothing(query, "there is nothing that 'it' could mean yet; name the object")
-            return replace(self.last, query=query, verdict="found")
+            there = self.last.ids[torch.isin(self.last.ids, self.scene.cloud.ids)] if self.last else torch.zeros(0)
+            if self.last is None or not len(there):
+                return nothing(query, "there is nothing that 'it' could mean (any more); name the object")
+            return replace(self.last, query=query, verdict="found", ids=there)
         if query.groups:
             return self._explicit(query)
         if query.text in ALL and not query.colors:
-            return self._take(query, [_candidate(g, {}) for g in self._alive("all") if g.parent < 0])
+            whole = self._take(query, [_candidate(g, {}) for g in self._alive("all") if g.parent < 0])
+            return replace(whole, ids=self.scene.cloud.ids.sort().values)  # with what belongs to no group
         ranked = self._rank(query)
         anchors_problem = next((r for r in ranked if isinstance(r, Selection)), None)
         if anchors_problem is not None:
@@ -118,6 +120,7 @@ class _Resolver:
         matches = [c for c in candidates if self._holds(c)]
         if (
             query.colors
+            and query.text not in STRUCTURE
             and (query.text in PARTS or not matches)
             and (by_color := self._by_color_alone(query)) is not None
         ):
