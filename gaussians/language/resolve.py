@@ -21,7 +21,8 @@ from ..errors import BackendError
 from ..scene import Scene
 from . import attributes, relations
 from .calibration import doubt, probability
-from .field import Box, Group, LanguageField
+from .field import Group, LanguageField
+from .measure import box_of
 from .patches import Patch, patches
 from .query import Query, Relation
 from .selection import Candidate, Selection, Verdict, nothing
@@ -203,7 +204,8 @@ class _Resolver:
             found = self.select(query)
             if found.verdict != "found":
                 return found
-            anchors.extend(self.field.groups[i] for i in found.groups)
+            rows = found.mask(self.scene.cloud)  # found by colour alone, it has no group
+            anchors.extend([self.field.groups[i] for i in found.groups] or [self._stand_in(rows)])
         if relation.name == "between" and len(anchors) < 2:
             return nothing(relation.anchors[0], "'between' needs two things")
         return anchors
@@ -214,7 +216,7 @@ class _Resolver:
         if relation.name == "between":
             return relations.score("between", group, anchors, self.stand)
         if relation.name == "part_of":
-            return float(any(group.parent == a.id for a in anchors))
+            return float(any(group.parent == a.id >= 0 for a in anchors))
         best = 0.0
         for anchor in anchors:
             stand = self.stand if relation.frame == "viewer" else relations.object_stand(anchor, self.stand)
@@ -350,12 +352,18 @@ class _Resolver:
 
     def _place_holds(self, query: Query, place: Patch) -> bool:
         """Whether a place stands in every asked relation."""
-        stand_in = _as_group(place, self.scene.frame.basis())
+        stand_in = self._stand_in(torch.from_numpy(place.rows))
         for relation in query.relations:
             anchors = self._anchors(relation)
             if isinstance(anchors, Selection) or self._relation_term(relation, stand_in, anchors) < relations.HOLDS:
                 return False
         return True
+
+    def _stand_in(self, rows: torch.Tensor) -> Group:
+        """Some Gaussians (mask or indices of rows) as something that relations can be asked of."""
+        part = self.scene.cloud[rows]
+        box = box_of(part, self.scene.frame)
+        return Group(-1, "part", -1, "", 0.0, box, (0.0, 0.0, 0.0), len(part), 0, 0.0)
 
     def _places(self, query: Query, places: Sequence[Patch], reason: str) -> Selection:
         color = query.colors[0]
@@ -395,13 +403,6 @@ def _candidate(group: Group, terms: dict[str, float]) -> Candidate:
 
 def _unconfirmed(query: Query) -> str:
     return f"{query.text!r} could not be confirmed by the encoder"
-
-
-def _as_group(place: Patch, basis: NDArray[np.float64]) -> Group:
-    """A place of a colour as something that relations can be asked of."""
-    axes = tuple((float(x), float(y), float(z)) for x, y, z in basis)
-    box = Box(place.center, (axes[0], axes[1], axes[2]), place.size)
-    return Group(-1, "part", -1, "", 0.0, box, (0.0, 0.0, 0.0), len(place.rows), 0, 0.0)
 
 
 def _union(a: Selection, b: Selection) -> Selection:

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from scenewright.gaussians.language.grouping import (
     CONTESTED,
+    GEOMETRY,
     PATCH_COLOR,
     PATCH_POINTS,
     SAME_SHARE,
@@ -53,42 +56,71 @@ def cuts(nodes: Sequence[Node], roots: list[int]) -> Iterator[list[int]]:
         yield from cuts(nodes, [*nodes[first].children, *rest])
 
 
-def worth(nodes: Sequence[Node], cut: list[int], evidence: dict[int, float]) -> float:
-    """The score of a cut, straight from the definition: every merge is either inside a chosen node or above the cut."""
-    inside: set[int] = set()
-    stack = list(cut)
-    while stack:
-        i = stack.pop()
-        inside.add(i)
-        stack.extend(nodes[i].children)
-    total = sum(evidence.get(i, 0.0) for i in cut)
-    for i, node in enumerate(nodes):
-        if node.children:
-            a = min(max(node.affinity, 1e-6), 1 - 1e-6)  # a certain merge is still only nearly certain
-            total += math.log(a if i in inside else 1 - a)
-    return total
+def stays_whole(nodes: Sequence[Node], i: int, points: NDArray[np.int64], evidence: dict[int, float]) -> bool:
+    """The rule, straight from its words: own evidence and geometry against the mean evidence of the best below."""
+    if not nodes[i].children:
+        return True
+    a = min(max(nodes[i].affinity, 1e-4), 1 - 1e-4)  # a certain merge is still only nearly certain
+    below = [j for c in nodes[i].children for j in best_below(nodes, c, points, evidence)]
+    mean = sum(float(points[j]) * evidence.get(j, 0.0) for j in below) / float(points[i])
+    return evidence.get(i, 0.0) + GEOMETRY * math.log(a / (1 - a)) >= mean - 1e-12
 
 
-@given(forests(), st.dictionaries(st.integers(0, 14), st.floats(-6, 6)))
-def test_the_best_cut_is_the_best_of_all_cuts(nodes: list[Node], evidence: dict[int, float]) -> None:
-    chosen = best_cut(nodes, evidence)
-    assert chosen in [sorted(c) for c in cuts(nodes, roots_of(nodes))]
-    best = max(worth(nodes, c, evidence) for c in cuts(nodes, roots_of(nodes)))
-    assert worth(nodes, chosen, evidence) == pytest.approx(best, abs=1e-9)  # sums of a few logarithms in float64
+def best_below(nodes: Sequence[Node], i: int, points: NDArray[np.int64], evidence: dict[int, float]) -> list[int]:
+    """Slow reference: the best cut of the tree under one node, by asking again at every level."""
+    if stays_whole(nodes, i, points, evidence):
+        return [i]
+    return [j for c in nodes[i].children for j in best_below(nodes, c, points, evidence)]
 
 
-@given(forests(), st.dictionaries(st.integers(0, 14), st.floats(-6, 6)))
-def test_a_cut_covers_every_superpoint_exactly_once(nodes: list[Node], evidence: dict[int, float]) -> None:
-    members = [m for i in best_cut(nodes, evidence) for m in nodes[i].members]
+def points_of(nodes: Sequence[Node], weights: Sequence[int]) -> NDArray[np.int64]:
+    return np.array([sum(weights[m] for m in n.members) for n in nodes], dtype=np.int64)
+
+
+sizes = st.lists(st.integers(1, 60), min_size=8, max_size=8)
+odds = st.dictionaries(st.integers(0, 14), st.integers(-24, 24).map(lambda v: v / 4))
+
+
+@given(forests(), sizes, odds)
+def test_the_best_cut_follows_its_rule_at_every_node(
+    nodes: list[Node], weights: list[int], evidence: dict[int, float]
+) -> None:
+    points = points_of(nodes, weights)
+    expected = sorted(j for r in roots_of(nodes) for j in best_below(nodes, r, points, evidence))
+    assert best_cut(nodes, points, evidence) == expected
+    assert expected in [sorted(c) for c in cuts(nodes, roots_of(nodes))]
+
+
+@given(forests(), sizes, odds)
+def test_a_cut_covers_every_superpoint_exactly_once(
+    nodes: list[Node], weights: list[int], evidence: dict[int, float]
+) -> None:
+    members = [m for i in best_cut(nodes, points_of(nodes, weights), evidence) for m in nodes[i].members]
     assert sorted(members) == sorted(m for i in roots_of(nodes) for m in nodes[i].members)
+
+
+@given(forests(), sizes, odds)
+def test_where_geometry_is_neutral_no_cut_has_a_higher_mean_evidence(
+    nodes: list[Node], weights: list[int], evidence: dict[int, float]
+) -> None:
+    points = points_of(nodes, weights)
+    even = [replace(n, affinity=0.5) for n in nodes]
+
+    def mean(cut: list[int]) -> float:
+        return sum(float(points[i]) * evidence.get(i, 0.0) for i in cut)
+
+    chosen = mean(best_cut(even, points, evidence))
+    assert chosen == pytest.approx(max(mean(c) for c in cuts(even, roots_of(even))), abs=1e-9)
 
 
 def test_without_evidence_geometry_decides_and_strong_evidence_overrules_it() -> None:
     nodes = [Node((0,), (), 1.0), Node((1,), (), 1.0), Node((0, 1), (0, 1), 0.8)]
-    assert best_cut(nodes, {}) == [2]
-    assert best_cut(nodes, {2: -2.0}) == [0, 1]  # log(0.8) - 2 is less than log(0.2)
-    assert best_cut(nodes, {0: 2.0}) == [0, 1]
-    assert best_cut([], {}) == []
+    points = np.array([50, 50, 100])
+    assert best_cut(nodes, points, {}) == [2]
+    assert best_cut(nodes, points, {2: -6.0}) == [0, 1]
+    assert best_cut(nodes, points, {0: 6.0, 1: 6.0, 2: 6.0}) == [2]  # two likely halves do not outvote a likely whole
+    assert best_cut(nodes, points, {0: 6.0, 1: 6.0}) == [0, 1]
+    assert best_cut([], np.zeros(0, np.int64), {}) == []
 
 
 def test_only_what_is_neither_surely_split_nor_surely_swallowed_is_contested() -> None:
@@ -103,7 +135,7 @@ def test_only_what_is_neither_surely_split_nor_surely_swallowed_is_contested() -
 
 @given(forests(), st.lists(st.integers(1, 60), min_size=8, max_size=8))
 def test_alike_points_upwards_to_much_the_same_points(nodes: list[Node], weights: list[int]) -> None:
-    points = np.array([sum(weights[m] for m in n.members) for n in nodes], dtype=np.int64)
+    points = points_of(nodes, weights)
     same = alike(nodes, points)
     parent = {c: i for i, n in enumerate(nodes) for c in n.children}
     for i, target in enumerate(same.tolist()):
