@@ -13,7 +13,7 @@ from .terminal import terminal
 
 if TYPE_CHECKING:
     from ..gaussians.language.encoders import Encoder
-    from ..gaussians.scene import Scene
+    from ..gaussians.scene import Frame, Scene
     from .session import Session
 
 
@@ -28,6 +28,7 @@ class Opening:
         log: session log to append to, or None.
         seed: what varies between two inserted things of a kind.
         pixel_checks: compare the viewer's pictures before and after each operation.
+        up, metres_per_unit: what the user says of the scene's frame; a saved field made for another is not used.
     """
 
     path: Path
@@ -38,6 +39,8 @@ class Opening:
     log: Path | None = None
     seed: int = 0
     pixel_checks: bool = False
+    up: str | None = None
+    metres_per_unit: float | None = None
 
 
 def open_session(opening: Opening) -> tuple[Session, bool]:
@@ -50,11 +53,12 @@ def open_session(opening: Opening) -> tuple[Session, bool]:
     """
     from ..gaussians.files import load_with_report
     from .session import Session
-    from .views import choose_view
+    from .views import choose_view, with_frame
 
     scene, report = load_with_report(opening.path)
     for note in report.notes:
         terminal.say(f"note: {note}")
+    scene = with_frame(scene, opening.up, opening.metres_per_unit)
     scene, encoder = _with_saved_field(scene, opening)
     session = Session(
         scene,
@@ -79,7 +83,15 @@ def _with_saved_field(scene: Scene, opening: Opening) -> tuple[Scene, str | Enco
     if embedded is None or embedded.language is None:
         return scene, opening.encoder
     encoder = encoders.load(opening.encoder)
+    if not _agrees(scene.frame, embedded.frame):
+        return scene, encoder
     if embedded.language.encoder == encoder.fingerprint:
         return embedded, encoder
     terminal.say(f"note: the saved language field is of encoder {embedded.language.encoder}; embedding again")
     return scene, encoder
+
+
+def _agrees(said: Frame, saved: Frame) -> bool:
+    """Whether a field's frame is what the user said of it, as far as anything was said."""
+    up = said.up_source != "given" or max(abs(a - b) for a, b in zip(said.up, saved.up, strict=True)) < 1e-6
+    return up and (said.scale_source != "given" or said.metres_per_unit == saved.metres_per_unit)

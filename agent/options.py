@@ -44,4 +44,8 @@ View = Annotated[
     ),
 ]  # fmt: skip
 Size = Annotated[str | None, typer.Option("--size", metavar="WxH", help="Size of pictures in pixels, e.g. 1280x720.")]
+Up = Annotated[str | None, typer.Option("--up", metavar="X,Y,Z", help="Which way is up, if it is guessed wrongly.")]
+Scale = Annotated[
+    float | None, typer.Option("--metres-per-unit", metavar="M", help="The scene's scale, where its file says nothing.")
+]
 Seed = Annotated[int, typer.Option("--seed", help="What varies between two runs; the same seed gives the same bytes.")]

@@ -51,6 +51,22 @@ def default_view(scene: Scene) -> Camera:
     return default_viewer(scene, *PICTURE)
 
 
+def with_frame(scene: Scene, up: str | None, metres_per_unit: float | None) -> Scene:
+    """The scene with the up direction ("0,0,1") and scale that the user gives; None leaves each as it is.
+
+    Raises:
+        UserError: the direction is none, or the scale is not positive.
+    """
+    from dataclasses import replace
+
+    frame = scene.frame
+    if up is not None:
+        frame = replace(frame, up=_point(up), up_source="given", floor=None)
+    if metres_per_unit is not None:
+        frame = replace(frame, metres_per_unit=metres_per_unit, scale_source="given")
+    return scene.replace(frame=frame)
+
+
 def parse_size(text: str) -> tuple[int, int]:
     """ "1280x720" as `(1280, 720)`.
 

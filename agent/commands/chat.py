@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..options import Debug, Encoder, Json, Log, Planner, SceneFile, Seed, View
+from ..options import Debug, Encoder, Json, Log, Planner, Scale, SceneFile, Seed, Up, View
 from ..terminal import terminal
 
 
@@ -10,6 +10,8 @@ def command(
     scene: SceneFile,
     planner: Planner = "auto",
     encoder: Encoder = "auto",
+    up: Up = None,
+    metres_per_unit: Scale = None,
     view: View = "auto",
     log: Log = None,
     seed: Seed = 0,
@@ -20,7 +22,7 @@ def command(
     from ..chat import Chat
     from ..opening import Opening, open_session
 
-    session, _ = open_session(Opening(scene, planner, encoder, view, None, log, seed))
+    session, _ = open_session(Opening(scene, planner, encoder, view, None, log, seed, False, up, metres_per_unit))
     try:
         Chat(session, terminal).run()
     finally:

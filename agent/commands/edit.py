@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import Debug, Encoder, Force, Json, Log, Output, Planner, SceneFile, Seed, Size, View
+from ..options import Debug, Encoder, Force, Json, Log, Output, Planner, Scale, SceneFile, Seed, Size, Up, View
 from ..stopwatch import timed
 from ..terminal import terminal
 
@@ -43,6 +43,8 @@ def command(
     replay: Annotated[
         Path | None, typer.Option("--replay", metavar="LOG", help="Carry out what the last session in a log did.")
     ] = None,
+    up: Up = None,
+    metres_per_unit: Scale = None,
     view: View = "auto",
     size: Size = None,
     planner: Planner = "auto",
@@ -66,7 +68,8 @@ def command(
     _refuse_existing(None if dry_run else output, pictures, force)
     started = time.perf_counter()
     seconds: dict[str, float] = {}
-    opening = Opening(scene, planner, encoder, view, size, None if dry_run else log, seed, pixel_checks=True)
+    kept_log = None if dry_run else log
+    opening = Opening(scene, planner, encoder, view, size, kept_log, seed, True, up, metres_per_unit)
     with timed(seconds, "open"):
         session, had_field = open_session(opening)
     targets = _Targets(None if dry_run else output, pictures, force, had_field)

@@ -4,29 +4,35 @@ from __future__ import annotations
 
 import time
 
-from ..options import Debug, Encoder, Force, Json, SceneFile
+from ..options import Debug, Encoder, Force, Json, Scale, SceneFile, Up
 from ..terminal import terminal
 
 
 def command(
     scene: SceneFile,
     encoder: Encoder = "auto",
+    up: Up = None,
+    metres_per_unit: Scale = None,
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
     """Embed language in a scene and save the field beside it, so that later commands start at once.
 
-    A saved field is used as long as the scene file is the very one it was made for. --force embeds again.
+    A saved field is used as long as the scene file is the very one it was made for. --force embeds again, and so do
+    --up and --metres-per-unit, which are kept with the field.
     """
     from ...gaussians.files import load
     from ...gaussians.language import encoders
     from ...gaussians.language.embed import embed
     from ...gaussians.language.store import load_field, save_field
+    from ..views import with_frame
 
     started = time.perf_counter()
     loaded, chosen = load(scene), encoders.load(encoder)
-    known = None if force else load_field(loaded, scene, chosen.fingerprint)
+    loaded = with_frame(loaded, up, metres_per_unit)
+    again = force or up is not None or metres_per_unit is not None
+    known = None if again else load_field(loaded, scene, chosen.fingerprint)
     embedded = known or embed(loaded, chosen, progress=terminal.progress)
     path = None if known else save_field(embedded, scene)
     language = embedded.language

@@ -246,6 +246,27 @@ def test_a_field_of_another_encoder_is_not_used(
     assert answer.code == 130 and asked == ["other:1"] and "embedding again" in answer.err
 
 
+def test_a_given_frame_is_used_and_a_field_for_another_is_not(
+    call: Any, room: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from scenewright.gaussians.language import embed as module
+
+    asked = []
+
+    def embed(scene: Scene, encoder: Any, progress: Any = None) -> Scene:
+        asked.append((scene.frame.up, scene.frame.up_source, scene.frame.metres_per_unit))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "embed", embed)
+    same = call("edit", room, "delete the green thing", "--dry-run", "--up", "0,0,1", "--metres-per-unit", "1")
+    assert same.code == 0 and not asked
+    assert call("edit", room, "delete the green thing", "--dry-run", "--up", "0,2,0").code == 130
+    assert call("embed", room, "--metres-per-unit", "0.5").code == 130
+    assert [a[0] for a in asked] == [(0, 1, 0), (0, 0, 1)] and asked[0][1] == "given" and asked[1][2] == 0.5
+    for wrong in (["--up", "0,0"], ["--up", "0,0,0"], ["--metres-per-unit", "-1"]):
+        assert call("embed", room, *wrong).code == 2
+
+
 def test_doctor(call: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     answer = call("doctor", "--json")
     assert answer.code == 0 and answer.data["machine"]["python"]
