@@ -85,14 +85,12 @@ def collision_free(after: Scene, moved: tuple[Affine, ...]) -> Check | None:
     return at_most("no collision", worst, bound, "Gaussians", f"{worst} points of other things are inside it")
 
 
-def bumps(after: Scene, moved: tuple[Affine, ...], groups: set[int]) -> tuple[str, ...]:
+def bumps(after: Scene, groups: set[int]) -> tuple[str, ...]:
     """Notes about objects whose boxes a freely moved thing now stands in; moving by a distance does not forbid it."""
     notes = []
-    for body in moved:
-        points = solid_points(after.cloud, body.rows)
-        if not len(points):
-            continue
-        box = box_of(points, after.frame)
+    for group in sorted(g for g in groups if g >= 0):
+        assert after.language is not None
+        box = after.language.groups[group].box
         for label, other in neighbours(after, groups):
             if overlap(box, other) > 0.1 * min(*box.size, *other.size):
                 notes.append(f"it now overlaps the {label or 'thing beside it'}")

@@ -103,8 +103,9 @@ def hits(placed: Array, others: NDArray[np.float32], box: Box, clear: float) -> 
 
     Boxes first: only points within the thing's box are looked at; then both go into voxels a 16th of its size.
     """
-    local = box.local(others)
     half = np.array(box.size) / 2
+    near = (np.abs(others - np.array(box.center, dtype=np.float32)) <= np.linalg.norm(half)).all(axis=1)
+    local = box.local(others[near])
     inside = (np.abs(local) <= half).all(axis=1) & (local[:, 2] > clear - half[2])
     if not inside.any():
         return 0

@@ -6,6 +6,7 @@ Knows numbers. Refuses to know words. Colours are those of the constant harmonic
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import torch
@@ -17,7 +18,7 @@ from ..gaussians.cloud import GaussianCloud
 from ..gaussians.color import rgb_to_lab
 from ..gaussians.harmonics import dc_to_color
 
-SAMPLE = 1 << 15  # rows a colour is measured on: its mean is then known to about 1/180 of the spread
+SAMPLE = 1 << 13  # rows a colour is measured on: its mean is then known to about 1/90 of the spread
 OPAQUE = 0.3  # below this a Gaussian is haze rather than something one could touch
 
 
@@ -33,6 +34,7 @@ class Sample:
     rgb: Tensor
     weight: Tensor
 
+    @cached_property
     def lab(self) -> Tensor:
         """`[M, 3]` of the colours as shown (clamped to the display)."""
         return rgb_to_lab(self.rgb.clamp(0, 1))
@@ -58,12 +60,12 @@ def sample(cloud: GaussianCloud, rows: Tensor, size: int = SAMPLE) -> Sample:
 
 def mean_lab(taken: Sample) -> Tensor:
     """`[3]` float64, weighted mean in CIE Lab of the colours as shown."""
-    return (taken.weight[:, None] * taken.lab()).sum(dim=0)
+    return (taken.weight[:, None] * taken.lab).sum(dim=0)
 
 
 def lightness_spread(taken: Sample) -> float:
     """Weighted standard deviation of Lab lightness: how much shading and texture there is."""
-    lightness = taken.lab()[:, 0]
+    lightness = taken.lab[:, 0]
     mean = (taken.weight * lightness).sum()
     return float((taken.weight * (lightness - mean) ** 2).sum().sqrt())
 
@@ -72,7 +74,7 @@ def median_lab(taken: Sample) -> Vec3:
     """Weighted median in CIE Lab, channel by channel: what the language field stores of a group."""
     if not len(taken.weight):
         return (0.0, 0.0, 0.0)
-    lab = taken.lab()
+    lab = taken.lab
     values = []
     for channel in range(3):
         order = lab[:, channel].argsort()

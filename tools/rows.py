@@ -15,7 +15,8 @@ from ..gaussians.cloud import GaussianCloud
 from ..gaussians.language.selection import Selection
 
 _DENSE = 8  # ids spread over at most this many times the rows are looked up in a table
-_CHUNK = 1 << 16  # rows compared at a time: the copies stay a few MB, whatever the cloud's size
+_CHUNK = 1 << 16  # rows changed at a time: intermediates stay a few MB, whatever the cloud's size
+_CACHE = 1 << 19  # bytes compared at a time: they stay in a core's cache
 
 
 def mask_of(cloud: GaussianCloud, ids: Tensor) -> Tensor:
@@ -128,9 +129,9 @@ def _mark(column: Tensor, other: Tensor, kept: Tensor | None, differs: Tensor) -
     if column.shape[1:] != other.shape[1:]:
         differs.fill_(True)
         return True
-    found = False
-    for start in range(0, len(differs), _CHUNK):
-        end = min(start + _CHUNK, len(differs))
+    found, step = False, max(1, _CACHE // (column.element_size() * max(1, column[0].numel() if len(column) else 1)))
+    for start in range(0, len(differs), step):
+        end = min(start + step, len(differs))
         a = column[start:end] if kept is None else column.index_select(0, kept[start:end])
         a, b = _bits(a), _bits(other[start:end])
         if not torch.equal(a, b):

@@ -19,7 +19,7 @@ from .rows import Draft
 
 Array = NDArray[np.float64]
 _SWEEPS = 8  # Jacobi converges quadratically; float32 columns are orthogonal after 4 or 5
-_ROWS = 1 << 15
+_ROWS = 1 << 13  # Gaussians decomposed at a time: their columns stay in a core's cache
 
 
 def axis_rotation(axis: Array, degrees: float) -> Array:
@@ -89,7 +89,8 @@ def stretched(quats: Tensor, scales: Tensor, matrix: Array) -> tuple[Tensor, Ten
     thin axis of a flat Gaussian keeps its digits, which the eigenvalues of A Σ Aᵀ in float32 would lose.
     """
     a = torch.from_numpy(np.asarray(matrix)).to(quats.device, torch.float32)
-    columns = list(((a @ to_matrix(quats)) * scales[:, None, :]).unbind(dim=2))  # three [M, 3]
+    # Component-major, so that every operation below runs over contiguous rows: three columns [3, M].
+    columns = [c.contiguous() for c in ((a @ to_matrix(quats)) * scales[:, None, :]).permute(2, 1, 0)]
     for _ in range(_SWEEPS):
         worst = 0.0
         for i, j in ((0, 1), (0, 2), (1, 2)):
@@ -97,27 +98,25 @@ def stretched(quats: Tensor, scales: Tensor, matrix: Array) -> tuple[Tensor, Ten
             worst = max(worst, off)
         if worst < 1e-6:  # cosine between columns: float32 cannot do better
             break
-    lengths = torch.stack([torch.linalg.vector_norm(c, dim=1) for c in columns], dim=1).clamp(min=1e-20)
-    order = lengths.argsort(dim=1, descending=True)
-    big, mid, _ = (
-        torch.stack(columns, dim=1).gather(1, order[:, k, None, None].expand(-1, 1, 3)).squeeze(1) for k in range(3)
-    )
+    stacked = torch.stack(columns)  # [3 columns, 3, M]
+    lengths = torch.linalg.vector_norm(stacked, dim=1).clamp(min=1e-20)
+    order = lengths.argsort(dim=0, descending=True)
+    big, mid = (stacked.gather(0, order[k].expand(1, 3, -1)).squeeze(0) for k in range(2))
     # The two longest columns are the best known; the third direction follows and is right-handed by construction.
-    first = big / torch.linalg.vector_norm(big, dim=1, keepdim=True).clamp(min=1e-20)
-    third = torch.linalg.cross(first, mid)
-    third = third / torch.linalg.vector_norm(third, dim=1, keepdim=True).clamp(min=1e-20)
-    axes = torch.stack([first, torch.linalg.cross(third, first), third], dim=2)
-    return normalize(from_matrix(axes)), lengths.gather(1, order)
+    first = big / torch.linalg.vector_norm(big, dim=0).clamp(min=1e-20)
+    third = torch.linalg.cross(first, mid, dim=0)
+    third = third / torch.linalg.vector_norm(third, dim=0).clamp(min=1e-20)
+    axes = torch.stack([first, torch.linalg.cross(third, first, dim=0), third], dim=2)  # [3, M, 3 axes]
+    return normalize(from_matrix(axes.transpose(0, 1).contiguous())), lengths.gather(0, order).T.contiguous()
 
 
 def _orthogonalize(x: Tensor, y: Tensor) -> tuple[Tensor, Tensor, float]:
-    """Turn columns `[M, 3]` in their plane until they are orthogonal; with the largest cosine found before."""
-    xx, yy, xy = (x * x).sum(1), (y * y).sum(1), (x * y).sum(1)
-    cosine = float((xy.abs() / (xx * yy).sqrt().clamp(min=1e-30)).max()) if len(x) else 0.0
-    zeta = (yy - xx) / (2 * torch.where(xy == 0, torch.ones_like(xy), xy))
-    t = torch.sign(zeta) / (zeta.abs() + torch.sqrt(1 + zeta * zeta))
-    t = torch.where(xy == 0, torch.zeros_like(t), torch.where(zeta == 0, torch.ones_like(t), t))
+    """Turn columns `[3, M]` in their plane until they are orthogonal; with the largest cosine found before."""
+    xx, yy, xy = (p[0] * q[0] + p[1] * q[1] + p[2] * q[2] for p, q in ((x, x), (y, y), (x, y)))
+    cosine = float((xy.abs() * (xx * yy).clamp(min=1e-38).rsqrt()).max()) if x.shape[1] else 0.0
+    apart = xy == 0
+    zeta = (yy - xx) / (2 * xy).masked_fill(apart, 1.0)
+    t = torch.copysign(1 / (zeta.abs() + torch.sqrt(1 + zeta * zeta)), zeta).masked_fill(apart, 0.0)
     c = torch.rsqrt(1 + t * t)
-    s = (c * t)[:, None]
-    c = c[:, None]
+    s = c * t
     return c * x - s * y, s * x + c * y, cosine

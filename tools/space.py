@@ -23,7 +23,7 @@ from .measure import reach, solid_points
 from .rows import rows_of
 
 Array = NDArray[np.float64]
-_CALIPERS = 4000  # points the footprint's orientation is found on; more do not change it
+_CALIPERS = 1500  # points the footprint's orientation is found on; more do not change it
 
 
 @dataclass(frozen=True, eq=False)

@@ -67,7 +67,7 @@ def test_twice_is_once(asked: str) -> None:
     before = shaded("brown")
     once = Sample(toward_color(before, lab(asked))(before.rgb), before.weight)
     twice = toward_color(once, lab(asked))(once.rgb)
-    moved = torch.linalg.vector_norm(rgb_to_lab(twice.clamp(0, 1)) - once.lab(), dim=1)
+    moved = torch.linalg.vector_norm(rgb_to_lab(twice.clamp(0, 1)) - once.lab, dim=1)
     assert float(moved.mean()) < 2  # below what an eye tells apart (ΔE 2.3); the mean is fitted, not solved
 
 

@@ -63,7 +63,7 @@ class Duplicate(TargetedOp):
         after, groups = arrivals.enter(context)
         added = arrivals.ids()
         if self.direction is not None:
-            notes += bumps(after, tuple(moved), set(groups))
+            notes += bumps(after, set(groups))
         said = f"{len(moved)} new of {self.target.describe()}"
         focus = selection_of(selection, added, groups, said)
         return Outcome(after, added=added, moved=tuple(moved), notes=notes, focus=focus)

@@ -59,7 +59,7 @@ class Move(TargetedOp):
         cloud = draft.done()
         after = scene.replace(cloud=cloud, language=carried(scene, cloud, moved))
         if self.place is None:
-            notes += bumps(after, tuple(moved), {b.group for b in bodies})
+            notes += bumps(after, {b.group for b in bodies})
         return Outcome(after, touched=selection.ids, moved=tuple(moved), notes=notes)
 
     def _moves(

@@ -45,7 +45,7 @@ class Rotate(TargetedOp):
             moved.append(Affine(body.rows, matrix, offset, body.rows))
         cloud = draft.done()
         after = scene.replace(cloud=cloud, language=carried(scene, cloud, moved))
-        notes = bumps(after, tuple(moved), {b.group for b in bodies})
+        notes = bumps(after, {b.group for b in bodies})
         return Outcome(after, touched=selection.ids, moved=tuple(moved), notes=notes)
 
     def _offset(self, scene: Scene, body: Body, matrix: Array) -> Array:

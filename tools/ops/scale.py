@@ -45,7 +45,7 @@ class Scale(TargetedOp):
             moved.append(Affine(body.rows, matrix, offset, body.rows))
         cloud = draft.done()
         after = scene.replace(cloud=cloud, language=carried(scene, cloud, moved))
-        notes = bumps(after, tuple(moved), {b.group for b in bodies}) if self.factor > 1 else ()
+        notes = bumps(after, {b.group for b in bodies}) if self.factor > 1 else ()
         return Outcome(after, touched=selection.ids, moved=tuple(moved), notes=notes)
 
     def _axis(self, body: Body, across: Array) -> Array | None:
