@@ -126,7 +126,7 @@ def _evidence(
     clouds = [scene.cloud[torch.from_numpy(own)] for own in owned]
     middle = np.median(surface.points, axis=0).astype(np.float64)
     vectors = mean_vectors(encoder, clouds, scene.frame, middle, ASK_VIEWS, lambda share: progress("portraits", share))
-    whole = np.clip(wholeness(encoder, vectors), 0.02, 0.98) if asked else np.zeros(0)
+    whole = np.clip(wholeness(encoder, vectors), 0.001, 0.999) if asked else np.zeros(0)
     odds = {i: float(np.log(w / (1 - w))) for i, w in zip(asked, whole, strict=True)}
     return {i: odds[int(same[i])] for i in wanted if int(same[i]) in odds}
 

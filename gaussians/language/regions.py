@@ -1,7 +1,7 @@
 """Regions of the surface that grow by merging: their statistics, the features of a border, and the merge tree.
 
-Knows geometry and colour. What makes two touching regions one thing is a logistic rule over border features whose
-weights were fitted on furnished rooms with known objects (`train/affinity.py`).
+Knows geometry and colour. What makes two touching regions one thing is a small network over border features, fitted
+ on furnished rooms with known objects (`train/affinity.py`).
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ from .superpoints import Links
 F64 = NDArray[np.float64]
 
 FEATURES = (
-    "color", "border color", "shared border", "border length", "rests on", "resting footprint", "height overlap",
-    "plan overlap", "size ratio", "box growth", "smaller size",
+    "color", "lightness", "border color", "shared border", "border length", "rests on", "resting footprint",
+    "height overlap", "plan overlap", "size ratio", "box growth", "smaller size", "larger size", "plan ratio",
+    "contact height", "contact at edge", "contact footprint", "contact level", "smaller flat", "larger flat",
 )  # fmt: skip
 LIGHTNESS = 0.6
 
@@ -59,15 +60,18 @@ class Border:
         weight: summed edge weight.
         height: summed height of the link ends.
         level: summed |n_z| of the first region's and of the second's ends.
+        low, high: `[2]` plan bounds of the link ends.
     """
 
     links: float
     weight: float
     height: float
     level: tuple[float, float]
+    low: F64
+    high: F64
 
     def flipped(self) -> Border:
-        return Border(self.links, self.weight, self.height, (self.level[1], self.level[0]))
+        return Border(self.links, self.weight, self.height, (self.level[1], self.level[0]), self.low, self.high)
 
     def plus(self, other: Border) -> Border:
         return Border(
@@ -75,6 +79,8 @@ class Border:
             self.weight + other.weight,
             self.height + other.height,
             (self.level[0] + other.level[0], self.level[1] + other.level[1]),
+            np.minimum(self.low, other.low),
+            np.maximum(self.high, other.high),
         )
 
 
@@ -95,8 +101,10 @@ class Node:
 
 def describe(a: Region, b: Region, border: Border, scale: float) -> F64:
     """Features `[len(FEATURES)]` of a border, the same whichever region comes first. `scale`: typical object size."""
-    small, large = (a, b) if a.count <= b.count else (b, a)
-    gap = (a.lab / a.count - b.lab / b.count) * np.array([LIGHTNESS, 1, 1])
+    first_small = a.count <= b.count
+    small, large = (a, b) if first_small else (b, a)
+    level_small, level_large = border.level if first_small else border.level[::-1]
+    gap = a.lab / a.count - b.lab / b.count
     contact = border.height / border.links
     rests = max(_rests(a, b, contact, border.level[1] / border.links),
                 _rests(b, a, contact, border.level[0] / border.links))  # fmt: skip
@@ -104,19 +112,32 @@ def describe(a: Region, b: Region, border: Border, scale: float) -> F64:
     share = np.clip(overlap / np.minimum(a.size, b.size), 0, 1)
     grown = np.maximum(a.high, b.high) - np.minimum(a.low, b.low)
     growth = np.log(np.prod(grown) / (np.prod(a.size) + np.prod(b.size)) + 1e-3)
+    plan = float(share[0] * share[1])
+    middle = (border.low + border.high) / 2
+    aside = np.abs(middle - (large.low + large.high)[:2] / 2) / (large.size[:2] / 2 + 1e-6)
+    footprint = np.prod(border.high - border.low + 1e-3) / np.prod(small.size[:2] + 1e-3)
     return np.array(
         [
-            min(float(np.linalg.norm(gap)) / 20, 3.0),
+            min(float(np.linalg.norm(gap[1:])) / 20, 3.0),
+            min(abs(float(gap[0])) / 30, 2.0),
             min(border.weight / border.links, 6.0),
             border.links / max(min(a.perimeter, b.perimeter), 1.0),
             np.log(border.links / np.sqrt(small.count)),
             rests,
-            rests * float(share[0] * share[1]),
+            rests * plan,
             float(share[2]),
-            float(share[0] * share[1]),
+            plan,
             np.log(large.count / small.count),
             float(np.clip(growth, -1, 3)),
             np.log(float(small.size.max()) / scale + 1e-3),
+            np.log(float(large.size.max()) / scale + 1e-3),
+            float(np.log(np.prod(large.size[:2] + 1e-3) / np.prod(small.size[:2] + 1e-3))),
+            float(np.clip((contact - large.low[2]) / large.size[2], -0.5, 1.5)),
+            float(np.clip(aside.max(), 0, 2)),
+            float(np.clip(footprint, 0, 1.5)),
+            (level_small - level_large) / border.links,
+            np.log(float(small.size[2] / small.size[:2].max()) + 1e-2),
+            np.log(float(large.size[2] / large.size[:2].max()) + 1e-2),
         ]
     )
 
@@ -130,18 +151,35 @@ def _rests(upper: Region, lower: Region, contact: float, level: float) -> float:
     return float(foot * level * (upper.high[2] - contact > 0.8 * height))
 
 
+@dataclass(frozen=True)
+class Rule:
+    """A small network over standardised features: one hidden layer of tanh units."""
+
+    mean: F64
+    spread: F64
+    inner: F64
+    inner_bias: F64
+    outer: F64
+    outer_bias: float
+
+    def probability(self, features: F64) -> F64:
+        """`[..., F]` to `[...]`."""
+        hidden = np.tanh((features - self.mean) / self.spread @ self.inner + self.inner_bias)
+        result: F64 = 1 / (1 + np.exp(-np.clip(hidden @ self.outer + self.outer_bias, -30, 30)))
+        return result
+
+
 @cache
-def _rule() -> tuple[F64, F64, F64, float]:
-    """Mean, spread and weight of each feature, and the bias."""
+def _rule() -> Rule:
     table = json.loads((files(__package__) / "affinity.json").read_text())
     assert tuple(table["features"]) == FEATURES, "affinity.json was fitted for other features"
-    return np.array(table["mean"]), np.array(table["spread"]), np.array(table["weights"]), float(table["bias"])
+    arrays = {name: np.array(table[name]) for name in ("mean", "spread", "inner", "inner_bias", "outer")}
+    return Rule(**arrays, outer_bias=float(table["outer_bias"]))
 
 
 def affinity(features: F64) -> F64:
     """Probability `[...]` that the regions on both sides are one thing, of features `[..., F]`."""
-    mean, spread, weights, bias = _rule()
-    return 1 / (1 + np.exp(-np.clip(((features - mean) / spread) @ weights + bias, -30, 30)))
+    return _rule().probability(features)
 
 
 class Graph:
@@ -247,13 +285,15 @@ def _borders(
     pairs = np.where(swap[:, None], pairs[:, ::-1], pairs)
     many = int(ends.max(initial=0)) + 1
     key, group = np.unique(ends[:, 0] * many + ends[:, 1], return_inverse=True)
-    level = np.abs(normals[:, 2])
-    height = points[pairs, 2].mean(axis=1)
-    table = [
+    level, place = np.abs(normals[:, 2]), points[pairs].mean(axis=1)
+    sums = [
         np.bincount(group, weights=w, minlength=len(key))
-        for w in (np.ones(len(ends)), weight, height, level[pairs[:, 0]], level[pairs[:, 1]])
+        for w in (np.ones(len(ends)), weight, place[:, 2], level[pairs[:, 0]], level[pairs[:, 1]])
     ]
+    low, high = np.full((len(key), 2), np.inf), np.full((len(key), 2), -np.inf)
+    np.minimum.at(low, group, place[:, :2])
+    np.maximum.at(high, group, place[:, :2])
     return {
-        (int(k // many), int(k % many)): Border(float(n), float(w), float(h), (float(a), float(b)))
-        for k, n, w, h, a, b in zip(key, *table, strict=True)
+        (int(k // many), int(k % many)): Border(float(n), float(w), float(h), (float(a), float(b)), low[e], high[e])
+        for e, (k, n, w, h, a, b) in enumerate(zip(key, *sums, strict=True))
     }

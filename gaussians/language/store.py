@@ -9,30 +9,32 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import tempfile
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import torch
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 
-from ..errors import FileError
+from ..errors import FileError, ScenewrightError, UserError
+from ..files.atomic import writing
 from ..scene import Frame, Scene
 from .field import Group, LanguageField
 
 SUFFIX = ".field.safetensors"
-VERSION = "1"
+VERSION = "2"
+_ENTRY = "scenewright.field"
 _GROUPS = TypeAdapter(tuple[Group, ...])
+_NOTES = TypeAdapter(tuple[str, ...])
 _FRAME = TypeAdapter(Frame)
 
 
 def fingerprint(path: Path) -> str:
     """Hex SHA-256 of a scene file's bytes; of names and bytes of all files where the scene is a folder (SOG)."""
     h = hashlib.sha256()
-    files = sorted(p for p in path.iterdir() if p.is_file()) if path.is_dir() else [path]
     try:
+        files = sorted(p for p in path.iterdir() if p.is_file()) if path.is_dir() else [path]
         for file in files:
             h.update(f"{file.name};".encode() if path.is_dir() else b"")
             with file.open("rb") as stream:
@@ -63,24 +65,23 @@ def save_field(scene: Scene, scene_path: Path) -> Path:
     if scene.language is None:
         raise FileError("this scene has no language field to save; embed it first")
     mark = fingerprint(scene_path)
-    metadata = {
+    header = {
         "version": VERSION,
         "scene": mark,
         "encoder": scene.language.encoder,
-        "rows": str(len(scene.cloud)),
-        "groups": json.dumps([asdict(g) for g in scene.language.groups]),
-        "notes": json.dumps(scene.language.notes),
-        "frame": json.dumps(asdict(scene.frame)),
+        "groups": [asdict(g) for g in scene.language.groups],
+        "notes": scene.language.notes,
+        "frame": asdict(scene.frame),
     }
     tensors = {
         "group": scene.cloud.group.cpu().contiguous(),
         "embeddings": torch.from_numpy(np.ascontiguousarray(scene.language.embeddings, dtype=np.float32)),
     }
-    problem: OSError | None = None
+    problem: Exception | None = None
     for target in (beside(scene_path), cached(mark)):
         try:
-            return _write(target, tensors, metadata)
-        except OSError as error:
+            return _write(target, tensors, header)
+        except (OSError, FileError, UserError) as error:
             problem = error
     raise FileError(f"cannot save the language field of {scene_path}: {problem}") from problem
 
@@ -97,51 +98,49 @@ def load_field(scene: Scene, scene_path: Path, encoder: str | None = None) -> Sc
     for target in (beside(scene_path), cached(mark)):
         if not target.is_file():
             continue
-        tensors, metadata = _read(target)
-        fits = metadata.get("version") == VERSION and metadata.get("scene") == mark
-        if fits and (encoder is None or metadata.get("encoder") == encoder):
-            return _attach(scene, tensors, metadata, target)
+        tensors, header = _read(target)
+        fits = header.get("version") == VERSION and header.get("scene") == mark
+        if fits and (encoder is None or header.get("encoder") == encoder):
+            return _attach(scene, tensors, header, target)
     return None
 
 
-def _write(target: Path, tensors: dict[str, torch.Tensor], metadata: dict[str, str]) -> Path:
+def _write(target: Path, tensors: dict[str, torch.Tensor], header: dict[str, Any]) -> Path:
+    """One entry of metadata only: safetensors writes several in no fixed order."""
     from safetensors.torch import save
 
     target.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=target.parent, prefix=".field-")
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(save(tensors, metadata))
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(name, target)
-    except OSError:
-        Path(name).unlink(missing_ok=True)
-        raise
+    with writing(target, force=True) as stream:
+        stream.write(save(tensors, {_ENTRY: json.dumps(header)}))
     return target
 
 
-def _read(path: Path) -> tuple[dict[str, torch.Tensor], dict[str, str]]:
+def _read(path: Path) -> tuple[dict[str, torch.Tensor], dict[str, Any]]:
     from safetensors import SafetensorError, safe_open
 
     try:
         with safe_open(path, framework="pt") as stream:
-            return {name: stream.get_tensor(name) for name in stream.keys()}, stream.metadata() or {}  # noqa: SIM118
-    except (SafetensorError, OSError) as error:
+            header = json.loads((stream.metadata() or {}).get(_ENTRY, "{}"))
+            return {name: stream.get_tensor(name) for name in stream.keys()}, dict(header)  # noqa: SIM118
+    except (SafetensorError, OSError, ValueError, TypeError) as error:
         raise FileError(f"{path} is not a language field ({error}); delete it and embed the scene again") from error
 
 
-def _attach(scene: Scene, tensors: dict[str, torch.Tensor], metadata: dict[str, str], source: Path) -> Scene:
-    broken = FileError(f"{source} is damaged; delete it and embed the scene again")
+def _attach(scene: Scene, tensors: dict[str, torch.Tensor], header: dict[str, Any], source: Path) -> Scene:
     try:
-        groups = _GROUPS.validate_json(metadata["groups"])
-        notes: Any = json.loads(metadata["notes"])
-        frame = _FRAME.validate_json(metadata["frame"])
-        column, embeddings = tensors["group"], tensors["embeddings"].numpy()
-    except (KeyError, ValueError, ValidationError) as error:
-        raise broken from error
-    fits = column.shape == (len(scene.cloud),) and column.dtype == torch.int32 and embeddings.ndim == 2
-    if not fits or (len(column) and not -1 <= int(column.min()) <= int(column.max()) < len(groups)):
-        raise broken
-    field = LanguageField(groups, embeddings, metadata["encoder"], tuple(str(n) for n in notes))
-    return scene.replace(cloud=scene.cloud.replace(group=column), language=field, frame=frame)
+        groups = _GROUPS.validate_python(header["groups"])
+        notes = _NOTES.validate_python(header["notes"])
+        frame = _FRAME.validate_python(header["frame"])
+        column, embeddings = tensors["group"], tensors["embeddings"]
+        table = LanguageField(groups, embeddings.numpy(), str(header["encoder"]), notes)
+        fits = (
+            (column.shape, column.dtype) == ((len(scene.cloud),), torch.int32)
+            and (embeddings.ndim, embeddings.dtype) == (2, torch.float32)
+            and (not len(column) or -1 <= int(column.min()) <= int(column.max()) < len(groups))
+            and all(-1 <= g.parent < len(groups) for g in groups)
+        )
+    except (KeyError, TypeError, ValueError, ScenewrightError) as error:
+        raise FileError(f"{source} is damaged ({error}); delete it and embed the scene again") from error
+    if not fits:
+        raise FileError(f"{source} is damaged (its columns do not fit); delete it and embed the scene again")
+    return scene.replace(cloud=scene.cloud.replace(group=column), language=table, frame=frame)

@@ -2,8 +2,7 @@
 
     python -m scenewright.gaussians.language.train.affinity --rooms 24 --seed 9000
 
-Writes `affinity.json` beside `regions.py`. A logistic regression by Newton's method over a dozen features of a border;
-the borders are those between superpoints and those met while regions grow along the truth.
+Writes `affinity.json` beside `regions.py`. A small network over the features of a border; the borders are those between superpoints and those met while regions grow along the truth.
 """
 
 from __future__ import annotations
@@ -12,8 +11,10 @@ import argparse
 import json
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import torch
 from numpy.typing import NDArray
 
 from ...assets import furnish
@@ -24,7 +25,7 @@ from ..superpoints import links_of, superpoints
 from ..surface import surface_of
 
 F64 = NDArray[np.float64]
-RIDGE = 1e-3
+HIDDEN, STEPS, BATCH = 24, 3000, 2048
 
 
 def borders_of(scene: Scene, truth: NDArray[np.int32], rng: np.random.Generator) -> tuple[F64, NDArray[np.bool_]]:
@@ -67,28 +68,46 @@ def _majority(owners: NDArray[np.int32]) -> int:
     return int(values[np.argmax(counts)])
 
 
-def fit(features: F64, same: NDArray[np.bool_]) -> dict[str, object]:
-    """Weights of the rule; both classes count equally, so that the bias does not follow how often each occurs."""
+def fit(features: F64, same: NDArray[np.bool_], seed: int = 0) -> dict[str, object]:
+    """The rule; both classes count equally, so that it does not follow how often each occurs. A fifth is held out."""
+    torch.manual_seed(seed)
+    rng = np.random.default_rng(seed)
     mean, spread = features.mean(axis=0), features.std(axis=0) + 1e-6
-    x = np.concatenate([(features - mean) / spread, np.ones((len(features), 1))], axis=1)
-    y = same.astype(np.float64)
-    weight = np.where(same, 0.5 / max(same.mean(), 1e-9), 0.5 / max(1 - same.mean(), 1e-9))
-    w = np.zeros(x.shape[1])
-    for _ in range(40):
-        p = 1 / (1 + np.exp(-np.clip(x @ w, -30, 30)))
-        gradient = x.T @ (weight * (p - y)) / len(y) + RIDGE * w
-        hessian = (x * (weight * p * (1 - p))[:, None]).T @ x / len(y) + RIDGE * np.eye(len(w))
-        w = w - np.linalg.solve(hessian, gradient)
-    p = 1 / (1 + np.exp(-(x @ w)))
+    x = torch.from_numpy((features - mean) / spread).float()
+    y = torch.from_numpy(same).float()
+    weight = torch.where(y > 0, 0.5 / y.mean(), 0.5 / (1 - y.mean()))
+    held = torch.from_numpy(np.arange(len(y)) >= 0.8 * len(y))  # the last rooms
+    inner, outer = torch.nn.Linear(x.shape[1], HIDDEN), torch.nn.Linear(HIDDEN, 1)
+    optimizer = torch.optim.AdamW([*inner.parameters(), *outer.parameters()], lr=5e-3, weight_decay=1e-2)
+    rows = np.flatnonzero(~held.numpy())
+    for step in range(STEPS):
+        for group in optimizer.param_groups:
+            group["lr"] = 5e-3 * (1 - step / STEPS)
+        pick = torch.from_numpy(rng.choice(rows, BATCH))
+        logit = outer(torch.tanh(inner(x[pick]))).squeeze(1)
+        loss = torch.nn.functional.binary_cross_entropy_with_logits(logit, y[pick], weight[pick])
+        optimizer.zero_grad()
+        loss.backward()
+        optimizer.step()
+    with torch.no_grad():
+        right = (outer(torch.tanh(inner(x))).squeeze(1) > 0) == (y > 0)
+    one, other = right[held & (y > 0)].float().mean(), right[held & (y == 0)].float().mean()
     return {
         "features": list(regions.FEATURES),
-        "mean": [round(float(v), 6) for v in mean],
-        "spread": [round(float(v), 6) for v in spread],
-        "weights": [round(float(v), 6) for v in w[:-1]],
-        "bias": round(float(w[-1]), 6),
+        "mean": _rounded(mean),
+        "spread": _rounded(spread),
+        "inner": _rounded(inner.weight.detach().numpy().T),
+        "inner_bias": _rounded(inner.bias.detach().numpy()),
+        "outer": _rounded(outer.weight.detach().numpy()[0]),
+        "outer_bias": round(float(outer.bias), 5),
         "borders": len(y),
-        "balanced_accuracy": round(float(((p > 0.5) == same)[same].mean() + ((p > 0.5) == same)[~same].mean()) / 2, 4),
+        "held_out": {"joined when one thing": round(float(one), 4), "parted when two": round(float(other), 4)},
     }
+
+
+def _rounded(values: NDArray[np.floating]) -> list[Any]:
+    rounded: list[Any] = np.round(values.astype(np.float64), 5).tolist()
+    return rounded
 
 
 def collect(rooms: Iterable[tuple[Scene, NDArray[np.int32]]], seed: int) -> tuple[F64, NDArray[np.bool_]]:
@@ -106,7 +125,7 @@ def main() -> None:
     args = parser.parse_args()
     rooms = (furnish(args.seed + i) for i in range(args.rooms))
     table = fit(*collect(((r.scene, r.truth.ids.numpy()) for r in rooms), args.seed))
-    args.out.write_text(json.dumps(table, indent=2) + "\n")
+    args.out.write_text(json.dumps(table) + "\n")
 
 
 if __name__ == "__main__":
