@@ -11,19 +11,20 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..gaussians.camera import Camera
-from ..gaussians.errors import AbsentError, AmbiguousError, FileError, ScenewrightError, UserError
+from ..gaussians.errors import AbsentError, AmbiguousError, ScenewrightError, UserError
 from ..gaussians.language.query import Query
 from ..gaussians.language.selection import Selection
 from ..gaussians.scene import Scene
 from .clarify import Question, answered, find_question, queries
 from .history import History, State
-from .log import Record, SessionLog, read_log
+from .log import SessionLog, read_log
 from .refusal import refusal
+from .replay import Replayed, portable, read_plan, standing
 from .result import Result
 from .stopwatch import timed
 
@@ -39,15 +40,6 @@ _UNDO = re.compile(
     r"(please )?(undo|take (that|it|this) back|revert)( (that|it|this|the last (one|step|edit|change)))?", re.I
 )
 _REDO = re.compile(r"(please )?(redo|do (that|it) again)( (that|it|this))?", re.I)
-
-
-@dataclass(frozen=True)
-class Replayed:
-    """One instruction of a replay: what it did here, or why it could not be done."""
-
-    text: str
-    result: Result | None
-    error: ScenewrightError | None
 
 
 class Session:
@@ -291,8 +283,10 @@ class Session:
         if not -len(sessions) <= session < len(sessions):
             raise UserError(f"{log} holds {len(sessions)} sessions; there is none number {session}")
         outcome: list[Replayed] = []
-        for record in _standing(sessions[session]):
-            plan = self._portable(_read_plan(record, log), record)
+        for record in standing(sessions[session]):
+            plan = read_plan(record, log)
+            if record.get("before") != self._history.present.digest:
+                plan = portable(plan)
             try:
                 outcome.append(Replayed(record["text"], self.apply(plan), None))
             except ScenewrightError as error:
@@ -361,20 +355,6 @@ class Session:
                 return query
         return None
 
-    def _portable(self, plan: EditPlan, record: Record) -> EditPlan:
-        """The plan without ids of groups, unless this is bit for bit the scene they were given in."""
-        if record.get("before") == self._history.present.digest:
-            return plan
-        from .clarify import exchange
-
-        ops = []
-        for op in plan.ops:
-            for path, query in list(queries(op)):
-                if query.groups:
-                    op = exchange(op, path, query.model_copy(update={"groups": ()}))
-            ops.append(op)
-        return plan.model_copy(update={"ops": tuple(ops)})
-
     def _write(self, kind: str, fields: Callable[[], dict[str, Any]]) -> None:
         if self._log is not None:
             self._log.append(kind, fields())
@@ -425,29 +405,3 @@ def _in_plan(error: ScenewrightError, plan: EditPlan, step: int) -> ScenewrightE
         return error
     where = f"step {step + 1} of {len(plan.ops)} ({plan.ops[step].op}) failed, nothing was changed"
     return type(error)(f"{where}: {error}")
-
-
-def _standing(records: list[Record]) -> list[Record]:
-    """The `do` records of a session that were not undone in the end."""
-    done: list[Record] = []
-    undone: list[Record] = []
-    for record in records:
-        if record["kind"] == "do":
-            done.append(record)
-            undone.clear()
-        elif record["kind"] == "undo" and done:
-            undone.append(done.pop())
-        elif record["kind"] == "redo" and undone:
-            done.append(undone.pop())
-    return done
-
-
-def _read_plan(record: Record, source: str | Path) -> EditPlan:
-    from pydantic import ValidationError
-
-    from ..planners.plan import EditPlan
-
-    try:
-        return EditPlan.model_validate(record["plan"])
-    except (KeyError, ValidationError) as error:
-        raise FileError(f"{source}: record {record['seq']} holds no plan this version can read ({error})") from error
