@@ -100,11 +100,11 @@ def default_viewer(scene: Scene, width: int = 640, height: int = 480) -> Camera:
 
 
 def fit_camera(camera: Camera, width: int, height: int) -> Camera:
-    """The same eye and direction at another size, the shorter field of view kept."""
+    """The same eye and direction at another size: all that was seen, in the middle, and more at the longer sides."""
     gain = min(width / camera.width, height / camera.height)
-    return replace(
-        camera, fx=camera.fx * gain, fy=camera.fy * gain, cx=width / 2, cy=height / 2, width=width, height=height
-    )
+    cx = width / 2 + gain * (camera.cx - camera.width / 2)
+    cy = height / 2 + gain * (camera.cy - camera.height / 2)
+    return replace(camera, fx=camera.fx * gain, fy=camera.fy * gain, cx=cx, cy=cy, width=width, height=height)
 
 
 def candidates(cloud: GaussianCloud, frame: Frame, size: int) -> list[Camera]:
@@ -161,7 +161,7 @@ def _inside(local: F64, low: F64, high: F64, frame: Frame, size: int) -> list[Ca
 
 def _toward(local: F64, frame: Frame, size: int) -> list[Camera]:
     """Eyes around where the detail is densest, for captures of one spot in a larger room."""
-    above = local[local[:, 2] > np.quantile(local[:, 2], 0.35)]
+    above = local[local[:, 2] >= np.quantile(local[:, 2], 0.35)]
     focus = np.median(above, axis=0)
     reach = float(np.median(np.linalg.norm(above - focus, axis=1))) + 1e-9
     tree = cKDTree(local)
