@@ -2,7 +2,8 @@
 
     python -m scenewright.gaussians.language.train.affinity --rooms 24 --seed 9000
 
-Writes `affinity.json` beside `regions.py`. A small network over the features of a border; the borders are those between superpoints and those met while regions grow along the truth.
+Writes `affinity.json` beside `regions.py`. A small network over the features of a
+border; the borders are those between superpoints and those met while regions grow along the truth.
 """
 
 from __future__ import annotations
@@ -38,7 +39,9 @@ def borders_of(scene: Scene, truth: NDArray[np.int32], rng: np.random.Generator)
     count = int(labels.max()) + 1
     kind_of = np.zeros(count, np.int8)
     kind_of[labels] = kinds
-    graph = regions.build_graph(labels, flat.points, surface.lab, flat.normals, links, kind_of == structure.NONE)
+    graph = regions.build_graph(
+        labels, flat.points, surface.lab.astype(np.float64), flat.normals, links, kind_of == structure.NONE
+    )
     owner = {i: _majority(truth[surface.rows[labels == r.members[0]]]) for i, r in graph.regions.items()}
     rows, same = [], []
 
@@ -87,7 +90,7 @@ def fit(features: F64, same: NDArray[np.bool_], seed: int = 0) -> dict[str, obje
         logit = outer(torch.tanh(inner(x[pick]))).squeeze(1)
         loss = torch.nn.functional.binary_cross_entropy_with_logits(logit, y[pick], weight[pick])
         optimizer.zero_grad()
-        loss.backward()
+        loss.backward()  # type: ignore[no-untyped-call]
         optimizer.step()
     with torch.no_grad():
         right = (outer(torch.tanh(inner(x))).squeeze(1) > 0) == (y > 0)
