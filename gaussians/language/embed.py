@@ -121,12 +121,14 @@ def _evidence(
     wanted = grouping.contested(nodes, points >= MIN_OBJECT)
     same = grouping.alike(nodes, points)
     asked = sorted({int(same[i]) for i in wanted}, key=lambda i: (-points[i], i))[:MOST_ASKED]
+    if not asked:
+        return {}
     rows = _rows_by_superpoint(surface, labels, int(labels.max(initial=-1)) + 1)
     owned = [np.sort(np.concatenate([rows[s] for s in nodes[i].members])) for i in asked]
     clouds = [scene.cloud[torch.from_numpy(own)] for own in owned]
     middle = np.median(surface.points, axis=0).astype(np.float64)
     vectors = mean_vectors(encoder, clouds, scene.frame, middle, ASK_VIEWS, lambda share: progress("portraits", share))
-    whole = np.clip(wholeness(encoder, vectors), 0.001, 0.999) if asked else np.zeros(0)
+    whole = np.clip(wholeness(encoder, vectors), 0.001, 0.999)
     odds = {i: float(np.log(w / (1 - w))) for i, w in zip(asked, whole, strict=True)}
     return {i: odds[int(same[i])] for i in wanted if int(same[i]) in odds}
 
