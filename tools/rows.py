@@ -15,7 +15,7 @@ from ..gaussians.cloud import GaussianCloud
 from ..gaussians.language.selection import Selection
 
 _DENSE = 8  # ids spread over at most this many times the rows are looked up in a table
-_CHUNK = 1 << 16  # rows changed at a time: intermediates stay a few MB, whatever the cloud's size
+_CHUNK = 1 << 13  # rows changed at a time: intermediates stay in a core's cache, whatever the cloud's size
 _CACHE = 1 << 19  # bytes compared at a time: they stay in a core's cache
 
 
@@ -47,6 +47,25 @@ def fresh_ids(cloud: GaussianCloud, count: int) -> Tensor:
 def selection_of(selection: Selection, ids: Tensor, groups: tuple[int, ...], reason: str) -> Selection:
     """A found selection of other rows that keeps the query of `selection`."""
     return Selection(selection.query, "found", ids.sort().values, groups, (), reason)
+
+
+def joined(cloud: GaussianCloud, without: Tensor | None, added: list[GaussianCloud]) -> GaussianCloud:
+    """The rows of a cloud but for the mask `without` `[N]`, then the added clouds; each column is written once.
+
+    The added clouds have the cloud's degree and ids above its own (see `fresh_ids`).
+    """
+    keep = None if without is None else (~without).nonzero().squeeze(1)
+    n = len(cloud) if keep is None else len(keep)
+    columns: dict[str, Tensor] = {}
+    for name, column in cloud.columns():
+        out = column.new_empty((n + sum(len(c) for c in added), *column.shape[1:]))
+        if keep is None:
+            out[:n] = column
+        else:
+            torch.index_select(column, 0, keep, out=out[:n])
+        torch.cat([getattr(c, name) for c in added], out=out[n:])
+        columns[name] = out
+    return GaussianCloud(**columns)
 
 
 class Draft:

@@ -14,7 +14,7 @@ from torch import Tensor
 
 from ..gaussians import assets
 from ..gaussians.camera import Vec3
-from ..gaussians.cloud import NO_GROUP, GaussianCloud, concat
+from ..gaussians.cloud import NO_GROUP, GaussianCloud
 from ..gaussians.errors import InstructionError, UserError
 from ..gaussians.scene import Scene
 from . import bookkeeping
@@ -23,7 +23,7 @@ from .bookkeeping import Newcomer
 from .grid import obstacle_points
 from .measure import reach, solid_points
 from .place import Placer, Spot, standing_axes
-from .rows import fresh_ids
+from .rows import fresh_ids, joined
 from .shape import transformed
 from .space import Array, Body, as_vec, box_of
 
@@ -167,11 +167,11 @@ class Arrivals:
 
     Attributes:
         scene: what they come into; ids are given out above all of its ids.
-        base: what is left of its Gaussians; the arrivals' rows follow these.
+        leaving: `[N]` bool, those of its Gaussians that go; the arrivals' rows follow the others. None: all stay.
     """
 
     scene: Scene
-    base: GaussianCloud
+    leaving: Tensor | None = None
     clouds: list[GaussianCloud] = field(default_factory=list)
     newcomers: list[Newcomer] = field(default_factory=list)
 
@@ -184,7 +184,8 @@ class Arrivals:
         group = torch.full((len(cloud),), NO_GROUP, dtype=torch.int32, device=cloud.device)
         self.clouds.append(cloud.replace(ids=ids, group=group))
         self.newcomers.append(Newcomer(self.clouds[-1], label, axes, like))
-        first = len(self.base) + sum(len(c) for c in self.clouds[:-1])
+        gone = int(self.leaving.sum()) if self.leaving is not None else 0
+        first = len(self.scene.cloud) - gone + sum(len(c) for c in self.clouds[:-1])
         return torch.arange(first, first + len(cloud), device=cloud.device)
 
     def ids(self) -> Tensor:
@@ -199,7 +200,10 @@ class Arrivals:
             cloud.replace(group=torch.full_like(cloud.group, group))
             for cloud, group in zip(self.clouds, groups, strict=True)
         ]
-        cloud = concat([self.base, *filed])
+        cloud = joined(scene.cloud, self.leaving, filed)
+        if self.leaving is not None:
+            gone = scene.cloud.ids[self.leaving]
+            table = bookkeeping.thinned(scene.replace(language=table), cloud, gone)
         return scene.replace(cloud=cloud, language=table), tuple(g for g in groups if g >= 0)
 
 

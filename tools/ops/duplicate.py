@@ -51,7 +51,7 @@ class Duplicate(TargetedOp):
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         bodies = bodies_of(scene, selection)
-        arrivals, moved = Arrivals(scene, scene.cloud), []
+        arrivals, moved = Arrivals(scene), []
         notes = self.distance.assumption(scene.frame) if self.distance is not None else ()
         for body, offset, support in self._copies(scene, bodies, context):
             original = scene.cloud[body.rows]

@@ -42,7 +42,7 @@ class Insert(EditOp):
         return f"{self.count} {self.asset}" if self.count > 1 else self.asset
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
-        placer, arrivals, moved = Placer(scene, context), Arrivals(scene, scene.cloud), []
+        placer, arrivals, moved = Placer(scene, context), Arrivals(scene), []
         anchors = placer.anchors(self.place) if self.place is not None else []
         scale, start, notes = metre(scene, anchors), gaze(placer), dict[str, None]()
         for index in range(self.count):

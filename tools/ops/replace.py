@@ -7,7 +7,6 @@ from typing import Any, ClassVar, Literal
 from ...gaussians.language.selection import Selection
 from ...gaussians.scene import Scene
 from ..base import AssetName, ColorName, Context, Outcome, TargetedOp
-from ..bookkeeping import thinned
 from ..checks import collision_free, counted, gone, supported
 from ..place import Placer, Spot, standing_axes
 from ..receipt import Check
@@ -31,9 +30,8 @@ class Replace(TargetedOp):
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         bodies = bodies_of(scene, selection)
         go = mask_of(scene.cloud, selection.ids)
-        left = scene.cloud[~go]
         # Ids of what goes are not given out again: the arrivals are numbered above those of the whole scene.
-        arrivals, moved, notes = Arrivals(scene, left), [], dict[str, None]()
+        arrivals, moved, notes = Arrivals(scene, go), [], dict[str, None]()
         placer = Placer(scene, context, go, frozenset(b.group for b in bodies))
         for index, body in enumerate(bodies):
             wish = Wish(self.asset, self.color, context.seed + index, metre(scene, [body]))
@@ -43,7 +41,6 @@ class Replace(TargetedOp):
             taken_by(cloud, scene, placer)
             moved.append(as_moved(arrivals.add(cloud, piece.label, spot.axes), spot.support))
             notes |= dict.fromkeys((*piece.notes, *spot.notes))
-        arrivals.scene = scene.replace(language=thinned(scene, left, scene.cloud.ids[go]))
         after, groups = arrivals.enter(context)
         added = arrivals.ids()
         focus = selection_of(selection, added, groups, f"the new {self.asset}")
