@@ -117,7 +117,7 @@ def run(quick: bool) -> Result:
         metrics=tuple(metrics),
         points=tuple(points),
         notes=(
-            "Selection by group id, the edit, bookkeeping and all checks on Gaussians are timed; words and pixels are not.",
+            "Selection by group id, edit, bookkeeping and all checks on Gaussians are timed; words and pixels are not.",
             f"Goals on 1,000,000: {GOAL_SECONDS} s and less than {GOAL_MEMORY:g} times the cloud, itself included.",
             "Undo takes neither time nor memory: the scene before is still there and shares what did not change.",
         ),

@@ -26,6 +26,7 @@ from .measure import OPAQUE
 from .space import Array, Body, as_vec, bodies_of, centimetre, extent_along, heading, neighbours
 
 Cost = Callable[[Array], Array]  # plan positions `[..., 2]` to costs `[...]`
+_SAMPLE = 50_000  # points on which extents of the room are measured
 _CELLS = 220  # most cells along a side of the grid
 _FOOT_CELLS = 10  # cells along the shorter side of a footprint, if the region is small enough
 _CARRIED = 0.75  # share of the footprint that must lie over the support's surface
@@ -109,6 +110,11 @@ class Placer:
         self.taken.append(box)
 
     @cached_property
+    def thin(self) -> NDArray[np.float32]:
+        """An even sample of the solid points, for extents and middles."""
+        return self.solid[:: max(1, len(self.solid) // _SAMPLE)]
+
+    @cached_property
     def room_axes(self) -> tuple[Vec3, Vec3, Vec3]:
         """Level axes of the floor if the field knows it, else of the frame."""
         if self.scene.language is not None:
@@ -123,7 +129,7 @@ class Placer:
         """Height of the floor along up; where the frame has none, the lowest height that much of the scene lies at."""
         if self.frame.floor is not None:
             return self.frame.floor
-        heights = self.solid[:: max(1, len(self.solid) // 100_000)] @ self.up.astype(np.float32)
+        heights = self.thin @ self.up.astype(np.float32)
         if not len(heights):
             return 0.0
         low, high = np.quantile(heights, [0.005, 0.6])
@@ -263,10 +269,10 @@ class Placer:
     def _room_bounds(self) -> tuple[Array, Array]:
         """Extent along the room's axes of what lies about floor height, stray points left out."""
         plan = np.array(self.room_axes[:2])
-        heights = self.solid @ self.up.astype(np.float32)
+        heights = self.thin @ self.up.astype(np.float32)
         span = float(np.ptp(np.quantile(heights, [0.01, 0.99]))) if len(heights) else 1.0
-        near = self.solid[np.abs(heights - self.floor) < 0.05 * span]
-        points = (near if len(near) > 100 else self.solid) @ plan.T.astype(np.float32)
+        near = self.thin[np.abs(heights - self.floor) < 0.05 * span]
+        points = (near if len(near) > 100 else self.thin) @ plan.T.astype(np.float32)
         if not len(points):
             return np.full(2, -1.0), np.full(2, 1.0)
         low, high = np.quantile(points, [0.004, 0.996], axis=0)
@@ -494,10 +500,10 @@ def gaze(placer: Placer) -> Array:
     camera, up = placer.context.viewer, placer.up
     down = float(camera.forward @ up)
     height = float(camera.position @ up) - placer.floor
-    middle = np.median(placer.solid, axis=0).astype(np.float64) if len(placer.solid) else np.zeros(3)
+    middle = np.median(placer.thin, axis=0).astype(np.float64) if len(placer.thin) else np.zeros(3)
     middle = middle + up * (placer.floor - float(middle @ up))
     if down > -0.05 or height <= 0:
         return middle
     seen = camera.position + camera.forward * (height / -down)
-    spread = float(np.linalg.norm(np.ptp(np.quantile(placer.solid, [0.05, 0.95], axis=0), axis=0)))
+    spread = float(np.linalg.norm(np.ptp(np.quantile(placer.thin, [0.05, 0.95], axis=0), axis=0)))
     return seen if np.linalg.norm(seen - middle) < spread else middle

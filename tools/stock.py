@@ -144,7 +144,7 @@ def find_spot(placer: Placer, piece: Piece, place: Placement | None, start: Arra
         metre_units = metre(placer.scene).units
         placer.lift = max(0.0, _HANGING * metre_units - unit / 2) if unit < _STANDING * metre_units else 0.0
     if place is None and piece.support == "ceiling":
-        heights = placer.solid @ placer.up.astype(np.float32)
+        heights = placer.thin @ placer.up.astype(np.float32)
         placer.lift = max(0.0, float(np.quantile(heights, 0.995)) - placer.floor - unit) if len(heights) else 0.0
     anchors = placer.anchors(place) if place is not None else []
     axes = standing_axes(placer, anchors)
