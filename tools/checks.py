@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 import torch
 
+from ..gaussians.camera import Camera
 from ..gaussians.scene import Scene
 from .base import Affine, Outcome
 from .grid import hits, obstacle_points
@@ -95,6 +96,15 @@ def bumps(after: Scene, groups: set[int]) -> tuple[str, ...]:
             if overlap(box, other) > 0.1 * min(*box.size, *other.size):
                 notes.append(f"it now overlaps the {label or 'thing beside it'}")
     return tuple(dict.fromkeys(notes))[:5]
+
+
+def unseen(after: Scene, moved: tuple[Affine, ...], viewer: Camera) -> tuple[str, ...]:
+    """A note if something new stands where the viewer does not look."""
+    centers = np.stack([after.cloud.means[body.rows].mean(dim=0, dtype=torch.float64).cpu().numpy() for body in moved])
+    pixels, depth = viewer.project(centers)
+    inside = (depth > 0) & (pixels >= 0).all(axis=1) & (pixels < [viewer.width, viewer.height]).all(axis=1)
+    hidden = int((~inside).sum())
+    return (f"{hidden} of {len(moved)} stand outside the current view",) if hidden else ()
 
 
 def spread_of(points: Array) -> float:

@@ -53,7 +53,7 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
     """
     seconds: dict[str, float] = {}
     with _stage(seconds, "resolve"):
-        chosen = (selection or _resolve(scene, op, context)).require()
+        chosen = (_resolve(scene, op, context) if selection is None else selection).require()
         if op.query() is not None:
             chosen = _living(scene, chosen)
     with _stage(seconds, "apply"):
@@ -70,7 +70,7 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
     receipt = receipt.model_copy(update={"pixels": compared, "seconds": seconds})
     if not receipt.passed:
         raise CheckFailedError(_why(receipt))
-    return Done(outcome.scene, receipt, outcome.focus or chosen)
+    return Done(outcome.scene, receipt, chosen if outcome.focus is None else outcome.focus)
 
 
 def preview(scene: Scene, op: EditOp, context: Context, selection: Selection | None = None) -> Receipt:
@@ -137,7 +137,7 @@ def _compare(scene: Scene, outcome: Outcome, context: Context) -> Pixels:
 def _receipt(
     op: EditOp, chosen: Selection, outcome: Outcome, changed: Difference, checks: tuple[Check, ...], context: Context
 ) -> Receipt:
-    shown = chosen if op.query() is not None else (outcome.focus or chosen)
+    shown = chosen if op.query() is not None else (chosen if outcome.focus is None else outcome.focus)
     backends = {"resolver": getattr(context.resolver, "__name__", "language")}
     if context.encoder is not None:
         backends["encoder"] = context.encoder.fingerprint

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import torch
 
+from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.color import name_of
 from scenewright.gaussians.errors import AbsentError, AmbiguousError, CheckFailedError, InstructionError, UserError
 from scenewright.gaussians.language.field import Group
@@ -270,3 +271,10 @@ def test_pixels_change_only_within_the_silhouette(corner: Scene, context: Contex
         done = do(corner, looking, op, target=a("armchair"), **fields)
         pixels = done.receipt.pixels
         assert pixels is not None and pixels.changed > 50 and pixels.changed_outside == 0
+
+
+def test_what_is_inserted_behind_the_viewer_is_told(corner: Scene, context: Context) -> None:
+    away = replace(context, viewer=Camera.look_at([0, -1, 1.5], [0, -9, 1.5], [0, 0, 1], 96, 64, 50))
+    place = {"relation": "on", "anchors": [a("table")]}
+    assert "outside the current view" in " ".join(do(corner, away, "insert", asset="mug", place=place).receipt.notes)
+    assert not do(corner, context, "insert", asset="mug", place=place).receipt.notes

@@ -12,7 +12,7 @@ from ...gaussians.language.query import Query
 from ...gaussians.language.selection import Selection
 from ...gaussians.scene import Scene
 from ..base import AssetName, ColorName, Context, EditOp, Length, Outcome, Placement
-from ..checks import collision_free, counted, supported
+from ..checks import collision_free, counted, supported, unseen
 from ..place import Placer, gaze
 from ..receipt import Check, at_least
 from ..rows import rows_of
@@ -58,7 +58,8 @@ class Insert(EditOp):
         added = arrivals.ids()
         query = Query(text=moved_label(arrivals), groups=groups)
         focus = Selection(query, "found", added, groups, (), f"{self.subject()}, just inserted")
-        return Outcome(after, added=added, moved=tuple(moved), notes=tuple(notes), focus=focus)
+        said = (*notes, *unseen(after, tuple(moved), context.viewer))
+        return Outcome(after, added=added, moved=tuple(moved), notes=said, focus=focus)
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         after = outcome.scene
