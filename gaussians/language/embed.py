@@ -1,6 +1,6 @@
 """From a cloud to a language field, in a straight line:
 
-up and floor -> skin -> superpoints -> floor and walls -> merge tree -> portraits of the contested nodes -> the best cut
+up and floor -> skin -> superpoints -> floor and walls -> merge tree -> portraits of its nodes -> the best cut
 into objects -> parts by colour -> every Gaussian's group -> the table.
 
 Knows all of this room's pieces. Refuses to know queries.
@@ -117,8 +117,8 @@ def _evidence(
     scene: Scene, surface: Surface, labels: NDArray[np.int32], nodes: list[Node], points: NDArray[np.int64],
     encoder: Encoder, progress: Progress,
 ) -> dict[int, float]:  # fmt: skip
-    """Log-odds that a node is one whole thing, by its portraits, for the contested nodes."""
-    wanted = grouping.contested(nodes, points >= MIN_OBJECT)
+    """Log-odds that a node is one whole thing, by its portraits, for the larger nodes."""
+    wanted = [i for i in range(len(nodes)) if points[i] >= MIN_OBJECT]
     same = grouping.alike(nodes, points)
     asked = sorted({int(same[i]) for i in wanted}, key=lambda i: (-points[i], i))[:MOST_ASKED]
     if not asked:

@@ -16,30 +16,12 @@ from .regions import LIGHTNESS, Node
 
 F64 = NDArray[np.float64]
 
-CONTESTED = (0.03, 0.985)  # merges outside these affinities are decided by geometry alone
-GEOMETRY = 0.6  # weight of a merge's log-odds against the encoder's
+GEOMETRY = 0.3  # weight of a merge's log-odds against the encoder's
+CRUMB_SHARE = 0.03  # of a node: a side smaller than this says nothing about the rest
 SAME_SHARE = 0.92  # a node that holds this much of another looks the same
 PATCH_COLOR = 15.0  # Lab difference up to which touching patches of one object are one part
 PATCH_POINTS = 30  # surface points; smaller patches join the touching one they resemble most
 PATCH_SHARE = 0.01  # of the object, likewise
-
-
-def contested(nodes: Sequence[Node], least: NDArray[np.bool_]) -> list[int]:
-    """Nodes that might be a whole object: not surely split inside, not surely swallowed by their parent.
-
-    Args:
-        least: `[len(nodes)]` bool, nodes large enough to be asked about.
-    """
-    low, high = CONTESTED
-    parent = np.full(len(nodes), 0.0)
-    for node in nodes:
-        for child in node.children:
-            parent[child] = node.affinity
-    return [
-        i
-        for i, node in enumerate(nodes)
-        if least[i] and (not node.children or node.affinity > low) and parent[i] < high
-    ]
 
 
 def alike(nodes: Sequence[Node], points: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -55,21 +37,22 @@ def alike(nodes: Sequence[Node], points: NDArray[np.int64]) -> NDArray[np.int64]
 def best_cut(nodes: Sequence[Node], points: NDArray[np.int64], evidence: dict[int, float]) -> list[int]:
     """Disjoint nodes that cover every superpoint: the things the tree is made of.
 
-    Bottom up, a node stays whole if its own evidence, plus what geometry says for its last merge, is at least the mean
-    evidence of the best cut below it, weighted by points. A mean, not a sum: two halves that each look like something
-    must not outvote the one thing they make.
+    Bottom up, a node stays whole if its own evidence, plus what geometry says for the weakest merge inside it, is at
+    least the mean evidence of the best cut below it, weighted by points. A mean, not a sum: two halves that each look
+    like something must not outvote the one thing they make. The weakest merge, not the last: adding a crumb to a wrong
+    merge does not make it right.
 
     Args:
         points: `[len(nodes)]` surface points of each node.
         evidence: log-odds of being one whole thing; 0 where none was asked for.
     """
     value, whole = np.zeros(len(nodes)), np.ones(len(nodes), bool)
+    weakest = weakest_merges(nodes, points)
     for i, node in enumerate(nodes):
         value[i] = evidence.get(i, 0.0)
         if node.children:
-            a = min(max(node.affinity, 1e-4), 1 - 1e-4)
             below = sum(float(points[c]) * value[c] for c in node.children) / max(float(points[i]), 1.0)
-            whole[i] = value[i] + GEOMETRY * np.log(a / (1 - a)) >= below
+            whole[i] = value[i] + GEOMETRY * np.log(weakest[i] / (1 - weakest[i])) >= below
             value[i] = value[i] if whole[i] else below
     children = {c for node in nodes for c in node.children}
     chosen: list[int] = []
@@ -81,6 +64,19 @@ def best_cut(nodes: Sequence[Node], points: NDArray[np.int64], evidence: dict[in
         else:
             stack.extend(nodes[i].children)
     return sorted(chosen)
+
+
+def weakest_merges(nodes: Sequence[Node], points: NDArray[np.int64]) -> F64:
+    """Affinity of the weakest merge inside each node, the node's own included; merges of crumbs count only for
+    themselves, not for what is built on them."""
+    inside, own = np.ones(len(nodes)), np.ones(len(nodes))
+    for i, node in enumerate(nodes):
+        if node.children:
+            minor = min(points[c] for c in node.children) < CRUMB_SHARE * points[i]
+            below = min(inside[c] for c in node.children)
+            own[i] = min(below, node.affinity)
+            inside[i] = below if minor else own[i]
+    return np.clip(own, 1e-4, 1 - 1e-4)
 
 
 def parts_of(

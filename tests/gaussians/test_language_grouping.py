@@ -13,14 +13,13 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from scenewright.gaussians.language.grouping import (
-    CONTESTED,
+    CRUMB_SHARE,
     GEOMETRY,
     PATCH_COLOR,
     PATCH_POINTS,
     SAME_SHARE,
     alike,
     best_cut,
-    contested,
     parts_of,
 )
 from scenewright.gaussians.language.regions import Node
@@ -60,10 +59,20 @@ def stays_whole(nodes: Sequence[Node], i: int, points: NDArray[np.int64], eviden
     """The rule, straight from its words: own evidence and geometry against the mean evidence of the best below."""
     if not nodes[i].children:
         return True
-    a = min(max(nodes[i].affinity, 1e-4), 1 - 1e-4)  # a certain merge is still only nearly certain
+    a = min(max(weakest(nodes, i, points, own=True), 1e-4), 1 - 1e-4)  # a certain merge is still only nearly certain
     below = [j for c in nodes[i].children for j in best_below(nodes, c, points, evidence)]
     mean = sum(float(points[j]) * evidence.get(j, 0.0) for j in below) / float(points[i])
     return evidence.get(i, 0.0) + GEOMETRY * math.log(a / (1 - a)) >= mean - 1e-12
+
+
+def weakest(nodes: Sequence[Node], i: int, points: NDArray[np.int64], own: bool) -> float:
+    """Smallest affinity inside a node; of the merge of a crumb only if it is the node's own."""
+    children = nodes[i].children
+    if not children:
+        return 1.0
+    crumb = min(points[c] for c in children) < CRUMB_SHARE * points[i]
+    below = min(weakest(nodes, c, points, own=False) for c in children)
+    return below if crumb and not own else min(below, nodes[i].affinity)
 
 
 def best_below(nodes: Sequence[Node], i: int, points: NDArray[np.int64], evidence: dict[int, float]) -> list[int]:
@@ -123,14 +132,11 @@ def test_without_evidence_geometry_decides_and_strong_evidence_overrules_it() ->
     assert best_cut([], np.zeros(0, np.int64), {}) == []
 
 
-def test_only_what_is_neither_surely_split_nor_surely_swallowed_is_contested() -> None:
-    low, high = CONTESTED
-    leaf = [Node((i,), (), 1.0) for i in range(3)]
-    for affinity, ask_children, ask_whole in ((high, False, True), (0.5, True, True), (low, True, False)):
-        nodes = [*leaf[:2], Node((0, 1), (0, 1), affinity)]
-        asked = contested(nodes, np.array([True, True, True]))
-        assert (0 in asked, 2 in asked) == (ask_children, ask_whole)
-    assert contested([*leaf], np.array([True, False, True])) == [0, 2]
+def test_a_crumb_does_not_make_a_wrong_merge_right() -> None:
+    nodes = [Node((i,), (), 1.0) for i in range(3)]
+    nodes += [Node((0, 1), (0, 1), 0.02), Node((0, 1, 2), (3, 2), 0.9)]
+    points = np.array([500, 500, 10, 1000, 1010])
+    assert best_cut(nodes, points, {0: 5.0, 1: 5.0, 3: 5.5, 4: 5.5}) == [0, 1, 2]
 
 
 @given(forests(), st.lists(st.integers(1, 60), min_size=8, max_size=8))

@@ -25,6 +25,10 @@ This page is generated from what training measured: `python -m scenewright.gauss
 | speed, one thread | {milliseconds_per_image} ms a picture, {milliseconds_per_phrase} ms a phrase |
 | learnt from | {pictures:,} pictures of {things:,} things: {designs_per_kind} designs of each of {kinds:.0f} kinds |
 | training | {steps:,} steps in {training_minutes:g} minutes on {cores} shared cores, rendering {render_seconds:.0f} s |
+
+Trained by wall time (`--minutes`), so a rerun on another machine does more or fewer steps and gives other bytes;
+`--steps {steps} --assets {designs_per_kind} --seed {seed}` fixes their number, with a learning rate that follows steps
+instead of minutes.
 """
 
 _DATA = """
@@ -114,7 +118,7 @@ def _rooms(found: dict[str, float]) -> str:
     share = {key: f"{100 * value:.1f} %" for key, value in found.items()}
     return (
         f"\nIn {found['rooms']:.0f} furnished rooms, segmented perfectly ({found['things']:.0f} objects): top-1 "
-        f"{share['top1']}, with sizes {share['top1_with_size']}; present kinds answered right "
+        f"{share['top1']}, with true sizes {share['top1_with_size']}; present kinds answered right "
         f"{share['present_right']}, absent kinds refused {share['absent_refused']}.\n"
         "This is the ceiling that the encoder sets; what is lost below it is lost by the segmentation.\n"
     )
