@@ -484,26 +484,3 @@ class Placer:
 
 def _far(p: Array, wanted: Array) -> Array:
     return np.asarray(np.linalg.norm(p - wanted, axis=-1))
-
-
-def standing_axes(placer: Placer, anchors: Sequence[Body]) -> tuple[Vec3, Vec3, Vec3]:
-    """Axes for a new thing: along its anchor's or the room's, its front (-y) turned to the viewer as far as it goes."""
-    base = anchors[0].box.axes if anchors else placer.room_axes
-    forward = heading(placer.context.viewer, placer.frame, "forward")
-    choices = [sign * np.array(axis) for axis in base[:2] for sign in (1, -1)]
-    back = max(choices, key=lambda axis: float(axis @ forward))
-    return as_vec(np.cross(back, placer.up)), as_vec(back), as_vec(placer.up)
-
-
-def gaze(placer: Placer) -> Array:
-    """`[3]`, where the viewer looks at the floor, or the point of the scene's middle on the floor if nowhere."""
-    camera, up = placer.context.viewer, placer.up
-    down = float(camera.forward @ up)
-    height = float(camera.position @ up) - placer.floor
-    middle = np.median(placer.thin, axis=0).astype(np.float64) if len(placer.thin) else np.zeros(3)
-    middle = middle + up * (placer.floor - float(middle @ up))
-    if down > -0.05 or height <= 0:
-        return middle
-    seen = camera.position + camera.forward * (height / -down)
-    spread = float(np.linalg.norm(np.ptp(np.quantile(placer.thin, [0.05, 0.95], axis=0), axis=0)))
-    return seen if np.linalg.norm(seen - middle) < spread else middle

@@ -22,10 +22,10 @@ from .base import Affine, Context, Length, Placement
 from .bookkeeping import Newcomer
 from .grid import obstacle_points
 from .measure import reach, solid_points
-from .place import Placer, Spot, standing_axes
+from .place import Placer, Spot
 from .rows import fresh_ids, joined
 from .shape import transformed
-from .space import Array, Body, as_vec, box_of
+from .space import Array, Body, as_vec, box_of, heading
 
 _ROOM = 4.5  # metres across, taken for a scene that gives no other hint of its scale
 _HANGING = 1.5  # metres above the floor of the centre of what hangs on a wall
@@ -159,6 +159,29 @@ def find_spot(placer: Placer, piece: Piece, place: Placement | None, start: Arra
             axes = (axes[1], as_vec(-np.array(axes[0])), axes[2])
     placer.back = np.array(axes[1])
     return placer.find(piece.size, axes, place, start)
+
+
+def standing_axes(placer: Placer, anchors: Sequence[Body]) -> tuple[Vec3, Vec3, Vec3]:
+    """Axes for a new thing: along its anchor's or the room's, its front (-y) turned to the viewer as far as it goes."""
+    base = anchors[0].box.axes if anchors else placer.room_axes
+    forward = heading(placer.context.viewer, placer.frame, "forward")
+    choices = [sign * np.array(axis) for axis in base[:2] for sign in (1, -1)]
+    back = max(choices, key=lambda axis: float(axis @ forward))
+    return as_vec(np.cross(back, placer.up)), as_vec(back), as_vec(placer.up)
+
+
+def gaze(placer: Placer) -> Array:
+    """`[3]`, where the viewer looks at the floor, or the point of the scene's middle on the floor if nowhere."""
+    camera, up = placer.context.viewer, placer.up
+    down = float(camera.forward @ up)
+    height = float(camera.position @ up) - placer.floor
+    middle = np.median(placer.thin, axis=0).astype(np.float64) if len(placer.thin) else np.zeros(3)
+    middle = middle + up * (placer.floor - float(middle @ up))
+    if down > -0.05 or height <= 0:
+        return middle
+    seen = camera.position + camera.forward * (height / -down)
+    spread = float(np.linalg.norm(np.ptp(np.quantile(placer.thin, [0.05, 0.95], axis=0), axis=0)))
+    return seen if np.linalg.norm(seen - middle) < spread else middle
 
 
 @dataclass(eq=False)

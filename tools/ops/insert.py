@@ -13,10 +13,10 @@ from ...gaussians.language.selection import Selection
 from ...gaussians.scene import Scene
 from ..base import AssetName, ColorName, Context, EditOp, Length, Outcome, Placement
 from ..checks import collision_free, counted, supported, unseen
-from ..place import Placer, gaze
+from ..place import Placer
 from ..receipt import Check, at_least
 from ..rows import rows_of
-from ..stock import Arrivals, Wish, as_moved, fetch, find_spot, metre, set_down, taken_by
+from ..stock import Arrivals, Wish, as_moved, fetch, find_spot, gaze, metre, set_down, taken_by
 
 
 class Insert(EditOp):
