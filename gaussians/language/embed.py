@@ -51,14 +51,16 @@ class Thing:
     label: str = ""
 
 
-def embed(scene: Scene, encoder: Encoder, progress: Progress = lambda stage, share: None, views: int = 24) -> Scene:
+def embed(
+    scene: Scene, encoder: Encoder, progress: Progress = lambda stage, share: None, portraits: int = ASK_VIEWS
+) -> Scene:
     """The scene with `cloud.group` filled and a language field over it; nothing else of the cloud changes.
 
     Args:
         scene: any cloud; `frame.up` is estimated if its source is "unknown", the floor if it is None.
         encoder: makes the vectors that names are compared with.
         progress: called with a stage's name and the share of it that is done.
-        views: at most this many views to see what is visible from anywhere.
+        portraits: pictures the encoder is shown of each candidate thing, 1 to 4; see `scenewright bench select`.
 
     Raises:
         UserError: the scene has no Gaussians.
@@ -70,10 +72,10 @@ def embed(scene: Scene, encoder: Encoder, progress: Progress = lambda stage, sha
     frame = estimate_frame(surface, scene.cameras, scene.frame)
     scene = scene.replace(frame=frame)
     progress("views", 0.0)
-    seen = choose_views(scene, most=views)
+    seen = choose_views(scene)
     progress("segments", 0.0)
     with one_thread():
-        labels, things = segment(scene, surface, encoder, progress)
+        labels, things = segment(scene, surface, encoder, progress, portraits)
         column = _assign(scene.cloud, surface, _thing_of_superpoint(things, int(labels.max(initial=-1)) + 1)[labels])
         progress("table", 0.0)
         on_skin = np.zeros(len(scene.cloud), bool)
@@ -82,7 +84,11 @@ def embed(scene: Scene, encoder: Encoder, progress: Progress = lambda stage, sha
 
 
 def segment(
-    scene: Scene, surface: Surface, encoder: Encoder, progress: Progress = lambda stage, share: None
+    scene: Scene,
+    surface: Surface,
+    encoder: Encoder,
+    progress: Progress = lambda stage, share: None,
+    portraits: int = ASK_VIEWS,
 ) -> tuple[NDArray[np.int32], list[Thing]]:
     """Superpoint of each surface point, and what they make up: structure first, then objects, then their parts."""
     frame = scene.frame
@@ -100,7 +106,7 @@ def segment(
     nodes = merge_tree(graph)
     size = np.bincount(labels, minlength=count)
     points = np.array([sum(int(size[s]) for s in n.members) for n in nodes], dtype=np.int64)
-    evidence = _evidence(scene, surface, labels, nodes, points, encoder, progress)
+    evidence = _evidence(scene, surface, labels, nodes, points, encoder, portraits, progress)
     objects = [nodes[i].members for i in grouping.best_cut(nodes, points, evidence)]
     total = np.stack([np.bincount(labels, weights=surface.lab[:, c], minlength=count) for c in range(3)], axis=1)
     lab: F64 = total / np.maximum(size, 1)[:, None]
@@ -115,7 +121,7 @@ def split_by(labels: NDArray[np.int32], kinds: NDArray[np.int8]) -> NDArray[np.i
 
 def _evidence(
     scene: Scene, surface: Surface, labels: NDArray[np.int32], nodes: list[Node], points: NDArray[np.int64],
-    encoder: Encoder, progress: Progress,
+    encoder: Encoder, portraits: int, progress: Progress,
 ) -> dict[int, float]:  # fmt: skip
     """Log-odds that a node is one whole thing, by its portraits, for the larger nodes."""
     wanted = [i for i in range(len(nodes)) if points[i] >= MIN_OBJECT]
@@ -127,7 +133,7 @@ def _evidence(
     owned = [np.sort(np.concatenate([rows[s] for s in nodes[i].members])) for i in asked]
     clouds = [scene.cloud[torch.from_numpy(own)] for own in owned]
     middle = np.median(surface.points, axis=0).astype(np.float64)
-    vectors = mean_vectors(encoder, clouds, scene.frame, middle, ASK_VIEWS, lambda share: progress("portraits", share))
+    vectors = mean_vectors(encoder, clouds, scene.frame, middle, portraits, lambda share: progress("portraits", share))
     whole = np.clip(wholeness(encoder, vectors), 0.001, 0.999)
     odds = {i: float(np.log(w / (1 - w))) for i, w in zip(asked, whole, strict=True)}
     return {i: odds[int(same[i])] for i in wanted if int(same[i]) in odds}

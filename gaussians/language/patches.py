@@ -25,6 +25,7 @@ CELLS = 260  # voxels along the scene's robust diagonal: the grain at which colo
 CERTAIN = 0.5  # colour score of the cells a place starts from: no other basic term is nearer
 LIKELY = 0.08  # score down to which it grows into the cells beside it: folds and shadows of the same stuff
 TOGETHER = 0.012  # of the diagonal: cells this near each other are one place
+APART = 3.0  # standard deviations of a typical Gaussian that a coarsely sampled surface's cells may lie apart
 EDGE = 0.03  # score of a Gaussian's own colour below which it is something else that shares the cell
 
 
@@ -70,7 +71,8 @@ def patches(cloud: GaussianCloud, words: tuple[str, ...], among: NDArray[np.bool
     cell, place, mean = _cells(points, lab, weight, diagonal / CELLS)
     score = np.min([color_scores(w, mean) for w in words], axis=0)
     own = np.min([color_scores(w, lab) for w in words], axis=0)
-    of_cell = _places(place, score, TOGETHER * diagonal)
+    reach = max(TOGETHER * diagonal, APART * float(ordered[:, 0].median()))
+    of_cell = _places(place, score, reach)
     of_row = np.where(own >= EDGE, of_cell[cell], -1)
     found = [np.flatnonzero(of_row == k) for k in range(int(of_cell.max(initial=-1)) + 1)]
     total = float(weight.sum()) + 1e-20

@@ -16,6 +16,7 @@ import torch
 from numpy.typing import NDArray
 
 from ..camera import Camera
+from ..cloud import NO_GROUP
 from ..color import name_of
 from ..errors import BackendError
 from ..scene import Scene
@@ -35,8 +36,10 @@ PARTS = frozenset({"part", "piece", "bit", "area", "region", "patch", "spot"})
 ALL = frozenset({"everything", "all", "scene", "room", "whole scene"})
 STRUCTURE = {
     "floor": "floor", "ground": "floor", "terrain": "floor", "soil": "floor", "grass": "floor", "carpeting": "floor",
-    "wall": "wall", "ceiling": "ceiling", "background": "background", "floater": "floater", "noise": "floater",
+    "wall": "wall", "ceiling": "ceiling",
 }  # fmt: skip
+FLOATERS = frozenset({"floater", "noise", "floating bit", "stray"})
+NAMED = 0.25  # a label less probable than this is not worth telling
 CLEAR_LEAD = 0.55  # the second best match is a rival when it scores at least this share of the best
 SURE = 0.6  # a label this probable forbids reading the group as something else because of its colour
 RIVAL_PLACE = 0.4  # a second place of the colour with at least this share of the first's weight is a rival
@@ -113,6 +116,8 @@ class _Resolver:
         if query.text in ALL and not query.colors:
             whole = self._take(query, [_candidate(g, {}) for g in self._alive("all") if g.parent < 0])
             return replace(whole, ids=self.scene.cloud.ids.sort().values)  # with what belongs to no group
+        if query.text in FLOATERS and not query.colors:
+            return self._floaters(query)
         ranked = self._rank(query)
         anchors_problem = next((r for r in ranked if isinstance(r, Selection)), None)
         if anchors_problem is not None:
@@ -129,6 +134,13 @@ class _Resolver:
         if not matches:
             return nothing(query, self._why_absent(query, candidates), tuple(candidates[:3]))
         return self._pick(query, matches)
+
+    def _floaters(self, query: Query) -> Selection:
+        """What belongs to no group: haze and strays off every surface."""
+        ids = self.scene.cloud.ids[self.scene.cloud.group == NO_GROUP].sort().values
+        if not len(ids):
+            return nothing(query, "every Gaussian of this scene belongs to something; there are no floaters")
+        return Selection(query, "found", ids, (), (), f"{len(ids)} Gaussians that belong to no group")
 
     def _explicit(self, query: Query) -> Selection:
         known = {g.id: g for g in self._alive("all")}
@@ -324,20 +336,22 @@ class _Resolver:
         Objects whose own name the encoder is sure of are left out (a red armchair is not a red bicycle), and so are
         floor and walls. "Parts" are all such places.
         """
-        if query.pick not in ("one", "any", "all"):
+        simple = query.size is None and query.count is None and not query.not_colors
+        if query.pick not in ("one", "any", "all") or not simple or not query.text:
             return None
         generic = query.text in PARTS
         places = patches(self.scene.cloud, query.colors, self._unnamed(generic))
         places = [p for p in places if self._place_holds(query, p)]
         if not places:
             return None
-        if generic or query.pick == "all":
+        if query.pick == "all":
             return self._places(query, places, "" if generic else _unconfirmed(query))
         rivals = [p for p in places if p.weight > RIVAL_PLACE * places[0].weight]
         if len(rivals) > 1 and query.pick == "one":
-            reason = f"{_unconfirmed(query)}, and {len(rivals)} places have that colour; say where it is"
+            why = query.describe() if generic else _unconfirmed(query)
+            reason = f"{why}: {len(rivals)} places have that colour; say where it is, or 'all'"
             return replace(self._places(query, rivals, reason), verdict="ambiguous", ids=torch.zeros(0).long())
-        return self._places(query, places[:1], f"{_unconfirmed(query)}; chosen by its colour alone")
+        return self._places(query, places[:1], "" if generic else f"{_unconfirmed(query)}; chosen by its colour alone")
 
     def _unnamed(self, everything: bool) -> NDArray[np.bool_]:
         """Rows that may be taken by colour: not structure, nor (unless `everything`) of an object with a sure name."""
@@ -397,7 +411,13 @@ class _Resolver:
 def _candidate(group: Group, terms: dict[str, float]) -> Candidate:
     score = float(np.prod(list(terms.values()))) if terms else 1.0
     return Candidate(
-        group.id, group.label or "object", name_of(group.lab), group.box.center, group.box.size, score, terms
+        group.id,
+        group.label if group.label_score >= NAMED else "object",
+        name_of(group.lab),
+        group.box.center,
+        group.box.size,
+        score,
+        terms,
     )
 
 

@@ -143,4 +143,6 @@ def _attach(scene: Scene, tensors: dict[str, torch.Tensor], header: dict[str, An
         raise FileError(f"{source} is damaged ({error}); delete it and embed the scene again") from error
     if not fits:
         raise FileError(f"{source} is damaged (its columns do not fit); delete it and embed the scene again")
+    if scene.frame.up_source == "given":  # what the user says now outweighs what was estimated then
+        frame = scene.frame
     return scene.replace(cloud=scene.cloud.replace(group=column), language=table, frame=frame)
