@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 
 from ..camera import Camera
 from ..cloud import NO_GROUP
@@ -22,9 +21,9 @@ from ..errors import BackendError
 from ..scene import Scene
 from . import attributes, relations
 from .calibration import doubt, probability
+from .colored import PARTS, by_color
 from .field import Group, LanguageField
 from .measure import box_of
-from .patches import Patch, patches
 from .query import Query, Relation
 from .selection import Candidate, Selection, Verdict, nothing
 
@@ -32,7 +31,6 @@ if TYPE_CHECKING:
     from .encoders import Encoder
 
 ANYTHING = frozenset({"", "thing", "object", "item", "one", "stuff", "furniture"})
-PARTS = frozenset({"part", "piece", "bit", "area", "region", "patch", "spot"})
 ALL = frozenset({"everything", "all", "scene", "room", "whole scene"})
 STRUCTURE = {
     "floor": "floor", "ground": "floor", "terrain": "floor", "soil": "floor", "grass": "floor", "carpeting": "floor",
@@ -41,8 +39,6 @@ STRUCTURE = {
 FLOATERS = frozenset({"floater", "noise", "floating bit", "stray"})
 NAMED = 0.25  # a label less probable than this is not worth telling
 CLEAR_LEAD = 0.55  # the second best match is a rival when it scores at least this share of the best
-SURE = 0.6  # a label this probable forbids reading the group as something else because of its colour
-RIVAL_PLACE = 0.4  # a second place of the colour with at least this share of the first's weight is a rival
 
 
 def resolve(
@@ -124,13 +120,13 @@ class _Resolver:
             return replace(anchors_problem, query=query)
         candidates = [r for r in ranked if isinstance(r, Candidate)]
         matches = [c for c in candidates if self._holds(c)]
-        if (
-            query.colors
-            and query.text not in STRUCTURE
-            and (query.text in PARTS or not matches)
-            and (by_color := self._by_color_alone(query)) is not None
-        ):
-            return by_color
+        if query.colors and query.text not in STRUCTURE and (query.text in PARTS or not matches):
+
+            def stands(rows: torch.Tensor) -> bool:
+                return not query.relations or self._stands(query, self._stand_in(rows))
+
+            if (found := by_color(self.scene, self.field, query, stands)) is not None:
+                return found
         if not matches:
             return nothing(query, self._why_absent(query, candidates), tuple(candidates[:3]))
         return self._pick(query, matches)
@@ -330,46 +326,11 @@ class _Resolver:
 
     # -- colour where words fail ------------------------------------------------------------------------------------
 
-    def _by_color_alone(self, query: Query) -> Selection | None:
-        """A noun that the encoder cannot confirm, with a colour that one place in the scene has, Gaussian by Gaussian.
-
-        Objects whose own name the encoder is sure of are left out (a red armchair is not a red bicycle), and so are
-        floor and walls. "Parts" are all such places.
-        """
-        simple = query.size is None and query.count is None and not query.not_colors
-        if query.pick not in ("one", "any", "all") or not simple or not query.text:
-            return None
-        generic = query.text in PARTS
-        places = patches(self.scene.cloud, query.colors, self._unnamed(generic))
-        places = [p for p in places if self._place_holds(query, p)]
-        if not places:
-            return None
-        if query.pick == "all":
-            return self._places(query, places, "" if generic else _unconfirmed(query))
-        rivals = [p for p in places if p.weight > RIVAL_PLACE * places[0].weight]
-        if len(rivals) > 1 and query.pick == "one":
-            why = query.describe() if generic else _unconfirmed(query)
-            reason = f"{why}: {len(rivals)} places have that colour; say where it is, or 'all'"
-            return replace(self._places(query, rivals, reason), verdict="ambiguous", ids=torch.zeros(0).long())
-        return self._places(query, places[:1], "" if generic else f"{_unconfirmed(query)}; chosen by its colour alone")
-
-    def _unnamed(self, everything: bool) -> NDArray[np.bool_]:
-        """Rows that may be taken by colour: not structure, nor (unless `everything`) of an object with a sure name."""
-        barred = [
-            leaf
-            for g in self.field.groups
-            if g.level == "structure" or (g.level == "object" and g.label_score >= SURE and not everything)
-            for leaf in self.field.leaves(g.id)
-        ]
-        column = self.scene.cloud.group
-        return ~torch.isin(column, torch.tensor(barred, dtype=torch.int32)).numpy()
-
-    def _place_holds(self, query: Query, place: Patch) -> bool:
-        """Whether a place stands in every asked relation."""
-        stand_in = self._stand_in(torch.from_numpy(place.rows))
+    def _stands(self, query: Query, thing: Group) -> bool:
+        """Whether something that is no row of the table stands in every asked relation."""
         for relation in query.relations:
             anchors = self._anchors(relation)
-            if isinstance(anchors, Selection) or self._relation_term(relation, stand_in, anchors) < relations.HOLDS:
+            if isinstance(anchors, Selection) or self._relation_term(relation, thing, anchors) < relations.HOLDS:
                 return False
         return True
 
@@ -378,15 +339,6 @@ class _Resolver:
         part = self.scene.cloud[rows]
         box = box_of(part, self.scene.frame)
         return Group(-1, "part", -1, "", 0.0, box, (0.0, 0.0, 0.0), len(part), 0, 0.0)
-
-    def _places(self, query: Query, places: Sequence[Patch], reason: str) -> Selection:
-        color = query.colors[0]
-        rows = np.unique(np.concatenate([p.rows for p in places]))
-        candidates = tuple(
-            Candidate(-1, "region", color, p.center, p.size, p.score, {f"color {color}": p.score}) for p in places[:6]
-        )
-        ids = self.scene.cloud.ids[torch.from_numpy(rows)].sort().values
-        return Selection(query, "found", ids, (), candidates, reason)
 
     # -- results ----------------------------------------------------------------------------------------------------
 
@@ -419,10 +371,6 @@ def _candidate(group: Group, terms: dict[str, float]) -> Candidate:
         score,
         terms,
     )
-
-
-def _unconfirmed(query: Query) -> str:
-    return f"{query.text!r} could not be confirmed by the encoder"
 
 
 def _union(a: Selection, b: Selection) -> Selection:

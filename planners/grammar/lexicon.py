@@ -41,7 +41,8 @@ VERBS: dict[str, Entry] = {
     ),
     **_same(
         ("ISOLATE", None),
-        "isolate, keep only, keep just, only keep, just keep, show only, show just, show me only, only show, "
+        "isolate, keep only, keep just, only keep, just keep, just keep only, show only, show just, show me only, "
+        "only show, "
         "only show me, leave only, leave just, leave nothing but, keep nothing but, show nothing but, "
         "single out, solo",
     ),

@@ -20,6 +20,8 @@ from ...gaussians.language.query import Query, Relation
 from . import nouns
 from .tagger import Tag
 
+PARTS = frozenset({"part", "piece", "area", "region", "bit"})  # of things, found by their own colour
+
 Article = Literal["def", "indef", "all", "both", "any", "bare", "pronoun"]
 Node = Tree[Token]
 
@@ -219,7 +221,7 @@ class Phrases:
         """The noun's text, singular, and whether it was plural."""
         last = tags[-1]
         if last.type == "THING":
-            return "", bool(last.value)
+            return ("part" if nouns.singular(last.text) in PARTS else ""), bool(last.value)
         if last.type == "ONE":
             return self.antecedent, bool(last.value)
         if last.type != "NOUN":
