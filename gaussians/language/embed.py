@@ -38,6 +38,8 @@ F64 = NDArray[np.float64]
 MIN_OBJECT = 40  # surface points; smaller things are not asked about and not offered
 MOST_ASKED = 700  # nodes whose portraits are taken: bounds the time of a messy scene
 ASK_VIEWS = 3
+MOST_OF_IT = 0.75  # of the surface: a connected body this large, with nothing around it, is likely one scanned thing
+ALONE = 4.0  # nats by which it is
 REACH = 6.0  # spacings within which an unassigned Gaussian joins the surface point it is nearest to
 
 
@@ -107,6 +109,9 @@ def segment(
     size = np.bincount(labels, minlength=count)
     points = np.array([sum(int(size[s]) for s in n.members) for n in nodes], dtype=np.int64)
     evidence = _evidence(scene, surface, labels, nodes, points, encoder, portraits, progress)
+    if nodes and not kinds.any() and points.max() >= MOST_OF_IT * len(surface):
+        alone = int(np.flatnonzero(points == points.max())[-1])  # the root: no node above it holds more
+        evidence[alone] = evidence.get(alone, 0.0) + ALONE
     objects = [nodes[i].members for i in grouping.best_cut(nodes, points, evidence)]
     total = np.stack([np.bincount(labels, weights=surface.lab[:, c], minlength=count) for c in range(3)], axis=1)
     lab: F64 = total / np.maximum(size, 1)[:, None]

@@ -21,6 +21,7 @@ NAMES = {FLOOR: "floor", WALL: "wall", CEILING: "ceiling"}
 CELLS = 64  # of the height map across the larger side
 ROUGH = 0.012  # ground whose height varies by more than this share of the scene is terrain, not a floor
 KNOLL = 0.03  # of the scene: bumps, stones and low plants up to this height are terrain
+TALL = 1.5  # a scene this many times as high as it is broad is one tall thing without ground
 OUTSIDE = 0.02  # share of the scene that may lie behind a wall
 WALL_LENGTH = 0.3  # of the scene's extent: shorter upright planes are furniture
 WALL_HEIGHT = 0.55
@@ -77,6 +78,8 @@ def _extent(flat: Level) -> NDArray[np.float64]:
 def _ground(surface: Surface, labels: NDArray[np.int32], flat: Level) -> NDArray[np.bool_]:
     """Points of the floor (a plane with one paint) or of the terrain (a rough height field)."""
     extent = _extent(flat)
+    if extent[2] > TALL * max(extent[:2]):
+        return np.zeros(len(surface), bool)
     cell = max(extent[0], extent[1]) / CELLS
     low = np.quantile(flat.points[:, :2], 0.005, axis=0)
     index = np.clip(((flat.points[:, :2] - low) / cell).astype(np.int64), 0, CELLS - 1)

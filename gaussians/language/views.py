@@ -166,7 +166,7 @@ def _toward(local: F64, frame: Frame, size: int) -> list[Camera]:
     reach = float(np.median(np.linalg.norm(above - focus, axis=1))) + 1e-9
     tree = cKDTree(local)
     basis, cameras = frame.basis(), []
-    for k, distance in enumerate((1.0, 1.6)):
+    for k, distance in enumerate((1.0, 1.6, 2.8)):
         for azimuth in np.radians(np.arange(8) * 45.0 + 22.5 * k - 90.0):
             eye = focus + distance * reach * np.array([np.cos(azimuth), np.sin(azimuth), 0.45])
             if float(tree.query(eye)[0]) > 0.12 * reach:

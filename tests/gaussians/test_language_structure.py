@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+import torch
 from numpy.typing import NDArray
 
+from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.language.structure import CEILING, FLOOR, NONE, WALL, structures
 from scenewright.gaussians.language.superpoints import links_of, superpoints
 from scenewright.gaussians.language.surface import surface_of
@@ -128,3 +130,19 @@ def test_the_same_room_gives_the_same_bytes(world: type[Any]) -> None:
 def test_the_noise_of_the_sampling_does_not_matter(world: type[Any], seed: int) -> None:
     share = kinds_of(room(world, seed=seed))
     assert share["floor"][FLOOR] > MOST and share["wall"][WALL] > MOST and share["crate"][NONE] > MOST
+
+
+def test_a_tall_thing_alone_stands_on_nothing() -> None:
+    """The lowest slice of a scanned statue is part of the statue, not ground."""
+    rng = np.random.default_rng(4)
+    points = rng.uniform([-0.4, -0.4, 0], [0.4, 0.4, 4.0], (6000, 3)).astype(np.float32)
+    n = len(points)
+    cloud = GaussianCloud.create(
+        torch.from_numpy(points),
+        torch.tensor([[1.0, 0, 0, 0]]).expand(n, 4).contiguous(),
+        torch.full((n, 3), 0.03),
+        torch.full((n,), 0.9),
+        torch.from_numpy(rng.normal(size=(n, 1, 3)).astype(np.float32) * 0.2),
+    )
+    surface = surface_of(cloud)
+    assert not structures(surface, superpoints(surface, links_of(surface)), Frame(up_source="given")).any()
