@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 from torch import Tensor
 
 from ..scene import Scene
@@ -20,10 +21,14 @@ from .field import LanguageField
 from .patches import Patch, patches
 from .query import Query
 from .selection import Candidate, Selection
+from .surface import MIN_OPACITY, base_lab
 
 PARTS = frozenset({"part", "piece", "bit", "area", "region", "patch", "spot"})
 SURE = 0.6  # a label this probable forbids reading the group as something else because of its colour
 PART_TAKEN = 0.25  # of a part: a place that holds this much of it takes it whole if its colour fits
+DARK = 28.0  # Lab lightness below which a Gaussian among coloured ones is their shadow
+NEIGHBOURS = 16
+AMONG = 0.45  # share of its neighbours that must have been chosen
 RIVAL = 0.4  # a second place of the colour with at least this share of the first's weight is a rival
 
 
@@ -85,10 +90,31 @@ def _taken(
     """A found selection of the places, with the whole parts that they stand for."""
     color = query.colors[0]
     rows = _with_whole_parts(scene, field, query, np.unique(np.concatenate([p.rows for p in places])), barred)
+    rows = _with_shadows(scene, rows, barred)
     candidates = tuple(
         Candidate(-1, "region", color, p.center, p.size, p.score, {f"color {color}": p.score}) for p in places[:6]
     )
     return Selection(query, "found", scene.cloud.ids[torch.from_numpy(rows)].sort().values, (), candidates)
+
+
+def _with_shadows(scene: Scene, rows: NDArray[np.int64], barred: frozenset[int]) -> NDArray[np.int64]:
+    """The rows, and the dark Gaussians among them: trained scenes paint folds with coloured over nearly black ones,
+    which have no hue of their own to be found by."""
+    cloud = scene.cloud
+    chosen = np.zeros(len(cloud), bool)
+    chosen[rows] = True
+    free = ~np.isin(cloud.group.numpy(), sorted(barred))
+    points = cloud.means.numpy()
+    low, high = points[rows].min(axis=0), points[rows].max(axis=0)
+    near = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1) & (cloud.opacities > MIN_OPACITY).numpy())
+    dark = near[(base_lab(cloud[torch.from_numpy(near)])[:, 0] < DARK).numpy() & free[near] & ~chosen[near]]
+    if not len(dark):
+        return rows
+    for _ in range(2):  # the second time reaches those behind the first
+        _, around = cKDTree(points[near]).query(points[dark], k=min(NEIGHBOURS, len(near)), workers=-1)
+        share = chosen[near][around.reshape(len(dark), -1)].mean(axis=1)
+        chosen[dark[share > AMONG]] = True
+    return np.flatnonzero(chosen)
 
 
 def _with_whole_parts(
