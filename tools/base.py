@@ -19,10 +19,9 @@ from torch import Tensor
 
 from ..gaussians.camera import Camera
 from ..gaussians.language.query import Query
-from ..gaussians.language.selection import Selection
+from ..gaussians.language.selection import Selection, mask_of
 from ..gaussians.scene import Frame, Scene
 from .receipt import Check, Pixels, Receipt, SelectionSummary
-from .rows import mask_of
 
 __all__ = [
     "Affine", "Check", "ColorName", "Context", "Direction", "EditOp", "Encoder", "Length", "Outcome", "Pixels",

@@ -6,7 +6,7 @@ deleted group stays as a row with count 0 (selection passes over it), new object
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,14 +14,13 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from ..gaussians.camera import Vec3
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.language.field import Group, LanguageField
+from ..gaussians.language.measure import Axes, box_of, lab_of_cloud
+from ..gaussians.language.selection import mask_of
 from ..gaussians.scene import Frame, Scene
 from .base import Affine, Encoder
-from .measure import median_lab, sample, solid_points
-from .rows import mask_of
-from .space import box_of, moved_box
+from .space import turned_axes
 
 
 def recount(field: LanguageField | None, cloud: GaussianCloud) -> LanguageField | None:
@@ -42,54 +41,42 @@ def _counts(cloud: GaussianCloud, groups: int) -> list[int]:
     return [int(n) for n in filed[1 : groups + 1]]
 
 
-def remeasured(scene: Scene, ids: Tensor, *, box: bool = False, lab: bool = False) -> LanguageField | None:
-    """The table with box or colour measured anew for every group that holds one of the Gaussians `ids`."""
+def remeasured(scene: Scene, ids: Tensor, axes: Mapping[int, Axes] | None = None) -> LanguageField | None:
+    """The table with every group that holds one of the Gaussians `ids` measured anew, as embedding measures it.
+
+    Args:
+        axes: of the boxes of groups that turned, by group id. All others keep theirs, which embedding found.
+    """
     field = scene.language
     if field is None:
         return None
     changed: dict[int, Group] = {}
     for group, rows in _holders(field, scene.cloud, ids):
-        if not len(rows):
-            continue
-        measured = group
-        if box:
-            points = solid_points(scene.cloud, rows)
-            measured = replace(measured, box=box_of(points, scene.frame, group.box.axes))
-        if lab:
-            measured = replace(measured, lab=median_lab(sample(scene.cloud, rows)))
-        changed[group.id] = measured
+        if len(rows):
+            box = box_of(scene.cloud, scene.frame, rows, (axes or {}).get(group.id, group.box.axes))
+            changed[group.id] = replace(group, box=box, lab=lab_of_cloud(scene.cloud, rows))
     return _with(field, changed)
 
 
 def carried(before: Scene, cloud: GaussianCloud, moved: Sequence[Affine]) -> LanguageField | None:
-    """The table after bodies moved: boxes of groups that moved as a whole move along, those of others are measured."""
+    """The table after bodies moved: boxes of groups that moved as a whole turn along; all that moved are measured."""
     field = before.language
     if field is None:
         return None
-    changed: dict[int, Group] = {}
+    turned: dict[int, Axes] = {}
     sizes = _counts(before.cloud, len(field.groups))
-    broken = []
     for body in moved:
         filed = torch.bincount((before.cloud.group[body.source] + 1).clamp(min=0), minlength=len(sizes) + 1)[1:]
         for group in _touched(field, filed):
             leaves = field.leaves(group.id)
             if sum(int(filed[i]) for i in leaves) == sum(sizes[i] for i in leaves):
-                changed[group.id] = replace(group, box=moved_box(group.box, body.matrix, body.offset, before.frame))
-            else:
-                broken.append(before.cloud.ids[body.source])
-                break
-    whole = _with(field, changed)
-    after = before.replace(cloud=cloud, language=whole)
-    if not broken:
-        return whole
-    redone = remeasured(after, torch.cat(broken), box=True)
-    assert redone is not None
-    # Groups that moved as a whole keep the exact box, whatever part of their object stayed behind.
-    return _with(redone, changed)
+                turned[group.id] = turned_axes(group.box.axes, body.matrix, before.frame)
+    ids = torch.cat([before.cloud.ids[body.source] for body in moved])
+    return remeasured(before.replace(cloud=cloud), ids, turned)
 
 
 def thinned(before: Scene, cloud: GaussianCloud, removed: Tensor) -> LanguageField | None:
-    """The table after Gaussians went: counts anew, and boxes and colours of groups that lost only some of theirs.
+    """The table after Gaussians went: counts anew, and groups that lost only some of theirs measured.
 
     Args:
         cloud: what is left.
@@ -102,7 +89,7 @@ def thinned(before: Scene, cloud: GaussianCloud, removed: Tensor) -> LanguageFie
     filed = torch.bincount((lost + 1).clamp(min=0), minlength=len(field.groups) + 1)[1:]
     hurt = torch.tensor([g.id for g in _touched(field, filed)], dtype=torch.int32, device=cloud.device)
     after = before.replace(cloud=cloud, language=recount(field, cloud))
-    return remeasured(after, cloud.ids[torch.isin(cloud.group, hurt)], box=True, lab=True)
+    return remeasured(after, cloud.ids[torch.isin(cloud.group, hurt)])
 
 
 def _touched(field: LanguageField, filed: Tensor) -> list[Group]:
@@ -120,8 +107,10 @@ def _holders(field: LanguageField, cloud: GaussianCloud, ids: Tensor) -> list[tu
 
 def rows_in(cloud: GaussianCloud, field: LanguageField, group: int) -> Tensor:
     """Rows of a group and its parts."""
-    leaves = torch.tensor(field.leaves(group), dtype=torch.int32, device=cloud.device)
-    return torch.isin(cloud.group, leaves).nonzero().squeeze(1)
+    # A table of flags, one a group, is ten times faster than looking each Gaussian's group up among the leaves.
+    leaf = torch.zeros(len(field.groups) + 1, dtype=torch.bool, device=cloud.device)
+    leaf[list(field.leaves(group))] = True
+    return leaf[cloud.group].nonzero().squeeze(1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +126,7 @@ class Newcomer:
 
     cloud: GaussianCloud
     label: str
-    axes: tuple[Vec3, Vec3, Vec3] | None = None
+    axes: Axes | None = None
     like: int | None = None
 
 
@@ -161,9 +150,7 @@ def enter(
 
 
 def _row(field: LanguageField, new: Newcomer, index: int, frame: Frame) -> Group:
-    every = torch.arange(len(new.cloud), device=new.cloud.device)
-    box = box_of(solid_points(new.cloud, every), frame, new.axes)
-    lab = median_lab(sample(new.cloud, every))
+    box, lab = box_of(new.cloud, frame, axes=new.axes), lab_of_cloud(new.cloud)
     if new.like is not None:
         original = field.groups[new.like]
         return replace(original, id=index, level="object", parent=-1, box=box, lab=lab, count=len(new.cloud))

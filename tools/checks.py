@@ -9,13 +9,13 @@ import numpy as np
 import torch
 
 from ..gaussians.camera import Camera
+from ..gaussians.language.selection import mask_of
 from ..gaussians.scene import Scene
 from .base import Affine, Outcome
 from .grid import hits, obstacle_points
 from .measure import reach, solid_points
 from .receipt import Check, at_most, report
-from .rows import mask_of
-from .space import Array, box_of, centimetre, neighbours, overlap
+from .space import Array, centimetre, contact_box, neighbours, overlap
 
 # A body may pass through this share of its points' number of foreign points: floaters and touching surfaces.
 _TOUCHING = 0.01
@@ -76,7 +76,7 @@ def collision_free(after: Scene, moved: tuple[Affine, ...]) -> Check | None:
     worst, bound = 0, 0.0
     for body in placed:
         points = solid_points(after.cloud, body.rows)
-        box = box_of(points, after.frame)
+        box = contact_box(points, after.frame)
         own = torch.zeros(len(after.cloud), dtype=torch.bool, device=after.cloud.device)
         own[body.rows] = True
         others = obstacle_points(after.cloud, own)

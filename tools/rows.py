@@ -12,25 +12,10 @@ import torch
 from torch import Tensor
 
 from ..gaussians.cloud import GaussianCloud
-from ..gaussians.language.selection import Selection
+from ..gaussians.language.selection import Selection, mask_of
 
-_DENSE = 8  # ids spread over at most this many times the rows are looked up in a table
 _CHUNK = 1 << 13  # rows changed at a time: intermediates stay in a core's cache, whatever the cloud's size
 _CACHE = 1 << 19  # bytes compared at a time: they stay in a core's cache
-
-
-def mask_of(cloud: GaussianCloud, ids: Tensor) -> Tensor:
-    """`[N]` bool: which rows of `cloud` have one of these ids."""
-    if not len(ids) or not len(cloud):
-        return torch.zeros(len(cloud), dtype=torch.bool, device=cloud.device)
-    ids = ids.to(cloud.device)
-    low, high = (int(v) for v in torch.aminmax(cloud.ids))
-    if high - low >= _DENSE * len(cloud):
-        return torch.isin(cloud.ids, ids, assume_unique=True)
-    # Ids are row numbers of a file, nearly always; a table of flags is then 15 times faster than sorting them.
-    flags = torch.zeros(high - low + 1, dtype=torch.bool, device=cloud.device)
-    flags[ids[(ids >= low) & (ids <= high)] - low] = True
-    return flags[cloud.ids - low]
 
 
 def rows_of(cloud: GaussianCloud, ids: Tensor) -> Tensor:

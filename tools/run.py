@@ -16,12 +16,12 @@ import torch
 
 from ..gaussians.errors import AbsentError, CheckFailedError
 from ..gaussians.language.query import Query
-from ..gaussians.language.selection import Selection
+from ..gaussians.language.selection import Selection, mask_of
 from ..gaussians.scene import Scene
 from . import pixels
 from .base import Context, EditOp, Outcome
 from .receipt import Check, Pixels, Receipt, SelectionSummary, at_most
-from .rows import Difference, difference, mask_of
+from .rows import Difference, difference
 
 
 class Done(NamedTuple):

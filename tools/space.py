@@ -15,6 +15,7 @@ from torch import Tensor
 from ..gaussians.camera import Camera, Vec3
 from ..gaussians.errors import InstructionError
 from ..gaussians.language.field import Box
+from ..gaussians.language.measure import Axes, as_axes, box_along, level_axes
 from ..gaussians.language.relations import viewer_stand
 from ..gaussians.language.selection import Selection
 from ..gaussians.scene import Frame, Scene
@@ -93,11 +94,14 @@ def _body(scene: Scene, rows: Tensor, group: int) -> Body:
     points = solid_points(scene.cloud, rows)
     # The field's box was oriented with care when the scene was embedded; its axes are kept, its extents measured anew.
     axes = known.box.axes if known is not None else None
-    return Body(rows, group, box_of(points, scene.frame, axes), known.label if known is not None else "")
+    return Body(rows, group, contact_box(points, scene.frame, axes), known.label if known is not None else "")
 
 
-def box_of(points: Array, frame: Frame, axes: tuple[Vec3, Vec3, Vec3] | None = None) -> Box:
-    """Upright box around points `[M, 3]`, along `axes` or with the smallest footprint.
+def contact_box(points: Array, frame: Frame, axes: Axes | None = None) -> Box:
+    """Upright box around points `[M, 3]`, along `axes` or with the smallest footprint: where a thing meets others.
+
+    The box of the language field leaves out a hundredth at each end, as stray splats would widen it; the foot of a
+    chair is less than that, and it is what stands on the floor, so here almost every solid point counts.
 
     Raises:
         InstructionError: there are no points.
@@ -105,28 +109,10 @@ def box_of(points: Array, frame: Frame, axes: tuple[Vec3, Vec3, Vec3] | None = N
     if not len(points):
         raise InstructionError("nothing is left of the target: it has no Gaussians")
     if axes is None:
-        axes = _level_axes(points, frame)
-    basis = np.array(axes)
-    spans = np.array([reach(points @ a) for a in basis])  # [3, 2]
-    center = spans.mean(axis=1) @ basis
-    size = np.maximum(spans[:, 1] - spans[:, 0], 1e-9)
-    return Box(as_vec(center), axes, as_vec(size))
-
-
-def _level_axes(points: Array, frame: Frame) -> tuple[Vec3, Vec3, Vec3]:
-    """Axes of the smallest footprint rectangle, found to a degree; the level basis itself if it is nearly as small."""
-    east, north, up = frame.basis()
-    sample = points[:: max(1, len(points) // _CALIPERS)]
-    plan = np.stack([sample @ east, sample @ north], axis=1)
-    angles = np.radians(np.arange(90))
-    x = plan @ np.stack([np.cos(angles), np.sin(angles)])  # [M, 90]
-    y = plan @ np.stack([-np.sin(angles), np.cos(angles)])
-    spans = [np.ptp(np.quantile(v, [0.005, 0.995], axis=0), axis=0) for v in (x, y)]
-    area = spans[0] * spans[1]
-    best = int(np.argmin(area))
-    angle = angles[best] if area[best] < 0.9 * area[0] else 0.0
-    first = np.cos(angle) * east + np.sin(angle) * north
-    return as_vec(first), as_vec(np.cross(up, first)), as_vec(up)
+        axes = level_axes(points[:: max(1, len(points) // _CALIPERS)], frame)
+    low, high = np.array([reach(points @ a) for a in np.array(axes)]).T
+    thin = np.maximum(1e-9 - (high - low), 0.0)
+    return box_along(axes, low, high + thin)
 
 
 def as_vec(values: Array) -> Vec3:
@@ -161,19 +147,14 @@ def _penetration(a: Box, b: Box, axis: Array) -> float:
     return (extent_along(a, axis) + extent_along(b, axis)) / 2 - distance
 
 
-def moved_box(box: Box, matrix: Array, offset: Array, frame: Frame) -> Box:
-    """The upright box around a box under `x -> matrix @ x + offset`; exact for turns about up and level stretches."""
-    axes = np.array(box.axes) @ matrix.T
-    up = frame.up_vector
-    level = axes[0] - up * (axes[0] @ up)
+def turned_axes(axes: Axes, matrix: Array, frame: Frame) -> Axes:
+    """Axes of an upright box after `x -> matrix @ x`: its first level axis, or the second if that now stands up."""
+    first, second, up = *(np.array(axes)[:2] @ matrix.T), frame.up_vector
+    level = first - up * (first @ up)
     if np.linalg.norm(level) < 1e-6:
-        level = axes[1] - up * (axes[1] @ up)
-    first = level / np.linalg.norm(level)
-    frame_axes = np.stack([first, np.cross(up, first), up])
-    half = (axes * np.array(box.size)[:, None]) / 2  # rows: half edges in the world
-    size = 2 * np.abs(half @ frame_axes.T).sum(axis=0)
-    center = matrix @ np.array(box.center) + offset
-    return Box(as_vec(center), (as_vec(first), as_vec(frame_axes[1]), as_vec(up)), as_vec(size))
+        level = second - up * (second @ up)
+    level = level / np.linalg.norm(level)
+    return as_axes(np.stack([level, np.cross(up, level), up]))
 
 
 def shifted_box(box: Box, offset: Array) -> Box:

@@ -25,7 +25,7 @@ from .measure import reach, solid_points
 from .place import Placer, Spot
 from .rows import fresh_ids, joined
 from .shape import transformed
-from .space import Array, Body, as_vec, box_of, heading
+from .space import Array, Body, as_vec, contact_box, heading
 
 _ROOM = 4.5  # metres across, taken for a scene that gives no other hint of its scale
 _HANGING = 1.5  # metres above the floor of the centre of what hangs on a wall
@@ -234,7 +234,7 @@ def taken_by(cloud: GaussianCloud, scene: Scene, placer: Placer) -> None:
     """Tell the placer that a new object stands there."""
     points = obstacle_points(cloud)
     if len(points):
-        placer.take(points.astype(np.float64), box_of(points.astype(np.float64), scene.frame))
+        placer.take(points.astype(np.float64), contact_box(points.astype(np.float64), scene.frame))
 
 
 def as_moved(rows: Tensor, support: float | None) -> Affine:

@@ -13,14 +13,13 @@ from numpy.typing import NDArray
 from scenewright.gaussians import assets
 from scenewright.gaussians.camera import Camera, Vec3
 from scenewright.gaussians.cloud import GaussianCloud, concat
-from scenewright.gaussians.language.field import Box, Group, LanguageField
+from scenewright.gaussians.language.field import Group, LanguageField
+from scenewright.gaussians.language.measure import box_of, lab_of_cloud
 from scenewright.gaussians.language.query import Query
 from scenewright.gaussians.language.selection import Selection, nothing
 from scenewright.gaussians.scene import Frame, Scene
 from scenewright.tools.base import Context
-from scenewright.tools.measure import median_lab, sample, solid_points
 from scenewright.tools.shape import axis_rotation, transformed
-from scenewright.tools.space import box_of
 
 FRAME = Frame((0.0, 0.0, 1.0), 0.0, 1.0, "given", "given")
 TABLE, CHAIR, RED_CHAIR, VASE, FLOOR = range(5)
@@ -88,12 +87,11 @@ def build(things: list[Thing], degree: int = 2, detail: float = 0.4) -> Scene:
         ids = torch.arange(first, first + len(cloud))
         filed.append(cloud.replace(ids=ids, group=torch.full((len(cloud),), i, dtype=torch.int32)))
         first += len(cloud)
-        rows = torch.arange(len(cloud))
         angle = math.radians(things[i].degrees) if i < len(things) else 0.0
         x, y = (math.cos(angle), math.sin(angle), 0.0), (-math.sin(angle), math.cos(angle), 0.0)
-        box: Box = box_of(solid_points(cloud, rows), FRAME, (x, y, (0.0, 0.0, 1.0)))
+        box = box_of(cloud, FRAME, axes=(x, y, (0.0, 0.0, 1.0)))
         level = "structure" if labels[i] == "floor" else "object"
-        lab = median_lab(sample(cloud, rows))
+        lab = lab_of_cloud(cloud)
         groups.append(Group(i, level, -1, labels[i], 0.9, box, lab, len(cloud), 8, 1.0))  # type: ignore[arg-type]
     cloud = concat(filed).with_degree(degree)
     noise = torch.randn(cloud.sh[:, 1:].shape, generator=torch.Generator().manual_seed(2)) * 0.03

@@ -10,7 +10,8 @@ from torch import Tensor
 
 from scenewright.gaussians.color import parse, rgb_to_lab
 from scenewright.gaussians.harmonics import evaluate
-from scenewright.tools.measure import Sample, lightness_spread, mean_lab
+from scenewright.gaussians.language.measure import Sample
+from scenewright.tools.measure import lightness_spread, mean_lab
 from scenewright.tools.paint import LUMA, NEAR, distance, saturation, toward_color, warmth
 
 COLORS = ("teal", "white", "black", "gray", "yellow", "blue", "red", "olive", "pink", "brown")

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 from ...gaussians.errors import ScenewrightError
-from ...gaussians.language.selection import Selection
+from ...gaussians.language.selection import Selection, mask_of
 from ...gaussians.scene import Scene
 from ..base import Context, Outcome, TargetedOp
 from ..bookkeeping import thinned
 from ..checks import counted, gone
 from ..receipt import Check, report
-from ..rows import mask_of
 
 
 class Delete(TargetedOp):

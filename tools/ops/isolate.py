@@ -6,13 +6,12 @@ from typing import Any, ClassVar, Literal
 
 from torch import Tensor
 
-from ...gaussians.language.selection import Selection
+from ...gaussians.language.selection import Selection, mask_of
 from ...gaussians.scene import Scene
 from ..base import Context, Outcome, TargetedOp
 from ..bookkeeping import thinned
 from ..checks import counted, gone
 from ..receipt import Check
-from ..rows import mask_of
 
 
 class Isolate(TargetedOp):

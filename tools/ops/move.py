@@ -10,7 +10,7 @@ from pydantic import model_validator
 
 from ...gaussians.errors import InstructionError
 from ...gaussians.language.query import Query
-from ...gaussians.language.selection import Selection
+from ...gaussians.language.selection import Selection, mask_of
 from ...gaussians.scene import Scene
 from ..base import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
 from ..bookkeeping import carried
@@ -18,7 +18,7 @@ from ..checks import bumps, carried_as_asked, collision_free, counted, supported
 from ..measure import solid_points
 from ..place import Placer
 from ..receipt import Check, at_most
-from ..rows import Draft, mask_of
+from ..rows import Draft
 from ..shape import shift
 from ..space import Array, Body, bodies_of, centimetre, extent_along, heading, shifted_box
 

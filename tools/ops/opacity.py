@@ -10,6 +10,7 @@ from pydantic import Field
 from ...gaussians.language.selection import Selection
 from ...gaussians.scene import Scene
 from ..base import Context, Outcome, TargetedOp
+from ..bookkeeping import remeasured
 from ..checks import counted
 from ..receipt import Check, at_most
 from ..rows import Draft, rows_of
@@ -30,7 +31,8 @@ class Opacity(TargetedOp):
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         draft = Draft(scene.cloud)
         draft.map("opacities", rows_of(scene.cloud, selection.ids), lambda o: (o * self.value).clamp(min=HIDDEN))
-        return Outcome(scene.replace(cloud=draft.done()), touched=selection.ids)
+        after = scene.replace(cloud=draft.done())
+        return Outcome(after.replace(language=remeasured(after, selection.ids)), touched=selection.ids)
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         was = before.cloud.opacities[rows_of(before.cloud, selection.ids)].to(torch.float64)

@@ -10,12 +10,13 @@ from pydantic import Field, model_validator
 from torch import Tensor
 
 from ...gaussians.color import BASIC, parse, rgb_to_lab
+from ...gaussians.language.measure import Sample, sample
 from ...gaussians.language.selection import Selection
 from ...gaussians.scene import Scene
 from ..base import ColorName, Context, Outcome, TargetedOp
 from ..bookkeeping import remeasured
 from ..checks import counted
-from ..measure import Sample, lightness_spread, mean_lab, sample
+from ..measure import lightness_spread, mean_lab
 from ..paint import NEAR, ColorMap, distance, saturation, toward_color, warmth
 from ..receipt import Check, at_least, at_most, report
 from ..rows import Draft, rows_of
@@ -61,7 +62,7 @@ class Recolor(TargetedOp):
             change = self._map(sample(scene.cloud, rows), asked)
             draft.map("sh", rows, change.on_harmonics)
         after = scene.replace(cloud=draft.done())
-        return Outcome(after.replace(language=remeasured(after, selection.ids, lab=True)), touched=selection.ids)
+        return Outcome(after.replace(language=remeasured(after, selection.ids)), touched=selection.ids)
 
     def _asked(self) -> Tensor | None:
         """Lab of the named colour; a basic colour word means what people picture, not the corner of the RGB cube.

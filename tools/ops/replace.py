@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from ...gaussians.language.selection import Selection
+from ...gaussians.language.selection import Selection, mask_of
 from ...gaussians.scene import Scene
 from ..base import AssetName, ColorName, Context, Outcome, TargetedOp
 from ..checks import collision_free, counted, gone, supported
 from ..place import Placer, Spot
 from ..receipt import Check
-from ..rows import mask_of, selection_of
+from ..rows import selection_of
 from ..space import Body, bodies_of
 from ..stock import Arrivals, Piece, Wish, as_moved, fetch, metre, set_down, standing_axes, taken_by
 
