@@ -30,6 +30,7 @@ from .shapes import Piece, box, boxes, quad
 
 Array = NDArray[np.float64]
 STRUCTURE = -1  # truth id of floor, walls and ceiling
+SOFT, SHADE = 0.75, 0.4  # contact shadows are kept pale: they stay on the floor when the thing that cast them is gone
 WALLS = ("north", "west", "east", "south")
 
 
@@ -250,6 +251,7 @@ def _assemble(layout: Layout, name: str, rng: np.random.Generator, detail: float
     solid = np.concatenate([samples.xyz, *(c.means.numpy().astype(np.float64) for c in placed)])
     space = light.occupancy(solid, step=0.06)
     bright = light.bake(samples.xyz, samples.normal, space, sun)
+    bright = np.where(bright < SOFT, SOFT - SHADE * (SOFT - bright), bright)
     bright = np.where(samples.normal[:, 2] > 0.9, 0.84 * bright, 0.86 + 0.3 * (bright - 0.85))
     structure = flat_gaussians(samples, surface.albedo(shell, samples) * bright[:, None])
     clouds, ids, start = [structure], [torch.full((len(structure),), STRUCTURE, dtype=torch.int32)], len(structure)

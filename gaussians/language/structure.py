@@ -213,7 +213,8 @@ def _painted(surface: Surface, labels: NDArray[np.int32], plane: _Plane, free: N
     if not member.any():
         return np.zeros(len(surface), bool)
     main = int(np.argmax(np.where(member, breadth, -1)))
-    member &= _in_plane(off, own, count, main, TIGHT * surface.spacing)
+    level, band = _in_plane(off, own, count, main, TIGHT * surface.spacing)
+    member &= level
     span = np.ptp(np.quantile(along, [0.02, 0.98], axis=0), axis=0)
     kept = np.zeros(count, bool)
     for piece in np.argsort(-np.where(member, breadth, -1), kind="stable"):
@@ -225,7 +226,9 @@ def _painted(surface: Surface, labels: NDArray[np.int32], plane: _Plane, free: N
             kept |= alike
         elif breadth[piece] < 0.01 * breadth.sum():
             break
-    return kept[labels] & free & (plane.near | (inside > 0.9 * total)[labels])
+    within = np.zeros(len(surface), bool)
+    within[near[np.abs(off) < band]] = True
+    return kept[labels] & free & within
 
 
 def _plane_cells(along: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -257,8 +260,9 @@ def _tilt(off: NDArray[np.float64], along: NDArray[np.float64], cell: NDArray[np
 
 def _in_plane(
     off: NDArray[np.float64], own: NDArray[np.int32], count: int, main: int, tight: float
-) -> NDArray[np.bool_]:
-    """Superpoints that lie in the plane itself, not a finger's breadth before it as pictures and rugs do, `[S]`.
+) -> tuple[NDArray[np.bool_], float]:
+    """Superpoints that lie in the plane itself, not a finger's breadth before it as pictures and rugs do, `[S]`; and
+    how far off a single point of them may lie: a sole on the floor has the floor's colour only by its shadow.
 
     The tolerance follows the roughness of the broadest piece, so that it is tight where the surface is clean.
     """
@@ -269,4 +273,4 @@ def _in_plane(
     middle[own[order][starts]] = off[order][starts + sizes // 2]
     spread = float(np.median(np.abs(off[own == main] - middle[main])))
     level: NDArray[np.bool_] = np.abs(middle - middle[main]) < max(4 * spread, tight)
-    return level
+    return level, abs(float(middle[main])) + max(6 * spread, 1.5 * tight)
