@@ -6,7 +6,6 @@ out: that is the session's. Works on a terminal with history and completion, and
 
 from __future__ import annotations
 
-import json
 import os
 import shlex
 import shutil
@@ -15,10 +14,10 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..gaussians.errors import InstructionError, ScenewrightError, UserError
+from ..gaussians.errors import AbsentError, InstructionError, ScenewrightError, UserError
 from .halfblocks import depth_of, draw
 from .refusal import verdict_of
-from .resolved import candidate_json, selection_json
+from .resolved import candidate_json, plan_lines, selection_json
 from .tables import coloured, table
 
 if TYPE_CHECKING:
@@ -101,6 +100,11 @@ class Chat:
             if self.terminal.debug:
                 raise
             self._tell(str(error), {"verdict": verdict_of(error), "reason": str(error)}, "red")
+        except Exception as error:  # a mistake of ours must not cost the user what was not saved yet
+            if self.terminal.debug:
+                raise
+            reason = f"internal error ({type(error).__name__}: {error}); the scene is as it was. Please report it"
+            self._tell(reason, {"verdict": "internal", "reason": reason}, "red")
 
     def _instruction(self, text: str) -> None:
         if self.session.question is not None and self.session.question.selection.verdict == "ambiguous":
@@ -125,6 +129,8 @@ class Chat:
         question = self.session.question
         candidates = question.candidates if question else ()
         lines = [str(error)]
+        if isinstance(error, AbsentError) and candidates:
+            lines.append("The nearest things that are there:")
         lines += [f"  {i}. {c.describe()}" for i, c in enumerate(candidates, start=1)]
         if question is not None and question.selection.verdict == "ambiguous":
             lines.append("Which one? A number, 'all', or for example 'the left one'.")
@@ -165,12 +171,12 @@ class Chat:
     def _plan(self, text: str) -> None:
         if text:
             result = self.session.preview(text)
-            planned = _pretty(result.plan) if result.plan is not None else ""
-            self._tell("\n".join([planned, *result.sentences(), "(not done)"]), result.to_json())
+            planned = plan_lines(result.plan) if result.plan is not None else []
+            self._tell("\n".join([*planned, *result.sentences(), "(not done)"]), result.to_json())
             return
         if self._planned is None:
             raise UserError("nothing was planned yet; /plan TEXT shows what an instruction would do")
-        self._tell(_pretty(self._planned), self._planned.model_dump(mode="json"))
+        self._tell("\n".join(plan_lines(self._planned)), self._planned.model_dump(mode="json"))
 
     def _select(self, text: str) -> None:
         if not text:
@@ -192,12 +198,11 @@ class Chat:
 
     def _things(self, _: str) -> None:
         from ..gaussians.color import name_of
+        from .things import name_of_thing
 
         language = self.session.embed().language
         assert language is not None
-        rows = [
-            (g.id, f"{name_of(g.lab)} {g.label or 'unnamed thing'}", g.count) for g in language.objects() if g.count
-        ]
+        rows = [(g.id, f"{name_of(g.lab)} {name_of_thing(g)}", g.count) for g in language.objects() if g.count]
         data = {"things": [{"group": i, "name": name, "gaussians": n} for i, name, n in rows]}
         shown = [(i, name, f"{n:,}") for i, name, n in rows]
         self._tell(table(("group", "thing", "Gaussians"), shown), data)
@@ -209,7 +214,10 @@ class Chat:
         )
 
     def _save(self, arguments: str) -> None:
-        words = shlex.split(arguments)
+        try:
+            words = shlex.split(arguments)
+        except ValueError as error:
+            raise UserError("a quotation mark is open; write for example /save 'my room.ply'") from error
         names = [w for w in words if w != "--force"]
         if len(names) != 1:
             raise UserError("say where to: /save out.ply (add --force to overwrite)")
@@ -298,9 +306,3 @@ def history_file() -> Path | None:
     except OSError:
         return None
     return root / "chat_history" if os.access(root, os.W_OK) else None
-
-
-def _pretty(plan: EditPlan) -> str:
-    """A plan, one operation a line, without what is left at its default."""
-    rows = [{"op": op.op, **op.model_dump(mode="json", exclude_defaults=True)} for op in plan.ops]
-    return "\n".join(json.dumps(row, ensure_ascii=False) for row in rows)

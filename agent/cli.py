@@ -59,26 +59,44 @@ for _verb in VERBS:
 def main(arguments: list[str] | None = None) -> NoReturn:
     """Run the command line on `arguments` (by default those of the process) and exit with its code."""
     terminal.as_json = terminal.debug = False
+    given = sys.argv[1:] if arguments is None else arguments
+    code: object = 0
     try:
-        app(arguments)
+        code = app(given, standalone_mode=False)
     except ScenewrightError as error:
         if terminal.debug:
             raise
         _report(explain(error))
         sys.exit(error.exit_code)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, typer.Abort):
         terminal.say("interrupted")
         sys.exit(130)
     except BrokenPipeError:
         sys.stderr.close()  # whoever read our output has gone; nothing is left to say, not even at exit
         sys.exit(0)
     except Exception as error:
+        if hasattr(error, "format_message"):  # the command was written wrongly
+            terminal.as_json = "--json" in given
+            _misused(error)
         if terminal.debug:
             raise
         note = f"internal error ({type(error).__name__}: {error}); run again with --debug and report it"
         _report({"verdict": "internal", "reason": note, "exit_code": 4})
         sys.exit(4)
-    sys.exit(0)
+    if code == 130:  # an interrupt, as typer reports it
+        terminal.say("interrupted")
+    sys.exit(code if isinstance(code, int) else 0)
+
+
+def _misused(error: Any) -> NoReturn:
+    """A command line that cannot be read: one line that says what is wrong and where help is, and exit code 2."""
+    said = str(error.format_message()).strip()
+    if "\n" in said:  # no arguments at all: the help itself
+        terminal.say(said)
+        sys.exit(2)
+    path = error.ctx.command_path if getattr(error, "ctx", None) else "scenewright"
+    _report({"verdict": "user", "reason": f"{said.rstrip('.')}; see {path} --help", "exit_code": 2})
+    sys.exit(2)
 
 
 def _report(told: dict[str, Any]) -> None:

@@ -26,6 +26,8 @@ from .result import Result
 from .script import SCRIPT, Cast, Role, Thing, Turn
 from .session import Session
 from .stopwatch import timed
+from .targets import make_folder
+from .things import told
 
 if TYPE_CHECKING:
     from ..gaussians.assets import Room
@@ -125,7 +127,7 @@ class Demo:
     # -- before and after the conversation --------------------------------------------------------------------------
 
     def _prepare(self) -> None:
-        self.folder.mkdir(parents=True, exist_ok=True)
+        make_folder(self.folder)
         there = [name for name in FILES if (self.folder / name).exists()]
         if there and not self.force:
             raise UserError(f"{self.folder} holds {there[0]} of an earlier run; choose another folder, or --force")
@@ -135,8 +137,7 @@ class Demo:
     def _tell_things(self, session: Session) -> None:
         language = session.scene.language
         assert language is not None
-        names = sorted(g.label or "unnamed thing" for g in language.objects())
-        self.say(f"embedded in {self.seconds['embed']:.1f} s; it sees {len(names)} things: {', '.join(names)}")
+        self.say(f"embedded in {self.seconds['embed']:.1f} s; it sees {told(language.objects())}")
 
     def _sheet(self) -> None:
         heading = f"Scenewright demo, seed {self.seed}: {len(self.steps)} instructions"

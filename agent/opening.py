@@ -55,11 +55,11 @@ def open_session(opening: Opening) -> tuple[Session, bool]:
     from .session import Session
     from .views import choose_view, with_frame
 
-    scene, report = load_with_report(opening.path)
+    loaded, report = load_with_report(opening.path)
     for note in report.notes:
         terminal.say(f"note: {note}")
-    scene = with_frame(scene, opening.up, opening.metres_per_unit)
-    scene, encoder = _with_saved_field(scene, opening)
+    scene = with_frame(loaded, opening.up, opening.metres_per_unit)
+    scene, encoder = _with_saved_field(loaded, scene, opening)
     session = Session(
         scene,
         planner=opening.planner,
@@ -74,12 +74,15 @@ def open_session(opening: Opening) -> tuple[Session, bool]:
     return session, scene.language is not None
 
 
-def _with_saved_field(scene: Scene, opening: Opening) -> tuple[Scene, str | Encoder]:
-    """The scene with its saved field if there is one of this encoder; and the encoder, loaded if it had to be."""
+def _with_saved_field(loaded: Scene, scene: Scene, opening: Opening) -> tuple[Scene, str | Encoder]:
+    """The scene with its saved field if there is one of this encoder; and the encoder, loaded if it had to be.
+
+    `scene` is `loaded` in the frame that the user gave; a field that was made in another is not used.
+    """
     from ..gaussians.language import encoders
     from ..gaussians.language.store import load_field
 
-    embedded = load_field(scene, opening.path)
+    embedded = load_field(loaded, opening.path)
     if embedded is None or embedded.language is None:
         return scene, opening.encoder
     encoder = encoders.load(opening.encoder)

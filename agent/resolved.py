@@ -5,6 +5,7 @@ Knows the shape of an answer. Refuses to know how it is printed.
 
 from __future__ import annotations
 
+import json
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -82,6 +83,12 @@ def plan_json(plan: EditPlan) -> dict[str, Any]:
         "planner": plan.planner,
         "seconds": round(plan.seconds, 4),
     }
+
+
+def plan_lines(plan: EditPlan) -> list[str]:
+    """A plan for a person: one operation a line, without what is left at its default."""
+    rows = [{"op": op.op, **op.model_dump(mode="json", exclude_defaults=True)} for op in plan.ops]
+    return [json.dumps(row, ensure_ascii=False) for row in rows]
 
 
 def _step(op: Any, targets: tuple[int, ...]) -> dict[str, Any]:

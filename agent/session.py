@@ -280,6 +280,8 @@ class Session:
             UserError: it holds no such session.
         """
         sessions = read_log(log).sessions()
+        if not sessions:
+            raise UserError(f"{log} holds no session; give a log written with --log")
         if not -len(sessions) <= session < len(sessions):
             raise UserError(f"{log} holds {len(sessions)} sessions; there is none number {session}")
         outcome: list[Replayed] = []

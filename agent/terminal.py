@@ -13,7 +13,7 @@ from typing import Any, NoReturn, TextIO
 
 import typer
 
-from ..gaussians.errors import InstructionError, ScenewrightError, UserError
+from ..gaussians.errors import AbsentError, InstructionError, ScenewrightError, UserError
 
 
 class Terminal:
@@ -90,7 +90,9 @@ class Terminal:
         """An instruction that was not carried out: the reason, what it hesitated between, and exit code 3."""
         if self.as_json:
             self.row(data)
-        self.say(str(error))
+        self.say(f"scenewright: {error}")
+        if isinstance(error, AbsentError) and choices:
+            self.say("the nearest things that are there:")
         for number, choice in enumerate(choices, start=1):
             self.say(f"  {number}. {choice}")
         raise typer.Exit(error.exit_code)

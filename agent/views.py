@@ -5,6 +5,7 @@ Knows how a view is written. Refuses to know how a good view is found (see gauss
 
 from __future__ import annotations
 
+import math
 import re
 from typing import TYPE_CHECKING
 
@@ -61,8 +62,12 @@ def with_frame(scene: Scene, up: str | None, metres_per_unit: float | None) -> S
 
     frame = scene.frame
     if up is not None:
+        if not any(_point(up)):
+            raise UserError(f"--up {up} points nowhere; write for example --up 0,0,1")
         frame = replace(frame, up=_point(up), up_source="given", floor=None)
     if metres_per_unit is not None:
+        if not 0 < metres_per_unit < math.inf:
+            raise UserError(f"--metres-per-unit must be a number above zero, not {metres_per_unit:g}")
         frame = replace(frame, metres_per_unit=metres_per_unit, scale_source="given")
     return scene.replace(frame=frame)
 
@@ -95,4 +100,6 @@ def _point(text: str) -> Vec3:
         x, y, z = (float(c) for c in text.split(","))
     except ValueError:
         raise UserError(f"{text!r} is no point; write three numbers x,y,z") from None
+    if not all(map(math.isfinite, (x, y, z))):
+        raise UserError(f"{text!r} is no point; its numbers must be finite")
     return (x, y, z)

@@ -30,13 +30,13 @@ def command(
     Times do not carry over to other machines; ratios and accuracies do.
     """
     from ...benchmarks import harness
-    from ...gaussians.errors import FileError, UserError
+    from ...gaussians.errors import FileError
+    from ..targets import refuse_existing
 
-    if name is None:
+    if name in (None, "list"):
         terminal.result("\n".join(harness.names()), {"benchmarks": list(harness.names())})
         return
-    if chart is not None and chart.exists() and not force:
-        raise UserError(f"{chart} exists; choose another name, or overwrite it with --force")
+    refuse_existing([chart] if chart else [], force)
     try:
         earlier = harness.Result.from_json(against.read_text(encoding="utf-8")) if against else None
     except OSError as error:

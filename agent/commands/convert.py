@@ -23,7 +23,9 @@ def command(
     Read: INRIA .ply, PlayCanvas .compressed.ply, SOG (.sog, or a folder with meta.json). Written: INRIA .ply.
     """
     from ...gaussians.files import load_with_report, save
+    from ..targets import refuse_existing
 
+    refuse_existing([output], force)
     loaded, report = load_with_report(scene)
     save(loaded, output, force=force)
     for note in report.notes:

@@ -34,7 +34,7 @@ def command(
     text: Annotated[str | None, typer.Argument(metavar="TEXT", help="What to do, e.g. 'make the sofa teal'.")] = None,
     output: Output = None,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Show the plan and what would change; write nothing.")
+        bool, typer.Option("--dry-run", help="Show the plan and what would change; write no scene.")
     ] = False,
     pictures: Annotated[
         Path | None, typer.Option("--pictures", metavar="FOLDER", help="Leave before.png and after.png there.")
@@ -65,7 +65,7 @@ def command(
         raise UserError('give either TEXT or --replay LOG: scenewright edit SCENE "make the sofa teal" -o out.ply')
     if output is None and not dry_run:
         raise UserError("say where to write the edited scene: -o out.ply (or look first with --dry-run)")
-    _refuse_existing(None if dry_run else output, pictures, force)
+    _check_targets(None if dry_run else output, pictures, force)
     started = time.perf_counter()
     seconds: dict[str, float] = {}
     kept_log = None if dry_run else log
@@ -82,19 +82,20 @@ def command(
     data["seconds"] = {stage: round(value, 3) for stage, value in spent.items()}
     lines += ["dry run: no scene was written"] if dry_run else [f"wrote {data['output']}"]
     lines += [f"wrote {path}" for path in data.get("pictures", ())]
-    lines.append("seconds: " + ", ".join(f"{stage} {value:.2f}" for stage, value in data["seconds"].items()))
     terminal.result("\n".join(lines), data)
+    if not as_json:
+        terminal.say("seconds: " + ", ".join(f"{stage} {value:.2f}" for stage, value in data["seconds"].items()))
 
 
-def _refuse_existing(output: Path | None, pictures: Path | None, force: bool) -> None:
-    """Say at once, not after the work, that a file would be overwritten."""
-    from ...gaussians.errors import UserError
+def _check_targets(output: Path | None, pictures: Path | None, force: bool) -> None:
+    """Say at once, not after the work, that a file would be overwritten or cannot be there."""
+    from ..targets import make_folder, refuse_existing
 
     wanted = [output] if output else []
     wanted += [pictures / name for name in ("before.png", "after.png")] if pictures else []
-    for path in wanted:
-        if path.exists() and not force:
-            raise UserError(f"{path} exists; choose another name, or overwrite it with --force")
+    refuse_existing(wanted, force)
+    if pictures is not None:
+        make_folder(pictures)
 
 
 def _instruct(session: Session, text: str, dry_run: bool) -> Result:
@@ -125,10 +126,20 @@ def _replay(session: Session, log: Path) -> list[Result]:
 def _told(results: Sequence[Result], replayed: bool, dry_run: bool) -> tuple[list[str], dict[str, Any]]:
     """What was done, as lines and as data."""
     if not replayed:
-        return list(results[0].sentences()), results[0].to_json()
-    lines = [line for result in results for line in (f"> {result.text}", *result.sentences())]
+        return _lines(results[0], dry_run), results[0].to_json()
+    lines = [line for result in results for line in (f"> {result.text}", *_lines(result, dry_run))]
     rows = [r.to_json() for r in results]
     return lines, {"verdict": "ok", "replayed": rows, "dry_run": dry_run, "gaussians": rows[-1]["gaussians"]}
+
+
+def _lines(result: Result, dry_run: bool) -> list[str]:
+    """What was done; in a dry run the plan, and what it would do."""
+    from ..resolved import plan_lines
+
+    if not dry_run or result.plan is None:
+        return list(result.sentences())
+    would = [s if s.startswith("note:") else f"would {s}" for s in result.sentences()]
+    return [*(f"plan: {line}" for line in plan_lines(result.plan)), *would]
 
 
 def _write(session: Session, results: Sequence[Result], targets: _Targets, data: dict[str, Any]) -> None:
@@ -149,7 +160,6 @@ def _draw(session: Session, results: Sequence[Result], folder: Path, force: bool
     from ..look import after, picture
     from ..pictures import save_png
 
-    folder.mkdir(parents=True, exist_ok=True)
     shots = {"before": picture(results[0].before, session.viewer), "after": after(results[-1], session.viewer)}
     for name, shot in shots.items():
         save_png(shot, folder / f"{name}.png", force)

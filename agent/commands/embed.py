@@ -26,6 +26,7 @@ def command(
     from ...gaussians.language import encoders
     from ...gaussians.language.embed import embed
     from ...gaussians.language.store import load_field, save_field
+    from ..things import told
     from ..views import with_frame
 
     started = time.perf_counter()
@@ -37,7 +38,10 @@ def command(
     path = None if known else save_field(embedded, scene)
     language = embedded.language
     assert language is not None
-    things = [{"group": g.id, "label": g.label, "gaussians": g.count} for g in language.objects()]
+    things = [
+        {"group": g.id, "label": g.label, "sure": round(g.label_score, 3), "gaussians": g.count}
+        for g in language.objects()
+    ]
     seconds = round(time.perf_counter() - started, 2)
     data = {
         "path": str(path) if path else None,
@@ -47,6 +51,5 @@ def command(
         "seconds": seconds,
         "was_there": known is not None,
     }
-    names = ", ".join(sorted(g.label or "unnamed thing" for g in language.objects()))
-    told = "was embedded already (--force does it again)" if known else f"embedded in {seconds} s, saved as {path}"
-    terminal.result("\n".join([f"{scene}: {told}", f"{len(things)} things: {names}", *language.notes]), data)
+    done = "was embedded already (--force does it again)" if known else f"embedded in {seconds} s, saved as {path}"
+    terminal.result("\n".join([f"{scene}: {done}", told(language.objects()), *language.notes]), data)

@@ -12,6 +12,7 @@ def command(scene: SceneFile, as_json: Json = False, debug: Debug = False) -> No
     """Tell what a scene file holds: format, Gaussians, frame, cameras, repairs, and its things if it was embedded."""
     from ...gaussians.files import load_with_report
     from ...gaussians.language.store import load_field
+    from ..things import told
 
     loaded, report = load_with_report(scene)
     loaded = load_field(loaded, scene) or loaded
@@ -31,17 +32,20 @@ def command(scene: SceneFile, as_json: Json = False, debug: Debug = False) -> No
         "notes": list(report.notes),
         "language": None,
     }
+    told_things = "  not embedded yet: run `scenewright embed`"
     if language is not None:
-        things = [{"group": g.id, "label": g.label, "count": g.count} for g in language.objects() if g.count]
+        shown = [g for g in language.objects() if g.count]
+        things = [{"group": g.id, "label": g.label, "sure": round(g.label_score, 3), "count": g.count} for g in shown]
         data["language"] = {"encoder": language.encoder, "things": things, "notes": list(language.notes)}
-    terminal.result(_text(data), data)
+        told_things = f"  {told(shown)}\n  embedded with {language.encoder}"
+    terminal.result("\n".join([*_lines(data), told_things]), data)
 
 
-def _text(data: dict[str, Any]) -> str:
+def _lines(data: dict[str, Any]) -> list[str]:
     low, high = data["bounds"]
     span = " x ".join(f"{b - a:.2f}" for a, b in zip(low, high, strict=True))
     scale, source = data["metres_per_unit"]
-    lines = [
+    return [
         f"{data['path']}: {data['format']}",
         f"  {data['gaussians']:,} Gaussians, harmonics of degree {data['degree']}, {data['megabytes']} MB in memory",
         f"  extent {span} units; " + (f"{scale:g} m a unit ({source})" if scale else "scale unknown"),
@@ -49,10 +53,3 @@ def _text(data: dict[str, Any]) -> str:
         f"  {len(data['cameras'])} cameras",
         *(f"  repaired: {note}" for note in data["notes"]),
     ]
-    if data["language"] is None:
-        lines.append("  not embedded yet: run `scenewright embed`")
-    else:
-        names = sorted(t["label"] or "unnamed thing" for t in data["language"]["things"])
-        lines.append(f"  {len(names)} things: {', '.join(names)}")
-        lines.append(f"  embedded with {data['language']['encoder']}")
-    return "\n".join(lines)

@@ -40,6 +40,8 @@ def command(
     if len(given) > (1 if batch else 2) or (not given and batch is None):
         raise UserError('write: scenewright plan [SCENE] "TEXT", or: scenewright plan [SCENE] --batch FILE')
     path = Path(given[0]) if len(given) == 2 or (batch and given) else None
+    if path is None and batch is None and Path(given[0]).exists():
+        raise UserError(f'{given[0]} is a scene; say what to do with it: scenewright plan {given[0]} "TEXT"')
     rows = read_batch(str(batch)) if batch else [{"text": given[-1]}]
     session = None
     if path is not None:

@@ -28,8 +28,11 @@ def command(
     from ...gaussians.files import load
     from ...gaussians.render import render
     from ..pictures import save_png
+    from ..targets import refuse_existing, require_png
     from ..views import choose_view
 
+    require_png(output)
+    refuse_existing([output], force)
     loaded = load(scene)
     camera = choose_view(loaded, view, size)
     started = time.perf_counter()

@@ -38,17 +38,19 @@ def command(
     """Find what a phrase means: found, ambiguous (with the candidates) or absent (with the nearest)."""
     from ...gaussians.errors import UserError
     from ..opening import Opening, open_session
+    from ..targets import make_folder
 
     if (text is None) == (batch is None):
         raise UserError('give either TEXT or --batch FILE: scenewright select SCENE "the red chair"')
     rows = read_batch(str(batch)) if batch else [{"id": None, "text": text}]
     targets = [_target(ids, row["id"], batch is not None) for row in rows]
+    _check_targets([t for t in targets if t is not None], force)
+    if ids is not None and batch is not None:
+        make_folder(ids)
     session, _ = open_session(Opening(scene, planner, encoder, view))
     if batch is None:
         _one(session, str(text), targets[0], force)
         return
-    if ids is not None:
-        ids.mkdir(parents=True, exist_ok=True)
     for row, target in zip(rows, targets, strict=True):
         session.recall(row.get("context"))
         selection, data = _answer(session, row["text"])
@@ -67,6 +69,17 @@ def _target(ids: Path | None, row: Any, batch: bool) -> Path | None:
     if Path(name).name != name or name.startswith("."):
         raise UserError(f"the id {row!r} cannot be a file name; use letters, digits, '-' and '_'")
     return ids / name
+
+
+def _check_targets(targets: list[Path], force: bool) -> None:
+    """Say before the work that a file would be overwritten, or that two answers would go to one."""
+    from ...gaussians.errors import UserError
+    from ..targets import refuse_existing
+
+    twice = [t for t in targets if targets.count(t) > 1] if len(set(targets)) < len(targets) else []
+    if twice:
+        raise UserError(f"two lines of the batch would both be written to {twice[0]}; give each its own id")
+    refuse_existing(targets, force)
 
 
 def _one(session: Session, text: str, target: Path | None, force: bool) -> None:

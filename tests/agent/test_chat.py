@@ -72,6 +72,20 @@ def test_errors_are_one_sentence_and_the_conversation_goes_on(boxes: Scene, enco
     assert session.done == ("delete the green thing",)
 
 
+def test_a_bug_or_an_open_quotation_mark_does_not_end_the_conversation(
+    boxes: Scene, encoder: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(self: Session, phrase: object) -> Any:
+        raise RuntimeError("boom")
+
+    monkeypatch.setattr(Session, "select", broken)
+    session, out, _ = _talk(
+        boxes, encoder, "make the green thing blue", "/save it's.ply", "/select the box", "delete the blue thing"
+    )
+    assert "a quotation mark is open" in out and "internal error (RuntimeError: boom)" in out
+    assert session.done == ("make the green thing blue", "delete the blue thing")
+
+
 def test_ctrl_c_cancels_the_instruction_not_the_program(
     boxes: Scene, encoder: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -98,11 +98,72 @@ def test_a_bug_is_one_line_and_a_traceback_only_with_debug(call: Any, monkeypatc
     terminal.debug = False
 
 
+@pytest.mark.parametrize("arguments", [["edti", "a.ply"], ["render", "a.ply"], ["info", "a.ply", "--nonsense"]])
+def test_a_misused_command_is_one_line_that_says_where_help_is(call: Any, arguments: list[str]) -> None:
+    answer = call(*arguments)
+    assert answer.err.count("\n") == 1 and answer.err.startswith("scenewright: ") and "--help" in answer.err
+    answer = call(*arguments, "--json")
+    assert answer.code == answer.data["exit_code"] == 2
+
+
+def test_without_a_verb_the_help_is_shown(call: Any) -> None:
+    answer = call()
+    assert answer.code == 2 and answer.out == "" and "Commands:" in answer.err
+
+
+def test_an_interrupt_exits_with_130(call: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    from scenewright.gaussians import files
+
+    def interrupted(path: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(files, "load_with_report", interrupted)
+    answer = call("info", "a.ply")
+    assert answer.code == 130 and answer.err == "interrupted\n"
+
+
+def test_what_cannot_be_written_is_said_before_the_work(call: Any, room: Path, tmp_path: Path) -> None:
+    words = ("edit", room, "make the green thing blue", "-o", tmp_path / "out.ply")
+    answer = call(*words, "--pictures", room)
+    assert answer.code == 2 and "is to be a folder" in answer.err
+    assert not (tmp_path / "out.ply").exists()
+    answer = call("render", room, "-o", tmp_path / "a.jpg")
+    assert answer.code == 2 and "written as .png" in answer.err
+    batch = tmp_path / "batch.jsonl"
+    batch.write_text('{"id": "a", "text": "the red thing"}\n{"id": "a", "text": "the green thing"}\n')
+    answer = call("select", room, "--batch", batch, "--ids", tmp_path / "ids")
+    assert answer.code == 2 and answer.out == "" and "its own id" in answer.err
+    assert not (tmp_path / "ids").exists()
+
+
+def test_a_dry_run_shows_the_plan_and_what_it_would_do(call: Any, room: Path) -> None:
+    answer = call("edit", room, "make the green thing blue", "--dry-run")
+    assert 'plan: {"op": "recolor"' in answer.out and "would recolor" in answer.out
+    assert "seconds" not in answer.out and "seconds" in answer.err
+
+
+def test_what_is_nearest_is_called_so(call: Any, room: Path) -> None:
+    answer = call("edit", room, "delete the yellow thing", "--dry-run")
+    assert answer.code == 3 and answer.err.startswith("scenewright: ")
+    assert "the nearest things that are there:\n  1. " in answer.err
+
+
+@pytest.mark.parametrize("option", [("--up", "0,0,0"), ("--up", "nan,0,1"), ("--metres-per-unit", "-1")])
+def test_a_frame_that_is_none_is_refused(call: Any, room: Path, option: tuple[str, str]) -> None:
+    answer = call("edit", room, "make the green thing blue", "--dry-run", *option)
+    assert answer.code == 2 and answer.err.count("\n") == 1 and "Frame." not in answer.err
+
+
+def test_a_plan_needs_words_beside_the_scene(call: Any, room: Path) -> None:
+    answer = call("plan", room)
+    assert answer.code == 2 and "say what to do with it" in answer.err
+
+
 def test_info(call: Any, room: Path) -> None:
     data = call("info", room, "--json").data
     assert data["gaussians"] == 3 * 343 + 144 and data["cameras"][0]["name"] == "door"
     assert data["language"]["encoder"] == "test:1" and len(data["language"]["things"]) == 3
-    assert "3 things: box, box, box" in call("info", room).out
+    assert "3 things: box ×3" in call("info", room).out
 
 
 def test_convert_renders_and_refuses_to_overwrite(call: Any, room: Path, tmp_path: Path) -> None:

@@ -228,7 +228,7 @@ def test_replay_elsewhere_resolves_the_words_again(boxes: Scene, encoder: Any, t
 
 def test_replay_of_nothing_is_a_user_error(session: Session, tmp_path: Path) -> None:
     (tmp_path / "log.jsonl").write_text("")
-    with pytest.raises(UserError, match="0 sessions"):
+    with pytest.raises(UserError, match="holds no session"):
         session.replay(tmp_path / "log.jsonl")
 
 
