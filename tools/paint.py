@@ -8,9 +8,11 @@ and is mapped to
 
     T(c) = t + k d (Y(c) - Y(m)) + H r(c)
 
-t is the asked colour, d the way the asked colour goes when light on it changes (toward black for most colours, along
-grey for near-black and near-white ones), k keeps the spread of lightness, and H turns and scales the departures so
-that a pattern stays visible without its old hue. So shading and texture stay, hue and chroma move with the mean.
+t is the asked colour in the light that the target has on average: what people call a thing's colour is that of its
+lit faces (see gaussians.language.measure), so these meet the asked colour and shading goes down from there. d is the
+way the asked colour goes when light on it changes (toward black for most colours, along grey for near-black and
+near-white ones), k keeps the spread of lightness, and H turns and scales the departures so that a pattern stays
+visible without its old hue. So shading and texture stay, hue and chroma move with the lit faces.
 
 T is affine, and that is why it was chosen over a map in Lab for each Gaussian: harmonics are linear in colour, so
 with T(c) = A c + b the constant band becomes A dc + (b + A h - h) / C0 (h = 0.5, the offset of display colour), every
@@ -30,18 +32,23 @@ from torch import Tensor
 
 from ..gaussians.color import lab_to_rgb, rgb_to_lab
 from ..gaussians.harmonics import SH_C0
-from ..gaussians.language.measure import Sample
+from ..gaussians.language.measure import Sample, lit_of
 from .measure import lightness_spread, mean_lab
 
 LUMA = (0.2126, 0.7152, 0.0722)  # ITU-R BT.709
 PATTERN = 0.35  # departures from the mean hue keep at most this share of the asked chroma
 _STRENGTHS = (1.0, 0.4, 0.1)  # tried strengths of the pattern
-NEAR = 15.0  # a recoloured mean this near (CIE94) is the asked colour in some light
+# How near (CIE94) the lit faces have to come. A pure colour at the end of the display's range has to give up lightness
+# for light and shadow: 5 off are usual, and a target of several colours whose pattern stays visible doubles that.
+# Half as far again is the border to another colour name.
+NEAR = 15.0
 _ROUNDS = 3  # of the fit; each closes most of the remaining distance
 _FIT_ROWS = 600  # colours the map is fitted on: its mean is known to about 4 % of the spread
 _GAINS = (0.15, 0.3, 0.5, 0.75, 1.0)  # tried shares of the lightness spread
 _DIMMED = (1.0, 0.94, 0.88, 0.8, 0.72)  # tried brightnesses of the asked colour
 _LIFTED = (0.04, 0.08, 0.12)  # tried lifts from black
+_DEEPEST = 0.5  # the mean keeps at least this share of the lit faces' lightness
+_DUE = 0.75  # at least this share of the spread is due on a darker colour, or a way back to the old one would be flat
 _GREY_CHROMA = 6.0  # below this Lab chroma a colour has no hue to speak of
 
 
@@ -70,10 +77,10 @@ class ColorMap:
 
 
 def toward_color(taken: Sample, asked: Tensor, *, keep_pattern: bool = False) -> ColorMap:
-    """The map that brings the sample's mean Lab near `asked` `[3]`, keeping shading and texture.
+    """The map that brings the sample's lit faces (`lit_lab`) near `asked` Lab `[3]`, keeping shading and texture.
 
-    A pure red or white leaves no room on a display for lighter places, so the mean may stay a little darker (or, for
-    black, lighter) than asked: brightness gain and mean are chosen together on a small grid, weighing the distance
+    A pure red or white leaves no room on a display for lighter places, so the lit faces may stay a little darker (or,
+    for black, lighter) than asked: brightness gain and aim are chosen together on a small grid, weighing the distance
     from the asked colour, the loss of lightness spread, and what would leave the display.
 
     Args:
@@ -87,11 +94,11 @@ def toward_color(taken: Sample, asked: Tensor, *, keep_pattern: bool = False) ->
     own_hue = mean / luma if luma > 0.02 else torch.ones(3, dtype=torch.float64)  # too dark to have a hue
     departures = torch.eye(3, dtype=torch.float64) - torch.outer(own_hue, weights)
     pattern = _pattern_turn(small, departures, mean_lab(small), asked, keep_pattern) @ departures
-    goals, spreads = _candidates(asked, lightness_spread(small))
+    goals, gains = _candidates(asked)
     best, lowest = None, math.inf
     for strength in _STRENGTHS:  # a loud pattern may leave the display; then, and only then, it is toned down
         fit = _Fit(small, mean, strength * pattern)
-        matrices, offsets = fit.solve(goals, spreads)
+        matrices, offsets = fit.solve(goals, gains)
         off, cost = fit.cost(matrices, offsets, asked)
         index = int(cost.argmin())
         if float(cost[index]) < lowest:
@@ -121,13 +128,17 @@ def _thinned(taken: Sample) -> Sample:
     return Sample(taken.rgb[::step], weight / weight.sum().clamp(min=1e-30))
 
 
-def _candidates(asked: Tensor, spread: float) -> tuple[Tensor, Tensor]:
-    """Means `[B, 3]` (Lab) and lightness spreads `[B]` to try: as asked, in less light, or lifted from black."""
+def _candidates(asked: Tensor) -> tuple[Tensor, Tensor]:
+    """Lit colours `[B, 3]` (Lab) and shares of the lightness spread `[B]` to try: as asked, dimmed, or off black."""
     rgb = lab_to_rgb(asked).clamp(0, 1)
-    means = [rgb * dim for dim in _DIMMED] + [(rgb + lift).clamp(max=1) for lift in _LIFTED]
-    labs = rgb_to_lab(torch.stack(means))
-    gains = torch.tensor(_GAINS, dtype=torch.float64) * spread
+    lit = [rgb * dim for dim in _DIMMED] + [(rgb + lift).clamp(max=1) for lift in _LIFTED]
+    labs, gains = rgb_to_lab(torch.stack(lit)), torch.tensor(_GAINS, dtype=torch.float64)
     return labs.repeat_interleave(len(gains), dim=0), gains.repeat(len(labs))
+
+
+def _in_shade(lit: Tensor, drop: Tensor) -> Tensor:
+    """The mean Lab `[B, 3]` of what is `drop` `[B]` darker on average than its lit faces `[B, 3]`."""
+    return torch.cat([torch.maximum(lit[:, 0] - drop, _DEEPEST * lit[:, 0])[:, None], lit[:, 1:]], dim=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,17 +149,21 @@ class _Fit:
     mean: Tensor
     pattern: Tensor
 
-    def solve(self, goals: Tensor, spreads: Tensor) -> tuple[Tensor, Tensor]:
-        """Maps `[B, 3, 3]`, `[B, 3]` whose shown means meet `goals` as far as the display allows.
+    def solve(self, goals: Tensor, gains: Tensor) -> tuple[Tensor, Tensor]:
+        """Maps `[B, 3, 3]`, `[B, 3]` that keep `gains` of the spread and whose lit faces meet `goals`, within limits.
 
         The aim is corrected for what the clamp and the curvature of Lab shift, but never leaves the display: that
-        would buy the last step of the mean with the texture.
+        would buy the last step with the texture.
         """
-        aims = goals.clone()
+        weight, spreads = self.taken.weight, gains * lightness_spread(self.taken)
+        drop = (lit_of(weight, self.taken.lab) - mean_lab(self.taken))[0].clamp(min=0)
+        means = _in_shade(goals, gains * drop)
+        aims = means.clone()
         for _ in range(_ROUNDS):
             shown = self._shown(*self._compose(aims, spreads))
-            aims = aims + (goals - _mean(self.taken.weight, shown)).clamp(-6, 6)
-            aims = rgb_to_lab(lab_to_rgb(aims).clamp(0, 1))
+            off = means - _mean(weight, shown)
+            off[:, 0] = goals[:, 0] - lit_of(weight, shown)[:, 0]
+            aims = rgb_to_lab(lab_to_rgb(aims + off.clamp(-6, 6)).clamp(0, 1))
         return self._compose(aims, spreads)
 
     def cost(self, matrices: Tensor, offsets: Tensor, asked: Tensor) -> tuple[Tensor, Tensor]:
@@ -158,10 +173,15 @@ class _Fit:
         """
         rgb = self._mapped(matrices, offsets)
         lab = rgb_to_lab(rgb.clamp(0, 1))
-        off = distance(_mean(self.taken.weight, lab), asked)
-        flat = ((_spread(self.taken.weight, lab) + 0.5) / (lightness_spread(self.taken) + 0.5)).log()
+        off = distance(lit_of(self.taken.weight, lab), asked)
+        flat = ((_spread(self.taken.weight, lab) + 0.5) / (self._due(asked) + 0.5)).log()
         outside = (self.taken.weight[:, None] * (rgb - rgb.clamp(0, 1)) ** 2).sum(dim=(1, 2)).sqrt()
         return off, (off / 6) ** 2 + (flat / 0.47) ** 2 + (outside / 0.04) ** 2
+
+    def _due(self, asked: Tensor) -> float:
+        """The lightness spread that is due on the asked colour: a darker one shows less, as less light comes back."""
+        lit = float(lit_of(self.taken.weight, self.taken.lab)[0])
+        return lightness_spread(self.taken) * min(1.0, max(_DUE, (float(asked[0]) + 16) / (lit + 16)))
 
     def _compose(self, aims: Tensor, spreads: Tensor) -> tuple[Tensor, Tensor]:
         weights = torch.tensor(LUMA, dtype=torch.float64)

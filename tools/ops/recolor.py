@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from torch import Tensor
 
 from ...gaussians.color import BASIC, parse, rgb_to_lab
-from ...gaussians.language.measure import Sample, sample
+from ...gaussians.language.measure import Sample, lit_lab, sample
 from ...gaussians.language.selection import Selection
 from ...gaussians.scene import Scene
 from ..base import ColorName, Context, Outcome, TargetedOp
@@ -83,13 +83,13 @@ class Recolor(TargetedOp):
             return saturation(1 + 1.5 * self.amount if self.adjust == "more_saturated" else 1 - self.amount)
         if self.adjust in ("warmer", "cooler"):
             return warmth(self.amount if self.adjust == "warmer" else -self.amount)
-        return toward_color(taken, self._shifted(mean_lab(taken), asked), keep_pattern=True)
+        return toward_color(taken, self._shifted(lit_lab(taken), asked), keep_pattern=True)
 
-    def _shifted(self, mean: Tensor, asked: Tensor | None) -> Tensor:
-        """The mean colour it is to have: along lightness at constant hue and chroma, or part of the way to a colour."""
+    def _shifted(self, lit: Tensor, asked: Tensor | None) -> Tensor:
+        """The colour for its lit faces: along lightness at constant hue and chroma, or part of the way to a colour."""
         if asked is not None:
-            return mean + self.amount * (asked - mean)
-        lightness = float(mean[0])
+            return lit + self.amount * (asked - lit)
+        lightness = float(lit[0])
         new = (
             lightness * (1 - 0.75 * self.amount)
             if self.adjust == "darker"
@@ -101,12 +101,11 @@ class Recolor(TargetedOp):
             if self.adjust == "darker"
             else (min(1.0, 1.6 * (100 - new) / max(100 - lightness, 1.0)))
         )
-        return torch.stack([torch.tensor(new, dtype=torch.float64), mean[1] * chroma, mean[2] * chroma])
+        return torch.stack([torch.tensor(new, dtype=torch.float64), lit[1] * chroma, lit[2] * chroma])
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         was, now = (sample(s.cloud, rows_of(s.cloud, selection.ids)) for s in (before, outcome.scene))
-        old, new = mean_lab(was), mean_lab(now)
-        checks = [self._arrived(old, new), counted(before, outcome.scene, outcome)]
+        checks = [self._arrived(was, now), counted(before, outcome.scene, outcome)]
         if self.adjust is None:
             texture, kept = lightness_spread(was), lightness_spread(now)
             said = f"spread of lightness (shading, texture) went from {texture:.1f} to {kept:.1f}"
@@ -116,27 +115,31 @@ class Recolor(TargetedOp):
                 checks.append(report("texture kept", kept / max(texture, 1e-9), "1", said))
         return tuple(checks)
 
-    def _arrived(self, old: Tensor, new: Tensor) -> Check:
-        """The mean has the asked colour, or moved the asked way."""
+    def _arrived(self, was: Sample, now: Sample) -> Check:
+        """Its lit faces have the asked colour, or it moved the asked way."""
         if self.adjust is None:
             asked = self._asked()
             assert asked is not None
-            off = float(distance(new, asked))
-            return at_most("colour", off, NEAR, "ΔE94", f"its mean colour is {off:.1f} from {self.color}")
-        step = self._progress(old, new)
-        said = f"its mean colour moved by {step:.1f} in Lab"
+            off = float(distance(lit_lab(now), asked))
+            return at_most("colour", off, NEAR, "ΔE94", f"its lit faces are {off:.1f} from {self.color}")
+        step = self._progress(was, now)
+        said = f"its colour moved by {step:.1f} in Lab"
         return at_least(f"{self.adjust.replace('_', ' ')}", step, 0.2, "ΔE", said)
 
-    def _progress(self, old: Tensor, new: Tensor) -> float:
-        """How far the mean moved the asked way, in Lab."""
-        step = new - old
-        if self.adjust in ("darker", "lighter"):
-            return float(step[0]) * (1 if self.adjust == "lighter" else -1)
+    def _progress(self, was: Sample, now: Sample) -> float:
+        """How far it moved the asked way, in Lab: its lit faces, or for saturation and warmth its mean.
+
+        These two change chroma only, and the median of a striped thing's chroma may stay with its white stripes.
+        """
+        old, new = mean_lab(was), mean_lab(now)
         if self.adjust in ("more_saturated", "less_saturated"):
             gain = math.hypot(float(new[1]), float(new[2])) - math.hypot(float(old[1]), float(old[2]))
             return gain if self.adjust == "more_saturated" else -gain
         if self.adjust in ("warmer", "cooler"):
-            return float(step[2]) * (1 if self.adjust == "warmer" else -1)
+            return float(new[2] - old[2]) * (1 if self.adjust == "warmer" else -1)
+        old, new = lit_lab(was), lit_lab(now)
+        if self.adjust in ("darker", "lighter"):
+            return float(new[0] - old[0]) * (1 if self.adjust == "lighter" else -1)
         asked = self._asked()
         assert asked is not None
         return float(torch.linalg.vector_norm(old - asked) - torch.linalg.vector_norm(new - asked))
