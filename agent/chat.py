@@ -111,7 +111,9 @@ class Chat:
             try:
                 result = self.session.answer(text)
             except UserError:
-                result = self.session.do(text)  # not an answer: a new instruction, which drops the question
+                if not self.session.plan(text).ops:
+                    raise  # neither an answer nor an instruction: the question stands
+                result = self.session.do(text)  # a new instruction, which drops the question
         else:
             result = self.session.do(text)
         self._show_result(result)

@@ -40,12 +40,14 @@ class Question:
         step: position of the operation in it.
         path: where in the operation the query stands.
         selection: its verdict ("ambiguous" or "absent"), reason and candidates.
+        resolve: what another query would find where this one was asked.
     """
 
     plan: EditPlan
     step: int
     path: Path
     selection: Selection
+    resolve: Callable[[Query], Selection]
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:
@@ -81,7 +83,7 @@ def find_question(plan: EditPlan, step: int, verdict: str, resolve: Callable[[Qu
         plural = "exclude" in path and query.pick == "one"
         found = resolve(query.model_copy(update={"pick": "all"}) if plural else query)
         if found.verdict == verdict:
-            return Question(plan, step, path, found)
+            return Question(plan, step, path, found, resolve)
     return None
 
 
@@ -101,9 +103,26 @@ def answered(question: Question, answer: str, parse: Callable[[str], Query | Non
             f"{answer!r} does not say which; answer with a number from 1 to {len(question.candidates)}, "
             "'all', or a description such as 'the left one'"
         )
+    _require_choice(question, chosen, answer)
     ops: list[EditOp] = list(question.plan.ops)
     ops[question.step] = exchange(ops[question.step], question.path, chosen)
     return question.plan.model_copy(update={"ops": tuple(ops)})
+
+
+def _require_choice(question: Question, chosen: Query, answer: str) -> None:
+    """An answer settles what was asked; words that fit something else are no answer to it.
+
+    Raises:
+        UserError: the query finds what is not among the candidates.
+    """
+    if question.selection.verdict != "ambiguous":
+        return
+    found = question.resolve(chosen)
+    if found.verdict == "absent" or not set(found.groups) <= {c.group for c in question.candidates}:
+        raise UserError(
+            f"{answer!r} is none of the {len(question.candidates)} that match; answer with a number from 1 to "
+            f"{len(question.candidates)}, 'all', or words that fit one of them"
+        )
 
 
 def _choice(

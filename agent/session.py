@@ -154,8 +154,10 @@ class Session:
         Words that were not understood give a plan without operations; its `reason` says which.
 
         Raises:
-            UserError: the text is too long to be an instruction.
+            UserError: the text is too long to be an instruction, or no text.
         """
+        if not text.isprintable() and any("\ud800" <= c <= "\udfff" for c in text):
+            raise UserError("the text is not UTF-8; type it again, or set the terminal to UTF-8")
         return self._planner.plan(text, previous=self._history.present.spoken or None)
 
     def preview(self, instruction: str | EditPlan) -> Result:

@@ -51,6 +51,12 @@ def test_a_question_can_be_passed_over(boxes: Scene, encoder: Any) -> None:
     assert set(session.scene.cloud.group.unique().tolist()) == {0, 2, 3}
 
 
+def test_what_is_neither_an_answer_nor_an_instruction_leaves_the_question(boxes: Scene, encoder: Any) -> None:
+    session, out, _ = _talk(boxes, encoder, "delete the red thing", "the green one", "7", "the left one")
+    assert "none of the 2" in out and "a number from 1 to 2" in out
+    assert session.done and set(session.scene.cloud.group.unique().tolist()) == {1, 2, 3}
+
+
 def test_commands(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
     target = tmp_path / "out.ply"
     session, out, err = _talk(

@@ -142,6 +142,20 @@ def test_all_is_an_answer_and_nonsense_is_none(session: Session) -> None:
         session.answer("1")
 
 
+def test_an_answer_that_fits_something_else_is_none(session: Session, boxes: Scene) -> None:
+    with pytest.raises(AmbiguousError):
+        session.do("delete the red thing")
+    for words in ("the green one", "the green thing", "the purple one"):
+        with pytest.raises(UserError, match="none of the 2"):
+            session.answer(words)
+    assert session.scene is boxes and session.question is not None
+
+
+def test_bytes_that_are_no_text_are_a_user_error(session: Session) -> None:
+    with pytest.raises(UserError, match="UTF-8"):
+        session.do("\udcff delete")
+
+
 def test_select_looks_and_does_not_touch(session: Session, boxes: Scene) -> None:
     found = session.select("the green thing")
     assert found.verdict == "found" and found.groups == (1,)
