@@ -131,10 +131,17 @@ class Receipt(BaseModel):
 
     def sentence(self) -> str:
         """The receipt in one line for a person: "recolor the red chair: 1,204 Gaussians changed, 5 checks passed"."""
-        counts = [f"{n:,} {word}" for n, word in self._counts() if n] or ["nothing changed"]
+        counts = [f"{n:,} {word}" for n, word in self._counts() if n] or [self._found()]
         failed = [c.name for c in self.checks if not c.passed]
         verdict = f"failed: {', '.join(failed)}" if failed else f"{len(self.checks)} checks passed"
         return f"{self.op.get('op', '?')} {self.selection.asked}: {', '.join(counts)}; {verdict}"
+
+    def _found(self) -> str:
+        """What an edit that changed nothing was about."""
+        groups = len(self.selection.groups)
+        things = f" in {groups:,} thing{'s' if groups > 1 else ''}" if groups else ""
+        said = f"{self.selection.gaussians:,} Gaussian{'s' if self.selection.gaussians != 1 else ''}"
+        return f"{said}{things} selected" if self.op.get("op") == "select" else "nothing changed"
 
     def _counts(self) -> list[tuple[int, str]]:
         return [(self.changed, "changed"), (self.added, "added"), (self.removed, "removed")]

@@ -14,6 +14,7 @@ from ...gaussians.language.selection import Selection, mask_of
 from ...gaussians.scene import Scene
 from ..base import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
 from ..bookkeeping import carried
+from ..bounds import keep_inside
 from ..checks import bumps, carried_as_asked, collision_free, counted, supported
 from ..measure import solid_points
 from ..place import Placer
@@ -28,6 +29,7 @@ class Move(TargetedOp):
 
     Directions are the viewer's: forward is away from the viewer, right is to the viewer's right. `distance` goes with
     `direction` or `toward`; without it the target moves by its own width, or until it stands next to what it goes to.
+    It does not go through walls or out of the room.
     """
 
     example: ClassVar[tuple[str, dict[str, Any]]] = (
@@ -53,6 +55,8 @@ class Move(TargetedOp):
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         bodies = bodies_of(scene, selection)
         moved, notes = self._moves(scene, bodies, selection, context)
+        if self.place is None:
+            keep_inside(scene, bodies, [asked.offset for asked in moved])
         draft = Draft(scene.cloud)
         for body, asked in zip(bodies, moved, strict=True):
             shift(draft, body.rows, asked.offset)
