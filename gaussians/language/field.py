@@ -57,7 +57,7 @@ class Group:
         label: the name the encoder gives it, "" if it has none it is sure of.
         label_score: calibrated probability of that name, in [0, 1].
         box: robust extent of its Gaussians.
-        lab: measured colour, opacity-and-area-weighted median in CIE Lab.
+        lab: measured colour of its lit faces in CIE Lab, see `measure.lit_lab`.
         count: Gaussians in it.
         views: how many of the embedding views saw it.
         confidence: share of its Gaussians that lie on its skin; the others joined it by being near, in [0, 1].
