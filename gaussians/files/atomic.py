@@ -40,7 +40,8 @@ def writing(path: str | Path, force: bool = False) -> Iterator[BinaryIO]:
     except OSError as error:
         raise FileError(f"cannot write {target}: {error.strerror or error}; the file there was not changed") from error
     finally:
-        part.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):  # where nothing may be written, nothing was
+            part.unlink(missing_ok=True)
 
 
 def _check_target(target: Path, force: bool) -> None:

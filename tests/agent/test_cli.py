@@ -353,3 +353,19 @@ def test_bench_lists_and_measures(call: Any, monkeypatch: pytest.MonkeyPatch, tm
     worse = call("bench", "render", "--against", tmp_path / "first.json")
     assert worse.code == 3 and "worse: a.seconds" in worse.err
     assert call("bench", "render", "--chart", tmp_path / "chart.png").code == 2
+
+
+def test_a_folder_that_is_read_only_is_said_to_be(
+    call: Any, room: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import errno
+
+    from scenewright.gaussians.files import atomic
+
+    def refused(*arguments: object, **options: object) -> Any:
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    monkeypatch.setattr(atomic, "open", refused, raising=False)
+    monkeypatch.setattr(Path, "unlink", refused)
+    answer = call("convert", room, tmp_path / "b.ply")
+    assert answer.code == 4 and "Read-only file system" in answer.err and "internal" not in answer.err
