@@ -20,6 +20,7 @@ from ..gaussians.language.selection import Selection, mask_of
 from ..gaussians.scene import Scene
 from . import pixels
 from .base import Context, EditOp, Outcome
+from .hanging import left_hanging
 from .receipt import Check, Pixels, Receipt, SelectionSummary, at_most
 from .rows import Difference, difference
 
@@ -58,6 +59,8 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
             chosen = _living(scene, chosen)
     with _stage(seconds, "apply"):
         outcome = op.apply(scene, chosen, context)
+        bereft = left_hanging(scene, outcome.scene, chosen.groups, context.viewer)
+        outcome = replace(outcome, notes=(*outcome.notes, *bereft))
     with _stage(seconds, "check"):
         changed = difference(scene.cloud, outcome.scene.cloud, op.may_change(scene, chosen), outcome.removed)
         checks = [*_always(op, changed, chosen), *op.check(scene, outcome, chosen, context)]

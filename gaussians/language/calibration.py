@@ -9,6 +9,7 @@ Knows vectors, names and sizes. Refuses to know scenes, and never tunes itself o
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -89,7 +90,9 @@ def doubt(encoder: Encoder, text: str) -> str | None:
     unknown = encoder.unknown_words(text)
     if unknown:
         said = ", ".join(repr(w) for w in unknown)
-        return f"the encoder {encoder.fingerprint} does not know the word{'s' if len(unknown) > 1 else ''} {said}"
+        close = difflib.get_close_matches(text, encoder.vocabulary.names, n=2, cutoff=0.75)
+        hint = f" (did you mean {' or '.join(close)}?)" if close else ""
+        return f"the encoder does not know the word{'s' if len(unknown) > 1 else ''} {said}{hint}"
     return None if encoder.knows(text) else "the phrase holds no word that names a thing"
 
 

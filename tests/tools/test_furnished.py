@@ -311,3 +311,15 @@ def test_what_is_inserted_behind_the_viewer_is_told(corner: Scene, context: Cont
     place = {"relation": "on", "anchors": [a("table")]}
     assert "outside the current view" in " ".join(do(corner, away, "insert", asset="mug", place=place).receipt.notes)
     assert not do(corner, context, "insert", asset="mug", place=place).receipt.notes
+
+
+def test_what_stood_on_a_thing_is_named_when_the_thing_goes(corner: Scene, context: Context) -> None:
+    vase = "left hanging in the air: vase"
+    for data in (
+        {"op": "delete", "target": {"text": "table"}},
+        {"op": "move", "target": {"text": "table"}, "direction": "left", "distance": {"value": 1.5, "unit": "m"}},
+    ):
+        done = carry_out(corner, parse(data), context)
+        assert any(note.startswith(vase) for note in done.receipt.notes), (data, done.receipt.notes)
+    recolored = carry_out(corner, parse({"op": "recolor", "target": {"text": "table"}, "color": "teal"}), context)
+    assert not any("hanging" in note for note in recolored.receipt.notes)
