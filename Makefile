@@ -31,7 +31,7 @@ picture: $(VENV)/.ready
 	$(BIN)/scenewright demo -o $(DEMO) --seed $(SEED) --size 360x240 --force
 	$(BIN)/python -c "from PIL import Image; i = Image.open('$(DEMO)/contact_sheet.png').convert('RGB'); \
 	  i = i.resize((1000, round(i.height * 1000 / i.width)), Image.Resampling.LANCZOS); \
-	  i.quantize(96, dither=Image.Dither.NONE).save('docs/demo.png', optimize=True)"
+	  i.quantize(256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save('docs/demo.png', optimize=True)"
 
 format: $(VENV)/.ready-dev
 	$(BIN)/ruff check --fix .
