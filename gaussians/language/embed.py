@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 
 from ..cloud import NO_GROUP, GaussianCloud
 from ..errors import UserError
-from ..scene import Scene
+from ..scene import Frame, Scene
 from . import grouping, structure
 from .calibration import labels as name_things
 from .calibration import wholeness
@@ -27,8 +27,8 @@ from .field import Group, LanguageField, Level
 from .measure import box_of, lab_of_cloud
 from .orient import estimate_frame
 from .portraits import mean_vectors, one_thread
-from .regions import Node, build_graph, merge_tree
-from .superpoints import links_of, superpoints, touching
+from .regions import Graph, Node, build_graph, merge_tree
+from .superpoints import Links, links_of, superpoints, touching
 from .surface import Surface, surface_of
 from .views import Views, choose_views
 
@@ -93,23 +93,14 @@ def segment(
     portraits: int = ASK_VIEWS,
 ) -> tuple[NDArray[np.int32], list[Thing]]:
     """Superpoint of each surface point, and what they make up: structure first, then objects, then their parts."""
-    frame = scene.frame
-    flat = structure.level(surface, frame)
     links = links_of(surface)
-    labels = superpoints(surface, links)
-    kinds = structure.structures(surface, labels, frame)
-    labels = split_by(labels, kinds)
-    count = int(labels.max(initial=-1)) + 1
-    kind_of = np.zeros(count, np.int8)
-    kind_of[labels] = kinds
-    graph = build_graph(
-        labels, flat.points, surface.lab.astype(np.float64), flat.normals, links, kind_of == structure.NONE
-    )
-    nodes = merge_tree(graph)
+    labels, kind_of = superpoints_and_structure(surface, links, scene.frame)
+    count = len(kind_of)
+    nodes = merge_tree(graph_of(surface, links, labels, kind_of, scene.frame))
     size = np.bincount(labels, minlength=count)
     points = np.array([sum(int(size[s]) for s in n.members) for n in nodes], dtype=np.int64)
     evidence = _evidence(scene, surface, labels, nodes, points, encoder, portraits, progress)
-    if nodes and not kinds.any() and points.max() >= MOST_OF_IT * len(surface):
+    if nodes and not kind_of.any() and points.max() >= MOST_OF_IT * len(surface):
         alone = int(np.flatnonzero(points == points.max())[-1])  # the root: no node above it holds more
         evidence[alone] = evidence.get(alone, 0.0) + ALONE
     objects = [nodes[i].members for i in grouping.best_cut(nodes, points, evidence)]
@@ -118,10 +109,28 @@ def segment(
     return labels, _things(objects, kind_of, lab, size, touching(labels, links))
 
 
-def split_by(labels: NDArray[np.int32], kinds: NDArray[np.int8]) -> NDArray[np.int32]:
-    """Superpoints that straddle structure and object become two."""
-    split: NDArray[np.int32] = np.unique(labels.astype(np.int64) * 8 + kinds, return_inverse=True)[1].astype(np.int32)
-    return split
+def superpoints_and_structure(
+    surface: Surface, links: Links, frame: Frame
+) -> tuple[NDArray[np.int32], NDArray[np.int8]]:
+    """Superpoint of each surface point `[M]`, and what structure each superpoint is `[S]`.
+
+    Superpoints that straddle structure and object become two.
+    """
+    labels = superpoints(surface, links)
+    kinds = structure.structures(surface, labels, frame)
+    labels = np.unique(labels.astype(np.int64) * 8 + kinds, return_inverse=True)[1].astype(np.int32)
+    kind_of = np.zeros(int(labels.max(initial=-1)) + 1, np.int8)
+    kind_of[labels] = kinds
+    return labels, kind_of
+
+
+def graph_of(
+    surface: Surface, links: Links, labels: NDArray[np.int32], kind_of: NDArray[np.int8], frame: Frame
+) -> Graph:
+    """The graph of the superpoints that are no structure, in the level frame."""
+    flat = structure.level(surface, frame)
+    free = kind_of == structure.NONE
+    return build_graph(labels, flat.points, surface.lab.astype(np.float64), flat.normals, links, free)
 
 
 def _evidence(

@@ -12,7 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .regions import LIGHTNESS, Node
+from .regions import Node
+from .superpoints import LIGHTNESS
 
 F64 = NDArray[np.float64]
 

@@ -24,7 +24,6 @@ FEATURES = (
     "height overlap", "plan overlap", "size ratio", "box growth", "smaller size", "larger size", "plan ratio",
     "contact height", "contact at edge", "contact footprint", "contact level", "smaller flat", "larger flat",
 )  # fmt: skip
-LIGHTNESS = 0.6
 
 
 @dataclass

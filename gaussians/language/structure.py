@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..scene import Frame
+from .superpoints import LIGHTNESS
 from .surface import Surface
 
 NONE, FLOOR, WALL, CEILING = 0, 1, 2, 3
@@ -220,7 +221,7 @@ def _painted(surface: Surface, labels: NDArray[np.int32], plane: _Plane, free: N
     for piece in np.argsort(-np.where(member, breadth, -1), kind="stable"):
         if not member[piece] or kept[piece]:
             continue
-        alike = member & (np.linalg.norm((lab - lab[piece]) * [0.6, 1, 1], axis=1) < SAME_COLOR)
+        alike = member & (np.linalg.norm((lab - lab[piece]) * [LIGHTNESS, 1, 1], axis=1) < SAME_COLOR)
         reach = np.ptp(np.quantile(along[alike[own]], [0.02, 0.98], axis=0), axis=0)
         if piece == main or (reach > SPREAD * span).all():
             kept |= alike

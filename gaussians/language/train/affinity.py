@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 
 from ...assets import furnish
 from ...scene import Scene
-from .. import regions, structure
-from ..embed import split_by
-from ..superpoints import links_of, superpoints
+from .. import regions
+from ..embed import graph_of, superpoints_and_structure
+from ..superpoints import links_of
 from ..surface import surface_of
 
 F64 = NDArray[np.float64]
@@ -32,16 +32,9 @@ HIDDEN, STEPS, BATCH = 24, 3000, 2048
 def borders_of(scene: Scene, truth: NDArray[np.int32], rng: np.random.Generator) -> tuple[F64, NDArray[np.bool_]]:
     """Features `[B, F]` and whether both sides are one object `[B]`, of a scene with known objects (-1: structure)."""
     surface = surface_of(scene.cloud)
-    flat = structure.level(surface, scene.frame)
     links = links_of(surface)
-    kinds = structure.structures(surface, labels := superpoints(surface, links), scene.frame)
-    labels = split_by(labels, kinds)
-    count = int(labels.max()) + 1
-    kind_of = np.zeros(count, np.int8)
-    kind_of[labels] = kinds
-    graph = regions.build_graph(
-        labels, flat.points, surface.lab.astype(np.float64), flat.normals, links, kind_of == structure.NONE
-    )
+    labels, kind_of = superpoints_and_structure(surface, links, scene.frame)
+    graph = graph_of(surface, links, labels, kind_of, scene.frame)
     owner = {i: _majority(truth[surface.rows[labels == r.members[0]]]) for i, r in graph.regions.items()}
     rows, same = [], []
 
