@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 
 from ..camera import Vec3
 from ..cloud import GaussianCloud
-from .attributes import COLOR_HOLDS, color_scores
+from .attributes import color_scores
 from .surface import MIN_OPACITY, base_lab
 
 F64 = NDArray[np.float64]
@@ -74,7 +74,8 @@ def patches(cloud: GaussianCloud, words: tuple[str, ...], among: NDArray[np.bool
     reach = max(TOGETHER * diagonal, APART * float(ordered[:, 0].median()))
     of_cell = _places(place, score, reach)
     of_row = np.where(own >= EDGE, of_cell[cell], -1)
-    found = [np.flatnonzero(of_row == k) for k in range(int(of_cell.max(initial=-1)) + 1)]
+    order = np.argsort(of_row, kind="stable")  # rows stay ascending within a place
+    found = np.split(order, np.searchsorted(of_row[order], np.arange(int(of_cell.max(initial=-1)) + 2)))[1:-1]
     total = float(weight.sum()) + 1e-20
     made = [_patch(rows[k], points[k], own[k], weight[k], total, len(cloud)) for k in found if len(k)]
     return sorted(made, key=lambda p: (-p.weight, int(p.rows[0])))
@@ -117,7 +118,7 @@ def _cells(points: F64, lab: F64, weight: F64, side: float) -> tuple[NDArray[np.
 def _places(centers: F64, score: F64, reach: float) -> NDArray[np.int64]:
     """Place of each cell `[C]`, -1 for none: certain cells linked within `reach`, likely cells grown into from them."""
     place = np.full(len(centers), -1)
-    certain = np.flatnonzero(score >= max(CERTAIN, COLOR_HOLDS))
+    certain = np.flatnonzero(score >= CERTAIN)
     if not len(certain):
         return place
     place[certain] = _joined(centers[certain], reach)
