@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 
 from ..gaussians import assets
 from ..gaussians.language import encoders
-from ..gaussians.language.embed import ASK_VIEWS, embed
+from ..gaussians.language.embed import embed
 from ..gaussians.language.encoders import Encoder
 from ..gaussians.language.query import Query
 from ..gaussians.language.resolve import resolve
+from ..gaussians.language.segment import ASK_VIEWS
 from ..gaussians.scene import Scene
 from .harness import Metric, Point, Result
 

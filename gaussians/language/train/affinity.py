@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ...assets import furnish
 from ...scene import Scene
 from .. import regions
-from ..embed import graph_of, superpoints_and_structure
+from ..segment import graph_of, superpoints_and_structure
 from ..superpoints import links_of
 from ..surface import surface_of
 
