@@ -19,7 +19,7 @@ from .vocabulary import Vocabulary
 if TYPE_CHECKING:
     from ..calibration import Calibration
 
-_SHARED = ("framing", "vocabulary", "words")  # modules of this package that are not back ends
+_SHARED = ("framing", "vector_files", "vocabulary", "words")  # modules of this package that are not back ends
 
 
 @runtime_checkable
@@ -73,7 +73,7 @@ def load(spec: str = "auto") -> Encoder:
     Args:
         spec: "auto" or "embedded" for the one that ships with the package; "embedded:DIR" (or "onnx:DIR") for another
             trained by `python -m scenewright.gaussians.language.train`; "open_clip:MODEL/PRETRAINED" or
-            "open_clip:DIR" for a real CLIP.
+            "open_clip:DIR" for a real CLIP; "vectors:PATH" for text vectors made elsewhere.
 
     Raises:
         BackendError: unknown back end, missing extra, missing or broken weights; the message says what to do.
@@ -82,7 +82,8 @@ def load(spec: str = "auto") -> Encoder:
     name = {"auto": "embedded", "onnx": "embedded", "": "embedded"}.get(name, name)
     if name not in backends():
         raise BackendError(
-            f"unknown encoder {spec!r}; use auto, embedded, embedded:DIR, open_clip:MODEL/PRETRAINED or open_clip:DIR"
+            f"unknown encoder {spec!r}; "
+            "use auto, embedded:DIR, open_clip:MODEL/PRETRAINED, open_clip:DIR or vectors:PATH"
         )
     module = importlib.import_module(f"{__name__}.{name}")
     encoder: Encoder = module.load(argument)

@@ -55,14 +55,19 @@ class Vocabulary:
 
         With `loose`, a word that is both a kind and a broader term covers all of the broader term's kinds.
         """
+        phrase, found = self.head(text)
+        return found | (self._wider(phrase) if loose and found else frozenset())
+
+    def head(self, text: str) -> tuple[tuple[str, ...], frozenset[str]]:
+        """The longest name that a noun phrase ends in, normalised, and the kinds it means: "small red couch" to
+        `(("couch",), {"sofa"})`; both empty if it ends in none."""
         words = normalise(text)
         cut = next((i for i, w in enumerate(words) if i and w in _AFTER_HEAD), len(words))
         for phrase in (words, words[:cut]):
             for start in range(len(phrase)):
-                found = self._phrases.get(phrase[start:])
-                if found:
-                    return found | (self._wider(phrase[start:]) if loose else frozenset())
-        return frozenset()
+                if found := self._phrases.get(phrase[start:]):
+                    return phrase[start:], found
+        return (), frozenset()
 
     def _wider(self, phrase: tuple[str, ...]) -> frozenset[str]:
         """Kinds of the broader term spelt like `phrase`, if there is one."""
