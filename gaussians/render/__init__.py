@@ -1,7 +1,8 @@
 """Pixels from Gaussians: one call, several back ends behind it.
 
 Knows which back ends exist and checks what they are given. Refuses to know how any of them works: each is one module
-with `render(cloud, camera, background)` and `contributions(cloud, camera)`, imported when first asked for.
+with `render(cloud, camera, background)`, `contributions(cloud, camera)` and `split(cloud, camera, labels)`, imported
+when first asked for.
 """
 
 from __future__ import annotations
@@ -10,13 +11,16 @@ import importlib
 import math
 from typing import Protocol, cast
 
+import numpy as np
+from numpy.typing import NDArray
 from torch import Tensor
 
 from ..camera import Camera, Render, Vec3
 from ..cloud import GaussianCloud
 from ..errors import BackendError, UserError
+from .shares import Split
 
-__all__ = ["backends", "contributions", "render"]
+__all__ = ["Split", "backends", "contributions", "render", "split"]
 
 _MODULES = {"cpu": ".cpu", "reference": ".reference"}
 _AUTO = "cpu"
@@ -28,6 +32,8 @@ class Backend(Protocol):
     def render(self, cloud: GaussianCloud, camera: Camera, background: Vec3) -> Render: ...
 
     def contributions(self, cloud: GaussianCloud, camera: Camera) -> Tensor: ...
+
+    def split(self, cloud: GaussianCloud, camera: Camera, labels: NDArray[np.int32]) -> Split: ...
 
 
 def backends() -> tuple[str, ...]:
@@ -65,6 +71,26 @@ def contributions(cloud: GaussianCloud, camera: Camera, backend: str = "auto") -
         BackendError: no such back end, or its package is not installed.
     """
     return _load(backend).contributions(cloud, camera)
+
+
+def split(cloud: GaussianCloud, camera: Camera, labels: NDArray[np.integer], backend: str = "auto") -> Split:
+    """How much of each label's pixels each Gaussian is: `contributions`, shared out among the labels of a picture.
+
+    One pass whatever the number of labels. For every Gaussian the weights of all labels add up to its contribution.
+
+    Args:
+        labels: `[H, W]` integers of the camera's size, any values within int32.
+
+    Raises:
+        UserError: `labels` has another size than the camera, or holds no integers.
+        BackendError: no such back end, or its package is not installed.
+    """
+    if labels.shape != (camera.height, camera.width) or not np.issubdtype(labels.dtype, np.integer):
+        raise UserError(
+            f"labels must be integers of the camera's size [{camera.height}, {camera.width}], "
+            f"got {labels.dtype} {list(labels.shape)}"
+        )
+    return _load(backend).split(cloud, camera, labels.astype(np.int32, copy=False))
 
 
 def _load(name: str) -> Backend:

@@ -9,13 +9,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor
 
 from .. import harmonics, rotations
 from ..camera import Camera, Render, Vec3
 from ..cloud import NO_GROUP, GaussianCloud
 from . import convention as c
+from .shares import Split, summed
 
 TILE = 16  # px, side of a tile
 CHUNK = (
@@ -90,6 +93,24 @@ def contributions(cloud: GaussianCloud, camera: Camera) -> Tensor:
             rows = tile.row[part]  # no row occurs twice in a tile, so this assignment loses nothing
             total[rows] = total[rows] + weights.sum(dim=0, dtype=torch.float64)
     return total.float()
+
+
+def split(cloud: GaussianCloud, camera: Camera, labels: NDArray[np.int32]) -> Split:
+    """See `scenewright.gaussians.render.split`."""
+    splats = project(cloud, camera)
+    parts: list[tuple[Tensor, Tensor, Tensor]] = []
+    for y, x, index in _tiles(splats, camera):
+        tile = splats.take(index)
+        box = (slice(y, min(y + TILE, camera.height)), slice(x, min(x + TILE, camera.width)))
+        here = torch.from_numpy(labels[box].reshape(-1).copy()).to(cloud.device)
+        for part, weights, _ in _blend(tile, _pixel_centers(box, splats.center)):
+            for label in here.unique():
+                rows = tile.row[part]
+                parts.append((rows, label.expand(len(rows)), weights[here == label].sum(dim=0, dtype=torch.float64)))
+    if not parts:
+        return summed(len(cloud), np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0))
+    row, label, weight = (torch.cat(column).cpu().numpy() for column in zip(*parts, strict=True))
+    return summed(len(cloud), row, label, weight)
 
 
 def project(cloud: GaussianCloud, camera: Camera, dtype: torch.dtype = torch.float32) -> Splats:

@@ -18,7 +18,8 @@ from torch import Tensor
 from ...camera import Camera, Render, Vec3
 from ...cloud import GaussianCloud
 from .. import convention
-from . import blend, compiled, order, project
+from ..shares import Split, summed
+from . import blend, compiled, order, project, shares
 
 Array = NDArray[Any]
 
@@ -63,6 +64,28 @@ def contributions(cloud: GaussianCloud, camera: Camera) -> Tensor:
         compiled.run(blend.weigh, count, *drawn, share, scratch, _counter())
         compiled.run_alone(blend.collect, bins.entries, share, total)
     return torch.from_numpy(total.astype(np.float32)).to(cloud.device)
+
+
+def split(cloud: GaussianCloud, camera: Camera, labels: Array) -> Split:
+    """See `scenewright.gaussians.render.split`."""
+    columns, count = _columns(cloud), compiled.workers()
+    scratch = blend.make_scratch(count)
+    parts: list[tuple[Array, ...]] = []
+    for top, bottom, bins in _strips(columns, camera, count, 0, camera.height):
+        strip = np.ascontiguousarray(labels[top:bottom], dtype=np.int32)
+        local, many, names = shares.make_plan(strip)
+        compiled.run_alone(shares.list_labels, strip, local, many, names)
+        needed = np.diff(bins.first) * many
+        plan = local, many, np.cumsum(needed) - needed
+        share = np.zeros(int(needed.sum()), np.float32)
+        drawn = bins.first, bins.entries, bins.records, (camera.width, bottom - top), LIMITS
+        compiled.run(shares.split, count, *drawn, plan, share, scratch, _counter())
+        found = int(np.count_nonzero(share))
+        part = np.empty(found, np.int64), np.empty(found, np.int32), np.empty(found, np.float32)
+        compiled.run_alone(shares.gather, bins.first, bins.entries, plan, names, share, *part)
+        parts.append(part)
+    rows, of, weights = (np.concatenate(column) for column in zip(*parts, strict=True))
+    return summed(len(cloud), rows, of, weights)
 
 
 def _columns(cloud: GaussianCloud) -> tuple[Array, ...]:

@@ -1,0 +1,130 @@
+"""Sorted footprints to summed weights of each label of a labelled picture, tile by tile.
+
+Knows tiles, chunks and labels. Refuses to know where records come from. A tile lists its own labels, at most one a
+pixel and mostly one or two, so the cost depends on the picture's borders, not on how many labels there are.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .blend import CHUNK, _begin, _gather, _list, _weigh_chunk
+from .compiled import fetch_add, helper, kernel
+from .project import TILE, Array
+from .simd import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, LANES, weigh_block
+
+PIXELS = TILE * TILE  # of a tile, so the most labels it can have
+
+f4 = np.float32
+ZERO = f4(0)
+
+
+def make_plan(labels: Array) -> tuple[Array, Array, Array]:
+    """What `list_labels` fills for a picture `[H, W]` int32: local number of each pixel's label, how many labels each
+    tile has, and which, `PIXELS` places a tile."""
+    tiles = -(-labels.shape[0] // TILE) * -(-labels.shape[1] // TILE)
+    return np.zeros(labels.shape, np.uint8), np.zeros(tiles, np.int64), np.zeros(tiles * PIXELS, np.int32)
+
+
+@kernel
+def list_labels(labels, local, count, names):  # type: ignore[no-untyped-def]
+    """Number the labels of each tile in the order in which its pixels name them."""
+    height, width = labels.shape
+    tiles_wide = (width + TILE - 1) // TILE
+    for y in range(height):
+        for x in range(width):
+            tile = y // TILE * tiles_wide + x // TILE
+            found = count[tile]
+            label, place = labels[y, x], 0
+            while place < found and names[tile * PIXELS + place] != label:
+                place += 1
+            if place == found:
+                names[tile * PIXELS + place] = label
+                count[tile] = found + 1
+            local[y, x] = place
+
+
+@kernel
+def split(worker, workers, first, entries, records, size, limits, plan, share, scratch, counter):  # type: ignore[no-untyped-def]
+    """As `blend.weigh`, but write the weight of each entry for each label of its tile.
+
+    `plan` is (local, count, start): from `make_plan`, and where each tile's shares begin. Tile t's entry k has its
+    `count[t]` shares at `start[t] + (k - first[t]) * count[t]`; `share` holds zeros.
+    """
+    tiles_wide = (size[0] + TILE - 1) // TILE
+    local, count, place = plan
+    chunk, touched, listed, state, alive = (
+        scratch[0][worker],
+        scratch[1][worker],
+        scratch[2][worker],
+        scratch[3][worker],
+        scratch[4][worker],
+    )
+    weights = scratch[5][worker]
+    while True:
+        tile = fetch_add(counter, 1)
+        if tile >= first.shape[0] - 1:
+            break
+        x, y = tile % tiles_wide * TILE, tile // tiles_wide * TILE
+        _begin(state, alive, LANES, size[0] - x, size[1] - y)
+        start, stop, finished = first[tile], first[tile + 1], False
+        labels, to = count[tile], place[tile]
+        while start < stop and not finished:
+            taken = min(CHUNK, stop - start)
+            _gather(entries, start, taken, stop, records, chunk, touched, f4(x), f4(y))
+            if labels == 1:
+                weights[:] = ZERO
+                finished = _weigh_chunk(chunk, touched, taken, listed, state, alive, weights, limits)
+                for slot in range(taken):
+                    total = ZERO
+                    for lane in range(LANES):
+                        total += weights[slot * LANES + lane]
+                    share[to + slot] = total
+            else:
+                finished = True
+                for block in range(BLOCKS):
+                    if alive[block]:
+                        left, top = block % BLOCKS_WIDE * BLOCK_WIDTH, block // BLOCKS_WIDE * BLOCK_HEIGHT
+                        found = _list(touched, taken, block, listed)
+                        for k in range(found):
+                            for lane in range(LANES):
+                                weights[listed[k] * LANES + lane] = ZERO
+                        if found > 0:
+                            at = block * LANES
+                            alive[block] = (
+                                weigh_block(chunk, listed, found, state, at, weights, f4(left), f4(top), limits) != 0
+                            )
+                            _share_out(weights, listed, found, local, x + left, y + top, labels, share, to)
+                        finished = finished and not alive[block]
+            to += taken * labels
+            start += taken
+
+
+@helper
+def _share_out(weights, listed, found, local, left, top, labels, share, to):  # type: ignore[no-untyped-def]
+    """Add the weights of a block's pixels to the shares of their labels. Pixels beyond the image weigh nothing."""
+    height, width = local.shape
+    for k in range(found):
+        slot = listed[k]
+        for lane in range(LANES):
+            weight = weights[slot * LANES + lane]
+            if weight > ZERO:
+                y, x = min(top + lane // BLOCK_WIDTH, height - 1), min(left + lane % BLOCK_WIDTH, width - 1)
+                share[to + slot * labels + local[y, x]] += weight
+
+
+@kernel
+def gather(first, entries, plan, names, share, rows, labels, weights):  # type: ignore[no-untyped-def]
+    """Write row, label and weight of every share above zero, tile after tile; returns how many."""
+    _, count, place = plan
+    found = 0
+    for tile in range(first.shape[0] - 1):
+        for k in range(first[tile], first[tile + 1]):
+            at = place[tile] + (k - first[tile]) * count[tile]
+            for label in range(count[tile]):
+                if share[at + label] > ZERO:
+                    rows[found] = entries[k]
+                    labels[found] = names[tile * PIXELS + label]
+                    weights[found] = share[at + label]
+                    found += 1
+    return found
