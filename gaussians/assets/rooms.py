@@ -122,7 +122,7 @@ def furnish(
         _add(layout, get, find(extra).name)
     recipe(layout, get)
     recipes.fill_up(layout, get, objects or int(rng.integers(12, 18)))
-    return _assemble(layout, name, rng, detail, ceiling)
+    return assemble(layout, name, rng, detail, ceiling)
 
 
 def _walls(rng: np.random.Generator) -> tuple[str, ...]:
@@ -241,7 +241,7 @@ def _cut_openings(samples: surface.Samples, layout: Layout) -> surface.Samples:
 # --- assembly --------------------------------------------------------------------------------------------------------
 
 
-def _assemble(layout: Layout, name: str, rng: np.random.Generator, detail: float, ceiling: bool) -> Room:
+def assemble(layout: Layout, name: str, rng: np.random.Generator, detail: float, ceiling: bool) -> Room:
     """Everything as one cloud, lit together."""
     azimuth = float(rng.uniform(0, 2 * math.pi))
     sun = np.array([0.6 * math.cos(azimuth), 0.6 * math.sin(azimuth), 0.8])
