@@ -1,0 +1,41 @@
+"""How much two selections of Gaussians agree: over the whole of them, and along their borders only.
+
+Knows masks and points. Refuses to know where a selection comes from.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+Mask = NDArray[np.bool_]
+BORDER = 0.03  # metres from a border within which a Gaussian belongs to it
+
+
+def iou(a: Mask, b: Mask) -> float:
+    """Intersection over union of two masks `[N]`; 0 where both are empty, since nothing was found."""
+    return float((a & b).sum()) / max(float((a | b).sum()), 1.0)
+
+
+def border(mask: Mask, points: NDArray[np.floating], distance: float = BORDER) -> Mask:
+    """`[N]`: the members of `mask [N]` that have a non-member within `distance`, among `points [N, 3]`."""
+    found = np.zeros(len(mask), bool)
+    own = np.flatnonzero(mask)
+    if not len(own):
+        return found
+    low, high = points[own].min(axis=0) - distance, points[own].max(axis=0) + distance
+    others = points[~mask & ((points >= low) & (points <= high)).all(axis=1)]
+    if len(others):
+        gap, _ = cKDTree(others).query(points[own], distance_upper_bound=np.nextafter(distance, np.inf))
+        found[own[gap <= distance]] = True
+    return found
+
+
+def border_iou(truth: Mask, found: Mask, points: NDArray[np.floating], distance: float = BORDER) -> float | None:
+    """Boundary IoU (Cheng et al. 2021) carried to 3D: that of the two masks' borders.
+
+    None where the true object has no border, because it hangs freely: there is nothing to be right about.
+    """
+    edge = border(truth, points, distance)
+    return iou(edge, border(found, points, distance)) if edge.any() else None
