@@ -1,0 +1,132 @@
+"""Pairs of a kind that only an attribute tells apart, and the same two kinds with their colours swapped.
+
+Encoders are near bag-of-words: for them "a red chair and a green table" is "a green chair and a red table".
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...gaussians import assets
+from ...gaussians.assets import Asset
+from ...gaussians.color import BASIC
+from ...gaussians.language.encoders import Encoder
+from ...gaussians.language.query import Query
+from ..harness import Metric
+from . import staged
+from .cases import Case, Part, ask
+
+KINDS = (
+    "chair", "armchair", "stool", "table", "box", "suitcase", "ottoman", "basket", "bin", "bench", "nightstand", "vase",
+    "flower pot", "drum", "ball", "backpack", "cabinet", "side table",
+)  # fmt: skip
+PLAIN = 0.5  # share of the surface that must carry the colour: a red chair is mostly red
+SMALL, LARGE = 0.8, 1.3  # factors on a design's size
+COLOR_PAIRS, SIZE_PAIRS, SWAPS = 4, 2, 3  # a room
+
+
+@dataclass(frozen=True)
+class Meant:
+    """A query and the id of the object that it means; None where there is no such thing."""
+
+    query: Query
+    object: int | None
+
+
+Set = tuple[Case, list[Meant]]
+
+
+def colored(kind: str, color: str, seed: int) -> Asset:
+    """A thing of which most is of this colour; the first such design from `seed` on."""
+    for design in range(seed, seed + 50):
+        asset = assets.make(kind, design, color=color)
+        if asset.color == color and staged.main_share(asset) >= PLAIN:
+            return asset
+    raise ValueError(f"no {kind} of the first 50 designs from {seed} on is mostly {color}")
+
+
+def attribute_room(seed: int) -> Set:
+    """Pairs of a kind in two colours and pairs in two sizes; each is asked by what tells it from the other."""
+    layout = staged.bare("attributes", seed)
+    rng = layout.rng
+    kinds = [str(k) for k in rng.permutation(KINDS)[: COLOR_PAIRS + SIZE_PAIRS]]
+    things, asked = [], []
+    for kind in kinds[:COLOR_PAIRS]:
+        for color in rng.choice(sorted(BASIC), 2, replace=False):
+            things.append(colored(kind, str(color), int(rng.integers(1 << 20))))
+            asked.append(Query(text=kind, colors=(str(color),)))
+    for kind in kinds[COLOR_PAIRS:]:
+        one = assets.make(kind, int(rng.integers(1 << 20)))
+        for word, factor in (("small", SMALL), ("large", LARGE)):
+            w, d, h = (side * factor for side in one.size)
+            things.append(assets.make(kind, one.seed, size=(w, d, h)))
+            asked.append(Query.model_validate({"text": kind, "size": word}))
+    return _placed(layout, things, asked, seed)
+
+
+def swap_rooms(seed: int) -> tuple[Set, Set]:
+    """Two rooms of the same things at the same places with colours swapped; both are asked all four combinations."""
+    rng = np.random.default_rng([zlib.crc32(b"swap"), seed])
+    kinds = [str(k) for k in rng.permutation(KINDS)[: 2 * SWAPS]]
+    colors = [[str(c) for c in rng.choice(sorted(BASIC), 2, replace=False)] for _ in range(SWAPS)]
+    designs = [int(v) for v in rng.integers(1 << 20, size=2 * SWAPS)]
+
+    def room(swapped: bool) -> Set:
+        layout, things, asked = staged.bare("swap", seed), [], []
+        for i, kind in enumerate(kinds):
+            own = colors[i // 2][(i + swapped) % 2]
+            things.append(colored(kind, own, designs[i]))
+            asked.append(Query(text=kind, colors=(own,)))
+        case, meant = _placed(layout, things, asked, seed)
+        for i, kind in enumerate(kinds):
+            other = colors[i // 2][(i + 1 + swapped) % 2]
+            meant.append(Meant(Query(text=kind, colors=(other,)), None))
+        return case, meant
+
+    return room(False), room(True)
+
+
+def _placed(layout: staged.Layout, things: Sequence[Asset], asked: Sequence[Query], seed: int) -> Set:
+    """What found a place, and the queries for it (those for a pair of which one did not are dropped)."""
+    spots = staged.stand(layout, things)
+    lost = {things[i].kind for i, spot in enumerate(spots) if spot is None}
+    meant = [Meant(q, s) for q, s, t in zip(asked, spots, things, strict=True) if t.kind not in lost]
+    return staged.built(layout, seed), meant
+
+
+def right(embedded: Case, meant: Meant, encoder: Encoder) -> bool:
+    """Whether the answer is the meant object, or a refusal where nothing is meant."""
+    answer = ask(embedded, meant.query, encoder)
+    if meant.object is None:
+        return answer.verdict == "absent"
+    return answer.means(embedded.truth(embedded.objects[meant.object]))
+
+
+def measure(attributes: Sequence[int], swaps: Sequence[int], encoder: Encoder, grouped: Callable[[Case], Case]) -> Part:
+    """All sets from their seeds; `grouped` gives a case its field."""
+    rooms = [attribute_room(seed) for seed in attributes]
+    swapped = [room for seed in swaps for room in swap_rooms(seed)]
+    kinds: dict[str, list[bool]] = {"color": [], "size": [], "swap": [], "swap.absent": []}
+    wrong: list[str] = []
+    for name, sets in (("color", rooms), ("swap", swapped)):
+        for case, meant in sets:
+            known = grouped(case)
+            for one in meant:
+                key = "size" if one.query.size else "swap.absent" if one.object is None else name
+                kinds[key].append(right(known, one, encoder))
+                if not kinds[key][-1]:
+                    said = "said to be there" if one.object is None else "missed"
+                    wrong.append(f"{one.query.describe()} {said} in {case.seed}")
+    every = [v for values in kinds.values() for v in values]
+    metrics = [Metric("attribute.right", sum(every) / len(every), "share", "higher", 0.03)]
+    for key, values in kinds.items():
+        metrics.append(Metric(f"attribute.{key}.right", sum(values) / len(values), "share", "higher", 0.03))
+        metrics.append(Metric(f"attribute.{key}.asked", len(values), "count"))
+    note = (
+        "attributes: pairs of a kind in two colours of the basic terms or two sizes, and two kinds whose colours swap"
+    )
+    return Part(tuple(metrics), notes=(note, *([f"attributes wrong: {'; '.join(wrong)}"] if wrong else [])))
