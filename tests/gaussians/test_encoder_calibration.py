@@ -12,7 +12,14 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from scenewright.gaussians.errors import BackendError
-from scenewright.gaussians.language.calibration import Calibration, SizePrior, distribution, labels, probability
+from scenewright.gaussians.language.calibration import (
+    Calibration,
+    SizePrior,
+    distribution,
+    labels,
+    of_clip,
+    probability,
+)
 from scenewright.gaussians.language.encoders import framing
 from scenewright.gaussians.language.encoders.vocabulary import Vocabulary
 from scenewright.gaussians.language.encoders.words import normalise
@@ -73,6 +80,28 @@ def test_a_synonym_is_worth_its_name_and_a_broader_term_does_not_fight_its_kinds
     assert np.isclose(probability(_AXES, "container", mug)[0], rivals[0] / rivals.sum())
 
 
+def _weighed(rivals: float | None, negatives: tuple[str, ...]) -> _Axes:
+    vocabulary = Vocabulary({"mug": (), "bin": (), "chair": ()}, {}, negatives)
+    return _Axes(Calibration(8.0, 0.5, rivals=rivals), vocabulary=vocabulary)
+
+
+@given(_vectors, st.floats(0.1, 100))
+def test_weighed_rivals_count_the_same_however_many_they_are(vector: NDArray[np.float64], weight: float) -> None:
+    rivals = ("bin", "chair", "part of something")
+    seen = np.linalg.norm(vector) > 1e-8
+    units = vector / np.linalg.norm(vector) if seen else vector
+    ratio = np.exp(8 * units[0, 0]) / np.exp(8 * units[0, 1:]).mean()  # how much better than the average name
+    expected = ratio / (ratio + weight) if seen else 0.0
+    named = _weighed(weight, rivals[2:])
+    np.testing.assert_allclose(probability(named, "mug", vector)[0], expected, atol=1e-12)
+    # Naming every rival twice changes nothing; without a weight it would.
+    doubled = _weighed(weight, (rivals[2], *rivals))
+    np.testing.assert_allclose(probability(doubled, "mug", vector)[0], expected, atol=1e-12)
+    # Each weighing one is the weight that equals their number.
+    plain, counted = _weighed(None, rivals[2:]), _weighed(3.0, rivals[2:])
+    np.testing.assert_allclose(probability(plain, "mug", vector), probability(counted, "mug", vector), atol=1e-12)
+
+
 def test_size_decides_between_look_alikes() -> None:
     between = np.array([[1.0, 1.0, 0, 0], [1.0, 1.0, 0, 0], [1.0, 1.0, 0, 0]])
     sizes = np.array([[0.1, 0.1, 0.1], [0.4, 0.4, 0.5], [np.nan, 1, 1]])
@@ -98,11 +127,14 @@ def test_bad_input_is_said() -> None:
     for scale, threshold, weight in ((0, 0.5, 0), (1, 0, 0), (1, 1, 0), (1, 0.5, -1)):
         with pytest.raises(BackendError, match="broken calibration"):
             Calibration(scale, threshold, weight)
+    with pytest.raises(BackendError, match="rivals must be > 0"):
+        Calibration(1, 0.5, rivals=0)
 
 
 def test_the_rule_survives_json() -> None:
     rule = _AXES.calibration
     assert Calibration.from_json(rule.to_json()) == rule
+    assert Calibration.from_json(of_clip(77).to_json()) == of_clip(77)
 
 
 @given(st.integers(0, 30), st.integers(0, 30), st.integers(1, 34), st.integers(1, 34))

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from ...errors import BackendError
 from ...vision_cure import import_torchvision
-from ..calibration import Calibration
+from ..calibration import Calibration, of_clip
 from . import checked_images, checked_texts, weights_folder
 from .vocabulary import Vocabulary
 from .words import normalise
@@ -28,9 +28,6 @@ from .words import normalise
 _CONFIG, _WEIGHTS = "open_clip_config.json", "open_clip_model.safetensors"
 _PROMPT = "a photo of a {}"
 _BATCH = 16
-# Cosines of contrastive models live in a narrow band, so the softmax runs at the scale they were trained with (100 for
-# the published ones). The threshold is a majority against all rivals, not a fit: no shipped data could fit it.
-_THRESHOLD = 0.5
 
 
 def load(argument: str) -> OpenClip:
@@ -90,7 +87,7 @@ class OpenClip:
     @cached_property
     def calibration(self) -> Calibration:
         scale = getattr(self.model, "logit_scale", None)
-        return Calibration(float(scale.detach().exp()) if scale is not None else 100.0, _THRESHOLD)
+        return of_clip() if scale is None else of_clip(float(scale.detach().exp()))
 
     def encode_text(self, texts: list[str]) -> NDArray[np.float32]:
         import torch

@@ -23,14 +23,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import BackendError
-from ..calibration import Calibration
+from ..calibration import Calibration, of_clip
 from . import checked_images, checked_texts, weights_folder
 from .vector_files import Name, calibration_beside, read
 from .vocabulary import Vocabulary
 from .words import normalise
-
-_SCALE = 100.0  # of the softmax that the published CLIP models were trained with (Radford et al. 2021, section 2.5)
-_THRESHOLD = 0.5
 
 
 def load(argument: str) -> Vectors:
@@ -58,9 +55,7 @@ def wrap(names: Sequence[Name], text: NDArray[np.floating], calibration: Calibra
     norms = np.linalg.norm(rows, axis=1, keepdims=True)
     if not np.isfinite(rows).all() or not (norms > 0).all():
         raise BackendError("a text vector is zero or not finite; write the vectors again")
-    return Vectors(
-        vocabulary_of(names), (rows / norms).astype(np.float32), calibration or Calibration(_SCALE, _THRESHOLD)
-    )
+    return Vectors(vocabulary_of(names), (rows / norms).astype(np.float32), calibration or of_clip())
 
 
 @dataclass(frozen=True, eq=False)
