@@ -1,0 +1,131 @@
+"""Groups against one vector a Gaussian, from the very same masks: what the field's usual memory buys.
+
+The rival is built as the field builds it: a Gaussian's vector is the mean of its masks' vectors over all views, by
+blending weight, compressed to d numbers by principal components of the scene; a query takes the Gaussians whose
+similarity beats all other names, by the same calibrated rule as groups. Nobody measures size here, as a Gaussian has
+none. Knows masks' vectors and the truth. Refuses to know how masks were made.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from statistics import fmean
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...gaussians.language.calibration import probability
+from ...gaussians.language.encoders import Encoder
+from ...gaussians.language.lifting import Lifted, lift
+from .._iou import Mask, iou
+from .cases import Case
+from .pictures import Seen
+
+F32 = NDArray[np.float32]
+CHUNK = 16_384  # Gaussians asked at a time, so that memory stays flat
+OWN = 0.5  # share of what was seen of a Gaussian that must lie in masks
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A way to hold vectors, on one case.
+
+    Attributes:
+        iou: of each name asked, 0 where nothing was selected.
+        seconds: from the masks with their vectors to the answer to one query.
+        query: of which one query.
+        bytes: held.
+    """
+
+    iou: list[float]
+    seconds: float
+    query: float
+    bytes: int
+
+
+@dataclass(frozen=True, eq=False)
+class Uplift:
+    """The masks of one case lifted, and the true objects they are of.
+
+    Attributes:
+        lifted: weights of all masks.
+        objects: `[M]` the object each mask is of.
+        covered: `[N]` Gaussians of which at least `OWN` was seen within masks.
+        seconds: that lifting took.
+    """
+
+    lifted: Lifted
+    objects: NDArray[np.int64]
+    covered: Mask
+    seconds: float
+
+
+def uplift(case: Case, seen: Sequence[Seen]) -> Uplift:
+    """Lift all views' masks."""
+    start = time.perf_counter()
+    lifted = lift(case.scene.cloud, [view.masks for view in seen])
+    within = np.asarray(lifted.weights.sum(axis=1)).ravel()
+    total = np.asarray(lifted.seen.sum(axis=1)).ravel()
+    objects = np.array([o for view in seen for o in view.objects], dtype=np.int64)
+    return Uplift(lifted, objects, (total > 0) & (within >= OWN * total), time.perf_counter() - start)
+
+
+def as_groups(case: Case, up: Uplift, encoder: Encoder, names: Sequence[str]) -> Outcome:
+    """One number a Gaussian, one vector a group; masks of one object are one group: association is flawless here."""
+    assert up.lifted.vectors is not None
+    start = time.perf_counter()
+    member = np.zeros((len(up.objects), len(case.objects)), np.float32)
+    member[np.arange(len(up.objects)), up.objects] = 1
+    column = np.where(up.covered, np.asarray(up.lifted.weights @ member).argmax(axis=1), -1)
+    mass = np.asarray(up.lifted.weights.sum(axis=0)).ravel()
+    table = (member * mass[:, None]).T @ up.lifted.vectors
+    built = time.perf_counter() - start + up.seconds
+    answers, query = [], 0.0
+    for name in names:
+        start = time.perf_counter()
+        chosen = np.flatnonzero(probability(encoder, name, table) >= encoder.calibration.threshold)
+        answers.append(np.isin(column, chosen))
+        query += (time.perf_counter() - start) / len(names)
+    size = 4 * len(column) + table.nbytes
+    return Outcome(_scores(case, names, answers), built + query, query, size)
+
+
+def as_vectors(case: Case, up: Uplift, encoder: Encoder, names: Sequence[str], width: int) -> Outcome:
+    """One vector of `width` numbers a Gaussian, float32."""
+    start = time.perf_counter()
+    features = up.lifted.features()
+    features[~up.covered] = 0
+    full = features.shape[1]
+    if width < full:
+        mean, axes = principal(features[up.covered], width)
+        small = (features - mean) @ axes.T
+        features = np.where(up.covered[:, None], small @ axes + mean, 0).astype(np.float32)
+    built = time.perf_counter() - start + up.seconds
+    answers, query = [], 0.0
+    for name in names:
+        start = time.perf_counter()
+        chance = [probability(encoder, name, features[i : i + CHUNK]) for i in range(0, len(features), CHUNK)]
+        answers.append(np.concatenate(chance) >= encoder.calibration.threshold)
+        query += (time.perf_counter() - start) / len(names)
+    return Outcome(_scores(case, names, answers), built + query, query, 4 * min(width, full) * len(features))
+
+
+def principal(rows: F32, width: int) -> tuple[F32, F32]:
+    """Mean `[D]` and the first `width` principal axes `[width, D]` of rows `[M, D]`."""
+    mean = rows.mean(axis=0)
+    spread = rows - mean
+    _, axes = np.linalg.eigh((spread.T @ spread).astype(np.float64))
+    first: F32 = axes[:, ::-1][:, :width].T.astype(np.float32)
+    return mean, first
+
+
+def margin(outcomes: Sequence[Outcome]) -> float:
+    """Mean IoU over all names of all cases."""
+    return fmean(v for outcome in outcomes for v in outcome.iou)
+
+
+def _scores(case: Case, names: Sequence[str], answers: Sequence[Mask]) -> list[float]:
+    meant = {o.kind: o for o in case.alone()}
+    return [iou(case.truth(meant[name]), answer) for name, answer in zip(names, answers, strict=True)]
