@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 
 from ..scene import Frame, Scene
 from . import grouping, structure
+from .adjacency import build_graph
 from .calibration import wholeness
 from .encoders import Encoder
 from .field import Level
 from .portraits import mean_vectors
-from .regions import Graph, Node, build_graph, merge_tree
+from .regions import Graph, Node, merge_tree
 from .superpoints import Links, links_of, superpoints, touching
 from .surface import Surface
 
@@ -88,8 +89,8 @@ def graph_of(
 ) -> Graph:
     """The graph of the superpoints that are no structure, in the level frame."""
     flat = structure.level(surface, frame)
-    free = kind_of == structure.NONE
-    return build_graph(labels, flat.points, surface.lab.astype(np.float64), flat.normals, links, free)
+    lab = surface.lab.astype(np.float64)
+    return build_graph(labels, flat.points, lab, flat.normals, links, kind_of, surface.spacing)
 
 
 def _evidence(
