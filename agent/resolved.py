@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import time
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..gaussians.errors import InstructionError, UserError
@@ -14,7 +15,9 @@ from ..gaussians.language.selection import Candidate, Selection
 from .refusal import verdict_of
 
 if TYPE_CHECKING:
-    from ..planners.plan import EditPlan
+    from ..planners.on_graph import Step
+    from ..planners.plan import EditPlan, Planner
+    from ..planners.stage import Stage
     from .session import Session
 
 
@@ -72,6 +75,35 @@ def resolved_plan(session: Session, text: str, context: str | None = None) -> di
     }
 
 
+def graph_plan(stage: Stage, planner: Planner, text: str, context: str | None = None) -> dict[str, Any]:
+    """What an instruction would touch on a scene graph, in the shape of `resolved_plan`; ids are the graph's own.
+
+    A step also has `anchors`, the ids that its place or direction refers to, and `metres` where a distance is said.
+    """
+    from ..planners.on_graph import resolve_text
+
+    started = time.perf_counter()
+    found = resolve_text(stage, planner, text, context)
+    nodes = {n.id: n for n in stage.graph.nodes}
+    known = [nodes[i] for i in found.candidates if i in nodes]
+    return {
+        "verdict": found.verdict,
+        "steps": [_graph_step(step) for step in found.steps],
+        "candidates": [{"id": n.id, "label": n.label, "color": n.color} for n in known],
+        "reason": found.reason,
+        "unknown": list(found.plan.unknown),
+        "planner": found.plan.planner,
+        "seconds": round(time.perf_counter() - started, 4),
+    }
+
+
+def _graph_step(step: Step) -> dict[str, Any]:
+    more: dict[str, Any] = {"anchors": list(step.anchors)} if step.anchors else {}
+    if step.metres is not None:
+        more["metres"] = step.metres
+    return {**_step(step.op, step.targets), **more}
+
+
 def plan_json(plan: EditPlan) -> dict[str, Any]:
     """A plan of words alone, before any scene was looked at: targets are phrases."""
     return {
@@ -91,6 +123,6 @@ def plan_lines(plan: EditPlan) -> list[str]:
     return [json.dumps(row, ensure_ascii=False) for row in rows]
 
 
-def _step(op: Any, targets: tuple[int, ...]) -> dict[str, Any]:
+def _step(op: Any, targets: Sequence[int | str]) -> dict[str, Any]:
     fields = op.model_dump(mode="json", exclude_none=True)
     return {"op": fields.pop("op"), "targets": list(targets) if op.query() is not None else [], **fields}

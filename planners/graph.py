@@ -2,20 +2,24 @@
 
 Knows names, boxes and relations. Refuses to know Gaussians: it is read from a scene's language field, or written by
 hand.
-World frame: right-handed, z up, metres and degrees; the origin is the centre of the floor.
+World frame: right-handed, z up, metres and degrees; the origin is the centre of the floor. The viewer stands at
+negative y and looks along +y, so that left is -x and "in front" is toward -y, unless the graph has a `viewer`.
 """
 
 from __future__ import annotations
 
+import json
 import math
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from ..gaussians.color import name_of
-from ..gaussians.errors import UserError
+from ..gaussians.errors import FileError, UserError
 
 if TYPE_CHECKING:
     from ..gaussians.language.field import Group
@@ -25,8 +29,10 @@ Coordinate = Annotated[float, Field(ge=-1e5, le=1e5, allow_inf_nan=False)]
 Extent = Annotated[float, Field(ge=0, le=1e5, allow_inf_nan=False)]
 Size = tuple[Extent, Extent, Extent]
 Point = tuple[Coordinate, Coordinate, Coordinate]
-NodeId = Annotated[int, Field(ge=0, le=10**9)]
-Support = NodeId | Literal["floor", "wall", "ceiling"]
+# Numbers from us; people who write a graph by hand also name their nodes, and get the names back.
+NodeId = Annotated[int, Field(ge=0, le=10**9, strict=True)] | Annotated[str, Field(min_length=1, max_length=80)]
+Support = Literal["floor", "wall", "ceiling"] | NodeId
+SHELL = ("floor", "wall", "ceiling")
 
 # A thing stands on another if its underside is this near to the other's top, in shares of the smaller height,
 # and at least this share of its footprint's centre lies over it.
@@ -38,7 +44,7 @@ class Node(BaseModel):
     """One object.
 
     Attributes:
-        id: group id of the scene it was read from, or the author's own number.
+        id: group id of the scene it was read from, or the author's own number or name.
         label: what it is, "" if nobody could tell.
         color: name of its main colour, "" if unknown.
         size: width, depth, height of its own upright box, metres.
@@ -59,16 +65,34 @@ class Node(BaseModel):
 
 
 class RoomShape(BaseModel):
-    """The room: width, depth and height in metres, and where up is."""
+    """The room: width (x), depth (y) and height (z) in metres, and where up is, which is always +z."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     size: Size
     up: Point = (0.0, 0.0, 1.0)
 
+    @model_validator(mode="after")
+    def _upright(self) -> Self:
+        if self.up != (0.0, 0.0, 1.0):
+            raise ValueError(f"a graph's z axis points up, got up {list(self.up)}; turn the positions instead")
+        return self
+
+
+class Viewpoint(BaseModel):
+    """Whose left, right, in front and behind are meant: an eye and a point that it looks at."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    position: Point
+    target: Point
+
 
 class SceneGraph(BaseModel):
-    """A room, its objects, and relations `[id, name, id]` between them that were stated or measured."""
+    """A room, its objects, and relations `[id, name, id]` between them that were stated or measured.
+
+    `viewer` is optional; without one the viewer stands before the room, at negative y, and looks along +y.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -77,6 +101,7 @@ class SceneGraph(BaseModel):
     relations: Annotated[
         tuple[tuple[NodeId, Annotated[str, Field(max_length=40)], NodeId], ...], Field(max_length=65536)
     ] = ()
+    viewer: Viewpoint | None = None
 
     @model_validator(mode="after")
     def _closed(self) -> Self:
@@ -84,14 +109,14 @@ class SceneGraph(BaseModel):
         if len(known) != len(self.nodes):
             raise ValueError("two nodes have the same id")
         for node in self.nodes:
-            if isinstance(node.support, int) and (node.support not in known or node.support == node.id):
+            if node.support not in SHELL and (node.support not in known or node.support == node.id):
                 raise ValueError(f"node {node.id} stands on {node.support}, which is no other node")
         for a, name, b in self.relations:
             if a not in known or b not in known:
                 raise ValueError(f"relation {[a, name, b]} names a node that is not there")
         return self
 
-    def node(self, id: int) -> Node:
+    def node(self, id: int | str) -> Node:
         """The node with this id.
 
         Raises:
@@ -101,6 +126,24 @@ class SceneGraph(BaseModel):
             if node.id == id:
                 return node
         raise UserError(f"the graph has no node {id}; its ids are {', '.join(str(n.id) for n in self.nodes)}")
+
+    @classmethod
+    def read(cls, path: Path) -> SceneGraph:
+        """A graph from a JSON file; a room that is not given is as large as what stands in it.
+
+        Raises:
+            FileError: the file cannot be read or holds no graph; the message names the first thing that is wrong.
+        """
+        try:
+            data = json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise FileError(f"cannot read the scene graph {path}: {error}") from error
+        if isinstance(data, dict) and "room" not in data:
+            data = {**data, "room": {"size": _extent_of(data.get("nodes"))}}
+        try:
+            return cls.model_validate_json(json.dumps(data))
+        except ValidationError as error:
+            raise FileError(f"{path} is no scene graph: {_first_wrong(error)}") from error
 
     @classmethod
     def from_scene(cls, scene: Scene) -> SceneGraph:
@@ -117,8 +160,28 @@ class SceneGraph(BaseModel):
         place = _Placer(scene)
         nodes = [place.node(g) for g in field.objects()]
         nodes = [n.model_copy(update={"support": _support(n, nodes, place.height)}) for n in nodes]
-        stands = tuple((n.id, "on", n.support) for n in nodes if isinstance(n.support, int))
+        stands = tuple((n.id, "on", n.support) for n in nodes if n.support not in SHELL)
         return cls(room=RoomShape(size=place.room), nodes=tuple(nodes), relations=stands)
+
+
+def _extent_of(nodes: Any) -> list[float]:
+    """Width, depth and height of a room about the origin that holds nodes as they were written, metres."""
+    reach = [1.0, 1.0, 1.0]
+    for node in nodes if isinstance(nodes, list) else []:
+        for i in range(3):
+            with suppress(TypeError, ValueError, LookupError, AttributeError):  # the model says what is wrong
+                far = abs(float(node["position"][i])) + float(node["size"][i]) / 2
+                reach[i] = max(reach[i], far if i == 2 else 2 * far)
+    return reach
+
+
+def _first_wrong(error: ValidationError) -> str:
+    """The first complaint of a validation, with the place in the file."""
+    first = error.errors()[0]
+    where = ".".join(str(p) for p in first["loc"] if p not in ("function-after", "int", "str"))
+    said = first["msg"].removeprefix("Value error, ")
+    more = error.error_count() - 1
+    return f"{where + ': ' if where else ''}{said}" + (f" (and {more} more)" if more else "")
 
 
 class _Placer:
@@ -157,7 +220,7 @@ def _support(node: Node, nodes: list[Node], room_height: float) -> Support:
     bottom = node.position[2] - node.size[2] / 2
     below = [n for n in nodes if n.id != node.id and n.support != node.id and _carries(n, node, bottom)]
     if below:
-        return max(below, key=lambda n: (n.position[2] + n.size[2] / 2, -n.id)).id
+        return max(below, key=lambda n: (n.position[2] + n.size[2] / 2, str(n.id))).id
     if bottom <= max(0.05 * room_height, 0.1 * node.size[2]):
         return "floor"
     if node.position[2] + node.size[2] / 2 >= 0.97 * room_height and node.label not in _WALL_FIXTURES:

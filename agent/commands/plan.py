@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from ..options import Batch, Debug, Encoder, Json, Planner, View
 from ..terminal import read_batch, terminal
+
+Answer = Callable[[str, str | None], dict[str, Any]]  # instruction, the one before
 
 
 def command(
@@ -20,6 +23,13 @@ def command(
         ),
     ] = None,
     batch: Batch = None,
+    graph: Annotated[
+        Path | None,
+        typer.Option("--graph", metavar="ROOM.json", help="A scene graph to resolve on instead of a scene."),
+    ] = None,
+    resolve: Annotated[
+        bool, typer.Option("--resolve", help="Look up every target (what a scene or a graph is given for).")
+    ] = False,
     encoder: Encoder = "auto",
     planner: Planner = "auto",
     view: View = "auto",
@@ -28,13 +38,11 @@ def command(
 ) -> None:
     """Tell what an instruction is taken to mean, as JSON. Nothing is changed.
 
-    Without a scene the words alone are read. With one, every target is looked up and the plan is tried on a copy, so
-    that the answer is what `edit` would do: {"verdict", "steps", "candidates", "reason", "planner", "seconds"}.
+    Without a scene the words alone are read. With one, or with a scene graph (see `scenewright schema graph`), every
+    target is looked up: {"verdict", "steps", "candidates", "reason", "planner", "seconds"}. In a scene the plan is
+    also tried on a copy, so that the answer is what `edit` would do.
     """
     from ...gaussians.errors import UserError
-    from ...planners import load as load_planner
-    from ..opening import Opening, open_session
-    from ..resolved import plan_json, resolved_plan
 
     given = arguments or []
     if len(given) > (1 if batch else 2) or (not given and batch is None):
@@ -42,18 +50,40 @@ def command(
     path = Path(given[0]) if len(given) == 2 or (batch and given) else None
     if path is None and batch is None and Path(given[0]).exists():
         raise UserError(f'{given[0]} is a scene; say what to do with it: scenewright plan {given[0]} "TEXT"')
+    if path is not None and graph is not None:
+        raise UserError(f"give either the scene {path} or --graph {graph}, not both")
+    if resolve and path is None and graph is None:
+        raise UserError('--resolve needs a scene or a graph: scenewright plan "TEXT" --graph ROOM.json --resolve')
     rows = read_batch(str(batch)) if batch else [{"text": given[-1]}]
-    session = None
-    if path is not None:
-        session, _ = open_session(Opening(path, planner, encoder, view))
+    answer = _in_scene(path, planner, encoder, view) if path is not None else _without_scene(graph, planner)
     for row in rows:
-        if session is not None:
-            answer = resolved_plan(session, row["text"], row.get("context"))
-        else:
-            answer = plan_json(load_planner(planner).plan(row["text"], previous=row.get("context")))
+        told = answer(row["text"], row.get("context"))
         if batch is not None:
-            terminal.row({"id": row["id"], **answer})
+            terminal.row({"id": row["id"], **told})
             continue
-        terminal.result(json.dumps(answer, indent=2, ensure_ascii=False), answer)
-        if answer["verdict"] != "ok":
+        terminal.result(json.dumps(told, indent=2, ensure_ascii=False), told)
+        if told["verdict"] != "ok":
             raise typer.Exit(3)
+
+
+def _in_scene(path: Path, planner: str, encoder: str, view: str) -> Answer:
+    from ..opening import Opening, open_session
+    from ..resolved import resolved_plan
+
+    session, _ = open_session(Opening(path, planner, encoder, view))
+    return lambda text, context: resolved_plan(session, text, context)
+
+
+def _without_scene(graph: Path | None, planner: str) -> Answer:
+    """On a graph, or in words alone."""
+    from ...planners import load as load_planner
+    from ..resolved import graph_plan, plan_json
+
+    reader = load_planner(planner)
+    if graph is None:
+        return lambda text, context: plan_json(reader.plan(text, previous=context))
+    from ...planners.graph import SceneGraph
+    from ...planners.stage import Stage
+
+    stage = Stage.of(SceneGraph.read(graph))
+    return lambda text, context: graph_plan(stage, reader, text, context)

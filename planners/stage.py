@@ -1,0 +1,247 @@
+"""A scene graph as a scene that words can be resolved in: one Gaussian a node, its box, its label, its colour.
+
+Knows how a graph's boxes and colour names become a language field, so that there is one resolver for scenes and for
+graphs. Refuses to resolve anything itself, and to be looked at: it has no shape, only measurements.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+import torch
+
+from ..gaussians.camera import Camera, Vec3
+from ..gaussians.cloud import GaussianCloud
+from ..gaussians.color import BASIC, lab_to_rgb, parse, rgb_to_lab
+from ..gaussians.errors import UserError
+from ..gaussians.language import attributes
+from ..gaussians.language.field import Box, Group, LanguageField
+from ..gaussians.language.query import Query, Relation
+from ..gaussians.language.resolve import STRUCTURE, resolve
+from ..gaussians.language.selection import Selection
+from ..gaussians.scene import Frame, Scene
+from .graph import SHELL, Node, SceneGraph
+from .wordwise import WordEncoder
+
+Id = int | str
+_UP: Vec3 = (0.0, 0.0, 1.0)
+_SLAB = 0.15  # metres that floor, walls and ceiling reach out, and walls also in: what hangs on one lies in that slab
+_FAMILY = 0.7  # a "light blue" thing answers to "blue" at least this well, to any other basic word less
+_NO_COLOR: Vec3 = (50.0, 1000.0, 1000.0)  # of a node whose colour nobody wrote or nobody knows: no word fits
+
+# Colours that people count to a basic one, whatever a photometer says.
+_FAMILIES = {
+    "navy": "blue", "indigo": "blue", "denim": "blue", "azure": "blue", "royalblue": "blue", "skyblue": "blue",
+    "oak": "brown", "walnut": "brown", "wood": "brown", "wooden": "brown", "mahogany": "brown", "chestnut": "brown",
+    "pine": "brown", "teak": "brown", "cherry": "brown", "maple": "brown", "bamboo": "beige", "chocolate": "brown",
+    "bronze": "brown", "copper": "brown", "terracotta": "orange", "rust": "orange", "maroon": "red", "burgundy": "red",
+    "crimson": "red", "scarlet": "red", "lilac": "purple", "lavender": "purple", "violet": "purple", "mauve": "purple",
+    "cream": "white", "ivory": "white", "silver": "gray", "chrome": "gray", "steel": "gray", "metal": "gray",
+    "charcoal": "gray", "gold": "yellow", "golden": "yellow", "brass": "yellow", "mustard": "yellow",
+    "olive": "green", "sage": "green", "mint": "green", "emerald": "green", "turquoise": "teal", "aqua": "teal",
+    "tan": "beige", "sand": "beige",
+}  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """A graph, ready to be asked.
+
+    Attributes:
+        graph: as written.
+        scene: its stand-in; row and group `i` is `ids[i]`.
+        ids: the graph's ids; floor, walls and ceiling that are no nodes are called by those words.
+        encoder: compares labels with phrases.
+        viewer: whose left and right are meant.
+    """
+
+    graph: SceneGraph
+    scene: Scene
+    ids: tuple[Id, ...]
+    encoder: WordEncoder
+    viewer: Camera
+
+    @classmethod
+    def of(cls, graph: SceneGraph) -> Stage:
+        """The stand-in of a graph."""
+        encoder = WordEncoder(tuple(dict.fromkeys(_spoken(n) for n in graph.nodes if n.label)))
+        groups = [_group(i, node) for i, node in enumerate(graph.nodes)]
+        ids: list[Id] = [node.id for node in graph.nodes]
+        shell = [s for s in SHELL if not any(g.level == "structure" and g.label == s for g in groups)]
+        for name, box in ((s, b) for s in shell for b in _slabs(s, graph)):
+            groups.append(Group(len(groups), "structure", -1, name, 1.0, box, _NO_COLOR, 1, 1, 1.0))
+            ids.append(name)
+        spoken = [*map(_spoken, graph.nodes), *("" for _ in groups[len(graph.nodes) :])]
+        vectors = np.array([encoder.of(s) for s in spoken], dtype=np.float32).reshape(len(groups), encoder.dim)
+        field = LanguageField(tuple(groups), vectors, encoder.fingerprint)
+        frame = Frame(_UP, 0.0, 1.0, "given", "given")
+        return cls(graph, Scene(_cloud(groups), frame, language=field), tuple(ids), encoder, _viewer(graph))
+
+    def find(self, query: Query, last: Selection | None = None) -> Selection:
+        """What a query means here.
+
+        Raises:
+            UserError: a colour word is unknown.
+        """
+        return resolve(self.scene, self._read(query), self.viewer, encoder=self.encoder, last=last)
+
+    def names(self, groups: Iterable[int]) -> tuple[Id, ...]:
+        """The graph's ids of groups, each once."""
+        return tuple(dict.fromkeys(self.ids[g] for g in groups))
+
+    def group(self, index: int) -> Group:
+        """A row of the stand-in's table."""
+        assert self.scene.language is not None
+        return self.scene.language.groups[index]
+
+    def without(self, groups: Iterable[int]) -> Stage:
+        """The stage after some things were taken away."""
+        gone = set(groups)
+        return self._with({g: replace(self.group(g), count=0) for g in gone}, gone)
+
+    def painted(self, groups: Iterable[int], color: str) -> Stage:
+        """The stage after some things were given a colour."""
+        return self._with({g: replace(self.group(g), lab=color_of(color)) for g in groups}, set())
+
+    def _with(self, changed: dict[int, Group], gone: set[int]) -> Stage:
+        scene, field = self.scene, self.scene.language
+        assert field is not None
+        rows = tuple(changed.get(g.id, g) for g in field.groups)
+        kept = torch.tensor([int(i) not in gone for i in scene.cloud.group], dtype=torch.bool)
+        language = LanguageField(rows, field.embeddings, field.encoder)
+        return replace(self, scene=replace(scene, cloud=scene.cloud[kept], language=language))
+
+    def _read(self, query: Query) -> Query:
+        """The query as it is meant of a room: "the wall" is all four, and what hangs on one lies at it."""
+        plain = query.pick in ("one", "any") and not query.relations and not query.groups
+        whole = plain and STRUCTURE.get(query.text) == "wall" and "wall" in self.ids
+        relations = tuple(self._relation(r) for r in query.relations)
+        return query.model_copy(
+            update={
+                "pick": "all" if whole else query.pick,
+                "colors": tuple(map(self._color, query.colors)),
+                "not_colors": tuple(map(self._color, query.not_colors)),
+                "relations": relations,
+                "exclude": tuple(self._read(q) for q in query.exclude),
+                "also": tuple(self._read(q) for q in query.also),
+            }
+        )
+
+    def _color(self, word: str) -> str:
+        """A colour that is written so in the graph means what stands for it here; basic words mean themselves."""
+        plain = _plain(word)
+        written = plain not in BASIC and any(_plain(n.color) == plain for n in self.graph.nodes)
+        return _hex(color_of(plain)) if written else word
+
+    def _relation(self, relation: Relation) -> Relation:
+        hung = relation.name == "on" and STRUCTURE.get(relation.anchors[0].text) in ("wall", "ceiling")
+        anchors = tuple(self._read(a) for a in relation.anchors)
+        return relation.model_copy(update={"name": "inside" if hung else relation.name, "anchors": anchors})
+
+
+def _spoken(node: Node) -> str:
+    """What words are compared with: the label, and a colour that no colour table knows ("tartan blanket")."""
+    unknown = node.color and node.label and color_of(node.color) == _NO_COLOR
+    return f"{node.color} {node.label}" if unknown else node.label
+
+
+def _plain(color: str) -> str:
+    return color.lower().replace("grey", "gray").strip()
+
+
+def _hex(lab: Vec3) -> str:
+    """The colour nearest to Lab values that a display can show, as #rrggbb."""
+    shown = (lab_to_rgb(torch.tensor(lab, dtype=torch.float64)).clamp(0, 1) * 255).round()
+    return "#" + "".join(f"{int(c):02x}" for c in shown)
+
+
+@cache
+def color_of(name: str) -> Vec3:
+    """Lab of a colour as written in a graph: its own, but so near to the basic word in it that this word fits best.
+
+    Lab of CSS names is no judge of words: light blue measures as teal, dark brown as red.
+    """
+    plain = _plain(name)
+    own, family = _lab(plain), _family(plain)
+    if family is None or plain in BASIC:
+        return _lab(BASIC[plain]) if plain in BASIC else own
+    basic = _lab(BASIC[family])
+    if own == _NO_COLOR:
+        return basic
+    for step in range(21):
+        lab = np.array(own) + (np.array(basic) - np.array(own)) * step / 20
+        if float(attributes.color_scores(family, lab)) >= _FAMILY:
+            return _vec(lab)
+    return basic
+
+
+def _family(plain: str) -> str | None:
+    """The basic colour word that a name ends with or belongs to."""
+    last = plain.replace("-", " ").split()[-1:] or [""]
+    joined = plain.replace(" ", "")
+    return last[0] if last[0] in BASIC else _FAMILIES.get(joined) or _FAMILIES.get(last[0])
+
+
+def _lab(text: str) -> Vec3:
+    try:
+        return _vec(rgb_to_lab(torch.tensor(parse(text), dtype=torch.float64)).numpy())
+    except UserError:
+        return _NO_COLOR
+
+
+def _vec(values: np.ndarray) -> Vec3:
+    x, y, z = (float(v) for v in values)
+    return (x, y, z)
+
+
+def _group(index: int, node: Node) -> Group:
+    """A node as a row of the table."""
+    c, s = math.cos(math.radians(node.yaw)), math.sin(math.radians(node.yaw))
+    size = (max(node.size[0], 1e-4), max(node.size[1], 1e-4), max(node.size[2], 1e-4))
+    box = Box(node.position, ((c, s, 0.0), (-s, c, 0.0), _UP), size)
+    kind = STRUCTURE.get(node.label.lower().strip())
+    color = color_of(node.color) if node.color else _NO_COLOR
+    level, label = ("structure", kind) if kind else ("object", node.label)
+    return Group(index, level, -1, label, 1.0, box, color, 1, 1, 1.0)  # type: ignore[arg-type]
+
+
+def _slabs(name: str, graph: SceneGraph) -> list[Box]:
+    """Boxes of the floor, the ceiling or the four walls of the room."""
+    width, depth, height = graph.room.size
+    level = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), _UP)
+    if name == "floor":
+        return [Box((0.0, 0.0, -_SLAB / 2), level, (width, depth, _SLAB))]
+    if name == "ceiling":
+        return [Box((0.0, 0.0, height), level, (width, depth, 2 * _SLAB))]
+    x, y, z, t = width / 2, depth / 2, height / 2, 2 * _SLAB
+    return [
+        *(Box((side * x, 0.0, z), level, (t, depth, height)) for side in (-1, 1)),
+        *(Box((0.0, side * y, z), level, (width, t, height)) for side in (-1, 1)),
+    ]
+
+
+def _cloud(groups: list[Group]) -> GaussianCloud:
+    n = len(groups)
+    centres = torch.tensor([g.box.center for g in groups], dtype=torch.float32).reshape(n, 3)
+    return GaussianCloud(
+        means=centres,
+        quats=torch.tensor([1.0, 0.0, 0.0, 0.0]).repeat(n, 1),
+        scales=torch.full((n, 3), 0.01),
+        opacities=torch.full((n,), 0.5),
+        sh=torch.zeros(n, 1, 3),
+        group=torch.arange(n, dtype=torch.int32),
+        ids=torch.arange(n, dtype=torch.int64),
+    )
+
+
+def _viewer(graph: SceneGraph) -> Camera:
+    """The graph's own viewer, or one before the room who looks along +y at eye height."""
+    if graph.viewer is not None:
+        return Camera.look_at(graph.viewer.position, graph.viewer.target, _UP)
+    width, depth, _ = graph.room.size
+    eye = 1.6
+    return Camera.look_at((0.0, -depth / 2 - max(width, depth, 1.0), eye), (0.0, 0.0, eye), _UP)

@@ -1,0 +1,201 @@
+"""An encoder that compares words only: what a phrase and the labels of a scene graph have to do with each other.
+
+Knows labels as words: heads ("lamp" means a floor lamp), synonyms and words for families (the embedded vocabulary and
+synonyms.py). Refuses to know pictures. It meets the `Encoder` protocol, so that queries on a graph go through the very
+resolver that scenes use; a thing's vector is one-hot on its label, a phrase's vector holds how well it names each.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..gaussians.errors import BackendError
+from ..gaussians.language.calibration import Calibration
+from ..gaussians.language.encoders.vocabulary import Vocabulary
+from ..gaussians.language.encoders.words import normalise
+from . import synonyms
+from .synonyms import Phrase
+
+# Probability that a phrase means a label, by how the two agree. Each step is less than the share of the best score at
+# which the resolver sees a rival (0.55), so that an exact name beats a synonym, and that a broader word.
+EXACT, ALIKE, BROADER, NOT = 0.98, 0.5, 0.26, 1e-4
+THRESHOLD = 0.2
+_ABSENT = "nothing of all this"
+
+# "a table with drawers" is a table; "a stack of books" is a stack and books, "a picture of a dog" only a picture.
+_AFTER_HEAD = frozenset({"with", "in", "on", "from", "for", "near", "at", "by", "without"})
+_COLLECTIVE = frozenset({"stack", "pile", "pair", "bunch", "set", "row", "group", "bouquet", "collection"})
+
+
+@cache
+def vocabulary() -> Vocabulary:
+    """The vocabulary of the embedded encoder, without loading its weights."""
+    import json
+
+    from ..gaussians.language.encoders import weights_folder
+
+    return Vocabulary.from_json(json.loads((weights_folder() / "words.json").read_bytes())["vocabulary"])
+
+
+@dataclass(frozen=True, eq=False)
+class WordEncoder:
+    """The labels of one graph as an encoder.
+
+    Attributes:
+        labels: what is there, as written; one axis each.
+    """
+
+    labels: tuple[str, ...]
+
+    @cached_property
+    def fingerprint(self) -> str:
+        return "words-" + hashlib.sha256("\n".join(self.labels).encode()).hexdigest()[:16]
+
+    @property
+    def dim(self) -> int:
+        return max(len(self.labels), 1)
+
+    @property
+    def image_size(self) -> int:
+        return 1
+
+    @cached_property
+    def vocabulary(self) -> Vocabulary:
+        """Only what competes with a phrase: that it names nothing here."""
+        return Vocabulary({}, {}, (_ABSENT,))
+
+    @property
+    def calibration(self) -> Calibration:
+        return Calibration(scale=1.0, threshold=THRESHOLD)
+
+    def encode_text(self, texts: list[str]) -> NDArray[np.float32]:
+        """`[T, D]`: for each label the log odds that the phrase means it. The rows are not unit vectors: against the
+        zero row of "nothing of all this", the rule of calibration.py turns them back into these probabilities."""
+        rows = np.zeros((len(texts), self.dim), dtype=np.float32)
+        for row, text in zip(rows, texts, strict=True):
+            if text != _ABSENT:
+                row[: len(self.labels)] = [math.log(p / (1 - p)) for p in agreement(text, self.labels)]
+        return rows
+
+    def encode_images(self, images: NDArray[np.uint8]) -> NDArray[np.float32]:
+        """Refused.
+
+        Raises:
+            BackendError: always; a graph has no pictures.
+        """
+        raise BackendError("the word encoder sees no pictures; embed a scene with another encoder")
+
+    def unknown_words(self, text: str) -> tuple[str, ...]:
+        return ()
+
+    def knows(self, text: str) -> bool:
+        return True
+
+    def of(self, label: str) -> NDArray[np.float32]:
+        """`[D]`, a thing's vector."""
+        row = np.zeros(self.dim, dtype=np.float32)
+        if label in self.labels:
+            row[self.labels.index(label)] = 1.0
+        return row
+
+
+def agreement(text: str, labels: Sequence[str]) -> list[float]:
+    """How likely `text` means a thing with each of the labels; a broader word only where no label agrees better."""
+    asked = words(text)
+    found = [_agrees(asked, words(label)) for label in labels]
+    if all(p < THRESHOLD for p in found):
+        found = [BROADER if _covers(asked, words(label)) else p for label, p in zip(labels, found, strict=True)]
+    return found
+
+
+@cache
+def words(text: str) -> Phrase:
+    """A phrase as singular words in lower case; a script without Latin letters counts as one word."""
+    return normalise(text) or tuple(text.casefold().split())
+
+
+@cache
+def _agrees(asked: Phrase, label: Phrase) -> float:
+    if not asked or not label:
+        return NOT
+    if asked == label:
+        return EXACT
+    if _names(asked, label) or (_plainer(asked) != asked and _names(_plainer(asked), label) and not _other(asked)):
+        return ALIKE
+    return NOT
+
+
+def _names(asked: Phrase, label: Phrase) -> bool:
+    """Whether the label ends with what is asked, word for word or by a synonym, or holds all of it with its head."""
+    alike = _alike(asked)
+    for form in _forms(label):
+        if any(form[i:] in alike for i in range(len(form))) or not alike.isdisjoint(_alike(form)):
+            return True
+        if form[-1] == asked[-1] and set(asked) <= set(form):
+            return True
+    return False
+
+
+def _forms(label: Phrase) -> tuple[Phrase, ...]:
+    """The label without what stands behind its head; of a collection ("stack of books") also what it is made of."""
+    cut = next((i for i, w in enumerate(label) if i and w in _AFTER_HEAD), len(label))
+    head = label[:cut]
+    if "of" not in head[1:-1]:
+        return (head,)
+    at = head.index("of", 1)
+    return (head[:at], head[at + 1 :], head) if head[at - 1] in _COLLECTIVE else (head[:at], head)
+
+
+@cache
+def _kinds() -> tuple[frozenset[Phrase], ...]:
+    """The names of each kind of the embedded vocabulary."""
+    return tuple(frozenset(normalise(n) for n in (k, *names)) for k, names in vocabulary().kinds.items())
+
+
+@cache
+def _own_names() -> frozenset[Phrase]:
+    """The names that the embedded vocabulary calls its kinds by."""
+    return frozenset(normalise(kind) for kind in vocabulary().kinds)
+
+
+@cache
+def _wider() -> dict[Phrase, frozenset[Phrase]]:
+    """What the embedded vocabulary's words for families cover."""
+    return {normalise(t): frozenset(normalise(k) for k in kinds) for t, kinds in vocabulary().broader.items()}
+
+
+@cache
+def _alike(phrase: Phrase) -> frozenset[Phrase]:
+    """The phrase and its synonyms, also those of its head alone ("floor light": floor lamp)."""
+    found = synonyms.same(phrase).union(*(names for names in _kinds() if phrase in names))
+    if len(phrase) == 2:
+        found |= {(*phrase[:-1], *other) for other in synonyms.same(phrase[-1:]) if len(other) == 1}
+    return found
+
+
+def _plainer(asked: Phrase) -> Phrase:
+    """Without leading words that do not change what a thing is: "wooden dining table" to "table"."""
+    i = 0
+    while i < len(asked) - 1 and asked[i] in vocabulary().modifiers:
+        i += 1
+    return asked[i:]
+
+
+def _other(asked: Phrase) -> bool:
+    """Whether the whole phrase is a kind of its own ("office chair"), which a plain "chair" need not be."""
+    return asked in _own_names()
+
+
+@cache
+def _covers(asked: Phrase, label: Phrase) -> bool:
+    """Whether what is asked is a word for a family that the label belongs to."""
+    asked = _plainer(asked)
+    members = synonyms.narrower(asked) | _wider().get(asked, frozenset())
+    return any(_names(member, label) for member in members)
