@@ -19,7 +19,15 @@ from .vocabulary import Vocabulary
 if TYPE_CHECKING:
     from ..calibration import Calibration
 
-_SHARED = ("framing", "vector_files", "vocabulary", "words")  # modules of this package that are not back ends
+_SHARED = (
+    "export",
+    "framing",
+    "pixels",
+    "sessions",
+    "vector_files",
+    "vocabulary",
+    "words",
+)  # modules that are no back ends
 
 
 @runtime_checkable
@@ -71,19 +79,19 @@ def load(spec: str = "auto") -> Encoder:
     """An encoder by its specification.
 
     Args:
-        spec: "auto" or "embedded" for the one that ships with the package; "embedded:DIR" (or "onnx:DIR") for another
-            trained by `python -m scenewright.gaussians.language.train`; "open_clip:MODEL/PRETRAINED" or
-            "open_clip:DIR" for a real CLIP; "vectors:PATH" for text vectors made elsewhere.
+        spec: "auto" or "embedded" for the one that ships with the package; "embedded:DIR" for another trained by
+            `python -m scenewright.gaussians.language.train`; "open_clip:MODEL/PRETRAINED" or "open_clip:DIR" for a
+            real CLIP; "onnx:FOLDER" for one as ONNX; "vectors:PATH" for text vectors made elsewhere.
 
     Raises:
         BackendError: unknown back end, missing extra, missing or broken weights; the message says what to do.
     """
     name, _, argument = spec.partition(":")
-    name = {"auto": "embedded", "onnx": "embedded", "": "embedded"}.get(name, name)
+    name = {"auto": "embedded", "": "embedded"}.get(name, name)
     if name not in backends():
         raise BackendError(
             f"unknown encoder {spec!r}; "
-            "use auto, embedded:DIR, open_clip:MODEL/PRETRAINED, open_clip:DIR or vectors:PATH"
+            "use auto, embedded:DIR, open_clip:MODEL/PRETRAINED, open_clip:DIR, onnx:FOLDER or vectors:PATH"
         )
     module = importlib.import_module(f"{__name__}.{name}")
     encoder: Encoder = module.load(argument)

@@ -20,10 +20,12 @@ from numpy.typing import NDArray
 from ...errors import BackendError
 from ..calibration import Calibration
 from . import checked_images, checked_texts, weights_folder
+from .sessions import open_session
 from .vocabulary import Vocabulary
 from .words import normalise
 
 _WEIGHTS = ("image.onnx", "text.onnx", "words.json")  # what vectors depend on; the calibration is not part of it
+_ADVICE = "reinstall scenewright or train again"
 _BATCH = 64  # pictures at a time, so that memory stays flat
 
 
@@ -108,11 +110,11 @@ class Embedded:
 
     @cached_property
     def _image_session(self) -> Any:
-        return _session(self.folder / "image.onnx")
+        return open_session(self.folder / "image.onnx", _ADVICE, threads=1)
 
     @cached_property
     def _text_session(self) -> Any:
-        return _session(self.folder / "text.onnx")
+        return open_session(self.folder / "text.onnx", _ADVICE, threads=1)
 
 
 def tokenise(texts: list[str], index: dict[str, int], length: int) -> NDArray[np.int64]:
@@ -138,22 +140,6 @@ def _resampled(images: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:
     return np.stack([np.asarray(Image.fromarray(image).resize((size, size), bilinear)) for image in images])
 
 
-def _session(path: Path) -> Any:
-    """One thread and a fixed order of operations: the same picture gives the same bytes."""
-    import onnxruntime
-
-    options = onnxruntime.SessionOptions()
-    options.intra_op_num_threads = 1
-    options.inter_op_num_threads = 1
-    options.log_severity_level = 3
-    try:
-        return onnxruntime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
-    except Exception as error:  # onnxruntime raises its own classes, which share no public base
-        raise BackendError(
-            f"{path} is not a usable ONNX model: {error}; reinstall scenewright or train again"
-        ) from error
-
-
 def _unit(rows: NDArray[np.floating]) -> NDArray[np.float32]:
     result: NDArray[np.float32] = (rows / np.maximum(np.linalg.norm(rows, axis=1, keepdims=True), 1e-12)).astype(
         np.float32
@@ -165,5 +151,5 @@ def _read_json(path: Path) -> dict[str, Any]:
     try:
         data: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise BackendError(f"{path} cannot be read: {error}; reinstall scenewright or train again") from error
+        raise BackendError(f"{path} cannot be read: {error}; {_ADVICE}") from error
     return data

@@ -21,12 +21,12 @@ from numpy.typing import NDArray
 from ...errors import BackendError
 from ...vision_cure import import_torchvision
 from ..calibration import Calibration, of_clip
-from . import checked_images, checked_texts, weights_folder
+from . import checked_images, checked_texts
+from .pixels import Pixels
 from .vocabulary import Vocabulary
-from .words import normalise
+from .words import PROMPT, normalise
 
 _CONFIG, _WEIGHTS = "open_clip_config.json", "open_clip_model.safetensors"
-_PROMPT = "a photo of a {}"
 _BATCH = 16
 
 
@@ -63,7 +63,7 @@ class OpenClip:
 
     @cached_property
     def fingerprint(self) -> str:
-        digest = hashlib.sha256(json.dumps([self.mean, self.std, self.image_size, _PROMPT]).encode())
+        digest = hashlib.sha256(json.dumps([self.mean, self.std, self.image_size, PROMPT]).encode())
         for key, value in sorted(self.model.state_dict().items()):
             digest.update(f"{key}{tuple(value.shape)}{value.dtype};".encode())
             digest.update(value.detach().cpu().float().contiguous().numpy().tobytes())
@@ -81,8 +81,7 @@ class OpenClip:
     @cached_property
     def vocabulary(self) -> Vocabulary:
         """The embedded encoder's names: household kinds with synonyms, and what is not a whole object."""
-        words = json.loads((weights_folder() / "words.json").read_text(encoding="utf-8"))
-        return Vocabulary.from_json(words["vocabulary"])
+        return Vocabulary.household()
 
     @cached_property
     def calibration(self) -> Calibration:
@@ -92,7 +91,7 @@ class OpenClip:
     def encode_text(self, texts: list[str]) -> NDArray[np.float32]:
         import torch
 
-        rows = [_PROMPT.format(" ".join(t.split())) for t in checked_texts(texts)]
+        rows = [PROMPT.format(" ".join(t.split())) for t in checked_texts(texts)]
         if not rows:
             return np.zeros((0, self.dim), dtype=np.float32)
         with torch.inference_mode():
@@ -100,19 +99,15 @@ class OpenClip:
 
     def encode_images(self, images: NDArray[np.uint8]) -> NDArray[np.float32]:
         import torch
-        from torch.nn import functional
 
         pictures = checked_images(images)
         if not len(pictures):
             return np.zeros((0, self.dim), dtype=np.float32)
-        side = (self.image_size, self.image_size)
-        mean, std = (torch.tensor(v).reshape(1, 3, 1, 1) for v in (self.mean, self.std))
+        look = Pixels(self.image_size, self.mean, self.std)
         parts = []
         with torch.inference_mode():
             for i in range(0, len(pictures), _BATCH):
-                x = torch.from_numpy(np.ascontiguousarray(pictures[i : i + _BATCH])).movedim(-1, 1).float() / 255
-                x = functional.interpolate(x, side, mode="bicubic", antialias=True).clamp(0, 1)
-                parts.append(_unit(self.model.encode_image((x - mean) / std)))
+                parts.append(_unit(self.model.encode_image(look.prepare(pictures[i : i + _BATCH]))))
         return np.concatenate(parts)
 
     def unknown_words(self, text: str) -> tuple[str, ...]:

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from ...errors import BackendError
 from ..calibration import Calibration, of_clip
-from . import checked_images, checked_texts, weights_folder
+from . import checked_images, checked_texts
 from .vector_files import Name, calibration_beside, read
 from .vocabulary import Vocabulary
 from .words import normalise
@@ -126,9 +126,7 @@ class Vectors:
 
 def vocabulary_of(names: Sequence[Name]) -> Vocabulary:
     """Names as kinds, with their synonyms and those that household words have for them ("bike" for bicycle)."""
-    household = Vocabulary.from_json(
-        json.loads((weights_folder() / "words.json").read_text(encoding="utf-8"))["vocabulary"]
-    )
+    household = Vocabulary.household()
     kinds = {name: synonyms for name, *synonyms in names}
     if len(kinds) < len(names):
         twice = next(n for i, (n, *_) in enumerate(names) if n in [m for m, *_ in names[:i]])

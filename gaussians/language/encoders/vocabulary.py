@@ -5,9 +5,11 @@ Knows words only. Refuses to know vectors, pictures and thresholds.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any, Self
 
 from .words import normalise
@@ -82,6 +84,12 @@ class Vocabulary:
             "negatives": list(self.negatives),
             "modifiers": sorted(self.modifiers),
         }
+
+    @classmethod
+    def household(cls) -> Self:
+        """The names that ship with the embedded encoder: 81 household kinds, and captions of non-objects."""
+        words = Path(__file__).parent / "weights" / "words.json"
+        return cls.from_json(json.loads(words.read_text(encoding="utf-8"))["vocabulary"])
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Self:

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import re
 
+PROMPT = "a photo of a {}"  # what encoders trained on captions of photographs are shown a name as
+
 _WORD = re.compile(r"[a-z0-9]+")
 _FRAMED = re.compile(
     r"^(?:an? |the )?(?:(?:close ?up|cropped|blurry|good|bad) )?(?:photo|photograph|picture|image|rendering|view)"

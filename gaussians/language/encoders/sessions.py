@@ -1,0 +1,30 @@
+"""Opens ONNX models for the encoders. Knows onnxruntime; refuses to know what a model computes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ...errors import BackendError
+
+
+def open_session(path: Path, advice: str, threads: int = 0) -> Any:
+    """A session on the CPU with a fixed order of operations: the same input gives the same bytes.
+
+    Args:
+        advice: what the user can do if the file is no usable model.
+        threads: 0 for as many as there are cores; small models lose time to more than one.
+
+    Raises:
+        BackendError: the file is missing or broken.
+    """
+    import onnxruntime
+
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = threads
+    options.inter_op_num_threads = 1
+    options.log_severity_level = 3
+    try:
+        return onnxruntime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
+    except Exception as error:  # onnxruntime raises its own classes, which share no public base
+        raise BackendError(f"{path} is not a usable ONNX model: {error}; {advice}") from error
