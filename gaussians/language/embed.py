@@ -1,6 +1,6 @@
 """From a cloud to a language field, in a straight line:
 
-up and floor -> skin -> views -> things (`segment`) -> every Gaussian's group -> the table.
+up and floor -> skin -> views -> things (`segment`) -> what masks say of them -> every Gaussian's group -> the table.
 
 Knows the order of this room's pieces. Refuses to know queries.
 """
@@ -8,6 +8,7 @@ Knows the order of this room's pieces. Refuses to know queries.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,12 @@ from scipy.spatial import cKDTree
 from ..cloud import NO_GROUP, GaussianCloud
 from ..errors import UserError
 from ..scene import Scene
+from . import encoders
+from .association import Track, Tracks, associate
+from .claims import claimed
 from .encoders import Encoder
+from .lifting import lift
+from .masks import Masker
 from .orient import estimate_frame
 from .portraits import one_thread
 from .segment import ASK_VIEWS, Progress, Thing, segment
@@ -28,7 +34,11 @@ REACH = 6.0  # spacings within which an unassigned Gaussian joins the surface po
 
 
 def embed(
-    scene: Scene, encoder: Encoder, progress: Progress = lambda stage, share: None, portraits: int = ASK_VIEWS
+    scene: Scene,
+    encoder: Encoder,
+    progress: Progress = lambda stage, share: None,
+    portraits: int = ASK_VIEWS,
+    masks: Masker | None = None,
 ) -> Scene:
     """The scene with `cloud.group` filled and a language field over it; nothing else of the cloud changes.
 
@@ -37,9 +47,11 @@ def embed(
         encoder: makes the vectors that names are compared with.
         progress: called with a stage's name and the share of it that is done.
         portraits: pictures the encoder is shown of each candidate thing, 1 to 4; see `scenewright bench select`.
+        masks: a source of masks of some views (`masks.load`), whose things and names go before those found without.
 
     Raises:
         UserError: the scene has no Gaussians.
+        FileError, BackendError: the masks cannot be had.
     """
     if not len(scene.cloud):
         raise UserError("the scene has no Gaussians, so there is nothing to embed")
@@ -49,14 +61,48 @@ def embed(
     scene = scene.replace(frame=frame)
     progress("views", 0.0)
     seen = choose_views(scene)
+    tracks = None if masks is None else associate(lift(scene.cloud, masks.masks(scene, progress)))
     progress("segments", 0.0)
     with one_thread():
-        labels, things = segment(scene, surface, encoder, progress, portraits)
+        eyes = encoder if encoder.image_size else encoders.load()  # text vectors alone cannot look at pictures
+        labels, things = segment(scene, surface, eyes, progress, portraits)
+        if tracks is not None:
+            labels, things = claimed(surface, labels, things, tracks, [_vector(t, encoder) for t in tracks.tracks])
         column = _assign(scene.cloud, surface, _thing_of_superpoint(things, int(labels.max(initial=-1)) + 1)[labels])
         progress("table", 0.0)
         on_skin = np.zeros(len(scene.cloud), bool)
         on_skin[surface.rows] = True
-        return with_table(scene, things, column, on_skin, seen, encoder)
+        embedded = with_table(scene, things, column, on_skin, seen, encoder)
+    return embedded if tracks is None else _noted(embedded, tracks)
+
+
+def _vector(track: Track, encoder: Encoder) -> NDArray[np.float32] | None:
+    """What a track is, as a vector of the encoder: of its masks, or of the names they give if it has a name.
+
+    Raises:
+        UserError: the masks' vectors are not of the encoder's width.
+    """
+    if track.vector is not None:
+        if len(track.vector) != encoder.dim:
+            raise UserError(
+                f"the masks' vectors have {len(track.vector)} numbers and the encoder's {encoder.dim}; "
+                "name the encoder that made them with --encoder"
+            )
+        return track.vector
+    known = [(name, weight) for name, weight in track.votes if encoder.knows(name)] if track.label else []
+    if not known:
+        return None
+    total = np.array([w for _, w in known]) @ encoder.encode_text([name for name, _ in known]).astype(np.float64)
+    norm = float(np.linalg.norm(total))
+    return (total / norm).astype(np.float32) if norm > 1e-8 else None
+
+
+def _noted(scene: Scene, tracks: Tracks) -> Scene:
+    """The scene with a note of what became of the masks."""
+    assert scene.language is not None
+    said = f"{len(tracks.tracks)} things were found by masks"
+    said += f", {tracks.outvoted} that too few views confirm were left out" if tracks.outvoted else ""
+    return scene.replace(language=replace(scene.language, notes=(*scene.language.notes, said)))
 
 
 def _thing_of_superpoint(things: Sequence[Thing], count: int) -> NDArray[np.int32]:

@@ -96,6 +96,8 @@ def mean_vectors(
 ) -> F32:
     """`[len(clouds), D]` unit mean image vector of each cloud over `count` views; zero where nothing was seen."""
     vectors = np.zeros((len(clouds), encoder.dim), np.float32)
+    if not encoder.image_size:  # text vectors alone: nothing looks at pictures
+        return vectors
     images: list[NDArray[np.uint8]] = []
     owners: list[int] = []
 

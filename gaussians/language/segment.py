@@ -35,14 +35,16 @@ MOST_OF_IT = 0.75  # of the surface: a connected body this large, with nothing a
 ALONE = 4.0  # nats by which it is
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Thing:
-    """One group before it becomes a row: which superpoints, under which name, in which object."""
+    """One group before it becomes a row: which superpoints, under which name, in which object; and its vector where
+    something better than pictures of it says what it is."""
 
     members: tuple[int, ...]
     level: Level
     parent: int = -1
     label: str = ""
+    vector: NDArray[np.float32] | None = None
 
 
 def segment(

@@ -37,8 +37,11 @@ def with_table(
     clouds = [cloud[torch.from_numpy(rows)] for rows in whole]
     boxes = [box_of(c, scene.frame) for c in clouds]
     middle = cloud.means[:: max(1, len(cloud) // 50_000)].median(dim=0).values.double().numpy()
-    pictured = [c if t.level == "object" else c[:0] for c, t in zip(clouds, things, strict=True)]
+    pictured = [c if t.level == "object" and t.vector is None else c[:0] for c, t in zip(clouds, things, strict=True)]
     vectors = mean_vectors(encoder, pictured, scene.frame, middle)
+    for row, thing in zip(vectors, things, strict=True):
+        if thing.vector is not None:
+            row[:] = thing.vector
     metres = scene.frame.metres_per_unit
     sizes = np.array([b.size for b in boxes]).reshape(-1, 3) * (metres if metres is not None else np.nan)
     named = name_things(encoder, vectors, sizes) if things else []

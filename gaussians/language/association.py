@@ -1,0 +1,264 @@
+"""Which masks of different views are of one thing, and which Gaussians that thing owns.
+
+Two masks agree as far as they cover the same Gaussians among those that both views see; masks that agree are joined,
+the most alike first, into tracks, each with all that its views say of it. A track that few of the views which see its
+place confirm is outvoted, and so is a name that few of them give. The rate at which views confirm each other is the
+idea of MaskClustering (Yan et al., CVPR 2024); blending weights take the place of its point clouds.
+
+Knows lifted masks. Refuses to know surfaces, encoders and scenes (`claims` joins tracks with the scene's own things).
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_matrix, diags, hstack
+
+from .lifting import Lifted
+
+F32 = NDArray[np.float32]
+F64 = NDArray[np.float64]
+
+HELD = 0.5  # share of its weight in a view, or of its views' weight in a track, that puts a Gaussian inside
+SEEN = 0.05  # pixels of blending weight below which a view does not see a Gaussian
+SHARED = 0.3  # of either mask must be seen by the other's view before the two can be compared
+ALIKE = 0.5  # intersection over union, among what both see, from which two tracks are one
+UNLIKE = 0.15  # of their intersection is lost to masks that are called, or look, differently
+WITHIN = 0.5  # of the smaller track lies in the larger: two views of different ends of one thing, if named the same
+REAL = 0.2  # share of the views that see a track's place which must have a mask there
+NAMED = 1 / 3  # share of them which must give it its name
+NESTED = 0.8  # of the smaller lies in the larger: a part, or a thing in front of another
+
+
+@dataclass(frozen=True)
+class Track:
+    """Masks of one thing.
+
+    Attributes:
+        masks: indices into the lifted masks, ascending.
+        views: how many views have a mask of it.
+        watched: how many views see at least half of it.
+        label: the name that most of its masks give, weighted by their scores; "" if none is given often enough.
+        votes: every name they give with the sum of the scores, heaviest first.
+        vector: `[D]` unit mean of its masks' vectors, weighted by score and pixels; None if they have none.
+        parent: the track it is a part of, -1 if it is a thing of its own.
+    """
+
+    masks: tuple[int, ...]
+    views: int
+    watched: int
+    label: str
+    votes: tuple[tuple[str, float], ...]
+    vector: F32 | None
+    parent: int = -1
+
+
+@dataclass(frozen=True, eq=False)
+class Tracks:
+    """K tracks over N Gaussians.
+
+    Attributes:
+        tracks: those that hold, most masks first.
+        share: `[N, K]` sparse: of the weight that a track's views give a Gaussian, how much lies in its masks.
+        votes: `[N, K]` sparse: the scores of the masks a Gaussian lies in, each times the share of it that does.
+        outvoted: how many tracks were dropped.
+    """
+
+    tracks: tuple[Track, ...]
+    share: csr_matrix
+    votes: csr_matrix
+    outvoted: int
+
+
+def associate(lifted: Lifted) -> Tracks:
+    """Tracks of the lifted masks, without those that are outvoted. Cost grows with the square of the masks."""
+    evidence = _Evidence(lifted)
+    joined = _join_named(lifted, evidence, _join_alike(evidence.overlap, evidence.union, evidence.likeness))
+    kept, shares, votes = [], [], []
+    for masks in sorted(joined, key=lambda m: (-len(m), m)):
+        share, vote = evidence.membership(masks)
+        views = len(np.unique(lifted.view[masks]))
+        watched = max(views, evidence.watched(share))
+        if views >= max(REAL * watched, min(2.0, len(evidence.views))) and (share > HELD).nnz:
+            kept.append(_track(lifted, masks, watched, evidence.weight))
+            shares.append(share)
+            votes.append(vote)
+    count = lifted.weights.shape[0]
+    share, vote = _columns(shares, count), _columns(votes, count)
+    return Tracks(_with_parents(kept, share, evidence.mass), share, vote, len(joined) - len(kept))
+
+
+class _Evidence:
+    """What pairs of masks say of each other.
+
+    Attributes:
+        mass: `[N]` mean blending weight in the views that see a Gaussian: how large it looks.
+        weight: `[M]` blending weight of each mask.
+        overlap, union: `[M, M]` float32 mass among what both masks' views see; zero where they cannot be compared.
+        likeness: `[M, M]` 1 where nothing speaks against one thing, less where name or vector does.
+        left: `[M, M]` mass of a mask that another's view sees, zero where they cannot be compared.
+    """
+
+    def __init__(self, lifted: Lifted) -> None:
+        self.lifted = lifted
+        self.views = np.unique(lifted.view)
+        masks = lifted.weights.tocoo()
+        self._rows, self._masks, self._weights = masks.row, masks.col, masks.data
+        seen = np.asarray(lifted.seen[self._rows, lifted.view[self._masks]]).ravel()
+        self._shares = np.minimum(self._weights / np.maximum(seen, 1e-12), 1.0)
+        self._visible = (lifted.seen > SEEN).astype(np.float32).tocsr()
+        often = np.asarray(self._visible.sum(axis=1)).ravel()
+        self.mass: F32 = (np.asarray(lifted.seen.sum(axis=1)).ravel() / np.maximum(often, 1)).astype(np.float32)
+        self.weight: F64 = np.bincount(self._masks, weights=self._weights, minlength=len(lifted.labels))
+        held = (self._shares >= HELD) & (seen > SEEN)
+        inside = csr_matrix(
+            (np.ones(int(held.sum()), np.float32), (self._rows[held], self._masks[held])), shape=lifted.weights.shape
+        )
+        weighed = diags(self.mass) @ inside
+        overlap: F32 = (inside.T @ weighed).toarray()
+        left: F32 = (weighed.T @ self._visible).toarray()[:, lifted.view]
+        whole = np.diag(overlap)
+        comparable = (left >= SHARED * whole[:, None]) | (SHARED * whole[None, :] <= left.T)
+        comparable &= (whole[:, None] > 0) & (whole[None, :] > 0)
+        np.fill_diagonal(comparable, False)
+        self.left = np.where(comparable, left, 0)
+        self.overlap = np.where(comparable, overlap, 0)
+        self.union = self.left + self.left.T - self.overlap
+
+    @cached_property
+    def likeness(self) -> F32:
+        names = np.unique(self.lifted.labels, return_inverse=True)[1]
+        known = np.array([bool(label) for label in self.lifted.labels])
+        unlike = ((names[:, None] != names[None, :]) & known[:, None] & known[None, :]).astype(np.float32)
+        if self.lifted.vectors is not None:
+            unlike = np.maximum(unlike, np.clip(1 - self.lifted.vectors @ self.lifted.vectors.T, 0, 1))
+        return 1 - UNLIKE * unlike
+
+    def membership(self, masks: Sequence[int]) -> tuple[csr_matrix, csr_matrix]:
+        """Share and votes `[N, 1]` of one track."""
+        count = self.lifted.weights.shape[0]
+        inside = np.zeros(len(self.lifted.labels), bool)
+        inside[list(masks)] = True
+        mine = inside[self._masks]
+        rows, of = self._rows[mine], self._masks[mine]
+        within = np.bincount(rows, weights=self._weights[mine], minlength=count)
+        votes = np.bincount(rows, weights=self._shares[mine] * self.lifted.scores[of], minlength=count)
+        views = np.unique(self.lifted.view[list(masks)])
+        whole = np.asarray(self.lifted.seen[:, views].sum(axis=1)).ravel()
+        share = np.where(whole > SEEN, np.minimum(within / np.maximum(whole, 1e-12), 1), 0)
+        return csr_matrix(share[:, None], dtype=np.float32), csr_matrix(votes[:, None], dtype=np.float32)
+
+    def watched(self, share: csr_matrix) -> int:
+        """How many views see at least half of what a track holds."""
+        own = (share > HELD).multiply(self.mass[:, None])
+        seen = np.asarray((self._visible.T @ own).todense()).ravel()
+        return int((seen > 0.5 * own.sum()).sum())
+
+
+def _columns(columns: Sequence[csr_matrix], count: int) -> csr_matrix:
+    return hstack(columns, format="csr") if columns else csr_matrix((count, 0), dtype=np.float32)
+
+
+def _join_alike(overlap: F32, union: F32, likeness: F32) -> list[list[int]]:
+    """Join the two most alike tracks until none are alike enough. Sums over all pairs of masks decide, so that one
+    wrong mask cannot chain two things together."""
+    shared, whole = (overlap * likeness).astype(np.float64), union.astype(np.float64)
+    members = {i: [i] for i in range(len(shared))}
+    version = np.zeros(len(shared), np.int64)
+    first, second = np.nonzero(np.triu(shared >= ALIKE * np.maximum(whole, 1e-9), 1))
+    heap = [(-shared[i, j] / whole[i, j], i, j, 0, 0) for i, j in zip(first.tolist(), second.tolist(), strict=True)]
+    heapq.heapify(heap)
+    while heap:
+        _, i, j, at_i, at_j = heapq.heappop(heap)
+        if i not in members or j not in members or (version[i], version[j]) != (at_i, at_j):
+            continue
+        members[i] += members.pop(j)
+        version[i] += 1
+        for table in (shared, whole):
+            table[i] += table[j]
+            table[:, i] = table[i]
+            table[j] = table[:, j] = table[i, i] = 0
+        for k in np.flatnonzero(shared[i] >= ALIKE * np.maximum(whole[i], 1e-9)).tolist():
+            a, b = min(i, k), max(i, k)
+            heapq.heappush(heap, (-shared[i, k] / whole[i, k], a, b, int(version[a]), int(version[b])))
+    return [sorted(m) for m in members.values()]
+
+
+def _join_named(lifted: Lifted, evidence: _Evidence, tracks: list[list[int]]) -> list[list[int]]:
+    """Join tracks of one name where the smaller lies mostly in the larger: views of different ends of one thing."""
+    names = [_favourite(lifted, masks) for masks in tracks]
+    order = sorted(range(len(tracks)), key=lambda t: (-len(tracks[t]), tracks[t]))
+    joined: list[list[int]] = []
+    for t in order:
+        home = next(
+            (h for h in joined if names[t] and _favourite(lifted, h) == names[t] and _within(evidence, tracks[t], h)),
+            None,
+        )
+        if home is None:
+            joined.append(list(tracks[t]))
+        else:
+            home.extend(tracks[t])
+    return [sorted(m) for m in joined]
+
+
+def _within(evidence: _Evidence, small: Sequence[int], large: Sequence[int]) -> bool:
+    pair = np.ix_(small, large)
+    views = evidence.lifted.view
+    if set(views[list(small)].tolist()) & set(views[list(large)].tolist()):
+        return False  # a view that has a mask of each says that they are two
+    return bool(evidence.overlap[pair].sum() >= WITHIN * max(float(evidence.left[pair].sum()), 1e-9))
+
+
+def _favourite(lifted: Lifted, masks: Sequence[int]) -> str:
+    return next((name for name, _ in _votes(lifted, masks)), "")
+
+
+def _votes(lifted: Lifted, masks: Sequence[int]) -> tuple[tuple[str, float], ...]:
+    """The names that masks give with the sum of their scores, heaviest first."""
+    votes: dict[str, float] = {}
+    for m in masks:
+        if lifted.labels[m]:
+            votes[lifted.labels[m]] = votes.get(lifted.labels[m], 0.0) + float(lifted.scores[m])
+    return tuple(sorted(votes.items(), key=lambda vote: (-vote[1], vote[0])))
+
+
+def _track(lifted: Lifted, masks: Sequence[int], watched: int, weight: F64) -> Track:
+    """What the masks of a track say together."""
+    votes = _votes(lifted, masks)
+    name = votes[0][0] if votes else ""
+    views = len({int(lifted.view[m]) for m in masks})
+    naming = len({int(lifted.view[m]) for m in masks if lifted.labels[m] == name})
+    label = name if name and naming >= NAMED * watched else ""
+    return Track(tuple(masks), views, watched, label, votes, _mean_vector(lifted, list(masks), weight))
+
+
+def _mean_vector(lifted: Lifted, masks: list[int], weight: F64) -> F32 | None:
+    if lifted.vectors is None:
+        return None
+    mean = (lifted.scores[masks] * weight[masks]) @ lifted.vectors[masks].astype(np.float64)
+    norm = float(np.linalg.norm(mean))
+    return (mean / norm).astype(np.float32) if norm > 1e-12 else None
+
+
+def _with_parents(tracks: Sequence[Track], share: csr_matrix, mass: F32) -> tuple[Track, ...]:
+    """Which tracks are parts: they lie in a larger one and are not called something else."""
+    held = (share > HELD).astype(np.float32)
+    common: F32 = (held.T @ diags(mass) @ held).toarray()
+    size = np.diag(common)
+    made = []
+    for i, track in enumerate(tracks):
+        around = [
+            j
+            for j, other in enumerate(tracks)
+            if size[i] < NESTED * size[j]
+            and common[i, j] >= NESTED * size[i]
+            and (not track.label or track.label == other.label)
+        ]
+        outer = max(around, key=lambda j: (size[j], -j), default=-1)
+        made.append(replace(track, parent=outer))
+    return tuple(made)
