@@ -6,7 +6,9 @@ union of its parts (an object of one part is its own leaf). "structure" is floor
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal, Self
 
 import numpy as np
@@ -44,6 +46,32 @@ class Box:
         signs = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], dtype=np.float64)
         corners: NDArray[np.float64] = np.array(self.center) + (signs * np.array(self.size) / 2) @ np.array(self.axes)
         return corners
+
+
+@dataclass(frozen=True, eq=False)
+class Boxes:
+    """C boxes as arrays: centers `[C, 3]`, axes `[C, 3, 3]` (rows), sizes `[C, 3]`, as in `Box`."""
+
+    centers: NDArray[np.float64]
+    axes: NDArray[np.float64]
+    sizes: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, boxes: Sequence[Box]) -> Self:
+        """The boxes one after another."""
+        return cls(
+            np.array([b.center for b in boxes], dtype=np.float64).reshape(-1, 3),
+            np.array([b.axes for b in boxes], dtype=np.float64).reshape(-1, 3, 3),
+            np.array([b.size for b in boxes], dtype=np.float64).reshape(-1, 3),
+        )
+
+    def __len__(self) -> int:
+        return len(self.centers)
+
+    def at(self, rows: Sequence[int] | NDArray[np.intp]) -> Self:
+        """Some of them."""
+        rows = np.asarray(rows, dtype=np.intp)
+        return type(self)(self.centers[rows], self.axes[rows], self.sizes[rows])
 
 
 @dataclass(frozen=True)
@@ -101,7 +129,37 @@ class LanguageField:
 
     def leaves(self, group: int) -> tuple[int, ...]:
         """Ids under which the Gaussians of a group are filed in the cloud: itself and its parts."""
-        return (group, *(g.id for g in self.groups if g.parent == group))
+        return (group, *self.parts.get(group, ()))
+
+    @cached_property
+    def parts(self) -> dict[int, tuple[int, ...]]:
+        """Ids of the parts of each object that has some."""
+        found: dict[int, list[int]] = {}
+        for g in self.groups:
+            if g.parent >= 0:
+                found.setdefault(g.parent, []).append(g.id)
+        return {owner: tuple(ids) for owner, ids in found.items()}
+
+    @cached_property
+    def boxes(self) -> Boxes:
+        """Every group's box, by id."""
+        return Boxes.of([g.box for g in self.groups])
+
+    @cached_property
+    def labs(self) -> NDArray[np.float64]:
+        """`[G, 3]` every group's measured colour, CIE Lab."""
+        return np.array([g.lab for g in self.groups], dtype=np.float64).reshape(-1, 3)
+
+    @cached_property
+    def typical_size(self) -> float:
+        """Median of the objects' largest extents, scene units; 1 where there are none."""
+        sizes = [max(g.box.size) for g in self.objects() if g.count]
+        return float(np.median(sizes)) if sizes else 1.0
+
+    @cached_property
+    def answers(self) -> dict[tuple[str, ...], NDArray[np.float64]]:
+        """Where a query may keep what does not depend on the viewer, `[G]` values a key; an edit starts a new table."""
+        return {}
 
     def require_encoder(self, fingerprint: str) -> Self:
         """Itself, if it was made with this encoder.

@@ -17,7 +17,7 @@ from scenewright.gaussians.language.attributes import (
     PART_SHARE,
     color_scores,
     extent,
-    group_color_score,
+    group_color_scores,
     size_scores,
 )
 from scenewright.gaussians.language.field import Box, Group, LanguageField, Level
@@ -106,10 +106,10 @@ def test_a_large_part_lends_its_colour_and_a_small_one_does_not() -> None:
         part = group(1, lab=paint("red"), parent=0, count=round(1000 * share), level="part")
         whole = group(0, lab=paint("gray"), count=1000)
         field = LanguageField((whole, part), np.zeros((2, 4), np.float32), "fake:1")
-        assert (group_color_score(field, whole, "red") >= COLOR_HOLDS) == holds
+        assert (group_color_scores(field, "red")[0] >= COLOR_HOLDS) == holds
     field = LanguageField((lamp, shade, foot), np.zeros((3, 4), np.float32), "fake:1")
     # its own colour counts a little more than a part's, so that a red thing is preferred to one with a red part
-    assert group_color_score(field, shade, "red") > group_color_score(field, lamp, "red")
+    assert group_color_scores(field, "red")[1] > group_color_scores(field, "red")[0]
 
 
 boxes = st.tuples(*[st.floats(0.05, 5.0)] * 3)

@@ -138,6 +138,7 @@ def scene_of(rows: tuple[Row, ...], loose: int = 10) -> Scene:
 
 
 SCENE = scene_of(ROOM)
+STRANGE = scene_of(tuple(replace(r, sure=min(r.sure, 0.5)) for r in ROOM))  # the encoder is sure of nothing here
 
 
 def ask(query: Query, scene: Scene = SCENE, viewer: Camera = EYE, last: Selection | None = None) -> Selection:
@@ -348,32 +349,44 @@ def test_a_missing_or_doubtful_anchor_is_the_answer() -> None:
 
 @pytest.mark.parametrize("name", ["left_of", "nearest_to", "farthest_from"])
 def test_an_anchor_found_by_its_colour_alone_is_an_anchor(name: Relations) -> None:
-    answer = ask(named("chair", pick="any", **by(name, named("bicycle", "orange"))))
+    answer = ask(named("chair", pick="any", **by(name, named("bicycle", "orange"))), STRANGE)
     assert answer.verdict == "found" and set(answer.groups) <= {RED, BLUE, TALL}
 
 
 # -- colour where words fail -----------------------------------------------------------------------------------------
 
 
-def test_the_orange_bicycle_is_found_by_its_colour_and_says_so() -> None:
-    answer = ask(named("bicycle", "orange"))
-    assert answer.verdict == "found" and answer.ids.tolist() == ids_of(SCENE, BIKE)
+def test_where_the_encoder_is_a_stranger_a_thing_is_found_by_its_colour_and_that_is_said() -> None:
+    answer = ask(named("bicycle", "orange"), STRANGE)
+    assert answer.verdict == "found" and answer.ids.tolist() == ids_of(STRANGE, BIKE)
     assert "could not be confirmed" in answer.reason and "colour" in answer.reason
-    assert ask(named("bicycle")).verdict == "absent"  # without a colour there is nothing to go by
+    assert ask(named("bicycle"), STRANGE).verdict == "absent"  # without a colour there is nothing to go by
 
 
-def test_a_red_thing_that_is_surely_something_else_is_no_bicycle() -> None:
-    assert ask(named("bicycle", "red")).verdict == "absent"
-    assert ask(named("bicycle", "blue")).verdict == "absent"
+def test_a_word_the_encoder_never_learnt_may_be_found_by_its_colour_anywhere() -> None:
+    answer = ask(named("gizmo", "orange"))
+    assert answer.verdict == "found" and answer.ids.tolist() == ids_of(SCENE, BIKE)
+    assert "could not be confirmed" in answer.reason
+
+
+@pytest.mark.parametrize("color", ["red", "blue", "orange", "white"])
+def test_where_the_encoder_is_at_home_what_it_does_not_find_is_not_there_in_any_colour(color: str) -> None:
+    assert ask(named("bicycle", color)).verdict == "absent"
+
+
+@pytest.mark.parametrize(("kind", "color"), [("chair", "orange"), ("sofa", "red"), ("table", "green")])
+def test_a_thing_of_another_colour_is_not_mistaken_for_its_colour_elsewhere(kind: str, color: str) -> None:
+    answer = ask(named(kind, color))
+    assert answer.verdict == "absent" and answer.candidates[0].label == kind  # the nearest is one of that kind
 
 
 def test_two_places_of_the_colour_are_ambiguous() -> None:
     second = replace(ROOM[BIKE], center=(-3.2, 2.5, 0.5))
     scene = scene_of((*ROOM, second))
-    answer = ask(named("bicycle", "orange"), scene)
+    answer = ask(named("gizmo", "orange"), scene)
     assert answer.verdict == "ambiguous" and not len(answer) and "2 places" in answer.reason
-    assert len(ask(named("bicycle", "orange", pick="all"), scene)) == 2 * EACH
-    placed = ask(named("bicycle", "orange", **by("left_of", named("sofa"))), scene)
+    assert len(ask(named("gizmo", "orange", pick="all"), scene)) == 2 * EACH
+    placed = ask(named("gizmo", "orange", **by("left_of", named("sofa"))), scene)
     assert placed.ids.tolist() == ids_of(scene, len(ROOM))
 
 
