@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,10 @@ from ..gaussians.errors import BackendError, FileError, UserError
 from .harness import Point, Result
 
 FORMATS = ("png", "svg", "pdf")
-COLORS = ("#1b6ca8", "#d1495b", "#3c8d5a", "#b0792b", "#6a4c93", "#4a4e52")
+COLORS = ("#1b6ca8", "#d1495b", "#3c8d5a", "#b0792b", "#6a4c93", "#4a4e52", "#17a2a2", "#c2649b")
+FEW = 12  # points up to which each is named; of more only those that one would choose, and the ends of each method
+SPOTS = ((7, 6), (7, -12), (-7, 6), (-7, -12), (7, 17), (7, -23), (-7, 17), (-7, -23))  # of a label, best first; points
+LETTER = (4.4, 9.0)  # width and height of a letter of a label, points
 
 
 def draw(result: Result, path: Path) -> Path:
@@ -24,8 +28,12 @@ def draw(result: Result, path: Path) -> Path:
         from matplotlib.figure import Figure  # no pyplot: no global state, no display
     except ImportError as error:
         raise BackendError("charts need matplotlib; install it with: pip install 'scenewright[bench]'") from error
-    figure = Figure(figsize=(8, 5), dpi=150, layout="constrained")
-    _fill(figure.add_subplot(), result)
+    many = len(result.points) > FEW
+    figure = Figure(figsize=(11, 6.5) if many else (8, 5), dpi=150, layout="constrained")
+    axes = figure.add_subplot()
+    _fill(axes, result)
+    figure.draw_without_rendering()  # labels are placed in pixels, which stand only now
+    _name(axes, result.points, labelled(result))
     data = io.BytesIO()
     figure.savefig(data, format=kind)
     try:
@@ -35,14 +43,29 @@ def draw(result: Result, path: Path) -> Path:
     return path
 
 
+def labelled(result: Result) -> tuple[Point, ...]:
+    """The points that are named: all of a few; of many the front, the defaults, and both ends of each method."""
+    if len(result.points) <= FEW:
+        return result.points
+    wanted = {*result.front(), *(p for p in result.points if p.default)}
+    for method in dict.fromkeys(p.method for p in result.points):
+        own = [p for p in result.points if p.method == method]
+        wanted |= {own[0], own[-1]}
+    return tuple(p for p in result.points if p in wanted)
+
+
 def _fill(axes: Any, result: Result) -> None:
-    """Points by method, the front as steps, the default ringed, every point named."""
+    """Points by method in the order they were measured, the front as steps, the default ringed."""
     axes.set_xscale("log")
     methods = list(dict.fromkeys(point.method for point in result.points))
+    lines = len(result.points) > FEW
     for index, method in enumerate(methods):
         own = [point for point in result.points if point.method == method]
         color = COLORS[index % len(COLORS)]
-        axes.scatter([p.seconds for p in own], [p.accuracy for p in own], s=45, color=color, label=method, zorder=3)
+        where = [p.seconds for p in own], [p.accuracy for p in own]
+        axes.scatter(*where, s=45, color=color, label=method, zorder=3)
+        if lines:
+            axes.plot(*where, color=color, linewidth=0.8, alpha=0.5, zorder=2)
     front = result.front()
     axes.step(
         [p.seconds for p in front], [p.accuracy for p in front], where="post", color="0.6", zorder=1, label="front"
@@ -51,21 +74,47 @@ def _fill(axes: Any, result: Result) -> None:
     if chosen:
         where = [p.seconds for p in chosen], [p.accuracy for p in chosen]
         axes.scatter(*where, s=190, facecolors="none", edgecolors="black", linewidths=1.5, zorder=4, label="default")
-    for point in result.points:
-        axes.annotate(
-            _label(point), (point.seconds, point.accuracy), xytext=(7, 6), textcoords="offset points", fontsize=8
-        )
     axes.set_xlabel("seconds (logarithmic; left is better)")
     axes.set_ylabel(f"{result.accuracy} (up is better)")
     machine = ", ".join(f"{result.machine[key]} {unit}".strip() for key, unit in _MACHINE if key in result.machine)
     axes.set_title(f"{result.title}\n{machine}" if machine else result.title, fontsize=10)
     axes.grid(True, which="major", color="0.9")
     axes.margins(x=0.15, y=0.15)
-    axes.legend(fontsize=8)
+    beside = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0)} if lines else {"loc": "best"}
+    axes.legend(fontsize=8, **beside)
+
+
+def _name(axes: Any, points: Sequence[Point], named: Sequence[Point]) -> None:
+    """Write each label where it hides least: not over points, not over labels that stand already."""
+    gain = axes.figure.dpi / 72
+    spots = axes.transData.transform([(p.seconds, p.accuracy) for p in points]) / gain
+    taken = [(x - 4, y - 4, x + 4, y + 4) for x, y in spots]
+    for point in named:
+        x, y = axes.transData.transform((point.seconds, point.accuracy)) / gain
+        text = point.setting or point.method
+        boxes = [_box(x, y, spot, text) for spot in SPOTS]
+        hidden = [sum(_overlap(box, other) for other in taken) for box in boxes]
+        best = hidden.index(min(hidden))
+        taken.append(boxes[best])
+        side = "left" if SPOTS[best][0] > 0 else "right"
+        axes.annotate(
+            text, (point.seconds, point.accuracy), xytext=SPOTS[best], textcoords="offset points", fontsize=8, ha=side
+        )
+
+
+_Box = tuple[float, float, float, float]  # left, bottom, right, top; points
+
+
+def _box(x: float, y: float, spot: tuple[int, int], text: str) -> _Box:
+    width, height = LETTER[0] * len(text), LETTER[1]
+    left = x + spot[0] - (width if spot[0] < 0 else 0)
+    return left, y + spot[1] - 2, left + width, y + spot[1] - 2 + height
+
+
+def _overlap(a: _Box, b: _Box) -> float:
+    """Area that two boxes share."""
+    width, height = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
+    return max(width, 0.0) * max(height, 0.0)
 
 
 _MACHINE = (("cpu", ""), ("cores", "cores"))
-
-
-def _label(point: Point) -> str:
-    return point.setting or point.method

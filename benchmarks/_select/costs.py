@@ -5,73 +5,27 @@ from __future__ import annotations
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import fields, is_dataclass, replace
-from functools import cached_property
 from pathlib import Path
 from statistics import median
 from typing import Any
 
-import numpy as np
 import torch
-from numpy.typing import NDArray
 
-from ...gaussians.language.calibration import Calibration
 from ...gaussians.language.encoders import Encoder
-from ...gaussians.language.encoders.vocabulary import Vocabulary
 from ...gaussians.language.lifting import lift
-from ...gaussians.language.masks import ViewMasks
 from ...gaussians.language.query import Query
 from ...gaussians.language.resolve import resolve
 from ...gaussians.language.store import save_field
 from ..harness import Metric
+from . import pictures
 from .cases import Case, Part
+from .variants import remembering
 
 EMBEDDED, ASKED = 150_000, 1_000_000  # Gaussians
+VIEWS, SIZE = 24, 256  # pictures that are lifted, and their pixels a side
 REPEATS = 7
-
-
-class Remembering:
-    """An encoder that encodes a phrase once: what a query costs "after the text is encoded"."""
-
-    def __init__(self, encoder: Encoder) -> None:
-        self._encoder = encoder
-        self._known: dict[str, NDArray[np.float32]] = {}
-
-    @cached_property
-    def fingerprint(self) -> str:
-        return self._encoder.fingerprint
-
-    @cached_property
-    def dim(self) -> int:
-        return self._encoder.dim
-
-    @cached_property
-    def image_size(self) -> int:
-        return self._encoder.image_size
-
-    @cached_property
-    def vocabulary(self) -> Vocabulary:
-        return self._encoder.vocabulary
-
-    @cached_property
-    def calibration(self) -> Calibration:
-        return self._encoder.calibration
-
-    def encode_text(self, texts: list[str]) -> NDArray[np.float32]:
-        new = [t for t in texts if t not in self._known]
-        if new:
-            self._known.update(zip(new, self._encoder.encode_text(new), strict=True))
-        return np.stack([self._known[t] for t in texts])
-
-    def encode_images(self, images: NDArray[np.uint8]) -> NDArray[np.float32]:
-        return self._encoder.encode_images(images)
-
-    def unknown_words(self, text: str) -> tuple[str, ...]:
-        return self._encoder.unknown_words(text)
-
-    def knows(self, text: str) -> bool:
-        return self._encoder.knows(text)
 
 
 def resized(case: Case, count: int) -> Case:
@@ -108,9 +62,12 @@ def queries(case: Case) -> dict[str, Query]:
     return {name: Query.model_validate(query) for name, query in written.items()}
 
 
-def measure(room: Case, encoder: Encoder, grouped: Callable[[Case], Case], views: Sequence[ViewMasks]) -> Part:
-    """All costs, on one furnished room; `views` are the masks that are lifted, drawn of this very room at 150k."""
-    known = grouped(resized(room, EMBEDDED))
+def measure(room: Case, encoder: Encoder, grouped: Callable[[Case], Case]) -> Part:
+    """All costs, on one furnished room."""
+    sized = resized(room, EMBEDDED)
+    eyes = pictures.eyes(sized.scene, VIEWS, SIZE)
+    views = [pictures.true_masks(sized, eye, pictures.Crops(encoder), i).masks for i, eye in enumerate(eyes)]
+    known = grouped(sized)
     assert known.scene.language is not None
     lifting = _least(lambda: lift(known.scene.cloud, views), 2)
     metrics = [
@@ -128,12 +85,12 @@ def measure(room: Case, encoder: Encoder, grouped: Callable[[Case], Case], views
 
 
 def _queries(known: Case, encoder: Encoder) -> list[Metric]:
-    remembering = Remembering(encoder)
+    known_words = remembering(encoder)
     seconds = {}
     for name, query in queries(known).items():
 
         def once(query: Query = query) -> None:
-            resolve(known.scene, query, known.scene.cameras[0], remembering)
+            resolve(known.scene, query, known.scene.cameras[0], known_words)
 
         once()
         seconds[name] = _least(once, REPEATS)

@@ -119,13 +119,13 @@ def _top(
     return [names[int(row.argmax())] in NAMES[stem] for stem, row in zip(stems, chance, strict=True)]
 
 
-def measure(folder: Path, seed: int, encoder: Encoder, grouped: Callable[[Case], Case]) -> Part:
-    """Top-1 over the names, and what asking for each selects."""
+def measure(folder: Path, seed: int, encoder: Encoder, grouped: Callable[[Case], Case], most: int = ROOMS) -> Part:
+    """Top-1 over the names, and what asking for each selects, in the first `most` rooms."""
     found: dict[str, float] = {}
     top: list[bool] = []
     sized: list[bool] = []
     refused: list[bool] = []
-    for room in rooms(folder, seed):
+    for room in rooms(folder, seed)[:most]:
         known = grouped(room)
         vectors, sizes = _vectors(known)
         stems = [o.kind for o in known.objects]
@@ -149,7 +149,7 @@ def measure(folder: Path, seed: int, encoder: Encoder, grouped: Callable[[Case],
     )
     lost = ", ".join(f"{stem} {value:.2f}" for stem, value in sorted(found.items()) if value < 0.5)
     notes = (
-        f"meshes: {len(found)} of {len(NAMES)} low-poly objects by others found a place in {ROOMS} rooms; top-1 over "
+        f"meshes: {len(found)} of {len(NAMES)} low-poly objects by others in {most} rooms; top-1 over "
         f"all their names by the best group's vector, with its measured size beside; every mesh counts; no words for "
         f"{', '.join(unknown) or 'none'}; found with less than half: {lost or 'none'}",
     )

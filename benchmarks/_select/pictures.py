@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -28,6 +29,7 @@ LOOK = 96  # pixels a side while choosing where to look from
 SEEN = 0.01  # summed blending weight from which a Gaussian counts as seen
 SHAKE = 0.006  # of the picture's side: standard deviation by which outlines wander
 WAVE = 0.03  # of the picture's side: over which they do
+UNLIKE = 0.45  # length of what an object, or one picture of it, has of its own: two pictures of it are 0.86 alike
 LEAST = 30  # pixels of the smallest mask that is kept, at 256 a side
 
 
@@ -100,3 +102,31 @@ class Crops:
         if not shown:
             return np.zeros((0, self.encoder.dim), np.float32)
         return self.encoder.encode_images(np.stack(shown))
+
+
+@dataclass(frozen=True, eq=False)
+class Photos:
+    """Vectors of masks as a real image tower gives them: that of a photo of the kind, and no two photos are alike.
+
+    Attributes:
+        exemplars: `[O, D]` unit image vector of each true object's kind; zero where there is none.
+        rng: of what each object and each of its pictures has of its own.
+    """
+
+    exemplars: NDArray[np.float64]
+    rng: np.random.Generator
+
+    @cached_property
+    def _own(self) -> NDArray[np.float64]:
+        return self.exemplars + self._noise(len(self.exemplars))
+
+    def __call__(self, picture: Render, ids: I32, objects: Sequence[int]) -> NDArray[np.float32]:
+        vectors = self._own[list(objects)] + self._noise(len(objects))
+        there = self.exemplars[list(objects)].any(axis=1, keepdims=True)
+        norms = np.linalg.norm(vectors, axis=1, keepdims=True)
+        return np.where(there, vectors / np.maximum(norms, 1e-12), 0).astype(np.float32)
+
+    def _noise(self, count: int) -> NDArray[np.float64]:
+        """`[count, D]` rows about `UNLIKE` long."""
+        width = self.exemplars.shape[1]
+        return self.rng.standard_normal((count, width)) * UNLIKE / np.sqrt(width)

@@ -1,0 +1,128 @@
+"""The points of the chart: time against mIoU of names, over everything that can be chosen.
+
+All points are of the same rooms. Knows which settings there are. Refuses to know how any of them works.
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable, Sequence
+from statistics import fmean
+
+import numpy as np
+
+from ...gaussians.language.encoders import Encoder
+from ...gaussians.language.segment import ASK_VIEWS
+from .. import _clip, _data
+from ..harness import Metric, Point
+from . import pictures, vectors
+from .cases import Case, Part, embedded
+from .stability import names_miou
+from .variants import without_negatives, without_size
+from .vectors import Outcome
+
+VIEWS, SIZE = 24, 256  # pictures and pixels a side, where these are not what is varied
+WIDTHS = (8, 32, 128)
+ACCEPTED = 0.01  # mIoU that groups may lose to vectors before it has to be said where and why
+
+
+def measure(rooms: Sequence[Case], encoder: Encoder, grouped: Callable[[Case], Case], quick: bool) -> tuple[Part, ...]:
+    """All points."""
+    counts = (2, ASK_VIEWS) if quick else (1, 2, ASK_VIEWS, 4)
+    return (
+        portraits(rooms, encoder, grouped, counts),
+        rules(rooms, encoder, grouped),
+        against_vectors(rooms, encoder, quick),
+    )
+
+
+def portraits(rooms: Sequence[Case], encoder: Encoder, grouped: Callable[[Case], Case], counts: Sequence[int]) -> Part:
+    """The embedded path with one to four portraits a thing."""
+    points = []
+    for count in counts:
+        known = [grouped(room) if count == ASK_VIEWS else embedded(room, encoder, count) for room in rooms]
+        points.append(_embedded_point(f"{count} portraits", known, encoder, count == ASK_VIEWS))
+    return Part(points=tuple(points))
+
+
+def rules(rooms: Sequence[Case], encoder: Encoder, grouped: Callable[[Case], Case]) -> Part:
+    """The default field, asked under rules that lack something."""
+    known = [grouped(room) for room in rooms]
+    ways = {"no size": without_size(encoder), "no negatives": without_negatives(encoder)}
+    ways["neither"] = without_size(ways["no negatives"])
+    return Part(points=tuple(_embedded_point(name, known, way, method="rule") for name, way in ways.items()))
+
+
+def _embedded_point(
+    setting: str, known: Sequence[Case], encoder: Encoder, default: bool = False, method: str = "embedded"
+) -> Point:
+    miou = fmean(v for case in known for v in names_miou(case, encoder))
+    seconds, held = fmean(case.seconds for case in known), fmean(case.field_bytes for case in known)
+    return Point(method, setting, seconds, miou, int(held), default)
+
+
+def against_vectors(rooms: Sequence[Case], encoder: Encoder, quick: bool) -> Part:
+    """Groups and vectors of all widths from the same true masks: with the embedded encoder, and with real vectors."""
+    found: dict[tuple[str, str], list[Outcome]] = {}
+    folder = _data.folder("clip_vectors")
+    pairs = _clip.load(folder.parent) if folder else None
+    for room in rooms:
+        eyes = pictures.eyes(room.scene, VIEWS, SIZE)
+        tellers: list[tuple[str, Encoder, pictures.Pictured, list[str], tuple[int, ...]]] = [
+            ("crops", encoder, pictures.Crops(encoder), [o.kind for o in room.alone()], WIDTHS)
+        ]
+        if pairs is not None:
+            tellers.append(_real(room, pairs))
+        for method, asked, pictured, names, widths in tellers:
+            up = vectors.uplift(room, [pictures.true_masks(room, eye, pictured, i) for i, eye in enumerate(eyes)])
+            found.setdefault((method, "groups"), []).append(vectors.as_groups(room, up, asked, names))
+            for width in widths[-1:] if quick else widths:
+                outcome = vectors.as_vectors(room, up, asked, names, width)
+                found.setdefault((method, f"{width} a Gaussian"), []).append(outcome)
+    return Part(_losses(found), tuple(_outcome_point(*way, outcomes) for way, outcomes in found.items()), _why(found))
+
+
+def _real(room: Case, pairs: _clip.Pairs) -> tuple[str, Encoder, pictures.Pictured, list[str], tuple[int, ...]]:
+    """Real vectors: each kind's class among those of all kinds that the names know, asked by the kind's word."""
+    meant = {kind: sorted(pairs.encoder.vocabulary.covered(kind)) for kind in room.present}
+    row = {kind: pairs.names.index(classes[0]) for kind, classes in meant.items() if len(classes) == 1}
+    exemplars = np.zeros((len(room.objects), pairs.images.shape[1]))
+    for o in room.objects:
+        if o.kind in row:
+            exemplars[o.id] = pairs.images[row[o.kind]]
+    competing = np.array(sorted({*_clip.room_rows(pairs).tolist(), *row.values()}))
+    count = {r: sum(room.present[k] for k in row if row[k] == r) for r in row.values()}
+    names = [o.kind for o in room.alone() if o.kind in row and count[row[o.kind]] == 1]
+    photos = pictures.Photos(exemplars, np.random.default_rng([zlib.crc32(b"photos"), room.seed]))
+    return "real vectors", pairs.among(competing), photos, names, (*WIDTHS, 512)
+
+
+def _outcome_point(method: str, setting: str, outcomes: Sequence[Outcome]) -> Point:
+    seconds, held = fmean(o.seconds for o in outcomes), fmean(o.bytes for o in outcomes)
+    return Point(method, setting, seconds, vectors.miou(outcomes), int(held))
+
+
+def _losses(found: dict[tuple[str, str], list[Outcome]]) -> tuple[Metric, ...]:
+    """How much better groups are than vectors, and what a query of each costs."""
+    metrics = []
+    for (method, setting), outcomes in found.items():
+        key = f"{method.replace(' ', '_')}.{setting.replace(' ', '_')}"
+        metrics.append(Metric(f"{key}.query", 1e3 * fmean(o.query for o in outcomes), "ms", "lower", 0.5))
+        if setting != "groups":
+            gain = vectors.miou(found[method, "groups"]) - vectors.miou(outcomes)
+            metrics.append(Metric(f"{key}.groups_gain", gain, "IoU"))
+    return tuple(metrics)
+
+
+def _why(found: dict[tuple[str, str], list[Outcome]]) -> tuple[str, ...]:
+    """Where groups lose to vectors, name by name."""
+    notes = []
+    for (method, setting), outcomes in found.items():
+        groups = found[method, "groups"]
+        loss = vectors.miou(outcomes) - vectors.miou(groups)
+        if loss > ACCEPTED:
+            pairs = [(b - a, name) for g, v in zip(groups, outcomes, strict=True)
+                     for name, a, b in zip(g.names, g.iou, v.iou, strict=True)]  # fmt: skip
+            worst = ", ".join(f"{name} {lost:+.2f}" for lost, name in sorted(pairs, reverse=True)[:5])
+            notes.append(f"{method}: groups lose {loss:.3f} to {setting}, most at {worst}")
+    return tuple(notes) or ("groups lose no more than 0.01 mIoU to vectors of any width, from the same masks",)
