@@ -28,6 +28,19 @@ Debug = Annotated[
 ]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite files that exist.")]
 Encoder = Annotated[str, typer.Option("--encoder", metavar="NAME", help="Text and image encoder; 'auto' is our own.")]
+Masks = Annotated[
+    str | None,
+    typer.Option(
+        "--masks", metavar="SOURCE",
+        help="Masks of some views: 'folder:PATH' of another program's, 'sam:PATH-or-NAME', or 'embedded'.",
+    ),
+]  # fmt: skip
+Capture = Annotated[
+    Path | None,
+    typer.Option(
+        "--capture", metavar="FILE", help="Where photographs were taken: a transforms.json or its folder."
+    ),
+]
 Planner = Annotated[str, typer.Option("--planner", metavar="NAME", help="Who reads instructions; 'auto' or 'grammar'.")]
 Batch = Annotated[
     Path | None,

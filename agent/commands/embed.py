@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import time
 
-from ..options import Debug, Encoder, Force, Json, Scale, SceneFile, Up
+from ..options import Capture, Debug, Encoder, Force, Json, Masks, Scale, SceneFile, Up
 from ..terminal import terminal
 
 
 def command(
     scene: SceneFile,
     encoder: Encoder = "auto",
+    masks: Masks = None,
+    capture: Capture = None,
     up: Up = None,
     metres_per_unit: Scale = None,
     force: Force = False,
@@ -20,10 +22,12 @@ def command(
     """Embed language in a scene and save the field beside it, so that later commands start at once.
 
     A saved field is used as long as the scene file is the very one it was made for. --force embeds again, and so do
-    --up and --metres-per-unit, which are kept with the field.
+    --masks and --capture, and --up and --metres-per-unit, which are kept with the field.
     """
     from ...gaussians.files import load
+    from ...gaussians.files.capture import read_capture
     from ...gaussians.language import encoders
+    from ...gaussians.language import masks as maskers
     from ...gaussians.language.embed import embed
     from ...gaussians.language.store import load_field, save_field
     from ..things import told
@@ -32,9 +36,12 @@ def command(
     started = time.perf_counter()
     loaded, chosen = load(scene), encoders.load(encoder)
     loaded = with_frame(loaded, up, metres_per_unit)
-    again = force or up is not None or metres_per_unit is not None
+    again = force or any(said is not None for said in (up, metres_per_unit, masks, capture))
+    if capture is not None and not loaded.cameras:
+        loaded = loaded.replace(cameras=read_capture(capture).cameras)
+    source = maskers.load(masks, capture) if masks is not None else None
     known = None if again else load_field(loaded, scene, chosen.fingerprint)
-    embedded = known or embed(loaded, chosen, progress=terminal.progress)
+    embedded = known or embed(loaded, chosen, progress=terminal.progress, masks=source)
     path = None if known else save_field(embedded, scene)
     language = embedded.language
     assert language is not None

@@ -62,9 +62,18 @@ def _median(values: NDArray[np.floating]) -> float:
 
 def superpoints(surface: Surface, links: Links, scale: float = SCALE) -> NDArray[np.int32]:
     """Superpoint of each surface point `[M]`, numbered from 0."""
-    order = np.argsort(links.weight, kind="stable")
-    labels = _merge(len(surface), links.pairs[order], links.weight[order], np.float32(scale), MIN_POINTS)
+    labels = merged(len(surface), links.pairs, links.weight, scale, MIN_POINTS)
     return np.unique(labels, return_inverse=True)[1].astype(np.int32)
+
+
+def merged(
+    count: int, pairs: NDArray[np.integer], weight: NDArray[np.floating], scale: float, least: int
+) -> NDArray[np.int32]:
+    """One of its members for each region of `count` points `[count]`, merged over weighted pairs `[E, 2]`."""
+    order = np.argsort(weight, kind="stable")
+    edges, sorted_weight = pairs[order].astype(np.int32), weight[order].astype(np.float32)
+    labels: NDArray[np.int32] = _merge(count, edges, sorted_weight, np.float32(scale), least)
+    return labels
 
 
 def touching(labels: NDArray[np.int32], links: Links) -> dict[int, set[int]]:

@@ -124,7 +124,7 @@ def _json(path: Path) -> Any:
         raise FileError(f"{path} is no JSON: {error}") from error
 
 
-# -- masks.json and pictures of ids -------------------------------------------------------------------------------------
+# -- masks.json and pictures of ids
 
 
 def _indexed(folder: Path) -> dict[str, Reader]:
@@ -168,7 +168,7 @@ def _ids_of(path: Path) -> NDArray[np.int32]:
         raise FileError(f"cannot read the masks {path}: {error}") from error
 
 
-# -- archives -----------------------------------------------------------------------------------------------------------
+# -- archives
 
 
 def _archive(path: Path) -> Reader:
@@ -199,7 +199,7 @@ def _columns(path: Path) -> Mapping[str, NDArray[Any]]:
         raise FileError(f"cannot read the masks {path}: {error}") from error
 
 
-# -- COCO ---------------------------------------------------------------------------------------------------------------
+# -- COCO
 
 
 def _coco(path: Path) -> dict[str, Reader]:
