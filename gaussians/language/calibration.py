@@ -207,6 +207,15 @@ def _size_evidence(encoder: Encoder, names: tuple[str, ...], sizes: NDArray[np.f
     measured = np.asarray(sizes, dtype=np.float64)
     if measured.shape != (count, 3):
         raise BackendError(f"sizes must have shape [{count}, 3], got {list(measured.shape)}")
+    return _evidence_of(encoder, names, measured.tobytes())  # type: ignore[arg-type]  # as for the anchors
+
+
+@lru_cache(maxsize=8)
+def _evidence_of(encoder: Encoder, names: tuple[str, ...], sizes: bytes) -> Array:
+    """Of `[G, 3]` float64 sizes as bytes: every phrase that is asked of a scene meets the same sizes."""
+    rule = encoder.calibration
+    measured = np.frombuffer(sizes).reshape(-1, 3)
+    evidence = np.zeros((len(measured), len(names)))
     usable = np.isfinite(measured).all(axis=1) & (measured > 0).all(axis=1)
     for column, name in enumerate(names):
         if name in rule.sizes:

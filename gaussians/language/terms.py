@@ -144,7 +144,7 @@ def likeness(field: LanguageField, encoder: Encoder | None, text: str, metres_pe
     if key not in field.answers:
         sizes = field.boxes.sizes * metres_per_unit if metres_per_unit is not None else None
         sure = probability(encoder, text, field.embeddings, sizes)
-        meant = encoder.vocabulary.covered(text, loose=True)
+        meant = kinds_meant(encoder, text)
         unseen = ~field.embeddings.any(axis=1)
         known = np.array([g.label in meant and g.label_score >= OWN_COLOR for g in field.groups], dtype=bool)
         field.answers[key] = np.where(unseen, known.astype(np.float64), sure)
@@ -153,7 +153,12 @@ def likeness(field: LanguageField, encoder: Encoder | None, text: str, metres_pe
 
 def kinds_meant(encoder: Encoder | None, text: str) -> frozenset[str]:
     """Names the encoder would give to what is asked for; empty where it has none, as for an open vocabulary."""
-    return encoder.vocabulary.covered(text, loose=True) if encoder is not None and is_name(text) else frozenset()
+    return _covered(encoder, text) if encoder is not None and is_name(text) else frozenset()  # type: ignore[arg-type]
+
+
+@lru_cache(maxsize=1024)
+def _covered(encoder: Encoder, text: str) -> frozenset[str]:
+    return encoder.vocabulary.covered(text, loose=True)
 
 
 def scored(
