@@ -37,9 +37,7 @@ Masks = Annotated[
 ]  # fmt: skip
 Capture = Annotated[
     Path | None,
-    typer.Option(
-        "--capture", metavar="FILE", help="Where photographs were taken: a transforms.json or its folder."
-    ),
+    typer.Option("--capture", metavar="FILE", help="Where photographs were taken: a transforms.json or its folder."),
 ]
 Planner = Annotated[str, typer.Option("--planner", metavar="NAME", help="Who reads instructions; 'auto' or 'grammar'.")]
 Batch = Annotated[
