@@ -42,13 +42,16 @@ def pick(query: Query, scored: Scored, stand: relations.Stand) -> Choice:
         return _counted(query, scored, matches)
     if query.pick == "any":
         return Choice(matches[:1])
-    place = (query.ordinal or 1) - 1 if query.pick == "nth" else 0
     key = _keys(stand)[query.pick]
     ordered = sorted(_meant(scored, matches), key=lambda i: (key(scored.groups[i]), scored.groups[i].id))
-    if place >= len(ordered):
-        told = tuple(scored.candidate(i) for i in ordered)
+    told = tuple(scored.candidate(i) for i in ordered)
+    if query.pick == "middle" and len(ordered) % 2 == 0:
+        reason = f"{query.describe()}: of {len(ordered)} none is in the middle ({listing(told)}); say which one"
+        return Choice([], _refused(query, reason, told, "ambiguous"))
+    rank = (query.ordinal or 1) if query.pick == "nth" else len(ordered) // 2 + 1 if query.pick == "middle" else 1
+    if abs(rank) > len(ordered):
         return Choice([], nothing(query, f"{query.describe()}: there are only {len(ordered)}", told))
-    return Choice([ordered[place]])
+    return Choice([ordered[rank - 1 if rank > 0 else rank]])
 
 
 def by_distance(query: Query, scored: Scored, anchors: Sequence[Group], nearest: bool) -> Choice:
@@ -141,4 +144,5 @@ def _keys(stand: relations.Stand) -> dict[str, Callable[[Group], float]]:
         "highest": lambda g: -height(g),
         "lowest": height,
         "nth": rightward,
+        "middle": rightward,
     }

@@ -17,7 +17,7 @@ Relations = Literal[
 ]  # fmt: skip
 Picks = Literal[
     "one", "all", "any", "largest", "smallest", "tallest", "shortest", "nearest", "farthest", "leftmost", "rightmost",
-    "highest", "lowest", "nth", "rest",
+    "highest", "lowest", "middle", "nth", "rest",
 ]  # fmt: skip
 Sizes = Literal["small", "large", "tall", "short", "wide", "narrow"]
 
@@ -46,11 +46,13 @@ class Query(BaseModel):
         size: a relative size word among those that otherwise match.
         relations: all must hold.
         pick: what to do with several matches. "one" demands exactly one and reports an ambiguity otherwise;
-            "all" takes every match; "any" takes the best; superlatives and "nth" (with `ordinal`) order them;
+            "all" takes every match; "any" takes the best; superlatives and "nth" (with `ordinal`) order them,
+            "middle" takes the middle one from left to right of an odd number;
             "rest" takes everything but the matches.
-        ordinal: 1-based, with pick "nth", counted left to right as the viewer sees them.
+        ordinal: 1-based, with pick "nth", counted left to right as the viewer sees them; negative: right to left.
         count: how many are meant ("two chairs"); fewer or more matches are reported.
-        exclude: set difference ("all chairs but the green one").
+        exclude: set difference ("all chairs but the green one"); with pick "one" taken before asking whether there is
+            only one ("the other chair").
         also: set union ("the chairs and the lamp").
         last: the selection of the instruction before ("it", "them").
         groups: explicit group ids (from a picked candidate or a planner that saw the graph); overrides `text`.
@@ -64,7 +66,7 @@ class Query(BaseModel):
     size: Sizes | None = None
     relations: Annotated[tuple[Relation, ...], Field(max_length=4)] = ()
     pick: Picks = "one"
-    ordinal: Annotated[int, Field(ge=1, le=1000)] | None = None
+    ordinal: Annotated[int, Field(ge=1, le=1000)] | Annotated[int, Field(ge=-1000, le=-1)] | None = None
     count: Annotated[int, Field(ge=1, le=1000)] | None = None
     exclude: Annotated[tuple[Query, ...], Field(max_length=4)] = ()
     also: Annotated[tuple[Query, ...], Field(max_length=8)] = ()

@@ -85,7 +85,14 @@ class Resolver:
 
     def select(self, query: Query) -> Selection:
         """What a query means, set algebra and all."""
-        own = self._own(query)
+        outs = []
+        for other in query.exclude:
+            out = self.select(other.model_copy(update={"pick": "all"}) if other.pick == "one" else other)
+            if out.verdict != "found":
+                return replace(out, query=query, reason=f"cannot leave out what is not there: {out.reason}")
+            outs.append(out)
+        unmeant = frozenset(g for out in outs for g in out.groups) if query.pick == "one" and not query.also else None
+        own = self._own(query, unmeant or frozenset())
         if own.verdict != "found":
             return own
         for other in query.also:
@@ -93,17 +100,14 @@ class Resolver:
             if more.verdict != "found":
                 return replace(more, query=query)
             own = _joined(own, more)
-        for other in query.exclude:
-            out = self.select(other.model_copy(update={"pick": "all"}) if other.pick == "one" else other)
-            if out.verdict != "found":
-                return replace(out, query=query, reason=f"cannot leave out what is not there: {out.reason}")
+        for out in outs:
             own = _without(own, out)
         if not len(own):
             return nothing(query, f"nothing is left of {query.describe()}", own.candidates)
         return own
 
-    def _own(self, query: Query) -> Selection:
-        """The query without its set algebra."""
+    def _own(self, query: Query, out: frozenset[int]) -> Selection:
+        """The query without its set algebra; groups in `out` cannot be the one that is meant."""
         if query.last:
             return self._again(query)
         if query.groups:
@@ -115,13 +119,13 @@ class Resolver:
         if query.text in FLOATERS and not query.colors:
             return self._floaters(query)
         try:
-            return self._described(query)
+            return self._described(query, out)
         except _Unresolved as anchor:
             return replace(anchor.selection, query=query)
 
-    def _described(self, query: Query) -> Selection:
+    def _described(self, query: Query, out: frozenset[int] = frozenset()) -> Selection:
         """A query that says what a thing is like."""
-        rank = self.scored(query)
+        rank = self.scored(query).without(out)
         matches = rank.matches()
         if query.colors and query.text not in STRUCTURE and (query.text in PARTS or not matches):
 

@@ -73,6 +73,14 @@ class Scored:
             held &= values >= self.limits[name]
         return held
 
+    def without(self, ids: frozenset[int]) -> Scored:
+        """The candidates that are none of these groups."""
+        if ids.isdisjoint(g.id for g in self.groups):
+            return self
+        keep = np.array([g.id not in ids for g in self.groups], dtype=bool)
+        groups = tuple(g for g in self.groups if g.id not in ids)
+        return Scored(groups, {name: v[keep] for name, v in self.terms.items()}, self.limits, self.own[keep])
+
     def matches(self) -> list[int]:
         """Positions of the candidates for which every term holds, best first."""
         return [int(i) for i in self._ordered() if self.holds[i]]

@@ -282,6 +282,24 @@ def test_nth_counts_from_the_viewers_left(ordinal: int, group: int) -> None:
     assert found(named("chair", pick="nth", ordinal=ordinal), mirrored, viewer=BACK)
 
 
+@pytest.mark.parametrize(("ordinal", "group"), [(-1, TALL), (-2, BLUE), (-3, RED)])
+def test_a_negative_rank_counts_from_the_viewers_right(ordinal: int, group: int) -> None:
+    assert found(named("chair", pick="nth", ordinal=ordinal), group)
+    assert ask(named("chair", pick="nth", ordinal=-4)).verdict == "absent"
+
+
+def test_the_middle_is_one_of_an_odd_number() -> None:
+    assert found(named("chair", pick="middle"), BLUE)
+    two = named("chair", pick="middle", relations=(Relation(name="right_of", anchors=(Query(groups=(RED,)),)),))
+    assert ask(two).verdict == "ambiguous"
+
+
+def test_what_is_left_out_is_not_in_the_way_of_the_one() -> None:
+    others = (Query(groups=(RED,)), Query(groups=(TALL,)))
+    assert found(named("chair", exclude=others), BLUE)
+    assert ask(named("chair", exclude=others[:1])).verdict == "ambiguous"
+
+
 def test_nth_beyond_the_last_is_absent() -> None:
     answer = ask(named("chair", pick="nth", ordinal=4))
     assert answer.verdict == "absent" and "only 3" in answer.reason
