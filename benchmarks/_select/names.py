@@ -11,7 +11,7 @@ import numpy as np
 from ...gaussians import assets
 from ...gaussians.language.encoders import Encoder
 from ...gaussians.language.selection import Verdict
-from .._iou import border_iou, iou
+from .._iou import Mask, border_iou, iou, trimap_iou
 from ..harness import Metric
 from .cases import RIGHT, Case, Part, ask
 
@@ -29,17 +29,19 @@ class Asked:
     """One room's answers.
 
     Attributes:
-        iou, border: of each kind that is there once, 0 where it was refused; border None where it has none.
+        iou, border, trimap: of each kind that is there once, 0 where it was refused; None where it has no border.
         verdicts: of the same.
-        oracle: of the best group for each object.
+        oracle, oracle_border: of the best group for each object.
         several: verdicts for kinds that are there more than once.
         absent, strange: verdicts for names of our kinds that are not there, and of what is no kind of ours.
     """
 
     iou: list[float]
     border: list[float | None]
+    trimap: list[float | None]
     verdicts: list[Verdict]
     oracle: list[float]
+    oracle_border: list[float | None]
     several: list[Verdict]
     absent: list[Verdict]
     strange: list[Verdict]
@@ -49,17 +51,25 @@ def ask_names(case: Case, encoder: Encoder) -> Asked:
     """All bare names of one embedded room."""
     answers = [(o, ask(case, o.kind, encoder)) for o in case.alone()]
     groups = case.groups()
+    best = [_best(groups, case.truth(o)) for o in case.objects]
     missing = [k for k in assets.kinds() if k not in case.present]
     chosen = np.random.default_rng(case.seed).choice(missing, ABSENT, replace=False)
     return Asked(
         iou=[iou(case.truth(o), a.mask) for o, a in answers],
         border=[border_iou(case.truth(o), a.mask, case.points) for o, a in answers],
+        trimap=[trimap_iou(case.truth(o), a.mask, case.points) for o, a in answers],
         verdicts=[a.verdict for _, a in answers],
-        oracle=[max((iou(m, case.truth(o)) for m in groups), default=0.0) for o in case.objects],
+        oracle=[iou(m, case.truth(o)) for m, o in zip(best, case.objects, strict=True)],
+        oracle_border=[border_iou(case.truth(o), m, case.points) for m, o in zip(best, case.objects, strict=True)],
         several=[ask(case, kind, encoder).verdict for kind, n in sorted(case.present.items()) if n > 1],
         absent=[ask(case, str(kind), encoder).verdict for kind in chosen],
         strange=[ask(case, name, encoder).verdict for name in STRANGE],
     )
+
+
+def _best(groups: Sequence[Mask], truth: Mask) -> Mask:
+    """The group that agrees best with an object."""
+    return groups[int(np.argmax([iou(mask, truth) for mask in groups]))]
 
 
 def miou(rooms: Sequence[Asked]) -> float:
@@ -72,17 +82,21 @@ def measure(rooms: Sequence[Asked], seconds: Sequence[float]) -> Part:
     found = [v for r in rooms for v in r.iou]
     verdicts = [v for r in rooms for v in r.verdicts]
     oracle = [v for r in rooms for v in r.oracle]
-    borders = [v for r in rooms for v in r.border if v is not None]
+    borders, trimaps, best = (
+        [v for r in rooms for v in getattr(r, key) if v is not None] for key in ("border", "trimap", "oracle_border")
+    )
     absent, strange, several = ([v for r in rooms for v in getattr(r, key)] for key in ("absent", "strange", "several"))
     metrics = (
         Metric("name.miou", fmean(found), "IoU", "higher", 0.03),
         Metric("name.boundary_iou", fmean(borders), "IoU", "higher", 0.03),
+        Metric("name.trimap_iou", fmean(trimaps), "IoU", "higher", 0.03),
         Metric("name.right", fmean(v >= RIGHT for v in found), "share", "higher", 0.03),
         Metric("name.refused", verdicts.count("absent") / len(verdicts), "share", "lower", 0.5),
         Metric("name.ambiguous", verdicts.count("ambiguous") / len(verdicts), "share", "lower", 0.5),
         Metric("name.asked", len(found), "count"),
         Metric("oracle.miou", fmean(oracle), "IoU", "higher", 0.03),
         Metric("oracle.right", fmean(v >= RIGHT for v in oracle), "share", "higher", 0.03),
+        Metric("oracle.boundary_iou", fmean(best), "IoU", "higher", 0.03),
         Metric("absent.refused", absent.count("absent") / len(absent), "share", "higher", 0.03),
         Metric("absent.asked", len(absent), "count"),
         Metric("strange.refused", strange.count("absent") / len(strange), "share", "higher", 0.03),
@@ -95,6 +109,7 @@ def measure(rooms: Sequence[Asked], seconds: Sequence[float]) -> Part:
         f"names: {len(rooms)} furnished rooms from unseen seeds; kinds that a room holds once are asked by name, kinds "
         f"that it holds more often must be reported ambiguous; right is an IoU of Gaussians of {RIGHT} or more",
         f"absent: {ABSENT} kinds of ours a room does not hold; strange: {len(STRANGE)} things that are no kind of ours",
-        "boundary IoU: Gaussians within 3 cm of one that does not belong (Cheng et al. 2021, carried to 3D)",
+        "boundary IoU: of the members within 3 cm of a non-member, in truth and in answer (Cheng et al. 2021, carried "
+        "to 3D); trimap IoU: of truth and answer among all Gaussians within 3 cm of the true border, on both sides",
     )
     return Part(metrics, notes=notes)

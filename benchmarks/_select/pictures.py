@@ -36,7 +36,7 @@ LEAST = 30  # pixels of the smallest mask that is kept, at 256 a side
 class Pictured(Protocol):
     """Makes the vectors of a picture's masks: `[M, D]` for the objects they are of, in their order."""
 
-    def __call__(self, picture: Render, ids: I32, objects: Sequence[int]) -> NDArray[np.float32]: ...
+    def __call__(self, picture: Render, ids: I32, objects: Sequence[int]) -> NDArray[np.float32] | None: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,3 +130,7 @@ class Photos:
         """`[count, D]` rows about `UNLIKE` long."""
         width = self.exemplars.shape[1]
         return self.rng.standard_normal((count, width)) * UNLIKE / np.sqrt(width)
+
+
+def nothing_said(picture: Render, ids: I32, objects: Sequence[int]) -> None:
+    """No vectors at all."""
