@@ -21,8 +21,9 @@ from ..gaussians.errors import UserError
 from ..gaussians.language import attributes
 from ..gaussians.language.field import Box, Group, LanguageField
 from ..gaussians.language.query import Query, Relation
-from ..gaussians.language.resolve import STRUCTURE, resolve
+from ..gaussians.language.resolve import resolve
 from ..gaussians.language.selection import Selection
+from ..gaussians.language.terms import STRUCTURE
 from ..gaussians.scene import Frame, Scene
 from .graph import SHELL, Node, SceneGraph
 from .wordwise import WordEncoder
@@ -75,8 +76,7 @@ class Stage:
         for name, box in ((s, b) for s in shell for b in _slabs(s, graph)):
             groups.append(Group(len(groups), "structure", -1, name, 1.0, box, _NO_COLOR, 1, 1, 1.0))
             ids.append(name)
-        spoken = [*map(_spoken, graph.nodes), *("" for _ in groups[len(graph.nodes) :])]
-        vectors = np.array([encoder.of(s) for s in spoken], dtype=np.float32).reshape(len(groups), encoder.dim)
+        vectors = np.array([encoder.of(g.label) for g in groups], dtype=np.float32).reshape(len(groups), encoder.dim)
         field = LanguageField(tuple(groups), vectors, encoder.fingerprint)
         frame = Frame(_UP, 0.0, 1.0, "given", "given")
         return cls(graph, Scene(_cloud(groups), frame, language=field), tuple(ids), encoder, _viewer(graph))
@@ -87,7 +87,14 @@ class Stage:
         Raises:
             UserError: a colour word is unknown.
         """
-        return resolve(self.scene, self._read(query), self.viewer, encoder=self.encoder, last=last)
+        meant = self._read(query)
+        found = resolve(self.scene, meant, self.viewer, encoder=self.encoder, last=last)
+        if found.verdict == "absent" and any(r.name == "inside" for r in meant.relations):
+            # What grows in a pot or lies in a dish stands on it, as far as boxes go.
+            onto = tuple(r.model_copy(update={"name": "on"}) if r.name == "inside" else r for r in meant.relations)
+            again = resolve(self.scene, meant.model_copy(update={"relations": onto}), self.viewer, self.encoder, last)
+            return again if again.verdict != "absent" else found
+        return found
 
     def names(self, groups: Iterable[int]) -> tuple[Id, ...]:
         """The graph's ids of groups, each once."""
@@ -205,7 +212,7 @@ def _group(index: int, node: Node) -> Group:
     box = Box(node.position, ((c, s, 0.0), (-s, c, 0.0), _UP), size)
     kind = STRUCTURE.get(node.label.lower().strip())
     color = color_of(node.color) if node.color else _NO_COLOR
-    level, label = ("structure", kind) if kind else ("object", node.label)
+    level, label = ("structure", kind) if kind else ("object", _spoken(node))
     return Group(index, level, -1, label, 1.0, box, color, 1, 1, 1.0)  # type: ignore[arg-type]
 
 

@@ -141,3 +141,10 @@ def narrower(phrase: Phrase) -> frozenset[Phrase]:
         if normalise(word) == phrase:
             found |= {other for m in members.split(",") for other in same(normalise(m))}
     return frozenset(found)
+
+
+@cache
+def every_word() -> frozenset[str]:
+    """Every single word of the tables."""
+    text = f"{_SAME} {_WIDER}".replace(",", " ").replace(":", " ")
+    return frozenset(text.lower().split())

@@ -44,6 +44,25 @@ def vocabulary() -> Vocabulary:
     return Vocabulary.from_json(json.loads((weights_folder() / "words.json").read_bytes())["vocabulary"])
 
 
+@dataclass(frozen=True)
+class _Labels(Vocabulary):
+    """What competes with a phrase: that it names nothing here, and no kinds; and which labels it names best.
+
+    Attributes:
+        labels: of the graph.
+    """
+
+    labels: tuple[str, ...] = ()
+
+    def covered(self, text: str, loose: bool = False) -> frozenset[str]:
+        """With `loose`, the labels that agree best with a phrase: an exact name leaves no room for a synonym."""
+        if not loose:
+            return frozenset()
+        found = agreement(text, self.labels)
+        best = max(found, default=NOT)
+        return frozenset(n for n, p in zip(self.labels, found, strict=True) if p == best >= THRESHOLD)
+
+
 @dataclass(frozen=True, eq=False)
 class WordEncoder:
     """The labels of one graph as an encoder.
@@ -68,8 +87,7 @@ class WordEncoder:
 
     @cached_property
     def vocabulary(self) -> Vocabulary:
-        """Only what competes with a phrase: that it names nothing here."""
-        return Vocabulary({}, {}, (_ABSENT,))
+        return _Labels({}, {}, (_ABSENT,), labels=self.labels)
 
     @property
     def calibration(self) -> Calibration:
@@ -127,9 +145,12 @@ def _agrees(asked: Phrase, label: Phrase) -> float:
         return NOT
     if asked == label:
         return EXACT
-    if _names(asked, label) or (_plainer(asked) != asked and _names(_plainer(asked), label) and not _other(asked)):
+    if _names(asked, label):
         return ALIKE
-    return NOT
+    plain = _plainer(asked)
+    loose = plain != asked and _names(plain, label) and not _other(asked)
+    # A "round table" may be a plain "table", but not a "square table".
+    return ALIKE if loose and set(label) - set(_plainer(label)) <= set(asked) else NOT
 
 
 def _names(asked: Phrase, label: Phrase) -> bool:
@@ -174,7 +195,9 @@ def _wider() -> dict[Phrase, frozenset[Phrase]]:
 @cache
 def _alike(phrase: Phrase) -> frozenset[Phrase]:
     """The phrase and its synonyms, also those of its head alone ("floor light": floor lamp)."""
-    found = synonyms.same(phrase).union(*(names for names in _kinds() if phrase in names))
+    kinds = frozenset().union(*(names for names in _kinds() if phrase in names))
+    # The vocabulary calls round and square tables by one name; here they are told apart.
+    found = synonyms.same(phrase) | {n for n in kinds if len(n) < 2 or len(phrase) < 2 or n[-1] != phrase[-1]}
     if len(phrase) == 2:
         found |= {(*phrase[:-1], *other) for other in synonyms.same(phrase[-1:]) if len(other) == 1}
     return found

@@ -72,7 +72,7 @@ def adjusted(kind: str, degree: str, share: float | None) -> Fields:
     """A relative change of colour."""
     amount = AMOUNT[degree] if share is None else share
     if not 0 < amount <= 1:
-        raise Refusal("a colour changes by more than 0 and at most 100 %", f"{amount:.0%}")
+        raise Refusal("a colour changes by more than 0 and at most 100 %", f"{amount:.0%}", verdict="impossible")
     return {"op": "recolor", "adjust": kind, "amount": amount}
 
 
@@ -85,7 +85,7 @@ def grown(axis: str, up: bool, share: float | None = None, times: float | None =
     if times is not None:
         factor = times if up else 1 / times if times else 0.0
     elif share is not None:
-        factor = 1 + share if up else 1 - share
+        factor = (1 + share if up else 1 - share) if share > 0 else 0.0
     else:
         factor = (BIGGER if up else SMALLER)[degree]
     return scaled(factor, axis)
@@ -98,7 +98,7 @@ def scaled(factor: float, axis: str = "all") -> Fields:
         Refusal: the factor is not from 0.01 to 100.
     """
     if not 0.01 <= factor <= 100:
-        raise Refusal("things are scaled by 0.01 to 100 times", f"{factor:g}")
+        raise Refusal("things are scaled by 0.01 to 100 times", f"{factor:g}", verdict="impossible")
     return {"op": "scale", "factor": round(factor, 9), **({} if axis == "all" else {"axis": axis})}
 
 
@@ -134,7 +134,7 @@ def opacity(value: float) -> Fields:
         Refusal: the value is not from 0 to 1.
     """
     if not 0 <= value <= 1:
-        raise Refusal("opacity goes from 0 to 100 %", f"{value:.0%}")
+        raise Refusal("opacity goes from 0 to 100 %", f"{value:.0%}", verdict="impossible")
     return {"op": "opacity", "value": round(value, 9)}
 
 

@@ -26,8 +26,9 @@ _SOME = 3  # "some cushions", as "a few"
 class Commands:
     """Turns one clause's tree into operations. Keep one for an instruction: it remembers what "one" refers to."""
 
-    def __init__(self, antecedent: str = "") -> None:
+    def __init__(self, antecedent: str = "", before: Sequence[Fields] = ()) -> None:
         self.phrases = Phrases(antecedent)
+        self.before = list(before)  # operations of the clause before, for "do the same to the lamp"
 
     def read(self, tree: Node) -> list[Fields]:
         """The operations of a clause.
@@ -41,6 +42,7 @@ class Commands:
         for group in excluded:
             out = union(self.phrases.group(group))
             ops = [{**op, "target": _except(op.get("target"), out)} for op in ops]
+        self.before = ops
         return ops
 
     # ---- helpers -------------------------------------------------------------------------------------------------
@@ -61,10 +63,36 @@ class Commands:
     def _targeted(self, node: Node, op: str, **fields: Any) -> list[Fields]:
         return [{"op": op, "target": self._query(node), **fields}]
 
+    # ---- again ---------------------------------------------------------------------------------------------------
+
+    def _same(self, node: Node) -> list[Fields]:
+        """ "do the same to the lamp": the clause before with another target."""
+        return self._again(self._query(node))
+
+    def _bare(self, node: Node) -> list[Fields]:
+        """ "and the green one too": a thing alone is the next target of what was asked before."""
+        found = self._nouns(node)
+        pointing = all(n.article in ("def", "all", "both") and not n.query.last for n in found)
+        if not self.before or not pointing:
+            raise Refusal("it does not say what to do", found[0].said or found[0].query.text)
+        return self._again(_known(found))
+
+    def _again(self, target: Query) -> list[Fields]:
+        first = next((op.get("target") for op in self.before), None)
+        if first is None or any("held" in op for op in self.before):
+            raise Refusal("it is not clear what is to be done with it")
+        if any(op.get("target") not in (first, Query(last=True)) for op in self.before):
+            raise Refusal("several things were done before; say what is to be done with it")
+        chained = [op.get("target") != first for op in self.before]
+        return [{**op, "target": Query(last=True) if c else target} for op, c in zip(self.before, chained, strict=True)]
+
     # ---- seeing and removing -------------------------------------------------------------------------------------
 
     def _delete(self, node: Node) -> list[Fields]:
-        return self._targeted(node, "delete")
+        found = self._nouns(node)
+        if any(p.word.startswith(("onto", "into")) for n in found for p in n.posts):
+            return self._moved(found, node, "MOVE")  # "chuck the cushion onto the bed"
+        return [{"op": "delete", "target": _known(found)}]
 
     def _clear(self, node: Node) -> list[Fields]:
         found = self._nouns(node)
@@ -126,6 +154,17 @@ class Commands:
 
     def _tint(self, node: Node) -> list[Fields]:
         return self._targeted(node, "recolor", adjust="toward", color=changes.hue_of(trees(node, "hue")[0]))
+
+    def _tint_more(self, node: Node) -> list[Fields]:
+        amount = changes.AMOUNT[changes.degree_of(node)]
+        return self._targeted(node, "recolor", adjust="toward", color=tokens(node, "HUE")[0].value, amount=amount)
+
+    def _coat_on(self, node: Node) -> list[Fields]:
+        """ "slap a coat of red paint on the cabinet"."""
+        if tokens(node, "PREP")[0].value != "on":
+            raise Refusal("paint goes on things", tokens(node, "PREP")[0].text)
+        target = _known([self.phrases.noun(trees(node, "np")[0])])
+        return [{"op": "recolor", "target": target, "color": tokens(node, "HUE")[0].value}]
 
     def _adjust(self, node: Node) -> list[Fields]:
         kind = tokens(node, "ADJUST")[0].value[0]
@@ -331,6 +370,14 @@ class Commands:
             raise Refusal("say how many copies of it")
         count = self._count(found[0])
         return [{"op": "duplicate", "target": Query(last=True), **_counted(count), **motion.fields()}]
+
+    def _more_like_that(self, node: Node) -> list[Fields]:
+        """ "add two more chairs like the red one": copies of that one."""
+        found = self._nouns(node)
+        if len(found) != 1 or found[0].article not in ("indef", "bare") or found[0].posts:
+            raise Refusal("say how many copies of it")
+        like = self.phrases.noun(trees(node, "np")[0])
+        return [{"op": "duplicate", "target": _known([like]), **_counted(self._count(found[0]))}]
 
     def _count(self, noun: Noun) -> int:
         if noun.number is not None:

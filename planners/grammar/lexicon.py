@@ -29,7 +29,9 @@ VERBS: dict[str, Entry] = {
         "chuck out, "
         "chuck, chuck away, lose, clear away, clear out, zap, kill, nuke, dump, ditch, trash, scrap, destroy, "
         "banish, "
-        "dispose of, do away with, bin, axe, purge, expunge, wipe out, rub out, delete away, get out",
+        "dispose of, do away with, bin, axe, purge, expunge, wipe out, rub out, delete away, get out, toss, toss out, "
+        "yank, yank out, rip out, oust, evict, vaporize, obliterate, get shot of, junk, kick out, boot out, strip out, "
+        "toss away, chuck in the bin, throw in the trash, be rid of, remove away, rid us of, hoover up",
     ),
     **_same(("CLEAR", None), "clear, clear off, wipe"),
     **_same(("DROP", None), "drop"),
@@ -50,14 +52,28 @@ VERBS: dict[str, Entry] = {
     **_same(("FADE", None), "fade"),
     **_same(
         ("PAINT", None),
-        "paint, colour, color, recolor, recolour, dye, repaint, stain, spray paint, spray, coat, re paint",
+        "paint, colour, color, recolor, recolour, dye, repaint, stain, spray paint, spray, coat, re paint, re colour, "
+        "re color, colour in",
     ),
     **_same(("TINT", None), "tint"),
     **_same(("MAKE", None), "make, render, let"),
     **_same(("TURN", None), "turn"),
     **_same(("CHANGE", None), "change, convert, transform, set the, adjust"),
     **_same(("GIVE", None), "give"),
-    **_same(("WANT", None), "want, need, i want, i would like, i need, we want, we need, i would love, i wish for"),
+    **_same(("APPLY", None), "slap, apply, splash"),
+    **_same(
+        ("SAME", None),
+        "do the same to, do the same for, do the same with, do the same thing to, do the same thing with, same for, "
+        "same with, same to, the same for, the same with, the same to, the same goes for, same goes for, same thing "
+        "for, same thing with, do that to, do this to, do it to, do that with, do it with, do likewise to, do "
+        "likewise with, likewise for, likewise with, likewise, ditto for, ditto, repeat that for, repeat this for, "
+        "repeat that with, repeat it for, repeat for, apply the same to, apply that to, do that for, do it for",
+    ),
+    **_same(
+        ("WANT", None),
+        "want, need, i want, i would like, i need, we want, we need, i would love, i wish for, i would love for, "
+        "i would like for, we would like, we would love, have, let us have, i fancy, could do with",
+    ),
     **_same(("ADJUST", ("darker", None)), "darken"),
     **_same(("ADJUST", ("lighter", None)), "lighten, brighten, brighten up, lighten up"),
     **_same(("ADJUST", ("less_saturated", None)), "desaturate, tone down, mute"),
@@ -67,7 +83,8 @@ VERBS: dict[str, Entry] = {
     **_same(
         ("MOVE", None),
         "move, shift, slide, push, pull, bring, shove, drag, scoot, nudge, relocate, transfer, carry, reposition, "
-        "move over, shift over, budge, haul, scooch",
+        "move over, shift over, budge, haul, scooch, heave, lug, send, edge, jog, scootch, wheel, roll over, "
+        "move along, slide over",
     ),
     **_same(("CENTERING", None), "center, centre"),
     **_same(("KEEP", None), "keep, leave"),
@@ -76,24 +93,28 @@ VERBS: dict[str, Entry] = {
     **_same(
         ("PUT", None),
         "put, place, set, set down, put down, stick, position, pop, lay, stand, hang, hang up, mount, rest, park, "
-        "stack, plop, install, arrange, put up, lean",
+        "stack, plop, install, arrange, put up, lean, plonk, plunk, plunk down, plonk down, plop down, sit, deposit, "
+        "situate, bung",
     ),
     **_same(
         ("ADD", None),
         "add, insert, create, generate, spawn, introduce, bring in, throw in, put in, drop in, add in, give me, "
-        "place down, include",
+        "place down, include, get me, fetch me, bring me",
     ),
     **_same(("COPY", None), "copy, clone, duplicate, replicate"),
     **_same(("REPLACE", None), "replace, swap out, switch out"),
     **_same(("SWAP", None), "swap, exchange, switch, trade, trade in"),
     **_same(("SUBSTITUTE", None), "substitute"),
-    **_same(("ROTATE", None), "rotate, spin, revolve, pivot, twist, swivel, spin round"),
+    **_same(("ROTATE", None), "rotate, spin, revolve, pivot, twist, swivel, spin round, rotate round, rotate around"),
     **_same(("TURNROUND", None), "turn around, spin around, turn round"),
     **_same(("FLIP", None), "flip, flip over, turn over, topple, invert"),
     **_same(("TILT", None), "tilt, tip, roll"),
     **_same(("SCALE", None), "scale, resize, rescale"),
-    **_same(("GROW", ("all", True)), "enlarge, grow, expand, blow up, magnify, size up, scale up, upscale, upsize"),
-    **_same(("GROW", ("all", False)), "shrink, size down, downsize, scale down, downscale, minify"),
+    **_same(
+        ("GROW", ("all", True)),
+        "enlarge, grow, expand, blow up, magnify, size up, scale up, upscale, upsize, supersize, embiggen, beef up",
+    ),
+    **_same(("GROW", ("all", False)), "shrink, size down, downsize, scale down, downscale, minify, shrink down"),
     **_same(("GROW", ("prop", True)), "increase"),
     **_same(("GROW", ("prop", False)), "decrease, reduce"),
     **_same(("GROW", ("width", True)), "widen, broaden, lengthen"),
@@ -139,7 +160,8 @@ COMMANDS = frozenset(
 )
 CHAT = bag(
     "hello hi hey hiya greetings thanks thank bye goodbye cheers yes no yep nope ok okay cool great nice wow sorry "
-    "morning evening good lol"
+    "morning evening good lol awesome perfect amazing excellent brilliant lovely fantastic sweet neat work job well "
+    "done super appreciate it that looks"
 )
 QUESTION = bag(
     "what where who whom whose which why how when is are am was were does do did has have had can could will would "
@@ -152,7 +174,7 @@ NOUN_VERBS = bag(
     "plant light paint set stand copy clone duplicate mark place park drop bin mount rest tip roll change show pick "
     "color colour tint stain dye coat spray swap switch trade slide push dump scrap trash lock play fold lift double "
     "clear dust label group face hang cool warm spin twist flip turn scale grow narrow lower split light position "
-    "center centre keep leave"
+    "center centre keep leave have sit edge wheel junk boot toss slap splash need want"
 )
 
 # ---- words inside a clause -----------------------------------------------------------------------------------------
@@ -166,11 +188,12 @@ RELATIONS: dict[str, str] = {
     **_same("behind", "behind, in back of, at the back of, to the back of, in the back of"),
     **_same("on", "on, on top of, onto, on to, upon, atop, on the top of, to the top of"),
     **_same("under", "under, underneath, beneath"),
-    **_same("below", "below"),
+    **_same("below", "below, below the level of"),
     **_same("above", "above, over"),
     **_same("inside", "inside, in, into, within, inside of"),
     **_same("next_to", "next to, beside, by, near, near to, close to, alongside, adjacent to, at, at the side of, "
-            "to the side of, by the side of, right next to, right by, close by, right beside"),
+            "to the side of, by the side of, right next to, right by, close by, right beside, surrounding, around by, "
+            "in the vicinity of, not far from, next"),
     **_same("against", "against, up against, along, flush against"),
 }  # fmt: skip
 
@@ -191,6 +214,9 @@ INSIDE: dict[str, Entry] = {
     **_same(("FOR", None), "for"),
     **_same(("AS", None), "as"),
     **_same(("NOT", None), "not"),
+    **_same(("LIKE", None), "like, similar to, same as, identical to, matching"),
+    **_same(("GOES", None), "has to go, have to go, needs to go, need to go, must go, should go, can go, "
+            "has got to go, have got to go, gotta go, may go, ought to go, can be removed, can be deleted"),
     **_same(("AWAY", None), "away, out"),
     **_same(("AROUND", None), "around, round, the other way around, the other way"),
     **_same(("UPSIDE", None), "upside down, on its head"),
@@ -198,7 +224,9 @@ INSIDE: dict[str, Entry] = {
     **_same(
         ("BUT", None),
         "but, but not, except, except for, excepting, excluding, other than, apart from, aside from, besides, "
-        "but leave, but keep, but do not touch, save for, bar, minus, and not",
+        "but leave, but keep, but do not touch, save for, bar, minus, and not, without touching, without removing, "
+        "without moving, without deleting, without changing, without affecting, without including, leaving, leaving "
+        "out, keeping, not counting, not including, other then, but never",
     ),
     **_same(("AND", None), "and, &, and also, as well as, plus, along with, together with, and then"),
     **_same(("SPOT", "corner"), "in the corner, in the corner of the room, to the corner, in a corner, "
@@ -211,13 +239,17 @@ INSIDE: dict[str, Entry] = {
             "into the middle of the room, into the center of the room, into the centre of the room"),
     **_same(("CENTER", None), "in the middle of, in the center of, in the centre of, to the middle of, "
             "to the center of, to the centre of, at the center of, at the centre of"),
-    **_same(("SIDE", "leftmost"), "on the left, on the left side, on the left hand side, at the left, on my left"),
+    **_same(("SIDE", "leftmost"), "on the left, on the left side, on the left hand side, at the left, on my left, "
+            "on the far left, to the far left, on the very left, farthest to the left, furthest to the left"),
     **_same(("SIDE", "rightmost"), "on the right, on the right side, on the right hand side, at the right, "
-            "on my right"),
+            "on my right, on the far right, to the far right, on the very right, farthest to the right, "
+            "furthest to the right"),
     **_same(("SIDE", "nearest"), "in front, at the front, in the front, closest to me, nearest to me, nearest me, "
-            "closest to the camera, nearest to the camera, in the foreground"),
+            "closest to the camera, nearest to the camera, in the foreground, nearest to the viewer, nearest the "
+            "viewer, closest to the viewer, nearest the camera, closest to us, nearest to us, at the very front"),
     **_same(("SIDE", "farthest"), "at the back, in the back, farthest from me, furthest from me, farthest away, "
-            "furthest away, in the background"),
+            "furthest away, in the background, farthest from the viewer, furthest from the viewer, farthest from the "
+            "camera, furthest from the camera, farthest from us, furthest from us, at the very back"),
     **_same(("SIDE", "highest"), "at the top, on the top"),
     **_same(("SIDE", "lowest"), "at the bottom, on the bottom"),
     **_same(("SIDE", "leftmost"), "on the left of the room, on the left side of the room"),
@@ -276,14 +308,16 @@ INSIDE: dict[str, Entry] = {
     **_same(("PROP", "width"), "width, length, in width, in length"),
     **_same(("PROP", "depth"), "depth, in depth"),
     **_same(("COLORWORD", None), "colour, color, paint, hue, shade, colored, coloured, tint"),
-    **_same(("ASHADE", None), "a shade of, a nice shade of, a coat of, a lick of, a dash of"),
+    **_same(("ASHADE", None), "a shade of, a nice shade of, a coat of, a lick of, a dash of, a nice coat of, a fresh "
+            "coat of, a new coat of, some, a fresh lick of, a layer of, a splash of, a touch of"),
     **_same(("OPACITYWORD", True), "opacity, alpha"),
     **_same(("OPACITYWORD", False), "transparency"),
     **_same(("CLEARLY", 0.3), "transparent, see through, translucent"),
     **_same(("CLEARLY", 0.5), "semi transparent, half see through"),
     **_same(("CLEARLY", 0.0), "invisible, completely transparent, fully transparent, totally transparent, hidden"),
     **_same(("OPAQUE", None), "opaque, visible"),
-    **_same(("GONE", None), "gone, disappear, vanish, go away"),
+    **_same(("GONE", None), "gone, disappear, vanish, go away, removed, deleted, thrown out, thrown away, taken away, "
+            "taken out, erased"),
     **_same(("TOBE", None), "to be, be, become, look, to look"),
     **_same(("SHOULD", None), "should be, needs to be, need to be, must be, has to be, have to be, ought to be, "
             "should become, should look"),
@@ -330,6 +364,7 @@ ATTRIBUTES: dict[str, Entry] = {
     **_same(("SUP", "rightmost"), "rightmost, far right, furthest right, right most, right, right hand, right side"),
     **_same(("SUP", "highest"), "highest, topmost, top, uppermost, upper"),
     **_same(("SUP", "lowest"), "lowest, bottom, bottommost, lower"),
+    **_same(("SUP", "middle"), "middle, centre, center, central, middlemost"),
     **_same(("SIZE", "small"), "small, little, tiny, mini, smaller"),
     **_same(("SIZE", "large"), "big, large, huge, giant, enormous, massive, bigger, larger"),
     **_same(("SIZE", "tall"), "tall, high, taller"),
@@ -350,7 +385,9 @@ FILLER = phrases(
     "would, if you will, could you, can you, would you please, for now, from the view, this time, alone, "
     "somewhere, mate, buddy, my friend, finally, lastly, afterwards, after that, entirely, altogether, "
     "even, still, "
-    "current"
+    "current, shall we, shall you, anymore, any more, any longer, if you do not mind, if that is okay, if that is ok, "
+    "will ya, asap, quickly please, darling, dear, thank you so much, many thanks, cheers, this instant, "
+    "at once, immediately, already, for good"
 )
 
 # Dropped before a preposition ("the lamp standing on the desk").
@@ -374,6 +411,9 @@ POLITE = phrases(
     "may i ask you to, i wish you to, i am going to, we are going to, you have to, i have to, you must, "
     "could i ask you to, is it possible to, would it be possible to, is it possible for you to, could you possibly, "
     "would you be able to, are you able to, would you be so kind as to, do you think you could, be so kind and, "
+    "why do not you, why do not we, you may, you might, how about you, feel free to, make sure to, be sure to, "
+    "i would rather you, i would prefer to, i would prefer you to, can i get you to, could i get you to, "
+    "could you please, can you please, would you please, will you please, would you kindly, could you kindly, "
     "first, first of all, second, secondly, firstly, to start, "
     "to begin with, next, then, finally, lastly, after that, afterwards, and, so, but, next up, proceed to, "
     "i think you should, maybe, perhaps, oh, uh, um, hmm, alright, all right, right, good, great, "
@@ -383,7 +423,7 @@ POLITE = phrases(
 # Never part of a noun: words that carry structure or that would be dropped at a cost.
 STRUCTURE = bag(
     "if unless until till while because since when whenever although though who whom whose which what where why how "
-    "that than then so middle last next previous former latter or nor yet no without "
+    "that than then so last next previous former latter or nor yet no without "
     "like about through across during via be is are was were am been being do does "
     "did done have has had can could will would shall should may might must i me we us you he she they him her "
     "very quite rather too almost nearly only even ever never always often once again here there facing around "
@@ -396,10 +436,6 @@ ADVERB_NOUNS = bag(
     "lily fly assembly jelly belly butterfly family dolly doily holly curly woolly ply july bully gully folly supply "
     "wily oily bubbly cuddly friendly"
 )
-UNSAFE = (
-    "files", "password", "passwords", "sudo", "filesystem", "database", "credentials", "malware", "hard drive",
-    "system prompt", "api key", "rm rf", "previous instructions", "prior instructions", "your instructions",
-)  # fmt: skip
 ASKING = bag("tell describe list count explain name ask say answer imagine remember guess")
 
 

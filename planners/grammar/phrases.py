@@ -163,11 +163,26 @@ class Phrases:
         kind, value, word = str(node.data), first.value if first else None, first.text if first else ""
         if kind == "unrelated":
             value = tokens(node, "PREP")[0].value
+        elif kind == "having":
+            value = next((t.value for t in tokens(node, "ONIT")), "below")
+            kind = "lacking" if tokens(node, "LACKING") else kind
+        elif kind == "between":
+            anchors = self._sided(node)
         elif kind in ("is_hue", "is_not_hue"):
             value = tokens(node, "HUE")[0].value
         elif kind == "is_tall":
             value = tokens(node, "TALLER")[0].value
         return Post(kind, value, word, anchors, joined)
+
+    def _sided(self, node: Node) -> tuple[Noun, ...]:
+        """The nouns of "between", each narrowed by a side said behind it."""
+        found: list[Noun] = []
+        for child in node.children:
+            if isinstance(child, Tree):
+                found.append(self.core(child))
+            elif child.type == "SIDE":
+                found[-1] = replace(found[-1], query=_update(found[-1].query, pick=tag_of(child).value))
+        return tuple(found)
 
     def core(self, node: Node) -> Noun:
         """A noun without what stands behind it."""
@@ -310,6 +325,8 @@ def _narrow(query: Query, post: Post, behind: Sequence[Post]) -> Query:
         wrong = _relation(_relation_name(replace(post, kind="related")), anchors)
         bad = _update(query, relations=(*query.relations, wrong), pick="all", count=None)
         return _update(query, exclude=(*query.exclude, bad))
+    if post.kind == "lacking":
+        return _lacking(query, post, anchors)
     if name := _relation_name(post):
         return _update(query, relations=(*query.relations, _relation(name, anchors)))
     if post.kind == "is_hue":
@@ -324,17 +341,26 @@ def _narrow(query: Query, post: Post, behind: Sequence[Post]) -> Query:
         if query.pick != "nth":
             raise Refusal("counting needs a rank: the second chair from the left", post.word)
         if post.value == "right":
-            if query.ordinal != 1:
-                raise Refusal("things are counted from the left", post.word, verdict="impossible")
-            return _update(query, pick="rightmost", ordinal=None)
+            return _update(query, ordinal=-(query.ordinal or 1))
         return query
     if post.kind == "in_spot" and post.value == "corner":
         return _update(query, relations=(*query.relations, _relation("inside", [Query(text="corner")])))
     raise Refusal("things cannot be picked out by this", post.word)
 
 
+def _lacking(query: Query, post: Post, anchors: Sequence[Query]) -> Query:
+    """ "all lamps without the floor lamp" leaves one lamp out, "the table without a vase" the tables that carry one."""
+    if not anchors[0].text or nouns.head(anchors[0].text) == nouns.head(query.text):
+        return _update(query, exclude=(*query.exclude, anchors[0]))
+    carrying = [a.model_copy(update={"pick": "all"}) for a in anchors]
+    bad = _update(query, relations=(*query.relations, _relation(post.value, carrying)), pick="all", count=None)
+    return _update(query, exclude=(*query.exclude, bad))
+
+
 def _relation_name(post: Post) -> str:
     """The relation a phrase says, "" if it says none."""
+    if post.kind == "having":
+        return str(post.value)
     if post.kind == "related":
         return "next_to" if post.value == "against" else in_or_on(post)
     if post.kind == "off":

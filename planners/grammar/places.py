@@ -79,7 +79,7 @@ def _read_one(kind: str, node: Node, motion: Motion, phrases: Phrases, said: str
 def length(value: tuple[float, str]) -> Fields:
     """A length token's value as fields."""
     if not 0 < value[0] <= 10_000:
-        raise Refusal("that is no length", f"{value[0]:g}")
+        raise Refusal("that is no length for things in a room", f"{value[0]:g}", verdict="impossible")
     return {"value": value[0], "unit": value[1]}
 
 

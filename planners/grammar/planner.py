@@ -9,6 +9,7 @@ from __future__ import annotations
 import difflib
 import time
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -27,8 +28,10 @@ from . import lexicon, nouns
 from .commands import Commands
 from .phrases import Node, Refusal, trees
 from .reading import color_at
+from .spelling import respell
 from .tagger import Clause, Tag, Tagger, sentences
-from .words import Word, clean, split
+from .unsafe import unsafe_words
+from .words import Word, bag, clean, split
 
 if TYPE_CHECKING:
     from ..graph import SceneGraph
@@ -57,8 +60,12 @@ def _parser() -> Lark:
 
 @dataclass(frozen=True)
 class _Outcome:
+    """What was understood: operations, the last noun, the operations of the last clause, and slips corrected."""
+
     ops: tuple[dict[str, Any], ...]
     antecedent: str
+    again: tuple[dict[str, Any], ...] = ()
+    remarks: tuple[str, ...] = ()
 
 
 class GrammarPlanner:
@@ -81,7 +88,7 @@ class GrammarPlanner:
         told: dict[str, Any]
         try:
             outcome = _understand(cleaned, previous)
-            told = {"ops": tuple(_valid(op) for op in outcome.ops)}
+            told = {"ops": tuple(_valid(op) for op in outcome.ops), "reason": "; ".join(outcome.remarks)[:2000]}
         except Refusal as refusal:
             told = {"verdict": refusal.verdict, "reason": str(refusal), "unknown": _short(refusal.words)}
         return EditPlan(instruction=text, planner=NAME, seconds=time.perf_counter() - started, **told)
@@ -92,7 +99,7 @@ def _valid(fields: dict[str, Any]) -> EditOp:
     try:
         return parse_op(fields)
     except UserError as error:
-        raise Refusal(str(error)[:500]) from error
+        raise Refusal(str(error)[:500], verdict="impossible") from error
 
 
 def _short(words: Sequence[str]) -> tuple[str, ...]:
@@ -105,9 +112,11 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     Raises:
         Refusal: any part of it is not understood, or none of it is an edit.
     """
-    words = split(cleaned)
-    _refuse_unsafe(words)
-    commands = Commands(_antecedent(previous))
+    if phrase := unsafe_words(cleaned):
+        raise Refusal("this is not about the scene", phrase, verdict="unsafe")
+    words, remarks = respell(split(cleaned))
+    before = _before(previous)
+    commands = Commands(before.antecedent, before.again)
     ops: list[dict[str, Any]] = []
     idle: Refusal | None = None
     for sentence, mark in sentences(words):
@@ -125,7 +134,7 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
         raise Refusal(f"this part is not an edit, so nothing was planned: {idle}", *idle.words)
     if len(ops) > MAX_OPS:
         raise Refusal(f"that is more than {MAX_OPS} steps; say it in parts")
-    return _Outcome(tuple(_merge_copies(ops)), commands.phrases.antecedent)
+    return _Outcome(tuple(_merge_copies(ops)), commands.phrases.antecedent, tuple(commands.before), remarks)
 
 
 def _empty(words: Sequence[Word]) -> Refusal:
@@ -167,23 +176,17 @@ def _is_chat(refusal: Refusal) -> bool:
 
 
 _CHAT = "this asks for nothing"
+_JUDGING = bag("looks look seems seem feels sounds works good great nice fine better perfect lovely")
+_BEING = bag("is are was were should")
+_TELLING = ("DIR", "HUE", "LIGHT", "GROWN", "ONE", "OTHER", "OTHERS", "LENGTH", "DEGREE")
 
 
-def _refuse_unsafe(words: Sequence[Word]) -> None:
-    text = f" {' '.join(w.text for w in words)} "
-    for phrase in lexicon.UNSAFE:
-        if f" {phrase} " in text:
-            raise Refusal("this is not about the scene", phrase, verdict="unsafe")
-
-
-def _antecedent(previous: str | None) -> str:
-    """The last noun that the instruction before was about."""
-    if not previous:
-        return ""
-    try:
-        return _understand(clean(previous), None).antecedent
-    except (Refusal, UserError):
-        return ""
+def _before(previous: str | None) -> _Outcome:
+    """What the instruction before was about."""
+    if previous:
+        with suppress(Refusal, UserError):
+            return _understand(clean(previous), None)
+    return _Outcome((), "")
 
 
 def _carry(
@@ -222,13 +225,16 @@ def _refuse_idle(clause: Clause, sentence: Sequence[Word], mark: str) -> None:
     polite = {w for p in (*lexicon.FILLER, *lexicon.POLITE) for w in p} | lexicon.CHAT
     if first in lexicon.COMMANDS:
         raise Refusal(f"{first} is a command of the session, not an edit", first, verdict="not_an_edit")
-    if all(t in polite for t in texts) and any(t in lexicon.CHAT for t in texts):
+    says = any(t.type in _TELLING for t in clause.tags)
+    if not says and all(t in polite for t in texts) and any(t in lexicon.CHAT for t in texts):
         raise Refusal(_CHAT, verdict="not_an_edit")
     if texts[:3] == ["do", "the", "same"] or any(t.type == "SHOULD" for t in clause.tags):
         return
     if first in lexicon.QUESTION or first in lexicon.ASKING or mark == "?":
         raise Refusal("this is a question, not an edit", first, verdict="not_an_edit")
-    if first in lexicon.STATEMENT or any(t in ("is", "are", "was", "were", "should") for t in texts):
+    own = [w.text for t in clause.tags for w in t.words]
+    judges = own[:1] in (["that"], ["this"], ["it"], ["looks"]) and bool(_JUDGING & set(own))
+    if first in lexicon.STATEMENT or judges or _BEING & set(texts):
         raise Refusal("this is a statement, not an edit", first, verdict="not_an_edit")
 
 

@@ -21,6 +21,12 @@ UNITS: dict[str, str] = {
     **dict.fromkeys(["ft", "foot", "feet", "'"], "ft"),
     **dict.fromkeys(["unit", "units"], "units"),
 }  # fmt: skip
+# Units that lengths have no name for, in metres.
+_METRES = {
+    **dict.fromkeys(["km", "kms", "kilometer", "kilometers", "kilometre", "kilometres"], 1000.0),
+    **dict.fromkeys(["yd", "yds", "yard", "yards"], 0.9144), **dict.fromkeys(["mile", "miles"], 1609.344),
+    **dict.fromkeys(["dm", "decimeter", "decimeters", "decimetre", "decimetres"], 0.1),
+}  # fmt: skip
 _ONES = (
     "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
     "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen",
@@ -87,6 +93,9 @@ def _with_unit(words: Sequence[str], value: float, taken: int) -> Quantity | Non
         rest, unit, taken = rest[2:], rest[2], taken + 2
     elif unit in ("a", "an") and len(rest) > 1 and (rest[1] in UNITS or rest[1] in _TURNS):
         rest, unit, taken = rest[1:], rest[1], taken + 1
+    if unit in _METRES:
+        extra = _and_a_half(rest[1:])
+        return Quantity("LENGTH", round((value + extra[0]) * _METRES[unit], 9), "m", taken + 1 + extra[1])
     if unit in UNITS and (unit not in "'\"" or digits):
         extra = _and_a_half(rest[1:]) if UNITS[unit] != "ft" else _and_inches(rest[1:])
         return Quantity("LENGTH", value + extra[0], UNITS[unit], taken + 1 + extra[1])
@@ -110,6 +119,8 @@ def _with_unit(words: Sequence[str], value: float, taken: int) -> Quantity | Non
 def _one_unit(words: Sequence[str]) -> Quantity | None:
     """ "a metre (and a half)", "a quarter", "a full turn", "a degree"."""
     unit = words[1]
+    if unit in _METRES:
+        return _with_unit(("1", *words[1:]), 1.0, 1)
     if unit in UNITS and unit not in ("m", "'", '"'):
         extra = _and_a_half(words[2:])
         return Quantity("LENGTH", 1 + extra[0], UNITS[unit], 2 + extra[1])
@@ -143,6 +154,8 @@ def _number(words: Sequence[str]) -> tuple[float, int] | None:
         return 6.0, 3
     if first == "half":
         return 0.5, 1
+    if first == "quarter" and tuple(words[1:2]) in (("turn",), ("rotation",), ("of",)):
+        return 0.25, 1
     if first in ("a", "one") and len(words) > 1:
         if words[1] in FRACTIONS and words[1] not in ("thirds", "quarters"):
             return FRACTIONS[words[1]], 2
@@ -164,6 +177,8 @@ def _number(words: Sequence[str]) -> tuple[float, int] | None:
 def _whole(words: Sequence[str]) -> tuple[float, int] | None:
     """Digits or number words without a fraction."""
     first = words[0]
+    if first in ("minus", "negative") and len(words) > 1 and (positive := _whole(words[1:])):
+        return -positive[0], positive[1] + 1
     if (first[0].isdigit() or (first[0] == "-" and len(first) > 1)) and not first[-1].isalpha():
         value = _digits(first)
         return None if value is None else (value, 1)

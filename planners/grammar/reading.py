@@ -186,6 +186,8 @@ class Reading:
             phrase = self.phrase(i)
             if phrase and phrase[0][0] == "THING":
                 return True
+            if self.texts[i] == "round" and self.nouny(i + 1):
+                return True
             step = color_at(self.texts, i) or match(lexicon.ATTRIBUTE_PHRASES, self.texts, i)
             number = quantities.read(self.texts[i:])
             if step and step[1] == 2 and self.texts[i] == "light" and not self.nouny(i + 2):
@@ -198,6 +200,14 @@ class Reading:
                 filler = match(lexicon.FILLER, self.texts, i)
                 return not phrase and not number and not filler and is_plain(self.texts[i])
         return False
+
+    def colored_noun(self, i: int) -> bool:
+        """Whether a colour stands at `i` with its noun behind it; "the sofa light blue" is no sofa light."""
+        found = color_at(self.texts, i)
+        if not found:
+            return False
+        shade = found[1] == 2 and self.texts[i] == "light"
+        return self.nouny(i + found[1]) if shade else self.nouny(i)
 
     def hue_follows(self, i: int) -> bool:
         i += self.texts[i : i + 1] in (("a",), ("an",))

@@ -19,13 +19,20 @@ from typing import Any
 
 from . import lexicon, quantities
 from .reading import NOUN_COLORS, Reading, color_at, compounds, is_plain, match, verb_classes
-from .words import Word
+from .words import Word, phrases
 
 _NOUNISH = frozenset({"NOUN", "ONE", "THING"})
 _BOUNDARIES = frozenset(".;!?\n")
 # "the smaller of the two" picks as a superlative does.
 _COMPARATIVES = {"bigger": "largest", "larger": "largest", "smaller": "smallest", "taller": "tallest",
                  "shorter": "shortest"}  # fmt: skip
+_COLORING = ("PAINT", "TINT", "GIVE", "MAKE", "WANT", "APPLY")
+# Verbs whose object "with the vase" can only describe; "move the cup with the plate" may mean both.
+_POINTING = ("DELETE", "SELECT", "HIDE", "ISOLATE", "FADE", "ADJUST", "ROTATE", "SCALE", "GROW")
+_ON_IT = phrases(
+    "on it, on top, on top of it, in it, inside, inside it, on them, standing on it, next to it, beside it, near it, on"
+)
+_OUTSIDE = phrases("out of here, out of the room, out of the scene, out of sight, out of my sight, out of there")
 _REPEATABLE = ("DELETE", "SELECT", "HIDE", "ISOLATE")
 MAX_NOUN_WORDS = 4
 
@@ -185,6 +192,18 @@ class Tagger:
         text, rest = self.texts[i], self.texts[i + 1 :]
         after = rest[0] if rest else ""
         verb = self.clause.verb
+        if (found := self._owned_or_not(i)) is not None or (found := self._around(i)) is not None:
+            return found
+        if text in ("left", "right") and after == "by" and quantities.read(rest[1:]):
+            return self._put("DIR", text, i, 1)
+        if text == "like" and after in ("the", "a", "an", "my", "that", "those") and verb in ("ADD", "WANT"):
+            return self._put("LIKE", None, i, 1)
+        if text == "out" and verb in ("TAKE", "MOVE") and (gone := match(_OUTSIDE, self.texts, i)):
+            return self._put("AWAY", None, i, gone[1])
+        if text in ("down", "over", "back", "up") and length == 1 and verb == "PUT" and self.read.preposition_at(i + 1):
+            return i + 1
+        if text in ("thing", "thingy", "thingie") and self._before == "NOUN" and verb not in ("ADD", "PUT"):
+            return i + 1
         if text in ("'s", "its", "their") and after:
             return self._owner(i)
         if text == "by" and verb in ("REPLACE", "SUBSTITUTE"):
@@ -195,7 +214,7 @@ class Tagger:
             return self._put("INTO", None, i, 1)
         if text == "from" and verb in ("CHANGE", "PAINT", "TURN") and self.read.hue_follows(i + 1):
             return self._put("FROMHUE", None, i, 1)
-        if text in ("in", "with") and verb in ("PAINT", "TINT", "GIVE", "MAKE") and self.read.hue_follows(i + 1):
+        if text in ("in", "with") and verb in _COLORING and self.read.hue_follows(i + 1):
             return i + 1 + (after in ("a", "an"))
         if text in ("on", "off") and not rest and verb == "TURN":
             return self._put("SWITCH", None, i, 1)
@@ -215,6 +234,30 @@ class Tagger:
             return i + 1
         if text == "more" and self._before == "NUMBER" and self.read.nouny(i + 1):
             return i + 1
+        return None
+
+    def _owned_or_not(self, i: int) -> int | None:
+        """ "with the vase on it", "without a lamp": what a thing carries or lacks."""
+        text, behind = self.texts[i], self.texts[i + 1 : i + 2]
+        held = any(t.type in ("HAVING", "LACKING") for t in self.clause.tags)
+        if held and (found := match(_ON_IT, self.texts, i)):
+            return self._put("ONIT", "next_to" if text in ("next", "beside", "near") else "below", i, found[1])
+        if text == "without" and not match(lexicon.INSIDE_PHRASES, self.texts, i) and self.read.object_follows(i + 1):
+            return self._put("LACKING", None, i, 1)
+        definite = behind in (("the",), ("my",)) or (behind in (("a",), ("an",)) and self.clause.verb in _POINTING)
+        if text in ("with", "holding", "carrying") and definite and self.clause.verb in (*_POINTING, "PAINT", "MAKE"):
+            return self._put("HAVING", None, i, 1)
+        return None
+
+    def _around(self, i: int) -> int | None:
+        """ "the chairs around the table" says where they are; "a round table" what it is."""
+        if self.texts[i] not in ("around", "round"):
+            return None
+        if self.texts[i] == "round" and self._before not in ("NOUN", "PRON") and self.read.nouny(i + 1):
+            return self._put("ADJ", None, i, 1)
+        turning = self.clause.verb in ("TURN", "ROTATE", "TURNROUND", "FLIP", "TILT")
+        if self._before in (*_NOUNISH, "AND") and self.read.object_follows(i + 1) and not turning:
+            return self._put("PREP", "next_to", i, 1)
         return None
 
     def _owner(self, i: int) -> int:
@@ -351,12 +394,7 @@ class Tagger:
         while j < len(self.texts) and self._continues_noun(j):
             j += 1
         kind = "NOUN" if j - i <= MAX_NOUN_WORDS else "UNKNOWN"
-        if (
-            kind == "NOUN"
-            and color_at(self.texts, j)
-            and self.read.nouny(j)
-            and self._before in ("DET", "COLOR", "SIZE")
-        ):
+        if kind == "NOUN" and self._before in ("DET", "COLOR", "SIZE", "ADJ") and self.read.colored_noun(j):
             kind = "ADJ"
         return self._put(kind, " ".join(self.texts[i:j]), i, j - i)
 

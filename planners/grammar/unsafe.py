@@ -1,0 +1,57 @@
+"""What a scene editor must not be asked to do: files, commands, secrets, other people's orders.
+
+Knows the words of such requests. Refuses to know objects: a folder on a desk or a server rack is furniture, so that a
+noun of computing alone is not enough unless nobody would edit it in a room.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+
+_CODE = r"""
+\brm\s+-?rf?\b | \bsudo\b | \bchmod\b | \bmkfs\b | \bos\.\w+\( | \bsubprocess\b | \b(?:eval|exec|system)\s?\(
+| \bimport\ os\b | \b(?:curl|wget|ssh|scp|powershell|cmd\.exe|bash\ -c|drop\ table)\b
+| \b(?:pip|apt(?:-get)?)\ install\b
+| ^\W*(?:please\ )?execute\b
+| \b(?:execute|run|launch|invoke)\b.*\b(?:commands?|scripts?|code|programs?|shell|bash|python)\b
+| \bopen\ (?:a|the|up\ a)\ (?:terminal|shell|command\ (?:prompt|line)|browser)\b | \bdownload\b | \bhack\b
+| \b(?:kill|terminate)\ (?:the\ |all\ |every\ )?process(?:es)?\b | \breboot\b | \bshut\s?down\b
+| \brestart\ the\ (?:computer|machine|server|system)\b
+| \b(?:format|wipe|erase|nuke|delete|destroy|encrypt)\b.*\b(?:disk|partition|registry|backups?|data\ ?base)\b
+"""
+# A file cabinet is furniture.
+_FILES = r"""
+\bfiles?\b(?!\ (?:cabinet|box|holder|rack|organi[sz]er|drawer|folder|tray|storage))
+| \b(?:home|root|system|working)\ (?:directory|folder)\b | \bdirector(?:y|ies)\b
+| \b(?:documents?|downloads?|desktop|user'?s?|pictures)\ (?:documents?\ )?folder\b | /etc/ | /home/ | ~/ | \bc:\\
+| \b(?:hard\ drive|hard\ disk|file\ ?system|malware|ransomware|database)\b
+"""
+_SECRETS = r"""
+\bpass(?:word|code|phrase)s?\b | \bcredentials?\b | \b(?:api|secret|private|access)\ (?:keys?|tokens?)\b
+| \bcredit\ card\b | \bbank\ account\b | \benvironment\ variables?\b | \bsystem\ prompt\b
+| [$€£]\s?\d | \b(?:transfer|wire|send)\b.*\b(?:money|dollars|euros|bitcoin|funds)\b
+| \b(?:upload|e-?mail|exfiltrate|tweet|leak)\b | \bsend\ me\ the\ contents?\b | \w@\w+\.\w | \bhttps?://
+| \b(?:send|post|share|forward|publish|copy|transmit|move)\b.*
+  \b(?:server|internet|the\ web|online|twitter|facebook|instagram|reddit|cloud|ftp)\b
+"""
+# Orders against the planner itself.
+_ORDERS = r"""
+\b(?:ignore|disregard|forget|override|bypass|disobey|skip)\b.{0,40}
+  \b(?:instructions?|rules?|prompts?|guidelines?|restrictions?|safety|polic(?:y|ies)|commands?)\b
+| \b(?:previous|prior|your|earlier|above)\ instructions\b | \breveal\ your\b | \bjailbreak\b | \byou\ are\ now\b
+| \bdeveloper\ mode\b
+"""
+
+
+@cache
+def _patterns() -> tuple[re.Pattern[str], ...]:
+    return tuple(re.compile(p, re.IGNORECASE | re.VERBOSE) for p in (_CODE, _FILES, _SECRETS, _ORDERS))
+
+
+def unsafe_words(cleaned: str) -> str:
+    """The words that make an instruction one about the computer or its user; "" if it is about things in a room."""
+    for pattern in _patterns():
+        if found := pattern.search(cleaned):
+            return found.group()
+    return ""
