@@ -43,10 +43,9 @@ def viewer_stand(camera: Camera, up: F64, scale: float) -> Stand:
     return Stand(right, np.cross(up, right), up, camera.position, scale)
 
 
-def object_stand(anchor: Group, viewer: Stand) -> Stand:
-    """The anchor's own frame: it faces along -y of its box, so its right hand is at its -x."""
-    right, forward = -np.array(anchor.box.axes[0]), -np.array(anchor.box.axes[1])
-    return Stand(right, forward, viewer.up, np.array(anchor.box.center), viewer.scale)
+def object_stand(anchor: Group, front: F64, viewer: Stand) -> Stand:
+    """The anchor's own frame: in front is where `front` (`[3]`, level, unit) points, right is its own right hand."""
+    return Stand(np.cross(front, viewer.up), front, viewer.up, np.array(anchor.box.center), viewer.scale)
 
 
 def score(name: str, candidate: Group, anchors: Sequence[Group], stand: Stand) -> float:

@@ -20,13 +20,14 @@ from ..scene import Scene
 from . import relations
 from .calibration import doubt
 from .colored import PARTS, at_home, by_color
+from .facing import Facing, facing_of
 from .field import Group, LanguageField
 from .measure import box_of
 from .members import Members, difference, members_of, union
 from .picking import by_distance, pick
 from .query import Query, Relation
 from .selection import Candidate, Selection, nothing
-from .terms import ALL, FLOATERS, ORDERING, STRUCTURE, Scored, alive, candidate_of, is_name, related, scored
+from .terms import ALL, FLOATERS, ORDERING, STRUCTURE, Anchor, Scored, alive, candidate_of, is_name, related, scored
 
 if TYPE_CHECKING:
     from .encoders import Encoder
@@ -119,9 +120,11 @@ class Resolver:
         if query.text in FLOATERS and not query.colors:
             return self._floaters(query)
         try:
-            return self._described(query, out)
+            found = self._described(query, out)
+            told = self._frames_told(query)
         except _Unresolved as anchor:
             return replace(anchor.selection, query=query)
+        return replace(found, reason="; ".join(r for r in (found.reason, told) if r)) if told else found
 
     def _described(self, query: Query, out: frozenset[int] = frozenset()) -> Selection:
         """A query that says what a thing is like."""
@@ -140,7 +143,8 @@ class Resolver:
             return nothing(query, self._why_absent(query, rank, near), near)
         order = next((r for r in query.relations if r.name in ORDERING), None)
         if order is not None:
-            choice = by_distance(query, rank, self.anchors(order), order.name == "nearest_to")
+            near_what = [a.group for a in self.anchors(order)]
+            choice = by_distance(query, rank, near_what, order.name == "nearest_to")
         else:
             choice = pick(query, rank, self.stand)
         if choice.refusal is not None:
@@ -175,27 +179,52 @@ class Resolver:
     def scored(self, query: Query) -> Scored:
         """The candidates of a query and their terms, without its set algebra."""
         placed = [(r, self.anchors(r)) for r in query.relations if r.name not in ORDERING]
-        metres = self.scene.frame.metres_per_unit
-        return scored(query, self.field, self.encoder, metres, placed, self.stand)
+        return scored(query, self.field, self.encoder, self.scene.frame.metres_per_unit, placed)
 
-    def anchors(self, relation: Relation) -> list[Group]:
-        """What a relation relates to.
+    def anchors(self, relation: Relation) -> list[Anchor]:
+        """What a relation relates to, each with the stand it is told from.
 
         Raises:
             _Unresolved: one of them is absent or ambiguous.
         """
-        anchors: list[Group] = []
+        groups: list[Group] = []
         for query in relation.anchors:
             found = self.select(query)
             if found.verdict != "found":
                 raise _Unresolved(found)
             # Found by colour alone, it has no group.
-            anchors.extend(
-                [self.field.groups[i] for i in found.groups] or [self._stand_in(found.mask(self.scene.cloud))]
-            )
-        if relation.name == "between" and len(anchors) < 2:
+            own = [self.field.groups[i] for i in found.groups]
+            groups.extend(own or [self._stand_in(found.mask(self.scene.cloud))])
+        if relation.name == "between" and len(groups) < 2:
             raise _Unresolved(nothing(relation.anchors[0], "'between' needs two things"))
-        return anchors
+        return [Anchor(g, self._stand_at(g, relation)) for g in groups]
+
+    def _stand_at(self, group: Group, relation: Relation) -> relations.Stand:
+        """The viewer's, or for a relation in the anchor's own frame the anchor's where it faces somewhere."""
+        front = self.facing(group).front if relation.frame == "object" else None
+        return self.stand if front is None else relations.object_stand(group, front, self.stand)
+
+    def facing(self, group: Group) -> Facing:
+        """Which way a group faces."""
+        if group.id < 0:
+            return Facing(None, "nothing")
+        walls = [g for g in alive(self.field, "structure") if g.label == "wall"]
+        rows = self.members.rows(self.field.leaves(group.id))
+        return facing_of(self.scene.cloud, rows, group, walls, self.field.typical_size)
+
+    def _frames_told(self, query: Query) -> str:
+        """How the front of each anchor was told where a relation is in its own frame; "" where none is."""
+        told = []
+        for relation in query.relations:
+            if relation.frame == "object" and relation.name in relations.SIDEWAYS:
+                for anchor in self.anchors(relation):
+                    by, name = self.facing(anchor.group).by, relation.anchors[0].describe()
+                    told.append({
+                        "shape": f"the front of {name} is told by its shape",
+                        "wall": f"the front of {name} is taken to be away from the wall it stands at",
+                        "nothing": f"which way {name} faces cannot be told, so the side is as you see it",
+                    }[by])  # fmt: skip
+        return "; ".join(dict.fromkeys(told))
 
     # -- colour where words fail ------------------------------------------------------------------------------------
 
@@ -212,7 +241,7 @@ class Resolver:
     def _stands(self, query: Query, thing: Group) -> bool:
         """Whether something that is no row of the table stands in every asked relation."""
         return all(
-            related(r, [thing], self.field, self.anchors(r), self.stand)[0] >= relations.HOLDS
+            related(r, [thing], self.field, self.anchors(r))[0] >= relations.HOLDS
             for r in query.relations
             if r.name not in ORDERING
         )

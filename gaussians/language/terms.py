@@ -42,6 +42,14 @@ OWN_COLOR = 0.5  # colour score from which no other basic colour is nearer
 
 
 @dataclass(frozen=True, eq=False)
+class Anchor:
+    """What a relation relates to, and where one stands when saying so."""
+
+    group: Group
+    stand: relations.Stand
+
+
+@dataclass(frozen=True, eq=False)
 class Scored:
     """Candidates of one query with their terms.
 
@@ -159,6 +167,18 @@ def likeness(field: LanguageField, encoder: Encoder | None, text: str, metres_pe
     return field.answers[key]
 
 
+def paintedness(field: LanguageField, word: str) -> F64:
+    """`[G]` how well every group answers to a colour word; worked out once a word and table.
+
+    Raises:
+        UserError: unknown colour.
+    """
+    key = ("color", word)
+    if key not in field.answers:
+        field.answers[key] = attributes.group_color_scores(field, word)
+    return field.answers[key]
+
+
 def kinds_meant(encoder: Encoder | None, text: str) -> frozenset[str]:
     """Names the encoder would give to what is asked for; empty where it has none, as for an open vocabulary."""
     return _covered(encoder, text) if encoder is not None and is_name(text) else frozenset()  # type: ignore[arg-type]
@@ -174,15 +194,13 @@ def scored(
     field: LanguageField,
     encoder: Encoder | None,
     metres_per_unit: float | None,
-    placed: Sequence[tuple[Relation, Sequence[Group]]],
-    stand: relations.Stand,
+    placed: Sequence[tuple[Relation, Sequence[Anchor]]],
 ) -> Scored:
     """Every candidate of a query with its terms.
 
     Args:
         metres_per_unit: of the scene, None if unknown.
-        placed: the query's relations that are true or false, each with the groups it relates to.
-        stand: whose left and right are meant.
+        placed: the query's relations that are true or false, each with what it relates to.
 
     Raises:
         BackendError: the name needs an encoder that is not there.
@@ -201,15 +219,15 @@ def scored(
         meant = kinds_meant(encoder, query.text)
         own &= np.array([g.label in meant for g in groups], dtype=bool) if meant else True
     for word in query.colors:
-        terms[f"color {word}"] = attributes.group_color_scores(field, word)[rows]
+        terms[f"color {word}"] = paintedness(field, word)[rows]
         limits[f"color {word}"] = attributes.COLOR_HOLDS
         own &= terms[f"color {word}"] >= OWN_COLOR
     for word in query.not_colors:
-        terms[f"not {word}"] = 1 - attributes.group_color_scores(field, word)[rows]
+        terms[f"not {word}"] = 1 - paintedness(field, word)[rows]
         limits[f"not {word}"] = 1 - attributes.COLOR_HOLDS
     for relation, anchors in placed:
         name = relation.name if relation.name not in terms else f"{relation.name} {len(terms)}"
-        terms[name], limits[name] = related(relation, groups, field, anchors, stand), relations.HOLDS
+        terms[name], limits[name] = related(relation, groups, field, anchors), relations.HOLDS
     if query.size is not None:
         before = Scored(groups, dict(terms), limits, own)
         fit = np.flatnonzero(before.holds & own) if (before.holds & own).any() else np.flatnonzero(before.holds)
@@ -219,22 +237,18 @@ def scored(
     return Scored(groups, terms, limits, own)
 
 
-def related(
-    relation: Relation, groups: Sequence[Group], field: LanguageField, anchors: Sequence[Group], stand: relations.Stand
-) -> F64:
+def related(relation: Relation, groups: Sequence[Group], field: LanguageField, anchors: Sequence[Anchor]) -> F64:
     """`[C]` how well each group stands in a relation to the anchors, to the one it fits best; 0 for the anchors."""
-    tabled = all(g.id >= 0 for g in groups)
-    boxes = field.boxes.at([g.id for g in groups]) if tabled else Boxes.of([g.box for g in groups])
-    ids = {a.id for a in anchors if a.id >= 0}
-    itself = np.array([g.id in ids for g in groups], dtype=bool)
+    ids = {a.group.id for a in anchors if a.group.id >= 0}
     if relation.name == "part_of":
         return np.array([float(g.parent >= 0 and g.parent in ids) for g in groups])
+    tabled = all(g.id >= 0 for g in groups)
+    boxes = field.boxes.at([g.id for g in groups]) if tabled else Boxes.of([g.box for g in groups])
     wide = np.array([g.level == "structure" for g in groups], dtype=bool)
     if relation.name == "between":
-        best = relations.scores("between", boxes, anchors, stand)
+        best = relations.scores("between", boxes, [a.group for a in anchors], anchors[0].stand)
     else:
         best = np.zeros(len(groups))
         for anchor in anchors:
-            seen = stand if relation.frame == "viewer" else relations.object_stand(anchor, stand)
-            best = np.maximum(best, relations.scores(relation.name, boxes, [anchor], seen, wide))
-    return np.where(itself, 0.0, best)
+            best = np.maximum(best, relations.scores(relation.name, boxes, [anchor.group], anchor.stand, wide))
+    return np.where(np.array([g.id in ids for g in groups], dtype=bool), 0.0, best)

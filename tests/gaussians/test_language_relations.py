@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -193,12 +194,24 @@ def test_a_camera_lying_on_its_side_still_looks_forward(up: Vec3) -> None:
 def test_an_objects_own_sides_do_not_depend_on_the_viewer() -> None:
     sofa, lamp, rug = at((0, 0, 0.4), (2, 0.8, 0.8)), at((-2, 0, 0.4)), at((0, -2, 0.4))
     for camera in (eye(), eye((0, 6, 1.6)), eye((6, 1, 1.6))):
-        stand = object_stand(sofa, viewer_stand(camera, UP, 0.5))
+        stand = object_stand(sofa, np.array([0.0, -1.0, 0.0]), viewer_stand(camera, UP, 0.5))
         # it faces -y; who sits on it has -x at the right hand
         assert score("right_of", lamp, [sofa], stand) == pytest.approx(1)
         assert score("left_of", lamp, [sofa], stand) == 0
         assert score("in_front_of", rug, [sofa], stand) == pytest.approx(1)
         assert score("behind", rug, [sofa], stand) == 0
+
+
+def test_a_wall_is_where_it_is_nearest() -> None:
+    sofa = at((3, 3, 0.4), (2, 0.9, 0.8))
+    behind, beside = wall_at((0, 4, 1.25), (8, 0.1, 2.5)), wall_at((4.5, 0, 1.25), (0.1, 8, 2.5))
+    assert holds("behind", behind, sofa) and not holds("behind", beside, sofa)
+    assert holds("right_of", beside, sofa) and not holds("right_of", behind, sofa)
+    assert holds("in_front_of", sofa, behind) and holds("left_of", sofa, beside)
+
+
+def wall_at(center: Vec3, size: Vec3) -> Group:
+    return replace(at(center, size), level="structure", label="wall")
 
 
 # -- what people say -------------------------------------------------------------------------------------------------

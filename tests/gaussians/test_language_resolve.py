@@ -336,9 +336,22 @@ def test_relations_choose_and_depend_on_the_viewer() -> None:
 
 
 def test_relations_in_an_objects_own_frame_do_not_depend_on_the_viewer() -> None:
-    # the sofa faces -y, so its own right hand is at -x
-    query = named("chair", pick="all", **by("in_front_of", named("sofa"), frame="object"))
-    assert set(ask(query).groups) == set(ask(query, viewer=BACK).groups) >= {BLUE}
+    # the sofa stands at the wall in the north, so it faces -y and its own left hand is at +x
+    scene = scene_of((*ROOM[:SOFA], replace(ROOM[SOFA], center=(0, 3.5, 0.4)), *ROOM[SOFA + 1 :]))
+    front = named("chair", "blue", **by("in_front_of", named("sofa"), frame="object"))
+    left = named("lamp", **by("left_of", named("sofa"), frame="object"))
+    behind = named("chair", pick="all", **by("behind", named("sofa"), frame="object"))
+    for viewer in (EYE, BACK):
+        assert found(front, BLUE, scene=scene, viewer=viewer) and found(left, LAMP, scene=scene, viewer=viewer)
+        assert "away from the wall" in ask(front, scene, viewer).reason
+        assert ask(behind, scene, viewer).verdict == "absent"
+
+
+def test_a_thing_that_faces_nowhere_is_seen_from_the_viewer_and_that_is_said() -> None:
+    front = named("chair", "blue", **by("in_front_of", named("sofa"), frame="object"))
+    answer = ask(front)
+    assert answer.groups == (BLUE,) and "cannot be told" in answer.reason
+    assert ask(front, viewer=BACK).verdict == "absent"
 
 
 def test_on_and_under() -> None:
