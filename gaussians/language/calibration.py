@@ -149,12 +149,12 @@ def probability(
         return np.zeros(len(units))
     names, anchors = _anchors(encoder)  # type: ignore[arg-type]  # identity is what it is cached by
     covered = encoder.vocabulary.covered(text)
-    asked = encoder.encode_text([text]).astype(np.float64)
+    asked = _phrase(encoder, text)  # type: ignore[arg-type]  # likewise
     rivals = np.array([name not in covered for name in names])
     scale = encoder.calibration.scale
     evidence = _size_evidence(encoder, names, sizes, len(units))
     own_size = evidence[:, ~rivals].max(axis=1) if covered else evidence.max(axis=1)
-    own = scale * (units @ asked[0]) + own_size
+    own = scale * (units @ asked) + own_size
     against = (scale * (units @ anchors.T) + evidence)[:, rivals]
     if encoder.calibration.rivals is not None and rivals.any():
         against = against + np.log(encoder.calibration.rivals / rivals.sum())
@@ -196,6 +196,12 @@ def _anchors(encoder: Encoder) -> tuple[tuple[str, ...], Array]:
     """Names of kinds and non-objects, and their text vectors `[K + negatives, D]`."""
     names = (*encoder.vocabulary.names, *encoder.vocabulary.negatives)
     return names, encoder.encode_text(list(names)).astype(np.float64)
+
+
+@lru_cache(maxsize=1024)
+def _phrase(encoder: Encoder, text: str) -> Array:
+    """Text vector `[D]` of a phrase that was asked; people ask for the same things again and again."""
+    return encoder.encode_text([text]).astype(np.float64)[0]
 
 
 def _size_evidence(encoder: Encoder, names: tuple[str, ...], sizes: NDArray[np.floating] | None, count: int) -> Array:

@@ -1,4 +1,4 @@
-"""Pictures of one group at a time, alone before neutral grey, and their mean vector.
+"""Pictures of one group at a time, alone before neutral grey or on its own background, and their mean vector.
 
 Knows clouds, cameras, the renderer and an encoder. Refuses to know how the group was found.
 """
@@ -14,10 +14,10 @@ import torch
 from numpy.typing import NDArray
 
 from ..camera import Camera
-from ..cloud import GaussianCloud
+from ..cloud import GaussianCloud, concat
 from ..render import render
 from ..scene import Frame
-from .encoders import Encoder
+from .encoders import Encoder, cache
 from .encoders.framing import crop
 
 F64 = NDArray[np.float64]
@@ -27,7 +27,8 @@ ANGLES = ((-45.0, 20.0), (0.0, 35.0), (45.0, 15.0), (150.0, 30.0))  # azimuth fr
 FOV = 30.0  # degrees: long enough a lens that near and far parts look alike in size
 OVERSAMPLE = 1.5  # pictures are drawn this much larger than the encoder's input, then cut and resampled
 MOST_GAUSSIANS = 6000  # in one picture: more cannot be told apart at the encoder's resolution
-BATCH = 64
+BATCH = 256  # pictures held before they are encoded
+FRONT = 0.02  # share of a thing's Gaussians that may lie nearer than what counts as its front
 
 
 def open_side(center: F64, middle: F64, up: F64) -> F64:
@@ -58,8 +59,14 @@ def cameras_around(points: F64, frame: Frame, middle: F64, pixels: int, count: i
     return cameras
 
 
-def portraits(cloud: GaussianCloud, frame: Frame, middle: F64, size: int, count: int) -> list[NDArray[np.uint8]]:
-    """Encoder pictures `[size, size, 3]` of a small cloud; fewer than `count` where nothing was to be seen."""
+def portraits(
+    cloud: GaussianCloud, frame: Frame, middle: F64, size: int, count: int, around: GaussianCloud | None = None
+) -> list[NDArray[np.uint8]]:
+    """Encoder pictures `[size, size, 3]` of a small cloud; fewer than `count` where nothing was to be seen.
+
+    With `around`, the scene it is part of, each view is followed by one of the same thing on its own background.
+    """
+    others = None if around is None else around[~torch.isin(around.ids, cloud.ids)]
     if len(cloud) > MOST_GAUSSIANS:
         keep = torch.linspace(0, len(cloud) - 1, MOST_GAUSSIANS).long()
         grown = math.sqrt(len(cloud) / MOST_GAUSSIANS)  # the fewer must cover what all covered
@@ -72,7 +79,18 @@ def portraits(cloud: GaussianCloud, frame: Frame, middle: F64, size: int, count:
         seen = render(cloud, camera)
         if (picture := crop(seen.rgb, seen.alpha, size)) is not None:
             pictures.append(picture)
+            if others is not None:
+                whole = render(concat([cloud, _behind(others, cloud, camera)]), camera)
+                placed = crop(whole.rgb, whole.alpha, size, outline=seen.alpha)
+                pictures.append(picture if placed is None else placed)
     return pictures
+
+
+def _behind(others: GaussianCloud, cloud: GaussianCloud, camera: Camera) -> GaussianCloud:
+    """What of a scene may stand in the picture of a thing: nothing that would hide it from a camera of our choice."""
+    forward = torch.tensor(camera.forward, dtype=torch.float32)
+    front = (cloud.means @ forward).quantile(FRONT)
+    return others[others.means @ forward > front]
 
 
 @contextmanager
@@ -93,22 +111,29 @@ def mean_vectors(
     middle: F64,
     count: int = len(ANGLES),
     progress: Callable[[float], None] = lambda share: None,
+    around: GaussianCloud | None = None,
 ) -> F32:
-    """`[len(clouds), D]` unit mean image vector of each cloud over `count` views; zero where nothing was seen."""
+    """`[len(clouds), D]` unit mean image vector of each cloud over `count` views; zero where nothing was seen.
+
+    Args:
+        around: the scene that the clouds are rows of. With it, encoders that learnt from photographs
+            (`on_background`) are shown each view twice, alone and on the thing's own background.
+    """
     vectors = np.zeros((len(clouds), encoder.dim), np.float32)
     if not encoder.image_size:  # text vectors alone: nothing looks at pictures
         return vectors
+    scene = around if getattr(encoder, "on_background", False) else None
     images: list[NDArray[np.uint8]] = []
     owners: list[int] = []
 
     def encode() -> None:
         if images:
-            np.add.at(vectors, owners, encoder.encode_images(np.stack(images)))
+            np.add.at(vectors, owners, cache.images(encoder, np.stack(images)))
             images.clear()
             owners.clear()
 
     for i, cloud in enumerate(clouds):
-        taken = portraits(cloud, frame, middle, encoder.image_size, count) if len(cloud) else []
+        taken = portraits(cloud, frame, middle, encoder.image_size, count, scene) if len(cloud) else []
         images.extend(taken)
         owners.extend([i] * len(taken))
         if len(images) >= BATCH:

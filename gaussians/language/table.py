@@ -38,7 +38,7 @@ def with_table(
     boxes = [box_of(c, scene.frame) for c in clouds]
     middle = cloud.means[:: max(1, len(cloud) // 50_000)].median(dim=0).values.double().numpy()
     pictured = [c if t.level == "object" and t.vector is None else c[:0] for c, t in zip(clouds, things, strict=True)]
-    vectors = mean_vectors(encoder, pictured, scene.frame, middle)
+    vectors = mean_vectors(encoder, pictured, scene.frame, middle, around=scene.cloud)
     for row, thing in zip(vectors, things, strict=True):
         if thing.vector is not None:
             row[:] = thing.vector

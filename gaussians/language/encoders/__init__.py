@@ -40,6 +40,9 @@ class Encoder(Protocol):
         image_size: side in pixels of the square pictures it likes best; others are resampled.
         vocabulary: names to propose as labels, and what competes with a query.
         calibration: how a similarity becomes a probability.
+
+    One that cannot see, but holds text vectors only, has an `image_size` of 0. One that learnt from photographs may
+    have `on_background = True`, to be shown things on their own background as well as alone.
     """
 
     @property

@@ -26,7 +26,9 @@ def silhouette_box(alpha: Tensor, level: float = LEVEL) -> tuple[int, int, int, 
     return int(rows[0]), int(columns[0]), int(rows[-1]) + 1, int(columns[-1]) + 1
 
 
-def square_rgba(rgb: Tensor, alpha: Tensor, size: int, margin: float = MARGIN) -> Tensor | None:
+def square_rgba(
+    rgb: Tensor, alpha: Tensor, size: int, margin: float = MARGIN, outline: Tensor | None = None
+) -> Tensor | None:
     """Cut a render to its silhouette's square and resample it.
 
     Args:
@@ -34,11 +36,12 @@ def square_rgba(rgb: Tensor, alpha: Tensor, size: int, margin: float = MARGIN) -
         alpha: `[H, W]` float in [0, 1].
         size: side of the result in pixels.
         margin: free border as a share of the silhouette's longer side.
+        outline: `[H, W]` alpha of the thing alone, where `alpha` shows its background too.
 
     Returns:
         `[4, size, size]` float32, premultiplied RGB and alpha, or None if the render is empty.
     """
-    box = silhouette_box(alpha)
+    box = silhouette_box(alpha if outline is None else outline)
     if box is None:
         return None
     top, left, bottom, right = box
@@ -64,7 +67,11 @@ def over_neutral(rgba: Tensor, background: tuple[float, float, float] = NEUTRAL)
     return pixels
 
 
-def crop(rgb: Tensor, alpha: Tensor, size: int) -> NDArray[np.uint8] | None:
-    """The encoder's picture `[size, size, 3]` uint8 of a thing rendered alone over black; None if nothing was drawn."""
-    rgba = square_rgba(rgb.detach().cpu(), alpha.detach().cpu(), size)
+def crop(rgb: Tensor, alpha: Tensor, size: int, outline: Tensor | None = None) -> NDArray[np.uint8] | None:
+    """The encoder's picture `[size, size, 3]` uint8 of a thing rendered over black; None if nothing was drawn.
+
+    Args:
+        outline: as for `square_rgba`, of a thing that is not drawn alone.
+    """
+    rgba = square_rgba(rgb.detach().cpu(), alpha.detach().cpu(), size, outline=outline)
     return None if rgba is None else over_neutral(rgba)

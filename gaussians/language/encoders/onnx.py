@@ -84,7 +84,7 @@ class Onnx:
     folder: Path
     image: Path
     text: Path
-    crops: tuple[str, ...] = ("alone", "in place")
+    on_background: bool = True  # it learnt from photographs, see `portraits.mean_vectors`
 
     @cached_property
     def fingerprint(self) -> str:

@@ -60,6 +60,7 @@ class OpenClip:
     mean: tuple[float, float, float]
     std: tuple[float, float, float]
     name: str
+    on_background: bool = True  # it learnt from photographs, see `portraits.mean_vectors`
 
     @cached_property
     def fingerprint(self) -> str:

@@ -69,7 +69,6 @@ class Vectors:
     vocabulary: Vocabulary
     rows: NDArray[np.float32]
     calibration: Calibration
-    crops: tuple[str, ...] = ()  # no picture is of use: there is no image tower
 
     @cached_property
     def fingerprint(self) -> str:
@@ -83,7 +82,7 @@ class Vectors:
 
     @property
     def image_size(self) -> int:
-        return 0
+        return 0  # there is no image tower
 
     def encode_text(self, texts: list[str]) -> NDArray[np.float32]:
         """As in `Encoder`; a phrase that means several names gets the mean of their vectors.
