@@ -21,11 +21,13 @@ F64 = NDArray[np.float64]
 
 COLOR_SPREAD = 9.0  # how far (naming space) one colour word reaches before its neighbours take over
 COLOR_LIMIT = 36.0  # farther than this it is not that colour, whatever the other names are
+NEUTRAL = 9.0  # chroma below which a colour word means black, gray or white
 DISTINCT = 9.0  # colour words closer than this to the asked one do not compete with it
 COLOR_HOLDS = 0.3  # smallest score at which a colour word counts as true: in 24 rooms 95 % of things answer to their
 # clear colour and 0.3 % to a clearly different one; at 0.4 it is 90 % and 0.3 %
 PART_DISCOUNT = 0.9  # the whole thing's colour comes before that of one of its parts
 PART_SHARE = 0.25  # a part this large may give its colour to the object ("the white lamp" by its shade)
+HUE_SHARE = 0.5  # of all the chroma of a thing, from which a colour is its hue ("the red bicycle", black tyres and all)
 
 
 def color_scores(word: str, lab: NDArray[np.floating]) -> F64:
@@ -66,6 +68,24 @@ def group_color_scores(field: LanguageField, word: str) -> F64:
             if field.groups[part].count >= PART_SHARE * max(field.groups[owner].count, 1):
                 best[owner] = max(best[owner], PART_DISCOUNT * own[part])
     return best
+
+
+def hue_shares(field: LanguageField, word: str) -> F64:
+    """`[G]` how much of all the chroma of a group's parts, weighted by their counts, is of parts that answer to a
+    colour word: black tyres and white spokes have none to speak of. Zero for black, gray and white.
+
+    Raises:
+        UserError: unknown colour.
+    """
+    shares = np.zeros(len(field.groups))
+    if float(np.linalg.norm(rgb_to_lab(torch.tensor(parse(word), dtype=torch.float64))[1:])) < NEUTRAL:
+        return shares
+    fits = color_scores(word, field.labs) >= COLOR_HOLDS
+    chroma = np.linalg.norm(field.labs[:, 1:], axis=1) * np.array([g.count for g in field.groups])
+    for group in field.groups:
+        parts = list(field.parts.get(group.id, (group.id,)))
+        shares[group.id] = chroma[parts][fits[parts]].sum() / max(float(chroma[parts].sum()), 1e-9)
+    return shares
 
 
 def extent(group: Group, measure: str) -> float:

@@ -15,12 +15,13 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from torch import Tensor
 
+from ..cloud import NO_GROUP
 from ..scene import Scene
 from . import attributes
 from .field import LanguageField
 from .patches import Patch, patches
 from .query import Query
-from .selection import Candidate, Selection
+from .selection import Candidate, Selection, nothing
 from .surface import MIN_OPACITY, base_lab
 
 PARTS = frozenset({"part", "piece", "bit", "area", "region", "patch", "spot"})
@@ -29,6 +30,7 @@ PART_TAKEN = 0.25  # of a part: a place that holds this much of it takes it whol
 DARK = 28.0  # Lab lightness below which a Gaussian among coloured ones is their shadow
 NEIGHBOURS = 16
 AMONG = 0.45  # share of its neighbours that must have been chosen
+HOME = 0.7  # of a place: an object that holds this much of it is what the place belongs to
 RIVAL = 0.4  # a second place of the colour with at least this share of the first's weight is a rival
 
 
@@ -44,8 +46,7 @@ def by_color(scene: Scene, field: LanguageField, query: Query, stands: Callable[
     Raises:
         UserError: a colour word is unknown.
     """
-    simple = query.size is None and query.count is None and not query.not_colors
-    if query.pick not in ("one", "any", "all") or not simple or not query.text:
+    if not _simple(query):
         return None
     generic = query.text in PARTS
     barred = _barred(field, named=not generic and at_home(field))
@@ -62,6 +63,45 @@ def by_color(scene: Scene, field: LanguageField, query: Query, stands: Callable[
     chosen = places if query.pick == "all" else places[:1]
     reason = f"{doubtful}; chosen by its colour alone" if doubtful else ""
     return replace(_taken(scene, field, query, chosen, barred), reason=reason)
+
+
+def by_hue(
+    scene: Scene, field: LanguageField, query: Query, stands: Callable[[Tensor], bool], named: frozenset[int]
+) -> Selection | None:
+    """Those of the `named` objects, whole, that have a place of the query's colours which is their hue: "the red
+    bicycle" by its frame, though tyres and saddle make most of it black. None where there is none.
+
+    Raises:
+        UserError: a colour word is unknown.
+    """
+    if not _simple(query) or not named:
+        return None
+    leaves = sorted({leaf for g in named for leaf in field.leaves(g)})
+    own = torch.isin(scene.cloud.group, torch.tensor(leaves, dtype=torch.int32)).numpy()
+    places = [p for p in patches(scene.cloud, query.colors, own) if stands(torch.from_numpy(p.rows))]
+    first: dict[int, Patch] = {}
+    for place in places:
+        home = _home(scene, field, query, place.rows, frozenset())
+        if home in named and place.weight > RIVAL * places[0].weight:
+            first.setdefault(home, place)
+    color = query.colors[0]
+    told = tuple(
+        Candidate(g, field.groups[g].label, color, p.center, p.size, p.score, {f"color {color}": p.score})
+        for g, p in first.items()
+    )
+    if not told or (query.pick == "one" and len(told) > 1):
+        reason = f"{query.describe()}: {len(told)} things match; say which one, or 'all'"
+        return replace(nothing(query, reason, told), verdict="ambiguous") if told else None
+    chosen = told if query.pick == "all" else told[:1]
+    leaves = sorted({leaf for c in chosen for leaf in field.leaves(c.group)})
+    ids = scene.cloud.ids[torch.from_numpy(np.isin(scene.cloud.group.numpy(), leaves))].sort().values
+    return Selection(query, "found", ids, tuple(c.group for c in chosen), chosen, f"{color} in hue, not as a whole")
+
+
+def _simple(query: Query) -> bool:
+    """Whether colour can answer at all: no sizes, counts and orders."""
+    simple = query.size is None and query.count is None and not query.not_colors
+    return query.pick in ("one", "any", "all") and simple and bool(query.text)
 
 
 def at_home(field: LanguageField) -> bool:
@@ -87,14 +127,54 @@ def _barred(field: LanguageField, named: bool) -> frozenset[int]:
 def _taken(
     scene: Scene, field: LanguageField, query: Query, places: Sequence[Patch], barred: frozenset[int]
 ) -> Selection:
-    """A found selection of the places, with the whole parts that they stand for."""
+    """A found selection of the places: of each the thing that has the colour by it, or what else it stands for."""
     color = query.colors[0]
-    rows = _with_whole_parts(scene, field, query, np.unique(np.concatenate([p.rows for p in places])), barred)
-    rows = _with_shadows(scene, rows, barred)
     candidates = tuple(
         Candidate(-1, "region", color, p.center, p.size, p.score, {f"color {color}": p.score}) for p in places[:6]
     )
+    whole, loose = [], []
+    for place in places:
+        home = None if query.text in PARTS else _home(scene, field, query, place.rows, barred)
+        if home is None:
+            loose.append(place.rows)
+        else:
+            whole.append(_of_color(scene, field, query, home, place.rows))
+    if loose:
+        rows = _with_whole_parts(scene, field, query, np.unique(np.concatenate(loose)), barred)
+        whole.append(_with_shadows(scene, rows, barred))
+    rows = np.unique(np.concatenate(whole))
     return Selection(query, "found", scene.cloud.ids[torch.from_numpy(rows)].sort().values, (), candidates)
+
+
+def _home(
+    scene: Scene, field: LanguageField, query: Query, rows: NDArray[np.int64], barred: frozenset[int]
+) -> int | None:
+    """The object that most of a place lies in, if the object's hue is the colour asked for."""
+    column = scene.cloud.group.numpy()[rows]
+    of = np.array([g.parent if g.parent >= 0 else g.id for g in field.groups] + [NO_GROUP])[column]
+    homes, counts = np.unique(of[of >= 0], return_counts=True)
+    if not len(homes) or counts.max() < HOME * len(rows):
+        return None
+    home = int(homes[counts.argmax()])
+    if field.groups[home].level != "object" or barred & set(field.leaves(home)):
+        return None
+    hue = min(float(attributes.hue_shares(field, word)[home]) for word in query.colors)
+    return home if hue >= attributes.HUE_SHARE else None
+
+
+def _of_color(
+    scene: Scene, field: LanguageField, query: Query, home: int, rows: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    """The rows, and the parts of their object that have the colour or are too dark to have any: trained scenes paint
+    folds and threads with nearly black Gaussians between coloured ones. What has a colour of its own is left out."""
+    kept = [
+        leaf
+        for leaf in field.leaves(home)
+        if field.groups[leaf].lab[0] < DARK
+        or min(float(attributes.color_scores(w, np.array(field.groups[leaf].lab))) for w in query.colors)
+        >= attributes.COLOR_HOLDS
+    ]
+    return np.union1d(rows, np.flatnonzero(np.isin(scene.cloud.group.numpy(), kept)))
 
 
 def _with_shadows(scene: Scene, rows: NDArray[np.int64], barred: frozenset[int]) -> NDArray[np.int64]:

@@ -19,7 +19,7 @@ from ..errors import BackendError
 from ..scene import Scene
 from . import relations
 from .calibration import doubt
-from .colored import PARTS, at_home, by_color
+from .colored import PARTS, at_home, by_color, by_hue
 from .facing import Facing, facing_of
 from .field import Group, LanguageField
 from .measure import box_of
@@ -135,7 +135,9 @@ class Resolver:
             def stands(rows: torch.Tensor) -> bool:
                 return not query.relations or self._stands(query, self._stand_in(rows))
 
-            found = by_color(self.scene, self.field, query, stands) if self._goes_by_color(query) else None
+            found = by_hue(self.scene, self.field, query, stands, rank.named)
+            if found is None and self._goes_by_color(query):
+                found = by_color(self.scene, self.field, query, stands)
             if found is not None:
                 return found
         if not matches:

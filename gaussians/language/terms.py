@@ -81,6 +81,14 @@ class Scored:
             held &= values >= self.limits[name]
         return held
 
+    @cached_property
+    def named(self) -> frozenset[int]:
+        """Groups that have the name asked for, whatever else fails; none if no name was asked."""
+        if "text" not in self.terms:
+            return frozenset()
+        held = self.terms["text"] >= self.limits["text"]
+        return frozenset(g.id for g, holds in zip(self.groups, held, strict=True) if holds)
+
     def without(self, ids: frozenset[int]) -> Scored:
         """The candidates that are none of these groups."""
         if ids.isdisjoint(g.id for g in self.groups):
