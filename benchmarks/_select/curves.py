@@ -15,13 +15,12 @@ from ...gaussians.language.encoders import Encoder
 from ...gaussians.language.segment import ASK_VIEWS
 from .. import _clip, _data
 from ..harness import Metric, Point
-from . import pictures, vectors
+from . import lifted, pictures, vectors
 from .cases import Case, Part, embedded
 from .stability import names_miou
 from .variants import without_negatives, without_size
 from .vectors import Outcome
 
-VIEWS, SIZE = 24, 256  # pictures and pixels a side, where these are not what is varied
 WIDTHS = (8, 32, 128)
 ACCEPTED = 0.01  # mIoU that groups may lose to vectors before it has to be said where and why
 
@@ -32,6 +31,7 @@ def measure(rooms: Sequence[Case], encoder: Encoder, grouped: Callable[[Case], C
     return (
         portraits(rooms, encoder, grouped, counts),
         rules(rooms, encoder, grouped),
+        lifted.points(rooms, encoder, quick),
         against_vectors(rooms, encoder, quick),
     )
 
@@ -41,7 +41,7 @@ def portraits(rooms: Sequence[Case], encoder: Encoder, grouped: Callable[[Case],
     points = []
     for count in counts:
         known = [grouped(room) if count == ASK_VIEWS else embedded(room, encoder, count) for room in rooms]
-        points.append(_embedded_point(f"{count} portraits", known, encoder, count == ASK_VIEWS))
+        points.append(_embedded_point(f"{count} portrait{'s' * (count > 1)}", known, encoder, count == ASK_VIEWS))
     return Part(points=tuple(points))
 
 
@@ -67,7 +67,7 @@ def against_vectors(rooms: Sequence[Case], encoder: Encoder, quick: bool) -> Par
     folder = _data.folder("clip_vectors")
     pairs = _clip.load(folder.parent) if folder else None
     for room in rooms:
-        eyes = pictures.eyes(room.scene, VIEWS, SIZE)
+        eyes = pictures.eyes(room.scene, lifted.VIEWS, lifted.SIZE)
         tellers: list[tuple[str, Encoder, pictures.Pictured, list[str], tuple[int, ...]]] = [
             ("crops", encoder, pictures.Crops(encoder), [o.kind for o in room.alone()], WIDTHS)
         ]

@@ -1,0 +1,119 @@
+"""A real room: a trained scene, a detector's coarse masks, real CLIP vectors of their labels, four hand-drawn photos.
+
+What a query selects is drawn white in the scene drawn black, from where a photo was taken, and its silhouette compared
+with the hand-drawn one; pixels that the drawer left open do not count. Knows this capture. Its data may be measured
+with and not passed on, so that no picture of it is kept.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from statistics import fmean
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from ..gaussians.camera import Camera
+from ..gaussians.files import load
+from ..gaussians.files.capture import read_capture
+from ..gaussians.harmonics import color_to_dc
+from ..gaussians.language import masks
+from ..gaussians.language.embed import embed
+from ..gaussians.language.encoders import Encoder
+from ..gaussians.language.encoders.vectors import wrap
+from ..gaussians.language.query import Query
+from ..gaussians.language.resolve import resolve
+from ..gaussians.render import render
+from ..gaussians.scene import Scene
+from .harness import Metric
+
+OPEN = 255  # pixel value of what the drawer left open
+LEAST = 200  # pixels of a thing from which a photo shows it
+# The 80 classes of COCO (Lin et al. 2014) in their order, which is that of `coco_clip_a+cname.npy`.
+COCO = (
+    "person", "bicycle", "car", "motorcycle", "airplane", "bus", "train", "truck", "boat", "traffic light",
+    "fire hydrant", "stop sign", "parking meter", "bench", "bird", "cat", "dog", "horse", "sheep", "cow", "elephant",
+    "bear", "zebra", "giraffe", "backpack", "umbrella", "handbag", "tie", "suitcase", "frisbee", "skis", "snowboard",
+    "sports ball", "kite", "baseball bat", "baseball glove", "skateboard", "surfboard", "tennis racket", "bottle",
+    "wine glass", "cup", "fork", "knife", "spoon", "bowl", "banana", "apple", "sandwich", "orange", "broccoli",
+    "carrot", "hot dog", "pizza", "donut", "cake", "chair", "couch", "potted plant", "bed", "dining table", "toilet",
+    "tv", "laptop", "mouse", "remote", "keyboard", "cell phone", "microwave", "oven", "toaster", "sink",
+    "refrigerator", "book", "clock", "vase", "scissors", "teddy bear", "hair drier", "toothbrush",
+)  # fmt: skip
+# Each query, and the labels of the drawings that it means.
+ASKED: dict[str, tuple[Query, tuple[int, ...]]] = {
+    "bicycle": (Query(text="bicycle"), (5,)),
+    "chair": (Query(text="chair", pick="all"), (7, 8)),
+    "potted plant": (Query(text="potted plant"), (1, 2)),
+    "purple cloth": (Query(text="cloth", colors=("purple",)), (4,)),
+    "pink tree": (Query(text="tree", colors=("pink",)), (1,)),
+    "red bicycle": (Query(text="bicycle", colors=("red",)), (5,)),
+}
+SPURIOUS = ("cat", "person", "couch")  # what the detector saw here and there and is not there
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """One hand-drawn photo: its camera, and the label of each pixel `[H, W]`."""
+
+    camera: Camera
+    labels: NDArray[np.uint8]
+
+
+def drawings(capture: Path) -> list[Drawing]:
+    """The ground truth of a capture."""
+    from PIL import Image
+
+    by_name = {Path(camera.name).stem: camera for camera in read_capture(capture).cameras}
+    found = []
+    for path in sorted((capture / "ground_truth").glob("*.png")):
+        labels = np.array(Image.open(path))
+        found.append(Drawing(by_name[path.stem].resized(labels.shape[1], labels.shape[0]), labels))
+    return found
+
+
+def silhouette(scene: Scene, chosen: NDArray[np.bool_], camera: Camera) -> NDArray[np.bool_]:
+    """`[H, W]`: pixels that are mostly of the chosen Gaussians `[N]`, as the whole scene hides and shows them."""
+    white = torch.from_numpy(chosen)[:, None].expand(-1, 3).float()
+    cloud = scene.cloud.with_degree(0).replace(sh=color_to_dc(white)[:, None].contiguous())
+    seen: NDArray[np.bool_] = (render(cloud, camera).rgb[..., 0] > 0.5).numpy()
+    return seen
+
+
+def agreement(found: NDArray[np.bool_], drawing: Drawing, labels: Sequence[int]) -> float | None:
+    """Intersection over union of a silhouette and the drawn labels; None if the photo does not show them."""
+    true, counted = np.isin(drawing.labels, labels), drawing.labels != OPEN
+    if true.sum() < LEAST:
+        return None
+    shown = found & counted
+    return float((shown & true).sum() / (shown | true).sum())
+
+
+def figures(data: Path) -> list[Metric]:
+    """Every figure of the real room."""
+    capture = data / "captures" / "bonsai_room"
+    encoder = wrap([(name,) for name in COCO], np.load(data / "clip_vectors" / "coco_clip_a+cname.npy"))
+    bare = replace(load(data / "scenes" / "bonsai_room.ply"), cameras=read_capture(capture).cameras)
+    start = time.perf_counter()
+    scene = embed(bare, encoder, masks=masks.load(f"folder:{capture / 'masks'}", capture / "transforms.json"))
+    seconds = time.perf_counter() - start
+    drawn = drawings(capture)
+    scores = {name: _score(scene, encoder, drawn, *asked) for name, asked in ASKED.items()}
+    refused = [resolve(scene, Query(text=name), drawn[0].camera, encoder).verdict == "absent" for name in SPURIOUS]
+    return [
+        Metric("bonsai.mean_iou", fmean(scores.values()), "IoU", "higher", 0.03),
+        *(Metric(f"bonsai.{name.replace(' ', '_')}", value, "IoU", "higher", 0.05) for name, value in scores.items()),
+        Metric("bonsai.spurious.refused", fmean(refused), "share", "higher", 0.1),
+        Metric("bonsai.embed.seconds", seconds, "s", "lower", 0.3),
+    ]
+
+
+def _score(scene: Scene, encoder: Encoder, drawn: Sequence[Drawing], query: Query, labels: tuple[int, ...]) -> float:
+    """Mean agreement over the photos that show what is meant, asked from where the first was taken."""
+    chosen = resolve(scene, query, drawn[0].camera, encoder).mask(scene.cloud).numpy()
+    each = [agreement(silhouette(scene, chosen, d.camera), d, labels) for d in drawn]
+    return fmean(value for value in each if value is not None)
