@@ -10,7 +10,7 @@ import json
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -165,10 +165,10 @@ def _rule() -> Rule:
     return rule_of(json.loads((files(__package__) / "affinity.json").read_text()))
 
 
-def rule_of(table: dict[str, object]) -> Rule:
-    """The rule as `affinity.json` holds it."""
-    assert tuple(table["features"]) == FEATURES, "affinity.json was fitted for other features"  # type: ignore[arg-type]
-    weights, biases = (tuple(np.array(a) for a in table[k]) for k in ("weights", "biases"))  # type: ignore[attr-defined]
+def rule_of(table: dict[str, Any], features: tuple[str, ...] = FEATURES) -> Rule:
+    """The rule as a file holds it."""
+    assert tuple(table["features"]) == features, "the rule was fitted for other features"
+    weights, biases = (tuple(np.array(a) for a in table[k]) for k in ("weights", "biases"))
     return Rule(np.array(table["mean"]), np.array(table["spread"]), weights, biases)
 
 

@@ -7,7 +7,7 @@ Knows the pieces of this room that find borders. Refuses to know queries, and Ga
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from ..scene import Frame, Scene
 from . import grouping, structure
 from .adjacency import build_graph
+from .borders import redrawn
 from .calibration import wholeness
 from .encoders import Encoder
 from .field import Level
@@ -68,7 +69,16 @@ def segment(
     objects = [nodes[i].members for i in grouping.best_cut(nodes, points, evidence)]
     total = np.stack([np.bincount(labels, weights=surface.lab[:, c], minlength=count) for c in range(3)], axis=1)
     lab: F64 = total / np.maximum(size, 1)[:, None]
-    return labels, _things(objects, kind_of, lab, size, touching(labels, links))
+    things = _things(objects, kind_of, lab, size, touching(labels, links))
+    return redrawn(surface, labels, _owners(things, count), kind_of != structure.NONE), things
+
+
+def _owners(things: Sequence[Thing], count: int) -> NDArray[np.int32]:
+    """Object or structure `[S]` that each superpoint belongs to, -1 for none."""
+    owner = np.full(count, -1, np.int32)
+    for i, thing in enumerate(things):
+        owner[list(thing.members)] = thing.parent if thing.level == "part" else i
+    return owner
 
 
 def superpoints_and_structure(

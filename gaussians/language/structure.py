@@ -13,12 +13,15 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..scene import Frame
+from .paint import Pieces, painted
 from .superpoints import LIGHTNESS
 from .surface import Surface
 
 NONE, FLOOR, WALL, CEILING = 0, 1, 2, 3
+UP = np.array([0.0, 0.0, 1.0])
 NAMES = {FLOOR: "floor", WALL: "wall", CEILING: "ceiling"}
 
+FEWEST = 200  # points that have structure
 CELLS = 64  # of the height map across the larger side
 ROUGH = 0.012  # ground whose height varies by more than this share of the scene is terrain, not a floor
 KNOLL = 0.03  # of the scene: bumps, stones and low plants up to this height are terrain
@@ -28,6 +31,7 @@ WALL_LENGTH = 0.3  # of the scene's extent: shorter upright planes are furniture
 WALL_HEIGHT = 0.55
 SAME_COLOR = 11.0  # Lab difference within which pieces of a plane are the same paint
 GRID = 40  # cells along each side of a plane
+LEVELS = 12  # broadest pieces whose level is tried as the plane's own
 TIGHT = 0.3  # of the spacing: how far from a clean plane a piece of it may lie
 SPREAD = 0.6  # a colour that spans this much of a plane both ways belongs to its pattern
 
@@ -50,24 +54,24 @@ def structures(surface: Surface, labels: NDArray[np.int32], frame: Frame) -> NDA
     """`[M]` NONE, FLOOR, WALL or CEILING for each surface point; whole superpoints where they mostly agree."""
     flat = level(surface, frame)
     found = np.zeros(len(surface), np.int8)
-    if len(surface) < 200:
+    if len(surface) < FEWEST:
         return found
-    found[_ground(surface, labels, flat)] = FLOOR
-    for plane in _walls(surface, flat, found):
-        found[_painted(surface, labels, plane, found == NONE)] = WALL
-    top = _ceiling(surface, flat, found)
-    if top is not None:
-        found[_painted(surface, labels, top, found == NONE)] = CEILING
+    terrain, planes = planes_of(surface, flat)
+    found[terrain] = FLOOR
+    for kind, plane in planes:
+        found[_painted(surface, labels, flat, plane, found == NONE)] = kind
     return found
 
 
 @dataclass(frozen=True)
-class _Plane:
-    """Points near a plane `[M]` bool, their signed distance from it `[M]` and two coordinates along it `[M, 2]`."""
+class Plane:
+    """Points near a plane `[M]` bool, their signed distance from it `[M]`, two coordinates along it `[M, 2]`, and its
+    normal in the level frame."""
 
     near: NDArray[np.bool_]
     off: NDArray[np.float64]
     along: NDArray[np.float64]
+    normal: NDArray[np.float64]
 
 
 def _extent(flat: Level) -> NDArray[np.float64]:
@@ -76,11 +80,25 @@ def _extent(flat: Level) -> NDArray[np.float64]:
     return np.maximum(spread, 1e-9)
 
 
-def _ground(surface: Surface, labels: NDArray[np.int32], flat: Level) -> NDArray[np.bool_]:
-    """Points of the floor (a plane with one paint) or of the terrain (a rough height field)."""
+def planes_of(surface: Surface, flat: Level) -> tuple[NDArray[np.bool_], list[tuple[int, Plane]]]:
+    """Terrain `[M]` (none where the ground is a floor), and the planes of floor, walls and ceiling with their kinds."""
+    ground = _ground(surface, flat)
+    planes: list[tuple[int, Plane]] = []
+    terrain = np.zeros(len(surface), bool)
+    if isinstance(ground, Plane):
+        planes.append((FLOOR, ground))
+    elif ground is not None:
+        terrain = ground
+    planes += [(WALL, p) for p in _walls(surface, flat, ~terrain)]
+    top = _ceiling(surface, flat, ~terrain)
+    return terrain, [*planes, (CEILING, top)] if top is not None else planes
+
+
+def _ground(surface: Surface, flat: Level) -> Plane | NDArray[np.bool_] | None:
+    """The floor's plane, or the points of the terrain (a rough height field), or None."""
     extent = _extent(flat)
     if extent[2] > TALL * max(extent[:2]):
-        return np.zeros(len(surface), bool)
+        return None
     cell = max(extent[0], extent[1]) / CELLS
     low = np.quantile(flat.points[:, :2], 0.005, axis=0)
     index = np.clip(((flat.points[:, :2] - low) / cell).astype(np.int64), 0, CELLS - 1)
@@ -97,7 +115,7 @@ def _ground(surface: Surface, labels: NDArray[np.int32], flat: Level) -> NDArray
     is_level = np.abs(flat.normals[:, 2]) > 0.8
     close = np.abs(above) < 0.06 * max(extent)
     if not (close & is_level).any():
-        return np.zeros(len(surface), bool)
+        return None
     weight = close & is_level
     rough = float(np.median(np.abs(above[weight] - np.median(above[weight]))))
     if rough > ROUGH * max(extent) * 0.25:
@@ -108,10 +126,8 @@ def _ground(surface: Surface, labels: NDArray[np.int32], flat: Level) -> NDArray
     offset = _mode(flat.points[weight, 2], surface.area[weight])
     near = np.abs(flat.points[:, 2] - offset) < max(1.5 * surface.spacing, 0.003 * max(extent))
     if near.sum() < 0.02 * len(surface):
-        return np.zeros(len(surface), bool)
-    return _painted(
-        surface, labels, _Plane(near, flat.points[:, 2] - offset, flat.points[:, :2]), np.ones(len(surface), bool)
-    )
+        return None
+    return Plane(near, flat.points[:, 2] - offset, flat.points[:, :2], UP)
 
 
 def _fill(grid: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -139,11 +155,11 @@ def _outermost(values: NDArray[np.floating], weight: NDArray[np.floating]) -> fl
     return _mode(values[near], weight[near])
 
 
-def _walls(surface: Surface, flat: Level, found: NDArray[np.int8]) -> list[_Plane]:
+def _walls(surface: Surface, flat: Level, free: NDArray[np.bool_]) -> list[Plane]:
     """Upright planes at the scene's edge, long and high enough."""
     extent = _extent(flat)
-    upright = (np.abs(flat.normals[:, 2]) < 0.25) & (found == NONE) & (surface.flatness > 0.3)
-    planes: list[_Plane] = []
+    upright = (np.abs(flat.normals[:, 2]) < 0.25) & free & (surface.flatness > 0.3)
+    planes: list[Plane] = []
     inside = flat.points[:: max(1, len(surface) // 20_000)]
     for angle in _azimuths(surface, flat, upright):
         normal = np.array([np.cos(angle), np.sin(angle), 0.0])
@@ -161,7 +177,7 @@ def _walls(surface: Surface, flat: Level, found: NDArray[np.int8]) -> list[_Plan
             continue
         size = np.ptp(np.quantile(along[near & facing], [0.02, 0.98], axis=0), axis=0)
         if size[0] >= WALL_LENGTH * max(extent[:2]) and size[1] >= WALL_HEIGHT * extent[2]:
-            planes.append(_Plane(near, flat.points @ normal - offset, along))
+            planes.append(Plane(near, flat.points @ normal - offset, along, normal))
     return planes
 
 
@@ -184,20 +200,21 @@ def _azimuths(surface: Surface, flat: Level, upright: NDArray[np.bool_]) -> list
     return [a + turn for a in peaks for turn in (0.0, np.pi)]
 
 
-def _ceiling(surface: Surface, flat: Level, found: NDArray[np.int8]) -> _Plane | None:
+def _ceiling(surface: Surface, flat: Level, free: NDArray[np.bool_]) -> Plane | None:
     """A level plane at the very top that covers most of the plan."""
     extent = _extent(flat)
     top = np.quantile(flat.points[:, 2], 0.995)
-    near = (np.abs(flat.points[:, 2] - top) < max(2 * surface.spacing, 0.01 * extent[2])) & (found == NONE)
+    near = (np.abs(flat.points[:, 2] - top) < max(2 * surface.spacing, 0.01 * extent[2])) & free
     near &= np.abs(flat.normals[:, 2]) > 0.8
     if near.sum() < 0.03 * len(surface):
         return None
     size = np.ptp(np.quantile(flat.points[near, :2], [0.05, 0.95], axis=0), axis=0)
-    return _Plane(near, flat.points[:, 2] - top, flat.points[:, :2]) if (size > 0.6 * extent[:2]).all() else None
+    return Plane(near, flat.points[:, 2] - top, flat.points[:, :2], UP) if (size > 0.6 * extent[:2]).all() else None
 
 
-def _painted(surface: Surface, labels: NDArray[np.int32], plane: _Plane, free: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Points of a plane that carry its paint: the broadest superpoint's colour, and colours spread all over it.
+def pieces_of(surface: Surface, labels: NDArray[np.int32], flat: Level, plane: Plane) -> Pieces | None:
+    """The superpoints near a plane, with a first guess of those that carry its paint: the broadest superpoint's
+    colour, and colours spread all over it. None if there are none.
 
     Walls are sampled more coarsely than what hangs on them, so breadth is counted in cells of the plane, not in points.
     """
@@ -207,15 +224,16 @@ def _painted(surface: Surface, labels: NDArray[np.int32], plane: _Plane, free: N
     cell = _plane_cells(along)
     off = plane.off[near] - _tilt(plane.off[near], along, cell)
     total = np.maximum(np.bincount(labels, minlength=count), 1)
-    inside = np.bincount(own, minlength=count)
     lab = np.stack([np.bincount(labels, weights=surface.lab[:, c], minlength=count) / total for c in range(3)], axis=1)
     breadth = np.bincount(np.unique(own.astype(np.int64) * GRID**2 + cell) // GRID**2, minlength=count)
-    member = inside > 0.5 * total
+    member = np.bincount(own, minlength=count) > 0.5 * total
     if not member.any():
-        return np.zeros(len(surface), bool)
-    main = int(np.argmax(np.where(member, breadth, -1)))
-    level, band = _in_plane(off, own, count, main, TIGHT * surface.spacing)
-    member &= level
+        return None
+    middle = _medians(off, own, count)
+    main = _broadest_level(middle, np.where(member, breadth, 0), TIGHT * surface.spacing)
+    spread = float(np.median(np.abs(off[own == main] - middle[main])))
+    tight = TIGHT * surface.spacing
+    member &= np.abs(middle - middle[main]) < max(4 * spread, tight)
     span = np.ptp(np.quantile(along, [0.02, 0.98], axis=0), axis=0)
     kept = np.zeros(count, bool)
     for piece in np.argsort(-np.where(member, breadth, -1), kind="stable"):
@@ -227,9 +245,21 @@ def _painted(surface: Surface, labels: NDArray[np.int32], plane: _Plane, free: N
             kept |= alike
         elif breadth[piece] < 0.01 * breadth.sum():
             break
+    band = abs(float(middle[main])) + max(6 * spread, 1.5 * tight)
+    facing = np.abs(flat.normals @ plane.normal)
+    return Pieces(near, labels, cell, off, along, facing, kept, band, abs(float(plane.normal[2])) < 0.5)
+
+
+def _painted(
+    surface: Surface, labels: NDArray[np.int32], flat: Level, plane: Plane, free: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Points of a plane that are the plane itself."""
     within = np.zeros(len(surface), bool)
-    within[near[np.abs(off) < band]] = True
-    return kept[labels] & free & within
+    pieces = pieces_of(surface, labels, flat, plane)
+    if pieces is None:
+        return within
+    within[pieces.near[np.abs(pieces.off) < pieces.band]] = True
+    return painted(surface, pieces)[labels] & free & within
 
 
 def _plane_cells(along: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -259,19 +289,19 @@ def _tilt(off: NDArray[np.float64], along: NDArray[np.float64], cell: NDArray[np
     return tilt
 
 
-def _in_plane(
-    off: NDArray[np.float64], own: NDArray[np.int32], count: int, main: int, tight: float
-) -> tuple[NDArray[np.bool_], float]:
-    """Superpoints that lie in the plane itself, not a finger's breadth before it as pictures and rugs do, `[S]`; and
-    how far off a single point of them may lie: a sole on the floor has the floor's colour only by its shadow.
-
-    The tolerance follows the roughness of the broadest piece, so that it is tight where the surface is clean.
-    """
+def _medians(off: NDArray[np.float64], own: NDArray[np.int32], count: int) -> NDArray[np.float64]:
+    """Median distance from the plane `[S]` of each superpoint's points near it; infinite for those without any."""
     order = np.lexsort((off, own))
     middle = np.full(count, np.inf)
     starts = np.flatnonzero(np.r_[True, np.diff(own[order]) > 0])
     sizes = np.diff(np.r_[starts, len(order)])
     middle[own[order][starts]] = off[order][starts + sizes // 2]
-    spread = float(np.median(np.abs(off[own == main] - middle[main])))
-    level: NDArray[np.bool_] = np.abs(middle - middle[main]) < max(4 * spread, tight)
-    return level, abs(float(middle[main])) + max(6 * spread, 1.5 * tight)
+    return middle
+
+
+def _broadest_level(middle: NDArray[np.float64], breadth: NDArray[np.int64], tight: float) -> int:
+    """The broadest piece of the level that holds most: one plank of a floor is narrower than the rug on it."""
+    candidates = [c for c in np.argsort(-breadth, kind="stable")[:LEVELS] if breadth[c] > 0]
+    support = [int(breadth[np.abs(middle - middle[c]) < tight].sum()) for c in candidates]
+    best = middle[candidates[int(np.argmax(support))]]
+    return int(np.argmax(np.where(np.abs(middle - best) < tight, breadth, -1)))

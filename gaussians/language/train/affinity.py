@@ -31,8 +31,9 @@ from ..superpoints import links_of
 from ..surface import surface_of
 
 F64 = NDArray[np.float64]
-HIDDEN, STEPS, BATCH, RATE = 32, 6000, 4096, 5e-3
+HIDDEN, STEPS, BATCH, RATE = 32, 8000, 2048, 5e-3
 ROUNDS = 3
+JITTER = 0.25  # standard deviations of a feature: captures are noisier than furnished rooms
 STRAY = 0.3  # of the wrong merges that the rule would make are made, so that it learns not to add to them
 LEAST = 0.2  # weight of a border of a crumb against one that decides over a whole object
 
@@ -109,7 +110,7 @@ def joined(met: Sequence[Met]) -> Met:
     return Met(*(np.concatenate([getattr(m, name) for m in met]) for name in ("features", "same", "cost")))
 
 
-def fit(met: Met, seed: int = 0, steps: int = STEPS) -> dict[str, Any]:
+def fit(met: Met, names: tuple[str, ...], seed: int = 0, steps: int = STEPS) -> dict[str, Any]:
     """The rule as a table; both classes count equally, so that it does not follow how often each occurs."""
     torch.manual_seed(seed)
     rng = np.random.default_rng(seed)
@@ -118,21 +119,21 @@ def fit(met: Met, seed: int = 0, steps: int = STEPS) -> dict[str, Any]:
     y = torch.from_numpy(met.same).float()
     weight = torch.from_numpy(met.cost).float()
     weight = torch.where(y > 0, weight / (weight * y).mean(), weight / (weight * (1 - y)).mean())
-    width = len(affinity.FEATURES)
-    layers = [torch.nn.Linear(width, HIDDEN), torch.nn.Linear(HIDDEN, HIDDEN), torch.nn.Linear(HIDDEN, 1)]
+    layers = [torch.nn.Linear(len(names), HIDDEN), torch.nn.Linear(HIDDEN, HIDDEN), torch.nn.Linear(HIDDEN, 1)]
     model = torch.nn.Sequential(layers[0], torch.nn.Tanh(), layers[1], torch.nn.Tanh(), layers[2])
     optimizer = torch.optim.AdamW(model.parameters(), lr=RATE, weight_decay=1e-2)
     for step in range(steps):
         for group in optimizer.param_groups:
             group["lr"] = RATE * (1 - step / steps)
         pick = torch.from_numpy(rng.integers(len(y), size=BATCH))
-        logit = model(x[pick]).squeeze(1)
+        jitter = torch.from_numpy(rng.normal(size=(BATCH, x.shape[1])).astype(np.float32)) * JITTER
+        logit = model(x[pick] + jitter).squeeze(1)
         loss = torch.nn.functional.binary_cross_entropy_with_logits(logit, y[pick], weight[pick])
         optimizer.zero_grad()
         loss.backward()  # type: ignore[no-untyped-call]
         optimizer.step()
     return {
-        "features": list(affinity.FEATURES),
+        "features": list(names),
         "mean": _rounded(mean),
         "spread": _rounded(spread),
         "weights": [_rounded(layer.weight.detach().numpy().T) for layer in layers],
@@ -161,10 +162,10 @@ def fit_in_rounds(rooms: Iterable[tuple[Scene, NDArray[np.int32]]], seed: int) -
     graphs = [known_graph(scene, truth) for scene, truth in rooms]
     kept = graphs[: max(1, len(graphs) * 5 // 6)]
     met = [walk(g, None, rng) for g in kept]
-    table = fit(joined(met), seed)
+    table = fit(joined(met), affinity.FEATURES, seed)
     for _ in range(ROUNDS):
         met += [walk(g, affinity.rule_of(table), rng) for g in kept]
-        table = fit(joined(met), seed)
+        table = fit(joined(met), affinity.FEATURES, seed)
     rule = affinity.rule_of(table)
     held = [walk(g, rule, rng) for g in graphs[len(kept) :]]
     return {**table, "held_out": judge(rule, joined(held)) if held else {}}
