@@ -30,7 +30,7 @@ from . import rle
 from .view import NONE, ViewMasks, packed
 
 INDEX = "masks.json"
-LOOSE = 2.0  # pixels by which a side may differ from its photograph's proportions: halves of odd sizes are rounded
+LOOSE = 1.0  # pixels by which a side may differ from its photograph's proportions: halves of odd sizes are rounded
 
 Reader = Callable[[Camera], ViewMasks]
 
@@ -78,7 +78,7 @@ class Folder:
         readers = _readers(self.path)
         if not readers:
             raise FileError(f"{self.path} holds no masks: no {INDEX}, no .npz and no COCO .json")
-        for i, name in enumerate(sorted(readers)):
+        for i, name in enumerate(sorted(readers, key=lambda photo: (Path(photo).stem, photo))):
             camera = by_name.get(Path(name).stem.lower())
             if camera is None:
                 raise FileError(f"{self.path}: no camera is called {Path(name).stem}; give the right --capture")
