@@ -1,8 +1,15 @@
-"""Hand-made worlds for tests of segmentation: flat pieces of painted surface whose truth is known by construction."""
+"""What several test files share.
+
+Hand-made worlds for tests of segmentation: flat pieces of painted surface whose truth is known by construction. And the
+smallest real CLIP: random weights in two one-layer towers, saved as open_clip saves models and exported as ONNX.
+"""
 
 from __future__ import annotations
 
+import importlib.util
+import json
 from collections.abc import Callable, Sequence
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -101,3 +108,41 @@ Height = Callable[[F64, F64], F64]
 def world() -> type[World]:
     """The builder of hand-made clouds."""
     return World
+
+
+CLIP = {
+    "embed_dim": 16,
+    "vision_cfg": {"image_size": 32, "layers": 1, "width": 32, "patch_size": 16, "head_width": 16},
+    "text_cfg": {"context_length": 16, "vocab_size": 49408, "width": 16, "heads": 2, "layers": 1},
+}
+
+
+@pytest.fixture(scope="session")
+def saved_clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a random CLIP, as open_clip saves them."""
+    if importlib.util.find_spec("open_clip") is None:
+        pytest.skip("open_clip is not installed (pip install 'scenewright[models]')")
+    from scenewright.gaussians.vision_cure import import_torchvision
+
+    import_torchvision()
+    import open_clip
+    from safetensors.torch import save_file
+
+    torch.manual_seed(3)
+    model = open_clip.CLIP(**CLIP)
+    folder = tmp_path_factory.mktemp("clip")
+    preprocess = {"mean": [0.4, 0.45, 0.5], "std": [0.2, 0.21, 0.22]}
+    (folder / "open_clip_config.json").write_text(json.dumps({"model_cfg": CLIP, "preprocess_cfg": preprocess}))
+    save_file({k: v.contiguous() for k, v in model.state_dict().items()}, folder / "open_clip_model.safetensors")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def exported_clip(saved_clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same model as ONNX."""
+    from scenewright.gaussians.language.encoders.export import export
+    from scenewright.gaussians.language.encoders.open_clip import load
+
+    folder = tmp_path_factory.mktemp("exported")
+    export(load(str(saved_clip)), folder)
+    return folder

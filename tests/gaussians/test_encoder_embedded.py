@@ -37,47 +37,6 @@ def _noise(count: int, side: int) -> np.ndarray:
     return np.random.default_rng(0).integers(0, 255, (count, side, side, 3)).astype(np.uint8)
 
 
-def test_it_fulfils_the_protocol(encoder: encoders.Encoder) -> None:
-    images, texts = encoder.encode_images(_noise(5, encoder.image_size)), encoder.encode_text(["chair", "red couches"])
-    assert isinstance(encoder, encoders.Encoder)
-    assert images.shape == (5, encoder.dim) and texts.shape == (2, encoder.dim)
-    assert images.dtype == texts.dtype == np.float32
-    for rows in (images, texts):
-        np.testing.assert_allclose(np.linalg.norm(rows, axis=1), 1, atol=1e-6)  # normalised in float32
-    assert encoder.encode_images(_noise(0, 32)).shape == (0, encoder.dim)
-    assert encoder.encode_text([]).shape == (0, encoder.dim)
-    assert encoder.encode_images(_noise(2, 150)).shape == (2, encoder.dim)
-
-
-def test_the_same_input_gives_the_same_bytes_in_any_batch(encoder: encoders.Encoder) -> None:
-    pictures = _noise(70, encoder.image_size)
-    again = encoders.load("embedded")
-    assert encoder.encode_images(pictures).tobytes() == again.encode_images(pictures).tobytes()
-    alone = np.concatenate([encoder.encode_images(pictures[i : i + 1]) for i in range(3)])
-    np.testing.assert_allclose(alone, encoder.encode_images(pictures)[:3], atol=1e-5)  # other blocking of the sums
-
-
-_BAD_PICTURES = [
-    np.zeros((1, 8, 8, 3)),
-    np.zeros((8, 8, 3), np.uint8),
-    np.zeros((1, 8, 8, 4), np.uint8),
-    np.zeros((1, 0, 8, 3), np.uint8),
-    [[1]],
-]
-
-
-@pytest.mark.parametrize("images", _BAD_PICTURES)
-def test_wrong_pictures_are_said(encoder: encoders.Encoder, images: object) -> None:
-    with pytest.raises(BackendError, match="encode_images needs"):
-        encoder.encode_images(images)  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize("texts", ["chair", [1], [None]])
-def test_wrong_texts_are_said(encoder: encoders.Encoder, texts: object) -> None:
-    with pytest.raises(BackendError, match="list of strings"):
-        encoder.encode_text(texts)  # type: ignore[arg-type]
-
-
 def test_the_fingerprint_names_the_weights(encoder: encoders.Encoder, tmp_path: Path) -> None:
     copy = tmp_path / "copy"
     shutil.copytree(encoders.weights_folder(), copy)

@@ -16,47 +16,14 @@ from scenewright.gaussians import vision_cure
 from scenewright.gaussians.errors import BackendError
 from scenewright.gaussians.language import encoders
 
-_CONFIG = {
-    "embed_dim": 16,
-    "vision_cfg": {"image_size": 32, "layers": 1, "width": 32, "patch_size": 16, "head_width": 16},
-    "text_cfg": {"context_length": 16, "vocab_size": 49408, "width": 16, "heads": 2, "layers": 1},
-}
-
-
-@pytest.fixture(scope="module")
-def saved_clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a random CLIP of two one-layer towers, as open_clip saves them."""
-    if importlib.util.find_spec("open_clip") is None:
-        pytest.skip("open_clip is not installed (pip install 'scenewright[models]')")
-    vision_cure.import_torchvision()
-    import open_clip
-    from safetensors.torch import save_file
-
-    torch.manual_seed(3)
-    model = open_clip.CLIP(**_CONFIG)
-    folder: Path = tmp_path_factory.mktemp("clip")
-    preprocess = {"mean": [0.4, 0.45, 0.5], "std": [0.2, 0.21, 0.22]}
-    (folder / "open_clip_config.json").write_text(json.dumps({"model_cfg": _CONFIG, "preprocess_cfg": preprocess}))
-    save_file({k: v.contiguous() for k, v in model.state_dict().items()}, folder / "open_clip_model.safetensors")
-    return folder
-
 
 @pytest.fixture(scope="module")
 def clip(saved_clip: Path) -> encoders.Encoder:
     return encoders.load(f"open_clip:{saved_clip}")
 
 
-def test_a_saved_clip_fulfils_the_protocol(clip: encoders.Encoder) -> None:
-    pictures = np.random.default_rng(0).integers(0, 255, (3, 40, 30, 3)).astype(np.uint8)
-    images, texts = clip.encode_images(pictures), clip.encode_text(["a chair", "two red sofas"])
-    assert isinstance(clip, encoders.Encoder)
-    assert images.shape == (3, clip.dim) and texts.shape == (2, clip.dim)
-    assert images.dtype == texts.dtype == np.float32
-    for rows in (images, texts):
-        np.testing.assert_allclose(np.linalg.norm(rows, axis=1), 1, atol=1e-5)  # float32 rounding over 16 terms
-    assert clip.encode_images(pictures[:0]).shape == (0, clip.dim)
-    assert clip.encode_text([]).shape == (0, clip.dim)
-    assert clip.image_size == 32
+def test_it_reads_any_word(clip: encoders.Encoder) -> None:
+    assert clip.image_size == 32 and clip.dim == 16
     assert clip.unknown_words("quixotic zyzzyva") == () and clip.knows("zyzzyva") and not clip.knows("")
     assert "chair" in clip.vocabulary.names
 

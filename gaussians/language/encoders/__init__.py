@@ -19,15 +19,8 @@ from .vocabulary import Vocabulary
 if TYPE_CHECKING:
     from ..calibration import Calibration
 
-_SHARED = (
-    "export",
-    "framing",
-    "pixels",
-    "sessions",
-    "vector_files",
-    "vocabulary",
-    "words",
-)  # modules that are no back ends
+# Modules of this package that are not back ends.
+_SHARED = ("cache", "export", "framing", "pixels", "sessions", "vector_files", "vocabulary", "words")
 
 
 @runtime_checkable
