@@ -17,7 +17,10 @@ import typer
 from ..gaussians.errors import ScenewrightError
 from .terminal import explain, terminal
 
-VERBS = ("demo", "info", "embed", "select", "plan", "edit", "chat", "render", "convert", "bench", "doctor")
+VERBS = (
+    "demo", "info", "embed", "select", "plan", "schema", "check", "edit", "chat", "render", "convert", "bench",
+    "doctor",
+)  # fmt: skip
 
 app = typer.Typer(
     name="scenewright",

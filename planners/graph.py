@@ -20,6 +20,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from ..gaussians.color import name_of
 from ..gaussians.errors import FileError, UserError
+from ..gaussians.language.field import Box
 
 if TYPE_CHECKING:
     from ..gaussians.language.field import Group
@@ -62,6 +63,23 @@ class Node(BaseModel):
     position: Point
     yaw: Annotated[float, Field(gt=-360, le=360, allow_inf_nan=False)] = 0.0
     support: Support = "floor"
+
+    @property
+    def box(self) -> Box:
+        """Its upright box; sides of no length count as a tenth of a millimetre."""
+        c, s = math.cos(math.radians(self.yaw)), math.sin(math.radians(self.yaw))
+        width, depth, height = (max(side, 1e-4) for side in self.size)
+        return Box(self.position, ((c, s, 0.0), (-s, c, 0.0), (0.0, 0.0, 1.0)), (width, depth, height))
+
+    @property
+    def bottom(self) -> float:
+        """Height of its underside, metres."""
+        return self.position[2] - self.size[2] / 2
+
+    @property
+    def top(self) -> float:
+        """Height of its top, metres."""
+        return self.position[2] + self.size[2] / 2
 
 
 class RoomShape(BaseModel):

@@ -33,7 +33,7 @@ class EditPlan(BaseModel):
         planner: who planned it.
         prompt_hash: hash of the prompt, "" for planners that use none.
         verdict: see `Verdict`.
-        reason: one sentence for a person, "" if ok.
+        reason: one sentence for a person; of a plan that is ok, what was read otherwise than it was written.
         unknown: the exact words that were not understood.
         seconds: how long planning took; not compared (`same_as`).
     """
@@ -47,7 +47,7 @@ class EditPlan(BaseModel):
     verdict: Verdict = "ok"
     reason: Annotated[str, Field(max_length=2000)] = ""
     unknown: Annotated[tuple[Annotated[str, Field(max_length=200)], ...], Field(max_length=64)] = ()
-    seconds: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
+    seconds: Annotated[float, Field(ge=0, le=86_400, allow_inf_nan=False)] = 0.0
 
     @model_validator(mode="after")
     def _all_or_nothing(self) -> Self:

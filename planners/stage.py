@@ -6,7 +6,6 @@ graphs. Refuses to resolve anything itself, and to be looked at: it has no shape
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache
@@ -207,13 +206,10 @@ def _vec(values: np.ndarray) -> Vec3:
 
 def _group(index: int, node: Node) -> Group:
     """A node as a row of the table."""
-    c, s = math.cos(math.radians(node.yaw)), math.sin(math.radians(node.yaw))
-    size = (max(node.size[0], 1e-4), max(node.size[1], 1e-4), max(node.size[2], 1e-4))
-    box = Box(node.position, ((c, s, 0.0), (-s, c, 0.0), _UP), size)
     kind = STRUCTURE.get(node.label.lower().strip())
     color = color_of(node.color) if node.color else _NO_COLOR
     level, label = ("structure", kind) if kind else ("object", _spoken(node))
-    return Group(index, level, -1, label, 1.0, box, color, 1, 1, 1.0)  # type: ignore[arg-type]
+    return Group(index, level, -1, label, 1.0, node.box, color, 1, 1, 1.0)  # type: ignore[arg-type]
 
 
 def _slabs(name: str, graph: SceneGraph) -> list[Box]:

@@ -156,8 +156,9 @@ def _agrees(asked: Phrase, label: Phrase) -> float:
 def _names(asked: Phrase, label: Phrase) -> bool:
     """Whether the label ends with what is asked, word for word or by a synonym, or holds all of it with its head."""
     alike = _alike(asked)
+    ends = alike - {asked[-1:]} if len(asked) > 1 else alike  # a square table ends like a round one
     for form in _forms(label):
-        if any(form[i:] in alike for i in range(len(form))) or not alike.isdisjoint(_alike(form)):
+        if any(form[i:] in ends for i in range(len(form))) or not ends.isdisjoint(_alike(form)) or form in alike:
             return True
         if form[-1] == asked[-1] and set(asked) <= set(form):
             return True
@@ -219,6 +220,6 @@ def _other(asked: Phrase) -> bool:
 @cache
 def _covers(asked: Phrase, label: Phrase) -> bool:
     """Whether what is asked is a word for a family that the label belongs to."""
-    asked = _plainer(asked)
+    asked = asked if _other(asked) else _plainer(asked)
     members = synonyms.narrower(asked) | _wider().get(asked, frozenset())
     return any(_names(member, label) for member in members)

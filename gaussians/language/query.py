@@ -55,6 +55,8 @@ class Query(BaseModel):
             only one ("the other chair").
         also: set union ("the chairs and the lamp").
         last: the selection of the instruction before ("it", "them").
+        grow: metres by which what was found reaches out to the Gaussians around it, or if negative draws back from them.
+        invert: everything but what was found; after growing.
         groups: explicit group ids (from a picked candidate or a planner that saw the graph); overrides `text`.
     """
 
@@ -71,7 +73,9 @@ class Query(BaseModel):
     exclude: Annotated[tuple[Query, ...], Field(max_length=4)] = ()
     also: Annotated[tuple[Query, ...], Field(max_length=8)] = ()
     last: bool = False
-    groups: Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(max_length=256)] = ()
+    grow: Annotated[float, Field(ge=-100, le=100, allow_inf_nan=False)] | None = None
+    invert: bool = False
+    groups: Annotated[tuple[Annotated[int, Field(ge=0, le=10**9)], ...], Field(max_length=256)] = ()
 
     def describe(self) -> str:
         """The query in words, for messages: "the red chair left of the sofa"."""
@@ -80,7 +84,9 @@ class Query(BaseModel):
             said += f" but not {q.describe()}"
         for q in self.also:
             said += f" and {q.describe()}"
-        return said
+        if self.grow:
+            said += f" {'grown' if self.grow > 0 else 'shrunk'} by {abs(self.grow):g} m"
+        return f"everything but {said}" if self.invert else said
 
     def _own_words(self) -> str:
         """The query in words without its set algebra."""

@@ -1,0 +1,31 @@
+"""`scenewright check GRAPH.json`: does a scene graph fit, stand, hold what it states and leave room to walk?"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..options import Debug, Json
+from ..terminal import terminal
+
+
+def command(
+    graph: Annotated[
+        Path, typer.Argument(metavar="GRAPH.json", help="A scene graph (see `scenewright schema graph`).")
+    ],
+    as_json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Check anybody's scene graph: collisions, bounds, support, stated relations, reachability. Exit code 3 if not."""
+    from ...planners.checking import check, sentences
+    from ...planners.graph import SceneGraph
+
+    report = check(SceneGraph.read(graph))
+    told = sentences(report.violations) or [f"{graph}: nothing is wrong"]
+    told += [f"not checked: {line}" for line in report.unchecked]
+    terminal.result("\n".join(told), {"ok": report.ok, **asdict(report)})
+    if not report.ok:
+        raise typer.Exit(3)

@@ -1,0 +1,97 @@
+"""Where a person can walk in a room of boxes: a flood fill over a grid of the floor.
+
+Knows footprints and one person's width. Refuses to know what things are for; a door counts as where one comes in, and
+without a door the largest free part of the floor does.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from .graph import Node, SceneGraph
+
+F64 = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+WIDTH = 0.5  # metres, a person's, shoulder to shoulder
+ARM = 0.6  # metres that a person reaches from the edge of the body
+CELL = 0.05  # metres, side of a cell; a way is found or missed by this much
+_STEP = 0.05  # metres; what is lower is stepped upon
+_HEAD = 1.9  # metres; what is higher up is walked under
+_MOST = 1200  # cells along a side, for halls that would need more the cells grow
+_DOORS = frozenset({"door", "doorway", "entrance", "gate", "exit", "front door", "entry"})
+
+
+def unreached(graph: SceneGraph) -> Iterator[tuple[Node, float]]:
+    """Doors that nothing can be entered by, and nodes on the floor that no walkable place is within arm's reach of.
+
+    Each with its distance to the nearest place in question, infinite where nobody can stand anywhere.
+    """
+    xs, ys = _axes(graph)
+    areas, _ = ndimage.label(_free(graph, xs, ys), structure=np.ones((3, 3)))
+    entered = set[int]()
+    for door in (n for n in graph.nodes if n.label.lower().strip() in _DOORS):
+        area, distance = _nearest(areas > 0, areas, door, xs, ys)
+        if distance > WIDTH + ARM:
+            yield door, distance
+        else:
+            entered.add(area)
+    walkable = np.isin(areas, sorted(entered or _largest(areas)))
+    for node in graph.nodes:
+        if node.support == "floor" and node.size[2] > _STEP and node.label.lower().strip() not in _DOORS:
+            _, distance = _nearest(walkable, areas, node, xs, ys)
+            if distance > WIDTH / 2 + ARM:
+                yield node, distance
+
+
+def _axes(graph: SceneGraph) -> tuple[F64, F64]:
+    """Middles of the cells along x and y, symmetric about the room's centre."""
+    width, depth, _ = graph.room.size
+    cell = max(CELL, max(width, depth) / _MOST)
+    counts = (max(int(side / cell), 1) for side in (width, depth))
+    x, y = ((np.arange(n, dtype=np.float64) - (n - 1) / 2) * cell for n in counts)
+    return x, y
+
+
+def _largest(areas: NDArray[np.int32]) -> set[int]:
+    """The largest area, by itself; none where there is none."""
+    sizes = np.bincount(areas.ravel())
+    sizes[0] = 0
+    return {int(sizes.argmax())} if sizes.any() else set()
+
+
+def _nearest(among: Flags, areas: NDArray[np.int32], node: Node, xs: F64, ys: F64) -> tuple[int, float]:
+    """The area of the place nearest to a node's footprint, and its distance; 0 and infinity if there is no place."""
+    places = np.argwhere(among)
+    if not len(places):
+        return 0, math.inf
+    distance = _distances(node, np.stack([xs[places[:, 0]], ys[places[:, 1]]], axis=1))
+    best = int(distance.argmin())
+    return int(areas[tuple(places[best])]), float(distance[best])
+
+
+def _free(graph: SceneGraph, xs: F64, ys: F64) -> Flags:
+    """`[X, Y]` cells where a person can stand without touching a wall or a thing."""
+    width, depth, _ = graph.room.size
+    grid = np.stack(np.meshgrid(xs, ys, indexing="ij"), axis=-1).reshape(-1, 2)
+    half = WIDTH / 2 - 1e-9
+    free = (np.abs(grid[:, 0]) <= width / 2 - half) & (np.abs(grid[:, 1]) <= depth / 2 - half)
+    for node in graph.nodes:
+        if node.top > _STEP and node.bottom < _HEAD:
+            free &= _distances(node, grid) >= half
+    return free.reshape(len(xs), len(ys))
+
+
+def _distances(node: Node, points: F64) -> F64:
+    """`[M]` metres from points `[M, 2]` of the floor to a footprint, 0 within it."""
+    turn = math.radians(node.yaw)
+    offset = points - np.array(node.position[:2])
+    along = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+    beyond = np.maximum(np.abs(offset @ along) - np.array(node.size[:2]) / 2, 0.0)
+    distance: F64 = np.hypot(beyond[:, 0], beyond[:, 1])
+    return distance
