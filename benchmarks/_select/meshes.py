@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ...gaussians import assets
 from ...gaussians.assets import Asset, Parts
 from ...gaussians.assets.forge import Unlit
+from ...gaussians.assets.layout import Layout
 from ...gaussians.assets.surface import Samples
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.language.calibration import probability
@@ -85,11 +86,11 @@ def rooms(folder: Path, seed: int) -> list[Case]:
     return [staged.built(room, seed + i) for i, room in enumerate(layouts) if room.things]
 
 
-def _shares_a_name(room: staged.Layout, stem: str) -> bool:
+def _shares_a_name(room: Layout, stem: str) -> bool:
     return any(set(NAMES[t.asset.kind]) & set(NAMES[stem]) for t in room.things)
 
 
-def _put(room: staged.Layout, thing: Asset) -> bool:
+def _put(room: Layout, thing: Asset) -> bool:
     carriers = [i for i, t in enumerate(room.things) if 0.4 < t.asset.size[2] < 1.1] if thing.kind in SMALL else []
     if any(room.on_top(thing, i) is not None for i in carriers):
         return True

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...gaussians import assets
 from ...gaussians.assets import Asset
+from ...gaussians.assets.layout import Layout
 from ...gaussians.color import BASIC
 from ...gaussians.language.encoders import Encoder
 from ...gaussians.language.query import Query
@@ -90,7 +91,7 @@ def swap_rooms(seed: int) -> tuple[Set, Set]:
     return room(False), room(True)
 
 
-def _placed(layout: staged.Layout, things: Sequence[Asset], asked: Sequence[Query], seed: int) -> Set:
+def _placed(layout: Layout, things: Sequence[Asset], asked: Sequence[Query], seed: int) -> Set:
     """What found a place, and the queries for it (those for a pair of which one did not are dropped)."""
     spots = staged.stand(layout, things)
     lost = {things[i].kind for i, spot in enumerate(spots) if spot is None}

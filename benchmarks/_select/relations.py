@@ -55,9 +55,8 @@ def generate(case: Case, eyes: Sequence[int]) -> list[Asked]:
     chosen: list[Asked] = []
     for eye in eyes:
         every = list(_all(case, solids, eye))
-        rng.shuffle(every)  # type: ignore[arg-type]
         taken: Counter[tuple[str, Frame, bool]] = Counter()
-        for one in every:
+        for one in (every[i] for i in rng.permutation(len(every))):
             key = one.name, one.frame, one.object is None
             if taken[key] < (MOST_ABSENT if one.object is None else MOST):
                 taken[key] += 1

@@ -70,8 +70,8 @@ class Solid:
     def covers(self, points: F64, margin: float = 0.0) -> NDArray[np.bool_]:
         """Which level points `[M, 2]` lie within its footprint grown by `margin`."""
         local = np.abs((points - self.center[:2]) @ self._axes.T)
-        inside: NDArray[np.bool_] = (local <= np.array(self.thing.size[:2]) / 2 + margin).all(axis=1)
-        return inside
+        within = local <= np.array(self.thing.size[:2]) / 2 + margin
+        return np.asarray(within.all(axis=1))
 
     def reach(self, direction: F64) -> float:
         """How far its footprint extends from its centre in a level direction."""

@@ -69,7 +69,7 @@ def floaters(rooms: Sequence[Case], encoder: Encoder, grouped: Callable[[Case], 
             found += names_miou(known, encoder)
             strays = np.arange(len(hazy.ids)) >= len(room.ids)
             things = [mask for mask in known.groups() if strays[mask].mean() < 0.5]
-            joined.append(float(np.stack(things).any(axis=0)[strays].mean()))
+            joined.append(float(np.logical_or.reduce(things)[strays].mean()))
         metrics.append(Metric(f"floaters.{share:.0%}.miou", fmean(found), "IoU", "higher", 0.03))
         metrics.append(Metric(f"floaters.{share:.0%}.joined", fmean(joined), "share", "lower", 0.2))
     note = (

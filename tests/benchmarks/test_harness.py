@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scenewright.benchmarks import harness, render
+from scenewright.benchmarks import _chart, harness, render
 from scenewright.benchmarks.harness import Metric, Point, Result
 from scenewright.gaussians.errors import BackendError, FileError, UserError
 
@@ -85,6 +85,15 @@ def test_chart_is_written(tmp_path: Path, kind: str) -> None:
     pytest.importorskip("matplotlib")
     path = RESULT.chart(tmp_path / f"chart.{kind}")
     assert path.stat().st_size > 5000
+
+
+def test_a_chart_of_many_points_names_those_one_would_choose(tmp_path: Path) -> None:
+    many = tuple(Point("dial", f"{i}", 1.0 + i, 10.0 - abs(i - 9), 1, default=i == 12) for i in range(20))
+    result = Result("many", "dB", (), many)
+    assert {p.setting for p in _chart.labelled(result)} == {"12", "0", "19", *(p.setting for p in result.front())}
+    assert _chart.labelled(RESULT) == RESULT.points
+    pytest.importorskip("matplotlib")
+    assert result.chart(tmp_path / "many.svg").stat().st_size > 5000
 
 
 def test_chart_errors_say_the_fix(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
