@@ -36,12 +36,17 @@ COMMANDS = {
     "/redo": "do again what was taken back",
     "/plan": "TEXT: what an instruction would do, without doing it; alone: the last plan",
     "/select": "TEXT: what a phrase means; 'it' then means that",
+    "/why": "TEXT: why a phrase means what it means, term by term",
+    "/grow": "[METRES]: take in what lies around the selection (0.05 m if not said)",
+    "/shrink": "[METRES]: draw the selection back from what lies around it",
+    "/invert": "select everything but what is selected",
     "/show": "a picture of the current view; /show 2 looks through the scene's camera 2",
     "/things": "what is in the scene",
     "/history": "the instructions that led here",
     "/save": "FILE [--force]: write the scene",
     "/quit": "end the conversation",
 }
+STEP = 0.05  # metres by which a selection grows or shrinks if nothing is said
 _EXAMPLES = (
     "make the armchair teal and remove the coffee table",
     "move the plant 50 cm to the left",
@@ -153,6 +158,10 @@ class Chat:
             "/redo": lambda _: self._show_result(self.session.redo()),
             "/plan": self._plan,
             "/select": self._select,
+            "/why": self._why,
+            "/grow": lambda rest: self._adjust(rest, 1),
+            "/shrink": lambda rest: self._adjust(rest, -1),
+            "/invert": lambda _: self._show_result(self.session.adjust(invert=True)),
             "/show": self._show,
             "/things": self._things,
             "/history": self._history,
@@ -190,6 +199,22 @@ class Chat:
             return
         lines = [found.reason, *(f"  {i}. {c.describe()}" for i, c in enumerate(found.candidates, start=1))]
         self._tell("\n".join(lines), selection_json(found))
+
+    def _why(self, text: str) -> None:
+        if not text:
+            raise UserError("say what to explain: /why the red chair")
+        explained = self.session.explain(text)
+        self._tell("\n".join(explained.lines()), explained.to_json())
+
+    def _adjust(self, text: str, sign: int) -> None:
+        """Grow (`sign` 1) or shrink (-1) the selection by the metres in `text`."""
+        try:
+            by = float(text.removesuffix("m").strip() or STEP)
+        except ValueError as error:
+            raise UserError(f"{text!r} is no distance; say metres, for example /grow 0.05") from error
+        if not 0 < by <= 100:
+            raise UserError(f"a selection grows by metres above 0 and up to 100, not by {by:g}")
+        self._show_result(self.session.adjust(grow=sign * by))
 
     def _show(self, view: str) -> None:
         from .views import choose_view

@@ -30,6 +30,7 @@ from .stopwatch import timed
 
 if TYPE_CHECKING:
     from ..gaussians.language.encoders import Encoder
+    from ..gaussians.language.explain import Explanation
     from ..planners.plan import EditPlan
     from ..tools.base import Context, EditOp
     from ..tools.receipt import Receipt
@@ -206,6 +207,38 @@ class Session:
         if found.verdict == "found":
             self._history.amend(replace(self._history.present, last=found))
         return found
+
+    def adjust(self, *, grow: float | None = None, invert: bool = False) -> Result:
+        """Grow what is selected by metres (negative shrinks it), or turn it inside out; a step that can be undone.
+
+        Raises:
+            AbsentError: nothing is selected, or nothing would be left.
+            UserError: the distance is no number or too large.
+        """
+        from pydantic import ValidationError
+
+        from ..planners.plan import EditPlan
+        from ..tools.ops.select import Select
+
+        try:
+            query = Query(last=True, grow=grow, invert=invert)
+        except ValidationError as error:
+            raise UserError(f"a selection cannot grow by {grow} m; give metres between -100 and 100") from error
+        return self.apply(EditPlan(instruction=query.describe(), ops=(Select(target=query),), planner="said"))
+
+    def explain(self, phrase: str | Query) -> Explanation:
+        """Why a phrase means what it means here, term by term; nothing changes, not even what "it" means.
+
+        Raises:
+            UserError: the phrase was not understood.
+        """
+        from ..gaussians.language.explain import explain
+        from ..gaussians.language.resolve import Resolver
+
+        query = phrase if isinstance(phrase, Query) else self._noun_phrase(phrase, instruction=True)
+        if query is None:
+            raise UserError(f"{phrase!r} is no description of things; say for example 'the red chair'")
+        return explain(Resolver(self.embed(), self.viewer, self.encoder, self.last), query)
 
     def recall(self, text: str | None) -> None:
         """Let "it" mean what an earlier instruction was about, without carrying that out; None forgets.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,6 +13,7 @@ from ..options import Batch, Debug, Encoder, Force, Json, Planner, SceneFile, Vi
 from ..terminal import read_batch, terminal
 
 if TYPE_CHECKING:
+    from ...gaussians.language.query import Query
     from ...gaussians.language.selection import Selection
     from ..session import Session
 
@@ -21,12 +23,24 @@ Ids = Annotated[
         "--ids", metavar="FILE", help="Write the Gaussians' row numbers (.npy); with --batch a folder of <id>.npy."
     ),
 ]
+Grow = Annotated[float | None, typer.Option(metavar="METRES", help="Then take in the Gaussians within this distance.")]
+Shrink = Annotated[
+    float | None, typer.Option(metavar="METRES", help="Then draw back this far from all other Gaussians.")
+]
+Invert = Annotated[bool, typer.Option("--invert", help="Then take everything else instead.")]
+Explain = Annotated[
+    bool, typer.Option("--explain", help="Tell each term of every candidate, and what it is held against.")
+]
 
 
 def command(
     scene: SceneFile,
     text: Annotated[str | None, typer.Argument(metavar="TEXT", help="What to select, e.g. 'the red chair'.")] = None,
     ids: Ids = None,
+    grow: Grow = None,
+    shrink: Shrink = None,
+    invert: Invert = False,
+    explain: Explain = False,
     batch: Batch = None,
     encoder: Encoder = "auto",
     planner: Planner = "auto",
@@ -47,16 +61,43 @@ def command(
     _check_targets([t for t in targets if t is not None], force)
     if ids is not None and batch is not None:
         make_folder(ids)
+    asked = Asked(_steps(grow, shrink, invert), explain)
     session, _ = open_session(Opening(scene, planner, encoder, view))
     if batch is None:
-        _one(session, str(text), targets[0], force)
+        _one(session, str(text), asked, targets[0], force)
         return
     for row, target in zip(rows, targets, strict=True):
         session.recall(row.get("context"))
-        selection, data = _answer(session, row["text"])
+        selection, data = _answer(session, row["text"], asked)
         if target is not None:
             _write_rows(selection, target, force)
         terminal.row({"id": row["id"], **data})
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is done with a selection: queries about "it" that change it in turn, and whether it is explained."""
+
+    steps: tuple[Query, ...]
+    explain: bool
+
+
+def _steps(grow: float | None, shrink: float | None, invert: bool) -> tuple[Query, ...]:
+    """Growing, then shrinking, then inverting, as far as they were asked for."""
+    from ...gaussians.errors import UserError
+    from ...gaussians.language.query import Query
+
+    for name, by in (("--grow", grow), ("--shrink", shrink)):
+        if by is not None and not 0 < by <= 100:
+            raise UserError(f"{name} takes metres above 0 and up to 100, not {by:g}")
+    steps = []
+    if grow is not None:
+        steps.append(Query(last=True, grow=grow))
+    if shrink is not None:
+        steps.append(Query(last=True, grow=-shrink))
+    if invert:
+        steps.append(Query(last=True, invert=True))
+    return tuple(steps)
 
 
 def _target(ids: Path | None, row: Any, batch: bool) -> Path | None:
@@ -82,8 +123,8 @@ def _check_targets(targets: list[Path], force: bool) -> None:
     refuse_existing(targets, force)
 
 
-def _one(session: Session, text: str, target: Path | None, force: bool) -> None:
-    selection, data = _answer(session, text)
+def _one(session: Session, text: str, asked: Asked, target: Path | None, force: bool) -> None:
+    selection, data = _answer(session, text, asked)
     if selection is None or selection.verdict != "found":
         terminal.result(data["reason"], data)
         for number, c in enumerate(selection.candidates if selection is not None else (), start=1):
@@ -91,23 +132,32 @@ def _one(session: Session, text: str, target: Path | None, force: bool) -> None:
         raise typer.Exit(3)
     if target is not None:
         _write_rows(selection, target, force)
-    things = ", ".join(c.describe() for c in selection.candidates) or selection.query.describe()
+    things = ", ".join(c.describe() for c in selection.candidates) or data["asked"]
     note = f" ({selection.reason})" if selection.reason else ""
     terminal.result(f"{len(selection):,} Gaussians: {things}{note}", data)
 
 
-def _answer(session: Session, text: str) -> tuple[Selection | None, dict[str, Any]]:
+def _answer(session: Session, text: str, asked: Asked) -> tuple[Selection | None, dict[str, Any]]:
     """The selection, None if the words were not understood, and the answer as data."""
     from ...gaussians.errors import UserError
     from ..resolved import selection_json
 
     started = time.perf_counter()
     try:
+        explained = session.explain(text) if asked.explain else None
         selection = session.select(text)
+        said = selection.query.describe()
+        for step in asked.steps if selection.verdict == "found" else ():
+            selection, said = session.select(step), step.describe().replace("it", said, 1)
     except UserError as error:
         refused = {"verdict": "not_understood", "gaussians": 0, "groups": [], "candidates": [], "reason": str(error)}
         return None, {**refused, "seconds": round(time.perf_counter() - started, 4)}
-    return selection, {**selection_json(selection), "seconds": round(time.perf_counter() - started, 4)}
+    data = {**selection_json(selection), "asked": said, "seconds": round(time.perf_counter() - started, 4)}
+    if explained is not None:
+        data["explained"] = explained.to_json()
+        for line in explained.lines():
+            terminal.say(line)
+    return selection, data
 
 
 def _write_rows(selection: Selection | None, target: Path, force: bool) -> None:

@@ -55,7 +55,7 @@ class Query(BaseModel):
             only one ("the other chair").
         also: set union ("the chairs and the lamp").
         last: the selection of the instruction before ("it", "them").
-        grow: metres by which what was found reaches out to the Gaussians around it, or if negative draws back from them.
+        grow: metres by which what was found reaches out to the Gaussians around it; if negative draws back from them.
         invert: everything but what was found; after growing.
         groups: explicit group ids (from a picked candidate or a planner that saw the graph); overrides `text`.
     """

@@ -11,13 +11,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
 import torch
 
 from ..camera import Camera
 from ..cloud import NO_GROUP
 from ..errors import BackendError
 from ..scene import Scene
-from . import relations
+from . import growth, relations
 from .calibration import doubt
 from .colored import PARTS, at_home, by_color, by_hue
 from .facing import Facing, facing_of
@@ -26,7 +27,7 @@ from .measure import box_of
 from .members import Members, difference, members_of, union
 from .picking import by_distance, pick
 from .query import Query, Relation
-from .selection import Candidate, Selection, nothing
+from .selection import Candidate, Selection, mask_of, nothing
 from .terms import ALL, FLOATERS, ORDERING, STRUCTURE, Anchor, Scored, alive, candidate_of, is_name, related, scored
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ def resolve(
     return Resolver(scene, viewer, encoder, last).select(query)
 
 
-class _Unresolved(Exception):  # no error: an anchor's verdict is the answer
+class Unresolved(Exception):  # no error: an anchor's verdict is the answer
     """An anchor was not found as one thing; its selection is the answer to the whole query."""
 
     def __init__(self, selection: Selection) -> None:
@@ -85,7 +86,32 @@ class Resolver:
     # -- the line from query to selection ---------------------------------------------------------------------------
 
     def select(self, query: Query) -> Selection:
-        """What a query means, set algebra and all."""
+        """What a query means, set algebra, growing and all."""
+        found = self._combined(query)
+        if found.verdict != "found" or not (query.grow or query.invert):
+            return found
+        ids, count = found.ids, len(found)
+        if query.grow:
+            by = abs(query.grow) / (self.scene.frame.metres_per_unit or 1.0)
+            ids = (growth.grown if query.grow > 0 else growth.shrunk)(self.scene.cloud, ids, by)
+        change = f"{len(ids) - count:+,} Gaussians by {'growing' if len(ids) >= count else 'shrinking'}"
+        if query.invert:
+            ids = difference(self.members.every_id, ids)
+        if not len(ids):
+            return nothing(query, f"nothing is left of {query.describe()}", found.candidates)
+        reason = "; ".join(r for r in (found.reason, change if query.grow else "") if r)
+        told = () if query.invert else found.candidates
+        return replace(found, ids=ids, groups=self._whole(ids), candidates=told, reason=reason)
+
+    def _whole(self, ids: torch.Tensor) -> tuple[int, ...]:
+        """Groups of which every Gaussian is among some ids."""
+        column = self.scene.cloud.group[mask_of(self.scene.cloud, ids)].cpu().numpy()
+        held = np.bincount(column + 1, minlength=len(self.field.groups) + 1)[1:]
+        total = [sum(int(held[i]) for i in self.field.leaves(g.id)) for g in self.field.groups]
+        return tuple(g.id for g in alive(self.field, "all") if g.parent < 0 and total[g.id] == g.count)
+
+    def _combined(self, query: Query) -> Selection:
+        """What a query means with its set algebra."""
         outs = []
         for other in query.exclude:
             out = self.select(other.model_copy(update={"pick": "all"}) if other.pick == "one" else other)
@@ -121,10 +147,10 @@ class Resolver:
             return self._floaters(query)
         try:
             found = self._described(query, out)
-            told = self._frames_told(query)
-        except _Unresolved as anchor:
+            fronts = self._frames_told(query)
+        except Unresolved as anchor:
             return replace(anchor.selection, query=query)
-        return replace(found, reason="; ".join(r for r in (found.reason, told) if r)) if told else found
+        return replace(found, reason="; ".join(r for r in (found.reason, fronts) if r)) if fronts else found
 
     def _described(self, query: Query, out: frozenset[int] = frozenset()) -> Selection:
         """A query that says what a thing is like."""
@@ -187,18 +213,18 @@ class Resolver:
         """What a relation relates to, each with the stand it is told from.
 
         Raises:
-            _Unresolved: one of them is absent or ambiguous.
+            Unresolved: one of them is absent or ambiguous.
         """
         groups: list[Group] = []
         for query in relation.anchors:
             found = self.select(query)
             if found.verdict != "found":
-                raise _Unresolved(found)
+                raise Unresolved(found)
             # Found by colour alone, it has no group.
             own = [self.field.groups[i] for i in found.groups]
             groups.extend(own or [self._stand_in(found.mask(self.scene.cloud))])
         if relation.name == "between" and len(groups) < 2:
-            raise _Unresolved(nothing(relation.anchors[0], "'between' needs two things"))
+            raise Unresolved(nothing(relation.anchors[0], "'between' needs two things"))
         return [Anchor(g, self._stand_at(g, relation)) for g in groups]
 
     def _stand_at(self, group: Group, relation: Relation) -> relations.Stand:

@@ -119,7 +119,7 @@ def test_ctrl_c_at_the_prompt_and_ctrl_d() -> None:
     ("typed", "offered"),
     [
         ("/un", ["/undo"]),
-        ("/s", ["/select", "/show", "/save"]),
+        ("/s", ["/select", "/shrink", "/show", "/save"]),
         ("del", ["delete"]),
         ("delete the coffee t", ["coffee table"]),
         ("delete the cha", ["chair"]),

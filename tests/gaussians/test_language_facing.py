@@ -46,6 +46,7 @@ def slab(low: tuple[float, float, float], high: tuple[float, float, float], n: i
 
 CHAIR = np.concatenate([slab((-0.25, -0.25, 0), (0.25, 0.25, 0.45)), slab((-0.25, 0.2, 0.45), (0.25, 0.25, 0.9))])
 STOOL = slab((-0.2, -0.2, 0), (0.2, 0.2, 0.6))
+AT_THE_WALL = STOOL + np.array([0.0, 2.72, 0.0])
 WALL = group_of(Box((0.0, 3.0, 1.25), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (8.0, 0.1, 2.5)), "wall")
 
 
@@ -65,14 +66,14 @@ def test_a_chair_faces_away_from_its_back_however_it_is_turned(degrees: float) -
 
 
 def test_what_has_no_back_faces_away_from_the_wall_it_stands_at() -> None:
-    front, by = faced(STOOL + [0, 2.72, 0], (WALL,))
+    front, by = faced(AT_THE_WALL, (WALL,))
     assert by == "wall" and front is not None and np.allclose(front, [0, -1, 0])
 
 
 @pytest.mark.parametrize("walls", [(), (WALL,)])
 def test_what_stands_free_and_has_no_back_faces_nowhere(walls: tuple[Group, ...]) -> None:
     assert faced(STOOL, walls) == (None, "nothing")
-    assert faced(STOOL + [0, 2.72, 0.0], (), 0.0) == (None, "nothing")
+    assert faced(AT_THE_WALL) == (None, "nothing")
 
 
 def test_an_empty_group_faces_nowhere() -> None:
