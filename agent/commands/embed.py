@@ -29,7 +29,7 @@ def command(
     from ...gaussians.language import encoders
     from ...gaussians.language import masks as maskers
     from ...gaussians.language.embed import embed
-    from ...gaussians.language.store import load_field, save_field
+    from ...gaussians.language.store import load_field, misfit, save_field
     from ..things import told
     from ..views import with_frame
 
@@ -41,6 +41,8 @@ def command(
         loaded = loaded.replace(cameras=read_capture(capture).cameras)
     source = maskers.load(masks, capture) if masks is not None else None
     known = None if again else load_field(loaded, scene, chosen.fingerprint)
+    if known is None and not again and (why := misfit(scene, chosen.fingerprint)) is not None:
+        terminal.say(f"note: the language field beside {scene} {why}: embedding again")
     embedded = known or embed(loaded, chosen, progress=terminal.progress, masks=source)
     path = None if known else save_field(embedded, scene)
     language = embedded.language

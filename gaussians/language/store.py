@@ -105,6 +105,37 @@ def load_field(scene: Scene, scene_path: Path, encoder: str | None = None) -> Sc
     return None
 
 
+def misfit(scene_path: Path, encoder: str | None = None) -> str | None:
+    """Why the field that lies beside a scene file cannot be used, as the end of a sentence about it; None if it can be
+    or if there is none.
+
+    Raises:
+        FileError: the scene or the field cannot be read.
+    """
+    target = beside(scene_path)
+    if not target.is_file():
+        return None
+    header = _header(target)
+    if header.get("scene") != fingerprint(scene_path):
+        return "was made for another version of this file"
+    if header.get("version") != VERSION:
+        return "was written by another version of scenewright"
+    if encoder is not None and header.get("encoder") != encoder:
+        return f"is of encoder {header.get('encoder')}"
+    return None
+
+
+def _header(path: Path) -> dict[str, Any]:
+    """The table alone, without the Gaussians' column."""
+    from safetensors import SafetensorError, safe_open
+
+    try:
+        with safe_open(path, framework="pt") as stream:
+            return dict(json.loads((stream.metadata() or {}).get(_ENTRY, "{}")))
+    except (SafetensorError, OSError, ValueError, TypeError) as error:
+        raise FileError(f"{path} is not a language field ({error}); delete it and embed the scene again") from error
+
+
 def _write(target: Path, tensors: dict[str, torch.Tensor], header: dict[str, Any]) -> Path:
     """One entry of metadata only: safetensors writes several in no fixed order."""
     from safetensors.torch import save

@@ -298,7 +298,7 @@ def test_a_field_of_another_encoder_is_not_used(
 
     asked = []
 
-    def embed(scene: Scene, encoder: Any, progress: Any = None) -> Scene:
+    def embed(scene: Scene, encoder: Any, progress: Any = None, masks: Any = None) -> Scene:
         asked.append(encoder.fingerprint)
         raise KeyboardInterrupt
 
@@ -314,7 +314,7 @@ def test_a_given_frame_is_used_and_a_field_for_another_is_not(
 
     asked = []
 
-    def embed(scene: Scene, encoder: Any, progress: Any = None) -> Scene:
+    def embed(scene: Scene, encoder: Any, progress: Any = None, masks: Any = None) -> Scene:
         asked.append((scene.frame.up, scene.frame.up_source, scene.frame.metres_per_unit))
         raise KeyboardInterrupt
 

@@ -134,3 +134,27 @@ def test_on_the_command_line(room: Path, boxes: Scene, capsys: pytest.CaptureFix
     assert data["explained"]["candidates"][0]["outcome"] == "selected"
     code, _, err = _call(capsys, "select", room, "the green thing", "--grow", "-1")
     assert code == 2 and "--grow" in err
+
+
+def test_a_field_made_for_another_version_of_the_file_is_told_and_not_used(
+    room: Path, boxes: Scene, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from scenewright.gaussians.language import embed as embedding
+
+    embedded: list[Scene] = []
+
+    def embed(scene: Scene, *_: Any, **__: Any) -> Scene:
+        embedded.append(scene)
+        return boxes.replace(cloud=scene.cloud.replace(group=boxes.cloud.group[: len(scene.cloud)]))
+
+    monkeypatch.setattr(embedding, "embed", embed)
+    code, _, err = _call(capsys, "select", room, "the green thing")
+    assert code == 0 and "another version" not in err and not embedded
+    save(boxes.replace(cloud=boxes.cloud[: len(boxes.cloud) - 1], language=None), room, force=True)
+    code, _, err = _call(capsys, "select", room, "the green thing")
+    assert code == 0 and len(embedded) == 1
+    assert "was made for another version of this file: embedding again" in err and f"scenewright embed {room}" in err
+    code, _, err = _call(capsys, "embed", room)
+    assert code == 0 and "another version" in err and len(embedded) == 2
+    code, _, err = _call(capsys, "select", room, "the green thing")
+    assert code == 0 and "another version" not in err and len(embedded) == 2

@@ -22,7 +22,7 @@ from scenewright.gaussians.errors import FileError
 from scenewright.gaussians.files import atomic
 from scenewright.gaussians.language import store
 from scenewright.gaussians.language.field import Box, Group, LanguageField
-from scenewright.gaussians.language.store import beside, cached, fingerprint, load_field, save_field
+from scenewright.gaussians.language.store import beside, cached, fingerprint, load_field, misfit, save_field
 from scenewright.gaussians.scene import Frame, Scene
 
 numbers = st.floats(-1e6, 1e6)
@@ -292,3 +292,22 @@ def test_a_missing_scene_file_is_a_file_error(tmp_path: Path) -> None:
     for call in (lambda p: fingerprint(p), lambda p: load_field(bare(), p), lambda p: save_field(embedded(), p)):
         with pytest.raises(FileError, match="cannot read"):
             call(tmp_path / "nowhere.ply")
+
+
+def test_why_a_field_does_not_fit_is_told(path: Path) -> None:
+    assert misfit(path) is None  # there is none
+    save_field(embedded(), path)
+    assert misfit(path) is None and misfit(path, "fake:1") is None
+    assert misfit(path, "other:2") == "is of encoder fake:1"
+    path.write_bytes(path.read_bytes() + b"edited elsewhere")
+    assert misfit(path) == "was made for another version of this file"
+    assert load_field(bare(), path) is None
+    beside(path).write_bytes(b"no field at all")
+    with pytest.raises(FileError, match="not a language field"):
+        misfit(path)
+
+
+def test_a_field_of_another_layout_says_so(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    save_field(embedded(), path)
+    monkeypatch.setattr(store, "VERSION", "next")
+    assert misfit(path) == "was written by another version of scenewright"
