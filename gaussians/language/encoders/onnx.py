@@ -157,9 +157,9 @@ class Onnx:
         path = self.folder / "preprocessor_config.json"
         said = _read_json(path)
         try:
-            size = said.get("crop_size", said.get("size"))
+            size = said["crop_size"] if "crop_size" in said else said["size"]
             if isinstance(size, dict):
-                size = size.get("height", size.get("shortest_edge"))
+                size = size["height"] if "height" in size else size["shortest_edge"]
             plain = said.get("do_normalize") is False
             mean = (0.0, 0.0, 0.0) if plain else tuple(map(float, said["image_mean"]))
             std = (1.0, 1.0, 1.0) if plain else tuple(map(float, said["image_std"]))
