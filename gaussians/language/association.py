@@ -66,12 +66,14 @@ class Tracks:
         tracks: those that hold, most masks first.
         share: `[N, K]` sparse: of the weight that a track's views give a Gaussian, how much lies in its masks.
         votes: `[N, K]` sparse: the scores of the masks a Gaussian lies in, each times the share of it that does.
+        seen: `[N]` bool, whether any view shows the Gaussian: of the others masks say nothing.
         outvoted: how many tracks were dropped.
     """
 
     tracks: tuple[Track, ...]
     share: csr_matrix
     votes: csr_matrix
+    seen: NDArray[np.bool_]
     outvoted: int
 
 
@@ -90,7 +92,8 @@ def associate(lifted: Lifted) -> Tracks:
             votes.append(vote)
     count = lifted.weights.shape[0]
     share, vote = _columns(shares, count), _columns(votes, count)
-    return Tracks(_with_parents(kept, share, evidence.mass), share, vote, len(joined) - len(kept))
+    seen = evidence.mass > 0
+    return Tracks(_with_parents(kept, share, evidence.mass), share, vote, seen, len(joined) - len(kept))
 
 
 class _Evidence:
@@ -107,14 +110,16 @@ class _Evidence:
     def __init__(self, lifted: Lifted) -> None:
         self.lifted = lifted
         self.views = np.unique(lifted.view)
-        masks = lifted.weights.tocoo()
-        self._rows, self._masks, self._weights = masks.row, masks.col, masks.data
-        seen = np.asarray(lifted.seen[self._rows, lifted.view[self._masks]]).ravel()
+        masks = lifted.weights.tocsc()
+        self._rows, self._weights = masks.indices, masks.data
+        self._masks = np.repeat(np.arange(len(lifted.labels)), np.diff(masks.indptr))
+        seen = _seen_at(lifted, self._rows, lifted.view[self._masks])
         self._shares = np.minimum(self._weights / np.maximum(seen, 1e-12), 1.0)
         self._visible = (lifted.seen > SEEN).astype(np.float32).tocsr()
         often = np.asarray(self._visible.sum(axis=1)).ravel()
-        self.mass: F32 = (np.asarray(lifted.seen.sum(axis=1)).ravel() / np.maximum(often, 1)).astype(np.float32)
-        self.weight: F64 = np.bincount(self._masks, weights=self._weights, minlength=len(lifted.labels))
+        whole = np.asarray(lifted.seen.multiply(self._visible).sum(axis=1)).ravel()
+        self.mass: F32 = (whole / np.maximum(often, 1)).astype(np.float32)
+        self.weight: F64 = np.bincount(self._masks, self._weights, len(lifted.labels)).astype(np.float64)
         held = (self._shares >= HELD) & (seen > SEEN)
         inside = csr_matrix(
             (np.ones(int(held.sum()), np.float32), (self._rows[held], self._masks[held])), shape=lifted.weights.shape
@@ -122,9 +127,9 @@ class _Evidence:
         weighed = diags(self.mass) @ inside
         overlap: F32 = (inside.T @ weighed).toarray()
         left: F32 = (weighed.T @ self._visible).toarray()[:, lifted.view]
-        whole = np.diag(overlap)
-        comparable = (left >= SHARED * whole[:, None]) | (SHARED * whole[None, :] <= left.T)
-        comparable &= (whole[:, None] > 0) & (whole[None, :] > 0)
+        size = np.diag(overlap)
+        comparable = (left >= SHARED * size[:, None]) | (SHARED * size[None, :] <= left.T)
+        comparable &= (size[:, None] > 0) & (size[None, :] > 0)
         np.fill_diagonal(comparable, False)
         self.left = np.where(comparable, left, 0)
         self.overlap = np.where(comparable, overlap, 0)
@@ -158,6 +163,19 @@ class _Evidence:
         own = (share > HELD).multiply(self.mass[:, None])
         seen = np.asarray((self._visible.T @ own).todense()).ravel()
         return int((seen > 0.5 * own.sum()).sum())
+
+
+def _seen_at(lifted: Lifted, rows: NDArray[np.int32], views: NDArray[np.int32]) -> F32:
+    """Weight that each of some `views [E]`, ascending, gives each of some `rows [E]`."""
+    whole = lifted.seen.tocsc()
+    ends = np.searchsorted(views, np.arange(whole.shape[1] + 1))
+    found, column = np.zeros(len(rows), np.float32), np.zeros(whole.shape[0], np.float32)
+    for v in range(whole.shape[1]):
+        held = slice(whole.indptr[v], whole.indptr[v + 1])
+        column[whole.indices[held]] = whole.data[held]
+        found[ends[v] : ends[v + 1]] = column[rows[ends[v] : ends[v + 1]]]
+        column[whole.indices[held]] = 0
+    return found
 
 
 def _columns(columns: Sequence[csr_matrix], count: int) -> csr_matrix:

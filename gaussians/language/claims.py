@@ -38,13 +38,14 @@ def owners(surface: Surface, links: Links, tracks: Tracks) -> tuple[I32, I32]:
     segment = superpoints(surface, links, FINE)
     share = csc_matrix(tracks.share[surface.rows])
     votes = csc_matrix(tracks.votes[surface.rows])
+    seen = tracks.seen[surface.rows]
     size = np.asarray((share > HELD).sum(axis=0)).ravel()
     owner, part = np.full(len(surface), NOBODY, np.int32), np.full(len(surface), NOBODY, np.int32)
     best = {NOBODY: np.zeros(len(surface))}
     held: dict[int, NDArray[np.bool_]] = {}
     for k in sorted(range(len(tracks.tracks)), key=lambda k: (-size[k], k)):  # containers before their contents
         column = np.asarray(share[:, [k]].todense()).ravel()
-        held[k] = pooled(column, segment) > HELD
+        held[k] = pooled(column, segment, seen) > HELD
         said = np.where(held[k], np.asarray(votes[:, [k]].todense()).ravel() + 1e-6, 0)
         parent = tracks.tracks[k].parent
         if parent == NOBODY:
@@ -60,17 +61,18 @@ def owners(surface: Surface, links: Links, tracks: Tracks) -> tuple[I32, I32]:
     return owner, np.where((belongs == owner) & (owner >= 0), part, NOBODY).astype(np.int32)
 
 
-def pooled(share: NDArray[np.floating], segment: I32) -> F64:
-    """Shares `[P]` drawn to the mean of their segment, the more the segment's points agree.
+def pooled(share: NDArray[np.floating], segment: I32, seen: NDArray[np.bool_]) -> F64:
+    """Shares `[P]` drawn to the mean of their segment, the more the segment's points agree; points that no view shows
+    get the mean of those it does.
 
     Agreement is one minus the ratio of the shares' deviation to the largest that such a mean allows, that of all or
     nothing: a segment that one half of the masks' border cuts keeps its points' own shares.
     """
-    count = np.maximum(np.bincount(segment), 1)
+    share, count = np.where(seen, share, 0.0), np.maximum(np.bincount(segment, weights=seen), 1)
     mean = np.bincount(segment, weights=share) / count
-    variance = np.maximum(np.bincount(segment, weights=np.square(share, dtype=np.float64)) / count - mean**2, 0)
+    variance = np.maximum(np.bincount(segment, weights=share**2) / count - mean**2, 0)
     split = np.sqrt(variance / np.maximum(mean * (1 - mean), 1e-9)).clip(0, 1)
-    result: F64 = mean[segment] + split[segment] * (share - mean[segment])
+    result: F64 = mean[segment] + np.where(seen, split[segment] * (share - mean[segment]), 0)
     return result
 
 
@@ -94,26 +96,27 @@ def claimed(
     """
     links = links_of(surface)
     owner, part = owners(surface, links, tracks)
-    owner = np.where(_structure_only(owner, labels, things), NOBODY, owner)
+    owner = np.where(_structure_only(owner, labels, things), NOBODY, owner).astype(np.int32)
+    owner = _with_hidden(owner, labels, things, tracks.seen[surface.rows])
     code = (labels.astype(np.int64) * (len(tracks.tracks) + 1) + owner + 1) * (len(tracks.tracks) + 1) + part + 1
     _, first, cut = np.unique(code, return_index=True, return_inverse=True)
     cut = cut.astype(np.int32)
-    size = np.bincount(cut, minlength=len(first))
+    size = np.bincount(cut, minlength=len(first)).astype(np.int64)
     of, parts, old = owner[first], part[first], labels[first]
-    lab = np.stack([np.bincount(cut, weights=surface.lab[:, c], minlength=len(first)) for c in range(3)], axis=1)
-    lab /= np.maximum(size, 1)[:, None]
+    total = np.stack([np.bincount(cut, weights=surface.lab[:, c], minlength=len(first)) for c in range(3)], axis=1)
+    lab: F64 = total / np.maximum(size, 1)[:, None]
     near = touching(cut, links)
     made = [
         replace(t, members=members) for t in things if t.level == "structure" and (members := _left(t.members, old, of))
     ]
     objects = [(np.flatnonzero(of == k), k) for k in range(len(tracks.tracks)) if (of == k).any()]
-    for members, k in sorted(objects, key=lambda o: (-int(size[o[0]].sum()), o[1])):
-        if size[members].sum() >= MIN_OBJECT:
-            made += _object(members, vectors[k], parts, len(made), near, lab, size)
-    for members in _whole_objects(things):
-        left = _left(members, old, of)
-        if size[list(left)].sum() >= MIN_OBJECT:
-            made += _object(np.array(left), None, parts, len(made), near, lab, size)
+    for own, k in sorted(objects, key=lambda o: (-int(size[o[0]].sum()), o[1])):
+        if size[own].sum() >= MIN_OBJECT:
+            made += _object(own, vectors[k], parts, len(made), near, lab, size)
+    for whole in _whole_objects(things):
+        left = np.array(_left(whole, old, of), dtype=np.int64)
+        if size[left].sum() >= MIN_OBJECT:
+            made += _object(left, None, parts, len(made), near, lab, size)
     return cut, made
 
 
@@ -124,6 +127,18 @@ def _structure_only(owner: I32, labels: I32, things: Sequence[Thing]) -> NDArray
     share = np.bincount(owner + 1, weights=structure) / np.maximum(count, 1)
     result: NDArray[np.bool_] = (share > HELD)[owner + 1] & (owner >= 0)
     return result
+
+
+def _with_hidden(owner: I32, labels: I32, things: Sequence[Thing], seen: NDArray[np.bool_]) -> I32:
+    """Points that no view shows go with the object that segmentation has them in, if one track owns most that is seen
+    of it: the underside of a chair is the chair's."""
+    owner = owner.copy()
+    for members in _whole_objects(things):
+        inside = np.isin(labels, members)
+        names, counts = np.unique(owner[inside & seen], return_counts=True)
+        if len(names) and names[counts.argmax()] != NOBODY and counts.max() > HELD * counts.sum():
+            owner[inside & ~seen & (owner == NOBODY)] = names[counts.argmax()]
+    return owner
 
 
 def _left(members: Sequence[int], old: I32, of: I32) -> tuple[int, ...]:
