@@ -260,9 +260,10 @@ def figures(data: Path, quick: bool = False) -> dict[str, float]:
         result[f"{key}.wrongly_refused"] = score.wrongly_refused(threshold)
         result[f"{key}.best.ours"] = float(score.right.mean())
         result[f"{key}.best.vectors"] = float(score.top.mean())
-    odd = np.random.default_rng(7).permutation(pairs.half(odd=True))
-    result |= {f"resolve.{k}": v for k, v in verdicts(pairs, odd[:THINGS], odd[THINGS : 4 * THINGS]).items()}
-    return result
+    rng = np.random.default_rng(7)
+    drawn = [rng.permutation(pairs.half(odd=True))[: 2 * THINGS] for _ in range(scenes // 5)]
+    answers = [verdicts(pairs, rows[:THINGS], rows[THINGS:]) for rows in drawn]
+    return result | {f"resolve.{k}": float(np.mean([a[k] for a in answers])) for k in answers[0]}
 
 
 def _scene(pairs: Pairs, rows: Rows) -> Scene:

@@ -105,8 +105,8 @@ class Calibration:
 # those of the odd half, scenes of 14 things. `benchmarks/_clip.py` reproduces all of them.
 _CLIP_SCALE = 100.0  # the temperature that CLIP training ends at (Radford et al. 2021, section 2.5)
 _CLIP_RIVALS = 47.0
-_CLIP_THRESHOLD = 0.32
-_CLIP_MEASURED: Mapping[str, float] = {"absent_refused": 0.946, "present_refused": 0.095, "present_right": 0.97}
+_CLIP_THRESHOLD = 0.33
+_CLIP_MEASURED: Mapping[str, float] = {"absent_refused": 0.948, "present_refused": 0.098, "present_right": 0.97}
 
 
 def of_clip(scale: float = _CLIP_SCALE) -> Calibration:
