@@ -87,7 +87,9 @@ def thinned(before: Scene, cloud: GaussianCloud, removed: Tensor) -> LanguageFie
         return None
     lost = before.cloud.group[mask_of(before.cloud, removed)]
     filed = torch.bincount((lost + 1).clamp(min=0), minlength=len(field.groups) + 1)[1:]
-    hurt = torch.tensor([g.id for g in _touched(field, filed)], dtype=torch.int32, device=cloud.device)
+    # A part that went leaves none of its own rows to be found by: its object is measured by what the others hold.
+    leaves = sorted({leaf for g in _touched(field, filed) for leaf in field.leaves(g.id)})
+    hurt = torch.tensor(leaves, dtype=torch.int32, device=cloud.device)
     after = before.replace(cloud=cloud, language=recount(field, cloud))
     return remeasured(after, cloud.ids[torch.isin(cloud.group, hurt)])
 
