@@ -31,6 +31,7 @@ class Metric:
         direction: which way is better; "neither" for figures that describe and do not judge.
         tolerance: relative change in the bad direction that is noise, e.g. 0.1. Times do not carry over to other
             machines; ratios and accuracies do.
+        goal: what it should reach in its direction, None if nobody set one.
     """
 
     key: str
@@ -38,10 +39,20 @@ class Metric:
     unit: str
     direction: Direction = "neither"
     tolerance: float = 0.0
+    goal: float | None = None
 
     def __post_init__(self) -> None:
         if not math.isfinite(self.value):
             raise ValueError(f"metric {self.key} is {self.value}; cap it where it is measured")
+        if self.goal is not None and self.direction == "neither":
+            raise ValueError(f"metric {self.key} has a goal and no direction")
+
+    @property
+    def met(self) -> bool | None:
+        """Whether it reaches its goal; None if it has none."""
+        if self.goal is None:
+            return None
+        return self.value <= self.goal if self.direction == "lower" else self.value >= self.goal
 
     def worse_than(self, earlier: Metric) -> bool:
         """Whether this is worse than `earlier` by more than the tolerance."""
@@ -142,9 +153,17 @@ class Result:
         return tuple(best)
 
     def to_markdown(self) -> str:
-        """Two tables and the surroundings, as a section of a page."""
+        """The goals, the points, all figures and the surroundings, as a section of a page."""
         lines = [f"## {self.name or 'benchmark'}: {self.title}", ""]
         front = self.front()
+        if goals := [m for m in self.metrics if m.goal is not None]:
+            lines += ["| goal | wanted | measured | |", "| --- | ---: | ---: | --- |"]
+            lines += [
+                f"| {m.key} | {'at most' if m.direction == 'lower' else 'at least'} {m.goal:.4g} {m.unit} "
+                f"| {m.value:.4g} {m.unit} | {'met' if m.met else 'missed'} |"
+                for m in goals
+            ]
+            lines.append("")
         if self.points:
             lines += [
                 f"| method | setting | time | {self.accuracy} | memory | |",

@@ -47,7 +47,8 @@ FULL = Plan(
     stability=(7001, 7002, 7003),
     chart=(7001, 7002, 7003),
 )
-QUICK = Plan((7001, 7002), (7011,), (7021,), (7001,), (7031,), (7001,), (7001,))
+CLIP_GOALS = {"room.named.ours": 0.90, "all.named.ours": 0.629}  # what the vectors themselves allow
+QUICK = Plan((7001, 7002), (7011,), (7021,), (), (7031,), (7001,), (7001,))
 
 
 def run(quick: bool) -> Result:
@@ -62,17 +63,18 @@ def run(quick: bool) -> Result:
     rooms = {seed: cases.furnished(seed) for seed in plan.names}
     known = [grouped(room) for room in rooms.values()]
     spatial = [*(rooms[s] for s in plan.relations), *(relations.staged_room(s) for s in plan.staged)]
+    steady = [rooms[s] for s in plan.stability]
     parts = [
         names.measure([names.ask_names(case, encoder) for case in known], [case.seconds for case in known]),
         pairs.measure(plan.attributes, plan.swaps, encoder, grouped),
         relations.measure(spatial, encoder, grouped, lambda case: cases.with_true_groups(case, encoder)),
         _strangers(plan, encoder, grouped, quick),
         _real_vectors(quick),
-        _real_room(),
-        costs.measure(rooms[plan.names[0]], encoder, grouped),
+        _real_room(quick),
+        costs.measure(rooms[plan.names[0]], encoder, grouped, quick),
         stability.thresholds(known, encoder),
-        stability.floaters([rooms[s] for s in plan.stability], encoder, grouped),
-        lifted.fewer_views([rooms[s] for s in plan.stability], encoder),
+        stability.floaters(steady, encoder, grouped, stability.FLOATERS[-1:] if quick else stability.FLOATERS),
+        *([] if quick else [lifted.fewer_views(steady, encoder)]),
         *curves.measure([rooms[s] for s in plan.chart], encoder, grouped, quick),
     ]
     return Result(
@@ -90,7 +92,7 @@ def _strangers(plan: Plan, encoder: Encoder, grouped: Callable[[Case], Case], qu
     folder = _data.folder("meshes")
     if folder is None:
         return Part(notes=(_data.missing("meshes"),))
-    return meshes.measure(folder, plan.meshes, encoder, grouped, 2 if quick else meshes.ROOMS)
+    return meshes.measure(folder, plan.meshes, encoder, grouped, 1 if quick else meshes.ROOMS)
 
 
 def _real_vectors(quick: bool) -> Part:
@@ -99,15 +101,16 @@ def _real_vectors(quick: bool) -> Part:
     if folder is None:
         return Part(notes=(_data.missing("clip_vectors"),))
     figures = _clip.figures(folder.parent, quick)
-    metrics = (
-        Metric(f"clip.{k}", v, "share", "lower" if k.endswith("wrongly_refused") else "higher", 0.03)
+    return Part(tuple(
+        Metric(f"clip.{k}", v, "share", "lower" if k.endswith("wrongly_refused") else "higher", 0.03, CLIP_GOALS.get(k))
         for k, v in figures.items()
-    )
-    return Part(tuple(metrics))
+    ))  # fmt: skip
 
 
-def _real_room() -> Part:
+def _real_room(quick: bool) -> Part:
     """A captured room with a detector's masks, where it is to be found."""
+    if quick:
+        return Part(notes=("bonsai: the real room is left out of quick runs",))
     wanted = ("captures/bonsai_room", "scenes", "clip_vectors")
     found = [_data.folder(name) for name in wanted]
     if found[0] is None or None in found:

@@ -142,9 +142,9 @@ def measure(folder: Path, seed: int, encoder: Encoder, grouped: Callable[[Case],
         refused += [ask(known, str(k), encoder).verdict == "absent" for k in asked]
     unknown = sorted(stem for stem in NAMES if spoken(encoder, stem) is None)
     metrics = (
-        Metric("meshes.top1", fmean(top), "share", "higher", 0.1),
+        Metric("meshes.top1", fmean(top), "share", "higher", 0.1, 0.6),
         Metric("meshes.top1_sized", fmean(sized), "share", "higher", 0.1),
-        Metric("meshes.miou", fmean(found.values()), "IoU", "higher", 0.1),
+        Metric("meshes.miou", fmean(found.values()), "IoU", "higher", 0.1, 0.6),
         Metric("meshes.asked", len(found), "count"),
         Metric("meshes.absent.refused", fmean(refused), "share", "higher", 0.1),
     )

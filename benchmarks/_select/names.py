@@ -87,21 +87,21 @@ def measure(rooms: Sequence[Asked], seconds: Sequence[float]) -> Part:
     )
     absent, strange, several = ([v for r in rooms for v in getattr(r, key)] for key in ("absent", "strange", "several"))
     metrics = (
-        Metric("name.miou", fmean(found), "IoU", "higher", 0.03),
-        Metric("name.boundary_iou", fmean(borders), "IoU", "higher", 0.03),
+        Metric("name.miou", fmean(found), "IoU", "higher", 0.03, 0.85),
+        Metric("name.boundary_iou", fmean(borders), "IoU", "higher", 0.03, 0.85),
         Metric("name.trimap_iou", fmean(trimaps), "IoU", "higher", 0.03),
         Metric("name.right", fmean(v >= RIGHT for v in found), "share", "higher", 0.03),
-        Metric("name.refused", verdicts.count("absent") / len(verdicts), "share", "lower", 0.5),
+        Metric("name.refused", verdicts.count("absent") / len(verdicts), "share", "lower", 0.5, 0.05),
         Metric("name.ambiguous", verdicts.count("ambiguous") / len(verdicts), "share", "lower", 0.5),
         Metric("name.asked", len(found), "count"),
-        Metric("oracle.miou", fmean(oracle), "IoU", "higher", 0.03),
+        Metric("oracle.miou", fmean(oracle), "IoU", "higher", 0.03, 0.95),
         Metric("oracle.right", fmean(v >= RIGHT for v in oracle), "share", "higher", 0.03),
         Metric("oracle.boundary_iou", fmean(best), "IoU", "higher", 0.03),
-        Metric("absent.refused", absent.count("absent") / len(absent), "share", "higher", 0.03),
+        Metric("absent.refused", absent.count("absent") / len(absent), "share", "higher", 0.03, 0.95),
         Metric("absent.asked", len(absent), "count"),
-        Metric("strange.refused", strange.count("absent") / len(strange), "share", "higher", 0.03),
+        Metric("strange.refused", strange.count("absent") / len(strange), "share", "higher", 0.03, 0.95),
         Metric("strange.asked", len(strange), "count"),
-        Metric("several.ambiguous", several.count("ambiguous") / max(len(several), 1), "share", "higher", 0.05),
+        Metric("several.ambiguous", several.count("ambiguous") / max(len(several), 1), "share", "higher", 0.05, 0.95),
         Metric("several.asked", len(several), "count"),
         Metric("embed.room.seconds", fmean(seconds), "s", "lower", 0.3),
     )

@@ -123,7 +123,7 @@ def measure(attributes: Sequence[int], swaps: Sequence[int], encoder: Encoder, g
                     said = "said to be there" if one.object is None else "missed"
                     wrong.append(f"{one.query.describe()} {said} in {case.seed}")
     every = [v for values in kinds.values() for v in values]
-    metrics = [Metric("attribute.right", sum(every) / len(every), "share", "higher", 0.03)]
+    metrics = [Metric("attribute.right", sum(every) / len(every), "share", "higher", 0.03, 0.95)]
     for key, values in kinds.items():
         metrics.append(Metric(f"attribute.{key}.right", sum(values) / len(values), "share", "higher", 0.03))
         metrics.append(Metric(f"attribute.{key}.asked", len(values), "count"))

@@ -27,6 +27,7 @@ from .spatial import Solid
 
 MOST, MOST_ABSENT = 3, 1  # queries a relation, a room and an eye: with an answer, and where nothing stands so
 EYES = 3  # of each room
+GOAL = 0.95
 NAMES = (*spatial.SIDES, "on", "under", "above", "inside", "next_to", "between", "nearest_to", "farthest_from")
 # Things whose front is beyond doubt, so that "to the left of the sofa" in its own frame is too.
 FRONTED = frozenset({"armchair", "chair", "sofa", "office chair", "piano", "television", "fridge", "stove", "wardrobe"})
@@ -175,7 +176,8 @@ def measure(
                         table.setdefault(f"{field}all", []).append(answer)
     metrics = []
     for key, values in sorted(table.items()):
-        metrics.append(Metric(f"relation.{key}.right", sum(values) / len(values), "share", "higher", 0.03))
+        goal = GOAL if key in ("all", "mirrored.all") else None
+        metrics.append(Metric(f"relation.{key}.right", sum(values) / len(values), "share", "higher", 0.03, goal))
         if not key.startswith("true_groups"):
             metrics.append(Metric(f"relation.{key}.asked", len(values), "count"))
     note = (

@@ -57,10 +57,12 @@ def _both(case: Case, encoder: Encoder) -> tuple[float, float]:
     return fmean(names_miou(case, encoder)), refused
 
 
-def floaters(rooms: Sequence[Case], encoder: Encoder, grouped: Callable[[Case], Case]) -> Part:
+def floaters(
+    rooms: Sequence[Case], encoder: Encoder, grouped: Callable[[Case], Case], shares: Sequence[float] = FLOATERS
+) -> Part:
     """Haze added to rooms before they are embedded: what it does to names, and how much of it joins an object."""
     metrics = []
-    for share in FLOATERS:
+    for share in shares:
         found: list[float] = []
         joined: list[float] = []
         for room in rooms:
@@ -68,7 +70,7 @@ def floaters(rooms: Sequence[Case], encoder: Encoder, grouped: Callable[[Case], 
             known = grouped(hazy)
             found += names_miou(known, encoder)
             strays = np.arange(len(hazy.ids)) >= len(room.ids)
-            things = [mask for mask in known.groups() if strays[mask].mean() < 0.5]
+            things = [mask for mask in known.groups() if 2 * strays[mask].sum() < mask.sum()]
             joined.append(float(np.logical_or.reduce(things)[strays].mean()))
         metrics.append(Metric(f"floaters.{share:.0%}.miou", fmean(found), "IoU", "higher", 0.03))
         metrics.append(Metric(f"floaters.{share:.0%}.joined", fmean(joined), "share", "lower", 0.2))

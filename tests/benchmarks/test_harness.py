@@ -72,6 +72,19 @@ def test_figures_that_cannot_be_told_are_refused_where_they_are_made() -> None:
         Result("", "", (Metric("k", 1, ""), Metric("k", 2, "")), ())
 
 
+def test_a_goal_is_met_in_its_direction_and_told_first() -> None:
+    fast, slow = (Metric(f"{value} s", value, "s", "lower", goal=2.0) for value in (2.0, 2.1))
+    right = Metric("right", 0.96, "share", "higher", goal=0.95)
+    assert (fast.met, slow.met, right.met, Metric("k", 1, "").met) == (True, False, True, None)
+    text = Result("", "", (Metric("k", 1, ""), fast, slow, right), ()).to_markdown()
+    assert (
+        "| 2.1 s | at most 2 s | 2.1 s | missed |" in text
+        and "| right | at least 0.95 share | 0.96 share | met |" in text
+    )
+    with pytest.raises(ValueError, match="no direction"):
+        Metric("k", 1, "", goal=1.0)
+
+
 def test_markdown_names_default_front_and_notes() -> None:
     text = RESULT.to_markdown()
     assert "| cpu | full | 12.5 ms | 98 | 6 MB | default, on the front |" in text
