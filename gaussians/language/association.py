@@ -66,14 +66,14 @@ class Tracks:
         tracks: those that hold, most masks first.
         share: `[N, K]` sparse: of the weight that a track's views give a Gaussian, how much lies in its masks.
         votes: `[N, K]` sparse: the scores of the masks a Gaussian lies in, each times the share of it that does.
-        seen: `[N]` bool, whether any view shows the Gaussian: of the others masks say nothing.
+        seen: `[N]` float32, blending weight of the Gaussian over all views: of what none shows masks say nothing.
         outvoted: how many tracks were dropped.
     """
 
     tracks: tuple[Track, ...]
     share: csr_matrix
     votes: csr_matrix
-    seen: NDArray[np.bool_]
+    seen: F32
     outvoted: int
 
 
@@ -92,7 +92,7 @@ def associate(lifted: Lifted) -> Tracks:
             votes.append(vote)
     count = lifted.weights.shape[0]
     share, vote = _columns(shares, count), _columns(votes, count)
-    seen = evidence.mass > 0
+    seen = np.asarray(lifted.seen.sum(axis=1), dtype=np.float32).ravel()
     return Tracks(_with_parents(kept, share, evidence.mass), share, vote, seen, len(joined) - len(kept))
 
 
@@ -138,7 +138,7 @@ class _Evidence:
     @cached_property
     def likeness(self) -> F32:
         names = np.unique(self.lifted.labels, return_inverse=True)[1]
-        known = np.array([bool(label) for label in self.lifted.labels])
+        known = np.array([bool(label) for label in self.lifted.labels], dtype=bool)
         unlike = ((names[:, None] != names[None, :]) & known[:, None] & known[None, :]).astype(np.float32)
         if self.lifted.vectors is not None:
             unlike = np.maximum(unlike, np.clip(1 - self.lifted.vectors @ self.lifted.vectors.T, 0, 1))

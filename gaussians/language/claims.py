@@ -27,6 +27,7 @@ F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
 
 FINE = 1.0  # scale of the superpoints that votes are pooled in: a third of that of segmentation, so that few straddle
+ENOUGH = 1.0  # pixels of blending weight, over all views, from which a Gaussian's own share counts for half
 NOBODY = -1
 
 
@@ -39,13 +40,14 @@ def owners(surface: Surface, links: Links, tracks: Tracks) -> tuple[I32, I32]:
     share = csc_matrix(tracks.share[surface.rows])
     votes = csc_matrix(tracks.votes[surface.rows])
     seen = tracks.seen[surface.rows]
+    trust = seen / (seen + ENOUGH)
     size = np.asarray((share > HELD).sum(axis=0)).ravel()
     owner, part = np.full(len(surface), NOBODY, np.int32), np.full(len(surface), NOBODY, np.int32)
     best = {NOBODY: np.zeros(len(surface))}
     held: dict[int, NDArray[np.bool_]] = {}
     for k in sorted(range(len(tracks.tracks)), key=lambda k: (-size[k], k)):  # containers before their contents
         column = np.asarray(share[:, [k]].todense()).ravel()
-        held[k] = pooled(column, segment, seen) > HELD
+        held[k] = pooled(column, segment, trust) > HELD
         said = np.where(held[k], np.asarray(votes[:, [k]].todense()).ravel() + 1e-6, 0)
         parent = tracks.tracks[k].parent
         if parent == NOBODY:
@@ -61,18 +63,18 @@ def owners(surface: Surface, links: Links, tracks: Tracks) -> tuple[I32, I32]:
     return owner, np.where((belongs == owner) & (owner >= 0), part, NOBODY).astype(np.int32)
 
 
-def pooled(share: NDArray[np.floating], segment: I32, seen: NDArray[np.bool_]) -> F64:
-    """Shares `[P]` drawn to the mean of their segment, the more the segment's points agree; points that no view shows
-    get the mean of those it does.
+def pooled(share: NDArray[np.floating], segment: I32, trust: NDArray[np.floating]) -> F64:
+    """Shares `[P]` drawn to the mean of their segment, the more the segment's points agree and the less each is to be
+    trusted, in [0, 1]: 0 for a point that no view shows.
 
     Agreement is one minus the ratio of the shares' deviation to the largest that such a mean allows, that of all or
     nothing: a segment that one half of the masks' border cuts keeps its points' own shares.
     """
-    share, count = np.where(seen, share, 0.0), np.maximum(np.bincount(segment, weights=seen), 1)
-    mean = np.bincount(segment, weights=share) / count
-    variance = np.maximum(np.bincount(segment, weights=share**2) / count - mean**2, 0)
+    count = np.maximum(np.bincount(segment, weights=trust), 1e-9)
+    mean = np.bincount(segment, weights=trust * share) / count
+    variance = np.maximum(np.bincount(segment, weights=trust * np.square(share)) / count - mean**2, 0)
     split = np.sqrt(variance / np.maximum(mean * (1 - mean), 1e-9)).clip(0, 1)
-    result: F64 = mean[segment] + np.where(seen, split[segment] * (share - mean[segment]), 0)
+    result: F64 = mean[segment] + trust * split[segment] * (share - mean[segment])
     return result
 
 
@@ -97,7 +99,7 @@ def claimed(
     links = links_of(surface)
     owner, part = owners(surface, links, tracks)
     owner = np.where(_structure_only(owner, labels, things), NOBODY, owner).astype(np.int32)
-    owner = _with_hidden(owner, labels, things, tracks.seen[surface.rows])
+    owner = _with_hidden(owner, labels, things, tracks.seen[surface.rows] > ENOUGH)
     code = (labels.astype(np.int64) * (len(tracks.tracks) + 1) + owner + 1) * (len(tracks.tracks) + 1) + part + 1
     _, first, cut = np.unique(code, return_index=True, return_inverse=True)
     cut = cut.astype(np.int32)

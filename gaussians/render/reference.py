@@ -104,9 +104,11 @@ def split(cloud: GaussianCloud, camera: Camera, labels: NDArray[np.int32]) -> Sp
         box = (slice(y, min(y + TILE, camera.height)), slice(x, min(x + TILE, camera.width)))
         here = torch.from_numpy(labels[box].reshape(-1).copy()).to(cloud.device)
         for part, weights, _ in _blend(tile, _pixel_centers(box, splats.center)):
-            for label in here.unique():
+            for label in np.unique(labels[box]).tolist():
                 rows = tile.row[part]
-                parts.append((rows, label.expand(len(rows)), weights[here == label].sum(dim=0, dtype=torch.float64)))
+                parts.append(
+                    (rows, torch.full_like(rows, label), weights[here == label].sum(dim=0, dtype=torch.float64))
+                )
     if not parts:
         return summed(len(cloud), np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0))
     row, label, weight = (torch.cat(column).cpu().numpy() for column in zip(*parts, strict=True))

@@ -54,10 +54,11 @@ def load(argument: str, capture: Path | None = None) -> Sam:
     except (ImportError, RuntimeError) as error:
         raise BackendError(f"SAM needs transformers ({error}); run: pip install 'scenewright[models]'") from error
     try:
-        model, processor = SamModel.from_pretrained(argument).eval(), SamProcessor.from_pretrained(argument)
+        model: Any = SamModel.from_pretrained(argument)
+        processor = SamProcessor.from_pretrained(argument)
     except (OSError, ValueError, KeyError, RuntimeError) as error:
         raise BackendError(f"cannot load the SAM {argument!r}: {error}") from error
-    return Sam(model, processor, taken)
+    return Sam(model.eval(), processor, taken)
 
 
 @dataclass(frozen=True)
@@ -114,7 +115,9 @@ class Sam:
         steps = (torch.arange(self.points) + 0.5) / self.points
         grid = torch.stack(torch.meshgrid(steps * inner_width, steps * inner_height, indexing="xy"), dim=-1)
         masks, scores = [np.zeros((0, height, width), bool)], [np.zeros(0, np.float32)]
-        for prompts in grid.reshape(-1, 1, 2).split(BATCH):
+        prompts_of = grid.reshape(-1, 1, 2)
+        for start in range(0, len(prompts_of), BATCH):
+            prompts = prompts_of[start : start + BATCH]
             answer = self.model(image_embeddings=shown, input_points=prompts[None], multimask_output=True)
             logits = self.processor.post_process_masks(
                 answer.pred_masks, made["original_sizes"], made["reshaped_input_sizes"], binarize=False
