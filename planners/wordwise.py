@@ -130,7 +130,21 @@ def agreement(text: str, labels: Sequence[str]) -> list[float]:
     found = [_agrees(asked, words(label)) for label in labels]
     if all(p < THRESHOLD for p in found):
         found = [BROADER if _covers(asked, words(label)) else p for label, p in zip(labels, found, strict=True)]
+    if all(p < THRESHOLD for p in found) and (meant := respelt(asked, labels)) != asked:
+        found = [_agrees(meant, words(label)) for label in labels]
     return found
+
+
+def respelt(asked: Phrase, labels: Sequence[str]) -> Phrase:
+    """A phrase with its unknown words exchanged for the one word of the labels that is a slip of the keyboard away."""
+    return _respelt(asked, frozenset(w for label in labels for w in words(label)))
+
+
+@cache
+def _respelt(asked: Phrase, there: frozenset[str]) -> Phrase:
+    from .grammar.spelling import slips
+
+    return tuple(slips(w, there) or w for w in asked)
 
 
 @cache

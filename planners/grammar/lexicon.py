@@ -39,7 +39,8 @@ VERBS: dict[str, Entry] = {
     **_same(
         ("SELECT", None),
         "select, highlight, find, find me, locate, pick, pick out, choose, show me, show, mark, point out, point to, "
-        "identify, focus on, outline",
+        "identify, focus on, outline, click, click on, look for, spot, search for, "
+        "you want, you are looking for, you need to select, you want to choose, you want to select, you should select",
     ),
     **_same(
         ("ISOLATE", None),

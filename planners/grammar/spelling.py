@@ -50,6 +50,15 @@ def _meant(text: str, opens: bool) -> str:
     return near.pop() if len(near) == 1 else ""
 
 
+def slips(text: str, there: frozenset[str]) -> str:
+    """The one word of those that are there which an unknown word is a slip of, else ""."""
+    if len(text) < _SHORTEST or not text.isalpha() or text in _known():
+        return ""
+    near = {w for w in there.intersection(_neighbours(text)) if len(w) >= _SHORTEST}
+    near = {w for w in near if len(text) > _SHORTEST or _swapped(text, w)}
+    return near.pop() if len(near) == 1 else ""
+
+
 def _neighbours(text: str) -> Iterator[str]:
     """Every string one slip away."""
     letters = "abcdefghijklmnopqrstuvwxyz"

@@ -33,6 +33,7 @@ _ON_IT = phrases(
     "on it, on top, on top of it, in it, inside, inside it, on them, standing on it, next to it, beside it, near it, on"
 )
 _OUTSIDE = phrases("out of here, out of the room, out of the scene, out of sight, out of my sight, out of there")
+_IT_IS = phrases("it is, this is, that is, there is, they are, these are")
 _REPEATABLE = ("DELETE", "SELECT", "HIDE", "ISOLATE")
 MAX_NOUN_WORDS = 4
 
@@ -194,6 +195,8 @@ class Tagger:
         verb = self.clause.verb
         if (found := self._owned_or_not(i)) is not None or (found := self._around(i)) is not None:
             return found
+        if verb == "SELECT" and (pointed := self._pointing(i)) is not None:
+            return pointed
         if text in ("left", "right") and after == "by" and quantities.read(rest[1:]):
             return self._put("DIR", text, i, 1)
         if text == "like" and after in ("the", "a", "an", "my", "that", "those") and verb in ("ADD", "WANT"):
@@ -234,6 +237,20 @@ class Tagger:
             return i + 1
         if text == "more" and self._before == "NUMBER" and self.read.nouny(i + 1):
             return i + 1
+        return None
+
+    def _pointing(self, i: int) -> int | None:
+        """ "select it is the chair …", "the chair is next to the bed": a description that is a sentence."""
+        if len(self.clause.tags) == 1 and match(_IT_IS, self.texts, i):
+            return i + 2
+        if self.texts[i] in ("is", "are", "sits", "stands") and self._before in _NOUNISH:
+            behind = self.read.skip_filler(i + 1)
+            behind += behind < len(self.texts) and self.texts[behind] in (*lexicon.PARTICIPLES, "the", "also")
+            phrase = self.read.phrase(behind) if behind < len(self.texts) else None
+            if phrase and phrase[0][0] in ("PREP", "NEAR", "BETWEEN", "SIDE", "CENTER", "SPOT", "NOT"):
+                return behind
+            if self.read.hue_follows(i + 1):
+                return self._put("REL", None, i, 1)
         return None
 
     def _owned_or_not(self, i: int) -> int | None:
