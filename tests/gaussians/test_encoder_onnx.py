@@ -218,6 +218,26 @@ def test_foreign_graphs_are_said(copy: Path, given: str, made: str, said: str) -
         encoders.load(f"onnx:{copy}").encode_images(_noise(1))
 
 
+def test_the_pooled_output_is_taken_where_it_is_the_only_vector(copy: Path) -> None:
+    """As SigLIP's towers are published: hidden states beside one pooled row a picture."""
+
+    class Pooled(torch.nn.Module):
+        def forward(self, x: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+            return x[:, 0], x.mean(dim=2).flatten(1)[:, :16]
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        torch.onnx.export(
+            Pooled(), (torch.zeros(2, 3, 32, 32),), str(copy / "vision_model.onnx"), input_names=["pixel_values"],
+            output_names=["last_hidden_state", "pooler_output"], dynamic_axes={"pixel_values": {0: "b"}}, dynamo=False,
+        )  # fmt: skip
+    encoder = encoders.load(f"onnx:{copy}")
+    pictures = _noise(3)
+    pooled = encoder._pixels.prepare(pictures).mean(dim=2).flatten(1)[:, :16]  # type: ignore[attr-defined]
+    expected = torch.nn.functional.normalize(pooled).numpy()
+    np.testing.assert_allclose(encoder.encode_images(pictures), expected, atol=_SAME)
+
+
 def test_a_missing_library_names_the_fix(exported_clip: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     real = builtins.__import__
 

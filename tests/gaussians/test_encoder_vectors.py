@@ -89,9 +89,12 @@ def test_a_phrase_is_known_by_its_head(vectors: encoders.Encoder) -> None:
 
 def test_brackets_tell_apart_and_the_bare_word_means_both(tmp_path: Path) -> None:
     np.save(tmp_path / "text.npy", _ROWS)
-    (tmp_path / "names.json").write_text(json.dumps(["bow_(weapon)", "bow_(ribbons)", "mouse_(computer)", "cat"]))
+    (tmp_path / "names.json").write_text(
+        json.dumps(["bow_(weapon)", "bow_(ribbons)", "mouse_(computer) pc_mouse", "cat"])
+    )
     loaded = encoders.load(f"vectors:{tmp_path}")
     assert loaded.vocabulary.names == ("bow (weapon)", "bow (ribbons)", "mouse", "cat")
+    assert loaded.vocabulary.covered("pc mouse") == {"mouse"}
     assert loaded.vocabulary.covered("bow") == {"bow (weapon)", "bow (ribbons)"}
     mean = _unit(_ROWS)[:2].mean(axis=0, keepdims=True)
     np.testing.assert_allclose(loaded.encode_text(["the bow"]), _unit(mean), atol=1e-7)

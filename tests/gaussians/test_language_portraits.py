@@ -14,12 +14,15 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from scenewright.gaussians.cloud import GaussianCloud
+from scenewright.gaussians.errors import BackendError
 from scenewright.gaussians.language import encoders
 from scenewright.gaussians.language.calibration import Calibration
 from scenewright.gaussians.language.embed import embed
 from scenewright.gaussians.language.encoders import cache
 from scenewright.gaussians.language.encoders.vocabulary import Vocabulary
 from scenewright.gaussians.language.portraits import cameras_around, mean_vectors, portraits
+from scenewright.gaussians.language.query import Query
+from scenewright.gaussians.language.resolve import resolve
 from scenewright.gaussians.render import render
 from scenewright.gaussians.scene import Frame, Scene
 
@@ -176,12 +179,38 @@ def test_only_encoders_of_photographs_are_shown_the_background(world: type[World
     assert not vectors[1].any()  # nothing to be seen
 
 
-def test_embedding_again_encodes_nothing_again(world: type[World]) -> None:
+def _two_boxes(world: type[World]) -> Scene:
     build = world(seed=2)
     build.sheet("floor", (-2, -2, 0), (4, 0, 0), (0, 4, 0), (0.6, 0.5, 0.4), step=0.06)
     build.box("a", (-0.9, -0.3, 0.0), (-0.3, 0.3, 0.6), (0.9, 0.2, 0.1))
     build.box("b", (0.4, -0.3, 0.0), (1.0, 0.3, 0.5), (0.1, 0.3, 0.9))
-    scene = Scene(build.cloud())
+    return Scene(build.cloud())
+
+
+@pytest.mark.parametrize("fixture", ["saved_clip", "exported_clip"])
+def test_a_scene_is_embedded_and_asked_with_real_towers(
+    world: type[World], fixture: str, request: pytest.FixtureRequest
+) -> None:
+    back_end = {"saved_clip": "open_clip", "exported_clip": "onnx"}[fixture]
+    encoder = encoders.load(f"{back_end}:{request.getfixturevalue(fixture)}")
+    scene = embed(_two_boxes(world), encoder)
+    field = scene.language
+    assert field is not None
+    field.require_encoder(encoder.fingerprint)
+    objects = [g.id for g in field.objects()]
+    assert objects and field.embeddings.shape[1] == encoder.dim
+    np.testing.assert_allclose(np.linalg.norm(field.embeddings[objects], axis=1), 1, atol=1e-5)
+    camera = cameras_around(scene.cloud.means.double().numpy(), scene.frame, np.zeros(3), 64, 1)[0]
+    answer = resolve(scene, Query(text="chair"), camera, encoder)
+    # The towers are random, so what they find means nothing; that a term was scored for each object does.
+    assert answer.verdict in ("found", "ambiguous", "absent")
+    assert answer.candidates and all(0 <= c.terms["text"] <= 1 for c in answer.candidates)
+    with pytest.raises(BackendError, match="encoder"):
+        resolve(scene, Query(text="chair"), camera, encoders.load())
+
+
+def test_embedding_again_encodes_nothing_again(world: type[World]) -> None:
+    scene = _two_boxes(world)
     first, again = Counting("embedding"), Counting("embedding")
     before, after = embed(scene, first), embed(scene, again)
     assert before.language is not None and after.language is not None

@@ -31,6 +31,7 @@ from ..calibration import Calibration
 Name = tuple[str, ...]  # a name and its synonyms
 
 _BRACKETS = re.compile(r"\([^)]*\)")
+_AFTER = re.compile(r"(?<=\))\s+")  # what stands after brackets is another name: "monitor_(computer) computer_monitor"
 
 
 def read(argument: str) -> tuple[list[Name], NDArray[np.floating]]:
@@ -77,7 +78,8 @@ def plain(names: Sequence[Name]) -> list[Name]:
 
     Names that only brackets tell apart keep them, and get the bare word as a synonym: "bow" means either bow.
     """
-    bare = [tuple(dict.fromkeys(_spoken(_BRACKETS.sub(" ", n)) or _spoken(n) for n in name)) for name in names]
+    names = [tuple(part for name in row for part in _AFTER.split(name)) for row in names]
+    bare = [tuple(dict.fromkeys(_spoken(_BRACKETS.sub(" ", n)) or _spoken(n) for n in row)) for row in names]
     count = Counter(name[0] for name in bare)
     return [
         b if count[b[0]] == 1 else tuple(dict.fromkeys((_spoken(n[0]), *b))) for n, b in zip(names, bare, strict=True)
