@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from scenewright.benchmarks import _clip
-from scenewright.gaussians.language.calibration import of_clip
+from scenewright.gaussians.language.calibration import of_clip, probability
 from scenewright.gaussians.language.encoders.vectors import wrap
 
 
@@ -68,6 +68,17 @@ def test_refusals_are_as_the_rule_says(real: _clip.Pairs) -> None:
     # 120 names asked and 120 absent: the standard errors are 0.027 and 0.021, so three of them.
     assert scores.wrongly_refused(rule.threshold) == pytest.approx(rule.measured["present_refused"], abs=0.08)
     assert scores.refused(rule.threshold) == pytest.approx(rule.measured["absent_refused"], abs=0.065)
+
+
+def test_things_that_carry_the_vectors_of_their_labels_keep_to_the_same_rule(real: _clip.Pairs) -> None:
+    """As masks with labels but no pictures give them: one name, or the mean of a majority and a minority."""
+    rows = _clip.room_rows(real)
+    encoder, texts, threshold = real.among(rows), real.texts[rows], of_clip().threshold
+    asked = np.stack([probability(encoder, name, texts) for name in _clip.ROOM], axis=1)
+    np.testing.assert_array_equal(asked >= threshold, np.eye(len(rows), dtype=bool))
+    mixed = 0.7 * texts + 0.3 * np.roll(texts, 1, axis=0)
+    voted = np.stack([probability(encoder, name, mixed) for name in _clip.ROOM], axis=1)
+    np.testing.assert_array_equal(voted >= threshold, np.eye(len(rows), dtype=bool))
 
 
 @pytest.mark.slow
