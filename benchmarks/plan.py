@@ -181,8 +181,8 @@ def _of_people(planner: Planner, quick: bool) -> _Part:
         found,
         notes=(
             f"nouns: {nouns.sentences} sentences of Nr3D. right: the head noun is the labelled class or a listed "
-            "synonym; right_of_named: among the sentences that name it at all; answered, right_of_answered: the planner's own "
-            "reading as a selection; relations: a relation is recognised where one is named.",
+            "synonym; right_of_named: among the sentences that name it at all; answered, right_of_answered: the "
+            "planner's own reading as a selection; relations: a relation is recognised where one is named.",
             f"nouns, the 20 commonest failures: {failed}.",
         ),
     )

@@ -6,7 +6,7 @@ graphs. Refuses to resolve anything itself, and to be looked at: it has no shape
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -32,6 +32,9 @@ _UP: Vec3 = (0.0, 0.0, 1.0)
 _SLAB = 0.15  # metres that floor, walls and ceiling reach out, and walls also in: what hangs on one lies in that slab
 _FAMILY = 0.7  # a "light blue" thing answers to "blue" at least this well, to any other basic word less
 _NO_COLOR: Vec3 = (50.0, 1000.0, 1000.0)  # of a node whose colour nobody wrote or nobody knows: no word fits
+
+_FURNITURE = "furnishing"  # the resolver takes "furniture" for anything at all
+_BY_PAIR = ("on", "inside", "under", "below", "above", "next_to")
 
 # Colours that people count to a basic one, whatever a photometer says.
 _FAMILIES = {
@@ -88,11 +91,10 @@ class Stage:
         """
         meant = self._read(query)
         found = resolve(self.scene, meant, self.viewer, encoder=self.encoder, last=last)
-        if found.verdict == "absent" and any(r.name == "inside" for r in meant.relations):
-            # What grows in a pot or lies in a dish stands on it, as far as boxes go.
-            onto = tuple(r.model_copy(update={"name": "on"}) if r.name == "inside" else r for r in meant.relations)
-            again = resolve(self.scene, meant.model_copy(update={"relations": onto}), self.viewer, self.encoder, last)
-            return again if again.verdict != "absent" else found
+        for other in _otherwise(meant, found.verdict):
+            again = resolve(self.scene, other, self.viewer, encoder=self.encoder, last=last)
+            if again.verdict == "found" or (found.verdict, again.verdict) == ("absent", "ambiguous"):
+                return again
         return found
 
     def names(self, groups: Iterable[int]) -> tuple[Id, ...]:
@@ -128,6 +130,7 @@ class Stage:
         relations = tuple(self._relation(r) for r in query.relations)
         return query.model_copy(
             update={
+                "text": _FURNITURE if query.text == "furniture" else query.text,
                 "pick": "all" if whole else query.pick,
                 "colors": tuple(map(self._color, query.colors)),
                 "not_colors": tuple(map(self._color, query.not_colors)),
@@ -147,6 +150,28 @@ class Stage:
         hung = relation.name == "on" and STRUCTURE.get(relation.anchors[0].text) in ("wall", "ceiling")
         anchors = tuple(self._read(a) for a in relation.anchors)
         return relation.model_copy(update={"name": "inside" if hung else relation.name, "anchors": anchors})
+
+
+def _otherwise(query: Query, verdict: str) -> Iterator[Query]:
+    """Other readings of a query that found nothing, or more than one thing.
+
+    What grows in a pot, or belongs to a sofa, stands on it as far as boxes go. And "the cushion on the armchair" is
+    said where two armchairs are and one of them has a cushion.
+    """
+    loose = {"inside": "on", "part_of": "on"}
+    if verdict == "absent" and any(r.name in loose for r in query.relations):
+        onto = tuple(r.model_copy(update={"name": loose.get(r.name, r.name)}) for r in query.relations)
+        yield query.model_copy(update={"relations": onto})
+    if verdict == "ambiguous" and query.pick == "one" and any(r.name in _BY_PAIR for r in query.relations):
+        yield query.model_copy(update={"relations": tuple(map(_to_any, query.relations))})
+
+
+def _to_any(relation: Relation) -> Relation:
+    """The relation to whichever thing fits its anchor."""
+    if relation.name not in _BY_PAIR:
+        return relation
+    every = (a.model_copy(update={"pick": "all"}) if a.pick == "one" else a for a in relation.anchors)
+    return relation.model_copy(update={"anchors": tuple(every)})
 
 
 def _spoken(node: Node) -> str:

@@ -101,7 +101,7 @@ _WIDER = """
 appliance: refrigerator, stove, microwave, toaster, kettle, dishwasher, washing machine, coffee machine, blender, oven
 electronics: television, computer, laptop, monitor, printer, phone, speaker, keyboard, radio
 device: television, computer, laptop, monitor, printer, phone, speaker, keyboard, radio
-furniture: sofa, armchair, chair, table, desk, bed, wardrobe, dresser, cabinet, bookcase, \
+furnishing: sofa, armchair, chair, table, desk, bed, wardrobe, dresser, cabinet, bookcase, \
 nightstand, stool, bench, ottoman, tv stand
 seat: chair, armchair, sofa, stool, bench, ottoman
 seating: chair, armchair, sofa, stool, bench, ottoman

@@ -126,7 +126,7 @@ class Commands:
     def _fade(self, node: Node) -> list[Fields]:
         share = changes.share_of(node)
         if share is None:
-            return self._targeted(node, **changes.opacity(changes.CLEARER[""]))
+            return self._targeted(node, **changes.opacity(changes.CLEARER[changes.degree_of(node)]))
         return self._targeted(node, **changes.opacity(share if tokens(node, "TO") else 1 - share))
 
     def _switch(self, node: Node) -> list[Fields]:

@@ -321,7 +321,8 @@ INSIDE: dict[str, Entry] = {
             "taken out, erased"),
     **_same(("TOBE", None), "to be, be, become, look, to look"),
     **_same(("SHOULD", None), "should be, needs to be, need to be, must be, has to be, have to be, ought to be, "
-            "should become, should look"),
+            "should become, should look, should all be, must all be, should both be, need to all be, have to all be, "
+            "ought to all be, want to be, could be, would be better, would look better, would look nicer"),
     **_same(("COPIES", None), "copy of, copies of, duplicate of, duplicates of, clone of, clones of, more copies of, "
             "another copy of, copies from, more of"),
     **_same(("REL", None), "that is, that are, which is, which are, who is, that was"),

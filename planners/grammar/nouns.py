@@ -35,11 +35,13 @@ _NOT_PLURAL = {
 _ONLY_PLURAL = {"scissors", "trousers", "jeans", "pants", "shorts", "stairs", "headphones", "binoculars", "pliers",
                 "tongs", "pyjamas", "pajamas", "sunglasses", "eyeglasses", "goggles", "tights", "tweezers"}  # fmt: skip
 _MASS = {"furniture", "cutlery", "clutter", "bedding", "clothing", "luggage", "glassware", "crockery", "silverware",
-         "rubbish", "trash", "litter", "garbage", "foliage", "greenery"}  # fmt: skip
+         "rubbish", "trash", "litter", "garbage", "foliage", "greenery", "seating", "lighting",
+         "electronics", "stuff"}  # fmt: skip
 
 SURFACES = bag(
     "floor ground table desk shelf bookshelf bed windowsill sill counter countertop worktop dresser nightstand cabinet "
-    "sideboard mantel mantelpiece bench stand stool tray rug carpet mat pedestal plinth sofa couch"
+    "sideboard mantel mantelpiece bench stand stool tray rug carpet mat pedestal plinth sofa couch island bar stove "
+    "workbench ledge chest ottoman"
 )
 CONTAINERS = bag("box basket bin bag drawer bowl bucket crate jar cup mug vase wardrobe closet chest sink")
 SEATS = bag("chair armchair sofa couch bed stool bench recliner loveseat")

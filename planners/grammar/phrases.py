@@ -90,8 +90,9 @@ class Noun:
         return plain and bool(self.query.text) and self.article in ("indef", "bare")
 
     def full(self) -> Query:
-        """The query with everything behind the noun."""
-        return attach(self.query, self.posts)
+        """The query with everything behind the noun, which counts for each of several colours ("red and blue mugs")."""
+        first = attach(self.query, self.posts)
+        return _update(first, also=tuple(attach(q, self.posts) for q in first.also)) if first.also else first
 
 
 def tag_of(token: Token) -> Tag:
@@ -228,6 +229,8 @@ class Phrases:
             fields["pick"] = "any"
         if any(t.type == "OTHER" for t in tags):
             fields["exclude"] = (Query(last=True),)
+        if joined := next((t.value for t in tags if t.type == "COLORS"), ()):
+            fields = _each(joined, fields, plural)
         words = tuple(t.text for t in tags if t.type == "SIZE")
         said = tags[-1].text if tags[-1].type == "NOUN" else ""
         return Noun(_update(Query(), **fields), article, plural, number, words, height, said=said)
@@ -255,6 +258,14 @@ class Phrases:
         if len(numbers) > 1 or value != int(value) or not 1 <= value <= 1000:
             raise Refusal("that is no number of things", *(t.text for t in numbers))
         return int(value)
+
+
+def _each(colors: Sequence[str], fields: dict[str, Any], plural: bool) -> dict[str, Any]:
+    """ "the red and blue mugs": those that are red, and those that are blue."""
+    if not plural or fields.get("pick") != "all" or fields.get("count"):
+        raise Refusal("say which of the colours it has", *colors)
+    first, *others = ({**fields, "colors": (c,)} for c in colors)
+    return {**first, "also": tuple(_update(Query(), **other) for other in others)}
 
 
 def _pick(tags: Sequence[Tag], article: Article, plural: bool, number: int | None) -> dict[str, Any]:
@@ -376,4 +387,6 @@ def in_or_on(post: Post) -> str:
 
 
 def _relation(name: str, anchors: Sequence[Query]) -> Relation:
-    return Relation(name=name, anchors=tuple(anchors))  # type: ignore[arg-type]
+    """A relation; "next to a chair" is next to whichever chair."""
+    anyone = (a.model_copy(update={"pick": "all"}) if a.pick == "any" and not a.last else a for a in anchors)
+    return Relation(name=name, anchors=tuple(anyone))  # type: ignore[arg-type]

@@ -119,14 +119,24 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     commands = Commands(before.antecedent, before.again)
     ops: list[dict[str, Any]] = []
     idle: Refusal | None = None
+    topic: Query | None = None
+    stated_first = False
     for sentence, mark in sentences(words):
         for clause in Tagger(sentence).clauses():
+            follows = bool(ops) or previous is not None or topic is not None
             try:
-                ops += _carry(clause, sentence, mark, commands, bool(ops) or previous is not None, cleaned)
+                ops += _carry(clause, sentence, mark, commands, follows, cleaned)
             except Refusal as refusal:
                 if refusal.verdict != "not_an_edit" or (idle and not _is_chat(refusal)):
                     raise
-                idle = refusal
+                idle, stated_first = refusal, not ops
+                topic = _topic(clause, refusal)
+    if idle and ops and str(idle) == _STATEMENT and stated_first:
+        idle = None  # "I love the sofa. Delete the rug."
+        if topic is not None and ops[0].get("target") == Query(last=True):
+            ops[0] = {**ops[0], "target": topic}
+    if idle and ops and str(idle) == _FORBIDDEN and topic is not None:
+        ops, idle = [_sparing(op, topic) for op in ops], None  # "don't touch the sofa, remove everything"
     ops = _release(ops)
     if not ops:
         raise idle or _empty(words)
@@ -135,6 +145,30 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     if len(ops) > MAX_OPS:
         raise Refusal(f"that is more than {MAX_OPS} steps; say it in parts")
     return _Outcome(tuple(_merge_copies(ops)), commands.phrases.antecedent, tuple(commands.before), remarks)
+
+
+def _topic(clause: Clause, idle: Refusal) -> Query | None:
+    """What a statement or a prohibition is about: "the sofa is ugly, delete it"."""
+    if str(idle) not in (_STATEMENT, _FORBIDDEN):
+        return None
+    first = next((i for i, t in enumerate(clause.tags) if t.type == "DET"), None)
+    if first is None:
+        return None
+    for end in range(len(clause.tags), first + 1, -1):
+        about = clause.tags[first:end]
+        with suppress(Refusal):
+            (op,) = Commands().read(_parse(Clause([Tag("SELECT", None, about[0].words), *about], "SELECT")))
+            query: Query = op["target"]
+            return query.model_copy(update={"pick": "one"}) if query.pick == "any" else query
+    return None
+
+
+def _sparing(op: dict[str, Any], spared: Query) -> dict[str, Any]:
+    """An operation on several things without what was forbidden to touch."""
+    target = op.get("target")
+    if target is None or target.pick != "all" or len(target.exclude) >= 4:
+        return op
+    return {**op, "target": target.model_copy(update={"exclude": (*target.exclude, spared)})}
 
 
 def _empty(words: Sequence[Word]) -> Refusal:
@@ -160,6 +194,8 @@ def _release(ops: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
         after = ops[i + 1].get("target") if i + 1 < len(ops) else None
         if held == "kept" and (after is None or Query(last=True) not in after.exclude):
             raise Refusal("it says what to keep, and asks for no change", "keep", verdict="not_an_edit")
+        if op["op"] == "isolate" and after is not None and after.pick == "all" and Query(last=True) in after.exclude:
+            fields = {"op": "select", "target": op["target"]}  # "just keep the sofa and remove everything else"
         if held == "taken":
             if after != Query(last=True) or ops[i + 1]["op"] != "move":
                 raise Refusal("say where to, or take it away", "take")
@@ -176,6 +212,8 @@ def _is_chat(refusal: Refusal) -> bool:
 
 
 _CHAT = "this asks for nothing"
+_FORBIDDEN = "it says what not to do, and asks for no change"
+_STATEMENT = "this is a statement, not an edit"
 _JUDGING = bag("looks look seems seem feels sounds works good great nice fine better perfect lovely")
 _BEING = bag("is are was were should")
 _TELLING = ("DIR", "HUE", "LIGHT", "GROWN", "ONE", "OTHER", "OTHERS", "LENGTH", "DEGREE")
@@ -215,7 +253,7 @@ def _quote(clause: Clause, cleaned: str) -> str:
 def _refuse_idle(clause: Clause, sentence: Sequence[Word], mark: str) -> None:
     """Raise if the clause is a question, a statement, chat, a session command or a prohibition."""
     if clause.negated:
-        raise Refusal("it says what not to do, and asks for no change", "not", verdict="not_an_edit")
+        raise Refusal(_FORBIDDEN, "not", verdict="not_an_edit")
     if clause.verb == "SELECT" and len(clause.tags) > 1 and clause.tags[1].words[0].text in lexicon.QUESTION:
         raise Refusal("this is a question, not an edit", clause.tags[1].text, verdict="not_an_edit")
     if clause.verb or clause.unsupported:
@@ -235,7 +273,7 @@ def _refuse_idle(clause: Clause, sentence: Sequence[Word], mark: str) -> None:
     own = [w.text for t in clause.tags for w in t.words]
     judges = own[:1] in (["that"], ["this"], ["it"], ["looks"]) and bool(_JUDGING & set(own))
     if first in lexicon.STATEMENT or judges or _BEING & set(texts):
-        raise Refusal("this is a statement, not an edit", first, verdict="not_an_edit")
+        raise Refusal(_STATEMENT, first, verdict="not_an_edit")
 
 
 def _parse(clause: Clause) -> Node:

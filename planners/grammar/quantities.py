@@ -214,6 +214,10 @@ def _is_fraction(words: Sequence[str]) -> bool:
 
 def _ordinal(words: Sequence[str]) -> Quantity | None:
     word = words[0]
+    if word == "last" and len(words) > 1:
+        return Quantity("ORDINAL", -1, "", 1)
+    if tuple(words[1:3]) == ("to", "last") and word in ("second", "next"):
+        return Quantity("ORDINAL", -2, "", 3)
     if word in ORDINALS:
         return Quantity("ORDINAL", ORDINALS[word], "", 1)
     if word[0].isdigit() and word[-2:] in ("st", "nd", "rd", "th") and word[:-2].isdecimal() and len(word) < 6:

@@ -201,6 +201,17 @@ class Reading:
                 return not phrase and not number and not filler and is_plain(self.texts[i])
         return False
 
+    def colors(self, i: int) -> tuple[tuple[str, ...], int]:
+        """Colours joined by "and" or "or" before one noun ("red and blue mugs"), and how many words they take."""
+        found, j = [], i
+        while color := color_at(self.texts, j):
+            found.append(color[0])
+            j += color[1]
+            if self.texts[j : j + 1] not in (("and",), ("or",), (",",)) or not color_at(self.texts, j + 1):
+                break
+            j += 1
+        return (tuple(found), j - i) if len(found) > 1 and self.nouny(j) else ((), 0)
+
     def colored_noun(self, i: int) -> bool:
         """Whether a colour stands at `i` with its noun behind it; "the sofa light blue" is no sofa light."""
         found = color_at(self.texts, i)

@@ -203,7 +203,8 @@ class Tagger:
             return self._put("LIKE", None, i, 1)
         if text == "out" and verb in ("TAKE", "MOVE") and (gone := match(_OUTSIDE, self.texts, i)):
             return self._put("AWAY", None, i, gone[1])
-        if text in ("down", "over", "back", "up") and length == 1 and verb == "PUT" and self.read.preposition_at(i + 1):
+        onward = verb == "PUT" or (verb == "MOVE" and text in ("back", "up", "over") and after in ("against", "onto"))
+        if text in ("down", "over", "back", "up") and length == 1 and onward and self.read.preposition_at(i + 1):
             return i + 1
         if text in ("thing", "thingy", "thingie") and self._before == "NOUN" and verb not in ("ADD", "PUT"):
             return i + 1
@@ -318,6 +319,9 @@ class Tagger:
         if not found or found[1] < length:
             return None
         name, taken = found
+        joined, length_of_all = self.read.colors(i)
+        if joined and self._before in ("DET", "NUMBER", "SIZE", "COMMA", "AND", *verb_classes()):
+            return self._put("COLORS", joined, i, length_of_all)
         if self.read.nouny(i + taken):
             return self._put("COLOR", name, i, taken)
         follows_det = self._before in ("DET", "SIZE", "SUP", "ORDINAL", "COLOR") or (
@@ -371,7 +375,8 @@ class Tagger:
         if kind == "NOT" and self._before in ("EVERYTHING", "NOUN", "THING") and self.read.hue_follows(behind):
             self._put("REL", None, i, 0)
             return self._put("NOT", None, i, taken)
-        if kind in ("DIR", "SIDE", "SPOT") and self.texts[i + 1 : i + 2] == ("the",) and self.read.nouny(behind):
+        sided = kind in ("DIR", "SIDE", "SPOT", "NOWHERE") and self.texts[i + 1 : i + 2] == ("the",)
+        if sided and self.read.nouny(behind):
             # "to the left wall": the side belongs to the noun.
             return self._phrase(i, lexicon.INSIDE_PHRASES[text,], 1)
         if kind == "NOT" and self._before != "REL":
