@@ -76,6 +76,7 @@ def against_vectors(rooms: Sequence[Case], encoder: Encoder, quick: bool) -> Par
         for method, asked, pictured, names, widths in tellers:
             up = vectors.uplift(room, [pictures.true_masks(room, eye, pictured, i) for i, eye in enumerate(eyes)])
             found.setdefault((method, "groups"), []).append(vectors.as_groups(room, up, asked, names))
+            found.setdefault((method, "true groups"), []).append(vectors.as_true_groups(room, up, asked, names))
             for width in widths[-1:] if quick else widths:
                 outcome = vectors.as_vectors(room, up, asked, names, width)
                 found.setdefault((method, f"{width} a Gaussian"), []).append(outcome)
@@ -107,6 +108,7 @@ def _losses(found: dict[tuple[str, str], list[Outcome]]) -> tuple[Metric, ...]:
     metrics = []
     for (method, setting), outcomes in found.items():
         key = f"{method.replace(' ', '_')}.{setting.replace(' ', '_')}"
+        metrics.append(Metric(f"{key}.margin", fmean(o.margin for o in outcomes), "probability", "higher", 0.1))
         metrics.append(Metric(f"{key}.query", 1e3 * fmean(o.query for o in outcomes), "ms", "lower", 0.5))
         if setting != "groups":
             gain = vectors.miou(found[method, "groups"]) - vectors.miou(outcomes)

@@ -16,6 +16,7 @@ from statistics import fmean
 import numpy as np
 from numpy.typing import NDArray
 
+from ...gaussians.language.association import HELD, associate
 from ...gaussians.language.calibration import probability
 from ...gaussians.language.encoders import Encoder
 from ...gaussians.language.lifting import Lifted, lift
@@ -36,6 +37,7 @@ class Outcome:
     Attributes:
         names: that were asked.
         iou: of each, 0 where nothing was selected.
+        margin: by how much likelier a thing's own Gaussians are called by its name than all others, mean over names.
         seconds: from the masks with their vectors to the answer to one query.
         query: of which one query.
         bytes: held.
@@ -43,6 +45,7 @@ class Outcome:
 
     names: tuple[str, ...]
     iou: list[float]
+    margin: float
     seconds: float
     query: float
     bytes: int
@@ -76,7 +79,20 @@ def uplift(case: Case, seen: Sequence[Seen]) -> Uplift:
 
 
 def as_groups(case: Case, up: Uplift, encoder: Encoder, names: Sequence[str]) -> Outcome:
-    """One number a Gaussian, one vector a group; masks of one object are one group: association is flawless here."""
+    """One number a Gaussian, one vector a group: masks are grouped as users get it."""
+    start = time.perf_counter()
+    tracks = associate(up.lifted)
+    whole = [k for k, track in enumerate(tracks.tracks) if track.parent < 0 and track.vector is not None]
+    share = np.asarray(tracks.share[:, whole].todense())
+    held = up.covered & (share.max(axis=1, initial=0.0) > HELD)
+    column = np.where(held, share.argmax(axis=1), -1) if whole else np.full(len(held), -1)
+    vectors = [v for k in whole if (v := tracks.tracks[k].vector) is not None]
+    table = np.stack(vectors) if vectors else np.zeros((0, encoder.dim), np.float32)
+    return _asked(case, encoder, names, column, table, time.perf_counter() - start + up.seconds)
+
+
+def as_true_groups(case: Case, up: Uplift, encoder: Encoder, names: Sequence[str]) -> Outcome:
+    """The same with a flawless association: masks of one object are one group."""
     assert up.lifted.vectors is not None
     start = time.perf_counter()
     member = np.zeros((len(up.objects), len(case.objects)), np.float32)
@@ -84,15 +100,19 @@ def as_groups(case: Case, up: Uplift, encoder: Encoder, names: Sequence[str]) ->
     column = np.where(up.covered, np.asarray(up.lifted.weights @ member).argmax(axis=1), -1)
     mass = np.asarray(up.lifted.weights.sum(axis=0)).ravel()
     table = (member * mass[:, None]).T @ up.lifted.vectors
-    built = time.perf_counter() - start + up.seconds
-    answers, query = [], 0.0
-    for name in names:
-        start = time.perf_counter()
-        chosen = np.flatnonzero(probability(encoder, name, table) >= encoder.calibration.threshold)
-        answers.append(np.isin(column, chosen))
-        query += (time.perf_counter() - start) / len(names)
+    return _asked(case, encoder, names, column, table, time.perf_counter() - start + up.seconds)
+
+
+def _asked(
+    case: Case, encoder: Encoder, names: Sequence[str], column: NDArray[np.integer], table: F32, built: float
+) -> Outcome:
+    """What groups, by each Gaussian's row of the table, answer."""
+    start = time.perf_counter()
+    chance = [np.append(probability(encoder, name, table), 0.0) for name in names]  # the last is that of no group
+    np.flatnonzero(np.isin(column, np.flatnonzero(chance[0] >= encoder.calibration.threshold)))
+    query = (time.perf_counter() - start) / len(names)
     size = 4 * len(column) + table.nbytes
-    return Outcome(tuple(names), _scores(case, names, answers), built + query, query, size)
+    return _outcome(case, encoder, names, [c[column] for c in chance], built, query, size)
 
 
 def as_vectors(case: Case, up: Uplift, encoder: Encoder, names: Sequence[str], width: int) -> Outcome:
@@ -107,17 +127,31 @@ def as_vectors(case: Case, up: Uplift, encoder: Encoder, names: Sequence[str], w
         features = np.where(up.covered[:, None], small @ axes + mean, 0).astype(np.float32)
     built = time.perf_counter() - start + up.seconds
     start = time.perf_counter()
-    _beaten(features, encoder, names[0])
+    _chance(features, encoder, names[0])
     query = time.perf_counter() - start
-    answers = [_beaten(features[::STRIDE], encoder, name) for name in names]
-    size = 4 * min(width, full) * len(features)
-    return Outcome(tuple(names), _scores(case, names, answers, STRIDE), built + query, query, size)
+    chance = [_chance(features[::STRIDE], encoder, name) for name in names]
+    return _outcome(case, encoder, names, chance, built, query, 4 * min(width, full) * len(features))
 
 
-def _beaten(features: F32, encoder: Encoder, name: str) -> Mask:
-    """Which Gaussians are a `name` rather than anything else."""
-    chance = [probability(encoder, name, features[i : i + CHUNK]) for i in range(0, len(features), CHUNK)]
-    return np.concatenate(chance) >= encoder.calibration.threshold
+def _chance(features: F32, encoder: Encoder, name: str) -> NDArray[np.float64]:
+    """How likely each Gaussian is a `name` rather than anything else, `[N]`."""
+    rows = (features[i : i + CHUNK] for i in range(0, len(features), CHUNK))
+    return np.concatenate([probability(encoder, name, part) for part in rows])
+
+
+def _outcome(
+    case: Case, encoder: Encoder, names: Sequence[str], chance: Sequence[NDArray[np.float64]], built: float,
+    query: float, size: int,
+) -> Outcome:  # fmt: skip
+    """The answers judged; `chance` of all Gaussians, or of every `STRIDE`-th."""
+    meant = {o.kind: o for o in case.alone()}
+    ious, margins = [], []
+    for name, sure in zip(names, chance, strict=True):
+        truth = case.truth(meant[name])
+        own = truth if len(sure) == len(truth) else truth[::STRIDE]
+        ious.append(iou(own, sure >= encoder.calibration.threshold))
+        margins.append(float(sure[own].mean() - sure[~own].mean()) if own.any() else 0.0)
+    return Outcome(tuple(names), ious, fmean(margins), built + query, query, size)
 
 
 def principal(rows: F32, width: int) -> tuple[F32, F32]:
@@ -132,8 +166,3 @@ def principal(rows: F32, width: int) -> tuple[F32, F32]:
 def miou(outcomes: Sequence[Outcome]) -> float:
     """Mean IoU over all names of all cases."""
     return fmean(v for outcome in outcomes for v in outcome.iou)
-
-
-def _scores(case: Case, names: Sequence[str], answers: Sequence[Mask], stride: int = 1) -> list[float]:
-    meant = {o.kind: o for o in case.alone()}
-    return [iou(case.truth(meant[name])[::stride], answer) for name, answer in zip(names, answers, strict=True)]
