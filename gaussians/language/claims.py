@@ -28,7 +28,7 @@ I32 = NDArray[np.int32]
 
 FINE = 1.0  # scale of the superpoints that votes are pooled in: a third of that of segmentation, so that few straddle
 ENOUGH = 1.0  # pixels of blending weight, over all views, from which a Gaussian's own share counts for half
-NOBODY = -1
+NOBODY, UNTOLD = -1, -2
 
 
 def owners(surface: Surface, links: Links, tracks: Tracks) -> tuple[I32, I32]:
@@ -90,8 +90,9 @@ def claimed(
     things: Sequence[Thing],
     tracks: Tracks,
     vectors: Sequence[F32 | None],
-) -> tuple[I32, list[Thing]]:
-    """Superpoints cut along the tracks' borders, and the things they make up, as `segment` gives them.
+) -> tuple[I32, list[Thing], I32]:
+    """Superpoints cut along the tracks' borders, the things they make up, as `segment` gives them, and the track of
+    each surface point.
 
     Things that tracks claim carry the tracks' `vectors`. Of the others what is left stays a thing if it is large
     enough.
@@ -119,7 +120,20 @@ def claimed(
         left = np.array(_left(whole, old, of), dtype=np.int64)
         if size[left].sum() >= MIN_OBJECT:
             made += _object(left, None, parts, len(made), near, lab, size)
-    return cut, made
+    return cut, made, owner
+
+
+def by_votes(tracks: Tracks) -> I32:
+    """The track that each Gaussian's own votes give it to, `[N]`; -1 for none, -2 where too little is seen to tell."""
+    owner = np.full(len(tracks.seen), NOBODY, np.int32)
+    best = np.zeros(len(owner))
+    for k, track in enumerate(tracks.tracks):
+        if track.parent == NOBODY:
+            held = np.asarray(tracks.share[:, [k]].todense()).ravel() > HELD
+            votes = np.where(held, np.asarray(tracks.votes[:, [k]].todense()).ravel() + 1e-6, 0)
+            owner = np.where(votes > best, k, owner)
+            best = np.maximum(best, votes)
+    return np.where(tracks.seen > ENOUGH, owner, UNTOLD).astype(np.int32)
 
 
 def _structure_only(owner: I32, labels: I32, things: Sequence[Thing]) -> NDArray[np.bool_]:

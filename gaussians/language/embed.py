@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+import torch
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
@@ -19,7 +20,7 @@ from ..errors import UserError
 from ..scene import Scene
 from . import encoders
 from .association import Track, Tracks, associate
-from .claims import claimed
+from .claims import UNTOLD, by_votes, claimed
 from .encoders import Encoder
 from .lifting import lift
 from .masks import Masker
@@ -66,9 +67,14 @@ def embed(
     with one_thread():
         eyes = encoder if encoder.image_size else encoders.load()  # text vectors alone cannot look at pictures
         labels, things = segment(scene, surface, eyes, progress, portraits)
+        owner = None
         if tracks is not None:
-            labels, things = claimed(surface, labels, things, tracks, [_vector(t, encoder) for t in tracks.tracks])
-        column = _assign(scene.cloud, surface, _thing_of_superpoint(things, int(labels.max(initial=-1)) + 1)[labels])
+            vectors = [_vector(t, encoder) for t in tracks.tracks]
+            labels, things, owner = claimed(surface, labels, things, tracks, vectors)
+        group = _thing_of_superpoint(things, int(labels.max(initial=-1)) + 1)[labels]
+        column = _assign(scene.cloud, surface, group)
+        if tracks is not None and owner is not None:
+            column = _by_own_votes(scene.cloud, surface, group, column, owner, by_votes(tracks))
         progress("table", 0.0)
         on_skin = np.zeros(len(scene.cloud), bool)
         on_skin[surface.rows] = True
@@ -95,6 +101,28 @@ def _vector(track: Track, encoder: Encoder) -> NDArray[np.float32] | None:
     total = np.array([w for _, w in known]) @ encoder.encode_text([name for name, _ in known]).astype(np.float64)
     norm = float(np.linalg.norm(total))
     return (total / norm).astype(np.float32) if norm > 1e-8 else None
+
+
+def _by_own_votes(
+    cloud: GaussianCloud, surface: Surface, group: NDArray[np.int32], column: NDArray[np.int32],
+    owner: NDArray[np.int32], voted: NDArray[np.int32],
+) -> NDArray[np.int32]:  # fmt: skip
+    """`column` with Gaussians off the skin, but within its reach, moved to the nearest surface point of the track that
+    their own votes give them to: they are few and large, and much of a distant thing is drawn by them.
+
+    Args:
+        group, owner: `[P]` group and track of each surface point.
+        voted: `[N]` track of each Gaussian by its own votes, see `claims.by_votes`.
+    """
+    column, off = column.copy(), column != NO_GROUP
+    off[surface.rows] = False
+    off &= voted != UNTOLD
+    for k in np.unique(voted[off]).tolist():
+        points, rows = np.flatnonzero(owner == k), np.flatnonzero(off & (voted == k))
+        if len(points):
+            nearest = cKDTree(surface.points[points]).query(cloud.means[torch.from_numpy(rows)].numpy())[1]
+            column[rows] = group[points[nearest]]
+    return column
 
 
 def _noted(scene: Scene, tracks: Tracks) -> Scene:

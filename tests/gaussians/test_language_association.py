@@ -192,7 +192,7 @@ def test_masks_of_parts_without_a_name_lie_in_their_thing(scene: Any) -> None:
     assert tracks.tracks[part.parent].label == "table" and min(found.values()) > 0.9
     surface = surface_of(cloud)
     labels = superpoints(surface, links_of(surface))
-    _, things = claimed(surface, labels, [], tracks, [None] * len(tracks.tracks))
+    _, things, _ = claimed(surface, labels, [], tracks, [None] * len(tracks.tracks))
     assert [t.level for t in things].count("object") == len(THINGS)
     assert any(t.level == "part" for t in things)
 
@@ -274,7 +274,7 @@ def test_what_no_mask_claims_stays_as_it_was(scene: Any) -> None:
     ]
     tracks = associate(lift(cloud, views))
     vector = np.ones(3, np.float32)
-    cut, after = claimed(surface, labels, before, tracks, [vector] * len(tracks.tracks))
+    cut, after, _ = claimed(surface, labels, before, tracks, [vector] * len(tracks.tracks))
     owned = [
         np.isin(cut, t.members + tuple(s for p in after if p.parent == i for s in p.members))
         for i, t in enumerate(after)
