@@ -25,6 +25,7 @@ from ..gaussians.language import encoders
 from ..gaussians.language.calibration import labels, probability
 from ..gaussians.language.encoders import Encoder
 from ..gaussians.language.encoders.vectors import wrap
+from ..gaussians.language.encoders.vocabulary import Vocabulary
 from ..gaussians.language.field import Box, Group, LanguageField
 from ..gaussians.language.query import Query
 from ..gaussians.language.resolve import resolve
@@ -118,6 +119,12 @@ def room_rows(pairs: Pairs) -> Rows:
     return np.array([pairs.names.index(name) for name in ROOM])
 
 
+def named_rows(pairs: Pairs, vocabulary: Vocabulary) -> Rows:
+    """The classes that mean what a name of the vocabulary means."""
+    meant = (sorted(pairs.encoder.vocabulary.covered(name))[:1] for name in vocabulary.names)
+    return np.array(sorted({pairs.names.index(name) for names in meant for name in names}))
+
+
 def top1(pairs: Pairs, rows: Rows, step: int = 1) -> dict[str, float]:
     """Share of the things named right and of the names that find their thing, among the classes `rows`.
 
@@ -170,19 +177,15 @@ def ask(
     return Scores(np.array(present), np.array(right), np.array(absent), np.array(top))
 
 
-def ask_rooms(pairs: Pairs, scenes: int, everything: bool) -> Scores:
-    """Scenes of room objects only, half of `ROOM` there and half asked for in vain: the names that are alike.
-
-    Args:
-        everything: whether all names compete, or only those of `ROOM`.
-    """
+def ask_alike(pairs: Pairs, classes: Rows, competing: Rows, scenes: int) -> Scores:
+    """Scenes of things that are alike: `THINGS` of a few `classes` there, as many others of them asked for in vain."""
     rng = np.random.default_rng(29)
-    rows = room_rows(pairs)
-    encoder = pairs.encoder if everything else pairs.among(rows)
+    encoder = pairs.among(competing)
     found: list[tuple[float, bool, bool]] = []
     absent: list[float] = []
     for _ in range(scenes):
-        inside, away = np.split(rng.permutation(rows), [len(rows) // 2])
+        drawn = rng.permutation(classes)
+        inside, away = drawn[:THINGS], drawn[THINGS : 2 * THINGS]
         images = pairs.images[inside]
         for place, i in enumerate(inside):
             shares = probability(encoder, pairs.names[i], images)
@@ -254,7 +257,11 @@ def figures(data: Path, quick: bool = False) -> dict[str, float]:
     result |= {f"all.{k}": v for k, v in top1(pairs, everything, 20 if quick else 1).items()}
     scenes = 20 if quick else 100
     scores = {f"names{n}": ask(pairs, pairs.half(odd=True), n, scenes) for n in NAMES}
-    scores |= {f"room{n}": ask_rooms(pairs, scenes, n == len(pairs.names)) for n in (len(ROOM), len(pairs.names))}
+    room, home = room_rows(pairs), named_rows(pairs, Vocabulary.household())
+    scores["room29"] = ask_alike(pairs, room, room, scenes)
+    scores["room1203"] = ask_alike(pairs, room, everything, scenes)
+    scores["home.home"] = ask_alike(pairs, home, home, scenes)
+    scores["home.everyday"] = ask_alike(pairs, home, named_rows(pairs, Vocabulary.everyday()), scenes)
     for key, score in scores.items():
         result[f"{key}.refused"] = score.refused(threshold)
         result[f"{key}.wrongly_refused"] = score.wrongly_refused(threshold)

@@ -73,3 +73,13 @@ def test_vocabulary_survives_json() -> None:
     again = Vocabulary.from_json(_SMALL.to_json())
     assert again.to_json() == _SMALL.to_json()
     assert again.names == _SMALL.names
+
+
+def test_everyday_names_add_to_the_household_and_take_nothing_away() -> None:
+    home, everyday = Vocabulary.household(), Vocabulary.everyday()
+    assert everyday.names[: len(home.names)] == home.names and len(everyday.names) > len(home.names)
+    for name in (*home.names, *home.broader):
+        assert everyday.covered(name) == home.covered(name)
+    for name in everyday.names[len(home.names) :]:
+        assert everyday.covered(name) == {name}
+        assert home.covered(name) <= {"teddy bear", "toy car"} or " " in name  # else a household name said it already

@@ -105,7 +105,7 @@ class Onnx:
 
     @cached_property
     def vocabulary(self) -> Vocabulary:
-        return Vocabulary.household()
+        return Vocabulary.everyday()
 
     @cached_property
     def calibration(self) -> Calibration:

@@ -81,8 +81,8 @@ class OpenClip:
 
     @cached_property
     def vocabulary(self) -> Vocabulary:
-        """The embedded encoder's names: household kinds with synonyms, and what is not a whole object."""
-        return Vocabulary.household()
+        """Household kinds with synonyms, other everyday names, and captions of what is not a whole object."""
+        return Vocabulary.everyday()
 
     @cached_property
     def calibration(self) -> Calibration:
