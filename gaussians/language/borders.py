@@ -36,7 +36,7 @@ def redrawn(
 
     Args:
         labels: `[M]` superpoint of each point.
-        owner: `[S]` thing each superpoint belongs to, -1 for none.
+        owner: `[S]` thing each superpoint belongs to, -1 for none, structure below that.
         structure: `[S]` superpoints of floor, walls and ceiling.
     """
     for _ in range(PASSES):
@@ -68,9 +68,10 @@ def describe(
     if not len(rows):
         return rows, rows, rows, np.zeros((0, len(FEATURES)))
     first, second = np.repeat(rows, k), surface.neighbours[rows].ravel().astype(np.int64)
-    many = int(owner.max(initial=-1)) + 2
-    key, pair = np.unique(first * many + own[second] + 1, return_inverse=True)
-    point, thing = key // many, key % many - 1
+    least_thing = int(owner.min(initial=-1))
+    many = int(owner.max(initial=-1)) - least_thing + 1
+    key, pair = np.unique(first * many + own[second] - least_thing, return_inverse=True)
+    point, thing = key // many, key % many + least_thing
     count = len(key)
     size = np.bincount(pair, minlength=count).astype(np.float64)
 
@@ -104,7 +105,7 @@ def describe(
         mean(np.abs((surface.normals[second] * step).sum(1)) / length),
         (own[point] == thing).astype(np.float64),
         structure[labels[nearest]].astype(np.float64),
-        (thing < 0).astype(np.float64),
+        (thing == -1).astype(np.float64),
         surface.flatness[point],
         np.minimum(np.abs(piece[:, 0]) / 10, 4),
         np.minimum(np.linalg.norm(piece[:, 1:], axis=1) / 5, 4),

@@ -17,7 +17,8 @@ from .superpoints import LIGHTNESS
 
 F64 = NDArray[np.float64]
 
-GEOMETRY = 0.3  # weight of a merge's log-odds against the encoder's
+GEOMETRY = 1.0  # weight of a merge's log-odds against the encoder's
+SETTLED, HOPELESS = 0.99, 0.01  # likelihoods of a merge from which, and below which, looks are not asked
 CRUMB_SHARE = 0.03  # of a node: a side smaller than this says nothing about the rest
 SAME_SHARE = 0.92  # a node that holds this much of another looks the same
 PATCH_COLOR = 15.0  # Lab difference up to which touching patches of one object are one part
@@ -35,17 +36,35 @@ def alike(nodes: Sequence[Node], points: NDArray[np.int64]) -> NDArray[np.int64]
     return same
 
 
-def best_cut(nodes: Sequence[Node], points: NDArray[np.int64], evidence: dict[int, float]) -> list[int]:
+def in_question(nodes: Sequence[Node], points: NDArray[np.int64]) -> list[int]:
+    """The nodes whose looks can change the cut: those that geometry neither settles nor rules out, and the whole ones
+    that they are made of."""
+    weakest = weakest_merges(nodes, points)
+    wanted = np.zeros(len(nodes), bool)  # does anything above need this node's evidence?
+    found = []
+    for i in range(len(nodes) - 1, -1, -1):
+        settled, hopeless = weakest[i] >= SETTLED, weakest[i] < HOPELESS
+        if not hopeless and (wanted[i] or not settled):
+            found.append(i)
+        if not settled:
+            wanted[list(nodes[i].children)] = wanted[i] or not hopeless
+    return found[::-1]
+
+
+def best_cut(
+    nodes: Sequence[Node], points: NDArray[np.int64], evidence: dict[int, float], certain: int | None = None
+) -> list[int]:
     """Disjoint nodes that cover every superpoint: the things the tree is made of.
 
     Bottom up, a node stays whole if its own evidence, plus what geometry says for the weakest merge inside it, is at
     least the mean evidence of the best cut below it, weighted by points. A mean, not a sum: two halves that each look
     like something must not outvote the one thing they make. The weakest merge, not the last: adding a crumb to a wrong
-    merge does not make it right.
+    merge does not make it right. Where geometry is certain, looks are not asked.
 
     Args:
         points: `[len(nodes)]` surface points of each node.
         evidence: log-odds of being one whole thing; 0 where none was asked for.
+        certain: a node that is one thing whatever its parts look like.
     """
     value, whole = np.zeros(len(nodes)), np.ones(len(nodes), bool)
     weakest = weakest_merges(nodes, points)
@@ -53,7 +72,8 @@ def best_cut(nodes: Sequence[Node], points: NDArray[np.int64], evidence: dict[in
         value[i] = evidence.get(i, 0.0)
         if node.children:
             below = sum(float(points[c]) * value[c] for c in node.children) / max(float(points[i]), 1.0)
-            whole[i] = value[i] + GEOMETRY * np.log(weakest[i] / (1 - weakest[i])) >= below
+            likely = value[i] + GEOMETRY * np.log(weakest[i] / (1 - weakest[i])) >= below
+            whole[i] = i == certain or weakest[i] >= SETTLED or (likely and weakest[i] >= HOPELESS)
             value[i] = value[i] if whole[i] else below
     children = {c for node in nodes for c in node.children}
     chosen: list[int] = []

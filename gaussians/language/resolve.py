@@ -25,6 +25,7 @@ from .facing import Facing, facing_of
 from .field import Group, LanguageField
 from .measure import box_of
 from .members import Members, difference, members_of, union
+from .partwise import select_part
 from .picking import by_distance, pick
 from .query import Query, Relation
 from .selection import Candidate, Selection, mask_of, nothing
@@ -146,20 +147,23 @@ class Resolver:
         if query.text in FLOATERS and not query.colors:
             return self._floaters(query)
         try:
-            found = self._described(query, out)
+            found = self.described(query, out)
             fronts = self._frames_told(query)
         except Unresolved as anchor:
             return replace(anchor.selection, query=query)
         return replace(found, reason="; ".join(r for r in (found.reason, fronts) if r)) if fronts else found
 
-    def _described(self, query: Query, out: frozenset[int] = frozenset()) -> Selection:
+    def described(self, query: Query, out: frozenset[int] = frozenset()) -> Selection:
         """A query that says what a thing is like."""
+        owner = next((r for r in query.relations if r.name == "part_of"), None)
+        if owner is not None and is_name(query.text):
+            return select_part(self, query, owner)
         rank = self.scored(query).without(out)
         matches = rank.matches()
         if query.colors and query.text not in STRUCTURE and (query.text in PARTS or not matches):
 
             def stands(rows: torch.Tensor) -> bool:
-                return not query.relations or self._stands(query, self._stand_in(rows))
+                return not query.relations or self.stands(query, self._stand_in(rows))
 
             found = by_hue(self.scene, self.field, query, stands, rank.named)
             if found is None and self._goes_by_color(query):
@@ -216,8 +220,8 @@ class Resolver:
             Unresolved: one of them is absent or ambiguous.
         """
         groups: list[Group] = []
-        for query in relation.anchors:
-            found = self.select(query)
+        for query in relation.anchors:  # "on the wall" means on any wall
+            found = self.select(query.model_copy(update={"pick": "all"}) if query.text in STRUCTURE else query)
             if found.verdict != "found":
                 raise Unresolved(found)
             # Found by colour alone, it has no group.
@@ -266,7 +270,7 @@ class Resolver:
             return True
         return doubt(self.encoder, query.text) is not None
 
-    def _stands(self, query: Query, thing: Group) -> bool:
+    def stands(self, query: Query, thing: Group) -> bool:
         """Whether something that is no row of the table stands in every asked relation."""
         return all(
             related(r, [thing], self.field, self.anchors(r))[0] >= relations.HOLDS

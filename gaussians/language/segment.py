@@ -7,7 +7,7 @@ Knows the pieces of this room that find borders. Refuses to know queries, and Ga
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,8 +32,7 @@ F64 = NDArray[np.float64]
 MIN_OBJECT = 40  # surface points; smaller things are not asked about and not offered
 MOST_ASKED = 700  # nodes whose portraits are taken: bounds the time of a messy scene
 ASK_VIEWS = 3
-MOST_OF_IT = 0.75  # of the surface: a connected body this large, with nothing around it, is likely one scanned thing
-ALONE = 4.0  # nats by which it is
+MOST_OF_IT = 0.75  # of the surface: a body this large, with neither floor nor wall around it, is one scanned thing
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,60 +56,70 @@ def segment(
 ) -> tuple[NDArray[np.int32], list[Thing]]:
     """Superpoint of each surface point, and what they make up: structure first, then objects, then their parts."""
     links = links_of(surface)
-    labels, kind_of = superpoints_and_structure(surface, links, scene.frame)
-    count = len(kind_of)
-    nodes = merge_tree(graph_of(surface, links, labels, kind_of, scene.frame))
+    labels, codes = superpoints_and_structure(surface, links, scene.frame)
+    count = len(codes)
+    nodes = merge_tree(graph_of(surface, links, labels, codes, scene.frame))
     size = np.bincount(labels, minlength=count)
     points = np.array([sum(int(size[s]) for s in n.members) for n in nodes], dtype=np.int64)
     evidence = _evidence(scene, surface, labels, nodes, points, encoder, portraits, progress)
-    if nodes and not kind_of.any() and points.max() >= MOST_OF_IT * len(surface):
+    alone = None
+    if nodes and not codes.any() and points.max() >= MOST_OF_IT * len(surface):
         alone = int(np.flatnonzero(points == points.max())[-1])  # the root: no node above it holds more
-        evidence[alone] = evidence.get(alone, 0.0) + ALONE
-    objects = [nodes[i].members for i in grouping.best_cut(nodes, points, evidence)]
-    total = np.stack([np.bincount(labels, weights=surface.lab[:, c], minlength=count) for c in range(3)], axis=1)
-    lab: F64 = total / np.maximum(size, 1)[:, None]
-    things = _things(objects, kind_of, lab, size, touching(labels, links))
-    return redrawn(surface, labels, _owners(things, count), kind_of != structure.NONE), things
+    objects = [nodes[i].members for i in grouping.best_cut(nodes, points, evidence, alone)]
+    owner = np.where(codes > 0, -1 - codes.astype(np.int32), -1)  # structure below -1, none -1, then the objects
+    for number, members in enumerate(objects):
+        owner[list(members)] = number
+    labels = redrawn(surface, labels, owner, codes > 0)
+    owner = _without_crumbs(owner, labels, links)
+    return labels, _things(surface, labels, owner, touching(labels, links))
 
 
-def _owners(things: Sequence[Thing], count: int) -> NDArray[np.int32]:
-    """Object or structure `[S]` that each superpoint belongs to, -1 for none."""
-    owner = np.full(count, -1, np.int32)
-    for i, thing in enumerate(things):
-        owner[list(thing.members)] = thing.parent if thing.level == "part" else i
+def _without_crumbs(owner: NDArray[np.int32], labels: NDArray[np.int32], links: Links) -> NDArray[np.int32]:
+    """Owners `[S]` after pieces of objects too small to be offered went to what they touch most."""
+    size = np.bincount(labels, minlength=len(owner))
+    held = np.bincount(np.maximum(owner, -1) + 1, weights=size)[1:]
+    small = (owner >= 0) & (held[np.maximum(owner, 0)] < MIN_OBJECT) if len(held) else np.zeros(len(owner), bool)
+    ends = labels[links.pairs]
+    ends = np.concatenate([ends, ends[:, ::-1]])
+    ends = ends[small[ends[:, 0]] & ~small[ends[:, 1]] & (owner[ends[:, 1]] != -1)]
+    owner = owner.copy()
+    beside, before = owner[ends[:, 1]], owner.copy()
+    owner[small] = -1
+    for crumb in np.unique(before[ends[:, 0]]).tolist():
+        things, links_to = np.unique(beside[before[ends[:, 0]] == crumb], return_counts=True)
+        owner[before == crumb] = things[int(np.argmax(links_to))]
     return owner
 
 
 def superpoints_and_structure(
     surface: Surface, links: Links, frame: Frame
 ) -> tuple[NDArray[np.int32], NDArray[np.int8]]:
-    """Superpoint of each surface point `[M]`, and what structure each superpoint is `[S]`.
+    """Superpoint of each surface point `[M]`, and each superpoint's code of structure `[S]`.
 
     Superpoints that straddle structure and object become two.
     """
     labels = superpoints(surface, links)
-    kinds = structure.structures(surface, labels, frame)
-    labels = np.unique(labels.astype(np.int64) * 8 + kinds, return_inverse=True)[1].astype(np.int32)
-    kind_of = np.zeros(int(labels.max(initial=-1)) + 1, np.int8)
-    kind_of[labels] = kinds
-    return labels, kind_of
+    found = structure.structures(surface, labels, frame)
+    labels = np.unique(labels.astype(np.int64) * 128 + found, return_inverse=True)[1].astype(np.int32)
+    codes = np.zeros(int(labels.max(initial=-1)) + 1, np.int8)
+    codes[labels] = found
+    return labels, codes
 
 
-def graph_of(
-    surface: Surface, links: Links, labels: NDArray[np.int32], kind_of: NDArray[np.int8], frame: Frame
-) -> Graph:
+def graph_of(surface: Surface, links: Links, labels: NDArray[np.int32], codes: NDArray[np.int8], frame: Frame) -> Graph:
     """The graph of the superpoints that are no structure, in the level frame."""
     flat = structure.level(surface, frame)
     lab = surface.lab.astype(np.float64)
-    return build_graph(labels, flat.points, lab, flat.normals, links, kind_of, surface.spacing)
+    kinds = structure.kind_of(codes)
+    return build_graph(labels, flat.points, lab, flat.normals, links, kinds, surface.spacing)
 
 
 def _evidence(
     scene: Scene, surface: Surface, labels: NDArray[np.int32], nodes: list[Node], points: NDArray[np.int64],
     encoder: Encoder, portraits: int, progress: Progress,
 ) -> dict[int, float]:  # fmt: skip
-    """Log-odds that a node is one whole thing, by its portraits, for the larger nodes."""
-    wanted = [i for i in range(len(nodes)) if points[i] >= MIN_OBJECT]
+    """Log-odds that a node is one whole thing, by its portraits, for the larger nodes that geometry leaves open."""
+    wanted = [i for i in grouping.in_question(nodes, points) if points[i] >= MIN_OBJECT]
     same = grouping.alike(nodes, points)
     asked = sorted({int(same[i]) for i in wanted}, key=lambda i: (-points[i], i))[:MOST_ASKED]
     if not asked:
@@ -131,16 +140,20 @@ def _rows_by_superpoint(surface: Surface, labels: NDArray[np.int32], count: int)
 
 
 def _things(
-    objects: list[tuple[int, ...]], kind_of: NDArray[np.int8], lab: F64, size: NDArray[np.int64],
-    near: dict[int, set[int]],
-) -> list[Thing]:  # fmt: skip
+    surface: Surface, labels: NDArray[np.int32], owner: NDArray[np.int32], near: dict[int, set[int]]
+) -> list[Thing]:
+    """Floor, each wall, ceiling; then the objects, largest first, each followed by its parts."""
+    count = len(owner)
+    size = np.bincount(labels, minlength=count)
+    total = np.stack([np.bincount(labels, weights=surface.lab[:, c], minlength=count) for c in range(3)], axis=1)
+    lab: F64 = total / np.maximum(size, 1)[:, None]
+    codes = sorted({-1 - int(o) for o in owner if o < -1}, key=lambda c: (c % structure.KINDS, c))
     things = [
-        Thing(tuple(np.flatnonzero(kind_of == kind).tolist()), "structure", label=name)
-        for kind, name in structure.NAMES.items()
-        if (kind_of == kind).any()
+        Thing(tuple(np.flatnonzero(owner == -1 - c).tolist()), "structure", label=structure.NAMES[c % structure.KINDS])
+        for c in codes
     ]
-    large = [m for m in objects if sum(int(size[s]) for s in m) >= MIN_OBJECT]
-    for members in sorted(large, key=lambda m: (-sum(int(size[s]) for s in m), m)):
+    objects = [tuple(np.flatnonzero(owner == o).tolist()) for o in np.unique(owner[owner >= 0])]
+    for members in sorted(objects, key=lambda m: (-sum(int(size[s]) for s in m), m)):
         clusters = grouping.parts_of(members, near, lab, size)
         own = len(things)
         things.append(Thing(members if len(clusters) == 1 else (), "object"))

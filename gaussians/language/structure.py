@@ -18,6 +18,7 @@ from .superpoints import LIGHTNESS
 from .surface import Surface
 
 NONE, FLOOR, WALL, CEILING = 0, 1, 2, 3
+KINDS = 4
 UP = np.array([0.0, 0.0, 1.0])
 NAMES = {FLOOR: "floor", WALL: "wall", CEILING: "ceiling"}
 
@@ -51,16 +52,24 @@ def level(surface: Surface, frame: Frame) -> Level:
 
 
 def structures(surface: Surface, labels: NDArray[np.int32], frame: Frame) -> NDArray[np.int8]:
-    """`[M]` NONE, FLOOR, WALL or CEILING for each surface point; whole superpoints where they mostly agree."""
+    """`[M]` code of each surface point: `kind_of` tells NONE, FLOOR, WALL or CEILING; each wall has a code of its own.
+
+    Whole superpoints where they mostly agree.
+    """
     flat = level(surface, frame)
     found = np.zeros(len(surface), np.int8)
     if len(surface) < FEWEST:
         return found
     terrain, planes = planes_of(surface, flat)
     found[terrain] = FLOOR
-    for kind, plane in planes:
-        found[_painted(surface, labels, flat, plane, found == NONE)] = kind
+    for number, (kind, plane) in enumerate(planes):
+        found[_painted(surface, labels, flat, plane, found == NONE)] = kind + KINDS * number * (kind == WALL)
     return found
+
+
+def kind_of(codes: NDArray[np.int8]) -> NDArray[np.int8]:
+    """NONE, FLOOR, WALL or CEILING of each code."""
+    return codes % KINDS
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import torch
 from numpy.typing import NDArray
 
 from scenewright.gaussians.cloud import GaussianCloud
-from scenewright.gaussians.language.structure import CEILING, FLOOR, NONE, WALL, structures
+from scenewright.gaussians.language.structure import CEILING, FLOOR, NONE, WALL, kind_of, structures
 from scenewright.gaussians.language.superpoints import links_of, superpoints
 from scenewright.gaussians.language.surface import surface_of
 from scenewright.gaussians.scene import Frame
@@ -28,7 +28,7 @@ def kinds_of(made: Any, turn: NDArray[np.float64] | None = None) -> dict[str, di
     surface = surface_of(made.cloud(turn))
     names = sorted(made.rows)
     piece = made.labels(names)[surface.rows]
-    found = structures(surface, superpoints(surface, links_of(surface)), frame)
+    found = kind_of(structures(surface, superpoints(surface, links_of(surface)), frame))
     return {
         name: {kind: float((found[piece == i] == kind).mean()) for kind in (NONE, FLOOR, WALL, CEILING)}
         for i, name in enumerate(names)

@@ -32,7 +32,8 @@ def points_met(scene: Scene, truth: NDArray[np.int32], rng: np.random.Generator)
     """Points at borders with each thing near them, and whether it is theirs, over the passes that embedding makes."""
     surface = surface_of(scene.cloud)
     links = links_of(surface)
-    labels, kinds = superpoints_and_structure(surface, links, scene.frame)
+    labels, codes = superpoints_and_structure(surface, links, scene.frame)
+    kinds = structure.kind_of(codes)
     owner = _owners(labels, truth[surface.rows], kinds, touching(labels, links), rng)
     wanted = truth[surface.rows] + structure.CEILING  # things are numbered after floor, wall and ceiling
     level = kinds != structure.NONE
