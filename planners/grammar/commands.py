@@ -14,7 +14,7 @@ from lark import Token, Tree
 
 from ...gaussians.language.query import Query
 from . import changes, nouns, places, sizes
-from .phrases import Node, Noun, Phrases, Refusal, tokens, trees, union
+from .phrases import Node, Noun, Phrases, Refusal, all_of, tokens, trees, union
 
 Fields = dict[str, Any]
 _MOTIONS = ("direction", "distance", "nudge", "toward", "to", "spot", "times")
@@ -41,7 +41,7 @@ class Commands:
         ops = method(simple)
         for group in excluded:
             out = union(self.phrases.group(group))
-            ops = [{**op, "target": _except(op.get("target"), out)} for op in ops]
+            ops = [{**op, "target": _except(_all_of(op.get("target"), out, simple), out)} for op in ops]
         self.before = ops
         return ops
 
@@ -158,6 +158,9 @@ class Commands:
     def _tint_more(self, node: Node) -> list[Fields]:
         amount = changes.AMOUNT[changes.degree_of(node)]
         return self._targeted(node, "recolor", adjust="toward", color=tokens(node, "HUE")[0].value, amount=amount)
+
+    def _give_shade(self, node: Node) -> list[Fields]:
+        return self._targeted(node, **changes.adjusted(tokens(node, "LIGHT")[0].value, "", None))
 
     def _coat_on(self, node: Node) -> list[Fields]:
         """ "slap a coat of red paint on the cabinet"."""
@@ -484,6 +487,12 @@ def _slight(turns: Sequence[Node]) -> float:
     if _only(turns, "DEGREE") != "little":
         raise Refusal("say by how many degrees", "much")
     return 15.0
+
+
+def _all_of(target: Query | None, out: Query, node: Node) -> Query | None:
+    """ "all but the largest box" speaks of boxes only."""
+    said = [t.text for found in node.find_data("core") for t in tokens(found, "EVERYTHING")]
+    return all_of(target, out) if target is not None and said == ["all"] else target
 
 
 def _except(target: Query | None, out: Query) -> Query:

@@ -388,6 +388,7 @@ FILLER = phrases(
     "somewhere, mate, buddy, my friend, finally, lastly, afterwards, after that, entirely, altogether, "
     "even, still, "
     "current, shall we, shall you, anymore, any more, any longer, if you do not mind, if that is okay, if that is ok, "
+    "or so, or thereabouts, hey scenewright, scenewright, "
     "will ya, asap, quickly please, darling, dear, thank you so much, many thanks, cheers, this instant, "
     "at once, immediately, already, for good"
 )
@@ -413,6 +414,8 @@ POLITE = phrases(
     "may i ask you to, i wish you to, i am going to, we are going to, you have to, i have to, you must, "
     "could i ask you to, is it possible to, would it be possible to, is it possible for you to, could you possibly, "
     "would you be able to, are you able to, would you be so kind as to, do you think you could, be so kind and, "
+    "could i, can i, could i please, may i, i was wondering if you could, i wonder if you could, be a dear and, be so "
+    "good as to, go ahead, third, thirdly, fourth, and third, while you are at it, one more thing, "
     "why do not you, why do not we, you may, you might, how about you, feel free to, make sure to, be sure to, "
     "i would rather you, i would prefer to, i would prefer you to, can i get you to, could i get you to, "
     "could you please, can you please, would you please, will you please, would you kindly, could you kindly, "

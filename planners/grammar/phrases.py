@@ -129,6 +129,8 @@ class Phrases:
     def without(self, found: list[Noun], excluded: Node) -> list[Noun]:
         """`found` except the nouns of a group."""
         out = union(self.group(excluded))
+        meant = [all_of(n.query, out) if n.said == "all" else n.query for n in found]
+        found = [replace(n, query=q) for n, q in zip(found, meant, strict=True)]
         return [replace(n, query=_update(n.query, exclude=(*n.query.exclude, out))) for n in found]
 
     def noun(self, node: Node) -> Noun:
@@ -193,7 +195,8 @@ class Phrases:
         if first.type == "PRON":
             return Noun(Query(last=True, pick="any" if first.value == "any" else "one"), "pronoun")
         if first.type == "EVERYTHING":
-            return Noun(Query(pick="all", exclude=(Query(last=True),) if first.value == "else" else ()), "all", True)
+            rest = (Query(last=True),) if first.value == "else" else ()
+            return Noun(Query(pick="all", exclude=rest), "all", True, said=first.text)
         if first.type == "OTHERS":
             return Noun(Query(text=self.antecedent, pick="all", exclude=(Query(last=True),)), "all", True)
         return self._common(node)
@@ -266,6 +269,12 @@ def _each(colors: Sequence[str], fields: dict[str, Any], plural: bool) -> dict[s
         raise Refusal("say which of the colours it has", *colors)
     first, *others = ({**fields, "colors": (c,)} for c in colors)
     return {**first, "also": tuple(_update(Query(), **other) for other in others)}
+
+
+def all_of(target: Query, out: Query) -> Query:
+    """What "all" means before "but the largest box": boxes; before "but the box" it is everything."""
+    ranked = out.pick not in ("one", "all", "any", "rest") and bool(out.text)
+    return _update(Query(text=out.text, pick="all")) if target == Query(pick="all") and ranked else target
 
 
 def _pick(tags: Sequence[Tag], article: Article, plural: bool, number: int | None) -> dict[str, Any]:
@@ -354,6 +363,8 @@ def _narrow(query: Query, post: Post, behind: Sequence[Post]) -> Query:
         if post.value == "right":
             return _update(query, ordinal=-(query.ordinal or 1))
         return query
+    if post.kind == "in_spot" and post.value == "center" and query.pick == "one":
+        return _update(query, pick="middle")
     if post.kind == "in_spot" and post.value == "corner":
         return _update(query, relations=(*query.relations, _relation("inside", [Query(text="corner")])))
     raise Refusal("things cannot be picked out by this", post.word)

@@ -254,7 +254,8 @@ def _refuse_idle(clause: Clause, sentence: Sequence[Word], mark: str) -> None:
     """Raise if the clause is a question, a statement, chat, a session command or a prohibition."""
     if clause.negated:
         raise Refusal(_FORBIDDEN, "not", verdict="not_an_edit")
-    if clause.verb == "SELECT" and len(clause.tags) > 1 and clause.tags[1].words[0].text in lexicon.QUESTION:
+    asked = clause.tags[1] if clause.verb == "SELECT" and len(clause.tags) > 1 else None
+    if asked and asked.type != "EVERYTHING" and asked.words[0].text in lexicon.QUESTION:
         raise Refusal("this is a question, not an edit", clause.tags[1].text, verdict="not_an_edit")
     if clause.verb or clause.unsupported:
         return

@@ -168,6 +168,8 @@ def _number(words: Sequence[str]) -> tuple[float, int] | None:
     if not (whole := _whole(words)):
         return None
     value, taken = whole
+    if _is_part(words[taken : taken + 1]) and value == int(value):
+        return value + (_digits(words[taken]) or 0.0), taken + 1  # "1 1/2"
     if taken < len(words) and words[taken] in FRACTIONS and words[taken].endswith("s"):
         return value * FRACTIONS[words[taken]], taken + 1
     extra = _and_a_half(words[taken:])
@@ -206,6 +208,12 @@ def _digits(text: str) -> float | None:
         return None
     value = values[0] / values[1] if len(values) == 2 else values[0]
     return value if math.isfinite(value) else None
+
+
+def _is_part(words: Sequence[str]) -> bool:
+    """Whether a fraction below one stands there in digits: "1/2"."""
+    value = _digits(words[0]) if words and "/" in words[0] and words[0][0].isdigit() else None
+    return value is not None and 0 < value < 1
 
 
 def _is_fraction(words: Sequence[str]) -> bool:

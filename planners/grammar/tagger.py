@@ -234,6 +234,8 @@ class Tagger:
             return i + 3
         if text == "back" and length == 1 and self._returns() and not self.read.nouny(i + 1):
             return self._put("UNKNOWN", None, i, 1)
+        if text in ("each", "apiece") and not rest and self.clause.tags:
+            return i + 1
         if text == "again" and verb != "SELECT" and not rest:
             return i + 1
         if text == "more" and self._before == "NUMBER" and self.read.nouny(i + 1):
