@@ -143,7 +143,13 @@ def _choice(
 
 
 def _picked(query: Query, candidate: Candidate) -> Query:
-    """The candidate itself; the words stay for messages only."""
+    """The candidate itself; the words stay for messages only.
+
+    Raises:
+        UserError: it is a place or a part that the table of groups does not know, so it cannot be picked by number.
+    """
+    if candidate.group < 0:
+        raise UserError("that one has no number of its own; say where it is ('the left one'), or 'all'")
     return Query(text=query.text, colors=query.colors, size=query.size, groups=(candidate.group,))
 
 

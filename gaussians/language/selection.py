@@ -22,7 +22,7 @@ class Candidate:
     """One thing a query might mean.
 
     Attributes:
-        group: id of its group.
+        group: id of its group; -1 for a place or a part that is no row of the table.
         label: what the encoder calls it, e.g. "armchair".
         color: nearest basic colour name of its measured colour.
         center: `[3]` of its box, world frame, scene units.
@@ -40,7 +40,8 @@ class Candidate:
     terms: dict[str, float] = field(default_factory=dict)
 
     def describe(self) -> str:
-        return f"{self.color} {self.label} (group {self.group})"
+        name = f"{self.color} {self.label}"
+        return name if self.group < 0 else f"{name} (group {self.group})"
 
 
 @dataclass(frozen=True, eq=False)
