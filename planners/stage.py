@@ -31,7 +31,8 @@ Id = int | str
 _UP: Vec3 = (0.0, 0.0, 1.0)
 _SLAB = 0.15  # metres that floor, walls and ceiling reach out, and walls also in: what hangs on one lies in that slab
 _FAMILY = 0.7  # a "light blue" thing answers to "blue" at least this well, to any other basic word less
-_NO_COLOR: Vec3 = (50.0, 1000.0, 1000.0)  # of a node whose colour nobody wrote or nobody knows: no word fits
+# Of a node whose colour nobody wrote or nobody knows: no word fits. By lightness, as names compress chroma.
+_NO_COLOR: Vec3 = (1000.0, 0.0, 0.0)
 
 _FURNITURE = "furnishing"  # the resolver takes "furniture" for anything at all
 _BY_PAIR = ("on", "inside", "under", "below", "above", "next_to")

@@ -234,6 +234,9 @@ def _other(asked: Phrase) -> bool:
 @cache
 def _covers(asked: Phrase, label: Phrase) -> bool:
     """Whether what is asked is a word for a family that the label belongs to."""
-    asked = asked if _other(asked) else _plainer(asked)
+    plain = _plainer(asked)
+    if plain != asked and (_other(asked) or not set(label) - set(_plainer(label)) <= set(asked)):
+        return False
+    asked = plain
     members = synonyms.narrower(asked) | _wider().get(asked, frozenset())
     return any(_names(member, label) for member in members)

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any
+import json
+from typing import Annotated, Any
+
+import typer
 
 from ..options import Debug, Json, SceneFile
 from ..terminal import terminal
 
 
-def command(scene: SceneFile, as_json: Json = False, debug: Debug = False) -> None:
+def command(
+    scene: SceneFile,
+    graph: Annotated[
+        bool, typer.Option("--graph", help="Print its scene graph as JSON instead, once it was embedded.")
+    ] = False,
+    as_json: Json = False,
+    debug: Debug = False,
+) -> None:
     """Tell what a scene file holds: format, Gaussians, frame, cameras, repairs, and its things if it was embedded."""
     from ...gaussians.files import load_with_report
     from ...gaussians.language.store import load_field
@@ -16,6 +26,12 @@ def command(scene: SceneFile, as_json: Json = False, debug: Debug = False) -> No
 
     loaded, report = load_with_report(scene)
     loaded = load_field(loaded, scene) or loaded
+    if graph:
+        from ...planners.graph import SceneGraph
+
+        told = SceneGraph.from_scene(loaded).model_dump(mode="json", exclude_none=True)
+        terminal.result(json.dumps(told, indent=1, ensure_ascii=False), told)
+        return
     cloud, frame, language = loaded.cloud, loaded.frame, loaded.language
     low, high = (getattr(cloud.means, f)(dim=0).values.tolist() for f in ("min", "max"))
     data: dict[str, Any] = {
