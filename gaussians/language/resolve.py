@@ -11,14 +11,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numpy as np
 import torch
 
 from ..camera import Camera
 from ..cloud import NO_GROUP
 from ..errors import BackendError
 from ..scene import Scene
-from . import growth, relations
+from . import relations
 from .calibration import doubt
 from .colored import PARTS, at_home, by_color, by_hue
 from .facing import Facing, facing_of
@@ -28,7 +27,8 @@ from .members import Members, difference, members_of, union
 from .partwise import select_part
 from .picking import by_distance, pick
 from .query import Query, Relation
-from .selection import Candidate, Selection, mask_of, nothing
+from .reshape import reshaped
+from .selection import Candidate, Selection, nothing
 from .terms import ALL, FLOATERS, ORDERING, STRUCTURE, Anchor, Scored, alive, candidate_of, is_name, related, scored
 
 if TYPE_CHECKING:
@@ -91,25 +91,7 @@ class Resolver:
         found = self._combined(query)
         if found.verdict != "found" or not (query.grow or query.invert):
             return found
-        ids, count = found.ids, len(found)
-        if query.grow:
-            by = abs(query.grow) / (self.scene.frame.metres_per_unit or 1.0)
-            ids = (growth.grown if query.grow > 0 else growth.shrunk)(self.scene.cloud, ids, by)
-        change = f"{len(ids) - count:+,} Gaussians by {'growing' if len(ids) >= count else 'shrinking'}"
-        if query.invert:
-            ids = difference(self.members.every_id, ids)
-        if not len(ids):
-            return nothing(query, f"nothing is left of {query.describe()}", found.candidates)
-        reason = "; ".join(r for r in (found.reason, change if query.grow else "") if r)
-        told = () if query.invert else found.candidates
-        return replace(found, ids=ids, groups=self._whole(ids), candidates=told, reason=reason)
-
-    def _whole(self, ids: torch.Tensor) -> tuple[int, ...]:
-        """Groups of which every Gaussian is among some ids."""
-        column = self.scene.cloud.group[mask_of(self.scene.cloud, ids)].cpu().numpy()
-        held = np.bincount(column + 1, minlength=len(self.field.groups) + 1)[1:]
-        total = [sum(int(held[i]) for i in self.field.leaves(g.id)) for g in self.field.groups]
-        return tuple(g.id for g in alive(self.field, "all") if g.parent < 0 and total[g.id] == g.count)
+        return reshaped(self.scene, self.members, found, query)
 
     def _combined(self, query: Query) -> Selection:
         """What a query means with its set algebra."""
