@@ -47,7 +47,9 @@ def _meant(text: str, opens: bool) -> str:
     near = {w for w in _neighbours(text) if w in (_verbs() if opens else _closed())}
     near = {w for w in near if not text.startswith(w)}  # "nicer" is a form of nice, no slip
     near = {w for w in near if opens or _swapped(text, w) or (len(text) > _SHORTEST and w[0] == text[0])}
-    return near.pop() if len(near) == 1 else ""
+    if len({quantities.UNITS.get(w, w) for w in near}) == 1:
+        return min(near)  # "metrs": metres or meters
+    return ""
 
 
 def slips(text: str, there: frozenset[str]) -> str:

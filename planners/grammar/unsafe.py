@@ -13,8 +13,7 @@ _CODE = r"""
 \brm\s+-?rf?\b | \bsudo\b | \bchmod\b | \bmkfs\b | \bos\.\w+\( | \bsubprocess\b | \b(?:eval|exec|system)\s?\(
 | \bimport\ os\b | \b(?:curl|wget|ssh|scp|powershell|cmd\.exe|bash\ -c|drop\ table)\b
 | \b(?:pip|apt(?:-get)?)\ install\b
-| ^\W*(?:please\ )?execute\b
-| \b(?:execute|run|launch|invoke)\b.*\b(?:commands?|scripts?|code|programs?|shell|bash|python)\b
+| \bexecute\b | \b(?:run|launch|invoke)\b.*\b(?:commands?|scripts?|code|programs?|shell|bash|python)\b
 | \bopen\ (?:a|the|up\ a)\ (?:terminal|shell|command\ (?:prompt|line)|browser)\b | \bdownload\b | \bhack\b
 | \b(?:kill|terminate)\ (?:the\ |all\ |every\ )?process(?:es)?\b | \breboot\b | \bshut\s?down\b
 | \brestart\ the\ (?:computer|machine|server|system)\b
@@ -33,7 +32,7 @@ _SECRETS = r"""
 | [$€£]\s?\d | \b(?:transfer|wire|send)\b.*\b(?:money|dollars|euros|bitcoin|funds)\b
 | \b(?:upload|e-?mail|exfiltrate|tweet|leak)\b | \bsend\ me\ the\ contents?\b | \w@\w+\.\w | \bhttps?://
 | \b(?:send|post|share|forward|publish|copy|transmit|move)\b.*
-  \b(?:server|internet|the\ web|online|twitter|facebook|instagram|reddit|cloud|ftp)\b
+  \b(?:server\b(?!\ (?:rack|cabinet|stand|room))|internet|the\ web|online|twitter|facebook|instagram|reddit|cloud|ftp)\b
 """
 # Orders against the planner itself.
 _ORDERS = r"""

@@ -369,3 +369,77 @@ def test_a_folder_that_is_read_only_is_said_to_be(
     monkeypatch.setattr(Path, "unlink", refused)
     answer = call("convert", room, tmp_path / "b.ply")
     assert answer.code == 4 and "Read-only file system" in answer.err and "internal" not in answer.err
+
+
+# -- scene graphs ----------------------------------------------------------------------------------------------------
+
+WRITTEN = Path(__file__).resolve().parents[1] / "planners" / "written"
+LIVING = WRITTEN / "living_room.json"
+
+
+def test_plan_on_a_graph_needs_no_scene(call: Any) -> None:
+    words = "delete the blue cushion and move the vase 2 feet to the left"
+    answer = call("plan", words, "--graph", LIVING, "--resolve", "--json")
+    assert answer.code == 0, answer.err
+    assert answer.data["verdict"] == "ok" and answer.data["planner"] == "grammar"
+    assert [(s["op"], s["targets"]) for s in answer.data["steps"]] == [("delete", [14]), ("move", [18])]
+    assert answer.data["steps"][1]["metres"] == 0.6096
+
+
+def test_plan_on_a_graph_tells_what_it_hesitates_between(call: Any) -> None:
+    answer = call("plan", "put the mug on the plant", "--graph", LIVING, "--json")
+    assert (answer.code, answer.data["verdict"]) == (3, "ambiguous")
+    assert [c["id"] for c in answer.data["candidates"]] == [12, 13]
+    assert answer.data["candidates"][0] == {"id": 12, "label": "potted plant", "color": "green"}
+
+
+def test_plan_on_a_graph_in_a_batch(call: Any, tmp_path: Path) -> None:
+    rows = [
+        {"id": "a", "text": "select the kettle"},
+        {"id": "b", "text": "make it blue", "context": "select the kettle"},
+        {"id": "c", "text": "what is this?"},
+        {"id": "d", "text": "put the fridge in the kettle"},
+    ]
+    batch = tmp_path / "batch.jsonl"
+    batch.write_text("\n".join(map(json.dumps, rows)))
+    answer = call("plan", "--batch", batch, "--graph", WRITTEN / "kitchen.json", "--resolve")
+    assert answer.code == 0
+    assert [(r["id"], r["verdict"]) for r in answer.rows] == [
+        ("a", "ok"), ("b", "ok"), ("c", "not_an_edit"), ("d", "impossible"),
+    ]  # fmt: skip
+    assert [s["targets"] for r in answer.rows for s in r["steps"]] == [["kettle"], ["kettle"], []]
+
+
+def test_resolving_needs_something_to_resolve_on(call: Any, room: Path) -> None:
+    assert call("plan", "delete the sofa", "--resolve").code == 2
+    assert call("plan", room, "delete the sofa", "--graph", LIVING).code == 2
+    assert call("plan", "delete the sofa", "--graph", room.with_suffix(".json")).code == 4
+
+
+@pytest.mark.parametrize("name", ["plan", "graph", "ops", "query"])
+def test_schema(call: Any, name: str) -> None:
+    answer = call("schema", name)
+    assert answer.code == 0 and answer.data["$schema"].startswith("https://json-schema.org/")
+    assert call("schema", "nothing").code == 2
+
+
+def test_check_says_what_is_wrong_and_fails(call: Any, tmp_path: Path) -> None:
+    assert call("check", LIVING).code == 0
+    graph = json.loads(LIVING.read_text())
+    graph["nodes"][0]["position"] = [0, 0.4, 0.4]
+    broken = tmp_path / "broken.json"
+    broken.write_text(json.dumps(graph))
+    answer = call("check", broken, "--json")
+    assert answer.code == 3 and not answer.data["ok"]
+    assert {"collision"} <= {v["kind"] for v in answer.data["violations"]}
+    assert "sofa (1)" in call("check", broken).out
+
+
+def test_info_gives_the_graph_of_an_embedded_scene(call: Any, room: Path, tmp_path: Path) -> None:
+    answer = call("info", room, "--graph")
+    assert answer.code == 0, answer.err
+    written = tmp_path / "graph.json"
+    written.write_text(answer.out)
+    told = call("plan", "select everything", "--graph", written, "--resolve", "--json")
+    assert told.data["verdict"] == "ok"
+    assert {n["id"] for n in answer.data["nodes"]} <= set(told.data["steps"][0]["targets"])
