@@ -100,7 +100,7 @@ def claimed(
     links = links_of(surface)
     owner, part = owners(surface, links, tracks)
     owner = np.where(_structure_only(owner, labels, things), NOBODY, owner).astype(np.int32)
-    owner = _with_hidden(owner, labels, things, tracks.seen[surface.rows] > ENOUGH)
+    owner = _with_rest(owner, labels, things, tracks.seen[surface.rows] > ENOUGH, tracks)
     code = (labels.astype(np.int64) * (len(tracks.tracks) + 1) + owner + 1) * (len(tracks.tracks) + 1) + part + 1
     _, first, cut = np.unique(code, return_index=True, return_inverse=True)
     cut = cut.astype(np.int32)
@@ -145,15 +145,21 @@ def _structure_only(owner: I32, labels: I32, things: Sequence[Thing]) -> NDArray
     return result
 
 
-def _with_hidden(owner: I32, labels: I32, things: Sequence[Thing], seen: NDArray[np.bool_]) -> I32:
-    """Points that no view shows go with the object that segmentation has them in, if one track owns most that is seen
-    of it: the underside of a chair is the chair's."""
+def _with_rest(owner: I32, labels: I32, things: Sequence[Thing], seen: NDArray[np.bool_], tracks: Tracks) -> I32:
+    """Owners, with what masks leave out of the objects that one track has most of.
+
+    Points that no view shows go with the track: the underside of a chair is the chair's. So does the rest of an object
+    that a track with a name has nearly all of: detectors draw what is telling of a thing, a crown and not its pot.
+    """
     owner = owner.copy()
     for members in _whole_objects(things):
         inside = np.isin(labels, members)
         names, counts = np.unique(owner[inside & seen], return_counts=True)
-        if len(names) and names[counts.argmax()] != NOBODY and counts.max() > HELD * counts.sum():
-            owner[inside & ~seen & (owner == NOBODY)] = names[counts.argmax()]
+        if not len(names) or names[counts.argmax()] == NOBODY or counts.max() <= HELD * counts.sum():
+            continue
+        most = int(names[counts.argmax()])
+        nearly = bool(tracks.tracks[most].label) and counts.max() >= NESTED * counts.sum()
+        owner[inside & (owner == NOBODY) & (~seen | nearly)] = most
     return owner
 
 
