@@ -29,8 +29,8 @@ def command(
     if graph:
         from ...planners.graph import SceneGraph
 
-        told = SceneGraph.from_scene(loaded).model_dump(mode="json", exclude_none=True)
-        terminal.result(json.dumps(told, indent=1, ensure_ascii=False), told)
+        nodes = SceneGraph.from_scene(loaded).model_dump(mode="json", exclude_none=True)
+        terminal.result(json.dumps(nodes, indent=1, ensure_ascii=False), nodes)
         return
     cloud, frame, language = loaded.cloud, loaded.frame, loaded.language
     low, high = (getattr(cloud.means, f)(dim=0).values.tolist() for f in ("min", "max"))
