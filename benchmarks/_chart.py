@@ -11,7 +11,8 @@ from ..gaussians.errors import BackendError, FileError, UserError
 from .harness import Point, Result
 
 FORMATS = ("png", "svg", "pdf")
-COLORS = ("#1b6ca8", "#d1495b", "#3c8d5a", "#b0792b", "#6a4c93", "#4a4e52", "#17a2a2", "#c2649b")
+COLORS = ("#1b6ca8", "#d1495b", "#3c8d5a", "#b0792b", "#6a4c93", "#4a4e52", "#17a2a2", "#c2649b", "#8a8f1d", "#e08b6d")
+MARKS = "osD^v"  # with each round of the colours another, so that no two methods look alike
 FEW = 12  # points up to which each is named; of more only those that one would choose, and the ends of each method
 SPOTS = ((7, 6), (7, -12), (-7, 6), (-7, -12), (7, 17), (7, -23), (-7, 17), (-7, -23))  # of a label, best first; points
 LETTER = (4.4, 9.0)  # width and height of a letter of a label, points
@@ -63,7 +64,8 @@ def _fill(axes: Any, result: Result) -> None:
         own = [point for point in result.points if point.method == method]
         color = COLORS[index % len(COLORS)]
         where = [p.seconds for p in own], [p.accuracy for p in own]
-        axes.scatter(*where, s=45, color=color, label=method, zorder=3)
+        mark = MARKS[index // len(COLORS) % len(MARKS)]
+        axes.scatter(*where, s=45, color=color, marker=mark, label=method, zorder=3)
         if lines:
             axes.plot(*where, color=color, linewidth=0.8, alpha=0.5, zorder=2)
     front = result.front()

@@ -16,7 +16,7 @@ from statistics import fmean
 import numpy as np
 from numpy.typing import NDArray
 
-from ...gaussians.language.association import HELD, associate
+from ...gaussians.language.association import associate
 from ...gaussians.language.calibration import probability
 from ...gaussians.language.encoders import Encoder
 from ...gaussians.language.lifting import Lifted, lift
@@ -81,34 +81,33 @@ def uplift(case: Case, seen: Sequence[Seen]) -> Uplift:
 def as_groups(case: Case, up: Uplift, encoder: Encoder, names: Sequence[str]) -> Outcome:
     """One number a Gaussian, one vector a group: masks are grouped as users get it."""
     start = time.perf_counter()
-    tracks = associate(up.lifted)
-    whole = [k for k, track in enumerate(tracks.tracks) if track.parent < 0 and track.vector is not None]
-    share = np.asarray(tracks.share[:, whole].todense())
-    held = up.covered & (share.max(axis=1, initial=0.0) > HELD)
-    column = np.where(held, share.argmax(axis=1), -1) if whole else np.full(len(held), -1)
-    vectors = [v for k in whole if (v := tracks.tracks[k].vector) is not None]
-    table = np.stack(vectors) if vectors else np.zeros((0, encoder.dim), np.float32)
-    return _asked(case, encoder, names, column, table, time.perf_counter() - start + up.seconds)
+    whole = [track.masks for track in associate(up.lifted).tracks if track.parent < 0]
+    return _grouped(case, up, encoder, names, whole, start)
 
 
 def as_true_groups(case: Case, up: Uplift, encoder: Encoder, names: Sequence[str]) -> Outcome:
     """The same with a flawless association: masks of one object are one group."""
-    assert up.lifted.vectors is not None
     start = time.perf_counter()
-    member = np.zeros((len(up.objects), len(case.objects)), np.float32)
-    member[np.arange(len(up.objects)), up.objects] = 1
-    column = np.where(up.covered, np.asarray(up.lifted.weights @ member).argmax(axis=1), -1)
-    mass = np.asarray(up.lifted.weights.sum(axis=0)).ravel()
-    table = (member * mass[:, None]).T @ up.lifted.vectors
-    return _asked(case, encoder, names, column, table, time.perf_counter() - start + up.seconds)
+    whole = [tuple(np.flatnonzero(up.objects == o.id).tolist()) for o in case.objects]
+    return _grouped(case, up, encoder, names, whole, start)
 
 
-def _asked(
-    case: Case, encoder: Encoder, names: Sequence[str], column: NDArray[np.integer], table: F32, built: float
+def _grouped(
+    case: Case, up: Uplift, encoder: Encoder, names: Sequence[str], whole: Sequence[tuple[int, ...]], start: float
 ) -> Outcome:
-    """What groups, by each Gaussian's row of the table, answer."""
+    """Each Gaussian in the group whose masks give it most weight; what those groups answer."""
+    assert up.lifted.vectors is not None
+    member = np.zeros((len(up.objects), len(whole) + 1), np.float32)  # the last is that of masks in no group
+    member[:, -1] = 1
+    for k, masks in enumerate(whole):
+        member[list(masks)] = 0
+        member[list(masks), k] = 1
+    column = np.where(up.covered, np.asarray(up.lifted.weights @ member).argmax(axis=1), len(whole))
+    mass = np.asarray(up.lifted.weights.sum(axis=0)).ravel()
+    table = (member[:, :-1] * mass[:, None]).T @ up.lifted.vectors
+    built = time.perf_counter() - start + up.seconds
     start = time.perf_counter()
-    chance = [np.append(probability(encoder, name, table), 0.0) for name in names]  # the last is that of no group
+    chance = [np.append(probability(encoder, name, table), 0.0) for name in names]
     np.flatnonzero(np.isin(column, np.flatnonzero(chance[0] >= encoder.calibration.threshold)))
     query = (time.perf_counter() - start) / len(names)
     size = 4 * len(column) + table.nbytes
