@@ -17,6 +17,7 @@ from .selection import Candidate, Selection, Verdict, nothing
 from .terms import Scored
 
 CLEAR_LEAD = 0.55  # among equals in name and colour, a match is a rival from this share of the best one's score
+NAME_LEAD = 0.35  # of equals in name, those less sure than this share of the surest are rather a piece or a look-alike
 LISTED = 6  # candidates told in a sentence
 
 
@@ -72,6 +73,9 @@ def rivals(scored: Scored, matches: list[int]) -> list[int]:
     an orange one is not "the red chair". Among equals the relations decide, unless they decide too narrowly.
     """
     own = [i for i in matches if scored.own[i]]
+    if "text" in scored.terms and own:
+        sure = scored.terms["text"]
+        own = [i for i in own if sure[i] >= NAME_LEAD * max(sure[own])]
     if not own:
         return [i for i in matches if scored.score[i] >= CLEAR_LEAD * scored.score[matches[0]]]
     placed = {i: _placed(scored, i) for i in own}
