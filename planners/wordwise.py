@@ -25,7 +25,7 @@ from .synonyms import Phrase
 
 # Probability that a phrase means a label, by how the two agree. Each step is less than the share of the best score at
 # which the resolver sees a rival (0.55), so that an exact name beats a synonym, and that a broader word.
-EXACT, ALIKE, BROADER, NOT = 0.98, 0.5, 0.26, 1e-4
+EXACT, ALIKE, LOOSE, BROADER, NOT = 0.98, 0.5, 0.4, 0.26, 1e-4
 THRESHOLD = 0.2
 _ABSENT = "nothing of all this"
 
@@ -125,9 +125,11 @@ class WordEncoder:
 
 
 def agreement(text: str, labels: Sequence[str]) -> list[float]:
-    """How likely `text` means a thing with each of the labels; a broader word only where no label agrees better."""
+    """How likely `text` means a thing with each of the labels; a looser word only where no label agrees better."""
     asked = words(text)
     found = [_agrees(asked, words(label)) for label in labels]
+    if max(found, default=NOT) > LOOSE:
+        found = [NOT if p == LOOSE else p for p in found]
     if all(p < THRESHOLD for p in found):
         found = [BROADER if _covers(asked, words(label)) else p for label, p in zip(labels, found, strict=True)]
     if all(p < THRESHOLD for p in found) and (meant := respelt(asked, labels)) != asked:
@@ -159,24 +161,28 @@ def _agrees(asked: Phrase, label: Phrase) -> float:
         return NOT
     if asked == label:
         return EXACT
-    if _names(asked, label):
-        return ALIKE
+    if (how := _names(asked, label)) > NOT:
+        return how
     plain = _plainer(asked)
-    loose = plain != asked and _names(plain, label) and not _other(asked)
     # A "round table" may be a plain "table", but not a "square table".
-    return ALIKE if loose and set(label) - set(_plainer(label)) <= set(asked) else NOT
+    same = plain != asked and not _other(asked) and set(label) - set(_plainer(label)) <= set(asked)
+    return _names(plain, label) if same else NOT
 
 
-def _names(asked: Phrase, label: Phrase) -> bool:
-    """Whether the label ends with what is asked, word for word or by a synonym, or holds all of it with its head."""
+def _names(asked: Phrase, label: Phrase) -> float:
+    """ALIKE: the label ends with what is asked, holds all of it with its head, or is a synonym of it as a whole. LOOSE:
+    it only ends with a synonym ("lamp": ceiling light)."""
     alike = _alike(asked)
     ends = alike - {asked[-1:]} if len(asked) > 1 else alike  # a square table ends like a round one
+    best = NOT
     for form in _forms(label):
-        if any(form[i:] in ends for i in range(len(form))) or not ends.isdisjoint(_alike(form)) or form in alike:
-            return True
+        if form[-len(asked) :] == asked or form in alike or not ends.isdisjoint(_alike(form)):
+            return ALIKE
         if form[-1] == asked[-1] and set(asked) <= set(form):
-            return True
-    return False
+            return ALIKE
+        if any(form[i:] in ends for i in range(1, len(form))):
+            best = LOOSE
+    return best
 
 
 def _forms(label: Phrase) -> tuple[Phrase, ...]:
@@ -239,4 +245,4 @@ def _covers(asked: Phrase, label: Phrase) -> bool:
         return False
     asked = plain
     members = synonyms.narrower(asked) | _wider().get(asked, frozenset())
-    return any(_names(member, label) for member in members)
+    return any(_names(member, label) > NOT for member in members)

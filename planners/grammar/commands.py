@@ -26,8 +26,8 @@ _SOME = 3  # "some cushions", as "a few"
 class Commands:
     """Turns one clause's tree into operations. Keep one for an instruction: it remembers what "one" refers to."""
 
-    def __init__(self, antecedent: str = "", before: Sequence[Fields] = ()) -> None:
-        self.phrases = Phrases(antecedent)
+    def __init__(self, antecedent: str = "", before: Sequence[Fields] = (), colors: tuple[str, ...] = ()) -> None:
+        self.phrases = Phrases(antecedent, colors)
         self.before = list(before)  # operations of the clause before, for "do the same to the lamp"
 
     def read(self, tree: Node) -> list[Fields]:

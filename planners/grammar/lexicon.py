@@ -388,7 +388,7 @@ FILLER = phrases(
     "somewhere, mate, buddy, my friend, finally, lastly, afterwards, after that, entirely, altogether, "
     "even, still, "
     "current, shall we, shall you, anymore, any more, any longer, if you do not mind, if that is okay, if that is ok, "
-    "or so, or thereabouts, hey scenewright, scenewright, "
+    "not that one, not this one, not that, or so, or thereabouts, hey scenewright, scenewright, "
     "will ya, asap, quickly please, darling, dear, thank you so much, many thanks, cheers, this instant, "
     "at once, immediately, already, for good"
 )

@@ -19,7 +19,10 @@ from lark import Token, Tree
 from ...gaussians.language.query import Query, Relation
 from . import nouns
 from .tagger import Tag
+from .words import bag
 
+_SHAPES = bag("round square rectangular oval circular wooden metal plastic glass leather striped plain patterned")
+_OF_THE_FIRST = ("unrelated", "is_not_kind")  # denials are about the noun that the sentence is about
 PARTS = frozenset({"part", "piece", "area", "region", "bit"})  # of things, found by their own colour
 
 Article = Literal["def", "indef", "all", "both", "any", "bare", "pronoun"]
@@ -114,8 +117,9 @@ def trees(node: Node, *names: str) -> list[Node]:
 class Phrases:
     """Builds nouns; remembers the last head noun for "the green one"."""
 
-    def __init__(self, antecedent: str = "") -> None:
+    def __init__(self, antecedent: str = "", colors: tuple[str, ...] = ()) -> None:
         self.antecedent = antecedent
+        self.colors = colors  # of the antecedent: "the other one" has them too
 
     def targets(self, node: Node) -> list[Noun]:
         """The nouns of a `targets` node; an exclusion is folded into each of them."""
@@ -139,7 +143,7 @@ class Phrases:
         assert isinstance(core, Tree)
         head = self.core(core)
         if head.query.text:
-            self.antecedent = head.query.text
+            self.antecedent, self.colors = _unshaped(head.query.text), head.query.colors
         headless = not tokens(core, "NOUN", "ONE", "THING") and bool(tokens(core, "SUP", "ORDINAL"))
         posts: list[Post] = []
         joined = False
@@ -166,6 +170,8 @@ class Phrases:
         kind, value, word = str(node.data), first.value if first else None, first.text if first else ""
         if kind == "unrelated":
             value = tokens(node, "PREP")[0].value
+        elif kind == "is_not_kind":
+            value = None
         elif kind == "having":
             value = next((t.value for t in tokens(node, "ONIT")), "below")
             kind = "lacking" if tokens(node, "LACKING") else kind
@@ -232,6 +238,8 @@ class Phrases:
             fields["pick"] = "any"
         if any(t.type == "OTHER" for t in tags):
             fields["exclude"] = (Query(last=True),)
+            if tags[-1].type == "ONE" and not fields["colors"]:
+                fields["colors"] = self.colors
         if joined := next((t.value for t in tags if t.type == "COLORS"), ()):
             fields = _each(joined, fields, plural)
         words = tuple(t.text for t in tags if t.type == "SIZE")
@@ -297,6 +305,14 @@ def _pick(tags: Sequence[Tag], article: Article, plural: bool, number: int | Non
     return {"pick": "all" if several else "one", "count": number}
 
 
+def _unshaped(text: str) -> str:
+    """A noun without words of shape or material, which "the brown one" need not share ("square table": table)."""
+    words = text.split()
+    while len(words) > 1 and words[0] in _SHAPES:
+        words = words[1:]
+    return " ".join(words)
+
+
 def _quote(tags: Sequence[Tag]) -> tuple[str, ...]:
     return (" ".join(t.text for t in tags),)
 
@@ -324,7 +340,7 @@ def attach(query: Query, posts: Sequence[Post]) -> Query:
     i = 0
     while i < len(posts):
         j = i + 1
-        while j < len(posts) and not posts[j].joined and posts[j].kind != "unrelated" and _takes_more(posts[i]):
+        while j < len(posts) and not posts[j].joined and posts[j].kind not in _OF_THE_FIRST and _takes_more(posts[i]):
             j += 1
         query = _narrow(query, posts[i], posts[i + 1 : j])
         i = j
@@ -345,6 +361,9 @@ def _narrow(query: Query, post: Post, behind: Sequence[Post]) -> Query:
         wrong = _relation(_relation_name(replace(post, kind="related")), anchors)
         bad = _update(query, relations=(*query.relations, wrong), pick="all", count=None)
         return _update(query, exclude=(*query.exclude, bad))
+    if post.kind == "is_not_kind":
+        every = (a.model_copy(update={"pick": "all"}) if a.pick in ("one", "any") else a for a in anchors)
+        return _update(query, exclude=(*query.exclude, *every))
     if post.kind == "lacking":
         return _lacking(query, post, anchors)
     if name := _relation_name(post):

@@ -60,12 +60,14 @@ def _parser() -> Lark:
 
 @dataclass(frozen=True)
 class _Outcome:
-    """What was understood: operations, the last noun, the operations of the last clause, and slips corrected."""
+    """What was understood: operations, the last noun, the operations of the last clause, slips corrected, and the last
+    noun's colours."""
 
     ops: tuple[dict[str, Any], ...]
     antecedent: str
     again: tuple[dict[str, Any], ...] = ()
     remarks: tuple[str, ...] = ()
+    colors: tuple[str, ...] = ()
 
 
 class GrammarPlanner:
@@ -116,7 +118,7 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
     words, remarks = respell(split(cleaned))
     before = _before(previous)
-    commands = Commands(before.antecedent, before.again)
+    commands = Commands(before.antecedent, before.again, before.colors)
     ops: list[dict[str, Any]] = []
     idle: Refusal | None = None
     topic: Query | None = None
@@ -144,7 +146,8 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
         raise Refusal(f"this part is not an edit, so nothing was planned: {idle}", *idle.words)
     if len(ops) > MAX_OPS:
         raise Refusal(f"that is more than {MAX_OPS} steps; say it in parts")
-    return _Outcome(tuple(_merge_copies(ops)), commands.phrases.antecedent, tuple(commands.before), remarks)
+    spoken = commands.phrases
+    return _Outcome(tuple(_merge_copies(ops)), spoken.antecedent, tuple(commands.before), remarks, spoken.colors)
 
 
 def _topic(clause: Clause, idle: Refusal) -> Query | None:

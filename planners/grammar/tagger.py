@@ -32,6 +32,7 @@ _POINTING = ("DELETE", "SELECT", "HIDE", "ISOLATE", "FADE", "ADJUST", "ROTATE", 
 _ON_IT = phrases(
     "on it, on top, on top of it, in it, inside, inside it, on them, standing on it, next to it, beside it, near it, on"
 )
+_CARRYING = phrases("that has, which has, that have, which have, that holds, that carries, holding, carrying")
 _OUTSIDE = phrases("out of here, out of the room, out of the scene, out of sight, out of my sight, out of there")
 _IT_IS = phrases("it is, this is, that is, there is, they are, these are")
 _REPEATABLE = ("DELETE", "SELECT", "HIDE", "ISOLATE")
@@ -258,7 +259,13 @@ class Tagger:
 
     def _owned_or_not(self, i: int) -> int | None:
         """ "with the vase on it", "without a lamp": what a thing carries or lacks."""
+        if (found := match(_CARRYING, self.texts, i)) and self._before in _NOUNISH:
+            lacks = self.texts[i + found[1] : i + found[1] + 1] == ("no",)
+            if self.read.object_follows(i + found[1] + lacks):
+                return self._put("LACKING" if lacks else "HAVING", None, i, found[1] + lacks)
         text, behind = self.texts[i], self.texts[i + 1 : i + 2]
+        if text == "with" and behind == ("no",) and self.read.object_follows(i + 2):
+            return self._put("LACKING", None, i, 2)
         held = any(t.type in ("HAVING", "LACKING") for t in self.clause.tags)
         if held and (found := match(_ON_IT, self.texts, i)):
             return self._put("ONIT", "next_to" if text in ("next", "beside", "near") else "below", i, found[1])
@@ -427,6 +434,6 @@ class Tagger:
         if not is_plain(texts[j]) or texts[j] == ",":
             return False
         tables = (lexicon.INSIDE_PHRASES, lexicon.FILLER)
-        if any(match(t, texts, j) for t in tables) or texts[j] in lexicon.PARTICIPLES:
+        if match(_CARRYING, texts, j) or any(match(t, texts, j) for t in tables) or texts[j] in lexicon.PARTICIPLES:
             return False
         return not color_at(texts, j) and not quantities.read(texts[j:])
