@@ -23,6 +23,7 @@ from torch import Tensor
 from ..cloud import GaussianCloud
 
 _DENSE = 8  # ids spread over at most this many times their number are looked up in a table of flags
+_TABLE = 1 << 22  # flags that are laid out in less time than many ids are sorted
 _FEW = 1 / 32  # share of the rows from which looking at all of them is faster than sorting the slices
 _KEPT = 4  # clouds whose sorting is remembered: the present, what undo goes back to, and some to compare with
 
@@ -119,8 +120,9 @@ def union(a: Tensor, b: Tensor) -> Tensor:
     if not len(a) or not len(b):
         return b if not len(a) else a
     one, other, low, width = _aligned(a, b)
-    if width >= _DENSE * (len(a) + len(b)):
-        return torch.from_numpy(np.union1d(one, other)).to(a.device)
+    if width >= max(_DENSE * (len(a) + len(b)), _TABLE):
+        both = np.sort(np.concatenate([one, other]))
+        return torch.from_numpy(both[np.append(True, both[1:] != both[:-1])]).to(a.device)
     flags = np.zeros(width, bool)
     flags[one - low] = True
     flags[other - low] = True
@@ -132,8 +134,9 @@ def difference(a: Tensor, b: Tensor) -> Tensor:
     if not len(a) or not len(b):
         return a
     one, other, low, width = _aligned(a, b)
-    if width >= _DENSE * (len(a) + len(b)):
-        return torch.from_numpy(np.setdiff1d(one, other, assume_unique=True)).to(a.device)
+    if width >= max(_DENSE * (len(a) + len(b)), _TABLE):
+        place = np.minimum(np.searchsorted(other, one), len(other) - 1)
+        return torch.from_numpy(one[other[place] != one]).to(a.device)
     flags = np.zeros(width, bool)
     flags[one - low] = True
     flags[other - low] = False
