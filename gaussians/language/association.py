@@ -17,7 +17,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_matrix, diags, hstack
+from scipy.sparse import csr_matrix, diags
 
 from .lifting import Lifted
 
@@ -81,19 +81,23 @@ def associate(lifted: Lifted) -> Tracks:
     """Tracks of the lifted masks, without those that are outvoted. Cost grows with the square of the masks."""
     evidence = _Evidence(lifted)
     joined = _join_named(lifted, evidence, _join_alike(evidence.overlap, evidence.union, evidence.likeness))
-    kept, shares, votes = [], [], []
+    least = min(2, len(evidence.views))
+    kept: list[Track] = []
+    found: list[tuple[NDArray[np.int64], F64, F64]] = []
     for masks in sorted(joined, key=lambda m: (-len(m), m)):
-        share, vote = evidence.membership(masks)
         views = len(np.unique(lifted.view[masks]))
-        watched = max(views, evidence.watched(share))
-        if views >= max(REAL * watched, min(2.0, len(evidence.views))) and (share > HELD).nnz:
+        if views < least:
+            continue
+        rows, share, vote = evidence.membership(masks)
+        held = rows[share > HELD]
+        watched = max(views, evidence.watched(held))
+        if views >= REAL * watched and len(held):
             kept.append(_track(lifted, masks, watched, evidence.weight))
-            shares.append(share)
-            votes.append(vote)
+            found.append((rows, share, vote))
     count = lifted.weights.shape[0]
-    share, vote = _columns(shares, count), _columns(votes, count)
+    whole, said = (_table([(f[0], f[which]) for f in found], count) for which in (1, 2))
     seen = np.asarray(lifted.seen.sum(axis=1), dtype=np.float32).ravel()
-    return Tracks(_with_parents(kept, share, evidence.mass), share, vote, seen, len(joined) - len(kept))
+    return Tracks(_with_parents(kept, whole, evidence.mass), whole, said, seen, len(joined) - len(kept))
 
 
 class _Evidence:
@@ -111,7 +115,7 @@ class _Evidence:
         self.lifted = lifted
         self.views = np.unique(lifted.view)
         masks = lifted.weights.tocsc()
-        self._rows, self._weights = masks.indices, masks.data
+        self._starts, self._rows, self._weights = masks.indptr, masks.indices, masks.data
         self._masks = np.repeat(np.arange(len(lifted.labels)), np.diff(masks.indptr))
         seen = _seen_at(lifted, self._rows, lifted.view[self._masks])
         self._shares = np.minimum(self._weights / np.maximum(seen, 1e-12), 1.0)
@@ -144,25 +148,23 @@ class _Evidence:
             unlike = np.maximum(unlike, np.clip(1 - self.lifted.vectors @ self.lifted.vectors.T, 0, 1))
         return 1 - UNLIKE * unlike
 
-    def membership(self, masks: Sequence[int]) -> tuple[csr_matrix, csr_matrix]:
-        """Share and votes `[N, 1]` of one track."""
-        count = self.lifted.weights.shape[0]
-        inside = np.zeros(len(self.lifted.labels), bool)
-        inside[list(masks)] = True
-        mine = inside[self._masks]
-        rows, of = self._rows[mine], self._masks[mine]
-        within = np.bincount(rows, weights=self._weights[mine], minlength=count)
-        votes = np.bincount(rows, weights=self._shares[mine] * self.lifted.scores[of], minlength=count)
-        views = np.unique(self.lifted.view[list(masks)])
-        whole = np.asarray(self.lifted.seen[:, views].sum(axis=1)).ravel()
-        share = np.where(whole > SEEN, np.minimum(within / np.maximum(whole, 1e-12), 1), 0)
-        return csr_matrix(share[:, None], dtype=np.float32), csr_matrix(votes[:, None], dtype=np.float32)
+    def membership(self, masks: Sequence[int]) -> tuple[NDArray[np.int64], F64, F64]:
+        """The rows that any mask of a track touches, ascending, and their share and votes, `[R]` each."""
+        entries = np.concatenate([np.arange(self._starts[m], self._starts[m + 1]) for m in masks])
+        rows, at = np.unique(self._rows[entries], return_inverse=True)
+        within = np.bincount(at, weights=self._weights[entries], minlength=len(rows))
+        said = self._shares[entries] * self.lifted.scores[self._masks[entries]]
+        votes = np.bincount(at, weights=said, minlength=len(rows))
+        looked = np.zeros(self.lifted.seen.shape[1])
+        looked[self.lifted.view[list(masks)]] = 1
+        whole = np.asarray(self.lifted.seen[rows] @ looked).ravel()
+        share = np.where(whole > SEEN, np.minimum(within / np.maximum(whole, 1e-12), 1), 0.0)
+        return rows.astype(np.int64), share, votes
 
-    def watched(self, share: csr_matrix) -> int:
+    def watched(self, held: NDArray[np.int64]) -> int:
         """How many views see at least half of what a track holds."""
-        own = (share > HELD).multiply(self.mass[:, None])
-        seen = np.asarray((self._visible.T @ own).todense()).ravel()
-        return int((seen > 0.5 * own.sum()).sum())
+        seen = np.asarray(self._visible[held].T @ self.mass[held]).ravel()
+        return int((seen > 0.5 * self.mass[held].sum()).sum())
 
 
 def _seen_at(lifted: Lifted, rows: NDArray[np.int32], views: NDArray[np.int32]) -> F32:
@@ -178,8 +180,13 @@ def _seen_at(lifted: Lifted, rows: NDArray[np.int32], views: NDArray[np.int32]) 
     return found
 
 
-def _columns(columns: Sequence[csr_matrix], count: int) -> csr_matrix:
-    return hstack(columns, format="csr") if columns else csr_matrix((count, 0), dtype=np.float32)
+def _table(columns: Sequence[tuple[NDArray[np.int64], F64]], count: int) -> csr_matrix:
+    """`[count, K]` sparse from the rows and values of each column."""
+    if not columns:
+        return csr_matrix((count, 0), dtype=np.float32)
+    rows, values = (np.concatenate([c[i] for c in columns]) for i in (0, 1))
+    place = np.repeat(np.arange(len(columns)), [len(c[0]) for c in columns])
+    return csr_matrix((values.astype(np.float32), (rows, place)), shape=(count, len(columns)))
 
 
 def _join_alike(overlap: F32, union: F32, likeness: F32) -> list[list[int]]:
