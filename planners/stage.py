@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 import torch
@@ -35,6 +35,8 @@ _FAMILY = 0.7  # a "light blue" thing answers to "blue" at least this well, to a
 _NO_COLOR: Vec3 = (1000.0, 0.0, 0.0)
 
 _FURNITURE = "furnishing"  # the resolver takes "furniture" for anything at all
+_BEFORE_WALL = 0.45  # metres from a wall to the middle of what stands against it
+_UPRIGHT = ("above", "below", "under")
 _BY_PAIR = ("on", "inside", "under", "below", "above", "next_to")
 
 # Colours that people count to a basic one, whatever a photometer says.
@@ -96,7 +98,27 @@ class Stage:
             again = resolve(self.scene, other, self.viewer, encoder=self.encoder, last=last)
             if again.verdict == "found" or (found.verdict, again.verdict) == ("absent", "ambiguous"):
                 return again
+        if found.verdict == "absent" and any(r.name in _UPRIGHT for r in meant.relations):
+            again = resolve(self._leaning, meant, self.viewer, encoder=self.encoder, last=last)
+            return again if again.verdict != "absent" else found
         return found
+
+    @cached_property
+    def _leaning(self) -> Scene:
+        """The scene with what hangs on walls moved to where furniture stands before them: a picture on the wall behind
+        the sofa is above the sofa."""
+        field = self.scene.language
+        assert field is not None
+        hung = {n.id for n in self.graph.nodes if n.support == "wall"}
+        rows = tuple(replace(g, box=self._inward(g.box)) if self.ids[g.id] in hung else g for g in field.groups)
+        return replace(self.scene, language=LanguageField(rows, field.embeddings, field.encoder))
+
+    def _inward(self, box: Box) -> Box:
+        x, y, z = box.center
+        width, depth, _ = self.graph.room.size
+        gaps = {(1, 0): x + width / 2, (-1, 0): width / 2 - x, (0, 1): y + depth / 2, (0, -1): depth / 2 - y}
+        dx, dy = min(gaps, key=lambda way: gaps[way])
+        return replace(box, center=(x + dx * _BEFORE_WALL, y + dy * _BEFORE_WALL, z))
 
     def names(self, groups: Iterable[int]) -> tuple[Id, ...]:
         """The graph's ids of groups, each once."""

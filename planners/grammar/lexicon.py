@@ -100,7 +100,7 @@ VERBS: dict[str, Entry] = {
     **_same(
         ("ADD", None),
         "add, insert, create, generate, spawn, introduce, bring in, throw in, put in, drop in, add in, give me, "
-        "place down, include, get me, fetch me, bring me",
+        "place down, include, plant, get me, fetch me, bring me",
     ),
     **_same(("COPY", None), "copy, clone, duplicate, replicate"),
     **_same(("REPLACE", None), "replace, swap out, switch out"),
@@ -235,7 +235,8 @@ INSIDE: dict[str, Entry] = {
             "into a corner, in one corner, into the corner of the room, to a corner"),
     **_same(("SPOT", "center"), "in the middle, in the middle of the room, in the center, in the centre, "
             "to the center, to the centre, to the middle, "
-            "in the center of the room, in the centre of the room, "
+            "in the center of the room, in the centre of the room, at the center of the room, at the centre of the room, "
+            "at the middle of the room, "
             "to the middle of the room, to the center of the room, to the centre of the room, into the middle, "
             "into the middle of the room, into the center of the room, into the centre of the room"),
     **_same(("CENTER", None), "in the middle of, in the center of, in the centre of, to the middle of, "
@@ -259,6 +260,7 @@ INSIDE: dict[str, Entry] = {
     **_same(("SIDE", "farthest"), "at the back of the room, in the back of the room"),
     **_same(("NOWHERE", None), "to the back of the room, to the front of the room, to the left of the room, "
             "to the right of the room, to the left side of the room, to the right side of the room, "
+            "to the opposite side of the room, "
             "to the other side of the room, to the side, on its side, on its back, on their side, on their sides, "
             "side by side, on either side of, on each side of, on both sides of, every other, every second, "
             "in a line, in a circle, in a row, in rows"),
@@ -354,14 +356,23 @@ INSIDE: dict[str, Entry] = {
     **_same(("THING", True), "things, objects, items, parts, pieces, areas, regions, elements, bits, stuff"),
 }  # fmt: skip
 
+# What is said of the room is said of a garden too.
+_PLACES = ("garden", "patio", "yard", "terrace", "kitchen", "office", "bedroom", "living room", "cafe", "shop", "space")
+INSIDE |= {
+    phrase.replace("the room", f"the {place}"): entry
+    for phrase, entry in list(INSIDE.items())
+    if phrase.endswith("of the room")
+    for place in _PLACES
+}
+
 # Only before a noun ("the left chair"), or after a determiner where the noun is left out ("the largest").
 ATTRIBUTES: dict[str, Entry] = {
     **_same(("SUP", "largest"), "largest, biggest, greatest"),
     **_same(("SUP", "smallest"), "smallest, tiniest, littlest"),
     **_same(("SUP", "tallest"), "tallest"),
     **_same(("SUP", "shortest"), "shortest"),
-    **_same(("SUP", "nearest"), "nearest, closest, front, foremost"),
-    **_same(("SUP", "farthest"), "farthest, furthest, far, back, rear, rearmost, most distant"),
+    **_same(("SUP", "nearest"), "nearest, closest, front, foremost, frontmost, front most"),
+    **_same(("SUP", "farthest"), "farthest, furthest, far, back, rear, rearmost, most distant, backmost, hindmost"),
     **_same(("SUP", "leftmost"), "leftmost, far left, furthest left, left most, left, left hand, left side"),
     **_same(("SUP", "rightmost"), "rightmost, far right, furthest right, right most, right, right hand, right side"),
     **_same(("SUP", "highest"), "highest, topmost, top, uppermost, upper"),

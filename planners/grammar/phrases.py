@@ -128,7 +128,20 @@ class Phrases:
         return self.without(found, groups[1]) if len(groups) > 1 else found
 
     def group(self, node: Node) -> list[Noun]:
-        return [self.noun(c) for c in trees(node, "np")]
+        """The nouns of a group; in "the biggest and the smallest planter" both are planters."""
+        parts = trees(node, "np")
+        found = []
+        for i, part in enumerate(parts):
+            if _is_headless(part) and (shared := next((t for p in parts[i + 1 :] if (t := self._named(p))), "")):
+                self.antecedent, self.colors = shared, ()
+            found.append(self.noun(part))
+        return found
+
+    def _named(self, node: Node) -> str:
+        """The noun of a phrase, "" if it has none of its own."""
+        core = node.children[0]
+        tags = [tag_of(c) for c in core.children if isinstance(c, Token)] if isinstance(core, Tree) else []
+        return self._head(tags)[0] if tags and tags[-1].type == "NOUN" else ""
 
     def without(self, found: list[Noun], excluded: Node) -> list[Noun]:
         """`found` except the nouns of a group."""
@@ -303,6 +316,13 @@ def _pick(tags: Sequence[Tag], article: Article, plural: bool, number: int | Non
     if article == "any" or (article == "indef" and not plural) or number == 1:
         return {"pick": "any"}
     return {"pick": "all" if several else "one", "count": number}
+
+
+def _is_headless(node: Node) -> bool:
+    """Whether a phrase is a superlative or a rank without a noun: "the biggest"."""
+    core = node.children[0]
+    kinds = {c.type for c in core.children if isinstance(c, Token)} if isinstance(core, Tree) else set()
+    return bool(kinds & {"SUP", "ORDINAL"}) and not kinds & {"NOUN", "ONE", "THING"}
 
 
 def _unshaped(text: str) -> str:

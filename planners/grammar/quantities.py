@@ -101,6 +101,8 @@ def _with_unit(words: Sequence[str], value: float, taken: int) -> Quantity | Non
         return Quantity("LENGTH", value + extra[0], UNITS[unit], taken + 1 + extra[1])
     if unit == "in" and digits and (len(rest) < 2 or rest[1] not in ("the", "a", "an", "front", "my", "its")):
         return Quantity("LENGTH", value, "in", taken + 1)
+    if unit in ("rad", "radian", "radians"):
+        return Quantity("ANGLE", round(math.degrees(value), 6), "", taken + 1)
     if unit in _DEGREES:
         return Quantity("ANGLE", value, "", taken + 1)
     if unit in _TURNS:
@@ -126,6 +128,8 @@ def _one_unit(words: Sequence[str]) -> Quantity | None:
         return Quantity("LENGTH", 1 + extra[0], UNITS[unit], 2 + extra[1])
     if unit in ("full", "complete", "whole") and len(words) > 2 and words[2] in _TURNS:
         return Quantity("ANGLE", 360, "", 3)
+    if unit == "right" and tuple(words[2:3]) == ("angle",):
+        return Quantity("ANGLE", 90, "", 3)
     if unit in ("degree", "revolution"):
         return Quantity("ANGLE", 1 if unit == "degree" else 360, "", 2)
     return None

@@ -149,6 +149,8 @@ def test_a_node_without_colour_has_none() -> None:
         (Query(text="picture", relations=(Relation(name="on", anchors=(Query(text="wall"),)),)), (19,)),
         (Query(text="lamp", relations=(Relation(name="on", anchors=(Query(text="floor"),)),)), (6,)),
         (Query(text="cushion", relations=(Relation(name="on", anchors=(Query(text="armchair"),)),)), (16,)),
+        (Query(text="picture", relations=(Relation(name="above", anchors=(Query(text="sofa"),)),)), (19,)),
+        (Query(text="lamp", relations=(Relation(name="above", anchors=(Query(text="side table"),)),)), (7,)),
         (Query(text="furniture", pick="all"), (1, 2, 3, 4, 8, 10, 11)),
     ],
 )
@@ -164,6 +166,7 @@ def test_find(query: Query, found: tuple[int | str, ...]) -> None:
         (Query(text="sofa", colors=("red",)), "absent"),
         (Query(text="cushion", relations=(Relation(name="on", anchors=(Query(text="sofa"),)),)), "ambiguous"),
         (Query(text="cushion", relations=(Relation(name="on", anchors=(Query(text="rug"),)),)), "absent"),
+        (Query(text="clock", relations=(Relation(name="above", anchors=(Query(text="sofa"),)),)), "absent"),
     ],
 )
 def test_verdicts(query: Query, verdict: str) -> None:
