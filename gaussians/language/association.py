@@ -95,7 +95,8 @@ def associate(lifted: Lifted) -> Tracks:
             kept.append(_track(lifted, masks, watched, evidence.weight))
             found.append((rows, share, vote))
     count = lifted.weights.shape[0]
-    whole, said = (_table([(f[0], f[which]) for f in found], count) for which in (1, 2))
+    whole = _table([(rows, share) for rows, share, _ in found], count)
+    said = _table([(rows, vote) for rows, _, vote in found], count)
     seen = np.asarray(lifted.seen.sum(axis=1), dtype=np.float32).ravel()
     return Tracks(_with_parents(kept, whole, evidence.mass), whole, said, seen, len(joined) - len(kept))
 
@@ -154,11 +155,11 @@ class _Evidence:
         rows, at = np.unique(self._rows[entries], return_inverse=True)
         within = np.bincount(at, weights=self._weights[entries], minlength=len(rows))
         said = self._shares[entries] * self.lifted.scores[self._masks[entries]]
-        votes = np.bincount(at, weights=said, minlength=len(rows))
+        votes: F64 = np.bincount(at, weights=said, minlength=len(rows)).astype(np.float64)
         looked = np.zeros(self.lifted.seen.shape[1])
         looked[self.lifted.view[list(masks)]] = 1
         whole = np.asarray(self.lifted.seen[rows] @ looked).ravel()
-        share = np.where(whole > SEEN, np.minimum(within / np.maximum(whole, 1e-12), 1), 0.0)
+        share: F64 = np.where(whole > SEEN, np.minimum(within / np.maximum(whole, 1e-12), 1), 0.0)
         return rows.astype(np.int64), share, votes
 
     def watched(self, held: NDArray[np.int64]) -> int:
