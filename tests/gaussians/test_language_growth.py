@@ -55,6 +55,7 @@ def invert(cloud: GaussianCloud, ids: set[int]) -> set[int]:
 
 
 @given(clouds(), distances)
+@settings(max_examples=40)
 def test_growing_is_what_every_distance_compared_says(made: Sets, by: float) -> None:
     cloud, a, _ = made
     points, ids = cloud.means.double().numpy(), cloud.ids.tolist()
@@ -69,6 +70,7 @@ def test_growing_is_what_every_distance_compared_says(made: Sets, by: float) -> 
 
 
 @given(clouds(), distances)
+@settings(max_examples=40)
 def test_shrinking_grows_the_rest(made: Sets, by: float) -> None:
     cloud, a, _ = made
     assert shrink(cloud, a, by) == invert(cloud, grow(cloud, invert(cloud, a), by))
@@ -77,6 +79,7 @@ def test_shrinking_grows_the_rest(made: Sets, by: float) -> None:
 
 
 @given(clouds(), distances)
+@settings(max_examples=40)
 def test_both_keep_the_order_of_sets_and_are_each_others_adjoint(made: Sets, by: float) -> None:
     cloud, a, b = made
     assert grow(cloud, a & b, by) <= grow(cloud, b, by) and shrink(cloud, a & b, by) <= shrink(cloud, b, by)
@@ -86,7 +89,7 @@ def test_both_keep_the_order_of_sets_and_are_each_others_adjoint(made: Sets, by:
 
 
 @given(clouds(), distances)
-@settings(max_examples=50)
+@settings(max_examples=25)
 def test_there_and_back_fills_holes_or_removes_specks_once_and_for_all(made: Sets, by: float) -> None:
     cloud, a, _ = made
     closed = shrink(cloud, grow(cloud, a, by), by)
