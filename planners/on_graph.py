@@ -6,7 +6,7 @@ that stands on it, a step out of the room. Refuses to know how words are read an
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -55,7 +55,7 @@ class Resolved:
         verdict: "ok", or why nothing would be done.
         steps: in order; those behind the one that stopped it have no targets.
         candidates: ids: what an ambiguous phrase hesitates between, or what is nearest to an absent one.
-        reason: a sentence for a person, "" if ok.
+        reason: a sentence for a person; if ok, what was read otherwise than it was written.
         plan: what was resolved.
     """
 
@@ -91,7 +91,25 @@ def resolve_plan(stage: Stage, plan: EditPlan, last: Selection | None = None) ->
             candidates = error.candidates if isinstance(error, _Stopped) else ()
             rest = tuple(Step(o) for o in plan.ops[len(steps) :])
             return Resolved(verdict, (*steps, *rest), candidates, where + str(error), plan)
-    return Resolved("ok", tuple(steps), (), "", plan)
+    return Resolved("ok", tuple(steps), (), "; ".join([*filter(None, [plan.reason]), *_slips(stage, plan)]), plan)
+
+
+def _slips(stage: Stage, plan: EditPlan) -> list[str]:
+    """Remarks on nouns that were read as the one thing here that is spelt almost so."""
+    said = dict.fromkeys(text for op in plan.ops for text in _texts(op.model_dump()))
+    read = ((text, stage.encoder.meant(text)) for text in said)
+    return [f"read “{text}” as {meant}" for text, meant in read if meant]
+
+
+def _texts(node: Any) -> Iterator[str]:
+    """Every noun phrase of the queries in an operation's fields."""
+    if isinstance(node, dict):
+        if node.get("text"):
+            yield str(node["text"])
+        node = tuple(node.values())
+    if isinstance(node, tuple | list):
+        for item in node:
+            yield from _texts(item)
 
 
 @dataclass

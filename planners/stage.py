@@ -20,6 +20,7 @@ from ..gaussians.errors import UserError
 from ..gaussians.language import attributes
 from ..gaussians.language.field import Box, Group, LanguageField
 from ..gaussians.language.query import Query, Relation
+from ..gaussians.language.relations import distance
 from ..gaussians.language.resolve import resolve
 from ..gaussians.language.selection import Selection
 from ..gaussians.language.terms import STRUCTURE
@@ -36,6 +37,7 @@ _NO_COLOR: Vec3 = (1000.0, 0.0, 0.0)
 
 _FURNITURE = "furnishing"  # the resolver takes "furniture" for anything at all
 _BEFORE_WALL = 0.45  # metres from a wall to the middle of what stands against it
+_REACH = 0.3  # metres, a hand's span and a half
 _UPRIGHT = ("above", "below", "under")
 _BY_PAIR = ("on", "inside", "under", "below", "above", "next_to")
 
@@ -98,10 +100,27 @@ class Stage:
             again = resolve(self.scene, other, self.viewer, encoder=self.encoder, last=last)
             if again.verdict == "found" or (found.verdict, again.verdict) == ("absent", "ambiguous"):
                 return again
+        if found.verdict == "absent" and (near := self._beside(meant, last)) is not None:
+            return near
         if found.verdict == "absent" and any(r.name in _UPRIGHT for r in meant.relations):
             again = resolve(self._leaning, meant, self.viewer, encoder=self.encoder, last=last)
             return again if again.verdict != "absent" else found
         return found
+
+    def _beside(self, query: Query, last: Selection | None) -> Selection | None:
+        """Small things a hand's reach apart are next to each other, though many times their own size lies between."""
+        beside = [r for r in query.relations if r.name == "next_to"]
+        if len(beside) != 1 or query.pick != "one":
+            return None
+        near = tuple(r.model_copy(update={"name": "nearest_to"}) if r in beside else r for r in query.relations)
+        found = resolve(
+            self.scene, query.model_copy(update={"relations": near}), self.viewer, encoder=self.encoder, last=last
+        )
+        anchor = resolve(self.scene, beside[0].anchors[0], self.viewer, encoder=self.encoder, last=last)
+        if "found" != found.verdict or not anchor.groups or len(found.groups) != 1:
+            return None
+        gap = min(distance(self.group(found.groups[0]), self.group(a)) for a in anchor.groups)
+        return found if gap <= _REACH else None
 
     @cached_property
     def _leaning(self) -> Scene:

@@ -116,6 +116,15 @@ class WordEncoder:
     def knows(self, text: str) -> bool:
         return True
 
+    def meant(self, text: str) -> str:
+        """What a misspelt phrase was read as, "" if it was taken as it stands."""
+        asked = words(text)
+        plain = [_agrees(asked, words(label)) for label in self.labels]
+        if all(p < THRESHOLD for p in plain) and not any(_covers(asked, words(label)) for label in self.labels):
+            meant = respelt(asked, self.labels)
+            return " ".join(meant) if meant != asked else ""
+        return ""
+
     def of(self, label: str) -> NDArray[np.float32]:
         """`[D]`, a thing's vector."""
         row = np.zeros(self.dim, dtype=np.float32)

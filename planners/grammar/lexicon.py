@@ -235,8 +235,8 @@ INSIDE: dict[str, Entry] = {
             "into a corner, in one corner, into the corner of the room, to a corner"),
     **_same(("SPOT", "center"), "in the middle, in the middle of the room, in the center, in the centre, "
             "to the center, to the centre, to the middle, "
-            "in the center of the room, in the centre of the room, at the center of the room, at the centre of the room, "
-            "at the middle of the room, "
+            "in the center of the room, in the centre of the room, at the center of the room, "
+            "at the centre of the room, at the middle of the room, "
             "to the middle of the room, to the center of the room, to the centre of the room, into the middle, "
             "into the middle of the room, into the center of the room, into the centre of the room"),
     **_same(("CENTER", None), "in the middle of, in the center of, in the centre of, to the middle of, "

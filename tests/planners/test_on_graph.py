@@ -123,6 +123,13 @@ def test_paint_is_for_walls_too() -> None:
     assert targets(ask("paint the walls and the ceiling blue")) == [("wall", "ceiling")]
 
 
+def test_slips_are_told() -> None:
+    found = ask("remve the blue cushon")
+    assert targets(found) == [(14,)]
+    assert "remove" in found.reason and "cushion" in found.reason
+    assert ask("remove the blue cushion").reason == ""
+
+
 def test_candidates_are_ids() -> None:
     assert set(ask("delete the lamp").candidates) == {6, 7}
     assert ask("delete the piano").verdict == "absent"
