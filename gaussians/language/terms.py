@@ -2,8 +2,8 @@
 
 Knows the table of groups and what each term is held against. Refuses to choose among what matches.
 
-A name is held against its encoder's one threshold, fitted on other rooms and kinds (`Calibration.measured` has its error
-rates). Asked for all 81 names in each of 12 embedded rooms, 0.21 found 96.3 % of what was there and refused 96.4 % of
+A name is held against its encoder's one threshold, fitted on other rooms and kinds (`Calibration.measured` has its
+error rates). Asked for all 81 names in each of 12 embedded rooms, 0.21 found 96.3 % of what was there and refused 96.4 % of
 what was not; from 0.1 to 0.6 neither falls below 95 %, and the threshold that is best for eleven rooms does no better
 than 0.3 points on the twelfth: it is nothing that wants tuning to a scene.
 """
@@ -42,6 +42,7 @@ STRUCTURE = {
 }  # fmt: skip
 FLOATERS = frozenset({"floater", "noise", "floating bit", "stray"})
 ORDERING = frozenset({"nearest_to", "farthest_from"})  # these order matches instead of being true or false
+KEPT = 4096  # phrases and colours whose answers a table remembers
 NAMED = 0.25  # a label less probable than this is not worth telling
 OWN_COLOR = 0.5  # colour score from which no other basic colour is nearer
 
@@ -176,6 +177,7 @@ def likeness(field: LanguageField, encoder: Encoder | None, text: str, metres_pe
         meant = kinds_meant(encoder, text)
         unseen = ~field.embeddings.any(axis=1)
         known = np.array([g.label in meant and g.label_score >= OWN_COLOR for g in field.groups], dtype=bool)
+        _make_room(field)
         field.answers[key] = np.where(unseen, known.astype(np.float64), sure)
     return field.answers[key]
 
@@ -188,8 +190,15 @@ def paintedness(field: LanguageField, word: str) -> F64:
     """
     key = ("color", word)
     if key not in field.answers:
+        _make_room(field)
         field.answers[key] = attributes.group_color_scores(field, word)
     return field.answers[key]
+
+
+def _make_room(field: LanguageField) -> None:
+    """Forget everything when much was asked: a batch of a million phrases must not fill the memory."""
+    if len(field.answers) >= KEPT:
+        field.answers.clear()
 
 
 def kinds_meant(encoder: Encoder | None, text: str) -> frozenset[str]:
