@@ -3,9 +3,9 @@
 Knows the table of groups and what each term is held against. Refuses to choose among what matches.
 
 A name is held against its encoder's one threshold, fitted on other rooms and kinds (`Calibration.measured` has its
-error rates). Asked for all 81 names in each of 12 embedded rooms, 0.21 found 96.3 % of what was there and refused 96.4 % of
-what was not; from 0.1 to 0.6 neither falls below 95 %, and the threshold that is best for eleven rooms does no better
-than 0.3 points on the twelfth: it is nothing that wants tuning to a scene.
+error rates). Asked for all 81 names in each of 12 embedded rooms, 0.21 found 96.3 % of what was there and refused
+96.4 % of what was not; from 0.1 to 0.6 neither falls below 95 %, and the threshold that is best for eleven rooms does
+no better than 0.3 points on the twelfth: it is nothing that wants tuning to a scene.
 """
 
 from __future__ import annotations
