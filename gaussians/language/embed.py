@@ -27,11 +27,12 @@ from .masks import Masker
 from .orient import estimate_frame
 from .portraits import one_thread
 from .segment import ASK_VIEWS, Progress, Thing, segment
-from .surface import Surface, surface_of
+from .surface import MIN_OPACITY, Surface, surface_of
 from .table import with_table
 from .views import choose_views
 
 REACH = 6.0  # spacings within which an unassigned Gaussian joins the surface point it is nearest to
+NEAR = 2.0  # likewise for an opaque one, which would be skin if it were not a floater
 
 
 def embed(
@@ -151,6 +152,7 @@ def _assign(cloud: GaussianCloud, surface: Surface, group: NDArray[np.int32]) ->
         distance, nearest = cKDTree(surface.points).query(cloud.means[rows].numpy(), workers=-1)
         spread = cloud.scales[rows].amax(dim=1).numpy()
         local = surface.gaps.mean(axis=1)[nearest]
-        near = distance < REACH * np.maximum(local, surface.spacing) + 0.5 * np.minimum(spread, 4 * surface.spacing)
+        reach = np.where((cloud.opacities[rows] > MIN_OPACITY).numpy(), NEAR, REACH)
+        near = distance < reach * np.maximum(local, surface.spacing) + 0.5 * np.minimum(spread, 4 * surface.spacing)
         column[rows[near]] = group[nearest[near]]
     return column

@@ -21,6 +21,9 @@ F32 = NDArray[np.float32]
 
 NEIGHBOURS = 10
 MIN_OPACITY = 0.08  # below this a Gaussian adds haze, not surface
+DENSE = 4.0  # spacings within which three neighbours make a surface of any splats
+OVERLAP = 2.0  # standard deviations within which they must lie elsewhere
+PRUNINGS = 3  # floaters keep each other company: without some, others stand alone
 MAX_POINTS = 220_000  # more points cost time and add nothing to objects seen at this scale
 
 
@@ -70,9 +73,11 @@ def surface_of(cloud: GaussianCloud, most: int = MAX_POINTS) -> Surface:
     k = min(NEIGHBOURS, max(len(rows) - 1, 1))
     gaps, neighbours = _nearest(points, k)
     spacing = float(np.median(gaps[:, : max(1, k // 2)])) if len(rows) else 0.0
-    kept = gaps[:, min(3, k - 1)] < 12 * max(spacing, 1e-12) if len(rows) > 4 * k else np.ones(len(rows), bool)
-    if not kept.all():  # drop floaters and ask for neighbours again among the rest
-        rows, points = rows[kept], points[kept]
+    for _ in range(PRUNINGS):
+        kept = _among_others(gaps, cloud.scales[rows].amax(dim=1).numpy(), spacing)
+        if kept.all():
+            break
+        rows, points = rows[kept], points[kept]  # drop floaters and ask for neighbours again among the rest
         gaps, neighbours = _nearest(points, k)
     part = cloud[torch.from_numpy(rows)]
     raw_lab = base_lab(part).numpy()
@@ -91,6 +96,23 @@ def _solid_rows(cloud: GaussianCloud) -> NDArray[np.int64]:
     bound = 12 * float(torch.quantile(sample, 0.8))
     solid = (cloud.opacities > MIN_OPACITY) & (largest < bound)
     return solid.nonzero().squeeze(1).numpy()
+
+
+def _among_others(gaps: F32, reach: F32, spacing: float) -> NDArray[np.bool_]:
+    """`[M]` points that others lie close to: as on most surfaces, or, where one is coarse, close against their own size.
+
+    Splats of a surface overlap; floaters do not.
+
+    Args:
+        gaps: `[M, K]` distances to neighbours.
+        reach: `[M]` largest standard deviation.
+        spacing: typical distance of neighbours.
+    """
+    m, k = gaps.shape
+    if m <= 4 * k:
+        return np.ones(m, bool)
+    few = gaps[:, min(3, k - 1)]
+    return (few < 12 * max(spacing, 1e-12)) & ((few < DENSE * spacing) | (few < OVERLAP * reach))
 
 
 def _nearest(points: F32, k: int) -> tuple[F32, NDArray[np.int32]]:

@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 import torch
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from scenewright.gaussians.assets import furnish
 from scenewright.gaussians.assets.rooms import Room
 from scenewright.gaussians.camera import Camera
-from scenewright.gaussians.cloud import GaussianCloud
+from scenewright.gaussians.cloud import GaussianCloud, concat
 from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.language.calibration import Calibration
 from scenewright.gaussians.language.embed import embed
@@ -22,6 +23,8 @@ from scenewright.gaussians.language.encoders import Encoder
 from scenewright.gaussians.language.encoders.vocabulary import Vocabulary
 from scenewright.gaussians.language.field import Group, LanguageField
 from scenewright.gaussians.language.measure import TRIM
+from scenewright.gaussians.render import contributions
+from scenewright.gaussians.rotations import normalize
 from scenewright.gaussians.scene import Frame, Scene
 
 
@@ -219,3 +222,63 @@ def test_what_was_estimated_is_noted(world: Callable[[int], object]) -> None:
     known = embed(Scene(cloud, replace(scene.frame, up_source="given")), ENCODER, portraits=1)
     assert known.language is not None
     assert not any("up was estimated" in note for note in known.language.notes)
+
+
+def strays(cloud: GaussianCloud, count: int, seed: int) -> GaussianCloud:
+    """Splats of any colour in the air of a room, more than a hand's breadth from everything."""
+    rng = np.random.default_rng(seed)
+    low, high = np.quantile(cloud.means.numpy(), [0.01, 0.99], axis=0)
+    points = rng.uniform(low, high, (6 * count, 3))
+    points = points[cKDTree(cloud.means.numpy()).query(points)[0] > 0.15][:count].astype(np.float32)
+    n = len(points)
+    return GaussianCloud.create(
+        torch.from_numpy(points),
+        normalize(torch.from_numpy(rng.normal(size=(n, 4)).astype(np.float32))),
+        torch.from_numpy(rng.uniform(0.005, 0.05, (n, 3)).astype(np.float32)),
+        torch.from_numpy(rng.uniform(0.2, 0.95, n).astype(np.float32)),
+        torch.from_numpy(rng.normal(0, 0.5, (n, *cloud.sh.shape[1:])).astype(np.float32)),
+    )
+
+
+def best_ious(scene: Scene, truth: NDArray[np.int32], objects: int) -> NDArray[np.float64]:
+    """Of the best group for each object, over the first `len(truth)` rows."""
+    assert scene.language is not None
+    masks = [rows_of(scene, g) for g in scene.language.objects()]
+    wholes = [np.r_[truth == i, np.zeros(len(scene.cloud) - len(truth), bool)] for i in range(objects)]
+    return np.array([max((m & t).sum() / (m | t).sum() for m in masks) for t in wholes])
+
+
+@pytest.mark.parametrize(
+    "count", [pytest.param(100, marks=pytest.mark.slow), 1500, pytest.param(6000, marks=pytest.mark.slow)]
+)
+def test_floaters_belong_to_nothing_and_leave_things_as_they_were(room: Room, embedded: Scene, count: int) -> None:
+    added = strays(room.scene.cloud, count, seed=count)
+    start = len(room.scene.cloud)
+    joined = concat([room.scene.cloud, added.replace(ids=torch.arange(start, start + len(added)))])
+    dirty = embed(room.scene.replace(cloud=joined), ENCODER)
+    assert (dirty.cloud.group[start:] == -1).float().mean() > 0.85  # the others lie before a wall, as coarse as they
+    truth, objects = room.truth.ids.numpy(), len(room.truth.objects)
+    clean, now = best_ious(embedded, truth, objects), best_ious(dirty, truth, objects)
+    assert now.mean() > clean.mean() - 0.02  # superpoints shift a little as neighbours change
+
+
+def test_what_no_view_sees_belongs_to_its_thing_all_the_same(room: Room, embedded: Scene) -> None:
+    """Backs and undersides: segments are found on the whole surface, not in pictures."""
+    shown = torch.stack([contributions(room.scene.cloud, c.resized(160, 107)) for c in room.scene.cameras]).amax(dim=0)
+    hidden = (shown < 1e-4).numpy()
+    truth, group = room.truth.ids.numpy(), embedded.cloud.group.numpy()
+    right, asked = 0, 0
+    for thing in room.truth.objects:
+        own, back = truth == thing.id, hidden & (truth == thing.id)
+        masks = [rows_of(embedded, g) for g in embedded.language.objects()]  # type: ignore[union-attr]
+        best = max(masks, key=lambda m: (m & own & ~hidden).sum())  # the group that what is seen of it belongs to
+        right, asked = right + int((best & back).sum()), asked + int(back.sum())
+    assert asked > 0.05 * (truth >= 0).sum()  # there is something to be right about
+    assert right > 0.85 * asked and (group[hidden] >= 0).mean() > 0.95
+
+
+def test_every_wall_is_a_thing_of_its_own(embedded: Scene, field: LanguageField) -> None:
+    walls = [g for g in field.groups if g.label == "wall"]
+    assert len(walls) > 1 and sum(g.label == "floor" for g in field.groups) == 1
+    for wall in walls:
+        assert min(wall.box.size[:2]) < 0.1 * max(wall.box.size)  # one plane, not a corner of two
