@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
-from . import grouping
+from . import grouping, structure
 from .association import HELD, NESTED, Tracks
 from .segment import MIN_OBJECT, Thing
 from .superpoints import Links, links_of, superpoints, touching
@@ -99,7 +99,7 @@ def claimed(
     """
     links = links_of(surface)
     owner, part = owners(surface, links, tracks)
-    owner = np.where(_structure_only(owner, labels, things), NOBODY, owner).astype(np.int32)
+    owner = np.where(_structure_only(owner, labels, things, tracks), NOBODY, owner).astype(np.int32)
     owner = _with_rest(owner, labels, things, tracks.seen[surface.rows] > ENOUGH, tracks)
     code = (labels.astype(np.int64) * (len(tracks.tracks) + 1) + owner + 1) * (len(tracks.tracks) + 1) + part + 1
     _, first, cut = np.unique(code, return_index=True, return_inverse=True)
@@ -136,12 +136,15 @@ def by_votes(tracks: Tracks) -> I32:
     return np.where(tracks.seen > ENOUGH, owner, UNTOLD).astype(np.int32)
 
 
-def _structure_only(owner: I32, labels: I32, things: Sequence[Thing]) -> NDArray[np.bool_]:
-    """`[P]`: points of tracks that are mostly floor or wall: those are measured better than they are masked."""
-    structure = np.isin(labels, [s for t in things if t.level == "structure" for s in t.members])
+def _structure_only(owner: I32, labels: I32, things: Sequence[Thing], tracks: Tracks) -> NDArray[np.bool_]:
+    """`[P]`: points of tracks that are mostly floor or wall, which are measured better than they are masked; but not of
+    what views call something else, as a book that lies flat on the floor.
+    """
+    within = np.isin(labels, [s for t in things if t.level == "structure" for s in t.members])
     count = np.bincount(owner + 1)
-    share = np.bincount(owner + 1, weights=structure) / np.maximum(count, 1)
-    result: NDArray[np.bool_] = (share > HELD)[owner + 1] & (owner >= 0)
+    share = np.bincount(owner + 1, weights=within) / np.maximum(count, 1)
+    called = np.array([False, *(t.label not in ("", *structure.NAMES.values()) for t in tracks.tracks)])[: len(share)]
+    result: NDArray[np.bool_] = ((share > HELD) & ~called)[owner + 1] & (owner >= 0)
     return result
 
 

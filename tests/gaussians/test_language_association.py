@@ -293,6 +293,24 @@ def test_what_no_mask_claims_stays_as_it_was(scene: Any) -> None:
     assert whole.max() == 1 and whole.mean() > 0.97  # nothing twice, next to nothing lost
 
 
+@pytest.mark.parametrize(("name", "kept"), [("table", True), ("", False), ("floor", False)])
+def test_what_segmentation_takes_for_floor_is_given_up_only_to_a_name(scene: Any, name: str, kept: bool) -> None:
+    from scenewright.gaussians.language.segment import Thing
+
+    cloud, truth = scene
+    views = [
+        ViewMasks(v.camera, np.where(v.ids == v.labels.index("table"), 0, -1), (name,), np.ones(1, np.float32))
+        for v in seen_by(cloud, truth, around(20))
+    ]
+    surface = surface_of(cloud)
+    labels = (truth[surface.rows] + 1).astype(np.int32)
+    before = [Thing((0, 2), "structure", label="floor"), Thing((1,), "object"), Thing((3,), "object")]
+    tracks = associate(lift(cloud, views))
+    _, after, owner = claimed(surface, labels, before, tracks, [np.ones(3, np.float32)] * len(tracks.tracks))
+    assert len(tracks.tracks) == 1 and any(t.vector is not None for t in after) == kept
+    assert ((owner == 0).sum() > 500) == kept
+
+
 def test_embedding_with_masks_names_things_by_text_vectors(scene: Any) -> None:
     cloud, truth = scene
     encoder = vector_encoder.wrap([[name] for name in (*THINGS, "sofa", "lamp")], np.eye(6, 8))
