@@ -114,7 +114,7 @@ def measure(rooms: Sequence[Asked], seconds: Sequence[float]) -> Part:
     notes = (
         f"names: {len(rooms)} furnished rooms from unseen seeds; kinds that a room holds once are asked by name, kinds "
         f"that it holds more often must be reported ambiguous; right is an IoU of Gaussians of {RIGHT} or more",
-        f"absent: {ABSENT} kinds of ours a room does not hold; strange: {len(STRANGE)} things that are no kind of ours, "
+        f"absent: {ABSENT} kinds of ours a room does not hold; strange: {len(STRANGE)} things of no kind of ours, "
         "which an encoder of a finite vocabulary refuses for their words alone",
         "boundary IoU: of the members within 3 cm of a non-member, in truth and in answer (Cheng et al. 2021, carried "
         "to 3D); trimap IoU: of truth and answer among all Gaussians within 3 cm of the true border, on both sides",
