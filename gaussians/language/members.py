@@ -84,6 +84,14 @@ class Members:
         found = self.ids[index]
         return found if self.ascending else found.sort().values
 
+    def present(self, ids: Tensor) -> Tensor:
+        """Those of some ascending ids that the cloud has."""
+        every, asked = self.every_id.cpu().numpy(), ids.cpu().numpy()
+        if not len(every):
+            return ids[:0]
+        place = np.minimum(np.searchsorted(every, asked), len(every) - 1)
+        return ids[torch.from_numpy(every[place] == asked).to(ids.device)]
+
     @cached_property
     def _counted(self) -> bool:
         """Whether ids are row numbers, from whatever number on: then nothing need be looked up."""

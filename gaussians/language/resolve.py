@@ -169,7 +169,7 @@ class Resolver:
 
     def _again(self, query: Query) -> Selection:
         """ "it": what was selected last, as far as it is still there."""
-        there = self.last.ids[torch.isin(self.last.ids, self.scene.cloud.ids)] if self.last else torch.zeros(0)
+        there = self.members.present(self.last.ids) if self.last is not None else torch.zeros(0)
         if self.last is None or not len(there):
             return nothing(query, "there is nothing that 'it' could mean (any more); name the object")
         return replace(self.last, query=query, verdict="found", ids=there)

@@ -28,16 +28,18 @@ asked = st.sets(st.integers(-1, 9), max_size=6)
 sets = st.sets(st.integers(0, 60) | st.integers(10**9, 10**9 + 60) | st.integers(0, 10**12), max_size=40)
 
 
-@given(rows, asked, st.booleans())
+@given(rows, asked, st.booleans(), st.sets(st.integers(0, 10_000), max_size=40))
 def test_rows_and_ids_of_groups_are_those_a_search_finds(
-    made: list[tuple[int, int]], groups: set[int], in_order: bool
+    made: list[tuple[int, int]], groups: set[int], in_order: bool, strays: set[int]
 ) -> None:
+    some = strays | {i for _, i in made[::2]}
     made = sorted(made, key=lambda r: r[1]) if in_order else made
     found = members_of(cloud_of([g for g, _ in made], [i for _, i in made]))
     assert found.rows(groups).tolist() == [k for k, (g, _) in enumerate(made) if g in groups]
     assert found.ids_of(groups).tolist() == sorted(i for g, i in made if g in groups)
     assert found.ids_but(groups).tolist() == sorted(i for g, i in made if g not in groups)
     assert found.every_id.tolist() == sorted(i for _, i in made)
+    assert found.present(torch.tensor(sorted(some), dtype=torch.int64)).tolist() == sorted(some & {i for _, i in made})
 
 
 @given(st.integers(2000, 4000), st.integers(0, 2**31 - 1))
