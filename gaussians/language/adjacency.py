@@ -58,7 +58,8 @@ def _regions(
     count = len(kind_of)
 
     def total(values: F64) -> F64:
-        return np.stack([np.bincount(labels, weights=v, minlength=count) for v in values.T], axis=1)[chosen]
+        sums = [np.bincount(labels, weights=v, minlength=count) for v in values.T]
+        return np.stack(sums, axis=1)[chosen].astype(np.float64)
 
     upper = np.triu_indices(3)
     centred = points - points.mean(axis=0) if len(points) else points
@@ -111,7 +112,8 @@ def _ties(own: I64, points: F64, ends: I64, regions: Regions, spacing: float) ->
         gap, at = trees[b].query(points[probe], distance_upper_bound=reach)
         k = int(np.argmin(gap))
         if np.isfinite(gap[k]):
-            found[i, j] = (float(gap[k]), *((int(probe[k]), int(parts[b][at[k]]))[:: 1 if a == i else -1]))
+            from_a, from_b = int(probe[k]), int(parts[b][at[k]])
+            found[i, j] = (float(gap[k]), from_a, from_b)
     kept: set[tuple[int, int]] = set()
     for i in range(count):
         mine = sorted((v[0], key) for key, v in found.items() if i in key)
@@ -139,7 +141,7 @@ def _borders(
     np.minimum.at(gap, group, distance)
 
     def total(values: F64) -> F64:
-        return np.bincount(group, weights=values, minlength=len(key))
+        return np.asarray(np.bincount(group, weights=values, minlength=len(key)), np.float64)
 
     return np.stack([key // many, key % many], axis=1), Borders(
         pairs=total(np.ones(len(ends))),

@@ -99,7 +99,7 @@ def _solid_rows(cloud: GaussianCloud) -> NDArray[np.int64]:
 
 
 def _among_others(gaps: F32, reach: F32, spacing: float) -> NDArray[np.bool_]:
-    """`[M]` points that others lie close to: as on most surfaces, or, where one is coarse, close against their own size.
+    """`[M]` points that others lie close to: as on most surfaces, or, on a coarse one, close against their own size.
 
     Splats of a surface overlap; floaters do not.
 

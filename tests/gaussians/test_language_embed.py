@@ -282,3 +282,10 @@ def test_every_wall_is_a_thing_of_its_own(embedded: Scene, field: LanguageField)
     assert len(walls) > 1 and sum(g.label == "floor" for g in field.groups) == 1
     for wall in walls:
         assert min(wall.box.size[:2]) < 0.1 * max(wall.box.size)  # one plane, not a corner of two
+
+
+@pytest.mark.parametrize("kept", [0, 1])
+def test_dropping_views_changes_no_group(room: Room, embedded: Scene, kept: int) -> None:
+    """Where fewer pictures were taken, things are as whole as before: borders are found in space."""
+    fewer = embed(room.scene.replace(cameras=room.scene.cameras[:kept]), ENCODER)
+    assert torch.equal(fewer.cloud.group, embedded.cloud.group)

@@ -15,11 +15,14 @@ from numpy.typing import NDArray
 from scenewright.gaussians.language.grouping import (
     CRUMB_SHARE,
     GEOMETRY,
+    HOPELESS,
     PATCH_COLOR,
     PATCH_POINTS,
     SAME_SHARE,
+    SETTLED,
     alike,
     best_cut,
+    in_question,
     parts_of,
 )
 from scenewright.gaussians.language.regions import Node
@@ -60,6 +63,8 @@ def stays_whole(nodes: Sequence[Node], i: int, points: NDArray[np.int64], eviden
     if not nodes[i].children:
         return True
     a = min(max(weakest(nodes, i, points, own=True), 1e-4), 1 - 1e-4)  # a certain merge is still only nearly certain
+    if a >= SETTLED or a < HOPELESS:
+        return a >= SETTLED
     below = [j for c in nodes[i].children for j in best_below(nodes, c, points, evidence)]
     mean = sum(float(points[j]) * evidence.get(j, 0.0) for j in below) / float(points[i])
     return evidence.get(i, 0.0) + GEOMETRY * math.log(a / (1 - a)) >= mean - 1e-12
@@ -98,6 +103,17 @@ def test_the_best_cut_follows_its_rule_at_every_node(
     expected = sorted(j for r in roots_of(nodes) for j in best_below(nodes, r, points, evidence))
     assert best_cut(nodes, points, evidence) == expected
     assert expected in [sorted(c) for c in cuts(nodes, roots_of(nodes))]
+
+
+@given(forests(), sizes, odds)
+def test_looks_that_are_not_asked_for_could_not_have_changed_the_cut(
+    nodes: list[Node], weights: list[int], evidence: dict[int, float]
+) -> None:
+    points = points_of(nodes, weights)
+    asked = set(in_question(nodes, points))
+    assert best_cut(nodes, points, {i: e for i, e in evidence.items() if i in asked}) == best_cut(
+        nodes, points, evidence
+    )
 
 
 @given(forests(), sizes, odds)

@@ -126,3 +126,17 @@ def test_degenerate_clouds_can_be_looked_at(count: int, together: bool) -> None:
     assert views.seen_by.shape == (len(views.cameras), count)
     assert 0 <= views.unseen <= 1
     assert np.isfinite(default_viewer(Scene(cloud), 32, 32).world_to_camera).all()
+
+
+def test_a_closed_room_is_looked_at_from_inside_and_from_outside(world: type[Any]) -> None:
+    made = world()
+    made.box("outside", (-2.2, -2.2, -0.2), (2.2, 2.2, 2.7), GRAY, 0.12)
+    made.box("inside", (-2, -2, 0), (2, 2, 2.5), RED, 0.12)
+    cloud = made.cloud()
+    opaque = cloud.replace(opacities=torch.full((len(cloud),), 0.99), scales=cloud.scales * 1.8)
+    views = choose_views(Scene(opaque, Frame(up_source="given")), size=SIZE)
+    names = {c.name.split()[0] for c in views.cameras}
+    assert {"inside", "around"} <= names
+    seen = views.seen_by.any(axis=0)
+    assert seen[made.rows["inside"]].mean() > 0.85  # corners are seen at a grazing angle
+    assert views.unseen == pytest.approx(1 - seen.mean(), abs=0.1)  # what the views leave out is hidden, not forgotten

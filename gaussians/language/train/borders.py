@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from ...assets import furnish
 from ...scene import Scene
 from .. import borders, structure
+from ..affinity import rule_of
 from ..segment import superpoints_and_structure
 from ..superpoints import links_of, touching
 from ..surface import surface_of
@@ -72,7 +73,7 @@ def fit_rooms(rooms: Iterable[tuple[Scene, NDArray[np.int32]]], seed: int) -> di
     kept = max(1, len(met) * 5 // 6)
     table = fit(joined(met[:kept]), borders.FEATURES, seed, STEPS)
     held = met[kept:]
-    return {**table, "held_out": judge(borders.rule_of(table, borders.FEATURES), joined(held)) if held else {}}
+    return {**table, "held_out": judge(rule_of(table, borders.FEATURES), joined(held)) if held else {}}
 
 
 def main() -> None:

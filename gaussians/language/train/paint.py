@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from ...assets import furnish
 from ...scene import Scene
 from .. import paint, structure
+from ..affinity import rule_of
 from ..superpoints import links_of, superpoints
 from ..surface import surface_of
 from .affinity import Met, fit, joined, judge
@@ -50,7 +51,7 @@ def fit_rooms(rooms: Iterable[tuple[Scene, NDArray[np.int32]]], seed: int) -> di
     kept = max(1, len(met) * 5 // 6)
     table = fit(joined(met[:kept]), paint.FEATURES, seed, STEPS)
     held = met[kept:]
-    return {**table, "held_out": judge(paint.rule_of(table, paint.FEATURES), joined(held)) if held else {}}
+    return {**table, "held_out": judge(rule_of(table, paint.FEATURES), joined(held)) if held else {}}
 
 
 def main() -> None:
