@@ -117,6 +117,14 @@ def plan_json(plan: EditPlan) -> dict[str, Any]:
     }
 
 
+def unread(reason: str) -> dict[str, Any]:
+    """The answer to words that no planner looked at: too long to be an instruction, or no text."""
+    return {
+        "verdict": "not_understood", "steps": [], "candidates": [], "reason": reason, "unknown": [], "planner": "",
+        "seconds": 0.0,
+    }  # fmt: skip
+
+
 def plan_lines(plan: EditPlan) -> list[str]:
     """A plan for a person: one operation a line, without what is left at its default."""
     rows = [{"op": op.op, **op.model_dump(mode="json", exclude_defaults=True)} for op in plan.ops]

@@ -100,8 +100,11 @@ def _called(node: Node) -> str:
 def _collisions(graph: SceneGraph) -> Iterator[Violation]:
     """Pairs of boxes that are in each other, by the separating axes of their footprints and their heights."""
     carried = {n.id: set(_carriers(graph, n)) for n in graph.nodes}
+    middles = np.array([n.position for n in graph.nodes]).reshape(-1, 3)
+    reach = np.array([np.linalg.norm(n.size) / 2 for n in graph.nodes])
     for i, a in enumerate(graph.nodes):
-        for b in graph.nodes[i + 1 :]:
+        near = np.linalg.norm(middles[i + 1 :] - middles[i], axis=1) < reach[i + 1 :] + reach[i]
+        for b in (graph.nodes[i + 1 + int(j)] for j in np.flatnonzero(near)):
             if b.id in carried[a.id] or a.id in carried[b.id] or _is_flat(a) or _is_flat(b):
                 continue  # what stands on a shelf or a seat is within its box; rugs are stood upon
             depth = overlap(a.box, b.box)

@@ -117,7 +117,7 @@ class Stage:
             self.scene, query.model_copy(update={"relations": near}), self.viewer, encoder=self.encoder, last=last
         )
         anchor = resolve(self.scene, beside[0].anchors[0], self.viewer, encoder=self.encoder, last=last)
-        if "found" != found.verdict or not anchor.groups or len(found.groups) != 1:
+        if found.verdict != "found" or not anchor.groups or len(found.groups) != 1:
             return None
         gap = min(distance(self.group(found.groups[0]), self.group(a)) for a in anchor.groups)
         return found if gap <= _REACH else None

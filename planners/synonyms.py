@@ -44,7 +44,7 @@ bathtub, tub, bath
 phone, telephone, cell phone, mobile phone, smartphone, mobile
 vacuum cleaner, hoover, vacuum
 backpack, rucksack, knapsack, school bag
-whiteboard, white board, dry erase board, marker board, board
+whiteboard, white board, dry erase board, marker board
 monitor, screen, display, computer screen, computer monitor
 computer, pc, desktop computer, computer tower
 teddy bear, teddy, stuffed bear, stuffed animal, plush toy, plushie, soft toy, cuddly toy, stuffed toy
@@ -84,7 +84,7 @@ clothes dryer, dryer, tumble dryer
 toilet paper, toilet roll, toilet paper roll
 blinds, window blind, blind, shade, shades
 office chair, desk chair, computer chair, swivel chair
-board, blackboard, chalkboard
+blackboard, chalkboard
 sofa chair, armchair
 copier, photocopier, copy machine, copy printer
 desk, workstation
@@ -111,6 +111,7 @@ crockery: mug, bowl, plate, saucer, jug, teapot
 dish: mug, bowl, plate, saucer
 container: box, basket, bin, bucket, crate
 decoration: vase, painting, candle, clock, statue, garden gnome
+board: whiteboard, blackboard, bulletin board, menu board
 lighting: lamp, floor lamp, table lamp, desk lamp, chandelier, lantern
 statue: garden gnome, bust, sculpture
 animal: cat, dog, bird

@@ -185,7 +185,7 @@ def _names(asked: Phrase, label: Phrase) -> float:
     ends = alike - {asked[-1:]} if len(asked) > 1 else alike  # a square table ends like a round one
     best = NOT
     for form in _forms(label):
-        if form[-len(asked) :] == asked or form in alike or not ends.isdisjoint(_alike(form)):
+        if form[-len(asked) :] == asked or form in alike or asked in _alike(form):
             return ALIKE
         if form[-1] == asked[-1] and set(asked) <= set(form):
             return ALIKE
@@ -249,9 +249,5 @@ def _other(asked: Phrase) -> bool:
 @cache
 def _covers(asked: Phrase, label: Phrase) -> bool:
     """Whether what is asked is a word for a family that the label belongs to."""
-    plain = _plainer(asked)
-    if plain != asked and (_other(asked) or not set(label) - set(_plainer(label)) <= set(asked)):
-        return False
-    asked = plain
     members = synonyms.narrower(asked) | _wider().get(asked, frozenset())
     return any(_names(member, label) > NOT for member in members)

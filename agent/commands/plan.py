@@ -57,13 +57,24 @@ def command(
     rows = read_batch(str(batch)) if batch else [{"text": given[-1]}]
     answer = _in_scene(path, planner, encoder, view) if path is not None else _without_scene(graph, planner)
     for row in rows:
-        told = answer(row["text"], row.get("context"))
         if batch is not None:
-            terminal.row({"id": row["id"], **told})
+            terminal.row({"id": row["id"], **_told(answer, row)})
             continue
+        told = answer(row["text"], row.get("context"))
         terminal.result(json.dumps(told, indent=2, ensure_ascii=False), told)
         if told["verdict"] != "ok":
             raise typer.Exit(3)
+
+
+def _told(answer: Answer, row: dict[str, Any]) -> dict[str, Any]:
+    """The answer to one line of a batch; a line that cannot be an instruction does not stop the others."""
+    from ...gaussians.errors import UserError
+    from ..resolved import unread
+
+    try:
+        return answer(row["text"], row.get("context"))
+    except UserError as error:
+        return unread(str(error))
 
 
 def _in_scene(path: Path, planner: str, encoder: str, view: str) -> Answer:

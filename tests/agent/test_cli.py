@@ -399,6 +399,7 @@ def test_plan_on_a_graph_in_a_batch(call: Any, tmp_path: Path) -> None:
         {"id": "b", "text": "make it blue", "context": "select the kettle"},
         {"id": "c", "text": "what is this?"},
         {"id": "d", "text": "put the fridge in the kettle"},
+        {"id": "e", "text": "and " * 500},
     ]
     batch = tmp_path / "batch.jsonl"
     batch.write_text("\n".join(map(json.dumps, rows)))
@@ -406,6 +407,7 @@ def test_plan_on_a_graph_in_a_batch(call: Any, tmp_path: Path) -> None:
     assert answer.code == 0
     assert [(r["id"], r["verdict"]) for r in answer.rows] == [
         ("a", "ok"), ("b", "ok"), ("c", "not_an_edit"), ("d", "impossible"),
+        ("e", "not_understood"),
     ]  # fmt: skip
     assert [s["targets"] for r in answer.rows for s in r["steps"]] == [["kettle"], ["kettle"], []]
 
