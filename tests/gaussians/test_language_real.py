@@ -73,7 +73,7 @@ def test_the_purple_cloth_covers_its_outline_in_photographs(data_dir: Path) -> N
     told = json.loads((room / "transforms.json").read_text())
     label = {v: int(k) for k, v in json.loads((room / "ground_truth/labels.json").read_text()).items()}["tablecloth"]
     frames = {Path(f["file_path"]).stem: np.array(f["transform_matrix"]) for f in told["frames"]}
-    for photo, floor in (("DSCF5587", 0.55), ("DSCF5801", 0.70)):  # measured 0.645 and 0.793
+    for photo, floor in (("DSCF5587", 0.88), ("DSCF5801", 0.86)):  # measured 0.96 and 0.94
         pose = frames[photo]
         pose[:3, 1:3] *= -1  # OpenGL to OpenCV axes
         view = Camera(
