@@ -25,7 +25,7 @@ KINDS = (
     "chair", "armchair", "stool", "table", "box", "suitcase", "ottoman", "basket", "bin", "bench", "nightstand", "vase",
     "flower pot", "drum", "ball", "backpack", "cabinet", "side table",
 )  # fmt: skip
-PLAIN = 0.5  # share of the surface that must carry the colour: a red chair is mostly red
+PLAIN = 0.5  # share of the surface that must be of the colour: a red chair is mostly red
 SMALL, LARGE = 0.8, 1.3  # factors on a design's size
 COLOR_PAIRS, SIZE_PAIRS, SWAPS = 4, 2, 3  # a room
 
@@ -45,7 +45,7 @@ def colored(kind: str, color: str, seed: int) -> Asset:
     """A thing of which most is of this colour; the first such design from `seed` on."""
     for design in range(seed, seed + 50):
         asset = assets.make(kind, design, color=color)
-        if asset.color == color and staged.main_share(asset) >= PLAIN:
+        if asset.color == color and staged.share_of(asset, color) >= PLAIN:
             return asset
     raise ValueError(f"no {kind} of the first 50 designs from {seed} on is mostly {color}")
 

@@ -9,16 +9,19 @@ import zlib
 from collections.abc import Sequence
 
 import numpy as np
+import torch
 from numpy.typing import NDArray
 
 from ...gaussians.assets import Asset
 from ...gaussians.assets.layout import Box, Layout
 from ...gaussians.assets.rooms import assemble
+from ...gaussians.color import BASIC, parse, rgb_to_lab
 from .cases import Case, case_of
 
 SIZE = (6.0, 5.4, 2.6)  # metres
 APART = 0.22  # metres around a thing that stands for itself
 CLEARANCE = 0.015  # metres around a thing under or inside another
+ALIKE = 25.0  # CIE 1976 difference up to which a paint is still its colour term: grain, seams and glaze vary it
 DETAIL = 0.6  # of floor and walls: nothing is asked of them
 
 
@@ -71,8 +74,11 @@ def built(layout: Layout, seed: int) -> Case:
     return case_of(assemble(layout, "staged", layout.rng, DETAIL, False), seed)
 
 
-def main_share(asset: Asset) -> float:
-    """Share of an asset's surface that carries the colour it is named by."""
+def share_of(asset: Asset, color: str) -> float:
+    """Share of an asset's surface whose paint, without light, is within `ALIKE` of a basic colour term's shade."""
     scales: NDArray[np.float32] = asset.cloud.scales.numpy()
     area = scales[:, 0] * scales[:, 1]
-    return float(area[asset.main.numpy()].sum() / area.sum())
+    paint = rgb_to_lab(torch.from_numpy(asset.unlit.albedo))
+    asked = rgb_to_lab(torch.tensor(parse(BASIC[color]), dtype=paint.dtype))
+    near = ((paint - asked).norm(dim=1) < ALIKE).numpy()
+    return float(area[near].sum() / area.sum())

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scenewright.benchmarks._select import mirror, pairs, relations, spatial, stability
+from scenewright.benchmarks._select import staged as staged_rooms
 from scenewright.benchmarks._select.cases import Case
 from scenewright.benchmarks._select.costs import resized
 from scenewright.benchmarks._select.pictures import shaken
@@ -179,6 +180,13 @@ def test_swapped_rooms_hold_the_same_things_in_each_others_colours() -> None:
     answered = [{m.query.describe() for m in meant if m.object is not None} for meant in (asked, asked_again)]
     refused = [{m.query.describe() for m in meant if m.object is None} for meant in (asked, asked_again)]
     assert answered[0] == refused[1] and answered[1] == refused[0]
+
+
+@pytest.mark.parametrize("color", ["red", "black", "white", "beige"])
+def test_a_thing_of_a_colour_is_mostly_painted_so_and_less_of_any_other(color: str) -> None:
+    vase = pairs.colored("vase", color, 7)
+    assert vase.color == color and staged_rooms.share_of(vase, color) >= pairs.PLAIN
+    assert staged_rooms.share_of(vase, "purple") < 1 - pairs.PLAIN
 
 
 # --- what is done to scenes ------------------------------------------------------------------------------------------
