@@ -1,6 +1,6 @@
 """Fit the rule that says whether two touching regions are one thing, on furnished rooms whose objects are known.
 
-    python -m scenewright.gaussians.language.train.affinity --rooms 60 --seed 9000
+    python -m scenewright.gaussians.language.train.affinity --rooms 70 --seed 9000
 
 Writes `affinity.json` beside `affinity.py`. A rule that merges greedily meets borders of its own making, so it is
 fitted in rounds: each walks the rooms in the order of the rule so far, sometimes into its mistakes, and adds the
@@ -32,7 +32,7 @@ from ..surface import surface_of
 
 F64 = NDArray[np.float64]
 HIDDEN, STEPS, BATCH, RATE = 32, 8000, 2048, 5e-3
-ROUNDS = 3
+ROUNDS = 2
 JITTER = 0.25  # standard deviations of a feature: captures are noisier than furnished rooms
 STRAY = 0.3  # of the wrong merges that the rule would make are made, so that it learns not to add to them
 LEAST = 0.2  # weight of a border of a crumb against one that decides over a whole object
@@ -173,7 +173,7 @@ def fit_in_rounds(rooms: Iterable[tuple[Scene, NDArray[np.int32]]], seed: int) -
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rooms", type=int, default=60)
+    parser.add_argument("--rooms", type=int, default=70)
     parser.add_argument("--seed", type=int, default=9000)
     parser.add_argument("--out", type=Path, default=Path(affinity.__file__).with_suffix(".json"))
     args = parser.parse_args()

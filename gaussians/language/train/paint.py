@@ -1,6 +1,6 @@
 """Fit the rule that says which pieces near a plane are floor, wall or ceiling, on furnished rooms.
 
-    python -m scenewright.gaussians.language.train.paint --rooms 60 --seed 9000
+    python -m scenewright.gaussians.language.train.paint --rooms 70 --seed 9000
 
 Writes `paint.json` beside `paint.py`. Every fourth room has a ceiling.
 """
@@ -56,7 +56,7 @@ def fit_rooms(rooms: Iterable[tuple[Scene, NDArray[np.int32]]], seed: int) -> di
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rooms", type=int, default=60)
+    parser.add_argument("--rooms", type=int, default=70)
     parser.add_argument("--seed", type=int, default=9000)
     parser.add_argument("--out", type=Path, default=Path(paint.__file__).with_suffix(".json"))
     args = parser.parse_args()
