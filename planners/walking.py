@@ -67,24 +67,40 @@ def _largest(areas: NDArray[np.int32]) -> set[int]:
 
 def _nearest(among: Flags, areas: NDArray[np.int32], node: Node, xs: F64, ys: F64) -> tuple[int, float]:
     """The area of the place nearest to a node's footprint, and its distance; 0 and infinity if there is no place."""
-    places = np.argwhere(among)
-    if not len(places):
-        return 0, math.inf
-    distance = _distances(node, np.stack([xs[places[:, 0]], ys[places[:, 1]]], axis=1))
-    best = int(distance.argmin())
-    return int(areas[tuple(places[best])]), float(distance[best])
+    everywhere = (slice(0, len(xs)), slice(0, len(ys)))
+    for window in (_window(node, xs, ys, WIDTH + ARM), everywhere):
+        places = np.argwhere(among[window])
+        if not len(places):
+            continue
+        distance = _distances(node, np.stack([xs[window[0]][places[:, 0]], ys[window[1]][places[:, 1]]], axis=1))
+        best = int(distance.argmin())
+        if distance[best] <= WIDTH + ARM or window is everywhere:
+            return int(areas[window][tuple(places[best])]), float(distance[best])
+    return 0, math.inf
+
+
+def _window(node: Node, xs: F64, ys: F64, margin: float) -> tuple[slice, slice]:
+    """The cells whose middles may lie within `margin` of a node's footprint."""
+    reach = math.hypot(*node.size[:2]) / 2 + margin
+    x, y = (
+        slice(*np.searchsorted(cells, (middle - reach, middle + reach)).tolist())
+        for cells, middle in ((xs, node.position[0]), (ys, node.position[1]))
+    )
+    return x, y
 
 
 def _free(graph: SceneGraph, xs: F64, ys: F64) -> Flags:
     """`[X, Y]` cells where a person can stand without touching a wall or a thing."""
     width, depth, _ = graph.room.size
-    grid = np.stack(np.meshgrid(xs, ys, indexing="ij"), axis=-1).reshape(-1, 2)
     half = WIDTH / 2 - 1e-9
-    free = (np.abs(grid[:, 0]) <= width / 2 - half) & (np.abs(grid[:, 1]) <= depth / 2 - half)
+    free: Flags = (np.abs(xs) <= width / 2 - half)[:, None] & (np.abs(ys) <= depth / 2 - half)[None, :]
     for node in graph.nodes:
         if node.top > _STEP and node.bottom < _HEAD:
-            free &= _distances(node, grid) >= half
-    return free.reshape(len(xs), len(ys))
+            x, y = _window(node, xs, ys, half)
+            cells = np.stack(np.meshgrid(xs[x], ys[y], indexing="ij"), axis=-1)
+            near = _distances(node, cells.reshape(-1, 2)).reshape(cells.shape[:2])
+            free[x, y] &= near >= half
+    return free
 
 
 def _distances(node: Node, points: F64) -> F64:
