@@ -27,8 +27,8 @@ VERBS: dict[str, Entry] = {
         ("DELETE", None),
         "delete, remove, erase, eliminate, discard, take away, take out, get rid of, throw away, throw out, "
         "chuck out, "
-        "chuck, chuck away, lose, clear away, clear out, zap, kill, nuke, dump, ditch, trash, scrap, destroy, "
-        "banish, "
+        "chuck, chuck away, take down, lose, clear away, clear out, zap, kill, nuke, dump, ditch, trash, scrap, "
+        "destroy, banish, "
         "dispose of, do away with, bin, axe, purge, expunge, wipe out, rub out, delete away, get out, toss, toss out, "
         "yank, yank out, rip out, oust, evict, vaporize, obliterate, get shot of, junk, kick out, boot out, strip out, "
         "toss away, chuck in the bin, throw in the trash, be rid of, remove away, rid us of, hoover up",
@@ -167,6 +167,12 @@ CHAT = bag(
 QUESTION = bag(
     "what where who whom whose which why how when is are am was were does do did has have had can could will would "
     "shall should may might"
+)
+# A sentence that begins so takes back the one before.
+RETRACTIONS = phrases(
+    "no, nope, nah, wait, no wait, actually no, actually not, scratch that, never mind, nevermind, forget it, forget "
+    "that, cancel that, cancel, sorry, i mean, i meant, oops, on second thought, rather not, hold on, stop, "
+    "just kidding"
 )
 STATEMENT = bag("i we you he she they there my our your")
 

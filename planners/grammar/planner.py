@@ -27,7 +27,7 @@ from ..plan import MAX_OPS, EditPlan
 from . import lexicon, nouns
 from .commands import Commands
 from .phrases import Node, Refusal, trees
-from .reading import color_at
+from .reading import color_at, match
 from .spelling import respell
 from .tagger import Clause, Tag, Tagger, sentences
 from .unsafe import unsafe_words
@@ -124,6 +124,8 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     topic: Query | None = None
     stated_first = False
     for sentence, mark in sentences(words):
+        if ops and match(lexicon.RETRACTIONS, [w.text for w in sentence if w.text != ","], 0):
+            raise Refusal("it takes back what it said before; say only what to do", sentence[0].text)
         for clause in Tagger(sentence).clauses():
             follows = bool(ops) or previous is not None or topic is not None
             try:

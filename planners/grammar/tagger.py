@@ -293,7 +293,8 @@ class Tagger:
             self._put("PRON", "it", i, 1)
         j = self.read.skip_filler(i + 1)
         owned = self.read.phrase(j) if j < len(self.texts) else None
-        of_property = owned is not None and owned[0][0] in ("COLORWORD", "OPACITYWORD", "PROP")
+        shade = self.texts[j : j + 1] == ("shade",) and bool(self.clause.tags) and "lamp" in self.clause.tags[-1].text
+        of_property = owned is not None and owned[0][0] in ("COLORWORD", "OPACITYWORD", "PROP") and not shade
         return self._put("OWN" if of_property else "POSS", None, i, 1)
 
     def _returns(self) -> bool:

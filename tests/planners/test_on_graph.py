@@ -150,6 +150,47 @@ def test_words_in_a_label_are_no_orders() -> None:
     assert targets(ask("delete both armchairs", stage=stage)) == [(2, 3)]
 
 
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("the rug is hideous. get rid of it", [(5,)]),
+        ("I love the sofa. Delete the rug.", [(5,)]),
+        ("delete all but the largest plant", [(13,)]),
+        ("delete the biggest and the smallest plant", [(12, 13)]),
+        ("don't touch the orange cushions, delete all the cushions", [(14,)]),
+        ("delete the armchair that has no cushion on it", [(3,)]),
+        ("delete the armchair with a cushion on it", [(2,)]),
+        ("remove everything on the sofa that is not orange", [(14,)]),
+        ("select the blue and orange cushions", [(14, 15, 16)]),
+        ("make the sofa's cushions green", [(14, 15)]),
+        ("take the orange cushion off the armchair and put it on the sofa", [(16,)]),
+        ("delete the picture above the sofa", [(19,)]),
+        ("select the furniture", [(1, 2, 3, 4, 8, 10, 11)]),
+    ],
+)
+def test_what_people_mean(text: str, meant: list[tuple[int, ...]]) -> None:
+    assert [set(t) for t in targets(ask(text))] == [set(t) for t in meant]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "remove the rug... actually no",
+        "delete the sofa. No, delete the rug.",
+        "delete the rug if it is red",
+        "delete the sofa or the rug",
+        "nudge the vase an inch or two to the left",
+        "clear the coffee table",
+        "make the floor lamp's shade red",
+        "put the sofa and a chair next to the rug",
+        "what a lovely sofa! delete the rug",
+        "make the rug nicer",
+    ],
+)
+def test_what_is_unclear_is_not_done(text: str) -> None:
+    assert ask(text).verdict in ("not_understood", "not_an_edit")
+
+
 texts = st.sampled_from([c["text"] for c in _written.cases()])
 
 
