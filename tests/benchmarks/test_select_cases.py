@@ -18,6 +18,7 @@ from scenewright.benchmarks._select.costs import resized
 from scenewright.benchmarks._select.pictures import shaken
 from scenewright.benchmarks._select.relations import Asked
 from scenewright.benchmarks._select.spatial import Solid
+from scenewright.gaussians import assets
 from scenewright.gaussians.assets import TruthObject
 from scenewright.gaussians.camera import Camera, Vec3
 from scenewright.gaussians.cloud import GaussianCloud
@@ -184,7 +185,7 @@ def test_swapped_rooms_hold_the_same_things_in_each_others_colours() -> None:
 
 @pytest.mark.parametrize("color", ["red", "black", "white", "beige"])
 def test_a_thing_of_a_colour_is_mostly_painted_so_and_less_of_any_other(color: str) -> None:
-    vase = pairs.colored("vase", color, 7)
+    vase = assets.make("vase", pairs.design("vase", [color], 7), color=color)
     assert vase.color == color and staged_rooms.share_of(vase, color) >= pairs.PLAIN
     assert staged_rooms.share_of(vase, "purple") < 1 - pairs.PLAIN
 
