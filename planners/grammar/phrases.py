@@ -22,7 +22,8 @@ from .tagger import Tag
 from .words import bag
 
 _SHAPES = bag("round square rectangular oval circular wooden metal plastic glass leather striped plain patterned")
-_OF_THE_FIRST = ("unrelated", "is_not_kind")  # denials are about the noun that the sentence is about
+# "the cup on the table that is white", "anything on the bed that is not a pillow": about the first noun, not the last.
+_OF_THE_FIRST = ("unrelated", "is_not_kind", "is_hue", "is_not_hue")
 PARTS = frozenset({"part", "piece", "area", "region", "bit"})  # of things, found by their own colour
 
 Article = Literal["def", "indef", "all", "both", "any", "bare", "pronoun"]
