@@ -197,13 +197,13 @@ class Stage:
 def _otherwise(query: Query, verdict: str) -> Iterator[Query]:
     """Other readings of a query that found nothing, or more than one thing.
 
-    What grows in a pot, or belongs to a sofa, stands on it as far as boxes go. And "the cushion on the armchair" is
-    said where two armchairs are and one of them has a cushion.
+    What grows in a pot, or belongs to a sofa, stands on it as far as boxes go, and the chairs of a table beside it. And
+    "the cushion on the armchair" is said where two armchairs are and one of them has a cushion.
     """
-    loose = {"inside": "on", "part_of": "on"}
-    if verdict == "absent" and any(r.name in loose for r in query.relations):
-        onto = tuple(r.model_copy(update={"name": loose.get(r.name, r.name)}) for r in query.relations)
-        yield query.model_copy(update={"relations": onto})
+    for loose in ({"inside": "on", "part_of": "on"}, {"part_of": "next_to"}):
+        if verdict == "absent" and any(r.name in loose for r in query.relations):
+            onto = tuple(r.model_copy(update={"name": loose.get(r.name, r.name)}) for r in query.relations)
+            yield query.model_copy(update={"relations": onto})
     if verdict == "ambiguous" and query.pick == "one" and any(r.name in _BY_PAIR for r in query.relations):
         yield query.model_copy(update={"relations": tuple(map(_to_any, query.relations))})
 
