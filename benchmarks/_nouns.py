@@ -23,6 +23,7 @@ _FILE = "nr3d_utterances.json.gz"
 # choice among several words for the thing.
 SAID = {
     "storage bin": ("box", "container", "tote", "bin", "crate"),
+    "picture": ("frame", "picture frame"),
     "toilet paper": ("roll", "toilet roll"),
     "paper towel dispenser": ("towel dispenser", "paper dispenser", "dispenser"),
     "computer tower": ("tower", "computer", "cpu", "hard drive"),

@@ -120,6 +120,7 @@ class Phrases:
 
     def __init__(self, antecedent: str = "", colors: tuple[str, ...] = ()) -> None:
         self.antecedent = antecedent
+        self.sharing = False  # whether the noun of this phrase is said in the next one
         self.colors = colors  # of the antecedent: "the other one" has them too
 
     def targets(self, node: Node) -> list[Noun]:
@@ -134,8 +135,9 @@ class Phrases:
         found = []
         for i, part in enumerate(parts):
             if _is_headless(part) and (shared := next((t for p in parts[i + 1 :] if (t := self._named(p))), "")):
-                self.antecedent, self.colors = shared, ()
+                self.antecedent, self.colors, self.sharing = shared, (), True
             found.append(self.noun(part))
+            self.sharing = False
         return found
 
     def _named(self, node: Node) -> str:
@@ -268,7 +270,7 @@ class Phrases:
         if last.type == "ONE":
             return self.antecedent, bool(last.value)
         if last.type != "NOUN":
-            if last.type in ("SUP", "ORDINAL"):
+            if last.type in ("SUP", "ORDINAL") or self.sharing:
                 return self.antecedent, False
             raise Refusal("a noun is missing", *_quote(tags))
         words = str(last.value).split()
@@ -320,10 +322,10 @@ def _pick(tags: Sequence[Tag], article: Article, plural: bool, number: int | Non
 
 
 def _is_headless(node: Node) -> bool:
-    """Whether a phrase is a superlative or a rank without a noun: "the biggest"."""
+    """Whether a phrase is a superlative, a rank or a colour without a noun: "the biggest"."""
     core = node.children[0]
     kinds = {c.type for c in core.children if isinstance(c, Token)} if isinstance(core, Tree) else set()
-    return bool(kinds & {"SUP", "ORDINAL"}) and not kinds & {"NOUN", "ONE", "THING"}
+    return bool(kinds & {"SUP", "ORDINAL", "COLOR"}) and not kinds & {"NOUN", "ONE", "THING"}
 
 
 def _unshaped(text: str) -> str:

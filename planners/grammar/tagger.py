@@ -332,7 +332,7 @@ class Tagger:
         joined, length_of_all = self.read.colors(i)
         if joined and self._before in ("DET", "NUMBER", "SIZE", "COMMA", "AND", *verb_classes()):
             return self._put("COLORS", joined, i, length_of_all)
-        if self.read.nouny(i + taken):
+        if self.read.nouny(i + taken) or (self._before == "DET" and self._shares_noun(i + taken)):
             return self._put("COLOR", name, i, taken)
         follows_det = self._before in ("DET", "SIZE", "SUP", "ORDINAL", "COLOR") or (
             self._before in ("", *verb_classes()) and self.clause.verb != ""
@@ -344,6 +344,11 @@ class Tagger:
         if self._before == "EVERYTHING" and self.clause.verb in ("DELETE", "SELECT", "HIDE", "ISOLATE", "MOVE", "KEEP"):
             self._put("REL", None, i, 0)  # "everything red" is everything that is red
         return self._put("HUE", name, i, taken)
+
+    def _shares_noun(self, i: int) -> bool:
+        """ "the red and the blue chair": whether the noun comes with a second colour."""
+        second = self.texts[i : i + 2] in (("and", "the"), ("and", "my")) and color_at(self.texts, i + 2)
+        return bool(second) and self.read.nouny(i + 2)
 
     def _indefinite_hue(self, i: int) -> bool:
         """ "give it an orange colour": the article belongs to the colour word behind."""

@@ -165,6 +165,7 @@ def test_words_in_a_label_are_no_orders() -> None:
         ("make the sofa's cushions green", [(14, 15)]),
         ("take the orange cushion off the armchair and put it on the sofa", [(16,)]),
         ("delete the picture above the sofa", [(19,)]),
+        ("paint the green and the yellow armchair white", [(2, 3)]),
         ("select the furniture", [(1, 2, 3, 4, 8, 10, 11)]),
     ],
 )
