@@ -8,138 +8,8 @@ Tables map a phrase to a value; `PHRASES` joins them into one trie-like table ke
 
 from __future__ import annotations
 
-from typing import Any
-
+from .verbs import UNSUPPORTED, VERBS, Entry, same
 from .words import bag, phrases
-
-Entry = tuple[str, Any]  # word class, value
-
-
-def _same(value: Any, phrases: str) -> dict[str, Any]:
-    """Phrases separated by commas, all with one value."""
-    return {p.strip(): value for p in phrases.split(",")}
-
-
-# ---- verbs, read only where a clause begins ------------------------------------------------------------------------
-
-VERBS: dict[str, Entry] = {
-    **_same(
-        ("DELETE", None),
-        "delete, remove, erase, eliminate, discard, take away, take out, get rid of, throw away, throw out, "
-        "chuck out, "
-        "chuck, chuck away, take down, lose, clear away, clear out, zap, kill, nuke, dump, ditch, trash, scrap, "
-        "destroy, banish, "
-        "dispose of, do away with, bin, axe, purge, expunge, wipe out, rub out, delete away, get out, toss, toss out, "
-        "yank, yank out, rip out, oust, evict, vaporize, obliterate, get shot of, junk, kick out, boot out, strip out, "
-        "toss away, chuck in the bin, throw in the trash, be rid of, remove away, rid us of, hoover up",
-    ),
-    **_same(("CLEAR", None), "clear, clear off, wipe"),
-    **_same(("DROP", None), "drop"),
-    **_same(("TAKE", None), "take, throw, get, pick up, grab"),
-    **_same(
-        ("SELECT", None),
-        "select, highlight, find, find me, locate, pick, pick out, choose, show me, show, mark, point out, point to, "
-        "identify, focus on, outline, click, click on, look for, spot, search for, "
-        "you want, you are looking for, you need to select, you want to choose, you want to select, you should select",
-    ),
-    **_same(
-        ("ISOLATE", None),
-        "isolate, keep only, keep just, only keep, just keep, just keep only, show only, show just, show me only, "
-        "only show, "
-        "only show me, leave only, leave just, leave nothing but, keep nothing but, show nothing but, "
-        "single out, solo",
-    ),
-    **_same(("HIDE", None), "hide, conceal, fade out"),
-    **_same(("FADE", None), "fade"),
-    **_same(
-        ("PAINT", None),
-        "paint, colour, color, recolor, recolour, dye, repaint, stain, spray paint, spray, coat, re paint, re colour, "
-        "re color, colour in",
-    ),
-    **_same(("TINT", None), "tint"),
-    **_same(("MAKE", None), "make, render, let"),
-    **_same(("TURN", None), "turn"),
-    **_same(("CHANGE", None), "change, convert, transform, set the, adjust"),
-    **_same(("GIVE", None), "give"),
-    **_same(("APPLY", None), "slap, apply, splash"),
-    **_same(
-        ("SAME", None),
-        "do the same to, do the same for, do the same with, do the same thing to, do the same thing with, same for, "
-        "same with, same to, the same for, the same with, the same to, the same goes for, same goes for, same thing "
-        "for, same thing with, do that to, do this to, do it to, do that with, do it with, do likewise to, do "
-        "likewise with, likewise for, likewise with, likewise, ditto for, ditto, repeat that for, repeat this for, "
-        "repeat that with, repeat it for, repeat for, apply the same to, apply that to, do that for, do it for",
-    ),
-    **_same(
-        ("WANT", None),
-        "want, need, i want, i would like, i need, we want, we need, i would love, i wish for, i would love for, "
-        "i would like for, we would like, we would love, have, let us have, i fancy, could do with",
-    ),
-    **_same(("ADJUST", ("darker", None)), "darken"),
-    **_same(("ADJUST", ("lighter", None)), "lighten, brighten, brighten up, lighten up"),
-    **_same(("ADJUST", ("less_saturated", None)), "desaturate, tone down, mute"),
-    **_same(("ADJUST", ("more_saturated", None)), "saturate"),
-    **_same(("ADJUST", ("warmer", None)), "warm up, warm"),
-    **_same(("ADJUST", ("cooler", None)), "cool down, cool"),
-    **_same(
-        ("MOVE", None),
-        "move, shift, slide, push, pull, bring, shove, drag, scoot, nudge, relocate, transfer, carry, reposition, "
-        "move over, shift over, budge, haul, scooch, heave, lug, send, edge, jog, scootch, wheel, roll over, "
-        "move along, slide over",
-    ),
-    **_same(("CENTERING", None), "center, centre"),
-    **_same(("KEEP", None), "keep, leave"),
-    **_same(("RAISE", "up"), "raise, lift, elevate, hoist, lift up"),
-    **_same(("RAISE", "down"), "lower"),
-    **_same(
-        ("PUT", None),
-        "put, place, set, set down, put down, stick, position, pop, lay, stand, hang, hang up, mount, rest, park, "
-        "stack, plop, install, arrange, put up, lean, plonk, plunk, plunk down, plonk down, plop down, sit, deposit, "
-        "situate, bung",
-    ),
-    **_same(
-        ("ADD", None),
-        "add, insert, create, generate, spawn, introduce, bring in, throw in, put in, drop in, add in, give me, "
-        "place down, include, plant, get me, fetch me, bring me",
-    ),
-    **_same(("COPY", None), "copy, clone, duplicate, replicate"),
-    **_same(("REPLACE", None), "replace, swap out, switch out"),
-    **_same(("SWAP", None), "swap, exchange, switch, trade, trade in"),
-    **_same(("SUBSTITUTE", None), "substitute"),
-    **_same(("ROTATE", None), "rotate, spin, revolve, pivot, twist, swivel, spin round, rotate round, rotate around"),
-    **_same(("TURNROUND", None), "turn around, spin around, turn round"),
-    **_same(("FLIP", None), "flip, flip over, turn over, topple, invert"),
-    **_same(("TILT", None), "tilt, tip, roll"),
-    **_same(("SCALE", None), "scale, resize, rescale"),
-    **_same(
-        ("GROW", ("all", True)),
-        "enlarge, grow, expand, blow up, magnify, size up, scale up, upscale, upsize, supersize, embiggen, beef up",
-    ),
-    **_same(("GROW", ("all", False)), "shrink, size down, downsize, scale down, downscale, minify, shrink down"),
-    **_same(("GROW", ("prop", True)), "increase"),
-    **_same(("GROW", ("prop", False)), "decrease, reduce"),
-    **_same(("GROW", ("width", True)), "widen, broaden, lengthen"),
-    **_same(("GROW", ("width", False)), "narrow"),
-    **_same(("GROW", ("height", True)), "heighten"),
-    **_same(("GROW", ("height", False)), "flatten, shorten"),
-    **_same(("MULTIPLY", 2.0), "double"),
-    **_same(("MULTIPLY", 3.0), "triple, treble"),
-    **_same(("MULTIPLY", 4.0), "quadruple"),
-    **_same(("MULTIPLY", 0.5), "halve"),
-}
-
-# Verbs we know and cannot carry out: named, so that the answer says so instead of "not understood".
-UNSUPPORTED: dict[str, str] = {
-    **_same("moving parts and switches cannot be operated", "open, close, shut, turn on, turn off, switch on, "
-            "switch off, unlock, lock, fold, unfold, light up, dim"),
-    **_same("only whole scenes of what is there can be edited, not what happens to it", "break, smash, bend, burn, "
-            "fill, empty, clean, wash, dust, polish, animate, cook, play, eat, wear, throw a party"),
-    **_same("what was hidden comes back with undo", "unhide, reveal, restore, bring back"),
-    **_same("say what to select instead", "clear the selection, invert the selection, clear selection, "
-            "invert selection, deselect, unselect, select none, select nothing, reset the selection"),
-    **_same("objects cannot be renamed or grouped", "rename, group, ungroup, merge, split, label"),
-    **_same("one thing cannot be turned to face another yet", "face, aim, orient, align"),
-}  # fmt: skip
 
 # What the session answers, not a planner; and words that ask for nothing.
 COMMANDS = frozenset(
@@ -187,21 +57,21 @@ NOUN_VERBS = bag(
 # ---- words inside a clause -----------------------------------------------------------------------------------------
 
 RELATIONS: dict[str, str] = {
-    **_same("left_of", "to the left of, left of, on the left of, at the left of, to the left side of, "
+    **same("left_of", "to the left of, left of, on the left of, at the left of, to the left side of, "
             "on the left side of, to the left hand side of, on the left hand side of"),
-    **_same("right_of", "to the right of, right of, on the right of, at the right of, to the right side of, "
+    **same("right_of", "to the right of, right of, on the right of, at the right of, to the right side of, "
             "on the right side of, to the right hand side of, on the right hand side of"),
-    **_same("in_front_of", "in front of, to the front of, at the front of"),
-    **_same("behind", "behind, in back of, at the back of, to the back of, in the back of"),
-    **_same("on", "on, on top of, onto, on to, upon, atop, on the top of, to the top of"),
-    **_same("under", "under, underneath, beneath"),
-    **_same("below", "below, below the level of"),
-    **_same("above", "above, over"),
-    **_same("inside", "inside, in, into, within, inside of"),
-    **_same("next_to", "next to, beside, by, near, near to, close to, alongside, adjacent to, at, at the side of, "
+    **same("in_front_of", "in front of, to the front of, at the front of"),
+    **same("behind", "behind, in back of, at the back of, to the back of, in the back of"),
+    **same("on", "on, on top of, onto, on to, upon, atop, on the top of, to the top of"),
+    **same("under", "under, underneath, beneath"),
+    **same("below", "below, below the level of"),
+    **same("above", "above, over"),
+    **same("inside", "inside, in, into, within, inside of"),
+    **same("next_to", "next to, beside, by, near, near to, close to, alongside, adjacent to, at, at the side of, "
             "to the side of, by the side of, right next to, right by, close by, right beside, surrounding, around by, "
             "in the vicinity of, not far from, next"),
-    **_same("against", "against, up against, along, flush against"),
+    **same("against", "against, up against, along, flush against"),
 }  # fmt: skip
 
 INSIDE: dict[str, Entry] = {
@@ -210,156 +80,156 @@ INSIDE: dict[str, Entry] = {
     **{f"directly {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside",)},
     **{f"right {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside", "right_of", "left_of")},
     **{f"just {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside",)},
-    **_same(("BETWEEN", None), "between, in between"),
-    **_same(("NEAR", "nearest_to"), "nearest, nearest to, closest to, closest, nearest from"),
-    **_same(("NEAR", "farthest_from"), "farthest from, furthest from, farthest away from, furthest away from"),
-    **_same(("FROM", None), "from, off, off of, out of"),
-    **_same(("OF", None), "of"),
-    **_same(("TO", None), "to, over to, up to"),
-    **_same(("TOWARD", None), "toward, towards, closer to, nearer to, nearer, in the direction of"),
-    **_same(("WITH", None), "with"),
-    **_same(("FOR", None), "for"),
-    **_same(("AS", None), "as"),
-    **_same(("NOT", None), "not"),
-    **_same(("LIKE", None), "like, similar to, same as, identical to, matching"),
-    **_same(("GOES", None), "has to go, have to go, needs to go, need to go, must go, should go, can go, "
+    **same(("BETWEEN", None), "between, in between"),
+    **same(("NEAR", "nearest_to"), "nearest, nearest to, closest to, closest, nearest from"),
+    **same(("NEAR", "farthest_from"), "farthest from, furthest from, farthest away from, furthest away from"),
+    **same(("FROM", None), "from, off, off of, out of"),
+    **same(("OF", None), "of"),
+    **same(("TO", None), "to, over to, up to"),
+    **same(("TOWARD", None), "toward, towards, closer to, nearer to, nearer, in the direction of"),
+    **same(("WITH", None), "with"),
+    **same(("FOR", None), "for"),
+    **same(("AS", None), "as"),
+    **same(("NOT", None), "not"),
+    **same(("LIKE", None), "like, similar to, same as, identical to, matching"),
+    **same(("GOES", None), "has to go, have to go, needs to go, need to go, must go, should go, can go, "
             "has got to go, have got to go, gotta go, may go, ought to go, can be removed, can be deleted"),
-    **_same(("AWAY", None), "away, out"),
-    **_same(("AROUND", None), "around, round, the other way around, the other way"),
-    **_same(("UPSIDE", None), "upside down, on its head"),
-    **_same(("APART", None), "apart"),
-    **_same(
+    **same(("AWAY", None), "away, out"),
+    **same(("AROUND", None), "around, round, the other way around, the other way"),
+    **same(("UPSIDE", None), "upside down, on its head"),
+    **same(("APART", None), "apart"),
+    **same(
         ("BUT", None),
         "but, but not, except, except for, excepting, excluding, other than, apart from, aside from, besides, "
         "but leave, but keep, but do not touch, save for, bar, minus, and not, without touching, without removing, "
         "without moving, without deleting, without changing, without affecting, without including, leaving, leaving "
         "out, keeping, not counting, not including, other then, but never",
     ),
-    **_same(("AND", None), "and, &, and also, as well as, plus, along with, together with, and then"),
-    **_same(("SPOT", "corner"), "in the corner, in the corner of the room, to the corner, in a corner, "
+    **same(("AND", None), "and, &, and also, as well as, plus, along with, together with, and then"),
+    **same(("SPOT", "corner"), "in the corner, in the corner of the room, to the corner, in a corner, "
             "into the corner, to the corner of the room, "
             "into a corner, in one corner, into the corner of the room, to a corner"),
-    **_same(("SPOT", "center"), "in the middle, in the middle of the room, in the center, in the centre, "
+    **same(("SPOT", "center"), "in the middle, in the middle of the room, in the center, in the centre, "
             "to the center, to the centre, to the middle, "
             "in the center of the room, in the centre of the room, at the center of the room, "
             "at the centre of the room, at the middle of the room, "
             "to the middle of the room, to the center of the room, to the centre of the room, into the middle, "
             "into the middle of the room, into the center of the room, into the centre of the room"),
-    **_same(("CENTER", None), "in the middle of, in the center of, in the centre of, to the middle of, "
+    **same(("CENTER", None), "in the middle of, in the center of, in the centre of, to the middle of, "
             "to the center of, to the centre of, at the center of, at the centre of"),
-    **_same(("SIDE", "leftmost"), "on the left, on the left side, on the left hand side, at the left, on my left, "
+    **same(("SIDE", "leftmost"), "on the left, on the left side, on the left hand side, at the left, on my left, "
             "on the far left, to the far left, on the very left, farthest to the left, furthest to the left"),
-    **_same(("SIDE", "rightmost"), "on the right, on the right side, on the right hand side, at the right, "
+    **same(("SIDE", "rightmost"), "on the right, on the right side, on the right hand side, at the right, "
             "on my right, on the far right, to the far right, on the very right, farthest to the right, "
             "furthest to the right"),
-    **_same(("SIDE", "nearest"), "in front, at the front, in the front, closest to me, nearest to me, nearest me, "
+    **same(("SIDE", "nearest"), "in front, at the front, in the front, closest to me, nearest to me, nearest me, "
             "closest to the camera, nearest to the camera, in the foreground, nearest to the viewer, nearest the "
             "viewer, closest to the viewer, nearest the camera, closest to us, nearest to us, at the very front"),
-    **_same(("SIDE", "farthest"), "at the back, in the back, farthest from me, furthest from me, farthest away, "
+    **same(("SIDE", "farthest"), "at the back, in the back, farthest from me, furthest from me, farthest away, "
             "furthest away, in the background, farthest from the viewer, furthest from the viewer, farthest from the "
             "camera, furthest from the camera, farthest from us, furthest from us, at the very back"),
-    **_same(("SIDE", "highest"), "at the top, on the top"),
-    **_same(("SIDE", "lowest"), "at the bottom, on the bottom"),
-    **_same(("SIDE", "leftmost"), "on the left of the room, on the left side of the room"),
-    **_same(("SIDE", "rightmost"), "on the right of the room, on the right side of the room"),
-    **_same(("SIDE", "nearest"), "at the front of the room, in the front of the room"),
-    **_same(("SIDE", "farthest"), "at the back of the room, in the back of the room"),
-    **_same(("NOWHERE", None), "to the back of the room, to the front of the room, to the left of the room, "
+    **same(("SIDE", "highest"), "at the top, on the top"),
+    **same(("SIDE", "lowest"), "at the bottom, on the bottom"),
+    **same(("SIDE", "leftmost"), "on the left of the room, on the left side of the room"),
+    **same(("SIDE", "rightmost"), "on the right of the room, on the right side of the room"),
+    **same(("SIDE", "nearest"), "at the front of the room, in the front of the room"),
+    **same(("SIDE", "farthest"), "at the back of the room, in the back of the room"),
+    **same(("NOWHERE", None), "to the back of the room, to the front of the room, to the left of the room, "
             "to the right of the room, to the left side of the room, to the right side of the room, "
             "to the opposite side of the room, "
             "to the other side of the room, to the side, on its side, on its back, on their side, on their sides, "
             "side by side, on either side of, on each side of, on both sides of, every other, every second, "
             "in a line, in a circle, in a row, in rows"),
-    **_same(("COUNTED", "right"), "from the right, counting from the right, from right to left, from right"),
-    **_same(("COUNTED", "left"), "from the left, counting from the left, from left to right, from left"),
-    **_same(("DIR", "left"), "to the left, left, leftward, leftwards, to my left, over to the left, further left, "
+    **same(("COUNTED", "right"), "from the right, counting from the right, from right to left, from right"),
+    **same(("COUNTED", "left"), "from the left, counting from the left, from left to right, from left"),
+    **same(("DIR", "left"), "to the left, left, leftward, leftwards, to my left, over to the left, further left, "
             "to the left side, more to the left, further to the left, farther left, over left"),
-    **_same(("DIR", "right"), "to the right, right, rightward, rightwards, to my right, over to the right, further "
+    **same(("DIR", "right"), "to the right, right, rightward, rightwards, to my right, over to the right, further "
             "right, to the right side, more to the right, further to the right, farther right, over right"),
-    **_same(("DIR", "forward"), "forward, forwards, away from me, away from the viewer, away from the camera, "
+    **same(("DIR", "forward"), "forward, forwards, away from me, away from the viewer, away from the camera, "
             "further "
             "away, farther away, to the back, back, further back, farther back, toward the back, towards the back"),
-    **_same(("DIR", "backward"), "backward, backwards, toward me, towards me, closer to me, nearer to me, toward the "
+    **same(("DIR", "backward"), "backward, backwards, toward me, towards me, closer to me, nearer to me, toward the "
             "viewer, toward the camera, towards the camera, towards the viewer, to the front, closer, nearer, to me, "
             "closer to the camera, closer to the viewer, toward the front, towards the front"),
-    **_same(("DIR", "up"), "up, upward, upwards, higher up, further up"),
-    **_same(("DIR", "down"), "down, downward, downwards, lower down, further down"),
-    **_same(("CLOCK", -1), "clockwise"),
-    **_same(("CLOCK", 1), "counterclockwise, counter clockwise, anticlockwise, anti clockwise"),
-    **_same(("DEGREE", "little"), "a bit, a little, a little bit, slightly, somewhat, a touch, a tad, a smidge, "
+    **same(("DIR", "up"), "up, upward, upwards, higher up, further up"),
+    **same(("DIR", "down"), "down, downward, downwards, lower down, further down"),
+    **same(("CLOCK", -1), "clockwise"),
+    **same(("CLOCK", 1), "counterclockwise, counter clockwise, anticlockwise, anti clockwise"),
+    **same(("DEGREE", "little"), "a bit, a little, a little bit, slightly, somewhat, a touch, a tad, a smidge, "
             "a tiny bit, a hair, ever so slightly, a wee bit"),
-    **_same(("DEGREE", "much"), "much, a lot, way, far, considerably, significantly, a great deal, a good deal, "
+    **same(("DEGREE", "much"), "much, a lot, way, far, considerably, significantly, a great deal, a good deal, "
             "substantially, lots, so much, very much"),
-    **_same(("MORE", None), "more, even more"),
-    **_same(("LESS", None), "less, even less"),
-    **_same(("LIGHT", "darker"), "darker"),
-    **_same(("LIGHT", "lighter"), "lighter, brighter, paler"),
-    **_same(("LIGHT", "warmer"), "warmer"),
-    **_same(("LIGHT", "cooler"), "cooler, colder"),
-    **_same(("LIGHT", "more_saturated"), "more vivid, more saturated, more colorful, more colourful, more vibrant, "
+    **same(("MORE", None), "more, even more"),
+    **same(("LESS", None), "less, even less"),
+    **same(("LIGHT", "darker"), "darker"),
+    **same(("LIGHT", "lighter"), "lighter, brighter, paler"),
+    **same(("LIGHT", "warmer"), "warmer"),
+    **same(("LIGHT", "cooler"), "cooler, colder"),
+    **same(("LIGHT", "more_saturated"), "more vivid, more saturated, more colorful, more colourful, more vibrant, "
             "more intense, richer"),
-    **_same(("LIGHT", "less_saturated"), "less vivid, less saturated, less colorful, less colourful, less vibrant, "
+    **same(("LIGHT", "less_saturated"), "less vivid, less saturated, less colorful, less colourful, less vibrant, "
             "less intense, more muted, duller, more washed out"),
-    **_same(("TOWARDHUE", "blue"), "bluer"), **_same(("TOWARDHUE", "red"), "redder"),
-    **_same(("TOWARDHUE", "green"), "greener"), **_same(("TOWARDHUE", "yellow"), "yellower"),
-    **_same(("TOWARDHUE", "pink"), "pinker"), **_same(("TOWARDHUE", "brown"), "browner"),
-    **_same(("TOWARDHUE", "white"), "whiter"), **_same(("TOWARDHUE", "black"), "blacker"),
-    **_same(("TOWARDHUE", "gray"), "greyer, grayer"),
-    **_same(("GROWN", ("all", True)), "bigger, larger, huger"),
-    **_same(("GROWN", ("all", False)), "smaller, tinier, littler"),
-    **_same(("GROWN", ("height", True)), "taller"),
-    **_same(("GROWN", ("height", False)), "shorter, flatter"),
-    **_same(("GROWN", ("width", True)), "wider, broader, longer"),
-    **_same(("GROWN", ("width", False)), "narrower, slimmer, thinner"),
-    **_same(("GROWN", ("depth", True)), "deeper"),
-    **_same(("PROP", "all"), "size, scale, in size, dimensions"),
-    **_same(("PROP", "height"), "height, in height"),
-    **_same(("PROP", "width"), "width, length, in width, in length"),
-    **_same(("PROP", "depth"), "depth, in depth"),
-    **_same(("COLORWORD", None), "colour, color, paint, hue, shade, colored, coloured, tint"),
-    **_same(("ASHADE", None), "a shade of, a nice shade of, a coat of, a lick of, a dash of, a nice coat of, a fresh "
+    **same(("TOWARDHUE", "blue"), "bluer"), **same(("TOWARDHUE", "red"), "redder"),
+    **same(("TOWARDHUE", "green"), "greener"), **same(("TOWARDHUE", "yellow"), "yellower"),
+    **same(("TOWARDHUE", "pink"), "pinker"), **same(("TOWARDHUE", "brown"), "browner"),
+    **same(("TOWARDHUE", "white"), "whiter"), **same(("TOWARDHUE", "black"), "blacker"),
+    **same(("TOWARDHUE", "gray"), "greyer, grayer"),
+    **same(("GROWN", ("all", True)), "bigger, larger, huger"),
+    **same(("GROWN", ("all", False)), "smaller, tinier, littler"),
+    **same(("GROWN", ("height", True)), "taller"),
+    **same(("GROWN", ("height", False)), "shorter, flatter"),
+    **same(("GROWN", ("width", True)), "wider, broader, longer"),
+    **same(("GROWN", ("width", False)), "narrower, slimmer, thinner"),
+    **same(("GROWN", ("depth", True)), "deeper"),
+    **same(("PROP", "all"), "size, scale, in size, dimensions"),
+    **same(("PROP", "height"), "height, in height"),
+    **same(("PROP", "width"), "width, length, in width, in length"),
+    **same(("PROP", "depth"), "depth, in depth"),
+    **same(("COLORWORD", None), "colour, color, paint, hue, shade, colored, coloured, tint"),
+    **same(("ASHADE", None), "a shade of, a nice shade of, a coat of, a lick of, a dash of, a nice coat of, a fresh "
             "coat of, a new coat of, some, a fresh lick of, a layer of, a splash of, a touch of"),
-    **_same(("OPACITYWORD", True), "opacity, alpha"),
-    **_same(("OPACITYWORD", False), "transparency"),
-    **_same(("CLEARLY", 0.3), "transparent, see through, translucent"),
-    **_same(("CLEARLY", 0.5), "semi transparent, half see through"),
-    **_same(("CLEARLY", 0.0), "invisible, completely transparent, fully transparent, totally transparent, hidden"),
-    **_same(("OPAQUE", None), "opaque, visible"),
-    **_same(("GONE", None), "gone, disappear, vanish, go away, removed, deleted, thrown out, thrown away, taken away, "
+    **same(("OPACITYWORD", True), "opacity, alpha"),
+    **same(("OPACITYWORD", False), "transparency"),
+    **same(("CLEARLY", 0.3), "transparent, see through, translucent"),
+    **same(("CLEARLY", 0.5), "semi transparent, half see through"),
+    **same(("CLEARLY", 0.0), "invisible, completely transparent, fully transparent, totally transparent, hidden"),
+    **same(("OPAQUE", None), "opaque, visible"),
+    **same(("GONE", None), "gone, disappear, vanish, go away, removed, deleted, thrown out, thrown away, taken away, "
             "taken out, erased"),
-    **_same(("TOBE", None), "to be, be, become, look, to look"),
-    **_same(("SHOULD", None), "should be, needs to be, need to be, must be, has to be, have to be, ought to be, "
+    **same(("TOBE", None), "to be, be, become, look, to look"),
+    **same(("SHOULD", None), "should be, needs to be, need to be, must be, has to be, have to be, ought to be, "
             "should become, should look, should all be, must all be, should both be, need to all be, have to all be, "
             "ought to all be, want to be, could be, would be better, would look better, would look nicer"),
-    **_same(("COPIES", None), "copy of, copies of, duplicate of, duplicates of, clone of, clones of, more copies of, "
+    **same(("COPIES", None), "copy of, copies of, duplicate of, duplicates of, clone of, clones of, more copies of, "
             "another copy of, copies from, more of"),
-    **_same(("REL", None), "that is, that are, which is, which are, who is, that was"),
-    **_same(("DET", "def"), "the, my, our, your, this, that, these, those, the very, the whole, the entire"),
-    **_same(("DET", "indef"), "a, an, another, some, one more, a new, some new"),
-    **_same(("DET", "all"), "all, every, each, all the, all of the, every single, every one of the, each of the, "
+    **same(("REL", None), "that is, that are, which is, which are, who is, that was"),
+    **same(("DET", "def"), "the, my, our, your, this, that, these, those, the very, the whole, the entire"),
+    **same(("DET", "indef"), "a, an, another, some, one more, a new, some new"),
+    **same(("DET", "all"), "all, every, each, all the, all of the, every single, every one of the, each of the, "
             "all these, all those, all of these, all of those, all my, all of my, any and all"),
-    **_same(("DET", "both"), "both, both the, both of the"),
-    **_same(("DET", "any"), "any, one of the, any of the, any one of the, either, either of the"),
-    **_same(("OTHER", None), "other, remaining"),
-    **_same(("PRON", "it"), "it, them, them all, them both, it all, this one, that one, these ones, those ones, "
+    **same(("DET", "both"), "both, both the, both of the"),
+    **same(("DET", "any"), "any, one of the, any of the, any one of the, either, either of the"),
+    **same(("OTHER", None), "other, remaining"),
+    **same(("PRON", "it"), "it, them, them all, them both, it all, this one, that one, these ones, those ones, "
     "the same, the same one, "
             "the same thing, the same object, the same ones, this thing, that thing, all of them, all of it, "
             "both of them, each of them, the selection, the selected, the selected object, the selected objects, "
             "the current selection, my selection, the copy, the copies, the duplicate, the clone, the new one, "
             "the new ones, the selected one, the whole thing, him"),
-    **_same(("LIKEIT", None), "like it, like this, like that, like this one, like that one, like these, like those, "
+    **same(("LIKEIT", None), "like it, like this, like that, like this one, like that one, like these, like those, "
             "like them, just like it"),
-    **_same(("PRON", "any"), "one of them, any of them, either of them"),
-    **_same(("EVERYTHING", None), "whatever is, what is, everything, all things, all objects, the whole scene, "
+    **same(("PRON", "any"), "one of them, any of them, either of them"),
+    **same(("EVERYTHING", None), "whatever is, what is, everything, all things, all objects, the whole scene, "
             "the entire scene, anything, "
             "every object, all the objects, the scene, the whole room, everything in the scene"),
-    **_same(("EVERYTHING", "else"), "everything else, the rest, all the rest, all else, anything else, "
+    **same(("EVERYTHING", "else"), "everything else, the rest, all the rest, all else, anything else, "
             "the rest of the scene, the rest of the room, the rest of it"),
-    **_same(("ONE", False), "one"),
-    **_same(("ONE", True), "ones"),
-    **_same(("OTHERS", None), "the others, all the others, all others, the other ones, all the other ones"),
-    **_same(("THING", False), "thing, object, item, part, piece, area, region, element, bit"),
-    **_same(("THING", True), "things, objects, items, parts, pieces, areas, regions, elements, bits, stuff"),
+    **same(("ONE", False), "one"),
+    **same(("ONE", True), "ones"),
+    **same(("OTHERS", None), "the others, all the others, all others, the other ones, all the other ones"),
+    **same(("THING", False), "thing, object, item, part, piece, area, region, element, bit"),
+    **same(("THING", True), "things, objects, items, parts, pieces, areas, regions, elements, bits, stuff"),
 }  # fmt: skip
 
 # What is said of the room is said of a garden too.
@@ -373,23 +243,23 @@ INSIDE |= {
 
 # Only before a noun ("the left chair"), or after a determiner where the noun is left out ("the largest").
 ATTRIBUTES: dict[str, Entry] = {
-    **_same(("SUP", "largest"), "largest, biggest, greatest"),
-    **_same(("SUP", "smallest"), "smallest, tiniest, littlest"),
-    **_same(("SUP", "tallest"), "tallest"),
-    **_same(("SUP", "shortest"), "shortest"),
-    **_same(("SUP", "nearest"), "nearest, closest, front, foremost, frontmost, front most"),
-    **_same(("SUP", "farthest"), "farthest, furthest, far, back, rear, rearmost, most distant, backmost, hindmost"),
-    **_same(("SUP", "leftmost"), "leftmost, far left, furthest left, left most, left, left hand, left side"),
-    **_same(("SUP", "rightmost"), "rightmost, far right, furthest right, right most, right, right hand, right side"),
-    **_same(("SUP", "highest"), "highest, topmost, top, uppermost, upper"),
-    **_same(("SUP", "lowest"), "lowest, bottom, bottommost, lower"),
-    **_same(("SUP", "middle"), "middle, centre, center, central, middlemost"),
-    **_same(("SIZE", "small"), "small, little, tiny, mini, smaller"),
-    **_same(("SIZE", "large"), "big, large, huge, giant, enormous, massive, bigger, larger"),
-    **_same(("SIZE", "tall"), "tall, high, taller"),
-    **_same(("SIZE", "short"), "short, low, shorter"),
-    **_same(("SIZE", "wide"), "wide, long, broad, wider, longer"),
-    **_same(("SIZE", "narrow"), "narrow, thin, slim, skinny, narrower"),
+    **same(("SUP", "largest"), "largest, biggest, greatest"),
+    **same(("SUP", "smallest"), "smallest, tiniest, littlest"),
+    **same(("SUP", "tallest"), "tallest"),
+    **same(("SUP", "shortest"), "shortest"),
+    **same(("SUP", "nearest"), "nearest, closest, front, foremost, frontmost, front most"),
+    **same(("SUP", "farthest"), "farthest, furthest, far, back, rear, rearmost, most distant, backmost, hindmost"),
+    **same(("SUP", "leftmost"), "leftmost, far left, furthest left, left most, left, left hand, left side"),
+    **same(("SUP", "rightmost"), "rightmost, far right, furthest right, right most, right, right hand, right side"),
+    **same(("SUP", "highest"), "highest, topmost, top, uppermost, upper"),
+    **same(("SUP", "lowest"), "lowest, bottom, bottommost, lower"),
+    **same(("SUP", "middle"), "middle, centre, center, central, middlemost"),
+    **same(("SIZE", "small"), "small, little, tiny, mini, smaller"),
+    **same(("SIZE", "large"), "big, large, huge, giant, enormous, massive, bigger, larger"),
+    **same(("SIZE", "tall"), "tall, high, taller"),
+    **same(("SIZE", "short"), "short, low, shorter"),
+    **same(("SIZE", "wide"), "wide, long, broad, wider, longer"),
+    **same(("SIZE", "narrow"), "narrow, thin, slim, skinny, narrower"),
 }  # fmt: skip
 
 # Dropped wherever they stand.

@@ -12,6 +12,7 @@ from typing import Any
 
 from ...gaussians import color as colors
 from . import lexicon, nouns, quantities
+from .verbs import Entry
 from .words import bag
 
 # Colours that are things as well ("delete the orange").
@@ -79,11 +80,11 @@ class Reading:
     def __init__(self, texts: Sequence[str]) -> None:
         self.texts = tuple(texts)
 
-    def phrase(self, i: int) -> tuple[lexicon.Entry, int] | None:
+    def phrase(self, i: int) -> tuple[Entry, int] | None:
         """The phrase of the closed vocabulary at `i`."""
         return match(lexicon.INSIDE_PHRASES, self.texts, i)
 
-    def verb(self, i: int) -> tuple[lexicon.Entry, int, int | None] | None:
+    def verb(self, i: int) -> tuple[Entry, int, int | None] | None:
         """The verb at `i`, how many words it has there, and where its particle stands if behind the object."""
         if found := self.gerund(i):
             return (*found, None)
@@ -92,7 +93,7 @@ class Reading:
         found = match(lexicon.VERB_PHRASES, self.texts, i)
         return (*found, None) if found else None
 
-    def separable(self, j: int) -> tuple[lexicon.Entry, int, int] | None:
+    def separable(self, j: int) -> tuple[Entry, int, int] | None:
         """ "blow it up": a verb whose particle stands behind its object, within the clause."""
         for k in range(j + 2, min(j + 10, len(self.texts))):
             if self.texts[k] in (",", "and", "then"):
@@ -102,7 +103,7 @@ class Reading:
                 return entry, 1, k
         return None
 
-    def gerund(self, j: int) -> tuple[lexicon.Entry, int] | None:
+    def gerund(self, j: int) -> tuple[Entry, int] | None:
         """ "would you mind removing": the verb of the word in -ing behind such an opener."""
         opened = any(self.texts[max(j - len(p), 0) : j] == p for p in lexicon.GERUND_OPENERS)
         text = self.texts[j] if j < len(self.texts) else ""

@@ -19,6 +19,7 @@ from typing import Any
 
 from . import lexicon, quantities
 from .reading import NOUN_COLORS, Reading, color_at, compounds, is_plain, match, verb_classes
+from .verbs import Entry
 from .words import Word, phrases
 
 _NOUNISH = frozenset({"NOUN", "ONE", "THING"})
@@ -374,7 +375,7 @@ class Tagger:
             return self._put("SIZEWORD", value, i, taken)
         return None
 
-    def _phrase(self, i: int, entry: lexicon.Entry, taken: int) -> int:
+    def _phrase(self, i: int, entry: Entry, taken: int) -> int:
         """A phrase of the closed vocabulary, adjusted to its surroundings."""
         kind, value = entry
         text, behind = self.texts[i], i + taken
