@@ -162,7 +162,7 @@ class _Play:
             return found
         named = self.stage.names(c.group for c in found.candidates if c.group >= 0)
         near = named if found.verdict == "ambiguous" else named[:3]
-        raise _Stopped("ambiguous" if found.verdict == "ambiguous" else "absent", found.reason, near)
+        raise _Stopped("ambiguous" if found.verdict == "ambiguous" else "absent", self.stage.told(found.reason), near)
 
     def _anchors(self, op: EditOp) -> list[Selection]:
         """What its place or direction refers to; things added by this plan have no place of their own yet."""

@@ -6,6 +6,7 @@ graphs. Refuses to resolve anything itself, and to be looked at: it has no shape
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
@@ -36,6 +37,7 @@ _FAMILY = 0.7  # a "light blue" thing answers to "blue" at least this well, to a
 _NO_COLOR: Vec3 = (1000.0, 0.0, 0.0)
 
 _FURNITURE = "furnishing"  # the resolver takes "furniture" for anything at all
+_ROW = re.compile(r"\(group (\d+)\)")
 _BEFORE_WALL = 0.45  # metres from a wall to the middle of what stands against it
 _REACH = 0.3  # metres, a hand's span and a half
 _UPRIGHT = ("above", "below", "under")
@@ -142,6 +144,10 @@ class Stage:
     def names(self, groups: Iterable[int]) -> tuple[Id, ...]:
         """The graph's ids of groups, each once."""
         return tuple(dict.fromkeys(self.ids[g] for g in groups))
+
+    def told(self, reason: str) -> str:
+        """A reason of the resolver with the graph's ids in place of rows."""
+        return _ROW.sub(lambda row: f"({self.ids[int(row[1])]})", reason)
 
     def group(self, index: int) -> Group:
         """A row of the stand-in's table."""

@@ -131,7 +131,9 @@ def test_slips_are_told() -> None:
 
 
 def test_candidates_are_ids() -> None:
-    assert set(ask("delete the lamp").candidates) == {6, 7}
+    found = ask("delete the lamp")
+    assert set(found.candidates) == {6, 7}
+    assert "(6)" in found.reason and "(7)" in found.reason and "group" not in found.reason
     assert ask("delete the piano").verdict == "absent"
 
 
