@@ -108,16 +108,16 @@ def _by_own_votes(
     cloud: GaussianCloud, surface: Surface, group: NDArray[np.int32], column: NDArray[np.int32],
     owner: NDArray[np.int32], voted: NDArray[np.int32],
 ) -> NDArray[np.int32]:  # fmt: skip
-    """`column` with Gaussians off the skin, but within its reach, moved to the nearest surface point of the track that
-    their own votes give them to: they are few and large, and much of a distant thing is drawn by them.
+    """`column` with Gaussians off the skin moved to the nearest surface point of the track that their own votes give
+    them to: they are few and large, and much of a distant thing is drawn by them. Views that agree on one tell it from
+    a floater better than its distance from the skin does.
 
     Args:
         group, owner: `[P]` group and track of each surface point.
         voted: `[N]` track of each Gaussian by its own votes, see `claims.by_votes`.
     """
-    column, off = column.copy(), column != NO_GROUP
+    column, off = column.copy(), (voted >= 0) | ((voted != UNTOLD) & (column != NO_GROUP))
     off[surface.rows] = False
-    off &= voted != UNTOLD
     for k in np.unique(voted[off]).tolist():
         points, rows = np.flatnonzero(owner == k), np.flatnonzero(off & (voted == k))
         if len(points):

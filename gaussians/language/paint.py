@@ -30,6 +30,7 @@ FEATURES = (
 )  # fmt: skip
 LEAST = 0.3  # of a superpoint's points near the plane: others are things that merely touch it
 ALIKE = 5.0  # Lab chroma difference within which pieces reach together
+STRANGE = 0.25  # of the first guess: a rule that keeps less of a plane than this was not fitted on anything like it
 
 
 @dataclass(frozen=True)
@@ -59,12 +60,16 @@ class Pieces:
 
 
 def painted(surface: Surface, pieces: Pieces) -> Mask:
-    """`[S]` which superpoints belong to the plane."""
+    """`[S]` which superpoints belong to the plane.
+
+    By the fitted rule, or by the first guess where the rule is at a loss, as before the many shades of a real floor.
+    """
     chosen, features = describe(surface, pieces)
     kept = np.zeros(len(pieces.guess), bool)
     if len(chosen):
         kept[chosen] = _rule().probability(features) > 0.5
-    return kept
+    near = np.bincount(pieces.own[pieces.near], minlength=len(kept))
+    return kept if near[kept].sum() >= STRANGE * near[pieces.guess].sum() else pieces.guess
 
 
 def describe(surface: Surface, p: Pieces) -> tuple[I64, F64]:

@@ -23,7 +23,7 @@ from ..scene import Frame, Scene
 from .field import Group, LanguageField
 
 SUFFIX = ".field.safetensors"
-VERSION = "4"
+VERSION = "5"
 _ENTRY = "scenewright.field"
 _GROUPS = TypeAdapter(tuple[Group, ...])
 _NOTES = TypeAdapter(tuple[str, ...])
