@@ -1,16 +1,18 @@
-"""How much two selections of Gaussians agree: over the whole of them, and along their borders only.
+"""How much two selections agree: over the whole of them, and along their borders only, in 3D or drawn.
 
-Knows masks and points. Refuses to know where a selection comes from.
+Knows masks, points and pixels. Refuses to know where a selection comes from.
 """
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
 from scipy.spatial import cKDTree
 
 Mask = NDArray[np.bool_]
 BORDER = 0.03  # metres from a border within which a Gaussian belongs to it
+CONTOUR = 0.02  # of a picture's diagonal, likewise for a pixel: what Cheng et al. 2021 take
 
 
 def iou(a: Mask, b: Mask) -> float:
@@ -49,3 +51,16 @@ def trimap_iou(truth: Mask, found: Mask, points: NDArray[np.floating], distance:
     """
     band = border(truth, points, distance) | border(~truth, points, distance)
     return iou(truth & band, found & band) if band.any() else None
+
+
+def contour(mask: Mask, share: float = CONTOUR) -> Mask:
+    """`[H, W]`: the pixels of a silhouette within `share` of the picture's diagonal of its contour; the picture's own
+    edge is a contour too."""
+    inside = distance_transform_edt(np.pad(mask, 1))[1:-1, 1:-1]
+    near: Mask = mask & (inside <= share * np.hypot(*mask.shape))
+    return near
+
+
+def contour_iou(truth: Mask, found: Mask, share: float = CONTOUR) -> float:
+    """Boundary IoU of two silhouettes `[H, W]` as Cheng et al. 2021 define it, in pixels."""
+    return iou(contour(truth, share), contour(found, share))

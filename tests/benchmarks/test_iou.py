@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scenewright.benchmarks._iou import border, border_iou, iou, trimap_iou
+from scenewright.benchmarks._iou import border, border_iou, contour, contour_iou, iou, trimap_iou
 
 DISTANCE = 0.25
 
@@ -62,3 +62,24 @@ def test_a_refusal_is_no_agreement_even_at_the_border() -> None:
 def test_the_distance_itself_is_near(gap: float, near: bool) -> None:
     points, truth = np.array([[0.0, 0, 0], [gap, 0, 0]]), np.array([True, False])
     assert border(truth, points, DISTANCE).any() == near
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.3, 0.8, 1.0]))
+def test_the_contour_is_what_the_definition_says(seed: int, share: float) -> None:
+    mask = np.random.default_rng(seed).random((7, 9)) < share
+    width = 0.2 * np.hypot(7, 9)
+    outside = [(y, x) for y in range(-1, 8) for x in range(-1, 10) if not (0 <= y < 7 and 0 <= x < 9 and mask[y, x])]
+    slow = np.zeros_like(mask)
+    for y, x in zip(*np.nonzero(mask), strict=True):
+        slow[y, x] = min(np.hypot(y - v, x - u) for v, u in outside) <= width
+    assert (contour(mask, 0.2) == slow).all()
+
+
+def test_a_rim_that_bleeds_costs_more_than_the_whole() -> None:
+    truth = np.zeros((100, 100), bool)
+    truth[20:80, 20:80] = True
+    bled = np.zeros_like(truth)
+    bled[17:83, 17:83] = True
+    assert contour_iou(truth, truth) == 1
+    assert contour_iou(truth, bled) < 0.5 < iou(truth, bled)
+    assert contour_iou(truth, np.zeros_like(truth)) == 0
