@@ -66,7 +66,7 @@ def embed(
     tracks = None if masks is None else associate(lift(scene.cloud, masks.masks(scene, progress)))
     progress("segments", 0.0)
     with one_thread():
-        eyes = encoder if encoder.image_size else encoders.load()  # text vectors alone cannot look at pictures
+        eyes = encoder if _knows_pieces(encoder) else encoders.load()
         labels, things = segment(scene, surface, eyes, progress, portraits)
         owner = None
         if tracks is not None:
@@ -81,6 +81,12 @@ def embed(
         on_skin[surface.rows] = True
         embedded = with_table(scene, things, column, on_skin, seen, encoder)
     return embedded if tracks is None else _noted(embedded, tracks)
+
+
+def _knows_pieces(encoder: Encoder) -> bool:
+    """Whether an encoder learnt what is no whole thing, as ours do on pictures of pieces; one of photographs did not,
+    takes a hundred times longer to look, and is asked only for the names of what was found."""
+    return bool(encoder.image_size) and not getattr(encoder, "on_background", False)
 
 
 def _vector(track: Track, encoder: Encoder) -> NDArray[np.float32] | None:
