@@ -93,7 +93,8 @@ def _with_saved_field(loaded: Scene, scene: Scene, opening: Opening) -> tuple[Sc
         return scene, encoder
     if embedded.language.encoder == encoder.fingerprint:
         return embedded, encoder
-    terminal.say(f"note: the saved language field is of encoder {embedded.language.encoder}; embedding again")
+    made_by = embedded.language.encoder
+    terminal.say(f"note: the saved language field is of encoder {made_by}; embedding again (--encoder takes that one)")
     return scene, encoder
 
 
