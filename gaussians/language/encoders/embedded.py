@@ -8,7 +8,6 @@ such folders. Knows these files. Refuses to know how the vectors are used.
 from __future__ import annotations
 
 import hashlib
-import json
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -20,7 +19,7 @@ from numpy.typing import NDArray
 from ...errors import BackendError
 from ..calibration import Calibration
 from . import checked_images, checked_texts, weights_folder
-from .sessions import open_session
+from .sessions import open_session, read_object
 from .vocabulary import Vocabulary
 from .words import normalise
 
@@ -74,7 +73,7 @@ class Embedded:
 
     @cached_property
     def calibration(self) -> Calibration:
-        return Calibration.from_json(_read_json(self.folder / "calibration.json"))
+        return Calibration.from_json(read_object(self.folder / "calibration.json", _ADVICE))
 
     def encode_text(self, texts: list[str]) -> NDArray[np.float32]:
         rows = checked_texts(texts)
@@ -102,7 +101,7 @@ class Embedded:
 
     @cached_property
     def _words(self) -> dict[str, Any]:
-        return _read_json(self.folder / "words.json")
+        return read_object(self.folder / "words.json", _ADVICE)
 
     @cached_property
     def _index(self) -> dict[str, int]:
@@ -145,11 +144,3 @@ def _unit(rows: NDArray[np.floating]) -> NDArray[np.float32]:
         np.float32
     )
     return result
-
-
-def _read_json(path: Path) -> dict[str, Any]:
-    try:
-        data: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise BackendError(f"{path} cannot be read: {error}; {_ADVICE}") from error
-    return data

@@ -31,7 +31,7 @@ from ...errors import BackendError
 from ..calibration import Calibration, of_clip
 from . import checked_images, checked_texts
 from .pixels import Pixels
-from .sessions import open_session
+from .sessions import open_session, read_object
 from .vector_files import calibration_beside
 from .vocabulary import Vocabulary
 from .words import PROMPT, normalise
@@ -155,7 +155,7 @@ class Onnx:
     @cached_property
     def _pixels(self) -> Pixels:
         path = self.folder / "preprocessor_config.json"
-        said = _read_json(path)
+        said = read_object(path, _ADVICE)
         try:
             size = said["crop_size"] if "crop_size" in said else said["size"]
             if isinstance(size, dict):
@@ -181,7 +181,7 @@ class Onnx:
         except Exception as error:  # the library raises bare exceptions
             raise BackendError(f"{path} is not a tokenizer: {error}; {_ADVICE}") from error
         beside = self.folder / "tokenizer_config.json"
-        said = _read_json(beside) if beside.is_file() else {}
+        said = read_object(beside, _ADVICE) if beside.is_file() else {}
         shape = next(i.shape for i in self._text_session.get_inputs() if i.name == "input_ids")
         length = shape[1] if isinstance(shape[1], int) else int(min(said.get("model_max_length", _LENGTH), 1024))
         pad = said.get("pad_token", "")
@@ -230,11 +230,3 @@ def _unit(rows: NDArray[Any]) -> NDArray[np.float32]:
     wide = rows.astype(np.float32)
     result: NDArray[np.float32] = wide / np.maximum(np.linalg.norm(wide, axis=1, keepdims=True), 1e-12)
     return result
-
-
-def _read_json(path: Path) -> dict[str, Any]:
-    try:
-        data: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise BackendError(f"{path} cannot be read: {error}; {_ADVICE}") from error
-    return data

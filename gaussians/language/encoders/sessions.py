@@ -1,11 +1,15 @@
-"""Opens ONNX models for the encoders. Knows onnxruntime; refuses to know what a model computes."""
+"""Opens ONNX models, and the JSON beside them, for the encoders.
+
+Knows onnxruntime. Refuses to know what a model computes.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
 
-from ...errors import BackendError
+from ...errors import BackendError, FileError
+from ...files.foreign import read_json
 
 
 def open_session(path: Path, advice: str, threads: int = 0) -> Any:
@@ -28,3 +32,21 @@ def open_session(path: Path, advice: str, threads: int = 0) -> Any:
         return onnxruntime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
     except Exception as error:  # onnxruntime raises its own classes, which share no public base
         raise BackendError(f"{path} is not a usable ONNX model: {error}; {advice}") from error
+
+
+def read_object(path: Path, advice: str) -> dict[str, Any]:
+    """What a JSON file beside a model says.
+
+    Args:
+        advice: what the user can do if the file is broken.
+
+    Raises:
+        BackendError: it cannot be read, or is no JSON object.
+    """
+    try:
+        data = read_json(path)
+    except FileError as error:
+        raise BackendError(f"{error}; {advice}") from error
+    if not isinstance(data, dict):
+        raise BackendError(f"{path} must hold a JSON object, not {type(data).__name__}; {advice}")
+    return data

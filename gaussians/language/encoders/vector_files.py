@@ -25,7 +25,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...errors import BackendError
+from ...errors import BackendError, FileError
+from ...files.foreign import read_archive, read_array, read_json
 from ..calibration import Calibration
 
 Name = tuple[str, ...]  # a name and its synonyms
@@ -68,8 +69,8 @@ def calibration_beside(path: Path) -> Calibration | None:
     if not file.is_file():
         return None
     try:
-        return Calibration.from_json(json.loads(file.read_text(encoding="utf-8")))
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        return Calibration.from_json(read_json(file))
+    except (FileError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise BackendError(f"{file} is no calibration ({error!r}); it needs at least scale and threshold") from error
 
 
@@ -92,14 +93,13 @@ def _spoken(name: str) -> str:
 
 def _names(path: Path) -> list[Name]:
     try:
+        if path.suffix == ".json":
+            return _listed(read_json(path), path)
         content = path.read_text(encoding="utf-8")
-        if path.suffix != ".json":
-            lines = (line.split(",") for line in content.splitlines() if line.strip())
-            return plain([tuple(part.strip() for part in line if part.strip()) for line in lines])
-        entries = json.loads(content)
-    except (OSError, ValueError) as error:
+    except (FileError, OSError, ValueError) as error:
         raise BackendError(f"{path} cannot be read as a list of names: {error}") from error
-    return _listed(entries, path)
+    lines = ([part.strip() for part in line.split(",")] for line in content.splitlines() if line.strip())
+    return _listed([[part for part in line if part] for line in lines], path)
 
 
 def _listed(entries: Any, path: Path) -> list[Name]:
@@ -112,7 +112,8 @@ def _listed(entries: Any, path: Path) -> list[Name]:
     names: list[Name] = []
     for entry in entries:
         if isinstance(entry, dict):
-            entry = [entry.get("name"), *entry.get("synonyms", ())]
+            synonyms = entry.get("synonyms", [])
+            entry = [entry.get("name"), *synonyms] if isinstance(synonyms, list) else []
         words = [entry] if isinstance(entry, str) else entry
         if not isinstance(words, list) or not words or not all(isinstance(w, str) and w.strip() for w in words):
             raise problem
@@ -122,18 +123,23 @@ def _listed(entries: Any, path: Path) -> list[Name]:
 
 def _array(path: Path) -> NDArray[np.floating]:
     try:
-        array: NDArray[np.floating] = np.load(path, allow_pickle=False)
-    except (OSError, ValueError, EOFError) as error:
+        return _numbers(read_array(path), path)
+    except FileError as error:
         raise BackendError(f"{path} cannot be read as an array of text vectors: {error}") from error
-    return array
 
 
 def _npz(path: Path) -> tuple[list[Name], NDArray[np.floating]]:
     try:
-        with np.load(path, allow_pickle=False) as held:
-            return _listed([str(n) for n in held["names"]], path), held["text"]
-    except (OSError, ValueError, EOFError, KeyError) as error:
+        held = read_archive(path)
+        return _listed(np.atleast_1d(held["names"]).astype(str).tolist(), path), _numbers(held["text"], path)
+    except (FileError, KeyError) as error:
         raise BackendError(f"{path} needs the arrays names (strings) and text [T, D]: {error}") from error
+
+
+def _numbers(array: NDArray[Any], path: Path) -> NDArray[np.floating]:
+    if array.dtype.kind not in "fiu":
+        raise BackendError(f"{path} must hold text vectors of numbers, not of {array.dtype}")
+    return array
 
 
 def _safetensors(path: Path) -> tuple[list[Name], NDArray[np.floating]]:
@@ -142,5 +148,5 @@ def _safetensors(path: Path) -> tuple[list[Name], NDArray[np.floating]]:
     try:
         with safe_open(str(path), framework="numpy") as held:
             return _listed(json.loads((held.metadata() or {})["names"]), path), held.get_tensor("text")
-    except (OSError, ValueError, KeyError, SafetensorError) as error:
+    except (OSError, ValueError, KeyError, TypeError, RecursionError, SafetensorError) as error:
         raise BackendError(f"{path} needs a tensor text [T, D] and names in its metadata: {error!r}") from error

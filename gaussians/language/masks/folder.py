@@ -13,7 +13,6 @@ with an empty entry was, and nothing was found in it. Knows these files. Refuses
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,11 +24,14 @@ from numpy.typing import NDArray
 from ...camera import Camera
 from ...errors import FileError, UserError
 from ...files.capture import TRANSFORMS, read_capture
+from ...files.foreign import read_archive, read_json
 from ...scene import Scene
 from . import rle
 from .view import NONE, ViewMasks, packed
 
 INDEX = "masks.json"
+MOST_MASKS = 1 << 16  # of a photo: as many as a picture of 16 bits can number
+MOST_PIXELS = 1 << 32  # of all masks of a photo, a byte each while they are read
 LOOSE = 1.0  # pixels by which a side may differ from its photograph's proportions: halves of odd sizes are rounded
 
 Reader = Callable[[Camera], ViewMasks]
@@ -115,20 +117,11 @@ def _sized(camera: Camera, width: int, height: int) -> Camera:
     return camera.resized(width, height)
 
 
-def _json(path: Path) -> Any:
-    try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise FileError(f"cannot read {path}: {error.strerror or error}") from error
-    except ValueError as error:
-        raise FileError(f"{path} is no JSON: {error}") from error
-
-
 # -- masks.json and pictures of ids
 
 
 def _indexed(folder: Path) -> dict[str, Reader]:
-    told = _json(folder / INDEX)
+    told = read_json(folder / INDEX)
     if not isinstance(told, dict) or not all(isinstance(v, list) for v in told.values()):
         raise FileError(f"{folder / INDEX} must say {{photo: [{{id, label, score}}]}}")
     return {photo: _picture(folder / f"{Path(photo).stem}.png", entries) for photo, entries in told.items()}
@@ -141,10 +134,10 @@ def _picture(path: Path, entries: list[Any]) -> Reader:
             numbers = [int(e["id"]) for e in entries]
             labels = tuple(str(e.get("label", "")) for e in entries)
             scores = np.array([float(e.get("score", 1.0)) for e in entries], np.float32)
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
+        except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
             raise UserError(f"{INDEX} has an entry without a readable id, label and score ({error!r})") from error
-        if len(set(numbers)) < len(numbers) or any(n < 1 for n in numbers):
-            raise UserError(f"{INDEX} must number the masks of a photo from 1 without repeating, got {numbers}")
+        if len(set(numbers)) < len(numbers) or not all(1 <= n < MOST_MASKS for n in numbers):
+            raise UserError(f"{INDEX} must number the masks of a photo from 1 without repeating, got {numbers[:9]}")
         unknown = sorted(set(np.unique(drawn).tolist()) - {0, *numbers})
         if unknown:
             raise UserError(f"{path.name} has a pixel of value {unknown[0]}, which {INDEX} does not list")
@@ -157,14 +150,14 @@ def _picture(path: Path, entries: list[Any]) -> Reader:
 
 def _ids_of(path: Path) -> NDArray[np.int32]:
     """`[H, W]` values of a picture with one channel."""
-    from PIL import Image, UnidentifiedImageError
+    from PIL import Image
 
     try:
         with Image.open(path) as picture:
             if picture.mode not in ("L", "P", "1", "I", "I;16"):
                 raise UserError(f"{path.name} is a picture in {picture.mode}; ids need one channel")
             return np.array(picture).astype(np.int32)
-    except (OSError, UnidentifiedImageError) as error:
+    except (OSError, ValueError, SyntaxError, EOFError, Image.DecompressionBombError) as error:
         raise FileError(f"cannot read the masks {path}: {error}") from error
 
 
@@ -173,37 +166,44 @@ def _ids_of(path: Path) -> NDArray[np.int32]:
 
 def _archive(path: Path) -> Reader:
     def read(camera: Camera) -> ViewMasks:
-        columns = _columns(path)
-        if "masks" in columns:
-            if columns["masks"].ndim != 3:
-                raise UserError(f"masks must be [M, H, W], got {list(columns['masks'].shape)}")
-            ids, count = packed(columns["masks"].astype(bool)), len(columns["masks"])
-        elif "ids" in columns and np.issubdtype(columns["ids"].dtype, np.integer):
-            ids = columns["ids"].astype(np.int32)
-            count = max(int(ids.max(initial=NONE)) + 1, *(len(columns.get(k, ())) for k in ("labels", "scores")))
-        else:
-            raise UserError("an archive needs masks [M, H, W] or ids of integers")
-        labels = tuple(str(v) for v in columns.get("labels", np.array([""] * count)))
-        scores = columns.get("scores", np.ones(count)).astype(np.float32)
-        camera = _sized(camera, ids.shape[-1], ids.shape[-2])
-        return ViewMasks(camera, ids, labels, scores, columns.get("vectors"))
+        columns = read_archive(path)
+        ids, count = _numbered(columns)
+        try:
+            labels = tuple(str(v) for v in columns.get("labels", np.full(count, "")))
+            scores = columns.get("scores", np.ones(count)).astype(np.float32, casting="same_kind")
+            vectors = columns["vectors"].astype(np.float32, casting="same_kind") if "vectors" in columns else None
+        except (TypeError, ValueError) as error:
+            raise UserError(f"labels must be names, scores and vectors numbers, one a mask ({error})") from error
+        return ViewMasks(_sized(camera, ids.shape[-1], ids.shape[-2]), ids, labels, scores, vectors)
 
     return read
 
 
-def _columns(path: Path) -> Mapping[str, NDArray[Any]]:
-    try:
-        with np.load(path, allow_pickle=False) as archive:
-            return {name: archive[name] for name in archive.files}
-    except (OSError, ValueError, EOFError, KeyError) as error:
-        raise FileError(f"cannot read the masks {path}: {error}") from error
+def _numbered(columns: Mapping[str, NDArray[Any]]) -> tuple[NDArray[np.int32], int]:
+    """Ids as `ViewMasks` wants them, and how many masks there are.
+
+    Raises:
+        UserError: the archive holds no masks.
+    """
+    if "masks" in columns:
+        masks = columns["masks"]
+        if masks.ndim != 3 or masks.dtype.kind not in "biu":
+            raise UserError(f"masks must be [M, H, W] of true and false, got {masks.dtype} {list(masks.shape)}")
+        return packed(masks.astype(bool)), len(masks)
+    ids = columns.get("ids")
+    if ids is None or ids.ndim not in (2, 3) or ids.dtype.kind not in "iu":
+        raise UserError("an archive needs masks [M, H, W] or ids [H, W] or [L, H, W] of integers")
+    least, most = (int(ids.min()), int(ids.max())) if ids.size else (NONE, NONE)
+    if not NONE <= least <= most + 1 <= MOST_MASKS:
+        raise UserError(f"ids must lie between -1 and {MOST_MASKS - 1}, got {least} to {most}")
+    return ids.astype(np.int32), max(most + 1, *(np.size(columns.get(k, ())) for k in ("labels", "scores")))
 
 
 # -- COCO
 
 
 def _coco(path: Path) -> dict[str, Reader]:
-    told = _json(path)
+    told = read_json(path)
     names: dict[Any, str] = {}
     kinds: dict[Any, str] = {}
     try:
@@ -223,16 +223,21 @@ def _coco(path: Path) -> dict[str, Reader]:
 def _results(entries: list[Any], kinds: Mapping[Any, str]) -> Reader:
     def read(camera: Camera) -> ViewMasks:
         try:
-            masks = [rle.decode(e.get("segmentation")) for e in entries]
+            sizes = {rle.size_of(e.get("segmentation")) for e in entries}
+            if len(sizes) > 1:
+                raise ValueError(f"the masks of one photo have different sizes: {sorted(sizes)}")
+            height, width = next(iter(sizes), (camera.height, camera.width))
+            fitting = _sized(camera, width, height)
+            if len(entries) * height * width > MOST_PIXELS:
+                raise ValueError(
+                    f"{len(entries)} masks of {width}x{height} are more than memory holds; make them smaller"
+                )
+            masks = [rle.decode(e["segmentation"]) for e in entries]
             scores = np.array([float(e.get("score", 1.0)) for e in entries], np.float32)
-        except (TypeError, ValueError) as error:
+            labels = tuple(str(e.get("label") or kinds.get(e.get("category_id"), "")) for e in entries)
+        except (TypeError, ValueError, OverflowError, AttributeError) as error:
             raise UserError(f"a mask cannot be read: {error}") from error
-        sizes = {m.shape for m in masks}
-        if len(sizes) > 1:
-            raise UserError(f"the masks of one photo have different sizes: {sorted(sizes)}")
-        height, width = next(iter(sizes), (camera.height, camera.width))
-        labels = tuple(str(e.get("label") or kinds.get(e.get("category_id"), "")) for e in entries)
         ids = packed(np.stack(masks)) if masks else np.full((height, width), NONE, np.int32)
-        return ViewMasks(_sized(camera, width, height), ids, labels, scores)
+        return ViewMasks(fitting, ids, labels, scores)
 
     return read

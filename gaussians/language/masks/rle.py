@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 MOST_PIXELS = 1 << 28
 
 
-def decode(told: Any) -> NDArray[np.bool_]:
-    """`[H, W]` mask of one segmentation.
+def size_of(told: Any) -> tuple[int, int]:
+    """Height and width of one segmentation, without reading its runs.
 
     Raises:
         ValueError: it is none; the message says why.
@@ -26,10 +26,20 @@ def decode(told: Any) -> NDArray[np.bool_]:
         raise ValueError("a segmentation must be an object with size and counts (polygons are not read)")
     try:
         height, width = (int(side) for side in told["size"])
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"size must be [height, width], not {told['size']!r}") from None
     if not (height > 0 and width > 0 and height * width <= MOST_PIXELS):
         raise ValueError(f"a mask of {width}x{height} pixels is none")
+    return height, width
+
+
+def decode(told: Any) -> NDArray[np.bool_]:
+    """`[H, W]` mask of one segmentation.
+
+    Raises:
+        ValueError: it is none; the message says why.
+    """
+    height, width = size_of(told)
     counts = told["counts"]
     runs = _unpacked(counts) if isinstance(counts, str | bytes) else _plain(counts)
     if int(runs.sum()) != height * width or (runs < 0).any():
