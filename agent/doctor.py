@@ -64,7 +64,8 @@ def examine() -> list[Finding]:
     needed = [_distribution(name, serves, needed=True, fix=_REINSTALL) for name, serves in NEEDED.items()]
     return [
         *needed,
-        *(check() for check in (_cuda, _encoder, _torchvision, _open_clip, _transformers, _charts, _ffmpeg)),
+        *(check() for check in (_cuda, _encoder, _torchvision, _open_clip, _onnx, _vectors)),
+        *(check() for check in (_masks_of_files, _masks_of_sam, _transformers, _charts, _ffmpeg)),
     ]
 
 
@@ -153,6 +154,29 @@ def _problem(code: str) -> str:
 
 def _open_clip() -> Finding:
     return _distribution("open_clip_torch", "real CLIP towers (open_clip:MODEL/PRETRAINED)", needed=False, fix=_MODELS)
+
+
+def _onnx() -> Finding:
+    """The towers run on what the embedded encoder needs anyway; texts need the tokenizer's own library."""
+    version, serves = _version("tokenizers"), "real CLIP towers without torch models (embed --encoder onnx:FOLDER)"
+    detail = "tokenizers is installed" if version else "tokenizers is not installed"
+    return Finding("onnx:FOLDER", serves, bool(version), False, version, detail, "" if version else _MODELS)
+
+
+def _vectors() -> Finding:
+    serves = "names with vectors made elsewhere (embed --encoder vectors:PATH)"
+    return Finding("vectors:PATH", serves, True, False, "", "needs nothing more", "")
+
+
+def _masks_of_files() -> Finding:
+    serves = "masks that another program made (embed --masks folder:PATH)"
+    return Finding("masks folder:PATH", serves, True, False, "", "needs nothing more", "")
+
+
+def _masks_of_sam() -> Finding:
+    version, serves = _version("transformers"), "masks by a Segment Anything model (embed --masks sam:PATH)"
+    detail = "transformers is installed" if version else "transformers is not installed"
+    return Finding("masks sam:PATH", serves, bool(version), False, version, detail, "" if version else _MODELS)
 
 
 def _transformers() -> Finding:

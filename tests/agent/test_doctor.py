@@ -7,6 +7,7 @@ import sys
 import pytest
 
 from scenewright.agent import doctor
+from scenewright.gaussians.language import encoders, masks
 
 
 def test_every_finding_is_usable_or_says_what_to_do() -> None:
@@ -16,11 +17,18 @@ def test_every_finding_is_usable_or_says_what_to_do() -> None:
     assert len({f.name for f in findings}) == len(findings)
 
 
+def test_every_encoder_and_source_of_masks_is_told_of() -> None:
+    told = " ".join(f"{f.name} {f.serves}" for f in doctor.examine())
+    assert all(name in told for name in encoders.backends())
+    assert all(name in told for name in masks.sources())
+
+
 def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(doctor, "_version", lambda name: "")
     findings = {f.name: f for f in doctor.examine()}
     assert not findings["torch"].usable and findings["torch"].needed and findings["torch"].fix
     assert findings["torchvision"].detail == "not installed"
+    assert all("models" in findings[name].fix for name in ("onnx:FOLDER", "masks sam:PATH"))
 
 
 def test_a_cpu_torch_is_not_asked_for_cuda(monkeypatch: pytest.MonkeyPatch) -> None:
