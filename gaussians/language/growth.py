@@ -1,4 +1,4 @@
-"""Growing and shrinking a selection by a distance, and turning it inside out: the morphology of point sets.
+"""Growing and shrinking a selection by a distance: the morphology of point sets.
 
 Knows where Gaussians are. Refuses to know what they belong to: grown by 5 cm, a chair takes 5 cm of floor along.
 
@@ -8,7 +8,7 @@ With `S` a set of Gaussians, `-S` all others and `d` the distance of centres (Se
 
 so that for every r > 0: shrink(S) <= S <= grow(S); both keep the order of sets; grow(A) <= B exactly if A <= shrink(B);
 S <= shrink(grow(S)) (filled holes stay filled) and grow(shrink(S)) <= S (specks stay gone), and doing either pair twice
-changes nothing more. Inverting twice is the identity.
+changes nothing more. The complement `-S` is `members.difference` from all ids.
 """
 
 from __future__ import annotations
@@ -43,11 +43,6 @@ def shrunk(cloud: GaussianCloud, ids: Tensor, by: float) -> Tensor:
     """
     inside = _flags(cloud, ids, by)
     return _ids(cloud, inside & ~_near(cloud, ~inside, inside, by))
-
-
-def inverted(cloud: GaussianCloud, ids: Tensor) -> Tensor:
-    """Ascending ids of all other Gaussians."""
-    return _ids(cloud, ~_flags(cloud, ids, 1.0))
 
 
 def _flags(cloud: GaussianCloud, ids: Tensor, by: float) -> NDArray[np.bool_]:

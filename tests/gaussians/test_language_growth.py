@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import UserError
-from scenewright.gaussians.language.growth import grown, inverted, shrunk
+from scenewright.gaussians.language.growth import grown, shrunk
+from scenewright.gaussians.language.members import difference, members_of
 
 Sets = tuple[GaussianCloud, set[int], set[int]]
 
@@ -51,7 +52,7 @@ def shrink(cloud: GaussianCloud, ids: set[int], by: float) -> set[int]:
 
 
 def invert(cloud: GaussianCloud, ids: set[int]) -> set[int]:
-    return set(inverted(cloud, t(ids)).tolist())
+    return set(difference(members_of(cloud).every_id, t(ids)).tolist())
 
 
 @given(clouds(), distances)
