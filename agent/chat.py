@@ -46,6 +46,7 @@ COMMANDS = {
     "/save": "FILE [--force]: write the scene",
     "/quit": "end the conversation",
 }
+ENDS = ("/quit", "/exit", "quit", "exit")  # with and without the stroke: nothing else can be meant
 STEP = 0.05  # metres by which a selection grows or shrinks if nothing is said
 _EXAMPLES = (
     "make the armchair teal and remove the coffee table",
@@ -79,11 +80,11 @@ class Chat:
     # -- the loop ---------------------------------------------------------------------------------------------------
 
     def run(self) -> None:
-        """Read lines until /quit or the end of input. Ctrl-C ends the instruction, not the conversation."""
+        """Read lines until one of `ENDS` or the end of input. Ctrl-C ends the instruction, not the conversation."""
         if self._interactive():
             self._greet()
         for line in self._lines():
-            if line.strip() in ("/quit", "/exit"):
+            if line.strip().lower() in ENDS:
                 break
             if line.strip():
                 self.say(line.strip())

@@ -40,6 +40,12 @@ def test_an_instruction_is_carried_out_and_shown(boxes: Scene, encoder: Any) -> 
     assert "was not saved" in err
 
 
+@pytest.mark.parametrize("end", ["/quit", "/exit", "quit", "Exit"])
+def test_what_is_said_after_the_end_is_not_heard(boxes: Scene, encoder: Any, end: str) -> None:
+    session, _, err = _talk(boxes, encoder, end, "make the green thing blue")
+    assert session.done == () and "was not saved" not in err
+
+
 def test_an_ambiguity_is_asked_back_and_answered(boxes: Scene, encoder: Any) -> None:
     session, out, _ = _talk(boxes, encoder, "delete the red thing", "the left one")
     assert "  1. red box" in out and "Which one?" in out
