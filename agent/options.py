@@ -27,7 +27,13 @@ Debug = Annotated[
     bool, typer.Option("--debug", callback=_debug, is_eager=True, help="Let errors through with their traceback.")
 ]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite files that exist.")]
-Encoder = Annotated[str, typer.Option("--encoder", metavar="NAME", help="Text and image encoder; 'auto' is our own.")]
+Encoder = Annotated[
+    str,
+    typer.Option(
+        "--encoder", metavar="NAME",
+        help="Text and image encoder: 'auto' (our own), 'open_clip:MODEL/PRETRAINED', 'onnx:FOLDER' or 'vectors:PATH'.",
+    ),
+]  # fmt: skip
 Masks = Annotated[
     str | None,
     typer.Option(
