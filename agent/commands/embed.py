@@ -37,8 +37,11 @@ def command(
     loaded, chosen = load(scene), encoders.load(encoder)
     loaded = with_frame(loaded, up, metres_per_unit)
     again = force or any(said is not None for said in (up, metres_per_unit, masks, capture))
-    if capture is not None and not loaded.cameras:
-        loaded = loaded.replace(cameras=read_capture(capture).cameras)
+    taken = None if capture is None else read_capture(capture)
+    if taken is not None and not loaded.cameras:
+        loaded = loaded.replace(cameras=taken.cameras)
+    elif taken is not None and masks is None:
+        terminal.say(f"note: {scene} has cameras of its own; --capture is of use with --masks only")
     source = maskers.load(masks, capture) if masks is not None else None
     known = None if again else load_field(loaded, scene, chosen.fingerprint)
     if known is None and not again and (why := misfit(scene, chosen.fingerprint)) is not None:

@@ -12,6 +12,7 @@ import pytest
 from scenewright.agent import cli
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.files import save
+from scenewright.gaussians.files.capture import read_capture
 from scenewright.gaussians.render import render
 from scenewright.gaussians.scene import Scene
 
@@ -89,3 +90,12 @@ def test_a_source_that_is_none_is_named(
 ) -> None:
     found, _, err = call("embed", files / "boxes.ply", *arguments)
     assert found == code and said in err
+
+
+def test_a_capture_is_read_even_where_it_is_of_no_use(tmp_path: Path, boxes: Scene, files: Path, call: Any) -> None:
+    own = tmp_path / "own.ply"
+    save(boxes.replace(cameras=read_capture(files).cameras), own)
+    code, _, err = call("embed", own, "--capture", tmp_path / "nowhere.json")
+    assert code == 4 and "nowhere.json" in err
+    code, _, err = call("embed", own, "--capture", files)
+    assert code == 0 and "has cameras of its own" in err

@@ -374,5 +374,7 @@ def test_a_segment_anything_model_gives_masks_of_photographs(tmp_path: Path) -> 
 
 def test_a_model_that_is_not_there_is_a_back_end_error(tmp_path: Path) -> None:
     pytest.importorskip("transformers")
-    with pytest.raises(BackendError, match="cannot load the SAM"):
+    with pytest.raises(BackendError, match=r"cannot load the SAM .*; give sam:PATH"):
         masks.load(f"sam:{tmp_path}")
+    with pytest.raises(BackendError, match="there is no model at"):  # and no name to be looked up
+        masks.load(f"sam:{tmp_path / 'none'}")

@@ -47,6 +47,10 @@ def load(argument: str, capture: Path | None = None) -> Sam:
     """
     if not argument:
         raise UserError("name the model: sam:PATH or sam:NAME, for example sam:facebook/sam-vit-base")
+    place = Path(argument).expanduser()
+    if not place.is_dir() and (place.is_absolute() or argument.startswith(".")):
+        raise BackendError(f"there is no model at {place}; give sam:PATH of the folder of a SamModel of transformers")
+    source = str(place) if place.is_dir() else argument
     taken = None if capture is None else read_capture(capture)
     import_torchvision()
     try:
@@ -54,10 +58,11 @@ def load(argument: str, capture: Path | None = None) -> Sam:
     except (ImportError, RuntimeError) as error:
         raise BackendError(f"SAM needs transformers ({error}); run: pip install 'scenewright[models]'") from error
     try:
-        model: Any = SamModel.from_pretrained(argument)
-        processor = SamProcessor.from_pretrained(argument)
+        model: Any = SamModel.from_pretrained(source)
+        processor = SamProcessor.from_pretrained(source)
     except (OSError, ValueError, KeyError, RuntimeError) as error:
-        raise BackendError(f"cannot load the SAM {argument!r}: {error}") from error
+        advice = "give sam:PATH of the folder of a SamModel, or sam:NAME of one that can be fetched"
+        raise BackendError(f"cannot load the SAM {argument!r}: {error}; {advice}") from error
     return Sam(model.eval(), processor, taken)
 
 
