@@ -132,7 +132,7 @@ def _header(path: Path) -> dict[str, Any]:
     try:
         with safe_open(path, framework="pt") as stream:
             return dict(json.loads((stream.metadata() or {}).get(_ENTRY, "{}")))
-    except (SafetensorError, OSError, ValueError, TypeError) as error:
+    except (SafetensorError, OSError, ValueError, TypeError, RecursionError) as error:
         raise FileError(f"{path} is not a language field ({error}); delete it and embed the scene again") from error
 
 
@@ -153,7 +153,7 @@ def _read(path: Path) -> tuple[dict[str, torch.Tensor], dict[str, Any]]:
         with safe_open(path, framework="pt") as stream:
             header = json.loads((stream.metadata() or {}).get(_ENTRY, "{}"))
             return {name: stream.get_tensor(name) for name in stream.keys()}, dict(header)  # noqa: SIM118
-    except (SafetensorError, OSError, ValueError, TypeError) as error:
+    except (SafetensorError, OSError, ValueError, TypeError, RecursionError) as error:
         raise FileError(f"{path} is not a language field ({error}); delete it and embed the scene again") from error
 
 
@@ -167,6 +167,7 @@ def _attach(scene: Scene, tensors: dict[str, torch.Tensor], header: dict[str, An
         fits = (
             (column.shape, column.dtype) == ((len(scene.cloud),), torch.int32)
             and (embeddings.ndim, embeddings.dtype) == (2, torch.float32)
+            and bool(embeddings.isfinite().all())
             and (not len(column) or -1 <= int(column.min()) <= int(column.max()) < len(groups))
             and all(-1 <= g.parent < len(groups) for g in groups)
         )

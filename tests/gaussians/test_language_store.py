@@ -213,6 +213,15 @@ def test_a_truncated_field_is_an_error_that_names_the_cure(path: Path, share: fl
         load_field(bare(), path)
 
 
+def test_a_table_nested_too_deeply_is_an_error_that_names_the_cure(path: Path) -> None:
+    from safetensors.torch import save_file
+
+    save_file({"group": torch.zeros(5)}, beside(path), {"scenewright.field": "[" * 100_000})
+    for look in (lambda: load_field(bare(), path), lambda: misfit(path)):
+        with pytest.raises(FileError, match="delete it"):
+            look()
+
+
 def damaged(path: Path, drop: str = "", tensors: dict[str, torch.Tensor] | None = None, **changes: Any) -> None:
     """A field file bound to this scene, with parts exchanged or left out."""
     from safetensors.torch import load_file, save_file
@@ -251,6 +260,7 @@ def test_the_undamaged_field_of_the_next_test_loads(path: Path) -> None:
         {"tensors": {"group": torch.zeros(5)}},
         {"tensors": {"embeddings": torch.zeros(3, 3)}},
         {"tensors": {"embeddings": torch.zeros(2)}},
+        {"tensors": {"embeddings": torch.full((2, 3), torch.nan)}},
         {"tensors": {"embeddings": torch.zeros(2, 3, dtype=torch.float64)}},
     ],
     ids=lambda how: ",".join(f"{k}={v}"[:40] for k, v in how.items()),
