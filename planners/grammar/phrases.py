@@ -18,7 +18,7 @@ from lark import Token, Tree
 
 from ...gaussians.language.query import Query, Relation
 from . import nouns
-from .tagger import Tag
+from .tags import Tag
 from .words import bag
 
 _SHAPES = bag("round square rectangular oval circular wooden metal plastic glass leather striped plain patterned")

@@ -29,7 +29,8 @@ from .commands import Commands
 from .phrases import Node, Refusal, trees
 from .reading import color_at, match
 from .spelling import respell
-from .tagger import Clause, Tag, Tagger, sentences
+from .tagger import Tagger
+from .tags import Clause, Tag, sentences
 from .unsafe import unsafe_words
 from .words import Word, bag, clean, split
 

@@ -1,7 +1,8 @@
 """From words to clauses of tagged tokens: which word class each phrase has where it stands.
 
 Knows context: a verb begins a clause, "red" before a noun is an attribute and elsewhere what something becomes, "left"
-is a direction or a side. Refuses to know how tokens combine (grammar.lark) and what they do (commands.py).
+is a direction or a side. Refuses to know the words that are read one by one (special.py), how tokens combine
+(grammar.lark) and what they do (commands.py).
 
 The rules of preference, in order:
 1. The longest phrase wins; of equal ones quantities, then compounds, colours, the closed vocabulary, plain nouns.
@@ -13,79 +14,27 @@ The rules of preference, in order:
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Sequence
 
 from . import lexicon, quantities
-from .reading import NOUN_COLORS, Reading, color_at, compounds, is_plain, match, verb_classes
+from .reading import NOUN_COLORS, color_at, compounds, is_plain, match, verb_classes
+from .special import CARRYING, NOUNISH, Special
+from .tags import Clause, Tag
 from .verbs import Entry
-from .words import Word, phrases
+from .words import Word
 
-_NOUNISH = frozenset({"NOUN", "ONE", "THING"})
-_BOUNDARIES = frozenset(".;!?\n")
 # "the smaller of the two" picks as a superlative does.
 _COMPARATIVES = {"bigger": "largest", "larger": "largest", "smaller": "smallest", "taller": "tallest",
                  "shorter": "shortest"}  # fmt: skip
-_COLORING = ("PAINT", "TINT", "GIVE", "MAKE", "WANT", "APPLY")
-# Verbs whose object "with the vase" can only describe; "move the cup with the plate" may mean both.
-_POINTING = ("DELETE", "SELECT", "HIDE", "ISOLATE", "FADE", "ADJUST", "ROTATE", "SCALE", "GROW")
-_ON_IT = phrases(
-    "on it, on top, on top of it, in it, inside, inside it, on them, standing on it, next to it, beside it, near it, on"
-)
-_CARRYING = phrases("that has, which has, that have, which have, that holds, that carries, holding, carrying")
-_OUTSIDE = phrases("out of here, out of the room, out of the scene, out of sight, out of my sight, out of there")
-_IT_IS = phrases("it is, this is, that is, there is, they are, these are")
 _REPEATABLE = ("DELETE", "SELECT", "HIDE", "ISOLATE")
 MAX_NOUN_WORDS = 4
 
 
-@dataclass(frozen=True)
-class Tag:
-    """One token for the grammar: its class, what it means, and the words it was made from."""
-
-    type: str
-    value: Any
-    words: tuple[Word, ...]
-
-    @property
-    def text(self) -> str:
-        return " ".join(w.text for w in self.words)
-
-    def __str__(self) -> str:
-        return self.text
-
-
-@dataclass
-class Clause:
-    """Tagged tokens of one clause; `verb` is the class of its first token, "" if it does not begin with a verb."""
-
-    tags: list[Tag] = field(default_factory=list)
-    verb: str = ""
-    negated: bool = False
-    unsupported: str = ""
-
-
-def sentences(words: Sequence[Word]) -> Iterator[tuple[tuple[Word, ...], str]]:
-    """The sentences and the mark each ends with ("" at the end of the text)."""
-    start = 0
-    for i, word in enumerate(words):
-        if word.text in _BOUNDARIES:
-            if i > start:
-                yield tuple(words[start:i]), word.text
-            start = i + 1
-    if start < len(words):
-        yield tuple(words[start:]), ""
-
-
-class Tagger:
+class Tagger(Special):
     """Reads one sentence; `clauses()` gives its clauses."""
 
     def __init__(self, words: Sequence[Word]) -> None:
-        self.words = tuple(words)
-        self.texts = tuple(w.text for w in words)
-        self.read = Reading(self.texts)
-        self.clause = Clause()
+        super().__init__(words)
         self.done: list[Clause] = []
         self.particles: set[int] = set()
 
@@ -152,14 +101,6 @@ class Tagger:
 
     # ---- tokens --------------------------------------------------------------------------------------------------
 
-    def _put(self, kind: str, value: Any, i: int, taken: int) -> int:
-        self.clause.tags.append(Tag(kind, value, self.words[i : i + taken]))
-        return i + taken
-
-    @property
-    def _before(self) -> str:
-        return self.clause.tags[-1].type if self.clause.tags else ""
-
     def _step(self, i: int) -> int:
         """Tag what stands at `i`; the position behind it."""
         texts = self.texts
@@ -189,118 +130,6 @@ class Tagger:
         if rest and rest[0][0] in ("BUT", "NOT", "REL", "WITH", "BY", "CLOCK", "DIR", "PREP", "BETWEEN"):
             return i + 1
         return self._put("COMMA", None, i, 1)
-
-    def _special(self, i: int, length: int) -> int | None:
-        """Words whose class depends on the verb or on the very next word."""
-        text, rest = self.texts[i], self.texts[i + 1 :]
-        after = rest[0] if rest else ""
-        verb = self.clause.verb
-        if (found := self._owned_or_not(i)) is not None or (found := self._around(i)) is not None:
-            return found
-        if verb == "SELECT" and (pointed := self._pointing(i)) is not None:
-            return pointed
-        if text in ("left", "right") and after == "by" and quantities.read(rest[1:]):
-            return self._put("DIR", text, i, 1)
-        if text == "like" and after in ("the", "a", "an", "my", "that", "those") and verb in ("ADD", "WANT"):
-            return self._put("LIKE", None, i, 1)
-        if text == "out" and verb in ("TAKE", "MOVE") and (gone := match(_OUTSIDE, self.texts, i)):
-            return self._put("AWAY", None, i, gone[1])
-        onward = verb == "PUT" or (verb == "MOVE" and text in ("back", "up", "over") and after in ("against", "onto"))
-        if text in ("down", "over", "back", "up") and length == 1 and onward and self.read.preposition_at(i + 1):
-            return i + 1
-        if text in ("thing", "thingy", "thingie") and self._before == "NOUN" and verb not in ("ADD", "PUT"):
-            return i + 1
-        if text in ("'s", "its", "their") and after:
-            return self._owner(i)
-        if text == "by" and verb in ("REPLACE", "SUBSTITUTE"):
-            return self._put("WITH", None, i, 1)
-        if text == "by" and after and (quantities.read(rest) or after in ("a", "half")) and length == 1:
-            return self._put("BY", None, i, 1)
-        if text == "into" and verb in ("TURN", "CHANGE", "MAKE"):
-            return self._put("INTO", None, i, 1)
-        if text == "from" and verb in ("CHANGE", "PAINT", "TURN") and self.read.hue_follows(i + 1):
-            return self._put("FROMHUE", None, i, 1)
-        if text in ("in", "with") and verb in _COLORING and self.read.hue_follows(i + 1):
-            return i + 1 + (after in ("a", "an"))
-        if text in ("on", "off") and not rest and verb == "TURN":
-            return self._put("SWITCH", None, i, 1)
-        if text == "over" and length == 1 and verb in ("TURN", "FLIP") and not rest:
-            return self._put("UPSIDE", None, i, 1)
-        if text in ("away", "out") and length == 1 and verb not in ("TAKE", "") and not rest:
-            return self._put("DIR", "forward", i, 1) if verb in ("MOVE", "PUT") else None
-        if text in ("closer", "nearer") and after == "to" and length == 2 and verb not in ("", "MOVE", "PUT", "TAKE"):
-            return self._put("NEAR", "nearest_to", i, 2)
-        if text in ("higher", "lower") and verb in ("MOVE", "PUT", "") and not self.read.nouny(i + 1):
-            return self._put("DIR", "up" if text == "higher" else "down", i, 1)
-        if text == "in" and rest[:2] == ("a", "row") and verb in ("COPY", "MAKE", "ADD"):
-            return i + 3
-        if text == "back" and length == 1 and self._returns() and not self.read.nouny(i + 1):
-            return self._put("UNKNOWN", None, i, 1)
-        if text in ("each", "apiece") and not rest and self.clause.tags:
-            return i + 1
-        if text == "again" and verb != "SELECT" and not rest:
-            return i + 1
-        if text == "more" and self._before == "NUMBER" and self.read.nouny(i + 1):
-            return i + 1
-        return None
-
-    def _pointing(self, i: int) -> int | None:
-        """ "select it is the chair …", "the chair is next to the bed": a description that is a sentence."""
-        if len(self.clause.tags) == 1 and match(_IT_IS, self.texts, i):
-            return i + 2
-        if self.texts[i] in ("is", "are", "sits", "stands") and self._before in _NOUNISH:
-            behind = self.read.skip_filler(i + 1)
-            behind += behind < len(self.texts) and self.texts[behind] in (*lexicon.PARTICIPLES, "the", "also")
-            phrase = self.read.phrase(behind) if behind < len(self.texts) else None
-            if phrase and phrase[0][0] in ("PREP", "NEAR", "BETWEEN", "SIDE", "CENTER", "SPOT", "NOT"):
-                return behind
-            if self.read.hue_follows(i + 1):
-                return self._put("REL", None, i, 1)
-        return None
-
-    def _owned_or_not(self, i: int) -> int | None:
-        """ "with the vase on it", "without a lamp": what a thing carries or lacks."""
-        if (found := match(_CARRYING, self.texts, i)) and self._before in _NOUNISH:
-            lacks = self.texts[i + found[1] : i + found[1] + 1] == ("no",)
-            if self.read.object_follows(i + found[1] + lacks):
-                return self._put("LACKING" if lacks else "HAVING", None, i, found[1] + lacks)
-        text, behind = self.texts[i], self.texts[i + 1 : i + 2]
-        if text == "with" and behind == ("no",) and self.read.object_follows(i + 2):
-            return self._put("LACKING", None, i, 2)
-        held = any(t.type in ("HAVING", "LACKING") for t in self.clause.tags)
-        if held and (found := match(_ON_IT, self.texts, i)):
-            return self._put("ONIT", "next_to" if text in ("next", "beside", "near") else "below", i, found[1])
-        if text == "without" and not match(lexicon.INSIDE_PHRASES, self.texts, i) and self.read.object_follows(i + 1):
-            return self._put("LACKING", None, i, 1)
-        definite = behind in (("the",), ("my",)) or (behind in (("a",), ("an",)) and self.clause.verb in _POINTING)
-        if text in ("with", "holding", "carrying") and definite and self.clause.verb in (*_POINTING, "PAINT", "MAKE"):
-            return self._put("HAVING", None, i, 1)
-        return None
-
-    def _around(self, i: int) -> int | None:
-        """ "the chairs around the table" says where they are; "a round table" what it is."""
-        if self.texts[i] not in ("around", "round"):
-            return None
-        if self.texts[i] == "round" and self._before not in ("NOUN", "PRON") and self.read.nouny(i + 1):
-            return self._put("ADJ", None, i, 1)
-        turning = self.clause.verb in ("TURN", "ROTATE", "TURNROUND", "FLIP", "TILT")
-        if self._before in (*_NOUNISH, "AND") and self.read.object_follows(i + 1) and not turning:
-            return self._put("PREP", "next_to", i, 1)
-        return None
-
-    def _owner(self, i: int) -> int:
-        """ "'s", "its": of a part ("its legs") or of a property ("its size")."""
-        if self.texts[i] != "'s":
-            self._put("PRON", "it", i, 1)
-        j = self.read.skip_filler(i + 1)
-        owned = self.read.phrase(j) if j < len(self.texts) else None
-        shade = self.texts[j : j + 1] == ("shade",) and bool(self.clause.tags) and "lamp" in self.clause.tags[-1].text
-        of_property = owned is not None and owned[0][0] in ("COLORWORD", "OPACITYWORD", "PROP") and not shade
-        return self._put("OWN" if of_property else "POSS", None, i, 1)
-
-    def _returns(self) -> bool:
-        """Whether "back" may mean where it was ("put the book back on the shelf") and not a direction."""
-        return self.clause.verb in ("PUT", "TAKE") or (self.clause.verb == "MOVE" and self._before == "PRON")
 
     def _quantity(self, i: int, length: int) -> int | None:
         found = quantities.read(self.texts[i:])
@@ -363,7 +192,7 @@ class Tagger:
         (kind, value), taken = found
         behind = self.texts[i + taken : i + taken + 1]
         after_det = self._before in ("DET", "POSS", "NUMBER", "ORDINAL")
-        if self.read.nouny(i + taken) and (after_det or self._before not in _NOUNISH):
+        if self.read.nouny(i + taken) and (after_det or self._before not in NOUNISH):
             return self._put(kind, value, i, taken)
         if after_det and self.texts[i] in ("back", "top", "front", "bottom", "left", "right") and behind == ("of",):
             return self._put("NOUN", self.texts[i], i, 1)
@@ -406,7 +235,7 @@ class Tagger:
                 return behind
         if kind == "PREP" and taken == 1 and text in ("in", "on", "at") and behind >= len(self.texts):
             return self._put("UNKNOWN", None, i, taken)
-        if kind == "COLORWORD" and text == "tint" and self._before in _NOUNISH:
+        if kind == "COLORWORD" and text == "tint" and self._before in NOUNISH:
             return self._put("UNKNOWN", None, i, taken)
         return self._put(kind, value, i, taken)
 
@@ -441,6 +270,6 @@ class Tagger:
         if not is_plain(texts[j]) or texts[j] == ",":
             return False
         tables = (lexicon.INSIDE_PHRASES, lexicon.FILLER)
-        if match(_CARRYING, texts, j) or any(match(t, texts, j) for t in tables) or texts[j] in lexicon.PARTICIPLES:
+        if match(CARRYING, texts, j) or any(match(t, texts, j) for t in tables) or texts[j] in lexicon.PARTICIPLES:
             return False
         return not color_at(texts, j) and not quantities.read(texts[j:])
