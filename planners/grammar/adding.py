@@ -10,7 +10,8 @@ from dataclasses import replace
 from ...gaussians.language.query import Query
 from . import nouns, places, sizes
 from .changes import Fields
-from .phrases import Node, Noun, Refusal, tokens, trees, union
+from .described import Noun, union
+from .nodes import Node, Refusal, tokens, trees
 from .rules import MOTIONS, Rules, known
 
 _SOME = 3  # "some cushions", as "a few"

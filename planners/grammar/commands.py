@@ -14,8 +14,9 @@ from ...gaussians.language.query import Query
 from . import changes, nouns
 from .adding import Adding
 from .changes import Fields
+from .described import all_of, union
 from .moving import Moving
-from .phrases import Node, Refusal, all_of, tokens, trees, union
+from .nodes import Node, Refusal, tokens, trees
 from .rules import MOTIONS, known
 from .shaping import Shaping
 

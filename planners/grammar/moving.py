@@ -10,7 +10,8 @@ from lark import Token, Tree
 from ...gaussians.language.query import Query
 from . import changes, places
 from .changes import Fields
-from .phrases import Node, Noun, Refusal, tokens, trees
+from .described import Noun
+from .nodes import Node, Refusal, tokens, trees
 from .rules import MOTIONS, Rules, known
 
 

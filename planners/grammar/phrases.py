@@ -1,118 +1,26 @@
-"""Noun phrases as queries.
+"""Noun phrases of a clause's tree.
 
-Knows what a determiner, an attribute and a relation mean for a `Query`, and to which noun a prepositional phrase
-belongs. Refuses to know verbs.
-
-Preference: a prepositional phrase belongs to the nearest noun before it ("the lamp on the table next to the sofa" is
-about a table next to the sofa), unless "and" joins it to the one before ("left of the table and in front of the
-window" says two things about one noun), it is denied ("not against the window"), or that noun is a floor or a wall.
+Knows what a determiner, an attribute and a pronoun mean for a `Query`. Refuses to know verbs, and what the phrases
+behind a noun mean for it (described.py).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from dataclasses import replace
+from typing import Any
 
 from lark import Token, Tree
 
 from ...gaussians.language.query import Query, Relation
 from . import nouns
+from .described import Article, Noun, Post, all_of, union, updated
+from .nodes import Node, Refusal, tag_of, tokens, trees
 from .tags import Tag
 from .words import bag
 
 _SHAPES = bag("round square rectangular oval circular wooden metal plastic glass leather striped plain patterned")
-# "the cup on the table that is white", "anything on the bed that is not a pillow": about the first noun, not the last.
-_OF_THE_FIRST = ("unrelated", "is_not_kind", "is_hue", "is_not_hue")
 PARTS = frozenset({"part", "piece", "area", "region", "bit"})  # of things, found by their own colour
-
-Article = Literal["def", "indef", "all", "both", "any", "bare", "pronoun"]
-Node = Tree[Token]
-
-
-class Refusal(Exception):
-    """The clause cannot become a plan.
-
-    Attributes:
-        verdict: of the plan.
-        words: the words to blame, as written.
-    """
-
-    def __init__(self, reason: str, *words: str, verdict: str = "not_understood") -> None:
-        super().__init__(reason)
-        self.verdict = verdict
-        self.words = words
-
-
-@dataclass(frozen=True)
-class Post:
-    """What stands behind a noun: a relation to further nouns, or a property.
-
-    Attributes:
-        kind: the rule's name in grammar.lark.
-        value: the relation, side, spot or colour.
-        word: how it was said ("into").
-        anchors: the nouns it relates to, without anything behind them.
-        joined: whether "and" joins it to the one before.
-    """
-
-    kind: str
-    value: Any
-    word: str
-    anchors: tuple[Noun, ...] = ()
-    joined: bool = False
-
-
-@dataclass(frozen=True)
-class Noun:
-    """One noun phrase.
-
-    Attributes:
-        query: without what stands behind the noun.
-        article: how it is introduced.
-        plural: whether its form is plural.
-        number: "two chairs".
-        adjectives: words before the noun that no field of a query holds, for naming new things.
-        height: "1.8 m tall", value and unit.
-        posts: what stands behind it, flat.
-        said: the noun as said, plural and all ("books").
-    """
-
-    query: Query
-    article: Article
-    plural: bool = False
-    number: int | None = None
-    adjectives: tuple[str, ...] = ()
-    height: tuple[float, str] | None = None
-    posts: tuple[Post, ...] = field(default=())
-    said: str = ""
-
-    @property
-    def is_new(self) -> bool:
-        """Whether it can name something that is not there yet ("a lamp", "two lamps", "lamp")."""
-        plain = self.query.pick in ("one", "any", "all") and not self.query.exclude and not self.query.last
-        return plain and bool(self.query.text) and self.article in ("indef", "bare")
-
-    def full(self) -> Query:
-        """The query with everything behind the noun, which counts for each of several colours ("red and blue mugs")."""
-        first = attach(self.query, self.posts)
-        return _update(first, also=tuple(attach(q, self.posts) for q in first.also)) if first.also else first
-
-
-def tag_of(token: Token) -> Tag:
-    """The tag that a token of the grammar carries."""
-    value: Tag = token.value
-    return value
-
-
-def tokens(node: Node, *types: str) -> list[Tag]:
-    """The tags of these types directly below a node."""
-    return [tag_of(c) for c in node.children if isinstance(c, Token) and c.type in types]
-
-
-def trees(node: Node, *names: str) -> list[Node]:
-    """The children with these names."""
-    return [c for c in node.children if isinstance(c, Tree) and (not names or c.data in names)]
 
 
 class Phrases:
@@ -151,7 +59,7 @@ class Phrases:
         out = union(self.group(excluded))
         meant = [all_of(n.query, out) if n.said == "all" else n.query for n in found]
         found = [replace(n, query=q) for n, q in zip(found, meant, strict=True)]
-        return [replace(n, query=_update(n.query, exclude=(*n.query.exclude, out))) for n in found]
+        return [replace(n, query=updated(n.query, exclude=(*n.query.exclude, out))) for n in found]
 
     def noun(self, node: Node) -> Noun:
         """A noun phrase with what stands behind it."""
@@ -178,7 +86,7 @@ class Phrases:
         among = posts[0].anchors[0]
         picked = {"pick": head.query.pick, "ordinal": head.query.ordinal, "count": None}
         self.antecedent = among.query.text or self.antecedent
-        return replace(head, query=_update(among.query, **picked), posts=tuple(posts[1:]))
+        return replace(head, query=updated(among.query, **picked), posts=tuple(posts[1:]))
 
     def post(self, node: Node, joined: bool = False) -> Post:
         first = next((tag_of(c) for c in node.children if isinstance(c, Token)), None)
@@ -206,7 +114,7 @@ class Phrases:
             if isinstance(child, Tree):
                 found.append(self.core(child))
             elif child.type == "SIDE":
-                found[-1] = replace(found[-1], query=_update(found[-1].query, pick=tag_of(child).value))
+                found[-1] = replace(found[-1], query=updated(found[-1].query, pick=tag_of(child).value))
         return tuple(found)
 
     def core(self, node: Node) -> Noun:
@@ -227,7 +135,7 @@ class Phrases:
         """ "the table's legs"."""
         part = self._common(node)
         relation = Relation(name="part_of", anchors=(owner.full(),))
-        return replace(part, article="def", query=_update(part.query, relations=(relation,)))
+        return replace(part, article="def", query=updated(part.query, relations=(relation,)))
 
     def _common(self, node: Node) -> Noun:
         tags = [tag_of(c) for c in node.children if isinstance(c, Token)]
@@ -260,7 +168,7 @@ class Phrases:
             fields = _each(joined, fields, plural)
         words = tuple(t.text for t in tags if t.type == "SIZE")
         said = tags[-1].text if tags[-1].type == "NOUN" else ""
-        return Noun(_update(Query(), **fields), article, plural, number, words, height, said=said)
+        return Noun(updated(Query(), **fields), article, plural, number, words, height, said=said)
 
     def _head(self, tags: Sequence[Tag]) -> tuple[str, bool]:
         """The noun's text, singular, and whether it was plural."""
@@ -292,13 +200,7 @@ def _each(colors: Sequence[str], fields: dict[str, Any], plural: bool) -> dict[s
     if not plural or fields.get("pick") != "all" or fields.get("count"):
         raise Refusal("say which of the colours it has", *colors)
     first, *others = ({**fields, "colors": (c,)} for c in colors)
-    return {**first, "also": tuple(_update(Query(), **other) for other in others)}
-
-
-def all_of(target: Query, out: Query) -> Query:
-    """What "all" means before "but the largest box": boxes; before "but the box" it is everything."""
-    ranked = out.pick not in ("one", "all", "any", "rest") and bool(out.text)
-    return _update(Query(text=out.text, pick="all")) if target == Query(pick="all") and ranked else target
+    return {**first, "also": tuple(updated(Query(), **other) for other in others)}
 
 
 def _pick(tags: Sequence[Tag], article: Article, plural: bool, number: int | None) -> dict[str, Any]:
@@ -338,108 +240,3 @@ def _unshaped(text: str) -> str:
 
 def _quote(tags: Sequence[Tag]) -> tuple[str, ...]:
     return (" ".join(t.text for t in tags),)
-
-
-def _update(query: Query, **fields: Any) -> Query:
-    """A validated copy.
-
-    Raises:
-        Refusal: more colours, relations or exclusions than a query holds.
-    """
-    try:
-        return Query(**{name: fields.get(name, getattr(query, name)) for name in Query.model_fields})
-    except ValueError as error:
-        raise Refusal("that is more than one phrase can hold; say it in parts") from error
-
-
-def union(found: Sequence[Noun]) -> Query:
-    """One query for several nouns."""
-    first, *rest = (n.full() for n in found)
-    return _update(first, also=(*first.also, *rest)) if rest else first
-
-
-def attach(query: Query, posts: Sequence[Post]) -> Query:
-    """`query` narrowed by what stands behind the noun, each phrase at the noun it belongs to."""
-    i = 0
-    while i < len(posts):
-        j = i + 1
-        while j < len(posts) and not posts[j].joined and posts[j].kind not in _OF_THE_FIRST and _takes_more(posts[i]):
-            j += 1
-        query = _narrow(query, posts[i], posts[i + 1 : j])
-        i = j
-    return query
-
-
-def _takes_more(post: Post) -> bool:
-    """Whether what follows may belong to this phrase's noun; floors and walls are everywhere, so not to theirs."""
-    return bool(post.anchors) and nouns.head(post.anchors[-1].query.text) not in nouns.EVERYWHERE
-
-
-def _narrow(query: Query, post: Post, behind: Sequence[Post]) -> Query:
-    """`query` with one phrase behind it; `behind` belongs to that phrase's own (last) noun."""
-    anchors = [a.full() for a in post.anchors]
-    if anchors:
-        anchors[-1] = attach(anchors[-1], behind)
-    if post.kind == "unrelated":
-        wrong = _relation(_relation_name(replace(post, kind="related")), anchors)
-        bad = _update(query, relations=(*query.relations, wrong), pick="all", count=None)
-        return _update(query, exclude=(*query.exclude, bad))
-    if post.kind == "is_not_kind":
-        every = (a.model_copy(update={"pick": "all"}) if a.pick in ("one", "any") else a for a in anchors)
-        return _update(query, exclude=(*query.exclude, *every))
-    if post.kind == "lacking":
-        return _lacking(query, post, anchors)
-    if name := _relation_name(post):
-        return _update(query, relations=(*query.relations, _relation(name, anchors)))
-    if post.kind == "is_hue":
-        return _update(query, colors=(*query.colors, post.value))
-    if post.kind == "is_not_hue":
-        return _update(query, not_colors=(*query.not_colors, post.value))
-    if post.kind == "side":
-        if query.pick not in ("one", "any"):
-            raise Refusal("a side picks one thing; say which one", post.word)
-        return _update(query, pick=post.value)
-    if post.kind == "counted":
-        if query.pick != "nth":
-            raise Refusal("counting needs a rank: the second chair from the left", post.word)
-        if post.value == "right":
-            return _update(query, ordinal=-(query.ordinal or 1))
-        return query
-    if post.kind == "in_spot" and post.value == "center" and query.pick == "one":
-        return _update(query, pick="middle")
-    if post.kind == "in_spot" and post.value == "corner":
-        return _update(query, relations=(*query.relations, _relation("inside", [Query(text="corner")])))
-    raise Refusal("things cannot be picked out by this", post.word)
-
-
-def _lacking(query: Query, post: Post, anchors: Sequence[Query]) -> Query:
-    """ "all lamps without the floor lamp" leaves one lamp out, "the table without a vase" the tables that carry one."""
-    if not anchors[0].text or nouns.head(anchors[0].text) == nouns.head(query.text):
-        return _update(query, exclude=(*query.exclude, anchors[0]))
-    carrying = [a.model_copy(update={"pick": "all"}) for a in anchors]
-    bad = _update(query, relations=(*query.relations, _relation(post.value, carrying)), pick="all", count=None)
-    return _update(query, exclude=(*query.exclude, bad))
-
-
-def _relation_name(post: Post) -> str:
-    """The relation a phrase says, "" if it says none."""
-    if post.kind == "having":
-        return str(post.value)
-    if post.kind == "related":
-        return "next_to" if post.value == "against" else in_or_on(post)
-    if post.kind == "off":
-        inside = nouns.head(post.anchors[0].query.text) in nouns.CONTAINERS
-        return "inside" if inside else "on"
-    return {"part": "part_of", "between": "between"}.get(post.kind, "")
-
-
-def in_or_on(post: Post) -> str:
-    """The relation of a prepositional phrase; one sits "in" a chair by being on it."""
-    seat = post.value == "inside" and nouns.head(post.anchors[0].query.text) in nouns.SEATS
-    return "on" if seat else str(post.value)
-
-
-def _relation(name: str, anchors: Sequence[Query]) -> Relation:
-    """A relation; "next to a chair" is next to whichever chair."""
-    anyone = (a.model_copy(update={"pick": "all"}) if a.pick == "any" and not a.last else a for a in anchors)
-    return Relation(name=name, anchors=tuple(anyone))  # type: ignore[arg-type]

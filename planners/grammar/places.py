@@ -17,7 +17,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from . import nouns
-from .phrases import Node, Noun, Phrases, Post, Refusal, attach, in_or_on, tag_of, tokens, trees
+from .described import Noun, Post, attach, in_or_on
+from .nodes import Node, Refusal, tag_of, tokens, trees
+from .phrases import Phrases
 
 Fields = dict[str, Any]
 LITTLE: Fields = {"value": 20, "unit": "cm"}

@@ -26,7 +26,7 @@ from ...tools.registry import parse as parse_op
 from ..plan import MAX_OPS, EditPlan
 from . import lexicon, nouns
 from .commands import Commands
-from .phrases import Node, Refusal, trees
+from .nodes import Node, Refusal, trees
 from .reading import color_at, match
 from .spelling import respell
 from .tagger import Tagger

@@ -12,7 +12,9 @@ from typing import Any
 
 from ...gaussians.language.query import Query
 from .changes import Fields
-from .phrases import Node, Noun, Phrases, Refusal, tokens, trees, union
+from .described import Noun, union
+from .nodes import Node, Refusal, tokens, trees
+from .phrases import Phrases
 
 MOTIONS = ("direction", "distance", "nudge", "toward", "to", "spot", "times")
 _SIDES = {"left": "leftmost", "right": "rightmost", "forward": "farthest", "backward": "nearest", "up": "highest",

@@ -10,7 +10,7 @@ from typing import Any
 
 from . import changes
 from .changes import Fields
-from .phrases import Node, Refusal, tokens, trees
+from .nodes import Node, Refusal, tokens, trees
 from .rules import Rules
 
 
