@@ -1,0 +1,95 @@
+"""A clause's tokens as a tree, or which of its words to blame.
+
+Knows the parser (grammar.lark, LALR) and how its error becomes a sentence for the user. Refuses to know what a tree
+means (commands.py).
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterator, Sequence
+from functools import cache
+from pathlib import Path
+
+from lark import Lark, Token
+from lark.exceptions import UnexpectedInput, UnexpectedToken
+from lark.lexer import Lexer
+
+from . import lexicon, nouns
+from .nodes import Node, Refusal
+from .reading import color_at
+from .tags import Clause, Tag
+
+
+class _Passed(Lexer):
+    """Hands on tokens that the tagger made."""
+
+    def __init__(self, _conf: object) -> None:
+        pass
+
+    def lex(self, data: Sequence[Tag]) -> Iterator[Token]:  # type: ignore[override]
+        for i, tag in enumerate(data):
+            token = Token(tag.type, tag, start_pos=i)
+            token.value = tag
+            yield token
+
+
+@cache
+def _parser() -> Lark:
+    grammar = Path(__file__).with_name("grammar.lark").read_text(encoding="utf-8")
+    return Lark(grammar, parser="lalr", lexer=_Passed)
+
+
+def parse(clause: Clause) -> Node:
+    try:
+        return _parser().parse(clause.tags)
+    except UnexpectedToken as error:
+        at = error.token.start_pos if error.token.type != "$END" else None
+        raise _blame(clause, at) from None
+    except UnexpectedInput as error:
+        raise Refusal("this cannot be read") from error
+
+
+def _blame(clause: Clause, at: int | None) -> Refusal:
+    """Which words to name: `at` is the index of the token that did not fit, None for the end of the clause."""
+    tags = clause.tags
+    if not clause.verb:
+        return _unknown_verb(first_words(clause)[0])
+    if at is None:
+        tail = _unknown_tail(tags[-1]) if tags else ()
+        if tail:
+            return Refusal(f"“{' '.join(tail)}” is not understood", " ".join(tail))
+        return Refusal(f"something is missing after “{tags[-1].text}”")
+    found = tags[at]
+    if found.type in ("DET", "PRON", "EVERYTHING") and at > 1 and tags[at - 1].type == "NOUN":
+        found = tags[at - 1]
+    elif found.type not in ("NOUN", "UNKNOWN"):
+        strange = (t for t in tags[at + 1 :] if t.type == "UNKNOWN" or (t.type == "NOUN" and not _is_known(t)))
+        found = next(strange, found)
+    return Refusal(f"“{found.text}” is not understood here", found.text)
+
+
+def _unknown_verb(word: str) -> Refusal:
+    verbs = [v[0] for v in lexicon.VERB_PHRASES if len(v) == 1]
+    close = difflib.get_close_matches(word, verbs, n=1, cutoff=0.75)
+    hint = f"; did you mean {close[0]}?" if close else ""
+    return Refusal(f"“{word}” is no verb this planner knows{hint}", word)
+
+
+def first_words(clause: Clause) -> tuple[str, ...]:
+    return (clause.tags[0].words[0].text,) if clause.tags else ("",)
+
+
+def _is_known(tag: Tag) -> bool:
+    return any(nouns.is_known(w) for w in tag.text.split())
+
+
+def _unknown_tail(tag: Tag) -> tuple[str, ...]:
+    """The words behind the last everyday noun of a run ("wall blorange"), or the last word if none is known."""
+    if tag.type != "NOUN" or color_at([w.text for w in tag.words], 0):
+        return ()
+    texts = tag.text.split()
+    known = [i for i, w in enumerate(texts) if nouns.is_known(w)]
+    if known:
+        return tuple(texts[known[-1] + 1 :])
+    return (texts[-1],) if len(texts) > 1 else ()
