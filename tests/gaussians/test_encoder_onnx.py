@@ -177,6 +177,14 @@ def test_a_rule_beside_the_model_is_used(copy: Path) -> None:
     assert encoders.load(f"onnx:{copy}").calibration == Calibration(30.0, 0.4)
 
 
+def test_a_graph_that_its_files_do_not_fit_says_so(copy: Path) -> None:
+    said = json.loads((copy / "preprocessor_config.json").read_text())
+    said["size"] = said["crop_size"] = 8  # the tower's patches are laid out for another side
+    (copy / "preprocessor_config.json").write_text(json.dumps(said))
+    with pytest.raises(BackendError, match="of another model"):
+        encoders.load(f"onnx:{copy}").encode_images(_noise(1))
+
+
 def test_what_cannot_be_loaded_is_said(exported_clip: Path, tmp_path: Path, copy: Path) -> None:
     with pytest.raises(BackendError, match="name the folder"):
         encoders.load("onnx:")

@@ -196,7 +196,7 @@ def _run(session: Any, feeds: dict[str, NDArray[Any]], outputs: Sequence[str]) -
     """The first of `outputs` that the graph has, `[B, D]`.
 
     Raises:
-        BackendError: the graph wants an input that is not known here, or has no such output.
+        BackendError: the graph wants an input that is not known here, has no such output, or fails.
     """
     given = {}
     for wanted in session.get_inputs():
@@ -208,7 +208,10 @@ def _run(session: Any, feeds: dict[str, NDArray[Any]], outputs: Sequence[str]) -
     chosen = next((name for name in outputs if name in named), flat[0] if len(flat) == 1 else None)
     if chosen is None:
         raise BackendError(f"the ONNX graph gives {', '.join(named)}; export it with the projection, as {outputs[0]}")
-    result: NDArray[np.float32] = session.run([chosen], given)[0]
+    try:
+        result: NDArray[np.float32] = session.run([chosen], given)[0]
+    except Exception as error:  # onnxruntime raises its own classes, which share no public base
+        raise BackendError(f"the ONNX graph failed: {error}; its tokenizer or side may be of another model") from error
     return result
 
 
