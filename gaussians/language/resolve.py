@@ -154,7 +154,7 @@ class Resolver:
                 return found
         if not matches:
             near = tuple(rank.candidate(i) for i in rank.nearest()[:3])
-            return nothing(query, self._why_absent(query, rank, near), near)
+            return nothing(query, self._why_absent(query, near), near)
         order = next((r for r in query.relations if r.name in ORDERING), None)
         if order is not None:
             near_what = [a.group for a in self.anchors(order)]
@@ -268,11 +268,12 @@ class Resolver:
 
     # -- results ----------------------------------------------------------------------------------------------------
 
-    def _why_absent(self, query: Query, rank: Scored, near: Sequence[Candidate]) -> str:
+    def _why_absent(self, query: Query, near: Sequence[Candidate]) -> str:
         if is_name(query.text) and self.encoder is not None and (why := doubt(self.encoder, query.text)):
             return f"{query.describe()}: {why}; describe it by colour or place, or load a larger encoder"
-        nearest = near[0].describe() if near else "nothing"
-        return f"{query.describe()} is not in this scene; the nearest match is {nearest}"
+        if not near:
+            return f"{query.describe()} is not in this scene, nor is anything that could be compared with it"
+        return f"{query.describe()} is not in this scene; the nearest match is {near[0].describe()}"
 
     def _rest(self, query: Query, rank: Scored, chosen: Sequence[int]) -> Selection:
         """Every Gaussian that does not belong to a match, floor and walls and unassigned ones included."""
