@@ -94,8 +94,11 @@ def claimed(
     """Superpoints cut along the tracks' borders, the things they make up, as `segment` gives them, and the track of
     each surface point.
 
-    Things that tracks claim carry the tracks' `vectors`. Of the others what is left stays a thing if it is large
-    enough.
+    Things that tracks claim carry the tracks' vectors. Of the others what is left stays a thing if it is large enough.
+
+    Args:
+        labels: `[P]` superpoint of each surface point, whose numbers are the `members` of `things`.
+        vectors: one `[D]` a track, None for those that say nothing.
     """
     links = links_of(surface)
     owner, part = owners(surface, links, tracks)

@@ -52,7 +52,7 @@ def embed(
         masks: a source of masks of some views (`masks.load`), whose things and names go before those found without.
 
     Raises:
-        UserError: the scene has no Gaussians.
+        UserError: the scene has no Gaussians, or the masks' vectors are not of the encoder's width.
         FileError, BackendError: the masks cannot be had.
     """
     if not len(scene.cloud):

@@ -89,15 +89,15 @@ def save_field(scene: Scene, scene_path: Path) -> Path:
 def load_field(scene: Scene, scene_path: Path, encoder: str | None = None) -> Scene | None:
     """`scene`, freshly loaded from `scene_path`, with its saved field; None if there is none that fits.
 
-    A field fits when the scene file's bytes are those it was made for and, if given, its encoder is `encoder`.
+    A field fits when the scene file's bytes are those it was made for and, if given, its encoder is `encoder`. Of two
+    that fit the one written last is meant: where the scene's folder cannot be written any more, that is the cache's.
 
     Raises:
         FileError: a field file is there and bound to this scene, but broken.
     """
     mark = fingerprint(scene_path)
-    for target in (beside(scene_path), cached(mark)):
-        if not target.is_file():
-            continue
+    there = [target for target in (beside(scene_path), cached(mark)) if target.is_file()]
+    for target in sorted(there, key=lambda path: -path.stat().st_mtime_ns):
         tensors, header = _read(target)
         fits = header.get("version") == VERSION and header.get("scene") == mark
         if fits and (encoder is None or header.get("encoder") == encoder):

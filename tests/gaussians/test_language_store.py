@@ -154,6 +154,14 @@ def test_a_moved_scene_keeps_what_was_cached_for_its_content(path: Path, monkeyp
     assert again is not None and same(embedded(), again)
 
 
+def test_of_two_fields_that_fit_the_one_written_last_is_meant(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    os.utime(save_field(embedded("fake:1"), path), ns=(1, 1))
+    refuse(monkeypatch, path.parent)
+    assert save_field(embedded("fake:2"), path) == cached(fingerprint(path))
+    again = load_field(bare(), path)
+    assert again is not None and again.language is not None and again.language.encoder == "fake:2"
+
+
 def refuse(monkeypatch: pytest.MonkeyPatch, *folders: Path) -> None:
     """Nothing can be made in these folders; permissions alone would not stop an administrator."""
     make = store.writing
