@@ -1,7 +1,8 @@
 """A scene graph as a scene that words can be resolved in: one Gaussian a node, its box, its label, its colour.
 
-Knows how a graph's boxes and colour names become a language field, so that there is one resolver for scenes and for
-graphs. Refuses to resolve anything itself, and to be looked at: it has no shape, only measurements.
+Knows how a graph's boxes and words become a language field, so that there is one resolver for scenes and for graphs.
+Refuses to resolve anything itself, to know colours by their names (colorwords.py), and to be looked at: it has no shape,
+only measurements.
 """
 
 from __future__ import annotations
@@ -9,16 +10,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cached_property
 
 import numpy as np
 import torch
 
 from ..gaussians.camera import Camera, Vec3
 from ..gaussians.cloud import GaussianCloud
-from ..gaussians.color import BASIC, lab_to_rgb, parse, rgb_to_lab
-from ..gaussians.errors import UserError
-from ..gaussians.language import attributes
+from ..gaussians.color import BASIC
 from ..gaussians.language.field import Box, Group, LanguageField
 from ..gaussians.language.query import Query, Relation
 from ..gaussians.language.relations import distance
@@ -26,15 +25,13 @@ from ..gaussians.language.resolve import resolve
 from ..gaussians.language.selection import Selection
 from ..gaussians.language.terms import STRUCTURE
 from ..gaussians.scene import Frame, Scene
+from .colorwords import NO_COLOR, color_of, hex_of, plain_color
 from .graph import SHELL, Node, SceneGraph
 from .wordwise import WordEncoder
 
 Id = int | str
 _UP: Vec3 = (0.0, 0.0, 1.0)
 _SLAB = 0.15  # metres that floor, walls and ceiling reach out, and walls also in: what hangs on one lies in that slab
-_FAMILY = 0.7  # a "light blue" thing answers to "blue" at least this well, to any other basic word less
-# Of a node whose colour nobody wrote or nobody knows: no word fits. By lightness, as names compress chroma.
-_NO_COLOR: Vec3 = (1000.0, 0.0, 0.0)
 
 _FURNITURE = "furnishing"  # the resolver takes "furniture" for anything at all
 _ROW = re.compile(r"\(group (\d+)\)")
@@ -42,19 +39,6 @@ _BEFORE_WALL = 0.45  # metres from a wall to the middle of what stands against i
 _REACH = 0.3  # metres, a hand's span and a half
 _UPRIGHT = ("above", "below", "under")
 _BY_PAIR = ("on", "inside", "under", "below", "above", "next_to")
-
-# Colours that people count to a basic one, whatever a photometer says.
-_FAMILIES = {
-    "navy": "blue", "indigo": "blue", "denim": "blue", "azure": "blue", "royalblue": "blue", "skyblue": "blue",
-    "oak": "brown", "walnut": "brown", "wood": "brown", "wooden": "brown", "mahogany": "brown", "chestnut": "brown",
-    "pine": "brown", "teak": "brown", "cherry": "brown", "maple": "brown", "bamboo": "beige", "chocolate": "brown",
-    "bronze": "brown", "copper": "brown", "terracotta": "orange", "rust": "orange", "maroon": "red", "burgundy": "red",
-    "crimson": "red", "scarlet": "red", "lilac": "purple", "lavender": "purple", "violet": "purple", "mauve": "purple",
-    "cream": "white", "ivory": "white", "silver": "gray", "chrome": "gray", "steel": "gray", "metal": "gray",
-    "charcoal": "gray", "gold": "yellow", "golden": "yellow", "brass": "yellow", "mustard": "yellow",
-    "olive": "green", "sage": "green", "mint": "green", "emerald": "green", "turquoise": "teal", "aqua": "teal",
-    "tan": "beige", "sand": "beige",
-}  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +67,7 @@ class Stage:
         ids: list[Id] = [node.id for node in graph.nodes]
         shell = [s for s in SHELL if not any(g.level == "structure" and g.label == s for g in groups)]
         for name, box in ((s, b) for s in shell for b in _slabs(s, graph)):
-            groups.append(Group(len(groups), "structure", -1, name, 1.0, box, _NO_COLOR, 1, 1, 1.0))
+            groups.append(Group(len(groups), "structure", -1, name, 1.0, box, NO_COLOR, 1, 1, 1.0))
             ids.append(name)
         vectors = np.array([encoder.of(g.label) for g in groups], dtype=np.float32).reshape(len(groups), encoder.dim)
         field = LanguageField(tuple(groups), vectors, encoder.fingerprint)
@@ -190,9 +174,9 @@ class Stage:
 
     def _color(self, word: str) -> str:
         """A colour that is written so in the graph means what stands for it here; basic words mean themselves."""
-        plain = _plain(word)
-        written = plain not in BASIC and any(_plain(n.color) == plain for n in self.graph.nodes)
-        return _hex(color_of(plain)) if written else word
+        plain = plain_color(word)
+        written = plain not in BASIC and any(plain_color(n.color) == plain for n in self.graph.nodes)
+        return hex_of(color_of(plain)) if written else word
 
     def _relation(self, relation: Relation) -> Relation:
         hung = relation.name == "on" and STRUCTURE.get(relation.anchors[0].text) in ("wall", "ceiling")
@@ -224,63 +208,14 @@ def _to_any(relation: Relation) -> Relation:
 
 def _spoken(node: Node) -> str:
     """What words are compared with: the label, and a colour that no colour table knows ("tartan blanket")."""
-    unknown = node.color and node.label and color_of(node.color) == _NO_COLOR
+    unknown = node.color and node.label and color_of(node.color) == NO_COLOR
     return f"{node.color} {node.label}" if unknown else node.label
-
-
-def _plain(color: str) -> str:
-    return color.lower().replace("grey", "gray").strip()
-
-
-def _hex(lab: Vec3) -> str:
-    """The colour nearest to Lab values that a display can show, as #rrggbb."""
-    shown = (lab_to_rgb(torch.tensor(lab, dtype=torch.float64)).clamp(0, 1) * 255).round()
-    return "#" + "".join(f"{int(c):02x}" for c in shown)
-
-
-@cache
-def color_of(name: str) -> Vec3:
-    """Lab of a colour as written in a graph: its own, but so near to the basic word in it that this word fits best.
-
-    Lab of CSS names is no judge of words: light blue measures as teal, dark brown as red.
-    """
-    plain = _plain(name)
-    own, family = _lab(plain), _family(plain)
-    if family is None or plain in BASIC:
-        return _lab(BASIC[plain]) if plain in BASIC else own
-    basic = _lab(BASIC[family])
-    if own == _NO_COLOR:
-        return basic
-    for step in range(21):
-        lab = np.array(own) + (np.array(basic) - np.array(own)) * step / 20
-        if float(attributes.color_scores(family, lab)) >= _FAMILY:
-            return _vec(lab)
-    return basic
-
-
-def _family(plain: str) -> str | None:
-    """The basic colour word that a name ends with or belongs to."""
-    last = plain.replace("-", " ").split()[-1:] or [""]
-    joined = plain.replace(" ", "")
-    return last[0] if last[0] in BASIC else _FAMILIES.get(joined) or _FAMILIES.get(last[0])
-
-
-def _lab(text: str) -> Vec3:
-    try:
-        return _vec(rgb_to_lab(torch.tensor(parse(text), dtype=torch.float64)).numpy())
-    except UserError:
-        return _NO_COLOR
-
-
-def _vec(values: np.ndarray) -> Vec3:
-    x, y, z = (float(v) for v in values)
-    return (x, y, z)
 
 
 def _group(index: int, node: Node) -> Group:
     """A node as a row of the table."""
     kind = STRUCTURE.get(node.label.lower().strip())
-    color = color_of(node.color) if node.color else _NO_COLOR
+    color = color_of(node.color) if node.color else NO_COLOR
     level, label = ("structure", kind) if kind else ("object", _spoken(node))
     return Group(index, level, -1, label, 1.0, node.box, color, 1, 1, 1.0)  # type: ignore[arg-type]
 

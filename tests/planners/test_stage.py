@@ -15,8 +15,9 @@ from scenewright.gaussians.color import BASIC
 from scenewright.gaussians.errors import BackendError, FileError
 from scenewright.gaussians.language.attributes import COLOR_HOLDS, color_scores
 from scenewright.gaussians.language.query import Query, Relation
+from scenewright.planners.colorwords import color_of
 from scenewright.planners.graph import Node, RoomShape, SceneGraph, Viewpoint
-from scenewright.planners.stage import Stage, color_of
+from scenewright.planners.stage import Stage
 from scenewright.planners.wordwise import ALIKE, BROADER, EXACT, NOT, WordEncoder, agreement
 
 LIVING = Stage.of(SceneGraph.read(Path(__file__).parent / "written" / "living_room.json"))
