@@ -1,8 +1,8 @@
 """A scene graph as a scene that words can be resolved in: one Gaussian a node, its box, its label, its colour.
 
 Knows how a graph's boxes and words become a language field, so that there is one resolver for scenes and for graphs.
-Refuses to resolve anything itself, to know colours by their names (colorwords.py), and to be looked at: it has no shape,
-only measurements.
+Refuses to resolve anything itself, to know colours by their names (colorwords.py), and to be looked at: it has no
+shape, only measurements.
 """
 
 from __future__ import annotations
