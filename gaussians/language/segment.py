@@ -15,7 +15,7 @@ import torch
 from numpy.typing import NDArray
 
 from ..scene import Frame, Scene
-from . import grouping, structure
+from . import grouping, planes, structure
 from .adjacency import build_graph
 from .borders import redrawn
 from .calibration import wholeness
@@ -108,7 +108,7 @@ def superpoints_and_structure(
 
 def graph_of(surface: Surface, links: Links, labels: NDArray[np.int32], codes: NDArray[np.int8], frame: Frame) -> Graph:
     """The graph of the superpoints that are no structure, in the level frame."""
-    flat = structure.level(surface, frame)
+    flat = planes.level(surface, frame)
     lab = surface.lab.astype(np.float64)
     kinds = structure.kind_of(codes)
     return build_graph(labels, flat.points, lab, flat.normals, links, kinds, surface.spacing)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ...assets import furnish
 from ...scene import Scene
-from .. import paint, structure
+from .. import paint, planes, structure
 from ..affinity import rule_of
 from ..superpoints import links_of, superpoints
 from ..surface import surface_of
@@ -32,7 +32,7 @@ def pieces_met(scene: Scene, truth: NDArray[np.int32]) -> Met:
     as the cost of a mistake."""
     surface = surface_of(scene.cloud)
     labels = superpoints(surface, links_of(surface))
-    flat = structure.level(surface, scene.frame)
+    flat = planes.level(surface, scene.frame)
     free = (truth[surface.rows] < 0).astype(np.float64)
     total = np.bincount(labels)
     share = np.bincount(labels, weights=free) / np.maximum(total, 1)
