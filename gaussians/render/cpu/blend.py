@@ -24,6 +24,7 @@ from .simd import (
     WINNER,
     blend_block,
     fetch,
+    lane_sum,
     store_block,
     take,
     weigh_block,
@@ -185,10 +186,7 @@ def weigh(worker, workers, first, entries, records, size, limits, share, scratch
             weights[:] = ZERO
             finished = _weigh_chunk(chunk, touched, count, listed, state, alive, weights, limits)
             for slot in range(count):
-                total = ZERO
-                for lane in range(LANES):
-                    total += weights[slot * LANES + lane]
-                share[start + slot] = total
+                share[start + slot] = lane_sum(weights, slot)
             start += count
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from .blend import CHUNK, _begin, _gather, _list, _weigh_chunk
 from .compiled import fetch_add, helper, kernel
 from .project import TILE, Array
-from .simd import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, LANES, weigh_block
+from .simd import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, LANES, lane_sum, weigh_block
 
 PIXELS = TILE * TILE  # of a tile, so the most labels it can have
 
@@ -76,10 +76,7 @@ def split(worker, workers, first, entries, records, size, limits, plan, share, s
                 weights[:] = ZERO
                 finished = _weigh_chunk(chunk, touched, taken, listed, state, alive, weights, limits)
                 for slot in range(taken):
-                    total = ZERO
-                    for lane in range(LANES):
-                        total += weights[slot * LANES + lane]
-                    share[to + slot] = total
+                    share[to + slot] = lane_sum(weights, slot)
             else:
                 finished = True
                 for block in range(BLOCKS):

@@ -303,6 +303,26 @@ def weigh_block(
     return signature, generate
 
 
+@intrinsic
+def lane_sum(typing_context: Any, weights: Any, slot: Any) -> Any:
+    """Sum of row `slot` of `weights` `[CHUNK, LANES]`, always in the same order: halves, quarters and so on.
+
+    A plain loop may be reordered, and LLVM keeps two versions of it and picks one by the addresses of its arrays.
+    """
+
+    def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
+        v = _Lanes(builder)
+        base = _data(context, builder, signature, arguments, 0)
+        row = v.load(v.at(base, builder.mul(arguments[1], ir.Constant(_I64, LANES))))
+        half = LANES // 2
+        while half:
+            row = v.add(v.pick(row, row, range(half)), v.pick(row, row, range(half, 2 * half)))
+            half //= 2
+        return builder.extract_element(row, ir.Constant(_I32, 0))
+
+    return types.float32(weights, types.int64), generate
+
+
 def _pixels(v: _Lanes, x: ir.Value, y: ir.Value) -> tuple[ir.Value, ir.Value]:
     """Pixel centres of the block with its corner at (x, y)."""
     columns = v.constant([i % BLOCK_WIDTH + 0.5 for i in range(LANES)])
