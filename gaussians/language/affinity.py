@@ -1,19 +1,17 @@
-"""How likely two regions are one thing: the features of a border, and the small network that judges them.
+"""How likely two regions are one thing: the features of a border, and the rule that judges them.
 
-Knows sums over regions and borders. Refuses to know how they were found and what becomes of them. The network was
-fitted on furnished rooms with known objects (`train/affinity.py`).
+Knows sums over regions and borders. Refuses to know how they were found and what becomes of them. The rule was fitted
+on furnished rooms with known objects (`train/affinity.py`).
 """
 
 from __future__ import annotations
 
-import json
-from dataclasses import dataclass
-from functools import cache
-from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+from .rule import shipped
 
 if TYPE_CHECKING:
     from .regions import Borders, Regions
@@ -137,41 +135,6 @@ def _rests(upper: _Shape, lower: _Shape, contact: F64, level: F64) -> F64:
     return result
 
 
-@dataclass(frozen=True)
-class Rule:
-    """A small network over standardised features: two hidden layers of tanh units.
-
-    Attributes:
-        mean, spread: `[F]` of the features.
-        weights, biases: of the three layers, `[F, H]`, `[H, H]`, `[H, 1]` and `[H]`, `[H]`, `[1]`.
-    """
-
-    mean: F64
-    spread: F64
-    weights: tuple[F64, ...]
-    biases: tuple[F64, ...]
-
-    def probability(self, features: F64) -> F64:
-        """`[..., F]` to `[...]`."""
-        x = (features - self.mean) / self.spread
-        for k, (weight, bias) in enumerate(zip(self.weights, self.biases, strict=True)):
-            x = (np.tanh(x) if k else x) @ weight + bias
-        result: F64 = 1 / (1 + np.exp(-np.clip(x[..., 0], -30, 30)))
-        return result
-
-
-@cache
-def _rule() -> Rule:
-    return rule_of(json.loads((files(__package__) / "affinity.json").read_text()))
-
-
-def rule_of(table: dict[str, Any], features: tuple[str, ...] = FEATURES) -> Rule:
-    """The rule as a file holds it."""
-    assert tuple(table["features"]) == features, "the rule was fitted for other features"
-    weights, biases = (tuple(np.array(a) for a in table[k]) for k in ("weights", "biases"))
-    return Rule(np.array(table["mean"]), np.array(table["spread"]), weights, biases)
-
-
 def probability(features: F64) -> F64:
     """Probability `[...]` that the regions on both sides are one thing, of features `[..., F]`."""
-    return _rule().probability(features)
+    return shipped("affinity", FEATURES).probability(features)

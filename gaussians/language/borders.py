@@ -7,14 +7,10 @@ for each thing near a point how likely the point is its own.
 
 from __future__ import annotations
 
-import json
-from functools import cache
-from importlib.resources import files
-
 import numpy as np
 from numpy.typing import NDArray
 
-from .affinity import Rule, rule_of
+from .rule import shipped
 from .surface import Surface
 
 F64 = NDArray[np.float64]
@@ -43,7 +39,7 @@ def redrawn(
         points, things, nearest, features = describe(surface, labels, owner, structure)
         if not len(points):
             break
-        likely = np.clip(_rule().probability(features), 1e-9, 1 - 1e-9)
+        likely = np.clip(shipped("borders", FEATURES).probability(features), 1e-9, 1 - 1e-9)
         stays = things == owner[labels[points]]
         odds = np.log(likely / (1 - likely)) + MARGIN * stays
         order = np.lexsort((things, -odds, points))
@@ -126,8 +122,3 @@ def _pieces(surface: Surface, labels: NDArray[np.int32], count: int) -> tuple[F6
 
     middle = mean(lab)
     return middle, np.sqrt(np.maximum(mean(lab**2) - middle**2, 0).sum(axis=1))
-
-
-@cache
-def _rule() -> Rule:
-    return rule_of(json.loads((files(__package__) / "borders.json").read_text()), FEATURES)

@@ -7,15 +7,12 @@ differ from it only a little in colour, and by what they touch. A small network,
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
-from functools import cache
-from importlib.resources import files
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .affinity import Rule, rule_of
+from .rule import shipped
 from .surface import Surface
 
 F64 = NDArray[np.float64]
@@ -67,7 +64,7 @@ def painted(surface: Surface, pieces: Pieces) -> Mask:
     chosen, features = describe(surface, pieces)
     kept = np.zeros(len(pieces.guess), bool)
     if len(chosen):
-        kept[chosen] = _rule().probability(features) > 0.5
+        kept[chosen] = shipped("paint", FEATURES).probability(features) > 0.5
     near = np.bincount(pieces.own[pieces.near], minlength=len(kept))
     return kept if near[kept].sum() >= STRANGE * near[pieces.guess].sum() else pieces.guess
 
@@ -165,8 +162,3 @@ def _reach(mean: F64, chosen: I64, low: F64, high: F64, span: F64) -> F64:
     last = np.where(alike[:, :, None], high[chosen][None], -np.inf).max(axis=1)
     result: F64 = np.minimum((last - first) / span, 1.2)
     return result
-
-
-@cache
-def _rule() -> Rule:
-    return rule_of(json.loads((files(__package__) / "paint.json").read_text()), FEATURES)

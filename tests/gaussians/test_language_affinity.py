@@ -10,6 +10,7 @@ from scenewright.gaussians.language.adjacency import build_graph
 from scenewright.gaussians.language.borders import FEATURES as BORDER_FEATURES
 from scenewright.gaussians.language.paint import FEATURES as PAINT_FEATURES
 from scenewright.gaussians.language.regions import Graph, merge_tree
+from scenewright.gaussians.language.rule import rule_of
 from scenewright.gaussians.language.superpoints import Links
 
 STEP = 0.1
@@ -79,6 +80,6 @@ def test_a_rule_is_refused_for_other_features(names: tuple[str, ...]) -> None:
         "weights": [np.zeros((width, 2)).tolist(), np.zeros((2, 2)).tolist(), [[1.0], [1.0]]],
         "biases": [[0.0, 0.0], [0.0, 0.0], [0.0]],
     }  # fmt: skip
-    assert affinity.rule_of(table, names).probability(np.ones((3, width))).tolist() == [0.5] * 3
+    assert rule_of(table, names).probability(np.ones((3, width))).tolist() == [0.5] * 3
     with pytest.raises(AssertionError, match="other features"):
-        affinity.rule_of(table, names[1:])
+        rule_of(table, names[1:])

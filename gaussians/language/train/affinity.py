@@ -9,31 +9,26 @@ borders it meets to those of all rounds (DAgger: Ross, Gordon & Bagnell 2011).
 
 from __future__ import annotations
 
-import argparse
 import copy
 import heapq
-import json
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import torch
 from numpy.typing import NDArray
 
-from ...assets import furnish
 from ...scene import Scene
 from .. import affinity
 from ..regions import Graph
+from ..rule import Rule, rule_of
 from ..segment import graph_of, superpoints_and_structure
 from ..superpoints import links_of
 from ..surface import surface_of
+from .rules import Met, Rooms, command, fit, joined, kept, with_judgement
 
 F64 = NDArray[np.float64]
-HIDDEN, STEPS, BATCH, RATE = 32, 8000, 2048, 5e-3
+STEPS = 8000
 ROUNDS = 2
-JITTER = 0.25  # standard deviations of a feature: captures are noisier than furnished rooms
 STRAY = 0.3  # of the wrong merges that the rule would make are made, so that it learns not to add to them
 LEAST = 0.2  # weight of a border of a crumb against one that decides over a whole object
 
@@ -44,15 +39,6 @@ class Known:
 
     graph: Graph
     owners: F64
-
-
-@dataclass(frozen=True)
-class Met:
-    """Borders met on the way: features `[B, F]`, whether both sides are one object, and what a mistake would cost."""
-
-    features: F64
-    same: NDArray[np.bool_]
-    cost: F64
 
 
 def known_graph(scene: Scene, truth: NDArray[np.int32]) -> Known:
@@ -67,7 +53,7 @@ def known_graph(scene: Scene, truth: NDArray[np.int32]) -> Known:
     return Known(graph, counts.reshape(-1, many)[rows].astype(np.float64))
 
 
-def walk(known: Known, rule: affinity.Rule | None, rng: np.random.Generator) -> Met:
+def walk(known: Known, rule: Rule | None, rng: np.random.Generator) -> Met:
     """Merge as the rule would (at random if None) but only within objects, bar a stray; note every border met."""
     graph, owners = copy.deepcopy(known.graph), {i: row for i, row in enumerate(known.owners)}
     total = known.owners.sum(axis=0)
@@ -105,82 +91,19 @@ def walk(known: Known, rule: affinity.Rule | None, rng: np.random.Generator) -> 
                np.array(same, bool), np.array(cost))  # fmt: skip
 
 
-def joined(met: Sequence[Met]) -> Met:
-    """All of them."""
-    return Met(*(np.concatenate([getattr(m, name) for m in met]) for name in ("features", "same", "cost")))
-
-
-def fit(met: Met, names: tuple[str, ...], seed: int = 0, steps: int = STEPS) -> dict[str, Any]:
-    """The rule as a table; both classes count equally, so that it does not follow how often each occurs."""
-    torch.manual_seed(seed)
-    rng = np.random.default_rng(seed)
-    mean, spread = met.features.mean(axis=0), met.features.std(axis=0) + 1e-6
-    x = torch.from_numpy((met.features - mean) / spread).float()
-    y = torch.from_numpy(met.same).float()
-    weight = torch.from_numpy(met.cost).float()
-    weight = torch.where(y > 0, weight / (weight * y).mean(), weight / (weight * (1 - y)).mean())
-    layers = [torch.nn.Linear(len(names), HIDDEN), torch.nn.Linear(HIDDEN, HIDDEN), torch.nn.Linear(HIDDEN, 1)]
-    model = torch.nn.Sequential(layers[0], torch.nn.Tanh(), layers[1], torch.nn.Tanh(), layers[2])
-    optimizer = torch.optim.AdamW(model.parameters(), lr=RATE, weight_decay=1e-2)
-    for step in range(steps):
-        for group in optimizer.param_groups:
-            group["lr"] = RATE * (1 - step / steps)
-        pick = torch.from_numpy(rng.integers(len(y), size=BATCH))
-        jitter = torch.from_numpy(rng.normal(size=(BATCH, x.shape[1])).astype(np.float32)) * JITTER
-        logit = model(x[pick] + jitter).squeeze(1)
-        loss = torch.nn.functional.binary_cross_entropy_with_logits(logit, y[pick], weight[pick])
-        optimizer.zero_grad()
-        loss.backward()  # type: ignore[no-untyped-call]
-        optimizer.step()
-    return {
-        "features": list(names),
-        "mean": _rounded(mean),
-        "spread": _rounded(spread),
-        "weights": [_rounded(layer.weight.detach().numpy().T) for layer in layers],
-        "biases": [_rounded(layer.bias.detach().numpy()) for layer in layers],
-        "borders": len(y),
-    }
-
-
-def judge(rule: affinity.Rule, met: Met) -> dict[str, float]:
-    """Shares of borders judged right, each weighted by what a mistake would cost."""
-    joined = rule.probability(met.features) > 0.5
-    return {
-        name: round(float(np.average(joined[rows] == wanted, weights=met.cost[rows])), 4)
-        for name, rows, wanted in (("joined when one thing", met.same, True), ("parted when two", ~met.same, False))
-    }
-
-
-def _rounded(values: NDArray[np.floating]) -> list[Any]:
-    rounded: list[Any] = np.round(values.astype(np.float64), 5).tolist()
-    return rounded
-
-
-def fit_in_rounds(rooms: Iterable[tuple[Scene, NDArray[np.int32]]], seed: int) -> dict[str, Any]:
+def fit_in_rounds(rooms: Rooms, seed: int) -> dict[str, Any]:
     """The table of the rule after all rounds; a sixth of the rooms is held out and judged as the rule meets them."""
     rng = np.random.default_rng(seed)
     graphs = [known_graph(scene, truth) for scene, truth in rooms]
-    kept = graphs[: max(1, len(graphs) * 5 // 6)]
-    met = [walk(g, None, rng) for g in kept]
-    table = fit(joined(met), affinity.FEATURES, seed)
+    known, held = graphs[: kept(len(graphs))], graphs[kept(len(graphs)) :]
+    met = [walk(g, None, rng) for g in known]
+    table = fit(joined(met), affinity.FEATURES, seed, STEPS)
     for _ in range(ROUNDS):
-        met += [walk(g, affinity.rule_of(table), rng) for g in kept]
-        table = fit(joined(met), affinity.FEATURES, seed)
-    rule = affinity.rule_of(table)
-    held = [walk(g, rule, rng) for g in graphs[len(kept) :]]
-    return {**table, "held_out": judge(rule, joined(held)) if held else {}}
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rooms", type=int, default=70)
-    parser.add_argument("--seed", type=int, default=9000)
-    parser.add_argument("--out", type=Path, default=Path(affinity.__file__).with_suffix(".json"))
-    args = parser.parse_args()
-    rooms = (furnish(args.seed + i) for i in range(args.rooms))
-    table = fit_in_rounds(((r.scene, r.truth.ids.numpy()) for r in rooms), args.seed)
-    args.out.write_text(json.dumps(table) + "\n")
+        met += [walk(g, rule_of(table, affinity.FEATURES), rng) for g in known]
+        table = fit(joined(met), affinity.FEATURES, seed, STEPS)
+    rule = rule_of(table, affinity.FEATURES)
+    return with_judgement(table, affinity.FEATURES, [walk(g, rule, rng) for g in held])
 
 
 if __name__ == "__main__":
-    main()
+    command(affinity, 70, fit_in_rounds)

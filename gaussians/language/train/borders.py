@@ -7,23 +7,17 @@ Writes `borders.json` beside `borders.py`.
 
 from __future__ import annotations
 
-import argparse
-import json
-from collections.abc import Iterable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...assets import furnish
 from ...scene import Scene
 from .. import borders, structure
-from ..affinity import rule_of
 from ..segment import superpoints_and_structure
 from ..superpoints import links_of, touching
 from ..surface import surface_of
-from .affinity import Met, fit, joined, judge
+from .rules import Met, Rooms, command, fit_and_judge, joined
 
 STEPS = 6000
 TAKEN = 0.5  # of the pieces of floor that were not recognised, those that went to a thing they touch
@@ -66,26 +60,11 @@ def _owners(
     return owner.astype(np.int32)
 
 
-def fit_rooms(rooms: Iterable[tuple[Scene, NDArray[np.int32]]], seed: int) -> dict[str, Any]:
+def fit_rooms(rooms: Rooms, seed: int) -> dict[str, Any]:
     """The table of the rule; a sixth of the rooms is held out and judged."""
     rng = np.random.default_rng(seed)
-    met = [points_met(scene, truth, rng) for scene, truth in rooms]
-    kept = max(1, len(met) * 5 // 6)
-    table = fit(joined(met[:kept]), borders.FEATURES, seed, STEPS)
-    held = met[kept:]
-    return {**table, "held_out": judge(rule_of(table, borders.FEATURES), joined(held)) if held else {}}
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rooms", type=int, default=40)
-    parser.add_argument("--seed", type=int, default=9000)
-    parser.add_argument("--out", type=Path, default=Path(borders.__file__).with_suffix(".json"))
-    args = parser.parse_args()
-    rooms = (furnish(args.seed + i) for i in range(args.rooms))
-    table = fit_rooms(((r.scene, r.truth.ids.numpy()) for r in rooms), args.seed)
-    args.out.write_text(json.dumps(table) + "\n")
+    return fit_and_judge([points_met(scene, truth, rng) for scene, truth in rooms], borders.FEATURES, seed, STEPS)
 
 
 if __name__ == "__main__":
-    main()
+    command(borders, 40, fit_rooms)

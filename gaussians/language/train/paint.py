@@ -7,10 +7,6 @@ Writes `paint.json` beside `paint.py`. Every fourth room has a ceiling.
 
 from __future__ import annotations
 
-import argparse
-import json
-from collections.abc import Iterable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,10 +15,9 @@ from numpy.typing import NDArray
 from ...assets import furnish
 from ...scene import Scene
 from .. import paint, planes, structure
-from ..affinity import rule_of
 from ..superpoints import links_of, superpoints
 from ..surface import surface_of
-from .affinity import Met, fit, joined, judge
+from .rules import Met, Rooms, command, fit_and_judge, joined
 
 STEPS = 3000
 
@@ -45,25 +40,10 @@ def pieces_met(scene: Scene, truth: NDArray[np.int32]) -> Met:
     return joined(met)
 
 
-def fit_rooms(rooms: Iterable[tuple[Scene, NDArray[np.int32]]], seed: int) -> dict[str, Any]:
+def fit_rooms(rooms: Rooms, seed: int) -> dict[str, Any]:
     """The table of the rule; a sixth of the rooms is held out and judged."""
-    met = [pieces_met(scene, truth) for scene, truth in rooms]
-    kept = max(1, len(met) * 5 // 6)
-    table = fit(joined(met[:kept]), paint.FEATURES, seed, STEPS)
-    held = met[kept:]
-    return {**table, "held_out": judge(rule_of(table, paint.FEATURES), joined(held)) if held else {}}
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rooms", type=int, default=70)
-    parser.add_argument("--seed", type=int, default=9000)
-    parser.add_argument("--out", type=Path, default=Path(paint.__file__).with_suffix(".json"))
-    args = parser.parse_args()
-    rooms = (furnish(args.seed + i, ceiling=i % 4 == 3) for i in range(args.rooms))
-    table = fit_rooms(((r.scene, r.truth.ids.numpy()) for r in rooms), args.seed)
-    args.out.write_text(json.dumps(table) + "\n")
+    return fit_and_judge([pieces_met(scene, truth) for scene, truth in rooms], paint.FEATURES, seed, STEPS)
 
 
 if __name__ == "__main__":
-    main()
+    command(paint, 70, fit_rooms, lambda seed, number: furnish(seed, ceiling=number % 4 == 3))

@@ -1,0 +1,54 @@
+"""A small network over a few measured features, as a JSON table in this folder holds it.
+
+Knows numbers. Refuses to know what they were measured on: `affinity`, `paint` and `borders` each have one, fitted on
+furnished rooms by `train/`.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+F64 = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A small network over standardised features: two hidden layers of tanh units.
+
+    Attributes:
+        mean, spread: `[F]` of the features.
+        weights, biases: of the three layers, `[F, H]`, `[H, H]`, `[H, 1]` and `[H]`, `[H]`, `[1]`.
+    """
+
+    mean: F64
+    spread: F64
+    weights: tuple[F64, ...]
+    biases: tuple[F64, ...]
+
+    def probability(self, features: F64) -> F64:
+        """`[..., F]` to `[...]`."""
+        x = (features - self.mean) / self.spread
+        for k, (weight, bias) in enumerate(zip(self.weights, self.biases, strict=True)):
+            x = (np.tanh(x) if k else x) @ weight + bias
+        result: F64 = 1 / (1 + np.exp(-np.clip(x[..., 0], -30, 30)))
+        return result
+
+
+@cache
+def shipped(name: str, features: tuple[str, ...]) -> Rule:
+    """The rule in `NAME.json`, read once."""
+    return rule_of(json.loads((files(__package__) / f"{name}.json").read_text()), features)
+
+
+def rule_of(table: dict[str, Any], features: tuple[str, ...]) -> Rule:
+    """The rule as a table holds it."""
+    assert tuple(table["features"]) == features, "the rule was fitted for other features"
+    weights, biases = (tuple(np.array(a) for a in table[k]) for k in ("weights", "biases"))
+    return Rule(np.array(table["mean"]), np.array(table["spread"]), weights, biases)
