@@ -23,6 +23,39 @@ understood, but no operation does it. `unsafe`: not about the scene at all. `abs
 planners that saw the scene, and after resolving."""
 
 
+class Usage(BaseModel):
+    """What a language model was asked for, summed over all its answers to one instruction.
+
+    Attributes:
+        model: back end and model, as the planner is named.
+        requests: how often it was asked; more than one where an answer had to be repaired.
+        input_tokens, output_tokens: as the back end counted them, 0 where it did not.
+        dollars: by published prices; None where none are known (local models, own servers).
+        seconds: waiting for it.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    model: Annotated[str, Field(max_length=200)]
+    requests: Annotated[int, Field(ge=0, le=1000)] = 0
+    input_tokens: Annotated[int, Field(ge=0)] = 0
+    output_tokens: Annotated[int, Field(ge=0)] = 0
+    dollars: Annotated[float, Field(ge=0, allow_inf_nan=False)] | None = None
+    seconds: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
+
+    def plus(self, other: Usage) -> Usage:
+        """Both together; dollars are unknown only where both are."""
+        known = [u.dollars for u in (self, other) if u.dollars is not None]
+        return Usage(
+            model=self.model,
+            requests=self.requests + other.requests,
+            input_tokens=self.input_tokens + other.input_tokens,
+            output_tokens=self.output_tokens + other.output_tokens,
+            dollars=sum(known) if known else None,
+            seconds=self.seconds + other.seconds,
+        )
+
+
 class EditPlan(BaseModel):
     """A plan: either verdict "ok" and at least one operation, or another verdict, no operation and a reason.
 
@@ -36,6 +69,7 @@ class EditPlan(BaseModel):
         reason: one sentence for a person; of a plan that is ok, what was read otherwise than it was written.
         unknown: the exact words that were not understood.
         seconds: how long planning took; not compared (`same_as`).
+        usage: what language models were asked for; None if none was. Not compared either.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -48,6 +82,7 @@ class EditPlan(BaseModel):
     reason: Annotated[str, Field(max_length=2000)] = ""
     unknown: Annotated[tuple[Annotated[str, Field(max_length=200)], ...], Field(max_length=64)] = ()
     seconds: Annotated[float, Field(ge=0, le=86_400, allow_inf_nan=False)] = 0.0
+    usage: Usage | None = None
 
     @model_validator(mode="after")
     def _all_or_nothing(self) -> Self:
@@ -65,6 +100,22 @@ class EditPlan(BaseModel):
         return (self.verdict, self.ops) == (other.verdict, other.ops)
 
 
+class Sight(Protocol):
+    """The scene as far as planners may look at it, each part made only when somebody looks."""
+
+    def graph(self) -> SceneGraph:
+        """What stands where. Its ids are numbers, the groups that a query may name.
+
+        Raises:
+            ScenewrightError: the scene cannot be looked at (it could not be embedded).
+        """
+        ...
+
+    def picture(self) -> bytes | None:
+        """The viewer's view as PNG, None where there are no pixels."""
+        ...
+
+
 class Planner(Protocol):
     """Words to a plan. A planner never raises for words it does not understand; it says so in the verdict."""
 
@@ -73,15 +124,16 @@ class Planner(Protocol):
         """What receipts call it."""
         ...
 
-    def plan(self, text: str, *, previous: str | None = None, graph: SceneGraph | None = None) -> EditPlan:
+    def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
         """The plan for an instruction.
 
         Args:
             text: the instruction.
             previous: the instruction before, for "the red one" and "a bit more".
-            graph: the scene, for planners that look at it.
+            sight: the scene, for planners that look at it.
 
         Raises:
             UserError: the instruction is too long to be one.
+            BackendError: a language model cannot be reached, or gave no plan after all attempts.
         """
         ...

@@ -31,7 +31,7 @@ from .unsafe import unsafe_words
 from .words import Word, clean, split
 
 if TYPE_CHECKING:
-    from ..graph import SceneGraph
+    from ..plan import Sight
 
 NAME = "grammar"
 
@@ -57,8 +57,8 @@ class GrammarPlanner:
         # Everything that is made once is made here, so that the first instruction is as quick as the others.
         _understand("paint it red and add a small mug", None)
 
-    def plan(self, text: str, *, previous: str | None = None, graph: SceneGraph | None = None) -> EditPlan:
-        """The plan for an instruction; see `Planner.plan`. The scene (`graph`) is not looked at.
+    def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
+        """The plan for an instruction; see `Planner.plan`. The scene (`sight`) is not looked at.
 
         Raises:
             UserError: the text is too long to be an instruction.

@@ -1,0 +1,1 @@
+"""Planning by language models, behind one protocol (`backend.py`)."""
