@@ -38,10 +38,10 @@ class Usage(BaseModel):
 
     model: Annotated[str, Field(max_length=200)]
     requests: Annotated[int, Field(ge=0, le=1000)] = 0
-    input_tokens: Annotated[int, Field(ge=0)] = 0
-    output_tokens: Annotated[int, Field(ge=0)] = 0
-    dollars: Annotated[float, Field(ge=0, allow_inf_nan=False)] | None = None
-    seconds: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
+    input_tokens: Annotated[int, Field(ge=0, le=10**9)] = 0
+    output_tokens: Annotated[int, Field(ge=0, le=10**9)] = 0
+    dollars: Annotated[float, Field(ge=0, le=1e6, allow_inf_nan=False)] | None = None
+    seconds: Annotated[float, Field(ge=0, le=86_400, allow_inf_nan=False)] = 0.0
 
     def plus(self, other: Usage) -> Usage:
         """Both together; dollars are unknown only where both are."""
