@@ -10,6 +10,7 @@ import numpy as np
 import torch
 
 from ...gaussians import assets
+from ...gaussians.camera import Camera
 from ...gaussians.language.encoders import Encoder
 from ...gaussians.language.selection import Verdict
 from ...gaussians.render import render
@@ -88,12 +89,15 @@ def _drawn(case: Case, truth: Mask, found: Mask) -> float | None:
     scores = []
     for camera in case.scene.cameras:
         small = camera.resized(*PICTURE)
-        true, seen = (
-            (render(case.scene.cloud[torch.from_numpy(m)], small).alpha > 0.5).numpy() for m in (truth, found)
-        )
+        true = _silhouette(case, truth, small)
         if true.sum() >= SHOWN:
-            scores.append(contour_iou(true, seen))
+            scores.append(contour_iou(true, _silhouette(case, found, small)))
     return fmean(scores) if scores else None
+
+
+def _silhouette(case: Case, mask: Mask, camera: Camera) -> Mask:
+    """`[H, W]` bool: where some Gaussians, drawn alone, cover half of a pixel."""
+    return (render(case.scene.cloud[torch.from_numpy(mask)], camera).alpha > 0.5).numpy()
 
 
 def miou(rooms: Sequence[Asked]) -> float:

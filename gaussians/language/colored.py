@@ -19,6 +19,7 @@ from ..cloud import NO_GROUP
 from ..scene import Scene
 from . import attributes
 from .field import LanguageField
+from .members import members_of
 from .patches import Patch, patches
 from .query import Query
 from .selection import Candidate, Selection, nothing
@@ -76,8 +77,9 @@ def by_hue(
     """
     if not _simple(query) or not named:
         return None
-    leaves = sorted({leaf for g in named for leaf in field.leaves(g)})
-    own = torch.isin(scene.cloud.group, torch.tensor(leaves, dtype=torch.int32)).numpy()
+    members = members_of(scene.cloud)
+    own = np.zeros(len(scene.cloud), bool)
+    own[members.rows(leaf for g in named for leaf in field.leaves(g))] = True
     places = [p for p in patches(scene.cloud, query.colors, own) if stands(torch.from_numpy(p.rows))]
     first: dict[int, Patch] = {}
     for place in places:
@@ -93,8 +95,7 @@ def by_hue(
         reason = f"{query.describe()}: {len(told)} things match; say which one, or 'all'"
         return replace(nothing(query, reason, told), verdict="ambiguous") if told else None
     chosen = told if query.pick == "all" else told[:1]
-    leaves = sorted({leaf for c in chosen for leaf in field.leaves(c.group)})
-    ids = scene.cloud.ids[torch.from_numpy(np.isin(scene.cloud.group.numpy(), leaves))].sort().values
+    ids = members.ids_of(leaf for c in chosen for leaf in field.leaves(c.group))
     return Selection(query, "found", ids, tuple(c.group for c in chosen), chosen, f"{color} in hue, not as a whole")
 
 
@@ -172,7 +173,7 @@ def _of_color(scene: Scene, field: LanguageField, query: Query, home: int) -> ND
     lab = np.array([field.groups[leaf].lab for leaf in leaves])
     fits = np.min([attributes.color_scores(w, lab) for w in query.colors], axis=0) >= attributes.COLOR_HOLDS
     column = scene.cloud.group.numpy()
-    rows = np.flatnonzero(np.isin(column, leaves))
+    rows = members_of(scene.cloud).rows(leaves.tolist())
     place = np.searchsorted(leaves, column[rows])  # leaves ascend: the object, then its parts
     told = np.flatnonzero((lab[:, 0] >= DARK)[place])
     if not len(told) or not fits[place[told]].any():
@@ -220,4 +221,4 @@ def _with_whole_parts(
         and held[g.id] >= PART_TAKEN * max(total[g.id], 1)
         and min(float(attributes.color_scores(w, np.array(g.lab))) for w in query.colors) >= attributes.COLOR_HOLDS
     ]
-    return np.union1d(rows, np.flatnonzero(np.isin(column, whole)))
+    return np.union1d(rows, members_of(scene.cloud).rows(whole))

@@ -86,7 +86,7 @@ def embed(
 def _knows_pieces(encoder: Encoder) -> bool:
     """Whether an encoder learnt what is no whole thing, as ours do on pictures of pieces; one of photographs did not,
     takes a hundred times longer to look, and is asked only for the names of what was found."""
-    return bool(encoder.image_size) and not getattr(encoder, "on_background", False)
+    return bool(encoder.image_size) and not encoders.looks_at_background(encoder)
 
 
 def _vector(track: Track, encoder: Encoder) -> NDArray[np.float32] | None:

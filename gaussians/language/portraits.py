@@ -17,7 +17,7 @@ from ..camera import Camera
 from ..cloud import GaussianCloud, concat
 from ..render import render
 from ..scene import Frame
-from .encoders import Encoder, cache
+from .encoders import Encoder, cache, looks_at_background
 from .encoders.framing import crop
 
 F64 = NDArray[np.float64]
@@ -122,7 +122,7 @@ def mean_vectors(
     vectors = np.zeros((len(clouds), encoder.dim), np.float32)
     if not encoder.image_size:  # text vectors alone: nothing looks at pictures
         return vectors
-    scene = around if getattr(encoder, "on_background", False) else None
+    scene = around if looks_at_background(encoder) else None
     images: list[NDArray[np.uint8]] = []
     owners: list[int] = []
 

@@ -18,6 +18,7 @@ from .calibration import labels as name_things
 from .encoders import Encoder
 from .field import Group, LanguageField
 from .measure import box_of, lab_of_cloud
+from .members import members_of
 from .portraits import mean_vectors
 from .segment import Thing
 from .views import Views
@@ -33,7 +34,8 @@ def with_table(
 ) -> Scene:
     """Measure every group and take the portraits that names are compared with."""
     cloud = scene.cloud.replace(group=torch.from_numpy(column))
-    whole = [np.flatnonzero(np.isin(column, _leaves(things, i))) for i in range(len(things))]
+    members = members_of(cloud)
+    whole = [members.rows(_leaves(things, i)) for i in range(len(things))]
     clouds = [cloud[torch.from_numpy(rows)] for rows in whole]
     boxes = [box_of(c, scene.frame) for c in clouds]
     middle = cloud.means[:: max(1, len(cloud) // 50_000)].median(dim=0).values.double().numpy()
@@ -48,7 +50,7 @@ def with_table(
     rows = tuple(
         Group(
             id=i, level=t.level, parent=t.parent, label=t.label or name, label_score=1.0 if t.label else float(sure),
-            box=box, lab=lab_of_cloud(c), count=len(c), views=seen.count_of(np.isin(column, _leaves(things, i))),
+            box=box, lab=lab_of_cloud(c), count=len(c), views=seen.count_of(own),
             confidence=float(on_skin[own].mean()) if len(own) else 0.0,
         )
         for i, (t, c, box, own, (name, sure)) in enumerate(zip(things, clouds, boxes, whole, named, strict=True))

@@ -47,9 +47,9 @@ class Views:
     seen_by: NDArray[np.bool_]
     unseen: float
 
-    def count_of(self, mask: NDArray[np.bool_]) -> int:
-        """How many views see at least a twentieth of the Gaussians in `mask [N]`."""
-        within = mask[self.rows]
+    def count_of(self, rows: NDArray[np.int64]) -> int:
+        """How many views see at least a twentieth of the Gaussians at `rows [M]`."""
+        within = np.isin(self.rows, rows, assume_unique=True, kind="table")
         return int((self.seen_by[:, within].mean(axis=1) > 0.05).sum()) if within.any() else 0
 
 

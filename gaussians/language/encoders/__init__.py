@@ -66,6 +66,11 @@ class Encoder(Protocol):
         ...
 
 
+def looks_at_background(encoder: Encoder) -> bool:
+    """Whether an encoder is to be shown things on their own background as well as alone."""
+    return bool(getattr(encoder, "on_background", False))
+
+
 def backends() -> tuple[str, ...]:
     """Names of the back ends in this package, whether or not what they need is installed."""
     return tuple(sorted(m.name for m in pkgutil.iter_modules(__path__) if m.name not in _SHARED))
