@@ -18,6 +18,7 @@ WishName = Literal[
     "left_of", "right_of", "in_front_of", "behind", "next_to", "on", "under", "above", "below", "inside", "between",
     "facing", "around", "against_wall", "in_corner", "in_center", "at_window", "far_from", "aligned_with",
 ]  # fmt: skip
+Wall = Literal["north", "east", "south", "west"]
 _OBJECTS = {"between": 2, "against_wall": 0, "in_corner": 0, "in_center": 0, "at_window": 0}  # of all others: 1
 
 
@@ -63,6 +64,8 @@ class Wish(BaseModel):
     Names shared with the scene graph's relations mean exactly what the checker means by them. "facing": the subject's
     front is turned to the object. "around": the subject stands at a free side of the object, turned to it.
     "aligned_with": in one line, turned the same way. "far_from": at least half the room's diagonal away.
+    `wall` says which one "against_wall", "in_corner" or "at_window" means: north is at positive y, behind; east at
+    positive x, on the right; a corner of two walls is two wishes. None leaves it open.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -71,11 +74,14 @@ class Wish(BaseModel):
     name: WishName
     objects: Annotated[tuple[NodeId, ...], Field(max_length=2)] = ()
     hard: bool = True
+    wall: Wall | None = None
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
         if len(self.objects) != _OBJECTS.get(self.name, 1):
             raise ValueError(f"{self.name} takes {_OBJECTS.get(self.name, 1)} objects, got {len(self.objects)}")
+        if self.wall and self.name not in ("against_wall", "in_corner", "at_window"):
+            raise ValueError(f"{self.name} is about no wall, got {self.wall}")
         return self
 
 
