@@ -1,0 +1,85 @@
+"""Where one looks at a room from: an overview, and views at eye height from where one sees far.
+
+Knows boxes of layouts and cameras. Refuses to know what the things are.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..camera import Camera, Vec3
+from .layout import Box, Layout
+
+
+def cameras(layout: Layout) -> tuple[Camera, ...]:
+    """An overview first (from beyond the open side where there is one), then the clearest eye-height views."""
+    w, d, h = layout.w, layout.d, layout.h
+    side = _clearer_side(layout)
+    if "south" in layout.walls:
+        eye, target, fov = (side * 0.46 * w, -0.47 * d, h - 0.12), (-side * 0.12 * w, 0.15 * d, 0.4), 70.0
+    else:
+        eye, target, fov = (side * 0.28 * w, -0.5 * d - 2.1, h + 0.25), (-side * 0.03 * w, 0.02 * d, 0.75), 52.0
+    return (Camera.look_at(eye, target, (0, 0, 1), 960, 640, fov, "overview"), *eye_views(layout))
+
+
+def overview(layout: Layout, ceiling: bool) -> Camera:
+    """The whole room from beyond its open south side, from above the walls, or below a ceiling.
+
+    It stands back until the room's width and depth fill the picture.
+    """
+    w, d, h = layout.w, layout.d, layout.h
+    side, fov = _clearer_side(layout), 52.0
+    back = max(1.6, 0.52 * w - 0.12 * d + 0.35 * h - 0.6)
+    low, aim = (min(h - 0.45, 2.1), 0.42 * h) if ceiling else (h + 0.1 * d, 0.28 * h)
+    eye = (side * 0.2 * w, -0.5 * d - back, low)
+    return Camera.look_at(eye, (-side * 0.02 * w, 0.0, aim), (0, 0, 1), 960, 640, fov, "overview")
+
+
+def _clearer_side(layout: Layout) -> float:
+    """The front corner from which one sees farther: 1 the right one, -1 the left one."""
+    w, d, h = layout.w, layout.d, layout.h
+    right, left = (_clear(layout, (s * 0.42 * w, -0.45 * d, h - 0.3)) for s in (1, -1))
+    return 1.0 if right >= left else -1.0
+
+
+def eye_views(layout: Layout) -> tuple[Camera, ...]:
+    """Up to five views at eye height towards the middle, the clearest first, apart from each other."""
+    w, d = layout.w, layout.d
+    ring = [(math.cos(a), math.sin(a)) for a in np.linspace(-math.pi / 2, 1.5 * math.pi, 17)[:-1]]
+    spots = []
+    for cx, cy in ring:
+        reach = min(0.5 * w / max(abs(cx), 1e-6), 0.5 * d / max(abs(cy), 1e-6)) - 0.35
+        eye = (cx * reach, cy * reach, 1.55)
+        spots.append((_clear(layout, eye), eye))
+    spots.sort(key=lambda s: -s[0])
+    eyes = [spots[0][1]]
+    for _, eye in spots[1:]:  # clear ones, apart from each other
+        if len(eyes) < 5 and all(math.dist(eye, e) > 0.3 * w for e in eyes):
+            eyes.append(eye)
+    return tuple(
+        Camera.look_at(e, (-0.4 * e[0], -0.4 * e[1], 0.7), (0, 0, 1), 960, 640, 62.0, f"view {k + 1}")
+        for k, e in enumerate(eyes)
+    )
+
+
+def _clear(layout: Layout, eye: Vec3) -> float:
+    """How far one sees from an eye towards the middle, metres, averaged over a fan of rays; -1 inside something."""
+    tall = [t.box for t in layout.things if t.support != "wall"]
+    if any(_inside(b.grown(0.15), eye) for b in tall):
+        return -1.0
+    ahead = math.atan2(-eye[1], -eye[0])
+    total = 0.0
+    for turn in np.radians([-30, -20, -10, 0, 10, 20, 30]):
+        for slope in (-0.05, -0.25):
+            step, reach = np.array([math.cos(ahead + turn), math.sin(ahead + turn), slope]), 0.1
+            while reach < 3.0 and not any(_inside(b, tuple(np.array(eye) + reach * step)) for b in tall):
+                reach += 0.2
+            total += reach
+    return total / 14
+
+
+def _inside(b: Box, p: Vec3) -> bool:
+    local = b.axes @ np.array([p[0] - b.x, p[1] - b.y])
+    return bool(abs(local[0]) < b.w / 2 and abs(local[1]) < b.d / 2 and b.z < p[2] < b.z + b.h)
