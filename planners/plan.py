@@ -6,10 +6,12 @@ a plan holds queries, not ids, so that it can be carried out on another scene.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal, Protocol, Self
+from typing import TYPE_CHECKING, Annotated, Literal, Protocol, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from ..tools.alternatives import either, given
+from ..gaussians.errors import BackendError
 from ..tools.registry import AnyOp
 
 if TYPE_CHECKING:
@@ -56,6 +58,14 @@ class Usage(BaseModel):
         )
 
 
+class NoPlanError(BackendError):
+    """A language model was asked and there is no plan; `usage` is what the asking cost, None if that is not known."""
+
+    def __init__(self, message: str, usage: Usage | None = None) -> None:
+        super().__init__(message)
+        self.usage = usage
+
+
 class EditPlan(BaseModel):
     """A plan: either verdict "ok" and at least one operation, or another verdict, no operation and a reason.
 
@@ -72,7 +82,14 @@ class EditPlan(BaseModel):
         usage: what language models were asked for; None if none was. Not compared either.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(
+        frozen=True,
+        extra="forbid",
+        json_schema_extra=either(
+            {"verdict": {"enum": ["ok"]}, "ops": given(minItems=1)},
+            {"verdict": given(enum=[v for v in get_args(Verdict) if v != "ok"]), "ops": {"maxItems": 0}},
+        ),
+    )
 
     instruction: Annotated[str, Field(max_length=4000)]
     ops: Annotated[tuple[AnyOp, ...], Field(max_length=MAX_OPS)] = ()
@@ -134,6 +151,7 @@ class Planner(Protocol):
 
         Raises:
             UserError: the instruction is too long to be one.
-            BackendError: a language model cannot be reached, or gave no plan after all attempts.
+            BackendError: a language model cannot be reached, or gave no plan after all attempts; a `NoPlanError` where
+                attempts were paid for.
         """
         ...
