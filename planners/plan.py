@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Literal, Protocol, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from ..tools.alternatives import either, given
 from ..gaussians.errors import BackendError
+from ..tools.alternatives import either, given
 from ..tools.registry import AnyOp
 
 if TYPE_CHECKING:
