@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Annotated, Any, ClassVar, Literal, Protocol, Self
+from typing import Annotated, Any, ClassVar, Literal, Protocol, Self, get_args
 
 import numpy as np
 import torch
@@ -21,6 +21,7 @@ from ..gaussians.camera import Camera
 from ..gaussians.language.query import Query
 from ..gaussians.language.selection import Selection, mask_of
 from ..gaussians.scene import Frame, Scene
+from .alternatives import either, given
 from .receipt import Check, Pixels, Receipt, SelectionSummary
 
 __all__ = [
@@ -40,6 +41,8 @@ AssetName = Annotated[str, Field(min_length=1, max_length=60)]
 METRES: dict[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 # Spots that make no sense without something to be placed against.
 _NEED_ANCHOR = {"under", "next_to", "left_of", "right_of", "in_front_of", "behind", "between", "inside"}
+_RELATIVE = [s for s in get_args(Spot) if s in _NEED_ANCHOR and s != "between"]
+_ABSOLUTE = [s for s in get_args(Spot) if s not in _NEED_ANCHOR]
 
 
 class Length(BaseModel):
@@ -75,7 +78,15 @@ class Placement(BaseModel):
     against a wall; "center" and "corner" without one are those of the room.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(
+        frozen=True,
+        extra="forbid",
+        json_schema_extra=either(
+            {"relation": given(enum=_RELATIVE), "anchors": given(minItems=1, maxItems=1)},
+            {"relation": given(enum=["between"]), "anchors": given(minItems=1)},
+            {"relation": given(enum=_ABSOLUTE), "anchors": {"maxItems": 1}},
+        ),
+    )
 
     relation: Spot
     anchors: Annotated[tuple[Query, ...], Field(max_length=2)] = ()

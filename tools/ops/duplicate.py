@@ -6,11 +6,12 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 import torch
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 from torch import Tensor
 
 from ...gaussians.language.selection import Selection
 from ...gaussians.scene import Scene
+from ..alternatives import NOT_GIVEN, either, given
 from ..base import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
 from ..checks import bumps, carried_as_asked, collision_free, counted, supported
 from ..measure import solid_points
@@ -28,6 +29,12 @@ class Duplicate(TargetedOp):
     `distance` is the step from one copy to the next and goes with `direction`; without it copies stand side by side.
     """
 
+    model_config = ConfigDict(
+        json_schema_extra=either(
+            {"direction": given(), "place": NOT_GIVEN},
+            {"direction": NOT_GIVEN, "distance": NOT_GIVEN},
+        )
+    )
     example: ClassVar[tuple[str, dict[str, Any]]] = (
         "put another two chairs like this one to the right",
         {"op": "duplicate", "target": {"text": "chair"}, "count": 2, "direction": "right"},

@@ -6,12 +6,13 @@ from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 import torch
-from pydantic import model_validator
+from pydantic import ConfigDict, model_validator
 
 from ...gaussians.errors import InstructionError
 from ...gaussians.language.query import Query
 from ...gaussians.language.selection import Selection, mask_of
 from ...gaussians.scene import Scene
+from ..alternatives import NOT_GIVEN, either, given
 from ..base import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
 from ..bookkeeping import carried
 from ..bounds import keep_inside
@@ -32,6 +33,13 @@ class Move(TargetedOp):
     It does not go through walls or out of the room.
     """
 
+    model_config = ConfigDict(
+        json_schema_extra=either(
+            {"direction": given(), "toward": NOT_GIVEN, "place": NOT_GIVEN},
+            {"toward": given(), "direction": NOT_GIVEN, "place": NOT_GIVEN},
+            {"place": given(), "direction": NOT_GIVEN, "toward": NOT_GIVEN, "distance": NOT_GIVEN},
+        )
+    )
     example: ClassVar[tuple[str, dict[str, Any]]] = (
         "move the lamp 40 cm to the left",
         {"op": "move", "target": {"text": "lamp"}, "direction": "left", "distance": {"value": 40, "unit": "cm"}},

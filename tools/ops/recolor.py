@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 
 import torch
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 from torch import Tensor
 
 from ...gaussians.color import BASIC, parse, rgb_to_lab
 from ...gaussians.language.measure import Sample, lit_lab, sample
 from ...gaussians.language.selection import Selection
 from ...gaussians.scene import Scene
+from ..alternatives import NOT_GIVEN, either, given
 from ..base import ColorName, Context, Outcome, TargetedOp
 from ..bookkeeping import remeasured
 from ..checks import counted
@@ -33,6 +34,13 @@ class Recolor(TargetedOp):
     0.8). `adjust` "toward" also needs `color` ("a bit more blue": toward, blue, 0.25).
     """
 
+    model_config = ConfigDict(
+        json_schema_extra=either(
+            {"color": given(), "adjust": NOT_GIVEN},
+            {"adjust": given(enum=[a for a in get_args(Adjust) if a != "toward"]), "color": NOT_GIVEN},
+            {"adjust": given(enum=["toward"]), "color": given()},
+        )
+    )
     example: ClassVar[tuple[str, dict[str, Any]]] = (
         "make the armchair teal",
         {"op": "recolor", "target": {"text": "armchair"}, "color": "teal"},
