@@ -104,13 +104,16 @@ class Metered:
         self._ledger = ledger
         self._progress = progress or (lambda stage, share: None)
 
-    @cached_property
-    def planner(self) -> Planner:
-        """The planner itself.
+    def require(self) -> None:
+        """Load it now.
 
         Raises:
             BackendError: what it needs is not there.
         """
+        _ = self._planner
+
+    @cached_property
+    def _planner(self) -> Planner:
         return self._make()
 
     def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
@@ -124,7 +127,7 @@ class Metered:
         stage = f"asking {self.name}"
         self._progress(stage, 0.0)
         try:
-            plan = self.planner.plan(text, previous=previous, sight=sight)
+            plan = self._planner.plan(text, previous=previous, sight=sight)
         except NoPlanError as error:
             self._ledger.add(error.usage)
             raise

@@ -19,6 +19,7 @@ BIGGER: dict[str, float] = {"": 1.25, "little": 1.1, "much": 1.75}
 SMALLER: dict[str, float] = {"": 0.8, "little": 0.9, "much": 0.6}
 # What is left of the opacity after "more transparent": unsaid, "a bit", "much".
 CLEARER: dict[str, float] = {"": 0.5, "little": 0.75, "much": 0.25}
+TO_A_LENGTH = "sizes change by a factor, not to a length: say 20 % taller"
 SIZE_AXES = {"large": "all", "small": "all", "tall": "height", "wide": "width"}
 
 
@@ -110,7 +111,7 @@ def _size(node: Node) -> Fields:
 
 def _absolute(node: Node) -> Fields:
     said = " ".join(t.text for t in tokens(node, "LENGTH", "GROWN", "SIZEWORD"))
-    raise Refusal("sizes change by a factor, not to a length: say 20 % taller", said, verdict="impossible")
+    raise Refusal(TO_A_LENGTH, said, verdict="impossible")
 
 
 def _ratio(node: Node) -> Fields:

@@ -121,6 +121,8 @@ VERBS: dict[str, Entry] = {
     **same(("MULTIPLY", 0.5), "halve"),
 }
 
+TO_FACE = "one thing cannot be turned to face another yet"
+
 # Verbs we know and cannot carry out: named, so that the answer says so instead of "not understood".
 UNSUPPORTED: dict[str, str] = {
     **same("moving parts and switches cannot be operated", "open, close, shut, turn on, turn off, switch on, "
@@ -131,5 +133,5 @@ UNSUPPORTED: dict[str, str] = {
     **same("say what to select instead", "clear the selection, invert the selection, clear selection, "
             "invert selection, deselect, unselect, select none, select nothing, reset the selection"),
     **same("objects cannot be renamed or grouped", "rename, group, ungroup, merge, split, label"),
-    **same("one thing cannot be turned to face another yet", "face, aim, orient, align"),
+    **same(TO_FACE, "face, aim, orient, align"),
 }  # fmt: skip

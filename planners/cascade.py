@@ -1,0 +1,101 @@
+"""`auto`: whoever is cheapest and sure plans; only what it abstains on goes on to those who cost more.
+
+    grammar  ──abstains──►  wishes  ──no wish──►  language model, if there is one and its budget lasts
+
+Knows which answers are final. Refuses to let anything dearer overrule an answer: where the grammar is sure, nobody else
+is asked, so that `auto` is as fast there, and right where it is right.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from functools import cached_property
+
+from ..gaussians.errors import BackendError
+from .budget import OverBudgetError
+from .grammar.changes import TO_A_LENGTH
+from .grammar.verbs import TO_FACE
+from .plan import EditPlan, NoPlanError, Planner, Sight
+
+NAME = "auto"
+ABSTAINS = ("not_understood", "impossible")  # verdicts of the grammar that others may know better
+
+# What the grammar calls impossible because it does not see the scene: who sees sizes and places can compute a factor
+# or an angle. Everything else that it calls impossible it has understood, and a model has no more operations than it
+# has: one that is asked to "turn on the television" can only invent an edit, and a wrong edit costs more than none.
+MEASURABLE = (TO_FACE, TO_A_LENGTH)
+
+
+class Cascade:
+    """Grammar first, then wishes, then a model.
+
+    Args:
+        grammar: the planner that is asked always; its verdicts `ok`, `unsafe` and `not_an_edit` are final, so that
+            questions, chat and orders that are not about the scene never reach a model.
+        wishes: makes the planner of wishes for the whole room, when one is first needed; None leaves it out.
+        model: the language-model planner; None leaves it out.
+    """
+
+    name = NAME
+
+    def __init__(
+        self, grammar: Planner, wishes: Callable[[], Planner] | None = None, model: Planner | None = None
+    ) -> None:
+        self.grammar = grammar
+        self.model = model
+        self._wishes = wishes
+
+    @cached_property
+    def _wisher(self) -> Planner | None:
+        return self._wishes() if self._wishes is not None else None
+
+    def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
+        """The plan for an instruction; see `Planner.plan`. It carries the name of who made it.
+
+        A model that cannot be asked, or gives no plan, is no error here: the grammar's abstention stands and says so.
+
+        Raises:
+            UserError: the instruction is too long to be one.
+        """
+        started = time.perf_counter()
+        plan = self.grammar.plan(text, previous=previous)
+        if plan.verdict not in ABSTAINS:
+            return plan
+        better = self._wished(text, previous, sight) or self._asked(plan, text, previous, sight)
+        return better.model_copy(update={"seconds": time.perf_counter() - started})
+
+    def _wished(self, text: str, previous: str | None, sight: Sight | None) -> EditPlan | None:
+        """What a wish for the whole room comes to; None if it is no wish."""
+        if self._wisher is None:
+            return None
+        plan = self._wisher.plan(text, previous=previous, sight=sight)
+        return plan if plan.verdict != "not_understood" else None
+
+    def _asked(self, abstained: EditPlan, text: str, previous: str | None, sight: Sight | None) -> EditPlan:
+        """What the model makes of it, or the abstention with the reason why the model does not help."""
+        if self.model is None or not may_ask(abstained, sight):
+            return abstained
+        try:
+            plan = self.model.plan(text, previous=previous, sight=sight)
+        except BackendError as error:
+            usage = error.usage if isinstance(error, NoPlanError) else None
+            how = "was not asked" if isinstance(error, OverBudgetError) else "gave no plan"
+            told = f"{abstained.reason}; the model {how}: {error}"
+            return abstained.model_copy(update={"reason": told[:2000], "usage": usage})
+        if plan.verdict != "not_understood":
+            return plan
+        told = "; ".join(filter(None, [abstained.reason, f"{plan.planner} did not understand it either", plan.reason]))
+        return plan.model_copy(update={"reason": told[:2000], "unknown": plan.unknown or abstained.unknown})
+
+
+def may_ask(abstained: EditPlan, sight: Sight | None) -> bool:
+    """Whether a model may know more than the grammar that abstained."""
+    if abstained.verdict == "impossible":
+        return sight is not None and any(reason in abstained.reason for reason in MEASURABLE)
+    return abstained.verdict == "not_understood"
+
+
+def in_passing(planner: Planner) -> Planner:
+    """Who reads short phrases in passing, such as the answer to "which one?", for which nobody is paid."""
+    return planner.grammar if isinstance(planner, Cascade) else planner
