@@ -14,7 +14,8 @@ from ..gaussians.errors import InstructionError, UserError
 from ..gaussians.language.query import Query
 from ..gaussians.language.selection import Selection
 from ..tools.base import METRES, EditOp, Length
-from .plan import EditPlan, Planner, Verdict
+from ..tools.ops.scale import Scale
+from .plan import EditPlan, Planner, Sight, Verdict
 from .stage import Id, Stage
 
 MAKES_PLACE = ("delete", "move", "rotate", "scale", "duplicate", "replace")  # what floor, walls and ceiling forbid
@@ -66,14 +67,20 @@ class Resolved:
     plan: EditPlan
 
 
-def resolve_text(stage: Stage, planner: Planner, text: str, context: str | None = None) -> Resolved:
+def resolve_text(
+    stage: Stage, planner: Planner, text: str, context: str | None = None, sight: Sight | None = None
+) -> Resolved:
     """What an instruction would touch; "it" is what the instruction before (`context`) was about on the same graph.
+
+    Args:
+        sight: the graph as planners may look at it; its ids are the stage's rows.
 
     Raises:
         UserError: a text is too long to be an instruction.
+        BackendError: a language model cannot be reached.
     """
-    last = _Play(stage).recall(planner.plan(context)) if context else None
-    return resolve_plan(stage, planner.plan(text, previous=context), last)
+    last = _Play(stage).recall(planner.plan(context, sight=sight)) if context else None
+    return resolve_plan(stage, planner.plan(text, previous=context, sight=sight), last)
 
 
 def resolve_plan(stage: Stage, plan: EditPlan, last: Selection | None = None) -> Resolved:
@@ -217,9 +224,13 @@ def _refuse_impossible(stage: Stage, step: Step, chosen: Selection, anchors: Seq
 
 def _refuse_size(stage: Stage, step: Step, chosen: Selection) -> None:
     """Raise if something would outgrow the room."""
-    factor, axis = float(getattr(step.op, "factor", 1.0)), getattr(step.op, "axis", "all")
+    assert isinstance(step.op, Scale)
+    axis, length = step.op.axis, step.op.length
     for group in (stage.group(g) for g in chosen.groups):
         sides = {"height": group.box.size[2:], "width": group.box.size[:2], "depth": group.box.size[:2]}
+        factor = step.op.factor or 1.0
+        if length is not None:
+            factor = length[1].value * METRES.get(length[1].unit, 1.0) / max(sides[length[0]])
         most = max(sides.get(axis, group.box.size)) * factor
         if factor > 1 and most > 2 * max(stage.graph.room.size):
             raise _Stopped("impossible", f"{group.label} would be {most:.3g} m large, which no room of this size holds")

@@ -59,7 +59,7 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
             chosen = _living(scene, chosen)
     with _stage(seconds, "apply"):
         outcome = op.apply(scene, chosen, context)
-        bereft = left_hanging(scene, outcome.scene, chosen.groups, context.viewer)
+        bereft = left_hanging(scene, outcome.scene, chosen.groups)
         outcome = replace(outcome, notes=(*outcome.notes, *bereft))
     with _stage(seconds, "check"):
         changed = difference(scene.cloud, outcome.scene.cloud, op.may_change(scene, chosen), outcome.removed)

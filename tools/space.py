@@ -5,6 +5,7 @@ Knows geometry of a scene and its groups. Refuses to know where things ought to 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -36,12 +37,14 @@ class Body:
         group: id of its object (or of a part selected alone), -1 if the Gaussians belong to none.
         box: upright oriented box of its solid Gaussians, scene units.
         label: what it is called, "" if unknown.
+        riders: ids of the objects on it whose Gaussians are among `rows`; `box` leaves them out.
     """
 
     rows: Tensor
     group: int
     box: Box
     label: str = ""
+    riders: tuple[int, ...] = ()
 
     @property
     def center(self) -> Array:
@@ -95,6 +98,19 @@ def _body(scene: Scene, rows: Tensor, group: int) -> Body:
     # The field's box was oriented with care when the scene was embedded; its axes are kept, its extents measured anew.
     axes = known.box.axes if known is not None else None
     return Body(rows, group, contact_box(points, scene.frame, axes), known.label if known is not None else "")
+
+
+def groups_of(bodies: Sequence[Body]) -> set[int]:
+    """Ids of the bodies' objects and of those on them."""
+    return {g for body in bodies for g in (body.group, *body.riders)}
+
+
+def mask_of_bodies(scene: Scene, bodies: Sequence[Body]) -> Tensor:
+    """`[N]` bool: the Gaussians of the bodies."""
+    mask = torch.zeros(len(scene.cloud), dtype=torch.bool, device=scene.cloud.device)
+    for body in bodies:
+        mask[body.rows] = True
+    return mask
 
 
 def contact_box(points: Array, frame: Frame, axes: Axes | None = None) -> Box:

@@ -18,12 +18,16 @@ from scenewright.gaussians.language.query import Query
 from scenewright.gaussians.scene import Frame, Scene
 from scenewright.tools import run
 from scenewright.tools.base import Context
+from scenewright.tools.fronts import front_of
 from scenewright.tools.measure import reach, solid_points
 from scenewright.tools.ops.opacity import Opacity
 from scenewright.tools.receipt import Receipt, at_most
 from scenewright.tools.registry import OPS, parse
+from scenewright.tools.riders import riders_of, standing_on
 from scenewright.tools.run import Done, carry_out, preview
-from scenewright.tools.space import contact_box, overlap
+from scenewright.tools.space import bodies_of, contact_box, overlap
+
+from .conftest import Thing, build, by_name
 
 TABLE, CHAIR, ARMCHAIR, VASE, FLOOR = range(5)  # as the `corner` fixture numbers them
 NEW = 5
@@ -317,9 +321,74 @@ def test_what_stood_on_a_thing_is_named_when_the_thing_goes(corner: Scene, conte
     vase = "left hanging in the air: vase"
     for data in (
         {"op": "delete", "target": {"text": "table"}},
-        {"op": "move", "target": {"text": "table"}, "direction": "left", "distance": {"value": 1.5, "unit": "m"}},
+        {"op": "scale", "target": {"text": "table"}, "factor": 0.5},
     ):
         done = carry_out(corner, parse(data), context)
         assert any(note.startswith(vase) for note in done.receipt.notes), (data, done.receipt.notes)
     recolored = carry_out(corner, parse({"op": "recolor", "target": {"text": "table"}, "color": "teal"}), context)
     assert not any("hanging" in note for note in recolored.receipt.notes)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"op": "move", "direction": "left", "distance": {"value": 0.5, "unit": "m"}},
+        {"op": "move", "place": {"relation": "against"}},
+        {"op": "rotate", "degrees": 90},
+    ],
+    ids=str,
+)
+def test_what_stands_on_a_thing_goes_along(corner: Scene, context: Context, data: dict[str, Any]) -> None:
+    done = carry_out(corner, parse({"target": {"text": "table"}, **data}), context)
+    assert "what stood on it went along: vase" in done.receipt.notes
+    assert not any("hanging" in note for note in done.receipt.notes)
+    # The vase has moved as the table has: in the table's own frame it is where it was, but for float32 rounding.
+    before, after = corner.language, done.scene.language
+    assert before is not None and after is not None
+    was, now = (f.groups[TABLE].box.local(np.array([f.groups[VASE].box.center])) for f in (before, after))
+    assert np.allclose(was, now, atol=2e-3)
+    assert not np.allclose(before.groups[VASE].box.center, after.groups[VASE].box.center, atol=0.05)
+
+
+def test_a_rug_is_pulled_away_from_under_what_stands_on_it() -> None:
+    scene = build([Thing("rug", "red", (0.0, 0.0, 0.0)), Thing("stool", "brown", (0.0, 0.0, 0.0))])
+    assert scene.language is not None and riders_of(scene, [0]) == ()
+    assert standing_on(scene.language, scene.frame, scene.language.groups[0]) == ()
+
+
+@pytest.mark.parametrize(("side", "size"), [("height", 0.9), ("width", 2.0)])
+def test_a_thing_gets_the_length_that_was_said(corner: Scene, context: Context, side: str, size: float) -> None:
+    told = {side: {"value": size, "unit": "m"}}
+    whole = carry_out(corner, parse({"op": "scale", "target": {"text": "table"}, **told}), context)
+    only = carry_out(corner, parse({"op": "scale", "target": {"text": "table"}, "axis": side, **told}), context)
+    at = {"width": 0, "height": 2}[side]
+    assert corner.language is not None
+    was = bodies_of(corner, by_name(corner, Query(text="table"), context.viewer))[0].box.size
+    for done, kept in ((whole, False), (only, True)):
+        now = bodies_of(done.scene, by_name(done.scene, Query(text="table"), context.viewer))[0].box.size
+        assert now[at] == pytest.approx(size, abs=1e-4)
+        # Without "only" the proportions stay, with it the other sides do.
+        assert now[1] == pytest.approx(was[1] if kept else was[1] * size / was[at], rel=1e-3)
+
+
+def test_a_length_more_than_a_hundred_times_off_is_refused(corner: Scene, context: Context) -> None:
+    with pytest.raises(InstructionError, match="a hundred times off"):
+        carry_out(
+            corner, parse({"op": "scale", "target": {"text": "vase"}, "height": {"value": 90, "unit": "m"}}), context
+        )
+
+
+def test_a_chair_turns_to_face_the_table_and_its_back_to_it(corner: Scene, context: Context) -> None:
+    assert corner.language is not None
+    way = np.array(corner.language.groups[TABLE].box.center) - np.array(corner.language.groups[CHAIR].box.center)
+    for more, sign in ((0.0, 1.0), (180.0, -1.0)):
+        data = {"op": "rotate", "target": {"text": "chair"}, "toward": {"text": "table"}, "degrees": more}
+        scene = carry_out(corner, parse(data), context).scene
+        front = front_of(scene, bodies_of(scene, by_name(scene, Query(text="chair"), context.viewer))[0])
+        assert front is not None
+        assert sign * float(front[:2] @ way[:2]) / float(np.linalg.norm(way[:2])) == pytest.approx(1.0, abs=1e-3)
+
+
+def test_a_vase_that_faces_nowhere_says_so(corner: Scene, context: Context) -> None:
+    data = {"op": "rotate", "target": {"text": "vase"}, "toward": {"text": "chair"}}
+    assert any("cannot be told" in note for note in carry_out(corner, parse(data), context).receipt.notes)

@@ -7,10 +7,11 @@ from typing import Any, ClassVar, Literal, Self
 import numpy as np
 import torch
 from pydantic import ConfigDict, model_validator
+from torch import Tensor
 
 from ...gaussians.errors import InstructionError
 from ...gaussians.language.query import Query
-from ...gaussians.language.selection import Selection, mask_of
+from ...gaussians.language.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
 from ..base import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
@@ -20,9 +21,10 @@ from ..checks import bumps, carried_as_asked, collision_free, counted, supported
 from ..measure import solid_points
 from ..place import Placer
 from ..receipt import Check, at_most
+from ..riders import loaded, rows_along, went_along
 from ..rows import Draft
 from ..shape import shift
-from ..space import Array, Body, bodies_of, centimetre, extent_along, heading, shifted_box
+from ..space import Array, Body, bodies_of, centimetre, extent_along, groups_of, heading, mask_of_bodies, shifted_box
 
 
 class Move(TargetedOp):
@@ -30,7 +32,7 @@ class Move(TargetedOp):
 
     Directions are the viewer's: forward is away from the viewer, right is to the viewer's right. `distance` goes with
     `direction` or `toward`; without it the target moves by its own width, or until it stands next to what it goes to.
-    It does not go through walls or out of the room.
+    It does not go through walls or out of the room. What stands on it goes along.
     """
 
     model_config = ConfigDict(
@@ -60,9 +62,12 @@ class Move(TargetedOp):
             raise ValueError("a distance goes with a direction or toward, not with a place")
         return self
 
+    def may_change(self, scene: Scene, selection: Selection) -> Tensor:
+        return rows_along(scene, selection)
+
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
-        bodies = bodies_of(scene, selection)
-        moved, notes = self._moves(scene, bodies, selection, context)
+        bodies = loaded(scene, bodies_of(scene, selection))
+        moved, notes = self._moves(scene, bodies, context)
         if self.place is None:
             keep_inside(scene, bodies, [asked.offset for asked in moved])
         draft = Draft(scene.cloud)
@@ -71,16 +76,15 @@ class Move(TargetedOp):
         cloud = draft.done()
         after = scene.replace(cloud=cloud, language=carried(scene, cloud, moved))
         if self.place is None:
-            notes += bumps(after, {b.group for b in bodies})
-        return Outcome(after, touched=selection.ids, moved=tuple(moved), notes=notes)
+            notes += bumps(after, groups_of(bodies))
+        touched = scene.cloud.ids[torch.cat([body.rows for body in bodies])].sort().values
+        return Outcome(after, touched=touched, moved=tuple(moved), notes=(*notes, *went_along(scene, bodies)))
 
-    def _moves(
-        self, scene: Scene, bodies: list[Body], selection: Selection, context: Context
-    ) -> tuple[list[Affine], tuple[str, ...]]:
+    def _moves(self, scene: Scene, bodies: list[Body], context: Context) -> tuple[list[Affine], tuple[str, ...]]:
         """What is asked of each body, and notes."""
         said = self.distance.assumption(scene.frame) if self.distance is not None else ()
         if self.place is not None:
-            return self._placed(scene, bodies, selection, context, self.place), said
+            return self._placed(scene, bodies, context, self.place), said
         if self.toward is not None:
             goals = bodies_of(scene, context.resolve(scene, self.toward).require())
             return [self._asked(b, self._approach(scene, b, goals)) for b in bodies], said
@@ -111,13 +115,10 @@ class Move(TargetedOp):
             raise InstructionError("it already stands beside it: give a distance to move it anyway")
         return np.asarray(way * room)
 
-    def _placed(
-        self, scene: Scene, bodies: list[Body], selection: Selection, context: Context, place: Placement
-    ) -> list[Affine]:
+    def _placed(self, scene: Scene, bodies: list[Body], context: Context, place: Placement) -> list[Affine]:
         """Each body on a free spot of its own."""
         up = scene.frame.up_vector
-        groups = frozenset(b.group for b in bodies)
-        placer = Placer(scene, context, mask_of(scene.cloud, selection.ids), groups)
+        placer = Placer(scene, context, mask_of_bodies(scene, bodies), frozenset(groups_of(bodies)))
         moved = []
         for body in bodies:
             spot = placer.find(body.box.size, body.box.axes, place, body.foot(up))

@@ -2,51 +2,93 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field
+import torch
+from pydantic import ConfigDict, Field, model_validator
+from torch import Tensor
 
+from ...gaussians.language.query import Query
 from ...gaussians.language.selection import Selection
 from ...gaussians.scene import Scene
+from ..alternatives import NOT_GIVEN, either, given
 from ..base import Affine, Context, Outcome, TargetedOp
 from ..bookkeeping import carried
 from ..checks import bumps, carried_as_asked, counted
+from ..fronts import turn_to_face
 from ..measure import centroid, reach, solid_points
 from ..receipt import Check
+from ..riders import loaded, rows_along, went_along
 from ..rows import Draft
 from ..shape import axis_rotation, turn
-from ..space import Array, Body, bodies_of, heading
+from ..space import Array, Body, bodies_of, groups_of, heading
 
 
 class Rotate(TargetedOp):
-    """Turn the target about its own centre; each of several things turns about its own.
+    """Turn the target about its own centre, by `degrees` or so that its front points `toward` something.
+
+    Each of several things turns about its own centre. Degrees together with `toward` are turned beyond it: 180 turns
+    its back to it. What stands on a thing that turns about "up" turns along.
 
     Positive degrees are counter-clockwise seen from the tip of the axis: about "up", seen from above. "right" and
     "forward" are the viewer's level axes (to tilt or topple); the thing stays at the height of its support.
     """
 
+    model_config = ConfigDict(
+        json_schema_extra=either(
+            {"degrees": given(), "toward": NOT_GIVEN},
+            {"toward": given(), "axis": {"enum": ["up"]}},
+        )
+    )
     example: ClassVar[tuple[str, dict[str, Any]]] = (
         "turn the chair 90 degrees clockwise",
         {"op": "rotate", "target": {"text": "chair"}, "degrees": -90},
     )
     op: Literal["rotate"] = "rotate"
-    degrees: Annotated[float, Field(ge=-3600, le=3600, allow_inf_nan=False)]
+    degrees: Annotated[float, Field(ge=-3600, le=3600, allow_inf_nan=False)] | None = None
     axis: Literal["up", "right", "forward"] = "up"
+    toward: Query | None = None
+    """What to face; the nearest of several things."""
+
+    @model_validator(mode="after")
+    def _says_how_far(self) -> Self:
+        if self.degrees is None and self.toward is None:
+            raise ValueError("rotate needs degrees, or something to turn toward")
+        if self.toward is not None and self.axis != "up":
+            raise ValueError("a thing that turns toward something turns about up")
+        return self
+
+    def may_change(self, scene: Scene, selection: Selection) -> Tensor:
+        return rows_along(scene, selection) if self.axis == "up" else super().may_change(scene, selection)
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         axis = heading(context.viewer, scene.frame, self.axis)
-        matrix = axis_rotation(axis, self.degrees)
-        draft, moved = Draft(scene.cloud), []
+        draft, moved, notes = Draft(scene.cloud), list[Affine](), dict[str, None]()
         bodies = bodies_of(scene, selection)
+        bodies = loaded(scene, bodies) if self.axis == "up" else bodies
+        goals = [] if self.toward is None else bodies_of(scene, context.resolve(scene, self.toward).require())
         for body in bodies:
+            degrees, said = self._degrees(scene, body, goals)
+            notes |= dict.fromkeys(said)
+            matrix = axis_rotation(axis, degrees)
             offset = self._offset(scene, body, matrix)
             turn(draft, body.rows, matrix, offset)
             moved.append(Affine(body.rows, matrix, offset, body.rows))
         cloud = draft.done()
         after = scene.replace(cloud=cloud, language=carried(scene, cloud, moved))
-        notes = bumps(after, {b.group for b in bodies})
-        return Outcome(after, touched=selection.ids, moved=tuple(moved), notes=notes)
+        told = (*notes, *bumps(after, groups_of(bodies)), *went_along(scene, bodies))
+        touched = scene.cloud.ids[torch.cat([body.rows for body in bodies])].sort().values
+        return Outcome(after, touched=touched, moved=tuple(moved), notes=told)
+
+    def _degrees(self, scene: Scene, body: Body, goals: list[Body]) -> tuple[float, tuple[str, ...]]:
+        """By how much one body turns, and notes."""
+        more = self.degrees or 0.0
+        if not goals:
+            return more, ()
+        nearest = min(goals, key=lambda goal: float(np.linalg.norm(goal.center - body.center)))
+        facing, notes = turn_to_face(scene, body, nearest.center)
+        return facing + more, notes
 
     def _offset(self, scene: Scene, body: Body, matrix: Array) -> Array:
         """What keeps the pivot in place, and a tilted thing's underside at the height it had.

@@ -2,63 +2,135 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import ConfigDict, Field, model_validator
 
+from ...gaussians.errors import InstructionError
 from ...gaussians.language.selection import Selection
 from ...gaussians.scene import Scene
-from ..base import Affine, Context, Outcome, TargetedOp
+from ..alternatives import NOT_GIVEN, Given, Keywords, either, given
+from ..base import Affine, Context, Length, Outcome, TargetedOp
 from ..bookkeeping import carried
 from ..checks import bumps, carried_as_asked, counted, size_changed
-from ..receipt import Check
+from ..measure import reach, solid_points
+from ..receipt import Check, at_most
 from ..rows import Draft
 from ..shape import stretch, stretch_matrix
 from ..space import Array, Body, bodies_of, heading
 
+Side = Literal["height", "width", "depth"]
+_SIDES: tuple[Side, ...] = ("height", "width", "depth")
+
+
+def _alone(name: str, **more: Given | Keywords) -> dict[str, Given | Keywords]:
+    """One of the ways to say a size, without the others."""
+    return {**dict.fromkeys(("factor", *_SIDES), NOT_GIVEN), name: given(), **more}
+
 
 class Scale(TargetedOp):
-    """Make the target larger (factor above 1) or smaller; it stays on its support and on its spot.
+    """Make the target larger (factor above 1) or smaller, or give it a `height`, `width` or `depth`; one of the four.
 
-    `axis` stretches one dimension only: its width and depth are those of its own box, width the one that runs more
-    across the viewer's sight.
+    It stays on its support and on its spot. `axis` stretches one dimension only; without it a length keeps the
+    proportions. Width and depth are those of its own box, width the one that runs more across the viewer's sight.
     """
 
+    model_config = ConfigDict(
+        json_schema_extra=either(_alone("factor"), *(_alone(s, axis={"enum": ["all", s]}) for s in _SIDES))
+    )
     example: ClassVar[tuple[str, dict[str, Any]]] = (
         "make the plant twice as tall",
         {"op": "scale", "target": {"text": "potted plant"}, "factor": 2, "axis": "height"},
     )
     op: Literal["scale"] = "scale"
-    factor: Annotated[float, Field(ge=0.01, le=100, allow_inf_nan=False)]
+    factor: Annotated[float, Field(ge=0.01, le=100, allow_inf_nan=False)] | None = None
     axis: Literal["all", "width", "depth", "height"] = "all"
+    height: Length | None = None
+    width: Length | None = None
+    depth: Length | None = None
+
+    @model_validator(mode="after")
+    def _one_size(self) -> Self:
+        said = [n for n in ("factor", *_SIDES) if getattr(self, n) is not None]
+        if len(said) != 1:
+            raise ValueError(f"scale needs exactly one of factor, height, width and depth, got {said or 'none'}")
+        if said[0] != "factor" and self.axis not in ("all", said[0]):
+            raise ValueError(f"a {said[0]} cannot be reached by stretching the {self.axis}")
+        return self
+
+    @property
+    def length(self) -> tuple[Side, Length] | None:
+        """The dimension and the length it is to have, None where a factor was said."""
+        return next(((side, size) for side in _SIDES if (size := getattr(self, side)) is not None), None)
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         across = heading(context.viewer, scene.frame, "right")
         draft, moved = Draft(scene.cloud), []
         bodies = bodies_of(scene, selection)
         for body in bodies:
-            matrix = stretch_matrix(self._axis(body, across), self.factor)
+            matrix = stretch_matrix(self._axis(body, across), self._factor(scene, body, across))
             foot = body.foot(scene.frame.up_vector)
             offset = foot - matrix @ foot
             stretch(draft, body.rows, matrix, offset)
             moved.append(Affine(body.rows, matrix, offset, body.rows))
         cloud = draft.done()
         after = scene.replace(cloud=cloud, language=carried(scene, cloud, moved))
-        notes = bumps(after, {b.group for b in bodies}) if self.factor > 1 else ()
+        larger = any(float(np.linalg.det(m.matrix)) > 1 for m in moved)
+        notes = bumps(after, {b.group for b in bodies}) if larger else ()
+        if self.length is not None:
+            notes = (*self.length[1].assumption(scene.frame), *notes)
         return Outcome(after, touched=selection.ids, moved=tuple(moved), notes=notes)
 
     def _axis(self, body: Body, across: Array) -> Array | None:
         """The box axis that is stretched; None for all."""
-        if self.axis == "all":
-            return None
-        first, second, up = (np.array(a) for a in body.box.axes)
-        if self.axis == "height":
-            return up
-        width_first = abs(float(first @ across)) >= abs(float(second @ across))
-        return first if width_first == (self.axis == "width") else second
+        return None if self.axis == "all" else np.array(body.box.axes[_side(body, self.axis, across)])
+
+    def _factor(self, scene: Scene, body: Body, across: Array) -> float:
+        """By how much this body grows.
+
+        Raises:
+            InstructionError: its length would change by more than a hundred times.
+        """
+        if self.length is None:
+            return self.factor or 1.0
+        side, length = self.length
+        now = body.box.size[_side(body, side, across)]
+        factor = length.in_units(scene.frame) / now
+        if not 0.01 <= factor <= 100:
+            unit = "m" if scene.frame.metres_per_unit is not None else "units"
+            told = now * (scene.frame.metres_per_unit or 1.0)
+            raise InstructionError(
+                f"the {body.label or 'thing'} has a {side} of {told:.3g} {unit}; "
+                f"{length.describe()} is more than a hundred times off"
+            )
+        return factor
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         checks = [carried_as_asked(before, outcome.scene, outcome.moved), counted(before, outcome.scene, outcome)]
         checks += [size_changed(before, outcome.scene, body) for body in outcome.moved[:4]]
+        if self.length is not None:
+            checks.append(self._length_reached(before, outcome, selection, context, *self.length))
         return tuple(checks)
+
+    def _length_reached(
+        self, before: Scene, outcome: Outcome, selection: Selection, context: Context, side: str, length: Length
+    ) -> Check:
+        """How far the measured dimension is from what was asked, over all bodies."""
+        across = heading(context.viewer, before.frame, "right")
+        asked, off = length.in_units(before.frame), 0.0
+        for body, moved in zip(bodies_of(before, selection), outcome.moved, strict=True):
+            axis = np.array(body.box.axes[_side(body, side, across)])
+            low, high = reach(solid_points(outcome.scene.cloud, moved.rows) @ axis)
+            off = max(off, abs(high - low - asked))
+        # float32 centres: a few millionths of the coordinates, which may be far larger than the thing.
+        bound = 1e-5 * max(1.0, asked, float(outcome.scene.cloud.means.abs().max()))
+        return at_most("length", off, bound, "units", f"its {side} is within {off:.2g} units of {asked:.4g}")
+
+
+def _side(body: Body, side: str, across: Array) -> int:
+    """Which axis of a body's box is its height, width or depth as the viewer sees it."""
+    if side == "height":
+        return 2
+    first, second = (abs(float(np.array(a) @ across)) for a in body.box.axes[:2])
+    return 0 if (first >= second) == (side == "width") else 1
