@@ -23,6 +23,7 @@ from ..gaussians.errors import FileError, UserError
 from ..gaussians.language.field import Box
 
 if TYPE_CHECKING:
+    from ..gaussians.camera import Camera
     from ..gaussians.language.field import Group
     from ..gaussians.scene import Scene
 
@@ -164,10 +165,13 @@ class SceneGraph(BaseModel):
             raise FileError(f"{path} is no scene graph: {_first_wrong(error)}") from error
 
     @classmethod
-    def from_scene(cls, scene: Scene) -> SceneGraph:
+    def from_scene(cls, scene: Scene, viewer: Camera | None = None) -> SceneGraph:
         """The graph of an embedded scene: its objects as nodes, "on" relations from contact.
 
         Lengths are metres where the scene knows its scale and scene units otherwise.
+
+        Args:
+            viewer: whose left and right are meant; None leaves it to the reader.
 
         Raises:
             UserError: the scene has no language field.
@@ -179,7 +183,8 @@ class SceneGraph(BaseModel):
         nodes = [place.node(g) for g in field.objects()]
         nodes = [n.model_copy(update={"support": _support(n, nodes, place.height)}) for n in nodes]
         stands = tuple((n.id, "on", n.support) for n in nodes if n.support not in SHELL)
-        return cls(room=RoomShape(size=place.room), nodes=tuple(nodes), relations=stands)
+        seen = place.viewpoint(viewer) if viewer is not None else None
+        return cls(room=RoomShape(size=place.room), nodes=tuple(nodes), relations=stands, viewer=seen)
 
 
 def _extent_of(nodes: Any) -> list[float]:
@@ -218,17 +223,25 @@ class _Placer:
         self.height = max(float(high[2] - floor), 0.0) * self.scale
         self.room: Size = (width, depth, self.height)
 
+    def point(self, world: NDArray[np.float64]) -> Point:
+        """A point of the scene `[3]` in the graph's frame, metres."""
+        x, y, z = ((self.basis @ world - self.origin) * self.scale).tolist()
+        return (x, y, z)
+
+    def viewpoint(self, camera: Camera) -> Viewpoint:
+        """Where a camera stands, and a point one unit before it."""
+        eye = camera.position
+        return Viewpoint(position=self.point(eye), target=self.point(eye + camera.forward))
+
     def node(self, group: Group) -> Node:
-        center = (self.basis @ np.array(group.box.center) - self.origin) * self.scale
         along = self.basis @ np.array(group.box.axes[0])
-        x, y, z = (float(c) for c in center)
         width, depth, height = (float(s) * self.scale for s in group.box.size)
         return Node(
             id=group.id,
             label=group.label,
             color=name_of(group.lab),
             size=(width, depth, height),
-            position=(x, y, z),
+            position=self.point(np.array(group.box.center)),
             yaw=math.degrees(math.atan2(along[1], along[0])),
         )
 
