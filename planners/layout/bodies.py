@@ -1,0 +1,205 @@
+"""A problem prepared for the search: what carries what, what moves as one, how much floor each thing wants.
+
+Knows items, supports and the slots around a table. Refuses to know where anything goes.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from ..graph import SHELL
+from .problem import Item, Problem, Wish
+from .shapes import Spot, shifted
+
+DOORS = frozenset({"door", "doorway", "entrance", "gate", "exit", "front door", "entry"})
+FLAT = 0.05  # metres; lower things on the floor are stood upon
+TUCKED = 0.03  # metres between a table and what stands around it
+_ELBOW = 0.08  # metres between neighbours at a table
+_SWING = 0.9  # metres before a door that its leaf takes at most
+_HEAD = 1.9  # metres; using a thing takes no more height
+_BESIDE_WALL = ("against_wall", "in_corner", "at_window")
+
+
+class Member(NamedTuple):
+    """One thing of a body: its item's index, and where it stands in the axes of the body's first thing."""
+
+    item: int
+    x: float = 0.0
+    y: float = 0.0
+    yaw: float = 0.0
+
+
+class Body(NamedTuple):
+    """Things that move as one; the first gives the axes."""
+
+    members: tuple[Member, ...]
+
+    @property
+    def first(self) -> int:
+        return self.members[0].item
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """A problem by indices.
+
+    Attributes:
+        problem: as stated.
+        items: its items, with supports that wishes imply.
+        index: row of each id.
+    """
+
+    problem: Problem
+    items: tuple[Item, ...]
+    index: dict[int | str, int]
+
+    @classmethod
+    def of(cls, problem: Problem) -> Prepared:
+        index = {item.id: i for i, item in enumerate(problem.items)}
+        return cls(problem, tuple(_supported(problem)), index)
+
+    @cached_property
+    def carriers(self) -> tuple[tuple[int, ...], ...]:
+        """For each item what it stands on, and what that stands on, from near to far; it may end in a circle."""
+        found = []
+        for item in self.items:
+            chain: list[int] = []
+            at = item.support
+            while at not in SHELL and self.index[at] not in chain:
+                chain.append(self.index[at])
+                at = self.items[chain[-1]].support
+            found.append(tuple(chain))
+        return tuple(found)
+
+    @cached_property
+    def roots(self) -> tuple[int, ...]:
+        """For each item the one at the end of its carriers: where it goes, the item goes."""
+        return tuple(chain[-1] if chain else i for i, chain in enumerate(self.carriers))
+
+    def is_circular(self, i: int) -> bool:
+        """Whether an item ends up standing on itself or on things that do."""
+        return self.items[self.roots[i]].support not in SHELL
+
+    @cached_property
+    def wishes_of(self) -> tuple[tuple[int, ...], ...]:
+        """For each item the rows of the wishes that it, or something it carries, takes part in."""
+        found: list[dict[int, None]] = [{} for _ in self.items]
+        for row, wish in enumerate(self.problem.wishes):
+            for name in (wish.subject, *wish.objects):
+                for i in (self.index[name], *self.carriers[self.index[name]]):
+                    found[i][row] = None
+        return tuple(tuple(rows) for rows in found)
+
+    @cached_property
+    def parties(self) -> tuple[tuple[int, ...], ...]:
+        """For each wish its subject and objects as indices."""
+        return tuple(tuple(self.index[n] for n in (w.subject, *w.objects)) for w in self.problem.wishes)
+
+    @cached_property
+    def tied(self) -> frozenset[tuple[int, int]]:
+        """Pairs of items that a wish brings together: one may stand in the other's free space."""
+        near = ("around", "facing", "next_to", "in_front_of", "between", "under", "on", "inside", "above", "below")
+        pairs = set[tuple[int, int]]()
+        for wish, (one, *others) in zip(self.problem.wishes, self.parties, strict=True):
+            if wish.name in near:
+                pairs |= {p for o in others for p in ((one, o), (o, one))}
+        return frozenset(pairs)
+
+    def wants_wall(self, i: int) -> bool:
+        """Whether an item's back belongs against a wall."""
+        return self.items[i].backed or any(
+            w.subject == self.items[i].id and w.name in _BESIDE_WALL for w in self.problem.wishes
+        )
+
+    def zones(self, i: int) -> tuple[Spot, ...]:
+        """The room that using an item takes, in its own axes; before a door its leaf swings."""
+        item = self.items[i]
+        width, deep, height = item.size
+        before, behind, left, right = item.clear
+        if item.label.lower().strip() in DOORS and not any(item.clear):
+            before = behind = min(width, _SWING)
+        low = 0.0 if item.support == "floor" else (item.height or 0.0)
+        high = min(_HEAD, low + max(height, 0.3))
+        return tuple(
+            Spot(x, y, 0.0, w, d, low + FLAT, high)
+            for reach, x, y, w, d in (
+                (before, 0.0, -(deep + before) / 2, width, before),
+                (behind, 0.0, (deep + behind) / 2, width, behind),
+                (left, -(width + left) / 2, 0.0, left, deep),
+                (right, (width + right) / 2, 0.0, right, deep),
+            )
+            if reach > 0
+        )
+
+    def area(self, i: int) -> float:
+        """Floor that an item and its use take, square metres."""
+        width, deep, _ = self.items[i].size
+        return width * deep + sum(z.w * z.d for z in self.zones(i))
+
+    @cached_property
+    def bodies(self) -> tuple[Body, ...]:
+        """What moves as one: every free root item, tables with what stands around them; what cannot stand is absent."""
+        around = defaultdict[int, list[int]](list)
+        taken = set[int]()
+        for wish, parts in zip(self.problem.wishes, self.parties, strict=True):
+            if wish.name == "around" and self._joins(*parts) and parts[0] not in taken:
+                around[parts[1]].append(parts[0])
+                taken.add(parts[0])
+        found = []
+        for i, item in enumerate(self.items):
+            if item.stand is None and item.support in SHELL and i not in taken:
+                found.append(Body((Member(i), *self._seats(i, around[i]))))
+        seated = {m.item for b in found for m in b.members}
+        found += [Body((Member(i),)) for i in sorted(taken - seated)]
+        return tuple(found)
+
+    def _joins(self, one: int, table: int) -> bool:
+        """Whether a thing may move together with what it stands around."""
+        a, b = self.items[one], self.items[table]
+        grounded = a.support == b.support == "floor" and a.stand is None and b.stand is None
+        parts = {p[0] for w, p in zip(self.problem.wishes, self.parties, strict=True) if w.name == "around"}
+        return grounded and table not in parts
+
+    def _seats(self, table: int, seated: list[int]) -> Iterator[Member]:
+        """Places around a table, in its axes, evenly on its sides; a side at a wall stays empty."""
+        width, deep, _ = self.items[table].size
+        sides = {"front": width, "back": width, "left": deep, "right": deep}
+        if self.wants_wall(table):
+            del sides["back"]
+        on: dict[str, list[int]] = {s: [] for s in sides}
+        for i in seated:
+            need = self.items[i].size[0] + _ELBOW
+            load = {s: (sum(self.items[j].size[0] + _ELBOW for j in on[s]) + need) / (sides[s] + _ELBOW) for s in on}
+            if self.wants_wall(table) and load["front"] <= 1.0:
+                on["front"].append(i)
+            elif ((best := min(load, key=lambda s: load[s])) and load[best] <= 1.0) or not on[best]:
+                on[best].append(i)
+        for side, here in on.items():
+            yield from self._row(side, here, sides[side], (width, deep))
+
+    def _row(self, side: str, here: list[int], length: float, table: tuple[float, float]) -> Iterator[Member]:
+        """The things at one side of a table, spread evenly along it and turned to it."""
+        pitch = length / max(len(here), 1)
+        yaw = {"front": 180.0, "back": 0.0, "left": 90.0, "right": -90.0}[side]
+        half = (table[1] if side in ("front", "back") else table[0]) / 2
+        for k, i in enumerate(here):
+            along = (k + 0.5) * pitch - length / 2
+            away = half + TUCKED + self.items[i].size[1] / 2
+            x, y = shifted(0.0, 0.0, yaw, -along if side == "back" else along, away)
+            yield Member(i, x, y, yaw)
+
+
+def _supported(problem: Problem) -> Iterator[Item]:
+    """The items; one that is said to be on or in another, and stands on the floor, stands on that one."""
+    onto: dict[int | str, Wish] = {}
+    for wish in problem.wishes:
+        if wish.hard and wish.name in ("on", "inside"):
+            onto.setdefault(wish.subject, wish)
+    for item in problem.items:
+        wish = onto.get(item.id)
+        moved = wish is not None and item.support == "floor" and item.stand is None and item.size[2] > FLAT
+        yield item.model_copy(update={"support": wish.objects[0]}) if moved and wish is not None else item

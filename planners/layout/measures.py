@@ -1,0 +1,176 @@
+"""How well each kind of wish is fulfilled by boxes, at one place or at many places at once.
+
+Knows what every wish means as geometry. Refuses to know which wishes there are and how they are weighed. Those that a
+scene graph can state are met only with a little to spare, because the checker has the last word on them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from .shapes import Spot, near, share
+
+Measured = tuple[Any, Any]  # whether it holds; how far it is from ideal, about 0 to 4
+_AIMS = {"left_of": (-1.0, 0.0), "right_of": (1.0, 0.0), "in_front_of": (0.0, -1.0), "behind": (0.0, 1.0)}
+_CONE = 0.53  # cosine; the checker asks for 0.5
+_OVER = 0.62  # share of the smaller footprint; the checker asks for half, by points
+NEAR_WALL = 0.1  # metres between a thing and the wall it is against
+CORNER = 0.25  # metres to either wall of the corner that a thing is in
+IN_REACH = 0.6  # metres from a window: what is at it
+AT_TABLE = 0.4  # metres between a thing and what it stands around
+IN_LINE = 0.05  # metres between the middles of aligned things
+
+
+def measure(name: str, size: Sequence[float], one: Spot, others: Sequence[Spot], windows: Sequence[Spot]) -> Measured:
+    """Whether "one name others" holds in a room of `size`, and a cost that grows with the distance from ideal.
+
+    Coordinates of each box may be numbers or arrays of one length.
+    """
+    if name in _AIMS:
+        return _beside(_AIMS[name], one, others[0])
+    if name in _PAIRS:
+        return _PAIRS[name](one, others[0])
+    if name in _ROOM:
+        return _ROOM[name](one, size)
+    if name == "between":
+        return _between(one, *others)
+    if name == "far_from":
+        apart = np.hypot(one.x - others[0].x, one.y - others[0].y)
+        wanted = float(np.hypot(size[0], size[1])) / 2
+        return apart >= wanted, np.maximum(1.2 - apart / max(wanted, 1e-9), 0.0)
+    if name == "at_window":
+        if not windows:
+            return np.zeros(np.shape(one.x), bool), 0.0
+        gap = np.min([near(one, w) for w in windows], axis=0)
+        return gap <= IN_REACH, gap
+    raise ValueError(f"unknown wish {name}")
+
+
+def _beside(aim: tuple[float, float], one: Spot, other: Spot) -> Measured:
+    """As the viewer sees it, who looks along +y: a cone of 60 degrees to each side."""
+    dx, dy = one.x - other.x, one.y - other.y
+    reach = np.hypot(dx, dy)
+    cosine = (dx * aim[0] + dy * aim[1]) / np.maximum(reach, 1e-9)
+    return cosine >= _CONE, 1.0 - cosine + 0.12 * reach
+
+
+def _next_to(one: Spot, other: Spot) -> Measured:
+    sizes = [max(s.w, s.d, s.high - s.low) for s in (one, other)]
+    gap = np.hypot(near(one, other), max(one.low - other.high, other.low - one.high, 0.0))
+    return gap <= 0.29 * sum(sizes), 2.0 * gap
+
+
+def _around(one: Spot, other: Spot) -> Measured:
+    """At a free side, close, turned to it, and square before that side."""
+    u, v = other.local(one.x, one.y)
+    beyond_u, beyond_v = np.abs(u) - other.w / 2, np.abs(v) - other.d / 2
+    su, sv = np.where(beyond_u >= beyond_v, np.sign(u), 0.0), np.where(beyond_u >= beyond_v, 0.0, np.sign(v))
+    fx, fy = one.front
+    wx, wy = (Spot(0, 0, -other.yaw, 0, 0, 0, 0)).local(-su, -sv)
+    turned = fx * wx + fy * wy
+    gap = near(one, other)
+    aside = np.maximum(np.where(beyond_u >= beyond_v, np.abs(v) - other.d / 2, np.abs(u) - other.w / 2), -0.1) + 0.1
+    return (gap <= AT_TABLE) & (turned > 0.85) & (aside <= 0.2), 3.0 * gap + 2.0 * (1.0 - turned) + aside
+
+
+def is_turned(one: Spot, other: Spot, degrees: float) -> Any:
+    """Whether the front of one looks at the middle of another, within some degrees."""
+    dx, dy = other.x - one.x, other.y - one.y
+    fx, fy = one.front
+    return dx * fx + dy * fy >= np.cos(np.radians(degrees)) * np.hypot(dx, dy) - 1e-9
+
+
+def _facing(one: Spot, other: Spot) -> Measured:
+    """The middle within 45 degrees of the front; best straight ahead, neither touching nor across a hall."""
+    dx, dy = other.x - one.x, other.y - one.y
+    fx, fy = one.front
+    reach = np.hypot(dx, dy)
+    cosine = (dx * fx + dy * fy) / np.maximum(reach, 1e-9)
+    return is_turned(one, other, 43.0), 3.0 * (1.0 - cosine) + 0.3 * np.maximum(reach - 3.0, 0.0)
+
+
+def _over(upper: Spot, lower: Spot) -> Measured:
+    held = (share(upper, lower) >= _OVER) & (upper.low >= lower.high - 0.01)
+    return held, 1.0 - share(upper, lower) + 0.5 * np.hypot(upper.x - lower.x, upper.y - lower.y)
+
+
+def _under(one: Spot, other: Spot) -> Measured:
+    lower = (one.low + one.high < other.low + other.high) & (one.low < other.high - 0.1)
+    away = np.hypot(one.x - other.x, one.y - other.y)
+    return (share(one, other) >= _OVER) & lower, 1.0 - share(one, other) + 0.5 * away
+
+
+def _aligned(one: Spot, other: Spot) -> Measured:
+    """In one line, along either of the other's axes, and turned the same way."""
+    u, v = other.local(one.x, one.y)
+    off = np.minimum(np.abs(u), np.abs(v))
+    same = abs((one.yaw - other.yaw + 180.0) % 360.0 - 180.0) < 1.0
+    return (off <= IN_LINE) & same, np.minimum(2.0 * off, 2.0) + (0.0 if same else 1.0)
+
+
+def _between(one: Spot, a: Spot, b: Spot) -> Measured:
+    """In the middle part of the way from one to the other, not far off it; heights count as the checker's do not."""
+    sx, sy = b.x - a.x, b.y - a.y
+    length = np.maximum(np.hypot(sx, sy), 1e-9)
+    t = ((one.x - a.x) * sx + (one.y - a.y) * sy) / length**2
+    aside = np.abs((one.x - a.x) * sy - (one.y - a.y) * sx) / length**2
+    return (t > 0.15) & (t < 0.85) & (aside < 0.35), 2.0 * np.abs(t - 0.5) + 2.0 * aside
+
+
+def walls_gaps(one: Spot, size: Sequence[float]) -> tuple[Any, Any, Any, Any]:
+    """Metres from a footprint to the walls at left, right, front and back of the room."""
+    hx, hy = one.half
+    return (
+        one.x - hx + size[0] / 2,
+        size[0] / 2 - one.x - hx,
+        one.y - hy + size[1] / 2,
+        size[1] / 2 - one.y - hy,
+    )
+
+
+def behind_gap(one: Spot, size: Sequence[float]) -> Any:
+    """Metres from a thing's back to the wall behind it; infinite where no wall is square behind."""
+    fx, fy = one.front
+    left, right, front, back = walls_gaps(one, size)
+    for along, gap in ((fx, left), (-fx, right), (fy, front), (-fy, back)):
+        if along > 0.999:
+            return gap
+    return np.inf
+
+
+def _against_wall(one: Spot, size: Sequence[float]) -> Measured:
+    gap = np.min(walls_gaps(one, size), axis=0)
+    return gap <= NEAR_WALL, gap + 0.5 * np.minimum(behind_gap(one, size), 1.0)
+
+
+def _in_corner(one: Spot, size: Sequence[float]) -> Measured:
+    left, right, front, back = walls_gaps(one, size)
+    aside, away = np.minimum(left, right), np.minimum(front, back)
+    return (aside <= CORNER) & (away <= CORNER), aside + away
+
+
+def _in_center(one: Spot, size: Sequence[float]) -> Measured:
+    """Within a sixth of the room's width and depth of its middle."""
+    off = np.hypot(one.x, one.y)
+    return (np.abs(one.x) <= size[0] / 6) & (np.abs(one.y) <= size[1] / 6), 1.5 * off
+
+
+_PAIRS: dict[str, Callable[[Spot, Spot], Measured]] = {
+    "next_to": _next_to,
+    "around": _around,
+    "facing": _facing,
+    "above": _over,
+    "on": _over,
+    "under": _under,
+    "below": _under,
+    "inside": lambda one, other: (share(one, other) >= 0.98, 1.0 - share(one, other)),
+    "aligned_with": _aligned,
+}
+_ROOM: dict[str, Callable[[Spot, Sequence[float]], Measured]] = {
+    "against_wall": _against_wall,
+    "in_corner": _in_corner,
+    "in_center": _in_center,
+}

@@ -1,0 +1,172 @@
+"""The search: things one after another at the cheapest place, those that fared badly sooner the next time.
+
+Knows an order, restarts and second looks. Refuses to know what a place costs (places) and why nothing fits (conflicts).
+Greedy construction with squeaky-wheel restarts (Joslin and Clements 1999), then every body in turn is taken up and
+put where it is best given all others. Work is counted, not timed, so that the same problem ends the same everywhere.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..graph import SHELL
+from .bodies import FLAT, Body, Member, Prepared
+from .places import Place, places
+from .shapes import Spot
+from .state import State
+
+_TRIES = 6  # places that are looked at for a way to everything, before the best of them is taken
+_APART = 0.35  # metres between such places
+_WORTH = 0.05  # price by which a second look must better the layout to be worth another
+
+
+class Search:
+    """One problem being solved.
+
+    Args:
+        prepared: the problem.
+        seed: of the noise on prices from the second start on.
+        effort: 1 is usual; scales starts and second looks.
+    """
+
+    def __init__(self, prepared: Prepared, seed: int, effort: float) -> None:
+        self.prepared, self.effort = prepared, effort
+        self.rng = np.random.default_rng(seed)
+        self.urgent = [0.0] * len(prepared.items)
+        things = max(len(prepared.items), 1)
+        self.starts = max(1, min(round(8 * effort), int(round(effort * 250 / things)) or 1))
+        self.looks = max(0, min(round(3 * effort), int(round(effort * 120 / things))))
+
+    def run(self) -> State:
+        """The best layout of all starts."""
+        state = State(self.prepared)
+        empty, best, least = state.copy(), state.copy(), np.inf
+        for start in range(self.starts):
+            state.restore(empty)
+            self._fill(state, 0.0 if start == 0 else 0.6)
+            price = state.price()
+            if price < least:
+                best, least = state.copy(), price
+            if not self._blame(state):
+                break
+        state.restore(best)
+        return state
+
+    def _fill(self, state: State, noise: float) -> None:
+        """One start: keep discs free, place bodies, look again, then what stands on other things."""
+        self._clear_discs(state)
+        pending = sorted(self.prepared.bodies, key=self._rank)
+        bodies = list[Body]()
+        for body in pending:
+            bodies += self._settle(state, body, noise)
+        for _ in range(self.looks):
+            if not self._look_again(state, bodies):
+                break
+        carried = [i for i, item in enumerate(self.prepared.items) if item.support not in SHELL and item.stand is None]
+        for i in sorted(carried, key=lambda i: (len(self.prepared.carriers[i]), -self.urgent[i], -self._size(i), i)):
+            if not self.prepared.is_circular(i):
+                self._put(state, Body((Member(i),)), noise)
+
+    def _size(self, i: int) -> float:
+        return self.prepared.items[i].size[0] * self.prepared.items[i].size[1]
+
+    def _rank(self, body: Body) -> tuple[float, ...]:
+        """What is placed first: what failed before, what is large or wants a wall, rugs and hung things last."""
+        item = self.prepared.items[body.first]
+        late = {"floor": 0.0, "wall": 1.0, "ceiling": 2.0}[str(item.support)]
+        if item.support == "wall" and (item.height or 0.0) + item.size[2] < 1.0:
+            late = 0.0
+        if item.support == "floor" and item.size[2] <= FLAT:
+            late = 1.5
+        area = sum(self.prepared.area(m.item) for m in body.members)
+        bound = sum(self.prepared.problem.wishes[r].hard for r in self.prepared.wishes_of[body.first])
+        urgent = max(self.urgent[m.item] for m in body.members)
+        walled = 0.5 if self.prepared.wants_wall(body.first) else 0.0
+        return late, float(item.optional), -(urgent + area + 0.2 * min(bound, 5) + walled), float(body.first)
+
+    def _settle(self, state: State, body: Body, noise: float) -> list[Body]:
+        """Place a body; if there is no room for all of it at once, its things one by one."""
+        if self._put(state, body, noise) or len(body.members) == 1:
+            return [body]
+        singles = [Body((Member(m.item),)) for m in body.members]
+        for single in singles:
+            self._put(state, single, noise)
+        return singles
+
+    def _put(self, state: State, body: Body, noise: float) -> bool:
+        """Put a body at the cheapest place from which everything can still be walked up to."""
+        found = places(state, body, self.rng, noise)
+        if not found:
+            return False
+        chosen = self._reachable(state, body, found)
+        state.place(body, *chosen)
+        return True
+
+    def _reachable(self, state: State, body: Body, found: list[Place]) -> tuple[float, float, float, float]:
+        """The cheapest place, with what it shuts off counted in."""
+        price = np.concatenate([p.price for p in found])
+        x, y = np.concatenate([p.x for p in found]), np.concatenate([p.y for p in found])
+        which = np.repeat(np.arange(len(found)), [len(p.price) for p in found])
+        best: tuple[float, float, float, float] | None = None
+        least = np.inf
+        for _ in range(_TRIES):
+            k = int(price.argmin())
+            if not price[k] < least:
+                break
+            here = (float(x[k]), float(y[k]), found[which[k]].yaw, found[which[k]].low)
+            state.place(body, *here)
+            total = float(price[k]) + state.crowded()
+            state.remove(body)
+            if total < least:
+                best, least = here, total
+            price[(np.hypot(x - x[k], y - y[k]) < _APART) & (which == which[k])] = np.inf
+        assert best is not None
+        return best
+
+    def _look_again(self, state: State, bodies: list[Body]) -> bool:
+        """Take up every body and put it where it is best now; whether that was worth it."""
+        before = state.price()
+        for body in bodies:
+            kept = state.copy()
+            price = state.price()
+            state.remove(body)
+            if not self._put(state, body, 0.0) or state.price() > price:
+                state.restore(kept)
+        return state.price() < before - _WORTH
+
+    def _clear_discs(self, state: State) -> None:
+        """A place for every disc that the solver may choose: as near to the middle of the room as it fits."""
+        width, deep, _ = state.size
+        for k, keepout in enumerate(self.prepared.problem.free):
+            if keepout.center is not None or state.discs[k] is not None:
+                continue
+            r = keepout.radius
+            if 2 * r > min(width, deep):
+                continue
+            xs, ys = np.linspace(r - width / 2, width / 2 - r, 41), np.linspace(r - deep / 2, deep / 2 - r, 41)
+            away = np.hypot(xs[:, None], ys[None, :]) + self.rng.normal(0.0, 1e-6, (41, 41))
+            for i, spot in state.solids(set()):
+                if spot.low < 1.9:
+                    here = spot._replace(x=0.0, y=0.0)
+                    away[_meets_disc(xs, ys, spot, r)] = np.inf
+            i, j = np.unravel_index(int(away.argmin()), away.shape)
+            if np.isfinite(away[i, j]):
+                state.discs[k] = (float(xs[i]), float(ys[j]), r)
+
+    def _blame(self, state: State) -> bool:
+        """Make what has no place, or breaks a hard wish, more urgent; whether there was any such thing."""
+        guilty = {i for i, spot in enumerate(state.spots) if spot is None}
+        for row, wish in enumerate(self.prepared.problem.wishes):
+            if wish.hard and not state.holds(row)[0]:
+                guilty |= set(self.prepared.parties[row])
+        lost = state.ways[-1].unreached()
+        guilty |= {i for i in lost if isinstance(i, int)}
+        for i in guilty:
+            for k in (i, *self.prepared.carriers[i]):
+                self.urgent[k] += 1.0
+        return bool(guilty)
+
+
+def _meets_disc(xs: np.ndarray, ys: np.ndarray, spot: Spot, radius: float) -> np.ndarray:
+    u, v = spot.local(xs[:, None], ys[None, :])
+    return np.hypot(np.maximum(np.abs(u) - spot.w / 2, 0), np.maximum(np.abs(v) - spot.d / 2, 0)) < radius
