@@ -1,0 +1,101 @@
+"""exchange: two things change places."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from ...gaussians.errors import InstructionError
+from ...gaussians.language.selection import Selection
+from ...gaussians.scene import Scene
+from ..base import Affine, Context, Outcome, TargetedOp
+from ..bookkeeping import carried
+from ..checks import carried_as_asked, collision_free, counted, supported
+from ..fronts import angle_between, front_of
+from ..measure import solid_points
+from ..place import Placer
+from ..receipt import Check
+from ..riders import loaded, riders_of, rows_along, went_along
+from ..rows import Draft
+from ..shape import axis_rotation, turn
+from ..space import Body, bodies_of, contact_box, groups_of, mask_of_bodies, turned_axes
+from ..support import support_height
+
+
+class Exchange(TargetedOp):
+    """The two things that the target means change places; each stands where the other did, or as near as there is room.
+
+    Where it can be told which way both face, each also faces as the other did. What stands on them goes along.
+    """
+
+    example: ClassVar[tuple[str, dict[str, Any]]] = (
+        "swap the lamp and the vase",
+        {"op": "exchange", "target": {"text": "lamp", "also": [{"text": "vase"}]}},
+    )
+    op: Literal["exchange"] = "exchange"
+
+    def may_change(self, scene: Scene, selection: Selection) -> Tensor:
+        return rows_along(scene, selection)
+
+    def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
+        bodies = self._two(scene, selection)
+        placer = Placer(scene, context, mask_of_bodies(scene, bodies), frozenset(groups_of(bodies)))
+        moved = [self._to(scene, placer, one, other) for one, other in (bodies, bodies[::-1])]
+        draft = Draft(scene.cloud)
+        for asked in moved:
+            turn(draft, asked.rows, asked.matrix, asked.offset)
+        cloud = draft.done()
+        after = scene.replace(cloud=cloud, language=carried(scene, cloud, moved))
+        touched = cloud.ids[torch.cat([body.rows for body in bodies])].sort().values
+        return Outcome(after, touched=touched, moved=tuple(moved), notes=went_along(scene, bodies))
+
+    def _two(self, scene: Scene, selection: Selection) -> list[Body]:
+        """The two bodies.
+
+        Raises:
+            InstructionError: they are not two, or one stands on the other.
+        """
+        bodies = bodies_of(scene, selection)
+        if len(bodies) != 2:
+            raise InstructionError(f"two things change places; {selection.query.describe()} means {len(bodies)}")
+        riders = [set(riders_of(scene, [body.group])) for body in bodies]
+        if bodies[0].group in riders[1] or bodies[1].group in riders[0]:
+            raise InstructionError("a thing cannot change places with what stands on it: say where each should go")
+        return loaded(scene, bodies)
+
+    def _to(self, scene: Scene, placer: Placer, one: Body, other: Body) -> Affine:
+        """Where one thing goes when it takes the other's place.
+
+        Raises:
+            InstructionError: one stands and the other hangs, or there is no room.
+        """
+        up, hanging = scene.frame.up_vector, [support_height(scene, b, placer.context) is None for b in (one, other)]
+        if hanging[0] != hanging[1]:
+            raise InstructionError("one of them stands and the other hangs: they cannot change places")
+        matrix = axis_rotation(up, self._turn(scene, one, other))
+        support: float | None = None
+        if hanging[0]:
+            foot = other.center - up * (one.box.size[2] / 2)
+        else:
+            spot = placer.near(one.box.size, turned_axes(one.box.axes, matrix, scene.frame), other)
+            foot, support = spot.foot, spot.support
+        offset = foot - matrix @ one.foot(up)
+        points = solid_points(scene.cloud, one.rows) @ matrix.T + offset
+        placer.take(points, contact_box(points, scene.frame))
+        return Affine(one.rows, matrix, np.asarray(offset), one.rows, support)
+
+    def _turn(self, scene: Scene, one: Body, other: Body) -> float:
+        """Degrees by which a thing must turn to face as the other does; 0 where one of them faces nowhere."""
+        mine, yours = front_of(scene, one), front_of(scene, other)
+        if mine is None or yours is None:
+            return 0.0
+        return angle_between(mine, yours, scene.frame.up_vector)
+
+    def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
+        after = outcome.scene
+        checks = [carried_as_asked(before, after, outcome.moved), counted(before, after, outcome)]
+        checks += [c for c in (supported(after, outcome.moved), collision_free(after, outcome.moved)) if c is not None]
+        return tuple(checks)
