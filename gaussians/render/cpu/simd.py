@@ -218,20 +218,30 @@ def fetch(typing_context: Any, records: Any, row: Any) -> Any:
     return types.void(records, types.int64), generate
 
 
-def _step(v: _Lanes, record: ir.Value, x: ir.Value, y: ir.Value, t: ir.Value, limits: list[ir.Value]) -> Any:
-    """One footprint in 16 pixels: weight, new transmittance, mask of pixels still open, reader of its fields."""
+def footprint(v: _Lanes, record: ir.Value, x: ir.Value, y: ir.Value, limits: list[ir.Value]) -> Any:
+    """One footprint in 16 pixels: alpha, the two squared terms of its exponent (not squared), reader of its fields."""
 
     def field(place: int, kind: ir.Type = _F32) -> ir.Value:
         return v.spread(v.load(v.b.gep(record, [ir.Constant(_I64, place)]), kind))
 
-    alpha_max, t_min, q_max = limits
+    alpha_max, _, q_max = limits
     along = v.add(v.mul(field(L1), x), v.add(v.mul(field(L2), y), field(X)))
     across = v.add(v.mul(field(L3), y), field(Y))
     q = v.add(v.mul(along, along), v.add(v.mul(across, across), field(SHIFT)))
     alpha = v.min(v.exp_minus_8(q), alpha_max)
-    alpha = v.b.select(v.b.fcmp_ordered("<=", q, q_max), alpha, v.same(0))
+    return v.b.select(v.b.fcmp_ordered("<=", q, q_max), alpha, v.same(0)), along, across, field
+
+
+def behind_it(v: _Lanes, t: ir.Value, alpha: ir.Value, t_min: ir.Value) -> tuple[ir.Value, ir.Value]:
+    """Transmittance behind a footprint, and the mask of pixels that are still open there."""
     behind = v.max(v.mul(t, v.sub(v.same(1), alpha)), v.same(DIMMEST))
-    still_open = v.less(t_min, behind)
+    return behind, v.less(t_min, behind)
+
+
+def _step(v: _Lanes, record: ir.Value, x: ir.Value, y: ir.Value, t: ir.Value, limits: list[ir.Value]) -> Any:
+    """One footprint in 16 pixels: weight, new transmittance, mask of pixels still open, reader of its fields."""
+    alpha, _, _, field = footprint(v, record, x, y, limits)
+    behind, still_open = behind_it(v, t, alpha, limits[1])
     return v.b.select(still_open, v.mul(t, alpha), v.same(0)), behind, still_open, field
 
 

@@ -1,0 +1,123 @@
+"""From the gradient of a picture to that of every footprint.
+
+Knows tiles, entries and the order in which they are added up. Refuses to know blocks of pixels (`simd_backward`) and
+the projection (`unproject`). Each entry's gradient is written at the entry's own place and added up row by row in the
+order of the entries, so nothing is written by two threads and the same input gives the same bytes on any number of
+them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .blend import CHUNK, _gather
+from .compiled import fetch_add, helper, kernel
+from .project import L1, L2, L3, ONE, RECORD, TILE, ZERO, Array, X, Y, f4
+from .simd import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, LANES
+from .simd_backward import (
+    ACROSS,
+    ACROSS_Y,
+    ALONG,
+    ALONG_X,
+    ALONG_Y,
+    BLUER,
+    GREENER,
+    REDDER,
+    SHIFTED,
+    STATE,
+    unblend,
+)
+
+# Gradient of a footprint: centre (px), the three fields of its exponent, shift, colour.
+GRADIENT = 9
+D_X, D_Y, D_L1, D_L2, D_L3, D_SHIFT, D_RED, D_GREEN, D_BLUE = range(GRADIENT)
+
+
+def make_scratch(workers: int) -> tuple[Array, ...]:
+    """What each worker writes: chunk, touched, state, sums, one row a worker."""
+    return (
+        np.empty((workers, CHUNK * RECORD), np.float32), np.empty((workers, CHUNK), np.int64),
+        np.empty((workers, BLOCKS * STATE), np.float32), np.empty((workers, LANES), np.float32),
+    )  # fmt: skip
+
+
+@kernel
+def unblend_tiles(worker, workers, first, entries, records, size, limits, picture, gradient, out, scratch, counter):  # type: ignore[no-untyped-def]
+    """Write the gradient of every entry to `out` `[entries, GRADIENT]`, all of which is written.
+
+    `picture` is (rgb, alpha) as drawn, `gradient` that of both, `[H, W, 3]` and `[H, W]`; the others as `blend.draw`.
+    """
+    tiles_wide = (size[0] + TILE - 1) // TILE
+    chunk, touched, state, sums = scratch[0][worker], scratch[1][worker], scratch[2][worker], scratch[3][worker]
+    while True:
+        tile = fetch_add(counter, 1)
+        if tile >= first.shape[0] - 1:
+            break
+        x, y = tile % tiles_wide * TILE, tile // tiles_wide * TILE
+        alive = _begin(state, x, y, size, picture, gradient)
+        start, stop = first[tile], first[tile + 1]
+        while start < stop:
+            count = min(CHUNK, stop - start)
+            if alive != 0:
+                _gather(entries, start, count, stop, records, chunk, touched, f4(x), f4(y))
+            for slot in range(count):
+                reached = touched[slot] & alive
+                if reached != 0:
+                    alive ^= reached & ~unblend(chunk, slot, reached, state, sums, limits)
+                    _finish(records, entries[start + slot], sums, f4(x), f4(y), out, start + slot)
+                else:
+                    for place in range(GRADIENT):
+                        out[start + slot, place] = ZERO
+            start += count
+
+
+@helper
+def _begin(state, left, top, size, picture, gradient):  # type: ignore[no-untyped-def]
+    """The state of a tile before its first footprint; returns the bits of the blocks that lie in the image."""
+    rgb, alpha = picture
+    d_rgb, d_alpha = gradient
+    alive = 0
+    for block in range(BLOCKS):
+        for lane in range(LANES):
+            x = left + block % BLOCKS_WIDE * BLOCK_WIDTH + lane % BLOCK_WIDTH
+            y = top + block // BLOCKS_WIDE * BLOCK_HEIGHT + lane // BLOCK_WIDTH
+            at = block * STATE + lane
+            inside = x < size[0] and y < size[1]
+            state[at] = ONE if inside else ZERO
+            to_come = ZERO
+            if inside:
+                alive |= 1 << block
+                to_come = -d_alpha[y, x] * (ONE - alpha[y, x])
+            for channel in range(3):
+                g = d_rgb[y, x, channel] if inside else ZERO
+                state[at + (2 + channel) * LANES] = g
+                if inside:
+                    to_come += g * rgb[y, x, channel]
+            state[at + LANES] = to_come
+    return alive
+
+
+@helper
+def _finish(records, row, sums, left, top, out, entry):  # type: ignore[no-untyped-def]
+    """The gradient of one entry's footprint from what its pixels add up to."""
+    x, y = records[row, X] - left, records[row, Y] - top
+    e, f = sums[ALONG], sums[ACROSS]
+    out[entry, D_L1] = sums[ALONG_X] - x * e
+    out[entry, D_L2] = sums[ALONG_Y] - y * e
+    out[entry, D_L3] = sums[ACROSS_Y] - y * f
+    out[entry, D_X] = -records[row, L1] * e
+    out[entry, D_Y] = -records[row, L2] * e - records[row, L3] * f
+    out[entry, D_SHIFT] = sums[SHIFTED]
+    out[entry, D_RED], out[entry, D_GREEN], out[entry, D_BLUE] = sums[REDDER], sums[GREENER], sums[BLUER]
+
+
+@kernel
+def collect(worker, workers, entries, each, total):  # type: ignore[no-untyped-def]
+    """Add the gradients of entries to those of their rows, `total` `[N, GRADIENT]`; each worker has rows of its own."""
+    rows = total.shape[0]
+    low, high = rows * worker // workers, rows * (worker + 1) // workers
+    for k in range(entries.shape[0]):
+        row = entries[k]
+        if low <= row < high:
+            for place in range(GRADIENT):
+                total[row, place] += each[k, place]

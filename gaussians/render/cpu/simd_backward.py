@@ -1,0 +1,133 @@
+"""Explicit SIMD of the way back: from the gradient of 16 pixels to that of a footprint.
+
+Knows vectors of 16 floats and the derivative of the blending rule. Refuses to know tiles, lists and images.
+
+Footprints are walked front to back, as they were blended. What lies behind a footprint is what the pixel ended with
+minus what has been blended so far, so nothing but the finished picture has to be kept of the way forward. With g the
+gradient of a pixel's colour, w = alpha T a weight and S the part of `g . colour` from behind the footprint,
+`d alpha = T (g . c) - S / (1 - alpha)` (Kerbl et al. 2023, whose kernel walks back to front).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from llvmlite import ir
+from numba import types
+
+from .compiled import intrinsic
+from .project import BLUE, GREEN, RECORD, RED
+from .simd import (
+    _F32,
+    _I32,
+    _I64,
+    BLOCK_HEIGHT,
+    BLOCK_WIDTH,
+    BLOCKS_WIDE,
+    LANES,
+    _data,
+    _Lanes,
+    behind_it,
+    footprint,
+)
+
+# A block's state: transmittance, `g . colour` still to come from behind, gradient of red, green and blue.
+CHANNELS = 5
+STATE = CHANNELS * LANES
+# What a footprint's pixels add up to. With e and f the gradients of the two squared terms of its exponent, and x, y
+# from the tile's corner: e, e x, e y, f, f y, gradient of the shift, of red, green and blue.
+SUMS = 9
+(ALONG, ALONG_X, ALONG_Y, ACROSS, ACROSS_Y, SHIFTED, REDDER, GREENER, BLUER) = range(SUMS)
+
+
+@intrinsic
+def unblend(typing_context: Any, chunk: Any, slot: Any, blocks: Any, state: Any, sums: Any, limits: Any) -> Any:
+    """Walk through record `slot` of `chunk` in the blocks of a tile whose bits are set in `blocks`, at least one.
+
+    Writes what its pixels add up to into `sums` `[LANES]`, moves each block's state behind it, and returns the bits
+    of those in which any pixel is still open.
+    """
+    signature = types.int64(chunk, types.int64, types.int64, state, sums, limits)
+
+    def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
+        v = _Lanes(builder)
+        chunk, state, sums = (_data(context, builder, signature, arguments, i) for i in (0, 3, 4))
+        record = v.at(chunk, builder.mul(arguments[1], ir.Constant(_I64, RECORD)))
+        limits = v.spread_all(arguments[5])
+        entry, head, done = builder.block, builder.append_basic_block("block"), builder.append_basic_block("summed")
+        zero, one = ir.Constant(_I64, 0), ir.Constant(_I64, 1)
+        builder.branch(head)
+        builder.position_at_end(head)
+        left, still_open = builder.phi(_I64), builder.phi(_I64)
+        totals = [builder.phi(v.same(0).type) for _ in range(SUMS)]
+        block = builder.cttz(left, ir.Constant(ir.IntType(1), 1))
+        added, alive = _in_block(v, record, block, state, limits)
+        after = [v.add(total, more) for total, more in zip(totals, added, strict=True)]
+        open_after = builder.or_(still_open, builder.shl(alive, block))
+        rest = builder.and_(left, builder.sub(left, one))
+        for phi, first, later in [
+            (left, arguments[2], rest), (still_open, zero, open_after),
+            *((phi, v.same(0), total) for phi, total in zip(totals, after, strict=True)),
+        ]:  # fmt: skip
+            phi.add_incoming(first, entry)
+            phi.add_incoming(later, builder.block)
+        builder.cbranch(builder.icmp_unsigned("!=", rest, zero), head, done)
+        builder.position_at_end(done)
+        v.store(_lane_sums(v, after), sums)
+        return open_after
+
+    return signature, generate
+
+
+def _in_block(
+    v: _Lanes, record: ir.Value, block: ir.Value, state: ir.Value, limits: list[ir.Value]
+) -> tuple[list[ir.Value], ir.Value]:
+    """What the 16 pixels of one block add, and whether (int64) any of them is still open; the state moves on."""
+    b = v.b
+    x, y = _pixels_of(v, block)
+    offset = b.mul(block, ir.Constant(_I64, STATE))
+    t, to_come, *g = (v.load(v.at(state, offset, channel * LANES)) for channel in range(CHANNELS))
+    alpha, along, across, field = footprint(v, record, x, y, limits)
+    behind, still_open = behind_it(v, t, alpha, limits[1])
+    alpha = b.select(still_open, alpha, v.same(0))
+    weight = v.mul(t, alpha)
+    lit = v.mul(g[0], field(RED))
+    for channel, place in ((1, GREEN), (2, BLUE)):
+        lit = v.add(lit, v.mul(g[channel], field(place)))
+    to_come = v.sub(to_come, v.mul(weight, lit))
+    d_alpha = v.sub(v.mul(t, lit), b.fdiv(to_come, v.sub(v.same(1), alpha)))
+    free = v.less(alpha, limits[0])  # at its largest, alpha does not answer to the exponent
+    d_q = b.select(free, v.mul(v.mul(v.same(-8), alpha), d_alpha), v.same(0))
+    d_along, d_across = (v.mul(v.add(term, term), d_q) for term in (along, across))
+    v.store(behind, v.at(state, offset))
+    v.store(to_come, v.at(state, offset, LANES))
+    added = [d_along, v.mul(d_along, x), v.mul(d_along, y), d_across, v.mul(d_across, y), d_q]
+    alive = b.zext(b.icmp_unsigned("!=", v.bits(still_open), ir.Constant(_I64, 0)), _I64)
+    return [*added, *(v.mul(weight, channel) for channel in g)], alive
+
+
+def _pixels_of(v: _Lanes, block: ir.Value) -> tuple[ir.Value, ir.Value]:
+    """Pixel centres of a block of a tile, from the tile's corner."""
+    wide, high = ir.Constant(_I64, BLOCKS_WIDE), v.constant([i // BLOCK_WIDTH + 0.5 for i in range(LANES)])
+    left = v.b.mul(v.b.urem(block, wide), ir.Constant(_I64, BLOCK_WIDTH))
+    top = v.b.mul(v.b.udiv(block, wide), ir.Constant(_I64, BLOCK_HEIGHT))
+    columns = v.constant([i % BLOCK_WIDTH + 0.5 for i in range(LANES)])
+    x, y = (v.spread(v.b.uitofp(corner, _F32)) for corner in (left, top))
+    return v.add(x, columns), v.add(y, high)
+
+
+def _lane_sums(v: _Lanes, vectors: list[ir.Value]) -> ir.Value:
+    """One vector whose lane i is the sum of the lanes of vector i; always added in the same order."""
+    size = LANES
+    while size > 1:
+        half, groups = size // 2, LANES // size
+        if len(vectors) % 2:
+            vectors = [*vectors, v.same(0)]
+        low = [g * size + i for g in range(2 * groups) for i in range(half)]
+        vectors = [
+            v.add(v.pick(a, b, low), v.pick(a, b, [lane + half for lane in low]))
+            for a, b in zip(vectors[::2], vectors[1::2], strict=True)
+        ]
+        size = half
+    assert len(vectors) == 1 and vectors[0].type.count == LANES and _I32.width == 32
+    return vectors[0]
