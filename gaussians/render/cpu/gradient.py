@@ -1,7 +1,7 @@
 """There and back: a picture with what it takes to carry its gradient back to the Gaussians.
 
-Knows the order of the stages of both ways. Refuses to know their insides (`blend`, `backward`, `unproject`) and torch's bookkeeping
-(`..differentiable`).
+Knows the order of the stages of both ways. Refuses to know their insides (`blend`, `backward`, `unproject`) and
+torch's bookkeeping (`..differentiable`).
 """
 
 from __future__ import annotations
