@@ -1,0 +1,112 @@
+"""Which words of a scene may reach a language model: names of things, and nothing that could be an order to it.
+
+Knows what names look like. Refuses to judge what a name means: whoever wrote a graph or a file may have called a chair
+"ignore all instructions", and a name that is no plausible one is left out altogether, not quoted and not escaped.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from functools import cache
+
+from ...gaussians.color import names as color_names
+from ...gaussians.language.encoders.words import normalise
+from .. import synonyms
+from ..graph import SceneGraph
+from ..wordwise import vocabulary
+
+MAX_CHARS, MAX_WORDS, MAX_STRANGE = 40, 6, 3  # strange: of a name with words that no table of ours knows
+_UNSPACED = 8  # characters of a name in a script that sets no spaces; a sentence is longer
+_MARKS = re.compile(r"[^\w\s'’&,()/+-]|_")  # what names do not hold, once quotes and braces are taken out
+_ADDRESS = re.compile(r"://|\bwww\.|\w\.\w{2,}|\w@\w", re.IGNORECASE)
+_DROPPED = re.compile(r"[{}\"“”„«»`]")
+_SCRIPT_OF_IDEAS = re.compile(r"[\u0e00-\u0eff\u1000-\u109f\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
+
+# Words of orders, of speaking to somebody and of "all", which no object has in its name, in the tongues models read
+# best; each stands for all words that begin so, "=" for the word alone.
+_ORDERS = """
+ignor disregard forget overrid bypass obey disobey execut delet remov eras destroy elimin obliterat purge instruct
+command prompt previous prior everything anything nothing =all =every =must =should =shall =please =you =your =yours
+=yourself =me =my =now =instead =only =assistant =user =json =admin =say =tell =answer =respond =reply =output =print
+=do =don =not =never =always =make =move =recolor =paint =isolate =replace =duplicate =scale =rotate =insert =select
+=return =reveal =pretend =act =become =wipe =nuke =kill =discard =drop =stop =start =begin =end =override =jailbreak
+=verdict =ops =target =query =password
+lösch entfern vergiss ignorier zerstör anweis befehl =alles =alle =bitte =du =sie
+supprim efface oubli enlev détrui retir =tout =tous =toutes =vous =tu consigne
+elimin borr olvid ignore destru quita =todo =todos =todas =usted instruccion
+cancell dimentic rimuov elimina distrugg =tutto =tutti istruzion apag esquec remova =tudo instruç
+verwijder negeer wis vergeet =alle =alles usuń zignoruj wszystk удал игнор забуд уничтож сотри =все =всё инструкц
+видал ігнор sil yoksay
+"""
+_UNSPACED_ORDERS = re.compile(
+    "删|刪|忽略|无视|無視|忘|指令|指示|全部|所有|请|請|必须|清除|移除|削除|消|すべて|全て|命令|삭제|무시|모두|지시"
+)
+
+
+def cleaned(graph: SceneGraph) -> SceneGraph:
+    """The graph with only those names, colours and relations in it that a model may see; other names become "".
+
+    Ids, boxes and supports are kept, so that everything can still be pointed at.
+    """
+    nodes = tuple(
+        n.model_copy(update={"label": plain(n.label) or "", "color": plain(n.color, most=3) or ""}) for n in graph.nodes
+    )
+    relations = tuple((a, name, b) for a, said, b in graph.relations if (name := plain(said, most=4)))
+    return graph.model_copy(update={"nodes": nodes, "relations": relations})
+
+
+@cache
+def plain(name: str, most: int = MAX_WORDS) -> str | None:
+    """A name as a model may see it: one line without quotes and braces; None if it is no plausible name.
+
+    Args:
+        most: words that it may have.
+    """
+    if "\n" in name or "\r" in name or _ADDRESS.search(name):
+        return None
+    text = _DROPPED.sub("", unicodedata.normalize("NFKC", name).replace("_", " "))
+    text = "".join(c for c in text if not unicodedata.category(c).startswith("C"))
+    text = " ".join(text.split())
+    words = re.findall(r"[^\W_]+", text.lower())
+    if not words or len(text) > MAX_CHARS or len(words) > most or _MARKS.search(text):
+        return None
+    if _SCRIPT_OF_IDEAS.search(text) and (len(text) > _UNSPACED or _UNSPACED_ORDERS.search(text)):
+        return None
+    if set(normalise(text)) <= _known() and set(words) <= _known() | _LINKS:
+        return text
+    strange = len(words) > MAX_STRANGE or any(_mixed(w) or _orders(w) for w in words)
+    return None if strange else text
+
+
+_LINKS = frozenset("a an the of with and in on for".split())  # noqa: SIM905
+
+
+def _orders(word: str) -> bool:
+    whole, stems = _order_words()
+    return word in whole or word.startswith(stems)
+
+
+@cache
+def _order_words() -> tuple[frozenset[str], tuple[str, ...]]:
+    every = _ORDERS.split()
+    return frozenset(w[1:] for w in every if w[0] == "="), tuple(w for w in every if w[0] != "=")
+
+
+def _mixed(word: str) -> bool:
+    """Whether a word mixes scripts, as look-alikes of letters do ("іgnore" with a Cyrillic і), or letters and digits
+    within ("1gn0re")."""
+    scripts = {unicodedata.name(c, "?").split()[0] for c in word if c.isalpha()}
+    return len(scripts) > 1 or bool(re.search(r"[^\W\d]\d+[^\W\d]|^\d+[^\W\d]{3}", word))
+
+
+@cache
+def _known() -> frozenset[str]:
+    """Words of the embedded vocabulary, of the synonyms and of colours: names made of them alone are names, except for
+    those words that are orders as well."""
+    table = vocabulary()
+    phrases = [*table.kinds, *(n for names in table.kinds.values() for n in names), *table.broader, *table.modifiers]
+    words = {w for p in [*phrases, *color_names()] for w in (*p.lower().split(), *normalise(p))}
+    words |= {w for said in synonyms.every_word() for w in (said, *normalise(said))}
+    whole, stems = _order_words()
+    return frozenset(w for w in words if w not in whole and not w.startswith(stems))
