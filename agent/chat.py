@@ -15,9 +15,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..gaussians.errors import AbsentError, InstructionError, ScenewrightError, UserError
+from .asked import asked, took
 from .halfblocks import depth_of, draw
 from .refusal import verdict_of
-from .resolved import candidate_json, plan_lines, selection_json
+from .resolved import candidate_json, plan_lines, planner_json, selection_json
 from .tables import coloured, table
 
 if TYPE_CHECKING:
@@ -42,6 +43,7 @@ COMMANDS = {
     "/invert": "select everything but what is selected",
     "/show": "a picture of the current view; /show 2 looks through the scene's camera 2",
     "/things": "what is in the scene",
+    "/planner": "[NAME]: who reads what is said, and what that cost; with a name, another one from now on",
     "/history": "the instructions that led here",
     "/save": "FILE [--force]: write the scene",
     "/quit": "end the conversation",
@@ -75,6 +77,7 @@ class Chat:
         self.terminal = terminal
         self._pipe_input, self._screen = input, output
         self._planned: EditPlan | None = None
+        self._before: EditPlan | None = None
         self._saved = True
 
     # -- the loop ---------------------------------------------------------------------------------------------------
@@ -93,6 +96,7 @@ class Chat:
 
     def say(self, line: str) -> None:
         """One line: a command, an answer to an open question, or an instruction. Errors become one sentence."""
+        self._before = self.session.planned
         try:
             if line.startswith("/"):
                 self._command(line)
@@ -105,7 +109,8 @@ class Chat:
         except ScenewrightError as error:
             if self.terminal.debug:
                 raise
-            self._tell(str(error), {"verdict": verdict_of(error), "reason": str(error)}, "red")
+            said = "\n".join([str(error), *self._asked_in_vain()])
+            self._tell(said, {"verdict": verdict_of(error), "reason": str(error)}, "red")
         except Exception as error:  # a mistake of ours must not cost the user what was not saved yet
             if self.terminal.debug:
                 raise
@@ -117,9 +122,10 @@ class Chat:
             try:
                 result = self.session.answer(text)
             except UserError:
-                if not self.session.plan(text).ops:
+                plan = self.session.plan(text)
+                if not plan.ops:
                     raise  # neither an answer nor an instruction: the question stands
-                result = self.session.do(text)  # a new instruction, which drops the question
+                result = self.session.apply(plan, planned_in=plan.seconds)  # which drops the question
         else:
             result = self.session.do(text)
         self._show_result(result)
@@ -127,11 +133,16 @@ class Chat:
     def _show_result(self, result: Result) -> None:
         self._planned, self._saved = result.plan or self._planned, False
         lines = list(result.sentences()) or [result.text]
+        lines += asked(result.plan)
         if sum(result.seconds.values()) > 0:
             lines.append(f"({sum(result.seconds.values()):.2f} s)")
         self._tell("\n".join(lines), result.to_json(), "green")
         if self._interactive():
             self._picture()
+
+    def _asked_in_vain(self) -> tuple[str, ...]:
+        """What asking a model took where nothing came of it."""
+        return asked(self.session.planned) if self.session.planned is not self._before else ()
 
     def _ask_back(self, error: InstructionError) -> None:
         question = self.session.question
@@ -146,8 +157,9 @@ class Chat:
             "verdict": verdict_of(error),
             "reason": str(error),
             "candidates": [candidate_json(c) for c in candidates],
+            **planner_json(question.plan if question else None),
         }
-        self._tell("\n".join(lines), data, "yellow")
+        self._tell("\n".join([*lines, *self._asked_in_vain()]), data, "yellow")
 
     # -- commands ---------------------------------------------------------------------------------------------------
 
@@ -165,6 +177,7 @@ class Chat:
             "/invert": lambda _: self._show_result(self.session.adjust(invert=True)),
             "/show": self._show,
             "/things": self._things,
+            "/planner": self._planner,
             "/history": self._history,
             "/save": self._save,
         }
@@ -184,7 +197,8 @@ class Chat:
         if text:
             result = self.session.preview(text)
             planned = plan_lines(result.plan) if result.plan is not None else []
-            self._tell("\n".join([*planned, *result.sentences(), "(not done)"]), result.to_json())
+            lines = [*planned, *result.sentences(), *asked(result.plan), "(not done)"]
+            self._tell("\n".join(lines), result.to_json())
             return
         if self._planned is None:
             raise UserError("nothing was planned yet; /plan TEXT shows what an instruction would do")
@@ -234,6 +248,20 @@ class Chat:
         data = {"things": [{"group": i, "name": name, "gaussians": n} for i, name, n in rows]}
         shown = [(i, name, f"{n:,}") for i, name, n in rows]
         self._tell(table(("group", "thing", "Gaussians"), shown), data)
+
+    def _planner(self, spec: str) -> None:
+        if spec:
+            self.session.planner = spec
+        budget, spent = self.session.budget, self.session.spent
+        dollars = f", ${budget.dollars:.4g} a session" if budget.dollars is not None else ""
+        lines = [
+            f"planner: {self.session.planner}",
+            f"models may take {budget.seconds:g} s an instruction{dollars}",
+            f"so far: {spent.requests} requests {took(spent)}" if spent else "no model was asked so far",
+        ]
+        data = {"planner": self.session.planner, "budget": {"seconds": budget.seconds, "dollars": budget.dollars},
+                "spent": spent.model_dump(mode="json") if spent else None}  # fmt: skip
+        self._tell("\n".join(lines), data)
 
     def _history(self, _: str) -> None:
         done = self.session.done

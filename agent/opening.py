@@ -28,6 +28,8 @@ class Opening:
         log: session log to append to, or None.
         seed: what varies between two inserted things of a kind.
         pixel_checks: compare the viewer's pictures before and after each operation.
+        budget: what language models may cost, or None.
+        picture: let them see the viewer's picture.
         up, metres_per_unit: what the user says of the scene's frame; a saved field made for another is not used.
     """
 
@@ -41,6 +43,8 @@ class Opening:
     pixel_checks: bool = False
     up: str | None = None
     metres_per_unit: float | None = None
+    budget: str | None = None
+    picture: bool = False
 
 
 def open_session(opening: Opening) -> tuple[Session, bool]:
@@ -48,8 +52,8 @@ def open_session(opening: Opening) -> tuple[Session, bool]:
 
     Raises:
         FileError: the scene cannot be read.
-        UserError: the view or size is none.
-        BackendError: no such planner.
+        UserError: the view or size is none; there is no such planner or budget.
+        BackendError: the planner that was named lacks something.
     """
     from ..gaussians.files import load_with_report
     from .session import Session
@@ -68,6 +72,8 @@ def open_session(opening: Opening) -> tuple[Session, bool]:
         progress=terminal.progress,
         seed=opening.seed,
         pixel_checks=opening.pixel_checks,
+        budget=opening.budget,
+        pictures=opening.picture,
     )
     if opening.view != "auto" or opening.size is not None:
         session.viewer = choose_view(session.scene, opening.view, opening.size)

@@ -45,7 +45,24 @@ Capture = Annotated[
     Path | None,
     typer.Option("--capture", metavar="FILE", help="Where photographs were taken: a transforms.json or its folder."),
 ]
-Planner = Annotated[str, typer.Option("--planner", metavar="NAME", help="Who reads instructions; 'auto' or 'grammar'.")]
+Planner = Annotated[
+    str,
+    typer.Option(
+        "--planner", metavar="NAME",
+        help="Who reads instructions: 'auto' (the grammar, then the model that SCENEWRIGHT_MODEL names), 'grammar', "
+        "'openai:MODEL[@URL]', 'anthropic:MODEL', 'google:MODEL', 'transformers:FOLDER', or 'auto:' before a model.",
+    ),
+]  # fmt: skip
+Budget = Annotated[
+    str | None,
+    typer.Option(
+        "--budget", metavar="LIMITS",
+        help="What language models may cost: seconds an instruction and dollars a session, '20s', '0.05usd' or both.",
+    ),
+]  # fmt: skip
+Picture = Annotated[
+    bool, typer.Option("--picture", help="Let a language model that sees look at the viewer's picture.")
+]
 Batch = Annotated[
     Path | None,
     typer.Option(

@@ -56,7 +56,7 @@ def resolved_plan(session: Session, text: str, context: str | None = None) -> di
     session.recall(context)
     plan = session.plan(text)
     steps: list[dict[str, Any]] = []
-    verdict, reason = "ok", ""
+    verdict, reason = "ok", plan.reason
     try:
         receipts = session.preview(plan).receipts
         steps = [_step(op, r.selection.groups) for op, r in zip(plan.ops, receipts, strict=True)]
@@ -70,20 +70,31 @@ def resolved_plan(session: Session, text: str, context: str | None = None) -> di
         "candidates": [candidate_json(c) for c in candidates],
         "reason": reason,
         "unknown": list(plan.unknown),
-        "planner": plan.planner,
+        **planner_json(plan),
         "seconds": round(time.perf_counter() - started, 4),
     }
+
+
+def planner_json(plan: EditPlan | None) -> dict[str, Any]:
+    """Who planned, by which prompt, and what language models were asked for: `usage` is null if none was."""
+    if plan is None:
+        return {"planner": "", "prompt_hash": "", "usage": None}
+    usage = plan.usage.model_dump(mode="json") if plan.usage is not None else None
+    return {"planner": plan.planner, "prompt_hash": plan.prompt_hash, "usage": usage}
 
 
 def graph_plan(stage: Stage, planner: Planner, text: str, context: str | None = None) -> dict[str, Any]:
     """What an instruction would touch on a scene graph, in the shape of `resolved_plan`; ids are the graph's own.
 
     A step also has `anchors`, the ids that its place or direction refers to, and `metres` where a distance is said.
+    Where a planner that looked at the graph names `groups` in a query, those are rows of the stage (see `StageSight`);
+    `targets` and `anchors` are the graph's own ids.
     """
     from ..planners.on_graph import resolve_text
+    from .sight import StageSight
 
     started = time.perf_counter()
-    found = resolve_text(stage, planner, text, context)
+    found = resolve_text(stage, planner, text, context, StageSight(stage))
     nodes = {n.id: n for n in stage.graph.nodes}
     known = [nodes[i] for i in found.candidates if i in nodes]
     return {
@@ -92,7 +103,7 @@ def graph_plan(stage: Stage, planner: Planner, text: str, context: str | None = 
         "candidates": [{"id": n.id, "label": n.label, "color": n.color} for n in known],
         "reason": found.reason,
         "unknown": list(found.plan.unknown),
-        "planner": found.plan.planner,
+        **planner_json(found.plan),
         "seconds": round(time.perf_counter() - started, 4),
     }
 
@@ -112,7 +123,7 @@ def plan_json(plan: EditPlan) -> dict[str, Any]:
         "candidates": [],
         "reason": plan.reason,
         "unknown": list(plan.unknown),
-        "planner": plan.planner,
+        **planner_json(plan),
         "seconds": round(plan.seconds, 4),
     }
 
@@ -120,8 +131,8 @@ def plan_json(plan: EditPlan) -> dict[str, Any]:
 def unread(reason: str) -> dict[str, Any]:
     """The answer to words that no planner looked at: too long to be an instruction, or no text."""
     return {
-        "verdict": "not_understood", "steps": [], "candidates": [], "reason": reason, "unknown": [], "planner": "",
-        "seconds": 0.0,
+        "verdict": "not_understood", "steps": [], "candidates": [], "reason": reason, "unknown": [],
+        **planner_json(None), "seconds": 0.0,
     }  # fmt: skip
 
 

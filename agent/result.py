@@ -50,11 +50,13 @@ class Result:
         return render(self.scene.cloud, camera or self.viewer, background)
 
     def sentences(self) -> tuple[str, ...]:
-        """What was done, a sentence for each operation, with the notes a person should read."""
-        return tuple(line for r in self.receipts for line in (r.sentence(), *(f"note: {n}" for n in r.notes)))
+        """What was done, a sentence for each operation, with the notes a person should read: first what was read
+        otherwise than it was written, if anything was."""
+        read = (f"note: {self.plan.reason}",) if self.plan is not None and self.plan.reason else ()
+        return read + tuple(line for r in self.receipts for line in (r.sentence(), *(f"note: {n}" for n in r.notes)))
 
     def to_json(self) -> dict[str, Any]:
-        """Plain data for `--json` and the log."""
+        """Plain data for `--json`; the plan tells who planned it, by which prompt, and what asking a model took."""
         return {
             "verdict": "ok",
             "text": self.text,

@@ -20,19 +20,23 @@ from ..gaussians.errors import AbsentError, AmbiguousError, ScenewrightError, Us
 from ..gaussians.language.query import Query
 from ..gaussians.language.selection import Selection
 from ..gaussians.scene import Scene
+from . import records
 from .clarify import Question, answered, find_question, queries
 from .history import History, State
 from .log import SessionLog, read_log
+from .reading import Reader
 from .refusal import refusal
 from .replay import Replayed, portable, read_plan, standing
 from .result import Result
+from .sight import SessionSight
 from .stopwatch import timed
 
 if TYPE_CHECKING:
     from ..gaussians.language.encoders import Encoder
     from ..gaussians.language.explain import Explanation
-    from ..planners.plan import EditPlan
-    from ..tools.base import Context, EditOp
+    from ..planners.budget import Budget
+    from ..planners.plan import EditPlan, Planner, Usage
+    from ..tools.base import Context
     from ..tools.receipt import Receipt
 
 Progress = Callable[[str, float], None]  # stage in words, share done in [0, 1]
@@ -48,7 +52,8 @@ class Session:
 
     Args:
         scene: where it starts; never changed in place.
-        planner: "auto" or "grammar" (both: the grammar, which abstains when it does not understand).
+        planner: who reads instructions: a name that `planners.load` takes, or a planner. "auto": the grammar, and where
+            it abstains a language model, if `SCENEWRIGHT_MODEL` names one.
         encoder: which encoder words are compared with: a name that `gaussians.language.encoders.load` takes, or one.
         log: path of a session log to append to, or None.
         viewer: whose left and right are meant, and what `Result.render` shows; by default the scene's first camera,
@@ -56,16 +61,20 @@ class Session:
         progress: told how far long work is.
         seed: what varies between two inserted things of a kind.
         pixel_checks: also compare the viewer's picture before and after each operation.
+        budget: what language models may cost: "20s" for each instruction, "0.05usd" for the whole session, or both,
+            "20s,0.05usd". Used up, "auto" leaves them out, and says so.
+        pictures: let models see the viewer's picture, where they can.
 
     Raises:
-        BackendError: no such planner.
+        UserError: no such planner, or the budget is none.
+        BackendError: the planner that was named lacks something.
         FileError: the log cannot be opened.
     """
 
     def __init__(
         self,
         scene: Scene,
-        planner: str = "auto",
+        planner: str | Planner = "auto",
         encoder: str | Encoder = "auto",
         log: str | Path | None = None,
         viewer: Camera | None = None,
@@ -73,19 +82,19 @@ class Session:
         progress: Progress | None = None,
         seed: int = 0,
         pixel_checks: bool = False,
+        budget: str | Budget | None = None,
+        pictures: bool = False,
     ) -> None:
-        from ..planners import load as load_planner
-
-        self._planner = load_planner(planner)
         self._encoder = encoder
         self._viewer = viewer
         self._progress = progress or (lambda stage, fraction: None)
+        self._reader = Reader(planner, SessionSight(self), budget, pictures, self._progress)
         self._seed = seed
         self.pixel_checks = pixel_checks
         self._history = History(State(scene))
         self._log = SessionLog(log) if log is not None else None
         self.question: Question | None = None
-        self._write("open", lambda: self._opening())
+        self._write("open", lambda: records.opening(self._history.present))
 
     # -- what it is now ---------------------------------------------------------------------------------------------
 
@@ -122,6 +131,30 @@ class Session:
         return self._encoder
 
     @property
+    def planner(self) -> str:
+        """Who reads instructions, as receipts call it; for "auto" with the model that it may ask."""
+        return self._reader.name
+
+    @planner.setter
+    def planner(self, planner: str | Planner) -> None:
+        self._reader.use(planner)
+
+    @property
+    def budget(self) -> Budget:
+        """What language models may cost: seconds for an instruction, dollars for the session."""
+        return self._reader.budget
+
+    @property
+    def spent(self) -> Usage | None:
+        """What language models were asked for in this session, whatever came of it; None if none was."""
+        return self._reader.spent
+
+    @property
+    def planned(self) -> EditPlan | None:
+        """The plan that was made last, whatever came of it."""
+        return self._reader.last
+
+    @property
     def done(self) -> tuple[str, ...]:
         """The instructions that led to the present scene, oldest first."""
         states = [*self._history.past, self._history.present]
@@ -139,6 +172,7 @@ class Session:
             AmbiguousError: several things match. `question` holds them; `answer` says which.
             CheckFailedError: an operation failed its own check and everything was rolled back.
             InstructionError: it cannot be done as said.
+            BackendError: a language model that was named as the only planner gave no plan.
         """
         said = text.strip().rstrip(".!")
         if _UNDO.fullmatch(said):
@@ -146,20 +180,23 @@ class Session:
         if _REDO.fullmatch(said):
             return self.redo()
         started = time.perf_counter()
-        plan = self.plan(text)
+        try:
+            plan = self.plan(text)
+        except ScenewrightError as error:
+            self._refused(text, None, error)
+            raise
         return self.apply(plan, planned_in=time.perf_counter() - started)
 
     def plan(self, text: str) -> EditPlan:
-        """What an instruction is taken to mean; nothing is looked up in the scene and nothing changes.
+        """What an instruction is taken to mean; nothing changes. Planners that look at the scene embed it.
 
         Words that were not understood give a plan without operations; its `reason` says which.
 
         Raises:
             UserError: the text is too long to be an instruction, or no text.
+            BackendError: a language model that was named as the only planner gave no plan.
         """
-        if not text.isprintable() and any("\ud800" <= c <= "\udfff" for c in text):
-            raise UserError("the text is not UTF-8; type it again, or set the terminal to UTF-8")
-        return self._planner.plan(text, previous=self._history.present.spoken or None)
+        return self._reader.plan(text, self._history.present.spoken or None)
 
     def preview(self, instruction: str | EditPlan) -> Result:
         """A dry run: the result as it would be. Nothing is edited and no edit logged; the scene may become embedded."""
@@ -175,7 +212,7 @@ class Session:
             self._refused(plan.instruction, plan, error)
             raise
         with timed(seconds, "log"):
-            self._write("do", lambda: self._deed(result, state))
+            self._write("do", lambda: records.deed(result, self._history.present, state))
         self._history.advance(state)
         return result
 
@@ -191,7 +228,7 @@ class Session:
         """The plan that an answer to `question` makes of the one it was asked about; raises as `answer`."""
         if self.question is None or not self.question.candidates:
             raise UserError("there is no open question; give an instruction")
-        return answered(self.question, text, self._noun_phrase)
+        return answered(self.question, text, self._reader.noun_phrase)
 
     def select(self, phrase: str | Query) -> Selection:
         """What a phrase means here, whatever the verdict; the scene does not change, and "it" means what was found.
@@ -199,7 +236,7 @@ class Session:
         Raises:
             UserError: the phrase was not understood.
         """
-        query = phrase if isinstance(phrase, Query) else self._noun_phrase(phrase, instruction=True)
+        query = phrase if isinstance(phrase, Query) else self._reader.description(phrase)
         if query is None:
             raise UserError(f"{phrase!r} is no description of things; say for example 'the red chair'")
         self.embed()
@@ -235,7 +272,7 @@ class Session:
         from ..gaussians.language.explain import explain
         from ..gaussians.language.resolve import Resolver
 
-        query = phrase if isinstance(phrase, Query) else self._noun_phrase(phrase, instruction=True)
+        query = phrase if isinstance(phrase, Query) else self._reader.description(phrase)
         if query is None:
             raise UserError(f"{phrase!r} is no description of things; say for example 'the red chair'")
         return explain(Resolver(self.embed(), self.viewer, self.encoder, self.last), query)
@@ -246,7 +283,7 @@ class Session:
         An instruction that cannot be read or found leaves "it" without a meaning.
         """
         last: Selection | None = None
-        targets = [q for op in self._planner.plan(text).ops if (q := op.query()) is not None] if text else []
+        targets = [q for op in self._reader.plan(text).ops if (q := op.query()) is not None] if text else []
         if targets:
             scene = self.embed()
             found = self._context(None).resolve(scene, targets[-1])
@@ -260,7 +297,7 @@ class Session:
 
             present = self._history.present
             state = replace(present, scene=embed(present.scene, self.encoder, progress=self._progress))
-            self._write("embed", lambda: self._embedding(present, state))
+            self._write("embed", lambda: records.embedding(present, state))
             self._history.amend(state)
         return self.scene
 
@@ -363,7 +400,7 @@ class Session:
                 except ScenewrightError as error:
                     self.question = self._question(plan, step, error, scene, context)
                     raise _in_plan(error, plan, step) from error
-                receipts.append(receipt.model_copy(update={"dry_run": dry_run}))
+                receipts.append(_signed(receipt, plan, dry_run))
         state = State(scene, last, plan.instruction, plan.instruction)
         result = Result(
             plan.instruction, plan, tuple(receipts), before.scene, scene, self.viewer, last, seconds, dry_run
@@ -384,56 +421,17 @@ class Session:
         verdict = "ambiguous" if isinstance(error, AmbiguousError) else "absent"
         return find_question(plan, step, verdict, lambda query: context.resolve(scene, query))
 
-    def _noun_phrase(self, text: str, *, instruction: bool = False) -> Query | None:
-        """A phrase as the planner reads it, or None; with `instruction`, what an instruction is about will do too."""
-        for words in (f"select {text}", *([text] if instruction else [])):
-            ops: tuple[EditOp, ...] = self._planner.plan(words).ops
-            if len(ops) == 1 and (query := ops[0].query()) is not None:
-                return query
-        return None
-
     def _write(self, kind: str, fields: Callable[[], dict[str, Any]]) -> None:
         if self._log is not None:
             self._log.append(kind, fields())
 
-    def _opening(self) -> dict[str, Any]:
-        from .. import __version__
-
-        path, state = self.scene.path, self._history.present
-        return {
-            "scenewright": __version__,
-            "scene": str(path) if path else None,
-            "gaussians": len(self.scene.cloud),
-            "digest": state.digest,
-        }
-
-    def _embedding(self, before: State, after: State) -> dict[str, Any]:
-        language = after.scene.language
-        assert language is not None
-        things = len(language.objects())
-        return {"encoder": language.encoder, "things": things, "before": before.digest, "after": after.digest}
-
-    def _deed(self, result: Result, state: State) -> dict[str, Any]:
-        return {
-            "text": result.text,
-            "plan": result.plan.model_dump(mode="json") if result.plan is not None else None,
-            "receipts": [r.model_dump(mode="json") for r in result.receipts],
-            "before": self._history.present.digest,
-            "after": state.digest,
-            "seconds": dict(result.seconds),
-        }
-
     def _refused(self, text: str, plan: EditPlan | None, error: ScenewrightError) -> None:
-        self._write(
-            "failed",
-            lambda: {
-                "text": text,
-                "plan": plan.model_dump(mode="json") if plan else None,
-                "error": type(error).__name__,
-                "message": str(error),
-                "before": self._history.present.digest,
-            },
-        )
+        self._write("failed", lambda: records.refused(text, plan, error, self._history.present))
+
+
+def _signed(receipt: Receipt, plan: EditPlan, dry_run: bool) -> Receipt:
+    """The receipt with what only the session knows: who planned it, and whether anything was kept."""
+    return receipt.model_copy(update={"backends": {**receipt.backends, "planner": plan.planner}, "dry_run": dry_run})
 
 
 def _in_plan(error: ScenewrightError, plan: EditPlan, step: int) -> ScenewrightError:

@@ -65,10 +65,10 @@ def _grammar() -> Planner:
 def _metered(spec: str, *, ledger: Ledger, pictures: bool, progress: Progress | None) -> Metered:
     """A model that keeps to the ledger's budget, loaded when it is first asked."""
 
-    def make() -> Planner:
+    def make(goes_on: Progress) -> Planner:
         from .model import load_planner
 
-        return load_planner(spec, seconds=ledger.budget.seconds, pictures=pictures, progress=progress)
+        return load_planner(spec, seconds=ledger.budget.seconds, pictures=pictures, progress=goes_on)
 
     return Metered(_public(spec), make, ledger, progress)
 

@@ -6,6 +6,7 @@ Knows seconds, dollars and when they are used up. Refuses to know what a model i
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -91,18 +92,20 @@ class Metered:
 
     Args:
         name: what it is called until it is loaded; holds no key.
-        make: loads it.
+        make: loads it; it is to report pieces of an answer to the progress that it is given.
         ledger: the account of the session.
-        progress: told when it is asked and when it is done.
+        progress: told when it is asked, whenever a piece of the answer arrives, and when it is done; the share is that
+            of the seconds it may take.
     """
 
     def __init__(
-        self, name: str, make: Callable[[], Planner], ledger: Ledger, progress: Progress | None = None
+        self, name: str, make: Callable[[Progress], Planner], ledger: Ledger, progress: Progress | None = None
     ) -> None:
         self.name = name
         self._make = make
         self._ledger = ledger
         self._progress = progress or (lambda stage, share: None)
+        self._since = 0.0
 
     def require(self) -> None:
         """Load it now.
@@ -114,7 +117,7 @@ class Metered:
 
     @cached_property
     def _planner(self) -> Planner:
-        return self._make()
+        return self._make(self._goes_on)
 
     def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
         """The plan for an instruction; see `Planner.plan`.
@@ -124,7 +127,7 @@ class Metered:
             BackendError: it cannot be loaded, cannot be reached, or gave no plan.
         """
         self._ledger.require()
-        stage = f"asking {self.name}"
+        stage, self._since = f"asking {self.name}", time.monotonic()
         self._progress(stage, 0.0)
         try:
             plan = self._planner.plan(text, previous=previous, sight=sight)
@@ -135,3 +138,7 @@ class Metered:
             self._progress(stage, 1.0)
         self._ledger.add(plan.usage)
         return plan
+
+    def _goes_on(self, stage: str, share: float) -> None:
+        waited = time.monotonic() - self._since
+        self._progress(f"{stage} ({waited:.0f} s)", min(waited / self._ledger.budget.seconds, 0.99))

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from ..options import Debug, Encoder, Json, Log, Planner, Scale, SceneFile, Seed, Up, View
+from ..options import Budget, Debug, Encoder, Json, Log, Picture, Planner, Scale, SceneFile, Seed, Up, View
 from ..terminal import terminal
 
 
 def command(
     scene: SceneFile,
     planner: Planner = "auto",
+    budget: Budget = None,
+    picture: Picture = False,
     encoder: Encoder = "auto",
     up: Up = None,
     metres_per_unit: Scale = None,
@@ -22,7 +24,12 @@ def command(
     from ..chat import Chat
     from ..opening import Opening, open_session
 
-    session, _ = open_session(Opening(scene, planner, encoder, view, None, log, seed, False, up, metres_per_unit))
+    session, _ = open_session(
+        Opening(
+            scene, planner, encoder, view, log=log, seed=seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
+            picture=picture,
+        )
+    )  # fmt: skip
     try:
         Chat(session, terminal).run()
     finally:

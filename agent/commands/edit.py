@@ -10,7 +10,23 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import Debug, Encoder, Force, Json, Log, Output, Planner, Scale, SceneFile, Seed, Size, Up, View
+from ..options import (
+    Budget,
+    Debug,
+    Encoder,
+    Force,
+    Json,
+    Log,
+    Output,
+    Picture,
+    Planner,
+    Scale,
+    SceneFile,
+    Seed,
+    Size,
+    Up,
+    View,
+)
 from ..stopwatch import timed
 from ..terminal import terminal
 
@@ -48,6 +64,8 @@ def command(
     view: View = "auto",
     size: Size = None,
     planner: Planner = "auto",
+    budget: Budget = None,
+    picture: Picture = False,
     encoder: Encoder = "auto",
     seed: Seed = 0,
     force: Force = False,
@@ -59,6 +77,7 @@ def command(
     A language field saved beside SCENE (see `embed`) is used, and the edited scene gets one too.
     """
     from ...gaussians.errors import UserError
+    from ..asked import asked
     from ..opening import Opening, open_session
 
     if (text is None) == (replay is None):
@@ -69,7 +88,7 @@ def command(
     started = time.perf_counter()
     seconds: dict[str, float] = {}
     kept_log = None if dry_run else log
-    opening = Opening(scene, planner, encoder, view, size, kept_log, seed, True, up, metres_per_unit)
+    opening = Opening(scene, planner, encoder, view, size, kept_log, seed, True, up, metres_per_unit, budget, picture)
     with timed(seconds, "open"):
         session, had_field = open_session(opening)
     targets = _Targets(None if dry_run else output, pictures, force, had_field)
@@ -84,6 +103,8 @@ def command(
     lines += [f"wrote {path}" for path in data.get("pictures", ())]
     terminal.result("\n".join(lines), data)
     if not as_json:
+        for line in asked(session.planned):
+            terminal.say(line)
         terminal.say("seconds: " + ", ".join(f"{stage} {value:.2f}" for stage, value in data["seconds"].items()))
 
 
@@ -100,16 +121,21 @@ def _check_targets(output: Path | None, pictures: Path | None, force: bool) -> N
 
 def _instruct(session: Session, text: str, dry_run: bool) -> Result:
     """Do what was said, or say why not and what it hesitated between."""
-    from ...gaussians.errors import InstructionError
+    from ...gaussians.errors import InstructionError, UserError
+    from ..asked import asked
     from ..refusal import verdict_of
-    from ..resolved import candidate_json
+    from ..resolved import candidate_json, planner_json
 
     try:
         return session.preview(text) if dry_run else session.do(text)
-    except InstructionError as error:
+    except (InstructionError, UserError) as error:
+        for line in asked(session.planned):
+            terminal.say(line)
+        if isinstance(error, UserError):
+            raise
         candidates = session.question.candidates if session.question else ()
         data = {"verdict": verdict_of(error), "reason": str(error), "exit_code": error.exit_code,
-                "candidates": [candidate_json(c) for c in candidates]}  # fmt: skip
+                "candidates": [candidate_json(c) for c in candidates], **planner_json(session.planned)}  # fmt: skip
         terminal.refuse(error, data, [c.describe() for c in candidates])
 
 

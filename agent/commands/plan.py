@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import Batch, Debug, Encoder, Json, Planner, View
+from ..options import Batch, Budget, Debug, Encoder, Json, Picture, Planner, View
 from ..terminal import read_batch, terminal
+
+if TYPE_CHECKING:
+    from ..opening import Opening
 
 Answer = Callable[[str, str | None], dict[str, Any]]  # instruction, the one before
 
@@ -32,6 +35,8 @@ def command(
     ] = False,
     encoder: Encoder = "auto",
     planner: Planner = "auto",
+    budget: Budget = None,
+    picture: Picture = False,
     view: View = "auto",
     as_json: Json = False,
     debug: Debug = False,
@@ -39,10 +44,12 @@ def command(
     """Tell what an instruction is taken to mean, as JSON. Nothing is changed.
 
     Without a scene the words alone are read. With one, or with a scene graph (see `scenewright schema graph`), every
-    target is looked up: {"verdict", "steps", "candidates", "reason", "planner", "seconds"}. In a scene the plan is
+    target is looked up: {"verdict", "steps", "candidates", "reason", "planner", "seconds"}, and what asking a
+    language model took. In a scene the plan is
     also tried on a copy, so that the answer is what `edit` would do.
     """
     from ...gaussians.errors import UserError
+    from ..opening import Opening
 
     given = arguments or []
     if len(given) > (1 if batch else 2) or (not given and batch is None):
@@ -55,7 +62,10 @@ def command(
     if resolve and path is None and graph is None:
         raise UserError('--resolve needs a scene or a graph: scenewright plan "TEXT" --graph ROOM.json --resolve')
     rows = read_batch(str(batch)) if batch else [{"text": given[-1]}]
-    answer = _in_scene(path, planner, encoder, view) if path is not None else _without_scene(graph, planner)
+    if path is not None:
+        answer = _in_scene(Opening(path, planner, encoder, view, budget=budget, picture=picture))
+    else:
+        answer = _without_scene(graph, planner, budget)
     for row in rows:
         if batch is not None:
             terminal.row({"id": row["id"], **_told(answer, row)})
@@ -77,20 +87,22 @@ def _told(answer: Answer, row: dict[str, Any]) -> dict[str, Any]:
         return unread(str(error))
 
 
-def _in_scene(path: Path, planner: str, encoder: str, view: str) -> Answer:
-    from ..opening import Opening, open_session
+def _in_scene(opening: Opening) -> Answer:
+    from ..opening import open_session
     from ..resolved import resolved_plan
 
-    session, _ = open_session(Opening(path, planner, encoder, view))
+    session, _ = open_session(opening)
     return lambda text, context: resolved_plan(session, text, context)
 
 
-def _without_scene(graph: Path | None, planner: str) -> Answer:
+def _without_scene(graph: Path | None, planner: str, budget: str | None) -> Answer:
     """On a graph, or in words alone."""
     from ...planners import load as load_planner
+    from ...planners.budget import Budget, Ledger
     from ..resolved import graph_plan, plan_json
 
-    reader = load_planner(planner)
+    ledger = Ledger(Budget.parse(budget) if budget is not None else None)
+    reader = load_planner(planner, ledger=ledger, progress=terminal.progress)
     if graph is None:
         return lambda text, context: plan_json(reader.plan(text, previous=context))
     from ...planners.graph import SceneGraph
