@@ -9,12 +9,15 @@ from __future__ import annotations
 import importlib.metadata
 import os
 import platform
+import re
 import shutil
 import subprocess
 import sys
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
+
+from .log import scrub
 
 
 @dataclass(frozen=True)
@@ -66,6 +69,8 @@ def examine() -> list[Finding]:
         *needed,
         *(check() for check in (_cuda, _encoder, _torchvision, _open_clip, _onnx, _vectors)),
         *(check() for check in (_masks_of_files, _masks_of_sam, _transformers, _charts, _ffmpeg)),
+        *(_planner(kind) for kind in PLANNERS),
+        *(check() for check in (_planner_here, _planner_of_auto)),
     ]
 
 
@@ -79,6 +84,16 @@ def machine() -> dict[str, Any]:
     }
 
 
+# Language models behind an address: provider, client library, variables that may hold the key. The planners' own
+# table is not asked: importing it imports torch, and the doctor must speak where torch does not.
+PLANNERS = {
+    "openai": ("OpenAI", "openai", ("OPENAI_API_KEY",)),
+    "anthropic": ("Anthropic", "anthropic", ("ANTHROPIC_API_KEY",)),
+    "google": ("Google", "google-genai", ("GOOGLE_API_KEY", "GEMINI_API_KEY")),
+}
+ANY_KEY = "SCENEWRIGHT_API_KEY"
+
+_LLM = 'pip install "scenewright[llm]"'
 _REINSTALL = "install Scenewright again: pip install -e . (in its folder)"
 _MODELS = 'pip install "scenewright[models]" in one command with torch'
 
@@ -195,3 +210,37 @@ def _ffmpeg() -> Finding:
     return Finding(
         "ffmpeg", "turning pictures into video", bool(path), False, "", detail, "" if path else "apt-get install ffmpeg"
     )
+
+
+def _planner(kind: str) -> Finding:
+    """A provider's models: its client must be there, and a key; whether there is one is told, never which."""
+    label, package, keys = PLANNERS[kind]
+    version, missing = _version(package), [p for p in ("pydantic-ai-slim", package) if not _version(p)]
+    held = next((name for name in (ANY_KEY, *keys) if os.environ.get(name, "").strip()), "")
+    serves = f"plans by models of {label}" + (" or any server in its format" if kind == "openai" else "")
+    name, key = f"{kind}:MODEL", f"key in {held}" if held else f"no key ({' or '.join(keys)})"
+    if missing:
+        return Finding(name, serves, False, False, version, f"{' and '.join(missing)} not installed; {key}", _LLM)
+    if held or kind == "openai":
+        alone = "" if held else ": only servers of your own, openai:MODEL@URL"
+        return Finding(name, serves, True, False, version, f"{key}{alone}", "")
+    return Finding(name, serves, False, False, version, key, f"set {keys[0]} to a key of {label}")
+
+
+def _planner_here() -> Finding:
+    """Local language models need transformers, and llguidance to hold them to the schema."""
+    missing = [p for p in ("transformers", "llguidance") if not _version(p)]
+    detail = f"{' and '.join(missing)} not installed" if missing else "transformers and llguidance are installed"
+    serves = "plans by a language model on this machine"
+    fix = _MODELS if missing else ""
+    return Finding("transformers:FOLDER", serves, not missing, False, _version("llguidance"), detail, fix)
+
+
+def _planner_of_auto() -> Finding:
+    """Whom `auto` asks where the grammar abstains."""
+    variable, serves = "SCENEWRIGHT_MODEL", "the model that planner auto asks"
+    named = scrub(re.sub(r"//[^/@\s]*@", "//", os.environ.get(variable, "").strip()))
+    if named:
+        return Finding(variable, serves, True, False, "", named[:200], "")
+    fix = f"not needed; to let auto ask a model where the grammar abstains: export {variable}=openai:MODEL@URL"
+    return Finding(variable, serves, False, False, "", "not set: auto is the grammar alone", fix)

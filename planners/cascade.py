@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable
 from functools import cached_property
 
-from ..gaussians.errors import BackendError
+from ..gaussians.errors import BackendError, UserError
 from .budget import OverBudgetError
 from .grammar.changes import TO_A_LENGTH
 from .grammar.verbs import TO_FACE
@@ -78,7 +78,7 @@ class Cascade:
             return abstained
         try:
             plan = self.model.plan(text, previous=previous, sight=sight)
-        except BackendError as error:
+        except (BackendError, UserError) as error:  # a user's error too: a model that is named wrongly
             usage = error.usage if isinstance(error, NoPlanError) else None
             how = "was not asked" if isinstance(error, OverBudgetError) else "gave no plan"
             told = f"{abstained.reason}; the model {how}: {error}"

@@ -14,9 +14,9 @@ def command(as_json: Json = False, debug: Debug = False) -> None:
     lines = [f"Python {where['python']} on {where['system']}, {where['cores']} cores ({where['executable']})"]
     for f in findings:
         mark = "ok " if f.usable else ("NO " if f.needed else "-  ")
-        lines.append(f"{mark} {f.name:<18} {f.version:<14} {f.serves}: {f.detail}")
+        lines.append(f"{mark} {f.name:<20} {f.version:<14} {f.serves}: {f.detail}")
         if f.fix:
-            lines.append(f"{'':22}-> {f.fix}")
+            lines.append(f"{'':24}-> {f.fix}")
     broken = [f.name for f in findings if f.needed and not f.usable]
     lines.append(f"not ready: {', '.join(broken)}" if broken else "ready")
     terminal.result(

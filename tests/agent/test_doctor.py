@@ -55,3 +55,29 @@ def test_a_failing_import_is_quoted() -> None:
 
 def test_the_machine() -> None:
     assert doctor.machine()["executable"] == sys.executable
+
+
+def test_every_planner_is_told_of_and_no_key_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in (doctor.ANY_KEY, *(key for _, _, keys in doctor.PLANNERS.values() for key in keys)):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("ANTHROPIC_API_KEY", "sk-ant-very-secret-0123456789abcdef")
+    monkeypatch.setenv("SCENEWRIGHT_MODEL", "openai:m@https://user:hunter2@example.org/v1")
+    found = {f.name: f for f in doctor.examine()}
+    assert found["anthropic:MODEL"].usable and "key in ANTHROPIC_API_KEY" in found["anthropic:MODEL"].detail
+    assert not found["google:MODEL"].usable and "GOOGLE_API_KEY" in found["google:MODEL"].fix
+    assert found["openai:MODEL"].usable and "only servers of your own" in found["openai:MODEL"].detail
+    assert found["SCENEWRIGHT_MODEL"].detail == "openai:m@https://example.org/v1"
+    told = " ".join(str(f.to_json()) for f in found.values())
+    assert "secret" not in told and "hunter2" not in told
+
+
+def test_the_doctors_table_of_planners_is_that_of_the_planners() -> None:
+    from scenewright.planners.model import FORMS
+    from scenewright.planners.model.remote_address import OVERRIDE, SERVICES
+
+    assert OVERRIDE == doctor.ANY_KEY
+    assert {kind: (s.label, s.keys) for kind, s in SERVICES.items()} == {
+        kind: (label, keys) for kind, (label, _, keys) in doctor.PLANNERS.items()
+    }
+    named = {f.name.partition(":")[0] for f in doctor.examine() if f.serves.startswith("plans by")}
+    assert named == {form.partition(":")[0] for form in FORMS}
