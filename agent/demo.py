@@ -270,7 +270,7 @@ def _cast(room: Room, viewer: Camera) -> Cast:
     there = {t.kind for t in things}
     # A "lamp" is not absent from a room with a floor lamp.
     words = {word for kind in there for word in kind.split()}
-    absent = [k for k in kinds() if k not in there and not set(k.split()) & words]
+    absent = [k for k in kinds(shown=True) if k not in there and not set(k.split()) & words]
     return Cast(sorted(visible, key=lambda t: -t.pixels), absent, set())
 
 

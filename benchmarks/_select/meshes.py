@@ -137,7 +137,7 @@ def measure(folder: Path, seed: int, encoder: Encoder, grouped: Callable[[Case],
             found[thing.kind] = iou(known.truth(thing), ask(known, name, encoder).mask) if name else 0.0
         there = {name for stem in stems for name in NAMES[stem]}
         covered = {kind for name in there for kind in encoder.vocabulary.covered(name, loose=True)}
-        missing = [k for k in assets.kinds() if k not in covered]
+        missing = [k for k in assets.kinds(shown=True) if k not in covered]
         asked = np.random.default_rng(room.seed).choice(missing, ABSENT, replace=False)
         refused += [ask(known, str(k), encoder).verdict == "absent" for k in asked]
     unknown = sorted(stem for stem in NAMES if spoken(encoder, stem) is None)

@@ -62,7 +62,7 @@ def ask_names(case: Case, encoder: Encoder) -> Asked:
     answers = [(o, ask(case, o.kind, encoder)) for o in case.alone()]
     groups = case.groups()
     best = [_best(groups, case.truth(o)) for o in case.objects]
-    missing = [k for k in assets.kinds() if k not in case.present]
+    missing = [k for k in assets.kinds(shown=True) if k not in case.present]
     chosen = np.random.default_rng(case.seed).choice(missing, ABSENT, replace=False)
     return Asked(
         iou=[iou(case.truth(o), a.mask) for o, a in answers],

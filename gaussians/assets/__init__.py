@@ -7,15 +7,20 @@ from __future__ import annotations
 
 from . import (  # noqa: F401
     appliances,
+    bathing,
     carried,
     decor,
     electronics,
+    halls,
     kitchen,
     leisure,
     lighting,
     openings,
+    overhead,
     plants,
     seating,
+    shops,
+    stands,
     storage,
     tables,
 )  # fmt: skip

@@ -89,9 +89,9 @@ class Asset:
         return self.unlit.cloud(np.asarray(sun, dtype=np.float64))
 
 
-def kinds() -> tuple[str, ...]:
-    """Names of everything `make` can make, sorted."""
-    return tuple(sorted(registry.KINDS))
+def kinds(shown: bool = False) -> tuple[str, ...]:
+    """Names of everything `make` can make, sorted; with `shown` only of what the embedded encoder was trained on."""
+    return tuple(sorted(name for name, known in registry.KINDS.items() if known.shown or not shown))
 
 
 def make(
@@ -120,8 +120,13 @@ def make(
         raise UserError(f"detail must be between 0.05 and 8, got {detail:g}")
     if size is not None and not all(0.005 <= s <= 50 for s in size):
         raise UserError(f"size must be three lengths (w, d, h) between 0.005 and 50 metres, got {size}")
-    pieces, tone = design(known, seed, _shade_of(color) if color is not None else None)
-    pieces = _fit(pieces, known, size)
+    pieces, tone = design(known, seed, shade_of(color) if color is not None else None)
+    wanted = size if size is not None else _typical(pieces, known)
+    return finished(fitted(pieces, wanted), known.name, tone.color, seed, detail)
+
+
+def finished(pieces: Sequence[Piece], kind: str, rgb: Rgb, seed: int = 0, detail: float = 1.0) -> Asset:
+    """Pieces that stand on z = 0, centred in x and y, as an asset whose main colour is `rgb`."""
     samples = _sampled(pieces, detail)
     sided = np.array([p.two_sided for p in pieces])[samples.piece]
     unlit = Unlit(samples, surface.albedo(pieces, samples), sided)
@@ -131,9 +136,9 @@ def make(
     main = np.array([bool(p.material and p.material.main) for p in pieces])[samples.piece]
     return Asset(
         cloud=unlit.cloud(light.SUN),
-        kind=known.name,
+        kind=kind,
         size=(float(high[0] - low[0]), float(high[1] - low[1]), float(high[2] - low[2])),
-        color=basic_name(tone.color),
+        color=basic_name(rgb),
         parts=Parts(torch.from_numpy(labels), names),
         main=torch.from_numpy(main),
         seed=seed,
@@ -148,18 +153,23 @@ def design(known: registry.Kind, seed: int, wanted: Rgb | None = None) -> tuple[
     return known.build(rng, tone), tone
 
 
-def _shade_of(color: str) -> Rgb:
+def shade_of(color: str) -> Rgb:
     """RGB of a colour word: a basic term as furniture wears it (CSS "blue" is a glowing #0000ff), else as parsed."""
     return colors.parse(colors.BASIC.get(color.strip().lower(), color))
 
 
-def _fit(pieces: Sequence[Piece], known: registry.Kind, size: Vec3 | None) -> list[Piece]:
-    """Stretch to `size`, or back into the kind's typical range, then stand on z = 0 centred in x and y."""
+def _typical(pieces: Sequence[Piece], known: registry.Kind) -> Vec3:
+    """The design's own size, brought back into the kind's typical range."""
     low, high = shapes.bounds(pieces)
-    span = np.maximum(high - low, 1e-6)
-    wanted = np.array(size) if size is not None else np.clip(span, *np.array(known.sizes).T)
+    w, d, h = np.clip(np.maximum(high - low, 1e-6), *np.array(known.sizes).T).tolist()
+    return (w, d, h)
+
+
+def fitted(pieces: Sequence[Piece], size: Vec3) -> list[Piece]:
+    """Stretched to `size`, standing on z = 0, centred in x and y."""
+    low, high = shapes.bounds(pieces)
     middle = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
-    gain = wanted / span
+    gain = np.array(size) / np.maximum(high - low, 1e-6)
     return [p.transformed(np.diag(gain), -gain * middle) for p in pieces]
 
 

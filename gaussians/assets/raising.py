@@ -48,7 +48,7 @@ class Raised:
     Attributes:
         cloud: `N` Gaussians, floor, walls and ceiling first, then thing after thing.
         owner: `[N]` int32, index of the thing each belongs to, or `STRUCTURE`.
-        faces: name of the face ("floor", "north wall", "skirting", "ceiling") of each of the structure's Gaussians.
+        faces: name of the face ("floor", "north wall", "ceiling") of each of the structure's Gaussians.
     """
 
     cloud: GaussianCloud
@@ -74,8 +74,15 @@ def raised(layout: Layout, rng: np.random.Generator, detail: float, ceiling: boo
         clouds.append(cloud.replace(ids=torch.arange(start, start + len(cloud))))
         ids.append(torch.full((len(cloud),), i, dtype=torch.int32))
         start += len(cloud)
-    faces = np.array([piece.part for piece in shell])[samples.piece]
-    return Raised(concat(clouds), torch.cat(ids), faces)
+    return Raised(concat(clouds), torch.cat(ids), np.array(_faces(shell))[samples.piece])
+
+
+def _faces(shell: list[Piece]) -> list[str]:
+    """The face each piece belongs to; a skirting board to the wall that was put up before it."""
+    faces: list[str] = []
+    for piece in shell:
+        faces.append(faces[-1] if piece.part == "skirting" else piece.part)
+    return faces
 
 
 def _stand(thing: Placed, sun: Array) -> GaussianCloud:

@@ -36,6 +36,8 @@ class Kind:
         against_wall: whether it belongs with its back to a wall.
         synonyms: other words for it.
         palette: where its main colour is drawn from (see `materials.PALETTES`).
+        shown: whether the embedded encoder was shown it when it was trained. Of the others it knows no picture and
+            often no name; they are found by the name they are given, not by their looks.
     """
 
     name: str
@@ -45,6 +47,7 @@ class Kind:
     against_wall: bool = False
     synonyms: tuple[str, ...] = ()
     palette: str = "any"
+    shown: bool = True
 
 
 KINDS: dict[str, Kind] = {}
@@ -57,19 +60,20 @@ def kind(
     synonyms: tuple[str, ...] = (),
     palette: str = "any",
     against_wall: bool = False,
+    shown: bool = True,
 ) -> Callable[[Builder], Builder]:
     """Register a builder under `name`."""
 
     def keep(build: Builder) -> Builder:
         assert name not in KINDS, f"kind {name!r} is registered twice"
-        KINDS[name] = Kind(name, build, sizes, support, against_wall, synonyms, palette)
+        KINDS[name] = Kind(name, build, sizes, support, against_wall, synonyms, palette, shown)
         return build
 
     return keep
 
 
 def find(name: str) -> Kind:
-    """The kind called `name`, by its name or a synonym, singular or plural.
+    """The kind called `name`, by its name or a synonym, singular or plural; a kind's own name beats a synonym.
 
     Raises:
         UserError: for an unknown kind, naming the closest known ones.

@@ -34,7 +34,7 @@ def main(argv: list[str] | None = None) -> int:
     def report(line: str) -> None:
         print(f"{time.monotonic() - start:7.1f} s  {line}", file=sys.stderr, flush=True)
 
-    kinds = assets.kinds()
+    kinds = assets.kinds(shown=True)
     cache = options.cache or renders.cache_folder()
     job_words = captions.vocabulary({k: registry.KINDS[k].synonyms for k in kinds})
     job = fit.task(job_words, captions.words(job_words))
