@@ -32,15 +32,17 @@ __all__ = [
 Unit = Literal["m", "cm", "mm", "in", "ft", "units"]
 Direction = Literal["left", "right", "forward", "backward", "up", "down"]
 Spot = Literal[
-    "on", "under", "next_to", "left_of", "right_of", "in_front_of", "behind", "between", "against", "inside",
-    "center", "corner",
+    "on", "under", "above", "next_to", "left_of", "right_of", "in_front_of", "behind", "opposite", "between", "against",
+    "inside", "center", "corner",
 ]  # fmt: skip
 ColorName = Annotated[str, Field(min_length=1, max_length=40)]
 AssetName = Annotated[str, Field(min_length=1, max_length=60)]
 
 METRES: dict[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 # Spots that make no sense without something to be placed against.
-_NEED_ANCHOR = {"under", "next_to", "left_of", "right_of", "in_front_of", "behind", "between", "inside"}
+_NEED_ANCHOR = {
+    "under", "above", "next_to", "left_of", "right_of", "in_front_of", "behind", "opposite", "between", "inside"
+}  # fmt: skip
 _RELATIVE = [s for s in get_args(Spot) if s in _NEED_ANCHOR and s != "between"]
 _ABSOLUTE = [s for s in get_args(Spot) if s not in _NEED_ANCHOR]
 
@@ -74,8 +76,9 @@ class Placement(BaseModel):
     """Where to put something: a relation to one or two things, or to the room if there are no anchors.
 
     "on" without an anchor or with an anchor called "floor" is on the floor. Left, right, in front and behind are as
-    the viewer sees them. "between" takes two anchors, or one that means two things. "against" without an anchor is
-    against a wall; "center" and "corner" without one are those of the room.
+    the viewer sees them. "opposite" is a few steps before the front of the anchor itself. "above" is for what hangs: on
+    the wall behind the anchor, or from the ceiling over it. "between" takes two anchors, or one that means two things.
+    "against" without an anchor is against a wall; "center" and "corner" without one are those of the room.
     """
 
     model_config = ConfigDict(

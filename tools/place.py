@@ -85,6 +85,14 @@ class Placer(Regions):
         why = "everything there is taken" if crowded else "there is no surface there large enough to carry it"
         raise InstructionError(f"there is no room {where}: {why}; make it smaller, clear a spot or name another place")
 
+    def hang(self, size: Vec3, place: Placement, region: Region, axes: tuple[Vec3, Vec3, Vec3]) -> Spot:
+        """A free spot in a region where something hangs (see overhead.py).
+
+        Raises:
+            InstructionError: there is none.
+        """
+        return self._only(size, axes, region, place.describe())
+
     def beside(self, body: Body) -> Spot:
         """A free spot next to a thing for another like it.
 
@@ -143,7 +151,7 @@ class Placer(Regions):
             share = window_sum(grown(carried, self._reach(region.surface, cell)).astype(np.int64), foot, counts)
             possible &= share / float(foot.prod()) >= _CARRIED
         else:
-            low, high = self._room_for(size, basis[:2])
+            low, high = self.bounds_for(size, basis[:2])
             placed = centers @ (np.array(self.room_axes[:2]) @ basis[:2].T).T
             possible &= ((placed >= low - cell) & (placed <= high + cell)).all(axis=-1)
         some = bool(possible.any())

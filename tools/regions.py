@@ -14,11 +14,13 @@ import numpy as np
 from ..gaussians.camera import Vec3
 from ..gaussians.errors import InstructionError
 from .base import Direction, Placement
+from .fronts import front_of
 from .grid import levels
 from .space import Array, Body, centimetre, extent_along, heading
 from .surroundings import Surroundings
 
 Cost = Callable[[Array], Array]  # plan positions `[..., 2]` to costs `[...]`
+_GAPS = {"against": 0.0, "opposite": 120.0}  # centimetres to the anchor; 3 for others
 SIDES: dict[str, Direction] = {"left_of": "left", "right_of": "right", "in_front_of": "backward", "behind": "forward"}
 
 
@@ -65,7 +67,7 @@ class Regions(Surroundings):
 
     def _room_region(self, size: Vec3, plan: Array, relation: str, start: Array | None) -> Region:
         room = np.array(self.room_axes[:2])
-        low, high, to_room = *self._room_for(size, plan), room @ plan.T
+        low, high, to_room = *self.bounds_for(size, plan), room @ plan.T
         middle = (low + high) / 2
         wanted = room @ start if start is not None else middle
         costs: dict[str, Cost] = {
@@ -160,7 +162,7 @@ class Regions(Surroundings):
         center = plan @ anchor.center
         anchor_half = np.array([extent_along(anchor.box, a) for a in plan]) / 2
         half = np.array(size[:2]) / 2
-        gap = 3 * centimetre(self.frame, max(anchor.box.size)) * (0 if relation == "against" else 1)
+        gap = _GAPS.get(relation, 3.0) * centimetre(self.frame, max(anchor.box.size))
         reach = anchor_half + half + gap + 0.75 * max(*anchor.box.size[:2], *size[:2])
         wanted = self._wanted_side(anchor, plan, relation, start)
         height, surface = self._base(anchor, plan)
@@ -173,16 +175,21 @@ class Regions(Surroundings):
             offset = p - center
             along = offset @ wanted
             across = np.linalg.norm(offset - along[..., None] * wanted, axis=-1)
-            if relation in SIDES:  # within 45 degrees of the asked side
+            if relation in SIDES or relation == "opposite":  # within 45 degrees of the asked side
                 return np.where(across > along, np.inf, total + across)
             return np.asarray(total + 0.3 * (np.linalg.norm(offset, axis=-1) - along))
 
         return Region(center - reach, center + reach, cost, height, surface)
 
     def _wanted_side(self, anchor: Body, plan: Array, relation: str, start: Array | None) -> Array:
-        """`[2]` unit: the side that was asked for, or the side the thing is on, or the viewer's right."""
-        direction = heading(self.context.viewer, self.frame, SIDES.get(relation, "right"))
-        if relation not in SIDES and start is not None:
+        """`[2]` unit: the side that was asked for, or the side the thing is on, or the viewer's right.
+
+        Opposite a thing that faces nowhere is on the viewer's side of it.
+        """
+        front = front_of(self.scene, anchor) if relation == "opposite" else None
+        side: Direction = "backward" if relation == "opposite" else SIDES.get(relation, "right")
+        direction = heading(self.context.viewer, self.frame, side) if front is None else front
+        if relation not in (*SIDES, "opposite") and start is not None:
             direction = start - anchor.center
         level = plan @ direction
         length = float(np.linalg.norm(level))

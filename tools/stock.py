@@ -22,6 +22,7 @@ from .base import Affine, Context, Length, Placement
 from .bookkeeping import Newcomer
 from .grid import obstacle_points
 from .measure import reach, solid_points
+from .overhead import Hung, over
 from .place import Placer, Spot
 from .rows import fresh_ids, joined
 from .shape import transformed
@@ -83,7 +84,7 @@ class Piece:
         cloud: of the scene's harmonic degree.
         label: its kind.
         size: (width, depth, height) of its solid Gaussians, scene units.
-        support: what such things stand on or hang from.
+        support: what such things stand on or hang from: "floor", "table", "wall" or "ceiling".
         notes: for the receipt.
     """
 
@@ -137,6 +138,12 @@ def find_spot(placer: Placer, piece: Piece, place: Placement | None, start: Arra
     Raises:
         InstructionError: there is none.
     """
+    if place is not None and place.relation == "above":
+        if piece.support not in ("wall", "ceiling"):
+            raise InstructionError(f"a {piece.label} stands and does not hang: say on something, or next to it")
+        hung: Hung = "wall" if piece.support == "wall" else "ceiling"
+        region, axes = over(placer, piece.size, placer.anchors(place)[0], hung)
+        return placer.hang(piece.size, place, region, axes)
     unit = piece.size[2]
     placer.lift = 0.0
     if place is None and piece.support == "wall":

@@ -93,7 +93,17 @@ class Surroundings:
         lowest = int(np.argmax(counts >= 0.5 * counts.max()))
         return float((edges[lowest] + edges[lowest + 1]) / 2)
 
-    def _room_for(self, size: Vec3, plan: Array) -> tuple[Array, Array]:
+    @cached_property
+    def ceiling(self) -> float:
+        """Height along up of the ceiling, or of the highest solid points where none is known."""
+        field = self.scene.language
+        tops = [g for g in field.groups if g.label == "ceiling" and g.level == "structure" and g.count] if field else []
+        if tops:
+            return min(float(np.array(g.box.center) @ self.up) - g.box.size[2] / 2 for g in tops)
+        heights = self.thin @ self.up.astype(np.float32)
+        return float(np.quantile(heights, 0.995)) if len(heights) else self.floor
+
+    def bounds_for(self, size: Vec3, plan: Array) -> tuple[Array, Array]:
         """Bounds, along the room's axes, of the centre of a footprint along `plan` that stays in the room."""
         low, high = self._room_bounds
         turn = np.abs(np.array(self.room_axes[:2]) @ plan.T)

@@ -19,12 +19,13 @@ from ..bookkeeping import carried
 from ..bounds import keep_inside
 from ..checks import bumps, carried_as_asked, collision_free, counted, supported
 from ..measure import solid_points
+from ..overhead import hung_over
 from ..place import Placer
 from ..receipt import Check, at_most
 from ..riders import loaded, rows_along, went_along
 from ..rows import Draft
-from ..shape import shift
-from ..space import Array, Body, bodies_of, centimetre, extent_along, groups_of, heading, mask_of_bodies, shifted_box
+from ..shape import shift, turn
+from ..space import Array, Body, bodies_of, centimetre, contact_box, extent_along, groups_of, heading, mask_of_bodies
 
 
 class Move(TargetedOp):
@@ -71,8 +72,11 @@ class Move(TargetedOp):
         if self.place is None:
             keep_inside(scene, bodies, [asked.offset for asked in moved])
         draft = Draft(scene.cloud)
-        for body, asked in zip(bodies, moved, strict=True):
-            shift(draft, body.rows, asked.offset)
+        for asked in moved:
+            if np.array_equal(asked.matrix, np.eye(3)):
+                shift(draft, asked.rows, asked.offset)
+            else:  # what goes to another wall turns its back to it
+                turn(draft, asked.rows, asked.matrix, asked.offset)
         cloud = draft.done()
         after = scene.replace(cloud=cloud, language=carried(scene, cloud, moved))
         if self.place is None:
@@ -121,14 +125,18 @@ class Move(TargetedOp):
         placer = Placer(scene, context, mask_of_bodies(scene, bodies), frozenset(groups_of(bodies)))
         moved = []
         for body in bodies:
-            spot = placer.find(body.box.size, body.box.axes, place, body.foot(up))
-            offset = spot.foot - body.foot(up)
-            placer.take(solid_points(scene.cloud, body.rows) + offset, shifted_box(body.box, offset))
-            moved.append(self._asked(body, offset, spot.support))
+            if place.relation == "above":
+                matrix, spot = hung_over(placer, body, place)
+            else:
+                matrix, spot = np.eye(3), placer.find(body.box.size, body.box.axes, place, body.foot(up))
+            offset = spot.foot - matrix @ body.foot(up)
+            points = solid_points(scene.cloud, body.rows) @ matrix.T + offset
+            placer.take(points, contact_box(points, scene.frame, spot.axes))
+            moved.append(Affine(body.rows, matrix, offset, body.rows, spot.support))
         return moved
 
-    def _asked(self, body: Body, offset: Array, support: float | None = None) -> Affine:
-        return Affine(body.rows, np.eye(3), np.asarray(offset, dtype=np.float64), body.rows, support)
+    def _asked(self, body: Body, offset: Array) -> Affine:
+        return Affine(body.rows, np.eye(3), np.asarray(offset, dtype=np.float64), body.rows)
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         after = outcome.scene
