@@ -79,7 +79,7 @@ def resolve_text(
         UserError: a text is too long to be an instruction.
         BackendError: a language model cannot be reached.
     """
-    last = _Play(stage).recall(planner.plan(context, sight=sight)) if context else None
+    last = recalled(stage, planner.plan(context, sight=sight)) if context else None
     return resolve_plan(stage, planner.plan(text, previous=context, sight=sight), last)
 
 
@@ -99,6 +99,11 @@ def resolve_plan(stage: Stage, plan: EditPlan, last: Selection | None = None) ->
             rest = tuple(Step(o) for o in plan.ops[len(steps) :])
             return Resolved(verdict, (*steps, *rest), candidates, where + str(error), plan)
     return Resolved("ok", tuple(steps), (), "; ".join([*filter(None, [plan.reason]), *_slips(stage, plan)]), plan)
+
+
+def recalled(stage: Stage, plan: EditPlan) -> Selection | None:
+    """What "it" means after a plan, None if that cannot be told."""
+    return _Play(stage).recall(plan)
 
 
 def _slips(stage: Stage, plan: EditPlan) -> list[str]:
