@@ -17,11 +17,10 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from ..gaussians import files
+from ..gaussians import compiled, files
 from ..gaussians.camera import Camera, Vec3
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.render import reference, render
-from ..gaussians.render.cpu import compiled
 from .harness import Metric, Point, Result
 
 DATA = Path(__file__).resolve().parents[1] / "../shared/data"  # unless SCENEWRIGHT_DATA says otherwise

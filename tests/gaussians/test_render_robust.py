@@ -16,11 +16,11 @@ import torch
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from scenewright.gaussians import files
+from scenewright.gaussians import compiled, files
 from scenewright.gaussians.camera import Camera, Render
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.render import backends, contributions, cpu, render
-from scenewright.gaussians.render.cpu import compiled, project, simd
+from scenewright.gaussians.render.cpu import project, simd
 
 every_backend = pytest.mark.parametrize("backend", backends())
 CAMERA = Camera.look_at([0, -3, 0.5], [0, 0, 0], [0, 0, 1], 37, 29)
@@ -191,7 +191,8 @@ def test_exponential_is_accurate_to_three_millionths() -> None:
 
 
 def test_machine_code_is_kept_under_the_name_of_all_sources() -> None:
-    assert compiled.FINGERPRINT in project.project.py_func.__qualname__
+    folder = Path(project.__file__).parent
+    assert compiled.fingerprint(folder) in project.project.py_func.__qualname__
 
 
 def test_kernels_compile_where_machine_code_cannot_be_kept(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -211,11 +212,14 @@ def test_kernels_compile_where_machine_code_cannot_be_kept(monkeypatch: pytest.M
 
 
 def test_compiling_is_announced_in_the_log(caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiled, "FINGERPRINT", "absent")
-    compiled._announce.cache_clear()
+    def fresh() -> None: ...
+
+    made = compiled.kernel(fresh)
+    fresh.__qualname__ = "fresh_absent"  # as if nothing of its folder had ever been compiled
+    monkeypatch.setattr(compiled, "_announced", set())
     with caplog.at_level(logging.INFO):
-        compiled._announce()
-        compiled._announce()
+        compiled._announce(made)
+        compiled._announce(made)
     assert [record.message for record in caplog.records if "compiling" in record.message] == [caplog.records[0].message]
 
 

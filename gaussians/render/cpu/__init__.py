@@ -15,11 +15,12 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from ... import compiled
 from ...camera import Camera, Render, Vec3
 from ...cloud import GaussianCloud
 from .. import convention
 from ..shares import Split, summed
-from . import blend, compiled, order, project, shares
+from . import blend, order, project, shares
 
 Array = NDArray[Any]
 

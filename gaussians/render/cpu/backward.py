@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...compiled import fetch_add, helper, kernel
 from .blend import CHUNK, _gather
-from .compiled import fetch_add, helper, kernel
 from .project import L1, L2, L3, ONE, RECORD, TILE, ZERO, Array, X, Y, f4
 from .simd import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, LANES
 from .simd_backward import (

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .compiled import fetch_add, helper, kernel
+from ...compiled import fetch_add, helper, kernel
 from .project import RECORD, TILE, Array
 from .simd import (
     BLOCK_HEIGHT,

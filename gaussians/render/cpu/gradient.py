@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ... import compiled
 from ...camera import Camera, Vec3
-from . import LIMITS, Bins, _counter, _strips, backward, blend, compiled, unproject
+from . import LIMITS, Bins, _counter, _strips, backward, blend, unproject
 
 Array = NDArray[Any]
 

@@ -13,7 +13,7 @@ import numpy as np
 from llvmlite import ir
 from numba import types
 
-from .compiled import helper, intrinsic, kernel
+from ...compiled import helper, intrinsic, kernel
 from .project import (
     EXTREME,
     L3,

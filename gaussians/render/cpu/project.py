@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...camera import Camera
+from ...compiled import fetch_add, helper, kernel
 from .. import convention
-from .compiled import fetch_add, helper, kernel
 
 Array = NDArray[Any]
 

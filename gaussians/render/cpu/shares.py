@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...compiled import fetch_add, helper, kernel
 from .blend import CHUNK, _begin, _gather, _list, _weigh_chunk
-from .compiled import fetch_add, helper, kernel
 from .project import TILE, Array
 from .simd import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, LANES, lane_sum, weigh_block
 

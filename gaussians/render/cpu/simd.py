@@ -19,7 +19,7 @@ from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 
-from .compiled import intrinsic
+from ...compiled import intrinsic
 from .project import (
     BLUE,
     DEPTH,

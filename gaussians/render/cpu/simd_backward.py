@@ -15,7 +15,7 @@ from typing import Any
 from llvmlite import ir
 from numba import types
 
-from .compiled import intrinsic
+from ...compiled import intrinsic
 from .project import BLUE, GREEN, RECORD, RED
 from .simd import (
     _F32,

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 
+from ...compiled import fetch_add, helper, kernel
 from .backward import D_L1, D_L2, D_L3, D_RED, D_SHIFT, D_X, D_Y
-from .compiled import fetch_add, helper, kernel
 from .project import C0, C1, C20, C21, C22, C30, C31, C32, C33, C34, FOUR, HALF, ONE, RED, THREE, TINY, TWO, ZERO, f4
 
 ROWS = 2048  # rows a worker takes at a time

@@ -36,26 +36,30 @@ _OPTIONS: dict[str, Any] = {
 }  # fmt: skip
 
 
-def _fingerprint() -> str:
-    """Digest of all that machine code depends on: numba itself looks only at the file of the function it caches, and
-    would keep code that inlined a helper or a constant of another file after that one has changed."""
+@cache
+def fingerprint(folder: Path) -> str:
+    """Digest of all that machine code of a folder depends on: numba itself looks only at the file of the function it
+    caches, and would keep code that inlined a helper or a constant of another file after that one has changed."""
     digest = hashlib.sha256()
-    folder = Path(__file__).parent
-    for path in [*sorted(folder.glob("*.py")), folder.parent / "convention.py"]:
+    for path in [*sorted(folder.glob("*.py")), *sorted(folder.parent.glob("convention.py")), Path(__file__)]:
         digest.update(path.read_bytes())
     return digest.hexdigest()[:12]
 
 
-FINGERPRINT = _fingerprint()
-
-
-def kernel(function: Callable[..., Any]) -> Any:
+def kernel(function: Callable[..., Any], **options: Any) -> Any:
     """Decorate a function that `run` calls: compiled on first use for this CPU and kept on disk for later processes."""
-    function.__qualname__ += f"_{FINGERPRINT}"  # numba names the cached file after it
+    # numba names the cached file after the function
+    function.__qualname__ += f"_{fingerprint(Path(function.__code__.co_filename).parent)}"
     try:
-        return njit(**_OPTIONS, cache=True)(function)
+        return njit(**{**_OPTIONS, **options}, cache=True)(function)
     except RuntimeError:  # neither the package's folder nor the user's cache folder can be written
-        return njit(**_OPTIONS)(function)
+        return njit(**{**_OPTIONS, **options})(function)
+
+
+def exact(function: Callable[..., Any]) -> Any:
+    """As `kernel`, with every operation rounded as it is written: for loops whose order of adding must not depend on
+    which of its versions LLVM takes."""
+    return kernel(function, fastmath=False)
 
 
 def helper(function: Callable[..., Any]) -> Any:
@@ -77,7 +81,7 @@ def run(kernel: Any, count: int, *arguments: Any) -> None:
     """Call `kernel(worker, count, *arguments)` for every worker number below `count` at once; wait for all."""
     start = time.perf_counter()
     if not kernel.overloads:
-        _announce()
+        _announce(kernel)
     others = [_pool(os.getpid(), count).submit(kernel, worker, count, *arguments) for worker in range(1, count)]
     kernel(0, count, *arguments)
     for other in others:
@@ -114,25 +118,21 @@ def _note(kernel: Any, start: float) -> None:
         times[kernel.__name__] = times.get(kernel.__name__, 0.0) + time.perf_counter() - start
 
 
-@cache
-def _announce() -> None:
-    """Say once that the renderer is compiled now, if it is."""
+_announced: set[Path] = set()  # folders of which it was said
+
+
+def _announce(kernel: Any) -> None:
+    """Say once a folder that its kernels are compiled now, if they are."""
+    folder = Path(kernel.stats.cache_path or os.devnull)
+    if folder in _announced:
+        return
+    _announced.add(folder)
     try:
-        kept = any(_cache_folder().glob(f"*{FINGERPRINT}*.nbi"))
+        kept = any(folder.glob(f"*{kernel.py_func.__qualname__.rpartition('_')[2]}*.nbi"))
     except OSError:
         kept = False
     if not kept:
-        log.info("compiling the renderer for this CPU: about 5 seconds, once")
-
-
-def _cache_folder() -> Path:
-    """Where numba keeps this package's machine code."""
-    return Path(_probe.stats.cache_path or os.devnull)
-
-
-@kernel
-def _probe() -> None:
-    """Never called: its place in the cache is everyone's."""
+        log.info("compiling for this CPU: about 5 seconds, once")
 
 
 @cache
