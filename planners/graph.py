@@ -39,6 +39,7 @@ SHELL = ("floor", "wall", "ceiling")
 # A thing stands on another if its underside is this near to the other's top, in shares of the smaller height,
 # and at least this share of its footprint's centre lies over it.
 _CONTACT = 0.12
+_FIXED = 0.1  # metres between a wall and what hangs on it: brackets and frames
 _WALL_FIXTURES = frozenset({"painting", "picture", "mirror", "window", "clock", "curtain", "poster", "door"})
 
 
@@ -164,6 +165,21 @@ class SceneGraph(BaseModel):
         except ValidationError as error:
             raise FileError(f"{path} is no scene graph: {_first_wrong(error)}") from error
 
+    def build(self, *, seed: int = 0, assets: Path | None = None, detail: float = 1.0) -> Scene:
+        """The scene that it describes, ready to be edited and asked (see `planners.building.construct`).
+
+        Args:
+            seed: chooses designs, light and paint; the same seed gives the same bytes.
+            assets: a folder of .glb and .ply files to take things from.
+            detail: factor on the number of Gaussians.
+
+        Raises:
+            UserError: the room is too small or too large to be built, or `assets` is no folder of assets.
+        """
+        from .building import build
+
+        return build(self, seed=seed, assets=assets, detail=detail)
+
     @classmethod
     def from_scene(cls, scene: Scene, viewer: Camera | None = None) -> SceneGraph:
         """The graph of an embedded scene: its objects as nodes, "on" relations from contact.
@@ -180,8 +196,8 @@ class SceneGraph(BaseModel):
         if field is None:
             raise UserError("the scene has no language field yet; run `scenewright embed` on it first")
         place = _Placer(scene)
-        nodes = [place.node(g) for g in field.objects()]
-        nodes = [n.model_copy(update={"support": _support(n, nodes, place.height)}) for n in nodes]
+        nodes = [place.node(g) for g in field.objects() if g.count]  # what was deleted leaves an empty row
+        nodes = [n.model_copy(update={"support": _support(n, nodes, place.room)}) for n in nodes]
         stands = tuple((n.id, "on", n.support) for n in nodes if n.support not in SHELL)
         seen = place.viewpoint(viewer) if viewer is not None else None
         return cls(room=RoomShape(size=place.room), nodes=tuple(nodes), relations=stands, viewer=seen)
@@ -214,7 +230,7 @@ class _Placer:
         assert scene.language is not None
         self.basis: NDArray[np.float64] = scene.frame.basis()
         self.scale = scene.frame.metres_per_unit or 1.0
-        groups = [g for g in scene.language.groups if g.level in ("object", "structure")]
+        groups = [g for g in scene.language.groups if g.level in ("object", "structure") and g.count]
         corners = np.concatenate([g.box.corners() for g in groups]) @ self.basis.T if groups else np.zeros((1, 3))
         low, high = corners.min(axis=0), corners.max(axis=0)
         floor = scene.frame.floor if scene.frame.floor is not None else float(low[2])
@@ -246,17 +262,33 @@ class _Placer:
         )
 
 
-def _support(node: Node, nodes: list[Node], room_height: float) -> Support:
-    """What a node rests on: the highest box whose top touches its underside, else floor, wall or ceiling."""
+def _support(node: Node, nodes: list[Node], room: Size) -> Support:
+    """What a node rests on: the highest box whose top touches its underside, else floor, or the smallest box that its
+    underside is in (a seat, a shelf), else ceiling or wall."""
     bottom = node.position[2] - node.size[2] / 2
-    below = [n for n in nodes if n.id != node.id and n.support != node.id and _carries(n, node, bottom)]
+    others = [n for n in nodes if n.id != node.id and n.support != node.id]
+    below = [n for n in others if _carries(n, node, bottom)]
     if below:
         return max(below, key=lambda n: (n.position[2] + n.size[2] / 2, str(n.id))).id
-    if bottom <= max(0.05 * room_height, 0.1 * node.size[2]):
+    fixture = not _WALL_FIXTURES.isdisjoint(node.label.split()[-1:])
+    if fixture and _at_wall(node, room):
+        return "wall"
+    if bottom <= max(0.05 * room[2], 0.1 * node.size[2]):
         return "floor"
-    if node.position[2] + node.size[2] / 2 >= 0.97 * room_height and node.label not in _WALL_FIXTURES:
+    around = [
+        n for n in others if n.support not in ("wall", "ceiling") and n.bottom < bottom < n.top and _over(n, node)
+    ]
+    if node.position[2] + node.size[2] / 2 >= 0.97 * room[2] and not fixture:
         return "ceiling"
-    return "wall" if node.label in _WALL_FIXTURES else "floor"
+    if around and not fixture:
+        return min(around, key=lambda n: (math.prod(n.size), str(n.id))).id
+    return "wall" if fixture or _at_wall(node, room) else "floor"
+
+
+def _at_wall(node: Node, room: Size) -> bool:
+    """Whether a node's box reaches to a wall."""
+    reach = np.abs(node.box.corners()[:, :2]).max(axis=0)
+    return bool((np.array(room[:2]) / 2 - reach).min() < _FIXED)
 
 
 def _carries(lower: Node, upper: Node, bottom: float) -> bool:
@@ -265,6 +297,11 @@ def _carries(lower: Node, upper: Node, bottom: float) -> bool:
     gap = abs(bottom - top)
     if lower.position[2] >= upper.position[2] or gap > _CONTACT * max(min(lower.size[2], upper.size[2]), 0.05):
         return False
+    return _over(lower, upper)
+
+
+def _over(lower: Node, upper: Node) -> bool:
+    """Whether the middle of `upper` lies over the footprint of `lower`."""
     turn = math.radians(lower.yaw)
     dx, dy = upper.position[0] - lower.position[0], upper.position[1] - lower.position[1]
     x, y = dx * math.cos(turn) + dy * math.sin(turn), dy * math.cos(turn) - dx * math.sin(turn)
