@@ -26,6 +26,12 @@ def given(**keywords: Any) -> Given:
     return Given(keywords)
 
 
+def nonzero(limit: float) -> Given:
+    """The field is there, a number from -limit to limit but not 0."""
+    signs = ({"exclusiveMinimum": 0, "maximum": limit}, {"minimum": -limit, "exclusiveMaximum": 0})
+    return given(anyOf=[{"type": "number", **sign} for sign in signs])
+
+
 def either(*alternatives: dict[str, Given | Keywords]) -> Callable[[Keywords], None]:
     """One of the alternatives holds: for `json_schema_extra` of a model's configuration.
 

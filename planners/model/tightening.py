@@ -163,12 +163,14 @@ class _Tightening:
         return step | bounds | _kept(node)
 
     def _tag_unions(self, schema: Schema) -> None:
-        """Require the tag of each discriminated union in its options: without it nobody could tell them apart."""
+        """Require of each union's options the property that tells them apart, a constant in each."""
         for node in list(_nodes(schema)):
-            if "discriminator" in node:
-                for name in _references({"oneOf": node.get("oneOf", [])}):
-                    option, tag = self.given[name], node["discriminator"]["propertyName"]
-                    self.given[name] = {**option, "required": [tag, *option.get("required", [])]}
+            names = [option.get("$ref", "").removeprefix(_PREFIX) for option in node.get("oneOf", [])]
+            fields = [self.given.get(name, {}).get("properties", {}) for name in names]
+            tags = [tag for tag in (fields or [{}])[0] if all("const" in field.get(tag, {}) for field in fields)]
+            for name in names:
+                required = [*tags, *self.given[name].get("required", [])] if tags else None
+                self.given[name] = self.given[name] | ({"required": required} if required else {})
 
 
 def _narrowed(field: Schema, narrowing: Schema) -> Schema:

@@ -6,12 +6,13 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 import torch
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 from torch import Tensor
 
 from ...gaussians.errors import InstructionError
 from ...gaussians.language.selection import Selection
 from ...gaussians.scene import Scene
+from ..alternatives import either, nonzero
 from ..base import Affine, Context, Outcome, TargetedOp
 from ..bookkeeping import carried
 from ..checks import carried_as_asked, collision_free, counted, supported
@@ -33,6 +34,9 @@ class Arrange(TargetedOp):
     positions are known as numbers; to say where in words, use move.
     """
 
+    model_config = ConfigDict(
+        json_schema_extra=either(*({n: nonzero(1000)} for n in ("x", "y", "z")), {"turn": nonzero(360)})
+    )
     example: ClassVar[tuple[str, dict[str, Any]]] = (
         "shift the armchair by 0.4 m along x and -1.2 m along y and turn it by 90 degrees",
         {"op": "arrange", "target": {"text": "armchair"}, "x": 0.4, "y": -1.2, "turn": 90},
