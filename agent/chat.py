@@ -257,7 +257,7 @@ class Chat:
         lines = [
             f"planner: {self.session.planner}",
             f"models may take {budget.seconds:g} s an instruction{dollars}",
-            f"so far: {spent.requests} requests {took(spent)}" if spent else "no model was asked so far",
+            f"spent so far: {took(spent).removeprefix('in ')}" if spent else "no model was asked so far",
         ]
         data = {"planner": self.session.planner, "budget": {"seconds": budget.seconds, "dollars": budget.dollars},
                 "spent": spent.model_dump(mode="json") if spent else None}  # fmt: skip
