@@ -1,0 +1,97 @@
+"""Waiting for something asynchronous, for so long and no longer, from a thread that may already run an event loop.
+
+Knows threads, queues and clocks. Refuses to know what is waited for.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import queue
+import threading
+import time
+from collections.abc import Callable, Coroutine
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+T = TypeVar("T")
+Emit = Callable[[str], None]
+
+_GRACE = 1.0  # seconds for the work to give up on its own; after that it is left behind, as a name look-up must be
+
+
+@dataclass(frozen=True)
+class Failed:
+    """The work ended in an error, TimeoutError where time was up."""
+
+    error: BaseException
+
+
+@dataclass(frozen=True)
+class _Done(Generic[T]):
+    result: T
+
+
+class _Worker(Generic[T]):
+    """A thread with an event loop of its own, in which one piece of work runs."""
+
+    def __init__(self, work: Callable[[Emit], Coroutine[Any, Any, T]], seconds: float) -> None:
+        self.said: queue.SimpleQueue[str | Failed | _Done[T]] = queue.SimpleQueue()
+        self._work = work
+        self._seconds = seconds
+        self._running: tuple[asyncio.AbstractEventLoop, asyncio.Task[Any]] | None = None
+        self._given_up = False
+        threading.Thread(target=self._run, name="scenewright-model", daemon=True).start()
+
+    def _run(self) -> None:
+        try:
+            result = asyncio.run(self._bounded())
+        except BaseException as error:  # whatever it is, the caller's thread must hear of it
+            self.said.put(Failed(error))
+        else:
+            self.said.put(_Done(result))
+
+    async def _bounded(self) -> T:
+        task = asyncio.current_task()
+        assert task is not None
+        self._running = (asyncio.get_running_loop(), task)
+        async with asyncio.timeout(self._seconds if not self._given_up else 0):
+            return await self._work(self.said.put)
+
+    def stop(self) -> None:
+        """Make it give up; does nothing where it has ended."""
+        self._given_up = True
+        if self._running is not None and not self._running[0].is_closed():
+            loop, task = self._running
+            try:
+                loop.call_soon_threadsafe(task.cancel)
+            except RuntimeError:
+                return  # closed meanwhile
+
+
+def wait(
+    work: Callable[[Emit], Coroutine[Any, Any, T]], seconds: float, heard: Callable[[str], None] | None = None
+) -> T | Failed:
+    """The result of `work`, which runs in a thread of its own; what it emits is heard in the caller's.
+
+    Whatever `heard` raises, and an interrupt of the user, stops the work and is raised here.
+
+    Args:
+        work: given a function to emit text with.
+        seconds: until it is cancelled.
+    """
+    worker = _Worker(work, seconds)
+    deadline = time.monotonic() + seconds + _GRACE
+    try:
+        while True:
+            try:
+                item = worker.said.get(timeout=max(deadline - time.monotonic(), 0.0))
+            except queue.Empty:
+                return Failed(TimeoutError())
+            if not isinstance(item, str):
+                return item if isinstance(item, Failed) else item.result
+            if heard is not None:
+                heard(item)
+            if time.monotonic() > deadline:
+                return Failed(TimeoutError())
+    finally:
+        worker.stop()
