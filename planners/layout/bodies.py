@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from ..graph import SHELL
 from .problem import Item, Problem, Wish
-from .shapes import Spot, shifted
+from .shapes import EPSILON, Spot, depth, shifted
 
 DOORS = frozenset({"door", "doorway", "entrance", "gate", "exit", "front door", "entry"})
 FLAT = 0.05  # metres; lower things on the floor are stood upon
@@ -152,10 +152,33 @@ class Prepared:
         found = []
         for i, item in enumerate(self.items):
             if item.stand is None and item.support in SHELL and i not in taken:
-                found.append(Body((Member(i), *self._seats(i, around[i]))))
+                found.append(Body(self._apart((Member(i), *self._seats(i, around[i])))))
         seated = {m.item for b in found for m in b.members}
         found += [Body((Member(i),)) for i in sorted(taken - seated)]
         return tuple(found)
+
+    def box(self, member: Member) -> Spot:
+        """A member's box in the axes of its body, standing at height 0."""
+        w, d, h = self.items[member.item].size
+        return Spot(member.x, member.y, member.yaw, w, d, 0.0, h)
+
+    def _apart(self, members: tuple[Member, ...]) -> tuple[Member, ...]:
+        """The members that do not meet one before them."""
+        kept: list[Member] = []
+        for member in members:
+            if not any(depth(self.box(member), self.box(other)) > EPSILON for other in kept):
+                kept.append(member)
+        return tuple(kept)
+
+    def exchanged(self, members: tuple[Member, ...], i: int, j: int) -> tuple[Member, ...] | None:
+        """Members with two of them in each other's seats, as close to the table; None if they do not fit."""
+        a, b = members[i], members[j]
+        deep_a, deep_b = self.items[a.item].size[1], self.items[b.item].size[1]
+        ax, ay = shifted(a.x, a.y, a.yaw, 0.0, (deep_b - deep_a) / 2)
+        bx, by = shifted(b.x, b.y, b.yaw, 0.0, (deep_a - deep_b) / 2)
+        trial = list(members)
+        trial[i], trial[j] = Member(b.item, ax, ay, a.yaw), Member(a.item, bx, by, b.yaw)
+        return tuple(trial) if len(self._apart(tuple(trial))) == len(members) else None
 
     def _joins(self, one: int, table: int) -> bool:
         """Whether a thing may move together with what it stands around."""

@@ -14,6 +14,7 @@ import numpy as np
 from .shapes import Spot, near, share
 
 Measured = tuple[Any, Any]  # whether it holds; how far it is from ideal, about 0 to 4
+VIEWED = ("left_of", "right_of", "in_front_of", "behind")
 _AIMS = {"left_of": (-1.0, 0.0), "right_of": (1.0, 0.0), "in_front_of": (0.0, -1.0), "behind": (0.0, 1.0)}
 _CONE = 0.53  # cosine; the checker asks for 0.5
 _OVER = 0.62  # share of the smaller footprint; the checker asks for half, by points
@@ -84,12 +85,15 @@ def is_turned(one: Spot, other: Spot, degrees: float) -> Any:
 
 
 def _facing(one: Spot, other: Spot) -> Measured:
-    """The middle within 45 degrees of the front; best straight ahead, neither touching nor across a hall."""
+    """The middle within 45 degrees of the front; best straight ahead, looked back at, and not across a hall."""
     dx, dy = other.x - one.x, other.y - one.y
     fx, fy = one.front
     reach = np.hypot(dx, dy)
     cosine = (dx * fx + dy * fy) / np.maximum(reach, 1e-9)
-    return is_turned(one, other, 43.0), 3.0 * (1.0 - cosine) + 0.3 * np.maximum(reach - 3.0, 0.0)
+    bx, by = other.front
+    back = -(dx * bx + dy * by) / np.maximum(reach, 1e-9)
+    far = 0.3 * np.maximum(reach - 3.0, 0.0)
+    return is_turned(one, other, 43.0), 3.0 * (1.0 - cosine) + 1.0 * (1.0 - back) + far
 
 
 def _over(upper: Spot, lower: Spot) -> Measured:

@@ -14,23 +14,25 @@ import numpy as np
 
 from ..graph import SHELL
 from .bodies import FLAT, TUCKED, Body, Member
-from .measures import behind_gap, measure, walls_gaps
+from .measures import VIEWED, behind_gap, measure, walls_gaps
 from .shapes import EPSILON, F64, TURNS, Flags, Lattice, Spot, blocked, in_disc, meetings, shifted
 from .state import HARD, SOFT, USED, WALLED, State, placed
 
 _FLOOR = Spot(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-_CELLS = 110  # positions along the longer side of a room; the step is 5 cm or more
+_CELLS = 80  # positions along the longer side of a room; the step is 5 cm or more
 _FINE, _ON_TOP = 0.05, 0.025  # metres between positions on the floor, and at most on a thing
 _EYE = 1.5  # metres from the floor to the middle of what hangs on a wall
 _HIGH = 1.5  # metres; nothing is put on top of what is higher, if it can stand within it
 _WIDER = 1.5  # times as wide as its carrier a thing may be
 _SMALL = 0.35  # metres; it does not matter how smaller things are turned
 _HEAD = 1.9  # metres
+_FREE = 0.55  # metres; what is larger and wants no wall stands free, with room around it
 
 
 class Place(NamedTuple):
     """Positions of a body's first thing, one price each: world x and y `[M]`, yaw, underside."""
 
+    body: Body
     x: F64
     y: F64
     yaw: float
@@ -53,7 +55,7 @@ def places(state: State, body: Body, rng: np.random.Generator, noise: float) -> 
     for walls_only in (True, False):
         for ground in _grounds(state, body, walls_only):
             for lattice in ground.lattices:
-                place = _priced(state, body, ground, lattice)
+                place = _priced(state, seated(state, body, lattice.yaw), ground, lattice)
                 if place is not None:
                     found.append(place)
         if any(len(p.price) and p.price.min() < SOFT for p in found):
@@ -213,6 +215,7 @@ def _priced(state: State, body: Body, ground: Ground, lattice: Lattice) -> Place
     taken, price = np.zeros(shape, bool), np.zeros(shape)
     exempt = own | {c for i in own for c in prepared.carriers[i]}
     solids = [(i, _in_frame(s, frame)) for i, s in state.solids(exempt)]
+    _breathe(state, body, lattice, solids, price)
     for member in body.members:
         moving = state.spot(member, 0.0, 0.0, lattice.yaw, ground.low)
         if not state.is_flat(member.item):
@@ -223,11 +226,72 @@ def _priced(state: State, body: Body, ground: Ground, lattice: Lattice) -> Place
         _use(state, lattice, member, moving, solids, frame, price)
     free = np.argwhere(~taken)
     x, y = shifted(frame.x, frame.y, frame.yaw, lattice.xs[free[:, 0]], lattice.ys[free[:, 1]])
-    place = Place(x, y, lattice.yaw + frame.yaw, ground.low, price[free[:, 0], free[:, 1]])
+    place = Place(body, x, y, lattice.yaw + frame.yaw, ground.low, price[free[:, 0], free[:, 1]])
     place = _within_room(state, body, place) if frame is not _FLOOR else place
     if not len(place.price):
         return None
     return place._replace(price=place.price + _wished(state, body, place) + _habits(state, body, place))
+
+
+def _breathe(state: State, body: Body, lattice: Lattice, solids: list[tuple[int, Spot]], price: F64) -> None:
+    """Add the price of crowding what one has nothing to do with; rugs keep off rugs, and from under other things."""
+    item, tied = state.prepared.items[body.first], state.prepared.tied
+    if item.support not in ("floor", "wall"):
+        return
+    x0, x1, y0, y1 = _extents(state, body, lattice.yaw)
+    others = [s for j, s in solids if not any((m.item, j) in tied for m in body.members)]
+    box = Spot((x0 + x1) / 2, (y0 + y1) / 2, 0.0, x1 - x0, y1 - y0, 0.06, item.size[2])
+    if item.support == "wall":
+        low = item.height if item.height is not None else _EYE - item.size[2] / 2
+        levels = [(0.3, 1.0, others, box._replace(low=low, high=low + item.size[2]))]
+    elif item.size[2] <= FLAT:
+        rugs = [s._replace(high=0.1) for j, s in enumerate(state.spots) if s and state.is_flat(j) and j != body.first]
+        levels = [(0.0, 5.0, [*others, *rugs], box._replace(low=0.0, high=0.2))]
+    elif state.prepared.wants_wall(body.first) or max(item.size[:2]) < _FREE:
+        levels = [(0.3, 0.5, others, box)]
+    else:
+        levels = [(0.5, 2.0, others, box), (1.0, 1.0, others, box)]
+        walls = np.minimum(
+            np.minimum(lattice.xs + x0, -lattice.xs - x1)[:, None] + state.size[0] / 2,
+            np.minimum(lattice.ys + y0, -lattice.ys - y1)[None, :] + state.size[1] / 2,
+        )
+        price += 2.0 * (walls < 0.5)
+    for margin, each, those, own in levels:
+        wide = own._replace(w=own.w + 2 * margin, d=own.d + 2 * margin)
+        for window, meets in meetings(lattice, wide, those):
+            price[window] += each * np.asarray(meets)
+
+
+def seated(state: State, body: Body, yaw: float) -> Body:
+    """The body with its like members in those seats in which most of what is wished among them holds at this yaw."""
+    rows = [
+        r
+        for r in dict.fromkeys(r for m in body.members for r in state.prepared.wishes_of[m.item])
+        if state.prepared.problem.wishes[r].name in VIEWED
+        and set(state.prepared.parties[r]) <= {m.item for m in body.members}
+    ]
+    if not rows:
+        return body
+    members, kept = body.members, _held(state, body.members, rows, yaw)
+    for i in range(1, len(members)):
+        for j in range(i + 1, len(members)):
+            trial = state.prepared.exchanged(members, i, j)
+            if trial is not None and (now := _held(state, trial, rows, yaw)) > kept:
+                members, kept = trial, now
+    return Body(members)
+
+
+def _held(state: State, members: tuple[Member, ...], rows: list[int], yaw: float) -> int:
+    spots = {m.item: state.spot(m, 0.0, 0.0, yaw, 0.0) for m in members}
+    wishes = state.prepared.problem.wishes
+    return sum(
+        bool(measure(wishes[r].name, state.size, *_split([spots[p] for p in state.prepared.parties[r]]), [])[0])
+        for r in rows
+    )
+
+
+def _split(spots: list[Spot]) -> tuple[Spot, list[Spot]]:
+    return spots[0], spots[1:]
 
 
 def _in_frame(spot: Spot, frame: Spot) -> Spot:
@@ -325,9 +389,11 @@ def _habits(state: State, body: Body, place: Place) -> F64:
     total = np.zeros(len(place.price))
     if item.support == "wall":
         usual = item.height if item.height is not None else max(_EYE - item.size[2] / 2, 0.0)
-        return total + 3.0 * abs(place.low - usual)
+        aside = np.minimum(np.abs(here.x), np.abs(here.y))
+        return total + 3.0 * abs(place.low - usual) + 0.3 * aside
     if item.support != "floor":
-        return total
+        carrier = state.seen(prepared.carriers[body.first][0]) if prepared.carriers[body.first] else None
+        return total if carrier is None else total + _upon(here, carrier)
     fx, fy = here.front
     ahead = np.minimum(
         np.inf if abs(fx) < 1e-6 else (state.size[0] / 2 - np.sign(fx) * here.x) / abs(fx),
@@ -336,7 +402,15 @@ def _habits(state: State, body: Body, place: Place) -> F64:
     total += 2.0 * np.maximum(1.2 - (ahead - here.d / 2), 0.0)
     if prepared.wants_wall(body.first):
         gap = np.minimum(behind_gap(here, state.size), 3.0)
-        total += np.where(gap > 0.1, WALLED + 4.0 * gap, 0.0)
+        total += np.where(gap > 0.02, WALLED + 4.0 * gap, 0.0)
     elif len(body.members) == 1 and not prepared.wishes_of[body.first]:
         total += 1.2 * np.min(walls_gaps(here, state.size), axis=0)
     return total
+
+
+def _upon(here: Spot, carrier: Spot) -> F64:
+    """On a thing: turned as it is turned, near its middle, rather to the back."""
+    u, v = carrier.local(here.x, here.y)
+    same = abs((here.yaw - carrier.yaw + 180.0) % 360.0 - 180.0) < 1.0
+    off: F64 = np.hypot(u, v - 0.15 * carrier.d) + (0.0 if same else 0.7)
+    return off

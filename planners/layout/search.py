@@ -17,6 +17,7 @@ from .state import State
 
 _TRIES = 6  # places that are looked at for a way to everything, before the best of them is taken
 _APART = 0.35  # metres between such places
+_IDLE = 4  # starts without a better layout, after which no more are made
 _WORTH = 0.05  # price by which a second look must better the layout to be worth another
 
 
@@ -32,40 +33,57 @@ class Search:
     def __init__(self, prepared: Prepared, seed: int, effort: float) -> None:
         self.prepared, self.effort = prepared, effort
         self.rng = np.random.default_rng(seed)
+        self.loose = set[int]()
         self.urgent = [0.0] * len(prepared.items)
         things = max(len(prepared.items), 1)
-        self.starts = max(1, min(round(8 * effort), int(round(effort * 250 / things)) or 1))
-        self.looks = max(0, min(round(3 * effort), int(round(effort * 120 / things))))
+        self.starts = max(1, min(round(8 * effort), round(effort * 200 / things)))
+        self.looks = max(0, min(round(3 * effort), round(effort * 100 / things)))
 
     def run(self) -> State:
         """The best layout of all starts."""
         state = State(self.prepared)
         empty, best, least = state.copy(), state.copy(), np.inf
+        raw, idle = np.inf, 0
         for start in range(self.starts):
             state.restore(empty)
-            self._fill(state, 0.0 if start == 0 else 0.6)
+            bodies = self._fill(state, 0.15 if start == 0 else 0.8)
+            rough = state.price()
+            if rough < raw:
+                raw = rough
+                self._better(state, bodies)
+            self._load(state)
             price = state.price()
+            idle = 0 if price < least else idle + 1
             if price < least:
                 best, least = state.copy(), price
-            if not self._blame(state):
+            if not self._blame(state) or idle >= _IDLE * max(self.effort, 1.0):
                 break
         state.restore(best)
         return state
 
-    def _fill(self, state: State, noise: float) -> None:
-        """One start: keep discs free, place bodies, look again, then what stands on other things."""
+    def _fill(self, state: State, noise: float) -> list[Body]:
+        """Keep discs free, then place the bodies one after another."""
         self._clear_discs(state)
-        pending = sorted(self.prepared.bodies, key=self._rank)
-        bodies = list[Body]()
-        for body in pending:
-            bodies += self._settle(state, body, noise)
-        for _ in range(self.looks):
-            if not self._look_again(state, bodies):
-                break
+        placed = list[Body]()
+        for body in sorted(self._bodies(), key=self._rank):
+            placed += self._settle(state, body, noise)
+        return placed
+
+    def _bodies(self) -> list[Body]:
+        """What moves as one, without those that could not keep their wishes that way."""
+        found = list[Body]()
+        for body in self.prepared.bodies:
+            first, *others = body.members
+            found.append(Body((first, *(m for m in others if m.item not in self.loose))))
+            found += [Body((Member(m.item),)) for m in others if m.item in self.loose]
+        return found
+
+    def _load(self, state: State) -> None:
+        """Place what stands on other things."""
         carried = [i for i, item in enumerate(self.prepared.items) if item.support not in SHELL and item.stand is None]
         for i in sorted(carried, key=lambda i: (len(self.prepared.carriers[i]), -self.urgent[i], -self._size(i), i)):
             if not self.prepared.is_circular(i):
-                self._put(state, Body((Member(i),)), noise)
+                self._put(state, Body((Member(i),)), 0.0)
 
     def _size(self, i: int) -> float:
         return self.prepared.items[i].size[0] * self.prepared.items[i].size[1]
@@ -79,7 +97,7 @@ class Search:
         if item.support == "floor" and item.size[2] <= FLAT:
             late = 1.5
         area = sum(self.prepared.area(m.item) for m in body.members)
-        bound = sum(self.prepared.problem.wishes[r].hard for r in self.prepared.wishes_of[body.first])
+        bound = self._bound(body.first)
         urgent = max(self.urgent[m.item] for m in body.members)
         walled = 0.5 if self.prepared.wants_wall(body.first) else 0.0
         return late, float(item.optional), -(urgent + area + 0.2 * min(bound, 5) + walled), float(body.first)
@@ -98,41 +116,46 @@ class Search:
         found = places(state, body, self.rng, noise)
         if not found:
             return False
-        chosen = self._reachable(state, body, found)
-        state.place(body, *chosen)
+        state.place(*self._reachable(state, found))
         return True
 
-    def _reachable(self, state: State, body: Body, found: list[Place]) -> tuple[float, float, float, float]:
+    def _reachable(self, state: State, found: list[Place]) -> tuple[Body, float, float, float, float]:
         """The cheapest place, with what it shuts off counted in."""
         price = np.concatenate([p.price for p in found])
         x, y = np.concatenate([p.x for p in found]), np.concatenate([p.y for p in found])
         which = np.repeat(np.arange(len(found)), [len(p.price) for p in found])
-        best: tuple[float, float, float, float] | None = None
+        best: tuple[Body, float, float, float, float] | None = None
         least = np.inf
         for _ in range(_TRIES):
             k = int(price.argmin())
             if not price[k] < least:
                 break
-            here = (float(x[k]), float(y[k]), found[which[k]].yaw, found[which[k]].low)
-            state.place(body, *here)
+            place = found[which[k]]
+            here = (place.body, float(x[k]), float(y[k]), place.yaw, place.low)
+            state.place(*here)
             total = float(price[k]) + state.crowded()
-            state.remove(body)
+            state.remove(place.body)
             if total < least:
                 best, least = here, total
             price[(np.hypot(x - x[k], y - y[k]) < _APART) & (which == which[k])] = np.inf
         assert best is not None
         return best
 
-    def _look_again(self, state: State, bodies: list[Body]) -> bool:
-        """Take up every body and put it where it is best now; whether that was worth it."""
-        before = state.price()
-        for body in bodies:
-            kept = state.copy()
-            price = state.price()
-            state.remove(body)
-            if not self._put(state, body, 0.0) or state.price() > price:
-                state.restore(kept)
-        return state.price() < before - _WORTH
+    def _better(self, state: State, bodies: list[Body]) -> None:
+        """Take up every body and put it where it is best now, as long as that is worth it."""
+        price = state.price()
+        for _ in range(self.looks):
+            before = price
+            for body in bodies:
+                kept = state.copy()
+                state.remove(body)
+                now = state.price() if self._put(state, body, 0.0) else np.inf
+                if now > price:
+                    state.restore(kept)
+                else:
+                    price = now
+            if price > before - _WORTH:
+                return
 
     def _clear_discs(self, state: State) -> None:
         """A place for every disc that the solver may choose: as near to the middle of the room as it fits."""
@@ -159,12 +182,24 @@ class Search:
         for row, wish in enumerate(self.prepared.problem.wishes):
             if wish.hard and not state.holds(row)[0]:
                 guilty |= set(self.prepared.parties[row])
+                self._loosen(set(self.prepared.parties[row]))
         lost = state.ways[-1].unreached()
         guilty |= {i for i in lost if isinstance(i, int)}
         for i in guilty:
             for k in (i, *self.prepared.carriers[i]):
                 self.urgent[k] += 1.0
         return bool(guilty)
+
+    def _loosen(self, parts: set[int]) -> None:
+        """Part bodies over a wish that is not kept: its own things, and those of one body with it that are bound."""
+        self.loose |= parts
+        for body in self.prepared.bodies:
+            if body.first in parts:
+                self.loose |= {m.item for m in body.members if self._bound(m.item)}
+
+    def _bound(self, i: int) -> int:
+        """How many hard wishes an item takes part in."""
+        return sum(self.prepared.problem.wishes[r].hard for r in self.prepared.wishes_of[i])
 
 
 def _meets_disc(xs: np.ndarray, ys: np.ndarray, spot: Spot, radius: float) -> np.ndarray:
