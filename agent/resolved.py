@@ -15,7 +15,7 @@ from ..gaussians.language.selection import Candidate, Selection
 from .refusal import verdict_of
 
 if TYPE_CHECKING:
-    from ..planners.on_graph import Step
+    from ..planners.impossible import Step
     from ..planners.plan import EditPlan, Planner
     from ..planners.stage import Stage
     from .session import Session

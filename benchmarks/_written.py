@@ -18,7 +18,8 @@ from typing import Any, Literal
 
 from ..gaussians.errors import FileError
 from ..planners.graph import SceneGraph
-from ..planners.on_graph import Resolved, Step, resolve_text
+from ..planners.impossible import Step
+from ..planners.on_graph import Resolved, resolve_text
 from ..planners.plan import Planner
 from ..planners.stage import Stage
 

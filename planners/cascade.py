@@ -15,7 +15,7 @@ from functools import cached_property
 from ..gaussians.errors import BackendError, UserError
 from .budget import OverBudgetError
 from .grammar.changes import TO_A_LENGTH
-from .grammar.verbs import TO_FACE
+from .grammar.verbs import TO_ALIGN
 from .plan import EditPlan, NoPlanError, Planner, Sight
 
 NAME = "auto"
@@ -24,7 +24,7 @@ ABSTAINS = ("not_understood", "impossible")  # verdicts of the grammar that othe
 # What the grammar calls impossible because it does not see the scene: who sees sizes and places can compute a factor
 # or an angle. Everything else that it calls impossible it has understood, and a model has no more operations than it
 # has: one that is asked to "turn on the television" can only invent an edit, and a wrong edit costs more than none.
-MEASURABLE = (TO_FACE, TO_A_LENGTH)
+MEASURABLE = (TO_ALIGN, TO_A_LENGTH)
 
 
 class Cascade:

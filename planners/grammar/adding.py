@@ -100,15 +100,19 @@ class Adding(Rules):
         if len(new) != 1 or (new[0].number or 1) > 1:
             raise Refusal("a thing is replaced by one new thing")
         if new[0].article not in ("indef", "bare"):
-            raise Refusal("things cannot change places; a new thing is called a, not the", new[0].query.text,
+            raise Refusal("a new thing is called a, not the; to let things change places, say swap", new[0].query.text,
                           verdict="impossible")  # fmt: skip
         return [{"op": "replace", "target": union(old), **self._asset(new[0])}]
 
     def _swap(self, node: Node) -> list[Fields]:
-        if len(trees(node, "targets")) < 2:
-            said = tokens(node, "SWAP")[0].text
-            raise Refusal("things cannot change places; say what to put there instead", said, verdict="impossible")
-        return self._replace(node)
+        """ "swap the lamp and the vase" changes places, "swap the lamp for a vase" replaces."""
+        found = [n for i in range(len(trees(node, "targets"))) for n in self._nouns(node, i)]
+        if len(trees(node, "targets")) == 2 and found[-1].is_new and not tokens(node, "PLACES"):
+            return self._replace(node)
+        both = union(found)
+        if len(found) != 2 and not (len(found) == 1 and (found[0].query.count == 2 or found[0].article == "pronoun")):
+            raise Refusal("say which two things change places", tokens(node, "SWAP")[0].text)
+        return [{"op": "exchange", "target": both}]
 
     def _duplicate(self, node: Node) -> list[Fields]:
         found = self._nouns(node)

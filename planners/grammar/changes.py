@@ -19,7 +19,8 @@ BIGGER: dict[str, float] = {"": 1.25, "little": 1.1, "much": 1.75}
 SMALLER: dict[str, float] = {"": 0.8, "little": 0.9, "much": 0.6}
 # What is left of the opacity after "more transparent": unsaid, "a bit", "much".
 CLEARER: dict[str, float] = {"": 0.5, "little": 0.75, "much": 0.25}
-TO_A_LENGTH = "sizes change by a factor, not to a length: say 20 % taller"
+TO_A_LENGTH = "say how large it should be, or by which share: 1.2 m tall, 20 % taller"
+MEASURED = {"tall": "height", "short": "height", "wide": "width", "narrow": "width", "deep": "depth"}
 SIZE_AXES = {"large": "all", "small": "all", "tall": "height", "wide": "width"}
 
 
@@ -109,9 +110,30 @@ def _size(node: Node) -> Fields:
     return grown(axis, up, share_of(node), times[0].value if times else None, degree_of(node))
 
 
-def _absolute(node: Node) -> Fields:
-    said = " ".join(t.text for t in tokens(node, "LENGTH", "GROWN", "SIZEWORD"))
+def _relative(node: Node) -> Fields:
+    said = " ".join(t.text for t in tokens(node, "LENGTH", "GROWN"))
     raise Refusal(TO_A_LENGTH, said, verdict="impossible")
+
+
+def measured(node: Node, stretched: bool = False) -> Fields:
+    """ "80 cm tall", "2 m in width": the size itself, in proportion unless it is to be stretched."""
+    (inner,) = trees(node, "measured")
+    said = tokens(inner, "SIZEWORD", "PROP")[0]
+    return sized(tokens(inner, "LENGTH")[0].value, MEASURED.get(said.value, said.value), said.text, stretched)
+
+
+def sized(value: tuple[float, str], side: str, said: str, stretched: bool = False) -> Fields:
+    """A scale operation to a length.
+
+    Raises:
+        Refusal: the word names no side, or the length is none.
+    """
+    if side not in ("height", "width", "depth"):
+        raise Refusal("say tall, wide or deep", said)
+    if not 0 < value[0] <= 10_000:
+        raise Refusal("that is no length for things in a room", f"{value[0]:g}", verdict="impossible")
+    length = {"value": value[0], "unit": value[1]}
+    return {"op": "scale", side: length, **({"axis": side} if stretched else {})}
 
 
 def _ratio(node: Node) -> Fields:
@@ -177,7 +199,8 @@ _CHANGES: dict[str, Callable[[Node], Fields]] = {
     "become_shade": _shade,
     "become_light": _light,
     "become_size": _size,
-    "absolute_size": _absolute,
+    "relative_size": _relative,
+    "absolute_size": measured,
     "ratio_size": _ratio,
     "become_clear": _clear,
     "become_opaque": _opaque,

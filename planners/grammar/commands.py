@@ -163,6 +163,8 @@ class Commands(Moving, Shaping, Adding):
     def _make(self, node: Node) -> list[Fields]:
         first, *others = trees(node)
         change, *more = others
+        if change.data == "absolute_size" and self._nouns(node)[0].article == "indef":
+            raise Refusal("say the one that is there, or add one of that height", *self._nouns(node)[0].said.split())
         ops = [{**changes.change(change), "target": known(self.phrases.targets(first))}]
         for also in more:
             inner = trees(also)

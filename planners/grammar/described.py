@@ -135,7 +135,8 @@ def _narrow(query: Query, post: Post, behind: Sequence[Post]) -> Query:
     if post.kind == "lacking":
         return _lacking(query, post, anchors)
     if name := _relation_name(post):
-        return updated(query, relations=(*query.relations, _relation(name, anchors)))
+        frame: Literal["viewer", "object"] = "object" if post.value == "opposite" else "viewer"
+        return updated(query, relations=(*query.relations, _relation(name, anchors, frame)))
     if post.kind == "is_hue":
         return updated(query, colors=(*query.colors, post.value))
     if post.kind == "is_not_hue":
@@ -171,7 +172,7 @@ def _relation_name(post: Post) -> str:
     if post.kind == "having":
         return str(post.value)
     if post.kind == "related":
-        return "next_to" if post.value == "against" else in_or_on(post)
+        return {"against": "next_to", "opposite": "in_front_of"}.get(str(post.value), in_or_on(post))
     if post.kind == "off":
         inside = nouns.head(post.anchors[0].query.text) in nouns.CONTAINERS
         return "inside" if inside else "on"
@@ -184,7 +185,7 @@ def in_or_on(post: Post) -> str:
     return "on" if seat else str(post.value)
 
 
-def _relation(name: str, anchors: Sequence[Query]) -> Relation:
+def _relation(name: str, anchors: Sequence[Query], frame: Literal["viewer", "object"] = "viewer") -> Relation:
     """A relation; "next to a chair" is next to whichever chair."""
     anyone = (a.model_copy(update={"pick": "all"}) if a.pick == "any" and not a.last else a for a in anchors)
-    return Relation(name=name, anchors=tuple(anyone))  # type: ignore[arg-type]
+    return Relation(name=name, anchors=tuple(anyone), frame=frame)  # type: ignore[arg-type]

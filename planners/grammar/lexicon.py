@@ -72,6 +72,7 @@ RELATIONS: dict[str, str] = {
             "to the side of, by the side of, right next to, right by, close by, right beside, surrounding, around by, "
             "in the vicinity of, not far from, next"),
     **same("against", "against, up against, along, flush against"),
+    **same("opposite", "opposite, opposite to, opposite of, across from, directly across from, across the room from"),
 }  # fmt: skip
 
 INSIDE: dict[str, Entry] = {

@@ -73,9 +73,9 @@ def _read_one(kind: str, node: Node, motion: Motion, phrases: Phrases, said: str
     elif kind == "spot":
         motion.set("place", {"relation": tokens(node, "SPOT")[0].value}, said)
     elif kind == "toward":
-        motion.set("toward", anchor_only(phrases, node).full(), said)
+        motion.set("toward", anchor_only(phrases, trees(node, "np")[0]).full(), said)
     elif kind == "to":
-        motion.set("place", _to(anchor_only(phrases, node), moved), said)
+        motion.set("place", _to(anchor_only(phrases, trees(node, "np")[0]), moved), said)
 
 
 def length(value: tuple[float, str]) -> Fields:
@@ -96,10 +96,10 @@ def whole(value: float, said: str) -> int:
     return int(value)
 
 
-def anchor_only(phrases: Phrases, node: Node) -> Noun:
+def anchor_only(phrases: Phrases, np: Node) -> Noun:
     """The noun of a goal; it does not become what "one" refers to."""
     kept = phrases.antecedent
-    found = phrases.noun(trees(node, "np")[0])
+    found = phrases.noun(np)
     phrases.antecedent = kept
     return found
 
@@ -189,8 +189,6 @@ def _spot(post: Post) -> str:
         return "between"
     if post.kind == "centered":
         return "center"
-    if post.value == "above":
-        raise Refusal("nothing can be put in mid-air above something; say on it", post.word, verdict="impossible")
     relation = {"below": "under", "nearest_to": "next_to"}.get(post.value, in_or_on(post))
     if relation in ("on", "inside") and post.anchors[0].query.pick == "all":
         raise Refusal("one place at a time; name one", post.word)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from . import changes
+from . import changes, places
 from .changes import Fields
 from .nodes import Node, Refusal, tokens, trees
 from .rules import Rules
@@ -59,6 +59,12 @@ class Shaping(Rules):
             raise Refusal("things tilt left, right, forward or backward")
         return self._targeted(node, "rotate", degrees=sign * float(angle), axis=axis)
 
+    def _turn_to(self, node: Node) -> list[Fields]:
+        """ "turn the armchair toward the window", "make the chairs face away from the table"."""
+        goal = places.anchor_only(self.phrases, trees(node, "np")[0]).full()
+        away = {"degrees": 180.0} if tokens(node, "FACEAWAY") else {}
+        return self._targeted(node, "rotate", toward=goal, **away)
+
     # ---- sizing --------------------------------------------------------------------------------------------------
 
     def _factor(self, node: Node) -> tuple[float | None, float | None, bool, str]:
@@ -97,6 +103,20 @@ class Shaping(Rules):
     def _grow_prop(self, node: Node) -> list[Fields]:
         _, up = tokens(node, "GROW")[0].value
         return self._sized(node, tokens(node, "PROP")[0].value, up, self._factor(node))
+
+    def _measure(self, node: Node) -> list[Fields]:
+        return self._targeted(node, **changes.measured(node))
+
+    def _measure_prop(self, node: Node) -> list[Fields]:
+        side = tokens(node, "PROP")[0]
+        return self._targeted(node, **changes.sized(tokens(node, "LENGTH")[0].value, side.value, side.text))
+
+    def _stretch(self, node: Node) -> list[Fields]:
+        """ "stretch the table to 2 m wide", "stretch it by 20 %": one side only, the width if none is said."""
+        if trees(node, "measured"):
+            return self._targeted(node, **changes.measured(node, stretched=True))
+        share, times, to, degree = self._factor(node)
+        return self._sized(node, "width", True, (share, times, to, degree))
 
     def _multiply(self, node: Node) -> list[Fields]:
         prop = tokens(node, "PROP")

@@ -22,6 +22,17 @@ _ON_IT = phrases(
     "on it, on top, on top of it, in it, inside, inside it, on them, standing on it, next to it, beside it, near it, on"
 )
 CARRYING = phrases("that has, which has, that have, which have, that holds, that carries, holding, carrying")
+_TURNING = ("TURN", "ROTATE", "TURNROUND", "FACE", "MAKE")
+_FACING = phrases(
+    "face, facing, to face, faces, so that it faces, so it faces, so that they face, so they face, to be facing, be "
+    "facing, to look at, to look toward, to look towards, look at, look toward, look towards, to point at, to point "
+    "toward, to point towards, point at, to the direction of, in the direction of, so that it is facing, "
+    "so it is facing"
+)
+_AWAY = phrases(
+    "away from, face away from, to face away from, facing away from, so that it faces away from, so it faces away "
+    "from, so they face away from, its back to, to look away from"
+)
 _OUTSIDE = phrases("out of here, out of the room, out of the scene, out of sight, out of my sight, out of there")
 _IT_IS = phrases("it is, this is, that is, there is, they are, these are")
 
@@ -49,6 +60,8 @@ class Special:
         after = rest[0] if rest else ""
         verb = self.clause.verb
         if (found := self._owned_or_not(i)) is not None or (found := self._around(i)) is not None:
+            return found
+        if (found := self._facing(i)) is not None:
             return found
         if verb == "SELECT" and (pointed := self._pointing(i)) is not None:
             return pointed
@@ -95,6 +108,31 @@ class Special:
             return i + 1
         if text == "more" and self._before == "NUMBER" and self.read.nouny(i + 1):
             return i + 1
+        return None
+
+    def _facing(self, i: int) -> int | None:
+        """What only some verbs have behind them: "turn it to face the window", "swap places", "60 cm deep"."""
+        verb, text = self.clause.verb, self.texts[i]
+        if len(self.clause.tags) > 1 and (found := self._facing_at(i)):
+            return self._put(found[0], None, i, found[1])
+        if verb == "FACE" and text in ("at", "into", "in"):
+            return self._put("FACING", None, i, 1)
+        if verb == "SWAP" and text in ("places", "positions", "spots", "locations", "place", "position"):
+            return self._put("PLACES", None, i, 1)
+        if text == "deep" and self._before == "LENGTH":
+            return self._put("SIZEWORD", "deep", i, 1)
+        if text in ("neither", "nor") and any(t.type == "REL" for t in self.clause.tags):
+            if text == "nor":
+                self._put("REL", None, i, 0)
+            return self._put("NOT", None, i, 1)
+        return None
+
+    def _facing_at(self, i: int) -> tuple[str, int] | None:
+        """Words that say what a thing is to face, at `i`: their class and how many they are."""
+        if self.clause.verb in _TURNING:
+            for kind, table in (("FACEAWAY", _AWAY), ("FACING", _FACING)):
+                if (found := match(table, self.texts, i)) and self.read.object_follows(i + found[1]):
+                    return kind, found[1]
         return None
 
     def _pointing(self, i: int) -> int | None:

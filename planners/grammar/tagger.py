@@ -270,6 +270,11 @@ class Tagger(Special):
         if not is_plain(texts[j]) or texts[j] == ",":
             return False
         tables = (lexicon.INSIDE_PHRASES, lexicon.FILLER)
-        if match(CARRYING, texts, j) or any(match(t, texts, j) for t in tables) or texts[j] in lexicon.PARTICIPLES:
+        if (
+            self._facing_at(j)
+            or match(CARRYING, texts, j)
+            or any(match(t, texts, j) for t in tables)
+            or texts[j] in lexicon.PARTICIPLES
+        ):
             return False
         return not color_at(texts, j) and not quantities.read(texts[j:])

@@ -97,10 +97,12 @@ VERBS: dict[str, Entry] = {
     ),
     **same(("COPY", None), "copy, clone, duplicate, replicate"),
     **same(("REPLACE", None), "replace, swap out, switch out"),
-    **same(("SWAP", None), "swap, exchange, switch, trade, trade in"),
+    **same(("SWAP", None), "swap, exchange, switch, trade, trade in, interchange, swap around, switch around"),
     **same(("SUBSTITUTE", None), "substitute"),
     **same(("ROTATE", None), "rotate, spin, revolve, pivot, twist, swivel, spin round, rotate round, rotate around"),
     **same(("TURNROUND", None), "turn around, spin around, turn round"),
+    **same(("FACE", None), "face, aim, orient, point"),
+    **same(("STRETCH", None), "stretch, elongate"),
     **same(("FLIP", None), "flip, flip over, turn over, topple, invert"),
     **same(("TILT", None), "tilt, tip, roll"),
     **same(("SCALE", None), "scale, resize, rescale"),
@@ -121,7 +123,7 @@ VERBS: dict[str, Entry] = {
     **same(("MULTIPLY", 0.5), "halve"),
 }
 
-TO_FACE = "one thing cannot be turned to face another yet"
+TO_ALIGN = "things cannot be lined up with each other in one step"
 
 # Verbs we know and cannot carry out: named, so that the answer says so instead of "not understood".
 UNSUPPORTED: dict[str, str] = {
@@ -133,5 +135,5 @@ UNSUPPORTED: dict[str, str] = {
     **same("say what to select instead", "clear the selection, invert the selection, clear selection, "
             "invert selection, deselect, unselect, select none, select nothing, reset the selection"),
     **same("objects cannot be renamed or grouped", "rename, group, ungroup, merge, split, label"),
-    **same(TO_FACE, "face, aim, orient, align"),
+    **same(TO_ALIGN, "align, line up"),
 }  # fmt: skip

@@ -25,7 +25,8 @@ from ...gaussians.language.terms import STRUCTURE
 from ...tools.base import EditOp
 from ..colorwords import plain_color
 from ..graph import SceneGraph
-from ..on_graph import MAKES_PLACE, Resolved
+from ..impossible import MAKES_PLACE
+from ..on_graph import Resolved
 from ..plan import Planner, Verdict
 from ..stage import Id
 from ..wordwise import words

@@ -205,3 +205,22 @@ def test_any_instruction_on_any_room_ends_well(text: str, name: str) -> None:
     assert found.verdict == "ok" or found.reason
     assert all(t in known or str(t).startswith("new ") for s in found.steps for t in s.targets)
     assert set(found.candidates) <= known
+
+
+def test_what_stands_is_not_hung_above_anything_and_what_hangs_is() -> None:
+    assert ask("hang the vase above the sofa").verdict == "impossible"
+    assert ask("add a chair above the sofa").verdict == "impossible"
+    assert ask("add a pendant lamp above the coffee table").verdict == "ok"
+    assert ask("move the painting above the sofa").verdict in ("ok", "absent")
+
+
+def test_two_things_change_places_unless_one_carries_the_other() -> None:
+    assert targets(ask("swap the sofa and the coffee table")) == [(1, 4)]
+    assert ask("swap the vase and what it stands on").verdict == "not_understood"
+    assert ask("swap the plants, the sofa and the rug").verdict in ("impossible", "not_understood")
+
+
+def test_a_length_no_room_holds_is_impossible() -> None:
+    assert ask("make the sofa 30 m wide").verdict == "impossible"
+    found = ask("make the sofa 2 m wide")
+    assert found.verdict == "ok" and found.steps[0].metres == 2

@@ -1,0 +1,156 @@
+"""What cannot be because of sizes and supports: a sofa in a vase, a table on the mug that stands on it.
+
+Knows one step of a plan and the stage it meets. Refuses to know how words are read and how queries are resolved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..gaussians import assets
+from ..gaussians.errors import InstructionError, UserError
+from ..gaussians.language.selection import Selection
+from ..tools.base import METRES, EditOp, Length
+from ..tools.ops.scale import Scale
+from .plan import Verdict
+from .stage import Id, Stage
+
+# What floor, walls and ceiling forbid.
+MAKES_PLACE = frozenset({"delete", "move", "rotate", "scale", "duplicate", "replace", "exchange", "arrange"})
+
+
+class Stopped(InstructionError):
+    """A step cannot be done; `verdict` says why."""
+
+    def __init__(self, verdict: Verdict, reason: str, candidates: Sequence[Id] = ()) -> None:
+        super().__init__(reason)
+        self.verdict: Verdict = verdict
+        self.candidates = tuple(candidates)
+
+
+@dataclass(frozen=True)
+class Step:
+    """One operation and what it would touch.
+
+    Attributes:
+        op: as planned.
+        targets: ids of the nodes it changes; of what an earlier step adds, "new 1", "new 2", …
+        anchors: ids of what its place or direction refers to.
+        metres: how far it moves, where it says so.
+    """
+
+    op: EditOp
+    targets: tuple[Id, ...] = ()
+    anchors: tuple[Id, ...] = ()
+    metres: float | None = None
+
+
+def metres(op: EditOp) -> float | None:
+    """The distance an operation says, in metres; a graph's units are metres."""
+    said = (getattr(op, name, None) for name in ("distance", "height", "width", "depth"))
+    length: Length | None = next((found for found in said if found is not None), None)
+    return None if length is None else round(length.value * METRES.get(length.unit, 1.0), 9)
+
+
+def refuse_impossible(stage: Stage, step: Step, chosen: Selection, anchors: Sequence[Selection]) -> None:
+    """Raise if sizes and supports forbid the step.
+
+    Raises:
+        Stopped: they do.
+    """
+    shell = [g for g in chosen.groups if stage.group(g).level == "structure"]
+    if shell and step.op.op in MAKES_PLACE:
+        raise Stopped("impossible", f"the {stage.group(shell[0]).label} stays: {step.op.op} is for things in the room")
+    room = stage.graph.room.size
+    if step.metres is not None and step.op.op == "move" and step.metres > sum(s * s for s in room) ** 0.5:
+        raise Stopped("impossible", f"{step.metres:g} m leads out of a room of {room[0]:g} x {room[1]:g} m")
+    if step.op.op == "scale":
+        _refuse_size(stage, step, chosen)
+    if step.op.op == "exchange":
+        _refuse_exchange(stage, chosen.groups)
+    relation = getattr(getattr(step.op, "place", None), "relation", "")
+    check = {"inside": _too_large_inside, "on": _too_large_on}.get(relation)
+    for anchor in (g for a in anchors for g in a.groups):
+        for target in chosen.groups:
+            _refuse_place(stage, target, anchor, check)
+
+
+def refuse_above(stage: Stage, step: Step, chosen: Selection | None) -> None:
+    """Raise if something that stands is to hang above something."""
+    if getattr(getattr(step.op, "place", None), "relation", "") != "above":
+        return
+    groups = () if chosen is None else chosen.groups
+    supports = {n.id: n.support for n in stage.graph.nodes}
+    named = [(stage.group(g).label, supports.get(stage.ids[g])) for g in groups] or [(step.op.subject(), None)]
+    for label, support in named:
+        if support not in ("wall", "ceiling") and _usual_support(label) not in ("wall", "ceiling"):
+            raise Stopped("impossible", f"{label} stands and does not hang: say on something, or next to it")
+
+
+def _usual_support(label: str) -> str:
+    """What things of this name stand on or hang from, "" if nothing is known of them."""
+    try:
+        return str(assets.find(label).support)
+    except UserError:
+        return ""
+
+
+def _refuse_exchange(stage: Stage, groups: Sequence[int]) -> None:
+    """Raise unless there are two things, neither of which stands on the other."""
+    if len(groups) != 2:
+        raise Stopped("impossible", f"two things change places; this means {len(groups)}")
+    for one, other in (groups, groups[::-1]):
+        if _stands_on(stage, one, other):
+            told = f"{stage.group(one).label} stands on {stage.group(other).label}"
+            raise Stopped("impossible", f"{told}: they cannot change places")
+
+
+def _refuse_size(stage: Stage, step: Step, chosen: Selection) -> None:
+    """Raise if something would outgrow the room."""
+    assert isinstance(step.op, Scale)
+    axis, length = step.op.axis, step.op.length
+    for group in (stage.group(g) for g in chosen.groups):
+        sides = {"height": group.box.size[2:], "width": group.box.size[:2], "depth": group.box.size[:2]}
+        factor = step.op.factor or 1.0
+        if length is not None:
+            factor = length[1].value * METRES.get(length[1].unit, 1.0) / max(sides[length[0]])
+        most = max(sides.get(axis, group.box.size)) * factor
+        if factor > 1 and most > 2 * max(stage.graph.room.size):
+            raise Stopped("impossible", f"{group.label} would be {most:.3g} m large, which no room of this size holds")
+
+
+def _refuse_place(stage: Stage, target: int, anchor: int, check: Callable[[Stage, int, int], bool] | None) -> None:
+    name, other = stage.group(target).label, stage.group(anchor).label
+    if target == anchor:
+        raise Stopped("impossible", f"{name} cannot be put relative to itself")
+    if check is None or stage.group(anchor).level == "structure":
+        return
+    if _stands_on(stage, anchor, target):
+        raise Stopped("impossible", f"{other} stands on {name}, so {name} cannot go on it")
+    if check(stage, target, anchor):
+        raise Stopped("impossible", f"{name} is too large to go on or into {other}")
+
+
+def _too_large_inside(stage: Stage, target: int, anchor: int) -> bool:
+    """Whether the two smaller extents of a thing exceed those of what is to hold it; its length may stick out."""
+    thing, holder = (sorted(stage.group(g).box.size) for g in (target, anchor))
+    return thing[0] > holder[1] or thing[1] > holder[2]
+
+
+def _too_large_on(stage: Stage, target: int, anchor: int) -> bool:
+    """Whether even the shorter side of a thing's footprint is twice the longer one of what is to carry it."""
+    return min(stage.group(target).box.size[:2]) > 2 * max(stage.group(anchor).box.size[:2])
+
+
+def _stands_on(stage: Stage, upper: int, lower: int) -> bool:
+    """Whether `upper` stands on `lower`, directly or on something that does."""
+    supports: dict[Any, Id] = {n.id: n.support for n in stage.graph.nodes}
+    at, seen = stage.ids[upper], set[Id]()
+    while at in supports and at not in seen:
+        seen.add(at)
+        at = supports[at]
+        if at == stage.ids[lower]:
+            return True
+    return False
