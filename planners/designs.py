@@ -178,9 +178,10 @@ def _known(phrase: str, own: bool) -> registry.Kind | None:
 # Synonyms of one word that may close a longer label: "velvet couch" is a couch, a "parking space bench" still a bench.
 _PLAIN = frozenset({
     "couch", "settee", "loveseat", "plant", "fern", "palm", "bookcase", "cupboard", "sideboard", "credenza", "lamp",
-    "bike", "refrigerator", "freezer", "oven", "carpet", "mat", "picture", "photo", "poster", "tv", "screen",
-    "barstool", "closet", "armoire", "planter", "pouf", "chandelier", "heater", "basin", "tub", "bath", "drape", "balloon", "beam",
-    "rafter", "garland", "bunting", "chalkboard", "blackboard", "drawer", "shelf", "chest", "crate", "hamper", "till",
+    "bike", "refrigerator", "freezer", "oven", "carpet", "mat", "picture", "photo", "poster", "tv", "screen", "till",
+    "closet", "armoire", "planter", "pouf", "chandelier", "heater", "basin", "tub", "bath", "drape", "balloon", "beam",
+    "rafter", "garland", "bunting", "chalkboard", "blackboard", "drawer", "shelf", "chest", "crate", "hamper",
+    "barstool",
 })  # fmt: skip
 
 

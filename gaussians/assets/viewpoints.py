@@ -6,11 +6,16 @@ Knows boxes of layouts and cameras. Refuses to know what the things are.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..camera import Camera, Vec3
 from .layout import Box, Layout
+
+Array = NDArray[np.float64]
+_REACH = np.concatenate([[0.1], 0.2 * np.ones(15)]).cumsum()  # metres along a ray: where it is looked for things
 
 
 def cameras(layout: Layout) -> tuple[Camera, ...]:
@@ -67,19 +72,28 @@ def eye_views(layout: Layout) -> tuple[Camera, ...]:
 def _clear(layout: Layout, eye: Vec3) -> float:
     """How far one sees from an eye towards the middle, metres, averaged over a fan of rays; -1 inside something."""
     tall = [t.box for t in layout.things if t.support != "wall"]
-    if any(_inside(b.grown(0.15), eye) for b in tall):
+    if not tall:
+        return _REACH[-1]
+    if _inside([b.grown(0.15) for b in tall], np.array([eye])).any():
         return -1.0
     ahead = math.atan2(-eye[1], -eye[0])
-    total = 0.0
-    for turn in np.radians([-30, -20, -10, 0, 10, 20, 30]):
-        for slope in (-0.05, -0.25):
-            step, reach = np.array([math.cos(ahead + turn), math.sin(ahead + turn), slope]), 0.1
-            while reach < 3.0 and not any(_inside(b, tuple(np.array(eye) + reach * step)) for b in tall):
-                reach += 0.2
-            total += reach
-    return total / 14
+    fan = [
+        (math.cos(ahead + turn), math.sin(ahead + turn), slope)
+        for turn in np.radians([-30, -20, -10, 0, 10, 20, 30])
+        for slope in (-0.05, -0.25)
+    ]
+    points = np.array(eye) + _REACH[:-1, None] * np.array(fan)[:, None, :]  # [rays, steps, 3]
+    hit = _inside(tall, points.reshape(-1, 3)).reshape(len(fan), -1)
+    first = np.where(hit.any(axis=1), hit.argmax(axis=1), len(_REACH) - 1)
+    return float(sum(_REACH[first])) / len(fan)
 
 
-def _inside(b: Box, p: Vec3) -> bool:
-    local = b.axes @ np.array([p[0] - b.x, p[1] - b.y])
-    return bool(abs(local[0]) < b.w / 2 and abs(local[1]) < b.d / 2 and b.z < p[2] < b.z + b.h)
+def _inside(boxes: Sequence[Box], points: Array) -> NDArray[np.bool_]:
+    """`[M]` whether each point `[M, 3]` is in one of the boxes."""
+    centres = np.array([(b.x, b.y) for b in boxes])  # [B, 2]
+    axes = np.array([b.axes for b in boxes])  # [B, 2, 2]
+    half = np.array([(b.w / 2, b.d / 2) for b in boxes])
+    low, high = (np.array([f(b) for b in boxes]) for f in (lambda b: b.z, lambda b: b.z + b.h))
+    local = np.einsum("bij,bmj->bmi", axes, points[None, :, :2] - centres[:, None])
+    level = (low[:, None] < points[:, 2]) & (points[:, 2] < high[:, None])
+    return np.asarray(((np.abs(local) < half[:, None]).all(axis=2) & level).any(axis=0))
