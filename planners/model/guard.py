@@ -12,11 +12,9 @@ the last word.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
-from typing import Any
+from functools import cached_property
 
 from ...gaussians.color import parse as parse_color
 from ...gaussians.errors import UserError
@@ -30,9 +28,10 @@ from ..on_graph import Resolved
 from ..plan import Planner, Verdict
 from ..stage import Id
 from ..wordwise import words
+from .choosing import stems, without_guesses
 from .grounds import Ground, said
 from .pruning import Relevance
-from .rehearsal import Rehearsal, queries, with_queries
+from .rehearsal import Rehearsal, queries
 
 # What takes things away, and the words that ask for it. Another operation that does belongs here.
 _TAKES: dict[str, tuple[Ground, ...]] = {
@@ -43,22 +42,7 @@ _TAKES: dict[str, tuple[Ground, ...]] = {
 }
 _HIDES = 0.15  # opacity from which a thing is as good as gone
 _MANY = 4  # things taken away that nobody named
-_LOOSE = ("all", "any", "rest")
 _EVERYTHING = frozenset({"", "everything", "anything", "thing", "object", "item", "stuff", "furniture"})
-
-_WORD = re.compile(r"[^\W\d_]+")
-# Words that do not tell one thing from another of its kind.
-_PLAIN_WORDS = """
-a an the this that it its please kindly can could would will you i we me us my our your to of and then now just let s
-want like need have get rid away out off up down go do be is are by for with in on at into onto from so as too also
-move shift push pull slide put place set bring take carry turn rotate spin flip tilt make paint color colour recolor
-recolour dye tint delete remove erase eliminate discard throw toss drop lose destroy kill clear hide show select pick
-choose find highlight isolate keep only replace swap exchange change substitute duplicate copy clone add insert another
-more less bit little much very slightly scale resize enlarge shrink grow raise lower lift darker lighter brighter bigger
-larger smaller taller shorter wider narrower twice half double degrees degree metre meter metres meters cm mm m inch
-inches foot feet ft clockwise counterclockwise transparent invisible opaque
-"""
-_OPEN_CHOICE = re.compile(r"\b(?:any|some|either|one of|random|whichever|whatever)\b")
 
 
 @dataclass(frozen=True)
@@ -96,10 +80,7 @@ class Guard:
 
     def settled(self, ops: Sequence[EditOp]) -> tuple[EditOp, ...]:
         """The operations without ids that choose between things which the instruction leaves open."""
-        used = frozenset(
-            s for op in ops for text in _strings(op.model_dump(exclude_defaults=True)) for s in _stems(text)
-        )
-        return tuple(with_queries(op, lambda query: self._without_guess(query, used)) for op in ops)
+        return tuple(ops) if self._scene is None else without_guesses(ops, self._text, self._scene)
 
     def faults(self, ops: Sequence[EditOp]) -> list[Fault]:
         """What is wrong with the operations, worst first; of each kind one."""
@@ -206,7 +187,7 @@ class Guard:
 
     def _names(self, asset: str) -> bool:
         """Whether the instruction names a new thing ("make the chair a sofa")."""
-        heard = {s for t in (self._text, self._previous or "") for w in _WORD.findall(t) for s in words(w)}
+        heard = stems(self._text) | stems(self._previous or "")
         return bool(set(words(asset)[-1:]) & heard)
 
     # -- what the graph says ----------------------------------------------------------------------------------------
@@ -223,32 +204,6 @@ class Guard:
             told = f"{played.verdict}: {played.reason}. Correct it, or answer with this verdict"
             yield Fault(played.verdict, told, played.verdict, played.reason)
 
-    def _without_guess(self, query: Query, used: frozenset[str]) -> Query:
-        """The query without its ids if its words fit more than these, and nothing that was said tells them apart.
-
-        Without them it asks for one, however many ids there were: never for all that the words fit.
-        """
-        scene = self._scene
-        if scene is None or not query.groups or scene.lost(query) or scene.misnamed(query):
-            return query
-        named = query if query.text else query.model_copy(update={"text": self._label(query.groups[0])})
-        fits = scene.by_words(named) if named.text else ()
-        if not set(query.groups) < set(fits) or self._tells_apart(used | _stems(named.text)):
-            return query
-        return named.model_copy(update={"groups": (), "pick": "one" if named.pick in _LOOSE else named.pick})
-
-    def _label(self, id: int) -> str:
-        return self._scene.graph.nodes[self._index[id]].label if self._scene is not None else ""
-
-    def _tells_apart(self, used: frozenset[str]) -> bool:
-        """Whether there is a word in the instruction beyond what to do, to what kind of thing, and how.
-
-        Args:
-            used: words of the plan, which say nothing more.
-        """
-        text = self._text.lower()
-        return bool(_OPEN_CHOICE.search(text)) or any(not _stems(w) <= _plain() | used for w in _WORD.findall(text))
-
 
 _REFUSED = "the model wanted what the instruction does not ask for, and nothing was done"
 _IF_ABSENT = (
@@ -260,23 +215,6 @@ _IF_AMBIGUOUS = (
     "same ops with this verdict. Do not choose by id"
 )
 _SAY = "If you mean it, say so ('delete …', 'keep only …', 'delete everything')"
-
-
-@cache
-def _plain() -> frozenset[str]:
-    return frozenset(_stems(_PLAIN_WORDS))
-
-
-def _stems(text: str) -> set[str]:
-    return {s for w in _WORD.findall(text.lower()) for s in (w, *words(w))}
-
-
-def _strings(node: Any) -> Iterator[str]:
-    """Every text in a dumped operation."""
-    if isinstance(node, str):
-        yield node.replace("_", " ")
-    for item in node.values() if isinstance(node, dict) else node if isinstance(node, tuple | list) else ():
-        yield from _strings(item)
 
 
 def _takes(op: EditOp) -> bool:

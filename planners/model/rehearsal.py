@@ -113,6 +113,10 @@ class Rehearsal:
         named = (self.graph.nodes[self.rows[i]] for i in query.groups if i in self.rows)
         return next((n for n in named if fits and n.label and n.label not in fits), None)
 
+    def label(self, id: int) -> str:
+        """What the thing with this id is called, "" if nobody could tell."""
+        return self.graph.nodes[self.rows[id]].label
+
     def by_words(self, query: Query) -> tuple[Id, ...]:
         """Ids of all that the words of a query fit, without its ids and its choice among several."""
         words = query.model_copy(update={"groups": (), "also": (), "pick": "all", "count": None, "ordinal": None})

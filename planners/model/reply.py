@@ -8,16 +8,19 @@ from __future__ import annotations
 
 import json
 from functools import cache
-from typing import Annotated, Any, NoReturn, Self
+from typing import Annotated, Any, NoReturn, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from ...tools.alternatives import either, given
 from ...tools.registry import AnyOp
 from ..plan import MAX_OPS, Verdict
 
 MAX_CHARS = 65_536  # of an answer; the longest plans are a tenth of it
 _FAULTS = 4  # named at once
 _FAULT_CHARS = 240  # of each
+_HESITANT = ("absent", "ambiguous")
+_UNTOLD = ("title", "description", "examples", "default")  # the prompt says these things
 
 
 class ReplyError(ValueError):
@@ -35,7 +38,19 @@ class Reply(BaseModel):
         ops: what to do, in order.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(
+        frozen=True,
+        extra="forbid",
+        json_schema_extra=either(
+            {"verdict": given(enum=["ok"]), "ops": given(minItems=1)},
+            {"verdict": given(enum=list(_HESITANT)), "reason": given(minLength=1)},
+            {
+                "verdict": given(enum=[v for v in get_args(Verdict) if v not in ("ok", *_HESITANT)]),
+                "reason": given(minLength=1),
+                "ops": {"maxItems": 0},
+            },
+        ),
+    )
 
     verdict: Verdict
     reason: Annotated[str, Field(max_length=400)] = ""
@@ -46,21 +61,32 @@ class Reply(BaseModel):
     def _whole(self) -> Self:
         if self.verdict == "ok" and not self.ops:
             raise ValueError('verdict "ok" needs at least one operation in ops')
-        if self.ops and self.verdict not in ("ok", "absent", "ambiguous"):
+        if self.ops and self.verdict not in ("ok", *_HESITANT):
             raise ValueError(f'verdict "{self.verdict}" takes no ops, got {len(self.ops)}')
-        if self.verdict != "ok" and not self.reason.strip():
+        if self.verdict != "ok" and not self.reason:
             raise ValueError(f'verdict "{self.verdict}" needs a reason')
         return self
 
 
 @cache
 def _schema() -> dict[str, Any]:
-    return Reply.model_json_schema()
+    return _bare(Reply.model_json_schema())
 
 
 def schema() -> dict[str, Any]:
-    """The JSON Schema of a reply, for `ModelBackend.answer`; that of the very type that validates."""
+    """The JSON Schema of a reply, for `ModelBackend.answer`: that of the very type that validates, without the words
+    that the prompt says better."""
     return dict(_schema())
+
+
+def _bare(node: Any) -> Any:
+    """A schema without what is only said to readers; a property may be called whatever it is."""
+    if isinstance(node, list):
+        return [_bare(item) for item in node]
+    if not isinstance(node, dict):
+        return node
+    named = {k: {n: _bare(v) for n, v in node[k].items()} for k in ("properties", "$defs") if k in node}
+    return {k: _bare(v) for k, v in node.items() if k not in (*_UNTOLD, *named)} | named
 
 
 def read(text: str) -> Reply:

@@ -1,0 +1,77 @@
+"""Ids that choose between things which the user's words leave open: found, and taken out.
+
+Knows which words of an instruction tell one thing from another of its kind. Refuses to choose itself: without the ids
+the words stand, and whoever resolves them finds several and asks.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from functools import cache
+from typing import Any
+
+from ...gaussians.language.query import Query
+from ...tools.base import EditOp
+from ..wordwise import words
+from .rehearsal import Rehearsal, with_queries
+
+_LOOSE = ("all", "any", "rest")
+_WORD = re.compile(r"[^\W\d_]+")
+_OPEN_CHOICE = re.compile(r"\b(?:any|some|either|one of|random|whichever|whatever)\b")
+# Words that do not tell one thing from another of its kind: what to do, how far, and what ties a sentence together.
+_PLAIN_WORDS = """
+a an the this that it its please kindly can could would will you i we me us my our your to of and then now just let s
+want like need have get rid away out off up down go do be is are by for with in on at into onto from so as too also
+move shift push pull slide put place set bring take carry turn rotate spin flip tilt make paint color colour recolor
+recolour dye tint delete remove erase eliminate discard throw toss drop lose destroy kill clear hide show select pick
+choose find highlight isolate keep only replace swap exchange change substitute duplicate copy clone add insert another
+more less bit little much very slightly scale resize enlarge shrink grow raise lower lift darker lighter brighter bigger
+larger smaller taller shorter wider narrower twice half double degrees degree metre meter metres meters cm mm m inch
+inches foot feet ft clockwise counterclockwise transparent invisible opaque
+"""
+
+
+def without_guesses(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple[EditOp, ...]:
+    """The operations without ids where the words beside them fit more things, and nothing that was said tells these
+    apart: "delete the chair", and a model that says which of three.
+
+    Args:
+        ops: their ids must not all be there; those that are not are left as they are.
+        text: the instruction.
+    """
+    said = text.lower()
+    if _OPEN_CHOICE.search(said):
+        return tuple(ops)
+    used = {s for op in ops for value in _strings(op.model_dump(exclude_defaults=True)) for s in stems(value)}
+
+    def settled(query: Query) -> Query:
+        if not query.groups or scene.lost(query) or scene.misnamed(query):
+            return query
+        named = query if query.text else query.model_copy(update={"text": scene.label(query.groups[0])})
+        fits = scene.by_words(named) if named.text else ()
+        told = all(stems(word) <= _plain() | used | stems(named.text) for word in _WORD.findall(said))
+        if not set(query.groups) < set(fits) or not told:
+            return query
+        # One is asked for, however many ids there were: never all that the words fit.
+        return named.model_copy(update={"groups": (), "pick": "one" if named.pick in _LOOSE else named.pick})
+
+    return tuple(with_queries(op, settled) for op in ops)
+
+
+def stems(text: str) -> set[str]:
+    """The words of a text, as they stand and as a thing of that name is called."""
+    return {s for w in _WORD.findall(text.lower()) for s in (w, *words(w))}
+
+
+@cache
+def _plain() -> frozenset[str]:
+    return frozenset(stems(_PLAIN_WORDS))
+
+
+def _strings(node: Any) -> Iterator[str]:
+    """Every text in a dumped operation."""
+    if isinstance(node, str):
+        yield node.replace("_", " ")
+    for item in node.values() if isinstance(node, dict) else node if isinstance(node, tuple | list) else ():
+        yield from _strings(item)
