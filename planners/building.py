@@ -27,7 +27,7 @@ from ..gaussians.assets.raising import Look, Raised, raised
 from ..gaussians.assets.viewpoints import eye_views, overview
 from ..gaussians.camera import Camera, Vec3
 from ..gaussians.errors import UserError
-from ..gaussians.language.field import Box, Group, LanguageField
+from ..gaussians.language.field import Box, Group, LanguageField, Level
 from ..gaussians.language.measure import lab_of_cloud
 from ..gaussians.language.terms import STRUCTURE
 from ..gaussians.scene import Frame, Scene
@@ -210,7 +210,7 @@ def _with_table(
     groups = [_nothing(i) for i in range(top)]
     vectors = np.zeros((top + len(faces), encoder.dim), dtype=np.float32)
     for found, node in zip(table.groups, drawn, strict=True):
-        level = "structure" if node.label.lower().strip() in STRUCTURE else "object"
+        level: Level = "structure" if node.label.lower().strip() in STRUCTURE else "object"
         groups[rows[node.id]] = replace(found, id=rows[node.id], level=level, box=boxes[node.id])
         vectors[rows[node.id]] = table.embeddings[found.id]
     number = torch.tensor([*(rows[n.id] for n in drawn), 0])  # the last one for the structure, filled in below

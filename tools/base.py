@@ -118,6 +118,10 @@ class Encoder(Protocol):
         """Unit rows `[T, D]`."""
         ...
 
+    def knows(self, text: str) -> bool:
+        """Whether `text` has words and all of them are known."""
+        ...
+
 
 Resolver = Callable[..., Selection]  # resolve(scene, query, viewer, encoder=None, last=None), as gaussians.language
 

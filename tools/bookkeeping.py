@@ -138,7 +138,8 @@ def enter(
     """Append one object a newcomer; the group id each got (-1 where the scene has no table).
 
     A copy takes the vector of its original. Other objects get the encoder's vector of their name if it is the
-    encoder of the table, otherwise a zero row, which selection treats as "name known, looks not encoded".
+    encoder of the table and knows every word of it, otherwise a zero row, which selection treats as "name known, looks
+    not encoded".
     """
     if field is None:
         return None, [-1] * len(newcomers)
@@ -163,7 +164,7 @@ def _vector(field: LanguageField, new: Newcomer, encoder: Encoder | None) -> NDA
     if new.like is not None:
         copied: NDArray[np.float32] = field.embeddings[new.like]
         return copied
-    if encoder is not None and encoder.fingerprint == field.encoder and new.label:
+    if encoder is not None and encoder.fingerprint == field.encoder and encoder.knows(new.label):
         named: NDArray[np.float32] = encoder.encode_text([new.label])[0]
         return named
     return np.zeros(field.embeddings.shape[1], dtype=np.float32)

@@ -23,7 +23,7 @@ def whiteboard(rng: Rng, tone: Tone) -> list[Piece]:
     face = Material(tone.color if tone.asked else (0.96, 0.97, 0.97), main=True)
     tone.color = face.color
     steel = Material((0.75, 0.76, 0.78), "brushed")
-    bars = [(w, 0.03, t, 0, 0, z) for z in (0.0, h - t)]
+    bars: list[tuple[float, ...]] = [(w, 0.03, t, 0, 0, z) for z in (0.0, h - t)]
     bars += [(t, 0.03, h - 2 * t, s * (w - t) / 2, 0, t) for s in (-1, 1)]
     inks = [tone.plain(c) for c in ("#2a5ac8", "#c8201e", "#23262b")]
     out = [
@@ -83,10 +83,10 @@ def pool_table(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h = rng.uniform(2.2, 2.6), rng.uniform(1.2, 1.4), rng.uniform(0.78, 0.84)
     cloth, wood = Material(tone.color, "flat", seed=tone.seed, main=True), tone.wood()
     t, black = 0.13, tone.plain("#17171a")
-    rails = [(w, t, 0.1, 0, s * (d - t) / 2, h - 0.1) for s in (-1, 1)] + [
+    rails: list[tuple[float, ...]] = [(w, t, 0.1, 0, s * (d - t) / 2, h - 0.1) for s in (-1, 1)] + [
         (t, d - 2 * t, 0.1, s * (w - t) / 2, 0, h - 0.1) for s in (-1, 1)
     ]
-    edge = [(w - 2 * t, 0.04, 0.05, 0, s * (d / 2 - t - 0.02), h - 0.09) for s in (-1, 1)]
+    edge: list[tuple[float, ...]] = [(w - 2 * t, 0.04, 0.05, 0, s * (d / 2 - t - 0.02), h - 0.09) for s in (-1, 1)]
     edge += [(0.04, d - 2 * t, 0.05, s * (w / 2 - t - 0.02), 0, h - 0.09) for s in (-1, 1)]
     holes = [disc(0.06, (x, y * (d / 2 - t + 0.005), h + 0.002)) for x in (-w / 2 + t, 0.0, w / 2 - t) for y in (-1, 1)]
     leg = 0.17 if chance(rng, 0.5) else 0.12
@@ -121,7 +121,7 @@ def ping_pong_table(rng: Rng, tone: Tone) -> list[Piece]:
     if not tone.asked:
         tone.color = ((0.12, 0.3, 0.55), (0.13, 0.4, 0.28), (0.16, 0.2, 0.3))[int(rng.integers(3))]
     top, black = Material(tone.color, "flat", main=True), tone.plain("#202123")
-    lines = [(w, 0.025, 0.004, 0, s * (d / 2 - 0.0125), h) for s in (-1, 1)] + [
+    lines: list[tuple[float, ...]] = [(w, 0.025, 0.004, 0, s * (d / 2 - 0.0125), h) for s in (-1, 1)] + [
         (0.025, d, 0.004, s * (w / 2 - 0.0125), 0, h) for s in (-1, 1)
     ]
     lines.append((w, 0.012, 0.004, 0, 0, h))
@@ -202,7 +202,7 @@ def bunk_bed(rng: Rng, tone: Tone) -> list[Piece]:
     spreads = [tone.accent(), tone.accent()]
     out = [legs4(w, d, h, t).named("post", mat.along(2))]
     for k, z in enumerate((0.28, h * 0.68)):
-        rails = [(t * 0.5, d - 2 * t, 0.12, s * (w / 2 - t / 4), 0, z) for s in (-1, 1)]
+        rails: list[tuple[float, ...]] = [(t * 0.5, d - 2 * t, 0.12, s * (w / 2 - t / 4), 0, z) for s in (-1, 1)]
         rails += [(w - 2 * t, t * 0.5, 0.12, 0, s * (d / 2 - t / 4), z) for s in (-1, 1)]
         out += [
             boxes(rails, 0.006).named("frame", mat.along(1)),
@@ -210,8 +210,10 @@ def bunk_bed(rng: Rng, tone: Tone) -> list[Piece]:
             cushion(w - t + 0.02, d * 0.6, 0.19, (0, -d * 0.16, z + 0.055), 0.12).named("blanket", spreads[k]),
             cushion(w * 0.6, 0.36, 0.12, (0, d / 2 - 0.3, z + 0.19), 0.3).named("pillow", linen),
         ]
-    ends = [(w - 2 * t, 0.025, 0.07, 0, s * (d / 2 - t / 2), z) for s in (-1, 1) for z in (0.5, h * 0.84, h - 0.1)]
-    guards = [
+    ends: list[tuple[float, ...]] = [
+        (w - 2 * t, 0.025, 0.07, 0, s * (d / 2 - t / 2), z) for s in (-1, 1) for z in (0.5, h * 0.84, h - 0.1)
+    ]
+    guards: list[tuple[float, ...]] = [
         (0.025, d * (0.62 if s < 0 else 0.96), 0.07, s * (w / 2 - t / 2), d * 0.16 if s < 0 else 0, z)
         for s in (-1, 1)
         for z in (h * 0.88, h - 0.08)

@@ -89,7 +89,8 @@ def _splat_asset(cloud: GaussianCloud, turn: Array, size: Vec3, kind: str) -> As
     """Splats turned and stretched; harmonics are cut to their constant, which needs no turning."""
     means = cloud.means.numpy().astype(np.float64) @ turn.T
     # Floaters around a captured thing must not make it small: the box is that of all but the outermost 1 %.
-    gain, foot = _gain(*np.quantile(means, [0.005, 0.995], axis=0), size)
+    low, high = np.quantile(means, [0.005, 0.995], axis=0)
+    gain, foot = _gain(low, high, size)
     spin = from_matrix(torch.from_numpy(turn)).to(torch.float32)
     quats = normalize(multiply(spin, cloud.quats))
     inside = (np.abs((means - foot) * gain - [0, 0, size[2] / 2]) <= np.array(size) / 2 + 0.01).all(axis=1)
@@ -172,7 +173,7 @@ def _colors(mesh: Any, points: Array, faces: NDArray[np.int64]) -> Array:
     linear = np.array([255, 255, 255] if factor is None else factor[:3], dtype=np.float64) / 255
     plain = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)  # factors are linear
     if image is not None and uv is not None:
-        weights = trimesh.triangles.points_to_barycentric(mesh.triangles[faces], points)
+        weights = trimesh.triangles.points_to_barycentric(mesh.triangles[faces], points)  # type: ignore[no-untyped-call]
         at = np.einsum("nk,nkc->nc", weights, np.asarray(uv)[mesh.faces[faces]])
         shown = trimesh.visual.color.uv_to_interpolated_color(at, image)
         return np.asarray(shown[:, :3], dtype=np.float64) / 255 * plain

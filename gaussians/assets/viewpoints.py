@@ -93,7 +93,7 @@ def _inside(boxes: Sequence[Box], points: Array) -> NDArray[np.bool_]:
     centres = np.array([(b.x, b.y) for b in boxes])  # [B, 2]
     axes = np.array([b.axes for b in boxes])  # [B, 2, 2]
     half = np.array([(b.w / 2, b.d / 2) for b in boxes])
-    low, high = (np.array([f(b) for b in boxes]) for f in (lambda b: b.z, lambda b: b.z + b.h))
+    low, high = np.array([b.z for b in boxes]), np.array([b.z + b.h for b in boxes])
     local = np.einsum("bij,bmj->bmi", axes, points[None, :, :2] - centres[:, None])
     level = (low[:, None] < points[:, 2]) & (points[:, 2] < high[:, None])
     return np.asarray(((np.abs(local) < half[:, None]).all(axis=2) & level).any(axis=0))

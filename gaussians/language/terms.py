@@ -24,6 +24,7 @@ from ..errors import BackendError
 from . import attributes, relations
 from .calibration import probability
 from .colored import PARTS
+from .encoders.words import normalise
 from .field import Boxes, Group, LanguageField
 from .query import Query, Relation
 from .selection import Candidate
@@ -176,10 +177,17 @@ def likeness(field: LanguageField, encoder: Encoder | None, text: str, metres_pe
         sure = probability(encoder, text, field.embeddings, sizes)
         meant = kinds_meant(encoder, text)
         unseen = ~field.embeddings.any(axis=1)
-        known = np.array([g.label in meant and g.label_score >= OWN_COLOR for g in field.groups], dtype=bool)
+        named = [g.label_score >= OWN_COLOR and (g.label in meant or called(g.label, text)) for g in field.groups]
+        known = np.array(named, dtype=bool)
         _make_room(field)
         field.answers[key] = np.where(unseen, known.astype(np.float64), sure)
     return field.answers[key]
+
+
+def called(label: str, text: str) -> bool:
+    """Whether a thing with this label is called so: "pastry display case" is a display case, and a case."""
+    asked, name = normalise(text), normalise(label)
+    return bool(asked) and name[-len(asked) :] == asked
 
 
 def paintedness(field: LanguageField, word: str) -> F64:

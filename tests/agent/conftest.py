@@ -27,6 +27,9 @@ class NamesOnly:
 
     fingerprint = "test:1"
 
+    def knows(self, text: str) -> bool:
+        return bool(text)
+
     def encode_text(self, texts: list[str]) -> NDArray[np.float32]:
         return np.tile(np.float32([1, 0]), (len(texts), 1))
 
