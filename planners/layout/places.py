@@ -26,6 +26,7 @@ _HIGH = 1.5  # metres; nothing is put on top of what is higher, if it can stand 
 _WIDER = 1.5  # times as wide as its carrier a thing may be
 _SMALL = 0.35  # metres; it does not matter how smaller things are turned
 _HEAD = 1.9  # metres
+_MOVED, _TURNED = 1.5, 0.5  # price of a metre away from where a thing was, and metres that a quarter turn is worth
 _FREE = 0.55  # metres; what is larger and wants no wall stands free, with room around it
 
 
@@ -198,6 +199,8 @@ def _beside(state: State, body: Body, extents: tuple[float, float, float, float]
     xs, ys = list[float](), list[float]()
     if (now := state.spots[body.first]) is not None:
         xs, ys = [float(now.x)], [float(now.y)]
+    if (was := state.prepared.items[body.first].was) is not None:
+        xs, ys = [*xs, was.position[0]], [*ys, was.position[1]]
     partners = {p for m in body.members for r in state.prepared.wishes_of[m.item] for p in state.prepared.parties[r]}
     for p in sorted(partners - {m.item for m in body.members}):
         if (spot := state.seen(p)) is not None:
@@ -387,6 +390,10 @@ def _habits(state: State, body: Body, place: Place) -> F64:
     prepared, item = state.prepared, state.prepared.items[body.first]
     here = _moved(state, body.members[0], place)
     total = np.zeros(len(place.price))
+    if item.was is not None:
+        turned = abs((place.yaw - item.was.yaw + 180.0) % 360.0 - 180.0) / 90.0
+        away = np.hypot(place.x - item.was.position[0], place.y - item.was.position[1])
+        total += _MOVED * (away + _TURNED * turned)
     if item.support == "wall":
         usual = item.height if item.height is not None else max(_EYE - item.size[2] / 2, 0.0)
         aside = np.minimum(np.abs(here.x), np.abs(here.y))
@@ -403,7 +410,7 @@ def _habits(state: State, body: Body, place: Place) -> F64:
     if prepared.wants_wall(body.first):
         gap = np.minimum(behind_gap(here, state.size), 3.0)
         total += np.where(gap > 0.02, WALLED + 4.0 * gap, 0.0)
-    elif len(body.members) == 1 and not prepared.wishes_of[body.first]:
+    elif len(body.members) == 1 and not prepared.wishes_of[body.first] and item.was is None:
         total += 1.2 * np.min(walls_gaps(here, state.size), axis=0)
     return total
 

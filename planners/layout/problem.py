@@ -38,6 +38,7 @@ class Item(BaseModel):
         id, label, color, size: as a node of a scene graph has them.
         support: what carries it: "floor", "wall", "ceiling" or the id of another item.
         stand: where it is and stays; None lets the solver choose. Doors and windows always have one.
+        was: where it stands now, of what may move: of places that are as good, the nearest to that is taken.
         height: of its underside over the floor, for what hangs on a wall; None leaves it to the solver.
         clear: metres kept free before, behind, left and right of it for using it: a drawer, a chair, a way through.
         backed: its back belongs against a wall.
@@ -52,6 +53,7 @@ class Item(BaseModel):
     size: Size
     support: Support = "floor"
     stand: Stand | None = None
+    was: Stand | None = None
     height: Metres | None = None
     clear: tuple[Metres, Metres, Metres, Metres] = (0.0, 0.0, 0.0, 0.0)
     backed: bool = False
