@@ -21,6 +21,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from ..gaussians.color import name_of
 from ..gaussians.errors import FileError, UserError
 from ..gaussians.language.field import Box
+from .orienting import Orienter
 
 if TYPE_CHECKING:
     from ..gaussians.camera import Camera
@@ -230,6 +231,7 @@ class _Placer:
         assert scene.language is not None
         self.basis: NDArray[np.float64] = scene.frame.basis()
         self.scale = scene.frame.metres_per_unit or 1.0
+        self.fronts = Orienter(scene)
         groups = [g for g in scene.language.groups if g.level in ("object", "structure") and g.count]
         corners = np.concatenate([g.box.corners() for g in groups]) @ self.basis.T if groups else np.zeros((1, 3))
         low, high = corners.min(axis=0), corners.max(axis=0)
@@ -250,8 +252,9 @@ class _Placer:
         return Viewpoint(position=self.point(eye), target=self.point(eye + camera.forward))
 
     def node(self, group: Group) -> Node:
-        along = self.basis @ np.array(group.box.axes[0])
-        width, depth, height = (float(s) * self.scale for s in group.box.size)
+        run, *sides = self.fronts.sides(group)
+        along = self.basis @ run
+        width, depth, height = (float(s) * self.scale for s in (*sides, group.box.size[2]))
         return Node(
             id=group.id,
             label=group.label,
