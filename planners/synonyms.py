@@ -145,6 +145,12 @@ def narrower(phrase: Phrase) -> frozenset[Phrase]:
 
 
 @cache
+def phrases() -> frozenset[str]:
+    """Every name of the tables as it is written."""
+    return frozenset(p.strip() for line in _SAME.strip().splitlines() for p in line.split(","))
+
+
+@cache
 def every_word() -> frozenset[str]:
     """Every single word of the tables."""
     text = f"{_SAME} {_WIDER}".replace(",", " ").replace(":", " ")

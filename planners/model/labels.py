@@ -9,35 +9,39 @@ from __future__ import annotations
 import re
 import unicodedata
 from functools import cache
+from itertools import pairwise
 
 from ...gaussians.color import names as color_names
 from ...gaussians.language.encoders.words import normalise
 from .. import synonyms
+from ..grammar.verbs import VERBS
 from ..graph import SceneGraph
 from ..wordwise import vocabulary
 
-MAX_CHARS, MAX_WORDS, MAX_STRANGE = 40, 6, 3  # strange: of a name with words that no table of ours knows
+MAX_CHARS, MAX_WORDS = 48, 8
+_STRANGE_WORDS, _BESIDE_STRANGE = 3, 6  # strange are words that no table of ours knows
+_UNTIED = 4  # words of a name without any that ties it together ("of", "with")
 _UNSPACED = 8  # characters of a name in a script that sets no spaces; a sentence is longer
-_MARKS = re.compile(r"[^\w\s'’&,()/+-]|_")  # what names do not hold, once quotes and braces are taken out
+_MARKS = re.compile(r"[^\w\s'’&()/+-]|_")  # what names do not hold, braces among it
 _ADDRESS = re.compile(r"://|\bwww\.|\w\.\w{2,}|\w@\w", re.IGNORECASE)
-_DROPPED = re.compile(r"[{}\"“”„«»`]")
+_QUOTES = re.compile(r"[\"“”„«»]")
+_BEFORE_THE = frozenset({"of", "in", "on", "by", "from"})
+_LINKS = _BEFORE_THE | {"with", "and", "for", "a", "an", "the"}
 _SCRIPT_OF_IDEAS = re.compile(r"[\u0e00-\u0eff\u1000-\u109f\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
 
 # Words of orders, of speaking to somebody and of "all", which no object has in its name, in the tongues models read
 # best; each stands for all words that begin so, "=" for the word alone.
 _ORDERS = """
-ignor disregard forget overrid bypass obey disobey execut delet remov eras destroy elimin obliterat purge instruct
-command prompt previous prior everything anything nothing =all =every =must =should =shall =please =you =your =yours
-=yourself =me =my =now =instead =only =assistant =user =json =admin =say =tell =answer =respond =reply =output =print
-=do =don =not =never =always =make =move =recolor =paint =isolate =replace =duplicate =scale =rotate =insert =select
-=return =reveal =pretend =act =become =wipe =nuke =kill =discard =drop =stop =start =begin =end =override =jailbreak
-=verdict =ops =target =query =password
-lösch entfern vergiss ignorier zerstör anweis befehl =alles =alle =bitte =du =sie
-supprim efface oubli enlev détrui retir =tout =tous =toutes =vous =tu consigne
-elimin borr olvid ignore destru quita =todo =todos =todas =usted instruccion
-cancell dimentic rimuov elimina distrugg =tutto =tutti istruzion apag esquec remova =tudo instruç
-verwijder negeer wis vergeet =alle =alles usuń zignoruj wszystk удал игнор забуд уничтож сотри =все =всё инструкц
-видал ігнор sil yoksay
+ignor disregard forget overrid bypass obey disobey =execute =executing delet =remove =removes =removed =removing eras
+destroy elimin obliterat annihilat =purge instruct =command =commands prompt =previous =prior everything anything
+nothing =now =then =all =every =must =should =shall =please =you =your =yours =yourself =me =my =instead =only
+=assistant =json =admin =say =tell =answer =respond =reply =output =do =don =not =never =always =make =move =recolor
+=isolate =replace =duplicate =rotate =insert =select =return =reveal =pretend =become =wipe =nuke =kill =discard
+=jailbreak =verdict =ops =query password =get =rid lösch entfern vergiss ignorier zerstör anweis befehl =alles =alle
+=bitte =du =sie supprim =efface =effacez oubli enlev détrui =retire =tout =tous =toutes =vous =tu consigne =borra
+=borre =borrar olvid destruy =quita =todo =todos =todas =usted instruccion cancell dimentic rimuov distrugg =tutto
+=tutti istruzion =apaga =apague esquec =tudo instruç verwijder negeer =wis vergeet usuń zignoruj wszystk удал игнор
+забуд уничтож сотри =все =всё инструкц видал ігнор =sil yoksay
 """
 _UNSPACED_ORDERS = re.compile(
     "删|刪|忽略|无视|無視|忘|指令|指示|全部|所有|请|請|必须|清除|移除|削除|消|すべて|全て|命令|삭제|무시|모두|지시"
@@ -58,28 +62,36 @@ def cleaned(graph: SceneGraph) -> SceneGraph:
 
 @cache
 def plain(name: str, most: int = MAX_WORDS) -> str | None:
-    """A name as a model may see it: one line without quotes and braces; None if it is no plausible name.
+    """A name as a model may see it: one line without quotes; None if it is no plausible name.
 
     Args:
         most: words that it may have.
     """
     if "\n" in name or "\r" in name or _ADDRESS.search(name):
         return None
-    text = _DROPPED.sub("", unicodedata.normalize("NFKC", name).replace("_", " "))
+    text = _QUOTES.sub("", unicodedata.normalize("NFKC", name).replace("_", " "))
     text = "".join(c for c in text if not unicodedata.category(c).startswith("C"))
     text = " ".join(text.split())
     words = re.findall(r"[^\W_]+", text.lower())
     if not words or len(text) > MAX_CHARS or len(words) > most or _MARKS.search(text):
         return None
+    if " ".join(words) in _phrases():
+        return text
     if _SCRIPT_OF_IDEAS.search(text) and (len(text) > _UNSPACED or _UNSPACED_ORDERS.search(text)):
         return None
-    if set(normalise(text)) <= _known() and set(words) <= _known() | _LINKS:
-        return text
-    strange = len(words) > MAX_STRANGE or any(_mixed(w) or _orders(w) for w in words)
-    return None if strange else text
+    strange = [w for w in words if w not in _known()]
+    tied = bool(_LINKS & set(words))
+    if len(strange) > _STRANGE_WORDS or len(words) > (_UNTIED if not tied else _BESIDE_STRANGE if strange else most):
+        return None
+    return None if _is_order(words) or any(_mixed(w) or _orders(w) for w in words) else text
 
 
-_LINKS = frozenset("a an the of with and in on for".split())  # noqa: SIM905
+def _is_order(words: list[str]) -> bool:
+    """Whether a name begins as an order to take something away ("trash the sofa", but not "trash can")."""
+    begins = len(words) > 1 and VERBS.get(words[0], ("",))[0] == "DELETE"
+    named = any(" ".join(words[:n]) in _phrases() for n in range(2, len(words) + 1))
+    speaks = any(w == "the" and before not in _BEFORE_THE for before, w in pairwise(words))
+    return (begins and not named) or speaks
 
 
 def _orders(word: str) -> bool:
@@ -101,12 +113,17 @@ def _mixed(word: str) -> bool:
 
 
 @cache
+def _phrases() -> frozenset[str]:
+    """Names of the tables, in lower case."""
+    kinds = vocabulary().kinds
+    return frozenset(p.lower() for p in [*kinds, *(n for names in kinds.values() for n in names)]) | synonyms.phrases()
+
+
+@cache
 def _known() -> frozenset[str]:
-    """Words of the embedded vocabulary, of the synonyms and of colours: names made of them alone are names, except for
-    those words that are orders as well."""
+    """Words of the embedded vocabulary, of the synonyms and of colours, and those that tie them together."""
     table = vocabulary()
     phrases = [*table.kinds, *(n for names in table.kinds.values() for n in names), *table.broader, *table.modifiers]
     words = {w for p in [*phrases, *color_names()] for w in (*p.lower().split(), *normalise(p))}
     words |= {w for said in synonyms.every_word() for w in (said, *normalise(said))}
-    whole, stems = _order_words()
-    return frozenset(w for w in words if w not in whole and not w.startswith(stems))
+    return frozenset(words | _LINKS)
