@@ -18,8 +18,8 @@ from ..gaussians.errors import ScenewrightError
 from .terminal import explain, terminal
 
 VERBS = (
-    "demo", "info", "embed", "select", "plan", "schema", "check", "edit", "chat", "render", "convert", "bench",
-    "doctor",
+    "demo", "info", "embed", "select", "plan", "schema", "check", "compose", "edit", "chat", "render", "convert",
+    "bench", "doctor",
 )  # fmt: skip
 
 app = typer.Typer(

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from .gaussians.language.selection import Selection
     from .gaussians.render import render
     from .gaussians.scene import Frame, Scene
+    from .planners.composing import compose
+    from .planners.graph import SceneGraph
     from .planners.plan import EditPlan
     from .tools.base import EditOp
     from .tools.receipt import Receipt
@@ -67,6 +69,8 @@ _HOME = {
     "EditOp": ".tools.base",
     "Receipt": ".tools.receipt",
     "EditPlan": ".planners.plan",
+    "SceneGraph": ".planners.graph",
+    "compose": ".planners.composing",
     "ScenewrightError": ".gaussians.errors",
     "UserError": ".gaussians.errors",
     "InstructionError": ".gaussians.errors",
@@ -98,10 +102,12 @@ __all__ = [
     "Result",
     "Room",
     "Scene",
+    "SceneGraph",
     "ScenewrightError",
     "Selection",
     "Session",
     "UserError",
+    "compose",
     "embed",
     "furnish",
     "kinds",
