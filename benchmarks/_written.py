@@ -16,6 +16,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Literal
 
+from ..agent.sight import StageSight
 from ..gaussians.errors import FileError
 from ..planners.graph import SceneGraph
 from ..planners.impossible import Step
@@ -41,12 +42,14 @@ class Judged:
             that is not the right one; "unanswered": not understood.
         seconds: from words to targets.
         told: what came, for a reader.
+        asked: whether a language model was asked.
     """
 
     case: dict[str, Any]
     outcome: Outcome
     seconds: float
     told: str
+    asked: bool = False
 
 
 def cases(folder: Path = FOLDER) -> list[dict[str, Any]]:
@@ -79,6 +82,8 @@ def judge(found: Resolved, case: dict[str, Any]) -> Outcome:
         wanted = case.get("steps", ())
         same = len(found.steps) == len(wanted) and all(map(_same, found.steps, wanted))
         return "right" if same else "wrong_edit"
+    if found.plan.verdict == expected:
+        return "right"  # said by the planner itself, whose plan has no place for candidates
     if found.verdict == expected:
         candidates = set(case.get("candidates", found.candidates))
         return "right" if candidates == set(found.candidates) else "wrong_answer"
@@ -127,17 +132,20 @@ def described(step: Step) -> dict[str, Any]:
     return told
 
 
-def measure(planner: Planner, todo: Iterable[dict[str, Any]]) -> list[Judged]:
-    """Every instruction planned and resolved on its room."""
+def measure(planner: Planner, todo: Iterable[dict[str, Any]], accounted: bool = False) -> list[Judged]:
+    """Every instruction planned and resolved on its room; with `accounted`, seconds that a stand-in for a model states
+    in its usage and did not sleep are added."""
     judged = []
     for case in todo:
         room = stage(case["room"])
         started = time.perf_counter()
-        found = resolve_text(room, planner, case["text"], case.get("context"))
+        found = resolve_text(room, planner, case["text"], case.get("context"), StageSight(room))
         seconds = time.perf_counter() - started
+        usage = found.plan.usage
+        seconds += usage.seconds if accounted and usage is not None else 0.0
         steps = "; ".join(json.dumps(described(s)) for s in found.steps)
         told = f"{found.verdict} {list(found.candidates) or ''} {found.reason} {steps}"
-        judged.append(Judged(case, judge(found, case), seconds, told))
+        judged.append(Judged(case, judge(found, case), seconds, told, usage is not None))
     return judged
 
 

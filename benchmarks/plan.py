@@ -1,14 +1,14 @@
 """bench plan: how often a planner is right, by kind of instruction, and how long it takes.
 
 Three sets: instructions over hand-written rooms, judged by the nodes they would touch (`_written`), of which half is
-held back and told in totals only; instructions judged by their operations alone; and sentences of other people, of
-which the head noun is judged (`_nouns`). Refuses to count an abstention as a wrong edit: a wrong edit costs more.
+held back and told in totals only, and on which is also shown what asking a language model adds (`_cascade`);
+instructions judged by their operations alone; and sentences of other people, of which the head noun is judged
+(`_nouns`). Refuses to count an abstention as a wrong edit: a wrong edit costs more.
 """
 
 from __future__ import annotations
 
 import json
-import statistics
 import subprocess
 import sys
 import time
@@ -18,11 +18,11 @@ from pathlib import Path
 from typing import Any, Literal, get_args
 
 from ..gaussians.errors import FileError
-from ..planners import grammar, load
+from ..planners import load
 from ..planners.plan import EditPlan, Planner
 from ..tools import registry
-from . import _data, _nouns, _written
-from .harness import Metric, Point, Result
+from . import _cascade, _data, _nouns, _written
+from .harness import Metric, Result
 
 CASES = Path(__file__).resolve().parent.parent / "tests" / "planners" / "instructions.jsonl"
 Outcome = Literal["right", "abstained", "wrong"]
@@ -117,12 +117,9 @@ def run(quick: bool = False) -> Result:
     repeat = 1 if quick else 5
     told = measure(planner, todo, repeat)
     untold = measure(planner, [{k: v for k, v in c.items() if k != "previous"} for c in todo], repeat)
-    held = sum(f.stat().st_size for f in Path(grammar.__file__).parent.iterdir() if f.suffix in (".py", ".lark"))
     rooms, nouns = _on_rooms(planner), _of_people(planner, quick)
-    points = tuple(
-        Point("grammar", setting, statistics.median(a.seconds for a in answers), share(answers, "right"), held, default)
-        for setting, answers, default in (("with context", told, True), ("without context", untold, False))
-    )
+    compared, points, how = _cascade.measure(quick)
+    alone = Metric("right.without_context", share(untold, "right"), "share", "higher")
     start = Metric("ms.loading", 1e3 * min(loading() for _ in range(repeat)), "ms", "lower", 0.5)
     notes = (
         f"{len(todo)} instructions written by the planner's own author: a regression set, not an estimate of how it "
@@ -131,10 +128,11 @@ def run(quick: bool = False) -> Result:
         f"written.dev, written.held: {len(_written.cases())} instructions over six hand-written rooms, by the same "
         "author, right only with the very nodes, operations and amounts; written before the grammar was tuned for "
         "them, and the answers to the held half were never looked at one by one.",
+        *how,
         *nouns.notes,
     )
-    found = (*metrics(told), *rooms.metrics, *nouns.metrics, start)
-    return Result("plans of written instructions", "share right", found, (*points, *rooms.points), notes)
+    found = (*metrics(told), alone, *rooms.metrics, *compared, *nouns.metrics, start)
+    return Result("plans of written instructions", "share right", found, points, notes, (_cascade.SEED,))
 
 
 @dataclass(frozen=True)
@@ -142,13 +140,12 @@ class _Part:
     """What one set adds to the result."""
 
     metrics: tuple[Metric, ...] = ()
-    points: tuple[Point, ...] = ()
     notes: tuple[str, ...] = ()
 
 
 def _on_rooms(planner: Planner) -> _Part:
     """The written instructions on their rooms, both halves."""
-    found, points = list[Metric](), list[Point]()
+    found = list[Metric]()
     _written.measure(planner, _written.cases())  # words are compared once; the clock is for instructions
     for half, held in (("dev", False), ("held", True)):
         judged = _written.measure(planner, [c for c in _written.cases() if _written.is_held(c) == held])
@@ -163,9 +160,7 @@ def _on_rooms(planner: Planner) -> _Part:
             found.append(Metric(f"written.{half}.right.{kind}", _written.share(of_kind, "right"), "share", "higher"))
         seconds = sorted(j.seconds for j in judged)
         found.append(Metric(f"written.{half}.ms.max", 1e3 * seconds[-1], "ms", "lower", 0.5))
-        setting = "on rooms, held back" if held else "on rooms"
-        points.append(Point("grammar", setting, statistics.median(seconds), shares["right"], 0))
-    return _Part(tuple(found), tuple(points))
+    return _Part(tuple(found))
 
 
 def _of_people(planner: Planner, quick: bool) -> _Part:

@@ -47,8 +47,13 @@ def test_shares_add_up() -> None:
 @pytest.mark.slow
 def test_whole_benchmark() -> None:
     result = bench.run(quick=True)
-    with_context, without = result.points
-    assert with_context.default and with_context.accuracy >= without.accuracy
+    figures = {m.key: m.value for m in result.metrics}
+    assert figures["right"] >= figures["right.without_context"]
+    grammar, cascade, *models = result.points
+    assert grammar.default and grammar.accuracy <= cascade.accuracy
+    assert all(cascade.seconds < model.seconds / 5 for model in models)
+    assert all("not a real model" in point.method for point in (cascade, *models))
+    assert any("accounted, not slept" in note for note in result.notes)
 
 
 def test_missing_set_is_told(tmp_path: Path) -> None:

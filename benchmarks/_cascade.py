@@ -1,0 +1,99 @@
+"""Grammar, cascade and language model on the written set: how often right, how soon, how often the model is asked.
+
+Knows the three ways to plan and what stands in for a model where none is named. Refuses to pass a stand-in off as a
+model: table, chart and notes say which it was.
+"""
+
+from __future__ import annotations
+
+import os
+import statistics
+from collections.abc import Sequence
+from typing import get_args
+
+from ..gaussians.errors import BackendError
+from ..planners import load
+from ..planners.cascade import Cascade
+from ..planners.plan import EditPlan, Planner, Sight
+from . import _scripted, _written
+from ._written import Judged
+from .harness import Metric, Point
+
+VARIABLE = "SCENEWRIGHT_BENCH_MODEL"
+SEED = 7040
+ERRORS = (0.02, 0.05, 0.1)  # of the stand-in, on the chart
+USUAL = 0.05  # of those, the one that the cascade asks and that the figures are of
+EVERY = 10  # of a real model's instructions, one is asked in a quick run
+
+
+class _Patient:
+    """A model alone, of which a failure counts as an abstention."""
+
+    def __init__(self, model: Planner) -> None:
+        self.name, self._model = model.name, model
+
+    def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
+        try:
+            return self._model.plan(text, previous=previous, sight=sight)
+        except BackendError as error:
+            reason = str(error)[:2000]
+            return EditPlan(instruction=text, planner=self.name, verdict="not_understood", reason=reason)
+
+
+def measure(quick: bool) -> tuple[tuple[Metric, ...], tuple[Point, ...], tuple[str, ...]]:
+    """Figures, points and notes. Seconds are the mean of an instruction, as the few that ask a model cost the most."""
+    cases, grammar = _written.cases(), load("grammar")
+    _written.measure(grammar, cases)  # words are compared once; the clock is for instructions
+    spec = os.environ.get(VARIABLE, "").strip()
+    todo = cases[::EVERY] if spec and quick else cases
+    alone = _written.measure(grammar, todo)
+    model = load(spec) if spec else _scripted.Scripted(USUAL, SEED)
+    cascade = _written.measure(Cascade(grammar, None, model), todo, accounted=not spec)
+    asked = sum(j.asked for j in cascade) / len(cascade)
+    found = [
+        *_figures("grammar", alone),
+        *_figures("cascade", cascade),
+        Metric("cascade.asked", asked, "share", "lower"),
+    ]
+    points = [
+        _point("grammar", "no model", alone, default=True),
+        _point(f"cascade: grammar, then {model.name}", f"asks the model {asked:.1%} of the time", cascade),
+    ]
+    for errors in ERRORS if not spec else (USUAL,):
+        one = model if spec or errors == USUAL else _scripted.Scripted(errors, SEED)
+        every = _written.measure(_Patient(one), todo, accounted=not spec)
+        points.append(_point(model.name, "" if spec else f"{errors:.0%} errors", every))
+        found += _figures("model" if spec else "stand_in", every) if errors == USUAL else []
+    return tuple(found), tuple(points), (_note(spec, len(todo)),)
+
+
+def _figures(who: str, judged: Sequence[Judged]) -> list[Metric]:
+    """Outcomes and milliseconds of an instruction. What a model takes differs from day to day: half is noise."""
+    times = sorted(1e3 * j.seconds for j in judged)
+    found = [
+        Metric(f"{who}.{name}", _written.share(judged, name), "share", "higher" if name == "right" else "lower")
+        for name in get_args(_written.Outcome)
+    ]
+    found += [
+        Metric(f"{who}.ms.{name}", value, "ms", "lower", 0.5)
+        for name, value in (("mean", statistics.mean(times)), ("p50", statistics.median(times)), ("max", times[-1]))
+    ]
+    return found
+
+
+def _point(method: str, setting: str, judged: Sequence[Judged], default: bool = False) -> Point:
+    seconds = statistics.mean(j.seconds for j in judged)
+    return Point(method, setting, seconds, _written.share(judged, "right"), 0, default)
+
+
+def _note(spec: str, count: int) -> str:
+    if spec:
+        return f"grammar, cascade, model: {count} written instructions, both halves; the model is {spec}, really asked."
+    return (
+        f"grammar, cascade, stand_in: {count} written instructions, both halves, mean seconds of an instruction. No "
+        f"model was asked. The {_scripted.NAME}, knows the right answers and errs at the stated rate (half not "
+        f"understood, half done to the wrong thing; figures at {USUAL:.0%}); its latency is drawn from a log-normal "
+        f"distribution of median {_scripted.MEDIAN:g} s and sigma {_scripted.SPREAD:g} and accounted, not slept. The "
+        "chart shows what asking only where the grammar abstains saves, not how good a model is, and the grammar's "
+        f"author wrote the set: of other people's words more would be asked. {VARIABLE}=openai:… measures a real model."
+    )
