@@ -67,6 +67,11 @@ def helper(function: Callable[..., Any]) -> Any:
     return njit(**_OPTIONS, forceinline=True)(function)
 
 
+def inlined(function: Callable[..., Any]) -> Any:
+    """As `helper`, for `exact` kernels."""
+    return njit(**{**_OPTIONS, "fastmath": False}, forceinline=True)(function)
+
+
 def intrinsic(function: Callable[..., Any]) -> Any:
     """Decorate a function that emits LLVM code: called from kernels, without the typing context it is declared with."""
     return extending.intrinsic(function)

@@ -1,0 +1,58 @@
+"""Adam (Kingma & Ba 2015) over plain arrays, one compiled pass over each.
+
+Knows arrays and learning rates. Refuses to know what they mean.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import compiled
+from ..compiled import exact
+
+F32 = NDArray[np.float32]
+BETAS = (0.9, 0.999)
+EPSILON = 1e-15  # Kerbl et al. 2023: gradients of single Gaussians are far below Adam's usual 1e-8
+f4 = np.float32
+
+
+@dataclass
+class Adam:
+    """The optimiser of one array `[N, ...]` of rows.
+
+    Attributes:
+        first, second: running means of the gradient and of its square, of the array's shape.
+        steps: how many were made.
+    """
+
+    first: F32
+    second: F32
+    steps: int = 0
+
+    @classmethod
+    def of(cls, values: F32) -> Adam:
+        """For an array that was never stepped."""
+        return cls(np.zeros_like(values), np.zeros_like(values))
+
+    def step(self, values: F32, gradient: F32, rate: float) -> None:
+        """Move `values` in place against their gradient."""
+        self.steps += 1
+        bias = [1 - beta**self.steps for beta in BETAS]
+        numbers = f4(rate / bias[0]), f4(1 / np.sqrt(bias[1])), f4(EPSILON), f4(BETAS[0]), f4(BETAS[1])
+        flat = (a.reshape(-1) for a in (values, gradient, self.first, self.second))
+        compiled.run(_step, compiled.workers(), *flat, numbers)
+
+
+@exact
+def _step(worker, workers, values, gradient, first, second, numbers):  # type: ignore[no-untyped-def]
+    rate, scale, epsilon, beta1, beta2 = numbers
+    size = values.shape[0]
+    for i in range(size * worker // workers, size * (worker + 1) // workers):
+        g = gradient[i]
+        a = beta1 * first[i] + (f4(1) - beta1) * g
+        b = beta2 * second[i] + (f4(1) - beta2) * (g * g)
+        first[i], second[i] = a, b
+        values[i] -= rate * a / (np.sqrt(b) * scale + epsilon)
