@@ -117,9 +117,9 @@ def _all_of(stage: Stage, ids: Sequence[Any]) -> dict[str, Any]:
 def _wrong(told: dict[str, Any], stage: Stage) -> tuple[EditOp, ...]:
     """What nobody asked for: the thing beside the right one, or another colour of what is added."""
     ops: tuple[EditOp, ...] = told.get("ops", ())
-    first = ops[0].model_dump(exclude_none=True) if ops else {"op": "delete"}
+    first: dict[str, Any] = ops[0].model_dump(exclude_none=True) if ops else {"op": "delete"}
     if first["op"] == "insert":
-        changed = _GREY if first.get("color") == "red" else _RED
+        changed: dict[str, Any] = _GREY if first.get("color") == "red" else _RED
     else:
         meant = first.get("target", {}).get("groups") or (0,)
         changed = {"target": {"groups": [(meant[0] + 1) % len(stage.graph.nodes)]}}
