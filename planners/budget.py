@@ -8,10 +8,11 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
-from ..gaussians.errors import BackendError, UserError
+from ..gaussians.errors import BackendError, ScenewrightError, UserError
 from .plan import EditPlan, NoPlanError, Planner, Sight, Usage
 
 Progress = Callable[[str, float], None]  # stage in words, share done in [0, 1]
@@ -32,7 +33,8 @@ class Budget:
     """What language models may cost.
 
     Attributes:
-        seconds: the longest that one instruction may wait for them, all attempts together.
+        seconds: the longest that one instruction may wait for them, all attempts together; not counting the embedding
+            of a scene that they look at for the first time.
         dollars: what one session may spend; None sets no limit. No instruction is begun when it is used up, so that
             the last one may go beyond it. Where no price is known (own servers, local models) nothing is counted.
     """
@@ -127,6 +129,9 @@ class Metered:
             BackendError: it cannot be loaded, cannot be reached, or gave no plan.
         """
         self._ledger.require()
+        if sight is not None:  # embedding may take longer than any model, and is no time of the model's
+            with suppress(ScenewrightError):
+                sight.graph()
         stage, self._since = f"asking {self.name}", time.monotonic()
         self._progress(stage, 0.0)
         try:

@@ -91,6 +91,22 @@ def test_a_metered_planner_is_loaded_when_asked_and_stops_at_its_budget() -> Non
     assert told == [("asking fake:1", 0.0), ("asking fake:1", 1.0)] * 2
 
 
+def test_a_scene_is_looked_at_before_the_clock_runs() -> None:
+    order = list[str]()
+
+    class Slow:
+        def graph(self) -> object:
+            order.append("embedded")
+            raise BackendError("it cannot be embedded")  # which is for the planner to judge
+
+        def picture(self) -> None:
+            return None
+
+    planner = Metered("fake:1", lambda _: Fake(), Ledger(), lambda stage, share: order.append(stage))
+    planner.plan("a", sight=Slow())  # type: ignore[arg-type]
+    assert order == ["embedded", "asking fake:1", "asking fake:1"]
+
+
 def test_attempts_that_came_to_nothing_are_paid_for() -> None:
     ledger = Ledger(Budget(dollars=0.01))
     planner = Metered("fake:1", lambda _: Fake(NoPlanError("no valid plan", usage())), ledger)
