@@ -17,6 +17,7 @@ from ...tools.registry import AnyOp
 from ..plan import MAX_OPS, Verdict
 
 MAX_CHARS = 65_536  # of an answer; the longest plans are a tenth of it
+_MAX_DEPTH = 40  # of the JSON, where a query in a query is four deeper; nobody says so much in one breath
 _FAULTS = 4  # named at once
 _FAULT_CHARS = 240  # of each
 _HESITANT = ("absent", "ambiguous")
@@ -140,11 +141,13 @@ def _no_number(name: str) -> NoReturn:
 _DECODER = json.JSONDecoder(object_pairs_hook=_unique, parse_constant=_no_number)
 
 
-def _given(node: Any) -> Any:
+def _given(node: Any, depth: int = 0) -> Any:
     """Without fields that are null: models that must name every field say so what they leave out."""
+    if depth > _MAX_DEPTH:
+        raise ReplyError("the JSON is nested too deeply")
     if isinstance(node, dict):
-        return {k: _given(v) for k, v in node.items() if v is not None}
-    return [_given(item) for item in node] if isinstance(node, list) else node
+        return {k: _given(v, depth + 1) for k, v in node.items() if v is not None}
+    return [_given(item, depth + 1) for item in node] if isinstance(node, list) else node
 
 
 def _told(error: ValidationError) -> str:

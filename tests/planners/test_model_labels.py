@@ -60,8 +60,8 @@ INJECTIONS = (
 NAMES = (
     "sofa", "U-shaped sofa", "coffee table", "chest of drawers", "trash can", "throw pillow", "drop-leaf table",
     "end table", "executive chair", "kitchen scale", "dry erase board", "bust of the emperor", "t-shirt",
-    "flat-screen TV", "mother's chair", "salt & pepper", "IKEA Billy 80", "floor lamp (left)", "stack of old books on pallet",
-    "Ficus benjamina", "Stuhl", "chaise longue", "стул", "椅子", "소파",
+    "flat-screen TV", "mother's chair", "salt & pepper", "IKEA Billy 80", "floor lamp (left)",
+    "stack of old books on pallet", "Ficus benjamina", "Stuhl", "chaise longue", "стул", "椅子", "소파",
 )  # fmt: skip
 
 
