@@ -6,6 +6,7 @@ Knows streams. Refuses to know what a result means.
 from __future__ import annotations
 
 import json
+import shutil
 import sys
 import time
 from collections.abc import Mapping, Sequence
@@ -69,7 +70,9 @@ class Terminal:
             return
         self._last_progress = now
         filled = round(24 * min(max(fraction, 0.0), 1.0))
-        self.err.write(f"\r\x1b[K{'━' * filled}{'╌' * (24 - filled)} {stage}")
+        line = f"{'━' * filled}{'╌' * (24 - filled)} {stage}"
+        # A line that wraps could not be taken back.
+        self.err.write(f"\r\x1b[K{line[: shutil.get_terminal_size((80, 24)).columns - 1]}")
         self._line_open = True
         if fraction >= 1:
             self.clear()

@@ -37,6 +37,17 @@ def test_progress_is_drawn_on_a_terminal_and_removed() -> None:
     assert err.getvalue().endswith("\r\x1b[K")
 
 
+def test_progress_never_wraps(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Screen(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    monkeypatch.setenv("COLUMNS", "60")
+    err = Screen()
+    Terminal(io.StringIO(), err).progress("planning with " + "x" * 200, 0.5)
+    assert len(err.getvalue().removeprefix("\r\x1b[K")) == 59
+
+
 @pytest.mark.parametrize(
     ("error", "verdict", "code"),
     [(AbsentError("x"), "absent", 3), (CheckFailedError("x"), "check_failed", 3), (FileError("x"), "file", 4),
