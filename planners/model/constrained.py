@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import codecs
 import json
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -18,6 +17,7 @@ from ...gaussians.errors import BackendError
 from .backend import UnreachableError
 from .tightening import tightened
 
+_SCHEMAS = 4  # kept compiled
 _LONGEST_CLOSING = 4096  # tokens; every step takes the shortest way, some tens are usual
 # How a text is brought to its end: inside a string its quote, outside brackets, null before a value that has parts.
 _INSIDE = '"' + "".join(chr(c) for c in range(32, 127) if chr(c) not in '"\\')
@@ -48,6 +48,30 @@ class Vocabulary:
         self.size = size
         single = {c: self.reader.greedy_tokenize(c) for c in {*_INSIDE, *_OUTSIDE}}
         self.characters = {c: ids[0] for c, ids in single.items() if len(ids) == 1}
+        self._fresh: dict[str, Any] = {}
+
+    def matcher(self, schema: dict[str, Any]) -> Any:
+        """A fresh matcher of the tightened schema; the last few schemas are compiled once.
+
+        Raises:
+            UnreachableError: the schema cannot be followed.
+        """
+        key = json.dumps(schema)
+        if key not in self._fresh:
+            if len(self._fresh) >= _SCHEMAS:
+                del self._fresh[next(iter(self._fresh))]
+            self._fresh[key] = self._compiled(schema)
+        return self._fresh[key].deep_copy()
+
+    def _compiled(self, schema: dict[str, Any]) -> Any:
+        from llguidance import LLMatcher
+
+        compact: Any = {"whitespace_flexible": False}  # free whitespace would be one more way never to end
+        try:
+            grammar = LLMatcher.grammar_from_json_schema(tightened(schema), overrides=compact)
+        except ValueError as error:
+            raise _unfollowed(str(error)) from error
+        return _checked(LLMatcher(self.reader, grammar, log_level=0))
 
 
 class Constrained:
@@ -62,20 +86,13 @@ class Constrained:
     """
 
     def __init__(self, vocabulary: Vocabulary, schema: dict[str, Any]) -> None:
-        from llguidance import LLMatcher
-
         self._vocabulary = vocabulary
-        try:
-            grammar = _grammar(json.dumps(schema))
-        except ValueError as error:
-            raise _unfollowed(str(error)) from error
-        self._matcher: Any = LLMatcher(vocabulary.reader, grammar, log_level=0)
+        self._matcher = vocabulary.matcher(schema)
         self._bits = np.zeros((vocabulary.size + 31) // 32, np.int32)
         self._decoder = codecs.getincrementaldecoder("utf-8")(errors="replace")
         self._in_string = self._escaped = False
         self.tokens: list[int] = []
         self.text = ""
-        self._check()
 
     @property
     def done(self) -> bool:
@@ -85,13 +102,13 @@ class Constrained:
     def allowed(self) -> NDArray[np.bool_]:
         """`[V]` which tokens may come next; at least one as long as it is not done."""
         self._matcher.unsafe_compute_mask_ptr(self._bits.ctypes.data, self._bits.nbytes)
-        self._check()
+        _checked(self._matcher)
         return np.unpackbits(self._bits.view(np.uint8), bitorder="little")[: self._vocabulary.size].astype(np.bool_)
 
     def take(self, token: int) -> list[int]:
         """Add a token and all that must follow it; these tokens."""
         self._matcher.consume_token(token)
-        self._check()
+        _checked(self._matcher)
         return self._add([token]) + self.take_forced()
 
     def take_forced(self) -> list[int]:
@@ -99,7 +116,7 @@ class Constrained:
         forced = [] if self.done else list(self._matcher.compute_ff_tokens())
         if forced:
             self._matcher.consume_tokens(forced)
-            self._check()
+            _checked(self._matcher)
         return self._add(forced)
 
     def reads(self, text: str) -> bool:
@@ -134,20 +151,13 @@ class Constrained:
         self.text += said
         return tokens
 
-    def _check(self) -> None:
-        if self._matcher.is_error():
-            raise _unfollowed(str(self._matcher.get_error()).splitlines()[0])
+
+def _checked(matcher: Any) -> Any:
+    """The matcher, unless it met an error, which it never leaves."""
+    if matcher.is_error():
+        raise _unfollowed(str(matcher.get_error()).splitlines()[0])
+    return matcher
 
 
 def _unfollowed(why: str) -> UnreachableError:
     return UnreachableError(f"no answer can be held to this schema: {why}")
-
-
-@lru_cache(maxsize=8)
-def _grammar(schema: str) -> str:
-    """The grammar of a tightened schema, given as JSON."""
-    from llguidance import LLMatcher
-
-    compact: Any = {"whitespace_flexible": False}  # free whitespace would be one more way never to end
-    grammar: str = LLMatcher.grammar_from_json_schema(tightened(json.loads(schema)), overrides=compact)
-    return grammar

@@ -114,7 +114,7 @@ class LocalModel:
             told = text.text
             if not text.done and len(text.tokens) < room:
                 scores = self._forward(fresh)
-        if not told and not text.done:
+        if not told and not text.done and time.perf_counter() >= until:
             raise UnreachableError(self._too_slow(len(prompt)))
         taken = len(text.tokens)
         if not text.done:

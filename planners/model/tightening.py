@@ -165,12 +165,17 @@ class _Tightening:
     def _tag_unions(self, schema: Schema) -> None:
         """Require of each union's options the property that tells them apart, a constant in each."""
         for node in list(_nodes(schema)):
-            names = [option.get("$ref", "").removeprefix(_PREFIX) for option in node.get("oneOf", [])]
-            fields = [self.given.get(name, {}).get("properties", {}) for name in names]
-            tags = [tag for tag in (fields or [{}])[0] if all("const" in field.get(tag, {}) for field in fields)]
-            for name in names:
-                required = [*tags, *self.given[name].get("required", [])] if tags else None
-                self.given[name] = self.given[name] | ({"required": required} if required else {})
+            options = [option.get("$ref", "").removeprefix(_PREFIX) for option in node.get("oneOf", [])]
+            constants = [self._constants(name) for name in options]
+            tags = sorted(set.intersection(*constants)) if constants else []
+            for name in options if tags else ():
+                option = self.given[name]
+                self.given[name] = {**option, "required": [*tags, *option.get("required", [])]}
+
+    def _constants(self, name: str) -> set[str]:
+        """Names of the properties of a definition that can have one value only."""
+        fields: dict[str, Schema] = self.given.get(name, {}).get("properties", {})
+        return {field for field, node in fields.items() if "const" in node}
 
 
 def _narrowed(field: Schema, narrowing: Schema) -> Schema:
