@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from ..graph import SHELL
-from .problem import Item, Problem, Wish
+from .problem import Item, Problem
 from .shapes import EPSILON, Spot, depth, shifted
 
 DOORS = frozenset({"door", "doorway", "entrance", "gate", "exit", "front door", "entry"})
@@ -20,7 +20,7 @@ FLAT = 0.05  # metres; lower things on the floor are stood upon
 TUCKED = 0.03  # metres between a table and what stands around it
 _ELBOW = 0.08  # metres between neighbours at a table
 _SWING = 0.9  # metres before a door that its leaf takes at most
-_HEAD = 1.9  # metres; using a thing takes no more height
+HEAD = 1.9  # metres; using a thing takes no more height
 _BESIDE_WALL = ("against_wall", "in_corner", "at_window")
 
 
@@ -123,7 +123,7 @@ class Prepared:
         if item.label.lower().strip() in DOORS and not any(item.clear):
             before = behind = min(width, _SWING)
         low = 0.0 if item.support == "floor" else (item.height or 0.0)
-        high = min(_HEAD, low + max(height, 0.3))
+        high = min(HEAD, low + max(height, 0.3))
         return tuple(
             Spot(x, y, 0.0, w, d, low + FLAT, high)
             for reach, x, y, w, d in (
@@ -217,12 +217,19 @@ class Prepared:
 
 
 def _supported(problem: Problem) -> Iterator[Item]:
-    """The items; one that is said to be on or in another, and stands on the floor, stands on that one."""
-    onto: dict[int | str, Wish] = {}
-    for wish in problem.wishes:
-        if wish.hard and wish.name in ("on", "inside"):
-            onto.setdefault(wish.subject, wish)
+    """The items; one that is said to be on or in another, and stands on the floor, stands on that one.
+
+    What carries something that must be there must be there itself.
+    """
+    onto = {w.subject: w.objects[0] for w in reversed(problem.wishes) if w.hard and w.name in ("on", "inside")}
+    items: dict[int | str, Item] = {}
     for item in problem.items:
-        wish = onto.get(item.id)
-        moved = wish is not None and item.support == "floor" and item.stand is None and item.size[2] > FLAT
-        yield item.model_copy(update={"support": wish.objects[0]}) if moved and wish is not None else item
+        moved = item.id in onto and item.support == "floor" and item.stand is None and item.size[2] > FLAT
+        items[item.id] = item.model_copy(update={"support": onto[item.id]}) if moved else item
+    for item in list(items.values()):
+        seen = {item.id}
+        while not item.optional and item.support in items and item.support not in seen:
+            item = items[item.support].model_copy(update={"optional": False})
+            items[item.id] = item
+            seen.add(item.id)
+    yield from items.values()

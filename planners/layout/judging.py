@@ -1,12 +1,12 @@
-"""Which wishes a finished layout keeps: the checker's word where a scene graph can state them, our measure otherwise.
+"""What a finished layout is worth: the checker's word on everything that a scene graph can state, ours on the rest.
 
-Knows both. Refuses to change the layout.
+Knows both. Refuses to place anything; what the checker rejects is taken out.
 """
 
 from __future__ import annotations
 
 from ..checking import check
-from ..graph import NodeId, SceneGraph
+from ..graph import Node, NodeId, RoomShape, SceneGraph
 from .bodies import Prepared
 from .problem import Wish
 from .state import State
@@ -24,27 +24,61 @@ STATED = (
     "inside",
     "facing",
 )
+_UNSOUND = ("collision", "bounds", "support")
 Relations = tuple[tuple[NodeId, str, NodeId], ...]
 
 
-def kept_wishes(prepared: Prepared, state: State, graph: SceneGraph) -> tuple[tuple[Wish, ...], Relations]:
-    """The wishes that hold, and those of them that the graph can state as its relations."""
-    there = {n.id for n in graph.nodes}
-    kept, stated = list[Wish](), list[tuple[NodeId, str, NodeId]]()
-    candidates = [
-        w for w in prepared.problem.wishes if w.name in STATED and w.subject in there and w.objects[0] in there
+def judged(prepared: Prepared, state: State) -> tuple[SceneGraph, tuple[Wish, ...]]:
+    """The graph of a layout, sound as far as things could be placed, with the relations it keeps; all kept wishes."""
+    while True:
+        graph = _graph(prepared, state)
+        asked = tuple(dict.fromkeys((w.subject, w.name, w.objects[0]) for w in _statable(prepared, state)))
+        report = check(graph.model_copy(update={"relations": asked}))
+        culprits = [v.ids for v in report.violations if v.kind in _UNSOUND]
+        if not any(_take_out(prepared, state, ids) for ids in culprits):
+            break
+    doubtful = {v.ids for v in report.violations if v.kind == "relation"}
+    stated = tuple(r for r in asked if (r[0], r[2]) not in doubtful or _holds(graph, r))
+    kept = [
+        wish
+        for row, wish in enumerate(prepared.problem.wishes)
+        if ((wish.subject, wish.name, wish.objects[0]) in stated if wish.name in STATED else state.holds(row)[0])
     ]
-    by_name = {n: [w for w in candidates if w.name == n] for n in STATED}
-    broken = set[tuple[str, NodeId, NodeId]]()
-    for name, wishes in by_name.items():
-        if wishes:
-            asked = graph.model_copy(update={"relations": tuple((w.subject, name, w.objects[0]) for w in wishes)})
-            broken |= {(name, v.ids[0], v.ids[1]) for v in check(asked).violations if v.kind == "relation"}
-    for row, wish in enumerate(prepared.problem.wishes):
-        if wish.name in STATED:
-            if wish in candidates and (wish.name, wish.subject, wish.objects[0]) not in broken:
-                kept.append(wish)
-                stated.append((wish.subject, wish.name, wish.objects[0]))
-        elif state.holds(row)[0]:
-            kept.append(wish)
-    return tuple(kept), tuple(dict.fromkeys(stated))
+    return graph.model_copy(update={"relations": stated}), tuple(kept)
+
+
+def _statable(prepared: Prepared, state: State) -> list[Wish]:
+    there = {i.id for i, spot in zip(prepared.items, state.spots, strict=True) if spot is not None}
+    return [w for w in prepared.problem.wishes if w.name in STATED and {w.subject, *w.objects} <= there]
+
+
+def _holds(graph: SceneGraph, relation: tuple[NodeId, str, NodeId]) -> bool:
+    """Whether the checker accepts one relation: two may be stated of a pair of which one holds."""
+    return not any(v.kind == "relation" for v in check(graph.model_copy(update={"relations": (relation,)})).violations)
+
+
+def _take_out(prepared: Prepared, state: State, ids: tuple[NodeId, ...]) -> bool:
+    """Leave out one of these things that the solver placed, and what it carries; whether there is one."""
+    free = [i for i in (prepared.index[n] for n in ids) if prepared.items[i].stand is None and state.spots[i]]
+    if not free:
+        return False
+    least = min(free, key=lambda i: (not prepared.items[i].optional, prepared.area(i), i))
+    for i, chain in enumerate(prepared.carriers):
+        if i == least or (least in chain and prepared.items[i].stand is None):
+            state.take(i)
+    return True
+
+
+def _graph(prepared: Prepared, state: State) -> SceneGraph:
+    nodes = []
+    for i, item in enumerate(prepared.items):
+        if (stand := state.stand(i)) is not None:
+            known = item.model_dump(include={"id", "label", "color", "size", "support"})
+            nodes.append(Node(**known, position=stand.position, yaw=stand.yaw))
+    there = {n.id for n in nodes}
+    # What stays although its carrier found no place hangs in the air; a graph cannot name a carrier it does not have.
+    grounded = [
+        n if n.support in ("floor", "wall", "ceiling", *there) else n.model_copy(update={"support": "floor"})
+        for n in nodes
+    ]
+    return SceneGraph(room=RoomShape(size=prepared.problem.size), nodes=tuple(grounded))

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..graph import SHELL
-from .bodies import FLAT, TUCKED, Body, Member
+from .bodies import FLAT, HEAD, TUCKED, Body, Member
 from .measures import VIEWED, behind_gap, measure, walls_gaps
 from .shapes import EPSILON, F64, TURNS, Flags, Lattice, Spot, blocked, in_disc, meetings, shifted
 from .state import HARD, SOFT, USED, WALLED, State, placed
@@ -25,7 +25,6 @@ _EYE = 1.5  # metres from the floor to the middle of what hangs on a wall
 _HIGH = 1.5  # metres; nothing is put on top of what is higher, if it can stand within it
 _WIDER = 1.5  # times as wide as its carrier a thing may be
 _SMALL = 0.35  # metres; it does not matter how smaller things are turned
-_HEAD = 1.9  # metres
 _MOVED, _TURNED = 1.5, 0.5  # price of a metre away from where a thing was, and metres that a quarter turn is worth
 _FREE = 0.55  # metres; what is larger and wants no wall stands free, with room around it
 
@@ -320,7 +319,7 @@ def _moved(state: State, member: Member, place: Place) -> Spot:
 
 
 def _out_of_discs(state: State, lattice: Lattice, moving: Spot, frame: Spot, taken: Flags) -> None:
-    if moving.low >= _HEAD or moving.high <= FLAT:
+    if moving.low >= HEAD or moving.high <= FLAT:
         return
     for disc in state.discs:
         if disc is not None:

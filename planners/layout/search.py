@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..graph import SHELL
-from .bodies import FLAT, Body, Member, Prepared
+from .bodies import FLAT, HEAD, Body, Member, Prepared
 from .places import Place, places
-from .shapes import Spot
+from .shapes import F64, Flags, Spot
 from .state import State
 
 _TRIES = 6  # places that are looked at for a way to everything, before the best of them is taken
@@ -34,9 +34,10 @@ class Search:
         self.prepared, self.effort = prepared, effort
         self.rng = np.random.default_rng(seed)
         self.loose = set[int]()
+        self.placed = 0  # how often something was placed: the work done so far
         self.urgent = [0.0] * len(prepared.items)
         things = max(len(prepared.items), 1)
-        self.starts = max(1, min(round(8 * effort), round(effort * 200 / things)))
+        self.starts = max(1, min(round(12 * effort), round(effort * 200 / things)))
         self.looks = max(0, min(round(3 * effort), round(effort * 100 / things)))
 
     def run(self) -> State:
@@ -116,6 +117,7 @@ class Search:
         found = places(state, body, self.rng, noise)
         if not found:
             return False
+        self.placed += 1
         state.place(*self._reachable(state, found))
         return True
 
@@ -168,13 +170,12 @@ class Search:
                 continue
             xs, ys = np.linspace(r - width / 2, width / 2 - r, 41), np.linspace(r - deep / 2, deep / 2 - r, 41)
             away = np.hypot(xs[:, None], ys[None, :]) + self.rng.normal(0.0, 1e-6, (41, 41))
-            for i, spot in state.solids(set()):
-                if spot.low < 1.9:
-                    here = spot._replace(x=0.0, y=0.0)
+            for _, spot in state.solids(set()):
+                if spot.low < HEAD:
                     away[_meets_disc(xs, ys, spot, r)] = np.inf
-            i, j = np.unravel_index(int(away.argmin()), away.shape)
-            if np.isfinite(away[i, j]):
-                state.discs[k] = (float(xs[i]), float(ys[j]), r)
+            best = int(away.argmin())
+            if np.isfinite(away.flat[best]):
+                state.discs[k] = (float(xs[best // 41]), float(ys[best % 41]), r)
 
     def _blame(self, state: State) -> bool:
         """Make what has no place, or breaks a hard wish, more urgent; whether there was any such thing."""
@@ -202,6 +203,8 @@ class Search:
         return sum(self.prepared.problem.wishes[r].hard for r in self.prepared.wishes_of[i])
 
 
-def _meets_disc(xs: np.ndarray, ys: np.ndarray, spot: Spot, radius: float) -> np.ndarray:
+def _meets_disc(xs: F64, ys: F64, spot: Spot, radius: float) -> Flags:
+    """`[X, Y]` middles at which a disc would reach into a box."""
     u, v = spot.local(xs[:, None], ys[None, :])
-    return np.hypot(np.maximum(np.abs(u) - spot.w / 2, 0), np.maximum(np.abs(v) - spot.d / 2, 0)) < radius
+    meets: Flags = np.hypot(np.maximum(np.abs(u) - spot.w / 2, 0), np.maximum(np.abs(v) - spot.d / 2, 0)) < radius
+    return meets

@@ -57,7 +57,7 @@ def turned(yaw: float) -> tuple[float, float]:
     return exact.get(quarter) or (math.cos(math.radians(quarter)), math.sin(math.radians(quarter)))
 
 
-def shifted(x: Any, y: Any, yaw: float, ox: float, oy: float) -> tuple[Any, Any]:
+def shifted(x: Any, y: Any, yaw: float, ox: Any, oy: Any) -> tuple[Any, Any]:
     """Where a point at (ox, oy) of a thing's own axes lies when the thing stands at (x, y), turned by `yaw`."""
     c, s = turned(yaw)
     return x + c * ox - s * oy, y + s * ox + c * oy
@@ -135,7 +135,7 @@ def meetings(lattice: Lattice, moving: Spot, fixed: Sequence[Spot]) -> list[tupl
         return []
     mw, md = moving.half
     middles = np.array([(f.x, f.y) for f in others]) - (moving.x, moving.y)
-    reach = np.maximum(np.array([f.half for f in others]) + (mw, md) - EPSILON, 0.0)
+    reach = np.maximum(np.array([f.half for f in others]) + np.array([mw, md]) - EPSILON, 0.0)
     x0 = np.searchsorted(lattice.xs, middles[:, 0] - reach[:, 0], side="right")
     x1 = np.searchsorted(lattice.xs, middles[:, 0] + reach[:, 0], side="left")
     y0 = np.searchsorted(lattice.ys, middles[:, 1] - reach[:, 1], side="right")

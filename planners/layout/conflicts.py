@@ -1,0 +1,252 @@
+"""Why a problem cannot be solved: a smallest set of statements that do not go together.
+
+Knows statements, the problems that parts of them make, and QuickXplain (Junker 2004). Refuses to know how a layout is
+found: a problem counts as impossible where the search does not solve it, so a set is as small as the search is good.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Literal, NamedTuple
+
+from ..graph import NodeId
+from .bodies import DOORS, FLAT, Prepared
+from .problem import Conflict, Item, Problem, Wish
+from .search import Search
+from .state import State
+from .telling import said_item, said_keepout, said_room, said_wish
+
+_SPECK = (0.01, 0.01, 0.01)  # what a thing shrinks to when its size is not stated
+_EFFORT = 0.5  # of the search on parts of a problem
+_WORK = 800  # times that something is placed, at usual effort, to explain one layout
+_MOST = 8  # sets that are told
+_FEW = 12  # statements about sizes; longer lists are told as they are
+_LARGE = 80  # things; of more only what is about a few of them is explained
+
+
+class Statement(NamedTuple):
+    """One thing that was asked for: `key` is a row of the problem's wishes or keepouts, or an item's id."""
+
+    kind: Literal["wish", "size", "stand", "keepout", "room"]
+    key: NodeId = 0
+
+
+Statements = tuple[Statement, ...]
+
+
+def explain(prepared: Prepared, state: State, broken: Sequence[Wish], seed: int, effort: float) -> tuple[Conflict, ...]:
+    """Smallest sets of statements for what must be there and is not, and for the `broken` hard wishes."""
+    return tuple(_Explainer(prepared, seed, effort).explain(state, broken))
+
+
+def failed(prepared: Prepared, state: State) -> bool:
+    """Whether something that must be there is not, or a hard wish is broken, or a disc has no place."""
+    lost = any(s is None and not i.optional for s, i in zip(state.spots, prepared.items, strict=True))
+    return lost or None in state.discs or any(True for _ in broken_rows(prepared, state))
+
+
+def broken_rows(prepared: Prepared, state: State) -> Iterator[int]:
+    """Rows of hard wishes that do not hold of things that are there."""
+    for row, wish in enumerate(prepared.problem.wishes):
+        there = all(state.spots[p] is not None for p in prepared.parties[row])
+        if wish.hard and there and not state.holds(row)[0]:
+            yield row
+
+
+class _Explainer:
+    def __init__(self, prepared: Prepared, seed: int, effort: float) -> None:
+        self.prepared, self.problem, self.seed = prepared, prepared.problem, seed
+        self.left = _WORK * max(effort, 0.2)
+        self.known: dict[frozenset[Statement], bool] = {}
+
+    def explain(self, state: State, broken: Sequence[Wish]) -> Iterator[Conflict]:
+        """Conflicts, at most one for each failure and none twice."""
+        told = list[Statements]()
+        yield from self._hopeless(state, told)
+        for failure, about in self._failures(state, broken):
+            if len(told) >= _MOST or any(failure in t for t in told):
+                continue
+            found = self._smallest(failure, about)
+            if found not in told:
+                told.append(found)
+                yield self._conflict(found)
+
+    def _failures(self, state: State, broken: Sequence[Wish]) -> Iterator[tuple[Statement, set[NodeId]]]:
+        """What went wrong, and the things it is about: first what is absent, then wishes."""
+        for item, spot in zip(self.prepared.items, state.spots, strict=True):
+            chain = self.prepared.carriers[self.prepared.index[item.id]]
+            if spot is None and not item.optional and all(state.spots[c] is not None for c in chain):
+                yield Statement("size", item.id), {item.id, *(self.prepared.items[c].id for c in chain)}
+        for k, disc in enumerate(state.discs):
+            if disc is None:
+                yield Statement("keepout", k), set()
+        lost = {i.id for i, s in zip(self.prepared.items, state.spots, strict=True) if s is None}
+        for row, wish in enumerate(self.problem.wishes):
+            names = {wish.subject, *wish.objects}
+            if wish.hard and wish in broken and not names & lost:
+                yield Statement("wish", row), names
+
+    def _hopeless(self, state: State, told: list[Statements]) -> Iterator[Conflict]:
+        """What needs no search: things that stand on each other, boxes too large for the room, too little floor."""
+        for i, item in enumerate(self.prepared.items):
+            if self.prepared.is_circular(i):
+                told.append((Statement("size", item.id),))
+                ring = self.prepared.carriers[i]
+                if i == min(ring):
+                    yield self._circle(ring)
+            elif state.spots[i] is None and not item.optional and len(told) < _MOST:
+                least, most = sorted(item.size[:2]), sorted(self.problem.size[:2])
+                if item.size[2] > self.problem.size[2] or any(a > b for a, b in zip(least, most, strict=True)):
+                    told.append((Statement("size", item.id), Statement("room")))
+                    yield self._conflict(told[-1])
+        if crammed := self._crammed({key for t in told for kind, key in t if kind == "size"}):
+            lost = (i.id for i, s in zip(self.prepared.items, state.spots, strict=True) if s is None)
+            told.append((*crammed, *(Statement("size", name) for name in lost)))
+            yield self._conflict(crammed)
+
+    def _circle(self, ring: Sequence[int]) -> Conflict:
+        """Things that stand on each other."""
+        items = [self.prepared.items[c] for c in ring]
+        said = tuple(f"{said_item(i)} stands on {said_item(self._item(i.support))}" for i in items)
+        return Conflict(statements=said, subjects=tuple(i.id for i in items))
+
+    def _crammed(self, gone: set[NodeId]) -> Statements:
+        """Things whose footprints are together more than the floor, as few as are found; none if there is room."""
+        solid = [
+            i for i in self.prepared.items
+            if i.support == "floor" and i.size[2] > FLAT and not i.optional and i.stand is None and i.id not in gone
+        ]  # fmt: skip
+        area, those = 0.0, [Statement("room")]
+        for item in sorted(solid, key=lambda i: -i.size[0] * i.size[1]):
+            area += item.size[0] * item.size[1]
+            those.append(Statement("size", item.id))
+            if area > self.problem.size[0] * self.problem.size[1]:
+                return self._shrunk(tuple(those), those[-1]) if len(those) <= _FEW else tuple(those)
+        return ()
+
+    def _smallest(self, failure: Statement, about: set[NodeId]) -> Statements:
+        """The smallest set found: among the things concerned, else among their partners too, else among all."""
+        for names in self._circles(about):
+            stated = self._statements(names, failure)
+            if len(names) <= _LARGE and not self._possible(stated):
+                return self._shrunk(stated, failure)
+        sizes = tuple(Statement("size", name) for name in sorted(about, key=str))
+        return tuple(dict.fromkeys((failure, *sizes, Statement("room"))))
+
+    def _circles(self, about: set[NodeId]) -> Iterator[set[NodeId]]:
+        """Ever more things, from those concerned to all."""
+        yield about
+        wider = about | {
+            n
+            for w in self.problem.wishes
+            if w.hard and {w.subject, *w.objects} & about
+            for n in (w.subject, *w.objects)
+        }
+        if wider != about:
+            yield wider
+        yield {item.id for item in self.problem.items}
+
+    def _statements(self, names: set[NodeId], failure: Statement) -> Statements:
+        """What is stated of some things, and of the room."""
+        found = [failure]
+        for row, wish in enumerate(self.problem.wishes):
+            if wish.hard and {wish.subject, *wish.objects} <= names:
+                found.append(Statement("wish", row))
+        found += [Statement("keepout", k) for k in range(len(self.problem.free))]
+        for item in self.problem.items:
+            if item.id in names and not item.optional:
+                opening = item.label.lower().strip() in DOORS or "window" in item.label.lower()
+                found += [Statement("stand", item.id)] if item.stand and not opening else []
+                found += [Statement("size", item.id)] if not opening else []
+        return tuple(dict.fromkeys((*found, Statement("room"))))
+
+    def _shrunk(self, stated: Statements, failure: Statement) -> Statements:
+        """QuickXplain: a part of the statements that is impossible while all of its own parts are possible."""
+        if not self._possible((failure,)):
+            return (failure,)
+        others = tuple(s for s in stated if s != failure)
+
+        def search(base: Statements, added: bool, rest: Statements) -> Statements:
+            if added and not self._possible(base):
+                return ()
+            if len(rest) == 1:
+                return rest
+            half = len(rest) // 2
+            upper = search((*base, *rest[:half]), True, rest[half:])
+            lower = search((*base, *upper), bool(upper), rest[:half])
+            return (*lower, *upper)
+
+        without = not self._possible(others) if others else False
+        found = search((), False, others) if without else (failure, *search((failure,), False, others))
+        return tuple(s for s in stated if s in found)
+
+    def _possible(self, stated: Statements) -> bool:
+        """Whether the search finds a layout that fulfils some statements; once out of work, nothing is possible."""
+        key = frozenset(stated)
+        if key not in self.known:
+            part = self._part(key)
+            if self.left <= 0:
+                return False
+            prepared = Prepared.of(part)
+            search = Search(prepared, self.seed, _EFFORT)
+            state = search.run()
+            self.left -= search.placed
+            self.known[key] = not failed(prepared, state)
+        return self.known[key]
+
+    def _part(self, stated: frozenset[Statement]) -> Problem:
+        """The problem that only some statements make: sizes that are not among them are tiny, the room is vast."""
+        wishes = tuple(w for k, w in enumerate(self.problem.wishes) if Statement("wish", k) in stated)
+        named = {n for w in wishes for n in (w.subject, *w.objects)} | {s.key for s in stated if s.kind in _OF_ITEM}
+        named |= {i.id for i in self.prepared.items if "window" in i.label.lower() and i.stand}
+        rows = {c for n in named if n in self.prepared.index for c in self._with_carriers(n)}
+        width, deep, high = self.problem.size
+        if Statement("room") not in stated:
+            width, deep, high = 3 * width + 20.0, 3 * deep + 20.0, 3 * high + 5.0
+        return Problem(
+            size=(width, deep, high),
+            items=tuple(self._stated_item(self.prepared.items[i], stated) for i in sorted(rows)),
+            wishes=wishes,
+            free=tuple(f for k, f in enumerate(self.problem.free) if Statement("keepout", k) in stated),
+            walkway=self.problem.walkway,
+        )
+
+    def _with_carriers(self, name: NodeId) -> tuple[int, ...]:
+        i = self.prepared.index[name]
+        return (i, *self.prepared.carriers[i])
+
+    def _stated_item(self, item: Item, stated: frozenset[Statement]) -> Item:
+        opening = item.stand is not None and (item.label.lower().strip() in DOORS or "window" in item.label.lower())
+        if opening:
+            return item.model_copy(update={"clear": (0.0,) * 4})
+        changes: dict[str, object] = {"optional": False, "clear": (0.0,) * 4, "backed": False}
+        if Statement("size", item.id) not in stated:
+            changes["size"] = _SPECK
+        if Statement("stand", item.id) not in stated:
+            changes["stand"] = None
+        return item.model_copy(update=changes)
+
+    def _item(self, name: NodeId) -> Item:
+        return self.prepared.items[self.prepared.index[name]]
+
+    def _conflict(self, stated: Statements) -> Conflict:
+        said, subjects = list[str](), list[NodeId]()
+        tell: dict[str, Callable[[NodeId], str]] = {
+            "size": lambda key: "{} is {:g} m wide, {:g} m deep and {:g} m high".format(
+                said_item(self._item(key)), *self._item(key).size
+            ),
+            "stand": lambda key: f"{said_item(self._item(key))} stays where it is",
+            "keepout": lambda key: said_keepout(self.problem.free[int(key)]),
+            "room": lambda key: said_room(self.problem.size),
+            "wish": lambda key: said_wish(self.problem.wishes[int(key)], self._item),
+        }
+        for kind, key in stated:
+            said.append(tell[kind](key))
+            wish = self.problem.wishes[int(key)] if kind == "wish" else None
+            if wish and wish.name == "at_window" and not any("window" in i.label.lower() for i in self.prepared.items):
+                said.append("the room has no window")
+            subjects += [key] if kind in _OF_ITEM else [wish.subject, *wish.objects] if wish else []
+        return Conflict(statements=tuple(said), subjects=tuple(dict.fromkeys(subjects)))
+
+
+_OF_ITEM = ("size", "stand")
