@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 import unicodedata
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 from ...gaussians.errors import ScenewrightError, UserError
@@ -73,10 +74,7 @@ class ModelPlanner:
             UnreachableError: the model cannot be reached.
             NoPlanError: it gave no valid plan in all its attempts, or in the time it had. (Both are a BackendError.)
         """
-        if len(text) > MAX_CHARS:
-            raise UserError(
-                f"the instruction has {len(text)} characters, at most {MAX_CHARS} are read; say it in parts"
-            )
+        _require_words(text)
         started = time.monotonic()
         request = self._request(text, previous, sight)
         guard = Guard(text, request.previous, request.graph, _grammar())
@@ -98,11 +96,10 @@ class ModelPlanner:
         """What the model is told; what are no names in the scene is left out here, before anything else sees it."""
         graph, picture = None, None
         if sight is not None:
-            try:
+            with suppress(ScenewrightError):
                 graph = cleaned(sight.graph())
-            except ScenewrightError:
-                graph = None
-            picture = sight.picture() if self._pictures and self.backend.sees else None
+            with suppress(ScenewrightError):
+                picture = sight.picture() if self._pictures and self.backend.sees else None
         before = (previous or "").encode(errors="replace").decode()[:MAX_CHARS]
         return Request(text, before or None, graph, picture)
 
