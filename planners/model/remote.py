@@ -15,7 +15,7 @@ from typing import Any
 from ...gaussians.errors import BackendError
 from ..plan import Usage
 from . import remote_errors, remote_http, remote_wire
-from .backend import Answer, Heard, Message, UnreachableError
+from .backend import Answer, Heard, Message, ModelBackend, UnreachableError
 from .remote_address import Address, read
 from .remote_errors import Extras
 from .remote_wait import Emit, Failed, wait
@@ -27,7 +27,7 @@ NEAR_WINDOW = 8_192  # Ollama and llama.cpp serve 4096 unless told otherwise, to
 _BLIND = ("gpt-3.5", "o1-mini", "o1-preview", "o3-mini", "claude-2", "claude-instant", "gemini-1.0", "text-")
 
 
-def load(spec: str) -> Remote:
+def load(spec: str) -> ModelBackend:
     """The model that "openai:MODEL[@BASE_URL]", "anthropic:MODEL[@BASE_URL]" or "google:MODEL[@BASE_URL]" names.
 
     Keys come from OPENAI_API_KEY, ANTHROPIC_API_KEY, GOOGLE_API_KEY or GEMINI_API_KEY; SCENEWRIGHT_API_KEY comes first.

@@ -72,6 +72,7 @@ _COMPLAINTS = {
     "length": re.compile(r"max_?(completion_?|output_?)?tokens", re.IGNORECASE),
     "stream": re.compile(r"\bstream", re.IGNORECASE),
 }
+_TOO_LONG = re.compile(r"context[_ ](length|window|size)|(prompt|input|request) is too (long|large)", re.IGNORECASE)
 _REFUSALS = {400, 415, 422, 501}  # codes that servers refuse a parameter with
 _NO_GRAMMAR = re.compile(_FORM, re.IGNORECASE)  # what servers say that fail, code 500, at making a grammar of a schema
 
@@ -87,7 +88,6 @@ def without(extras: Extras, error: BaseException) -> Extras | None:
         failures.ModelAuthenticationError,
         failures.ModelNotFoundError,
         failures.ModelQuotaExceededError,
-        failures.ModelContextWindowExceededError,
     )
     if not isinstance(error, failures.ModelHTTPError) or isinstance(error, hopeless) or extras == BARE:
         return None
@@ -95,6 +95,9 @@ def without(extras: Extras, error: BaseException) -> Extras | None:
     if error.status_code == 500 and _NO_GRAMMAR.search(body) and extras.form != "words":
         return replace(extras, form=_looser(extras.form))
     if error.status_code not in _REFUSALS:
+        return None
+    too_long = isinstance(error, failures.ModelContextWindowExceededError) or _TOO_LONG.search(body)
+    if too_long and not (extras.length and _COMPLAINTS["length"].search(body)):
         return None
     blamed = {name for name, words in _COMPLAINTS.items() if words.search(body)}
     less = Extras(
@@ -223,7 +226,7 @@ def _status(error: Any, address: Address) -> str:
     quoted = f' It said: "{said}"' if said else ""
     if isinstance(error, failures.ModelQuotaExceededError) or code == 402:
         return f"the account at {at} has no credit or quota left; look at its billing, or use another model.{quoted}"
-    if isinstance(error, failures.ModelContextWindowExceededError):
+    if isinstance(error, failures.ModelContextWindowExceededError) or code == 413 or _TOO_LONG.search(said):
         return f"the request is longer than {model} at {at} can read; give it a longer context or use another.{quoted}"
     if isinstance(error, failures.ModelAuthenticationError) or code in (401, 403):
         names = ", ".join(("SCENEWRIGHT_API_KEY", *service.keys))
@@ -234,9 +237,9 @@ def _status(error: Any, address: Address) -> str:
         asked = f" and asks to wait {error.retry_after:g} s" if error.retry_after else ""
         return f"{at} takes no more requests for now{asked}, longer than there was time; ask again later.{quoted}"
     if code >= 500 or code == 408:
-        return (
-            f"the server at {at} failed (code {code}), also when asked again; try later, or look into its log.{quoted}"
-        )
+        return f"the server at {at} failed (code {code}); try later, or look into its log.{quoted}"
+    if re.search("image|vision|multimodal", said, re.IGNORECASE):
+        return f"{model} at {at} takes no pictures; ask without one, or use another model.{quoted}"
     return f"{at} refused the request for {model} (code {code}).{quoted or ' It did not say why; look into its log.'}"
 
 

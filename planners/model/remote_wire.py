@@ -73,8 +73,9 @@ def import_libraries(kind: Kind) -> None:
 
     for module in ("pydantic_ai.direct", f"pydantic_ai.models.{kind}", f"pydantic_ai.providers.{kind}"):
         importlib.import_module(module)
-    # Not for users: a temperature left out because the model thinks is ours, counts that a server garbles are zeros.
-    warnings.filterwarnings("ignore", message="Sampling parameters|Failed to extract usage")
+    # Not for users: that a model which thinks takes no temperature, and what a server garbles; both are dealt with.
+    for words in ("Sampling parameters", "Failed to extract usage", "Pydantic serializer", "Unexpected non-string"):
+        warnings.filterwarnings("ignore", message=words)
 
 
 def build(address: Address, client: httpx2.AsyncClient) -> Model[Any]:

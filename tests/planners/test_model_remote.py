@@ -19,10 +19,12 @@ from types import ModuleType
 from typing import Any
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from scenewright.gaussians.errors import BackendError, UserError
 from scenewright.planners.model import remote, remote_errors, remote_http, remote_wait
-from scenewright.planners.model.backend import Answer, Message, UnreachableError
+from scenewright.planners.model.backend import Answer, Message, ModelBackend, UnreachableError
 from scenewright.planners.model.remote_address import read
 from scenewright.planners.model.remote_wire import import_libraries, loosened
 from scenewright.planners.schemas import schema
@@ -70,7 +72,7 @@ def surroundings(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(remote_errors, "_SHORTEST_PAUSE", 0.01)
 
 
-def model_at(wire: Wire, url: str) -> remote.Remote:
+def model_at(wire: Wire, url: str) -> ModelBackend:
     return remote.load(f"{wire.kind}:small@{url}")
 
 
@@ -337,6 +339,34 @@ def test_a_page_that_is_not_there_hints_at_the_address() -> None:
 
 
 @each_wire
+@pytest.mark.parametrize(
+    "words",
+    [
+        "This model's maximum context length is 8192 tokens. However, your messages resulted in 9000 tokens",
+        "prompt is too long: 250000 tokens > 200000 maximum",
+        "the request exceeds the available context size. try increasing it",
+    ],
+)
+def test_a_conversation_too_long_for_the_model_is_not_tried_again(wire: Wire, words: str) -> None:
+    with wires.serving(wire.error(400, words)) as server, pytest.raises(UnreachableError) as caught:
+        model_at(wire, server.url).answer(TALK, schema("plan"), seconds=30)
+    assert "longer than small" in sound(caught.value)
+    assert len(server.asked) == 1
+
+
+def test_an_answer_longer_than_fits_is_asked_for_without_a_longest() -> None:
+    words = "'max_tokens' is too large: 16384. This model's maximum context length is 8192 tokens"
+    answer, asked = ask(wires.OpenAI, wires.OpenAI.error(400, words), wires.OpenAI.answer(PLAN))
+    assert answer.text == PLAN
+    assert ["max_tokens" in request.body for request in asked] == [True, False]
+
+
+@each_wire
+def test_a_model_that_takes_no_pictures_says_so(wire: Wire) -> None:
+    assert "takes no pictures" in fails(wire, wire.error(400, "image input is not supported by this model"))
+
+
+@each_wire
 def test_a_busy_server_is_asked_again(wire: Wire) -> None:
     busy = wire.error(429, "slow down", Retry_After="0")
     answer, asked = ask(wire, busy, busy, busy, busy, wire.answer(PLAN))
@@ -382,6 +412,63 @@ def test_a_broken_server_is_asked_again_but_not_for_ever(wire: Wire) -> None:
 @pytest.mark.parametrize("body", ["<html>Welcome to your router</html>", "", "[1, 2", '"yes"', "{}", '{"choices": 7}'])
 def test_an_answer_that_is_none(wire: Wire, heard: Any, body: str) -> None:
     assert "no answer of a language model" in fails(wire, wires.plain(body), heard=heard)
+
+
+JUNK = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(max_size=9),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=9), inner, max_size=3),
+    max_leaves=5,
+)
+
+
+def spoiled(body: Any, data: st.DataObject) -> Any:
+    """The body with one part of it, at any depth, something else or gone."""
+    if not isinstance(body, dict | list) or not body or data.draw(st.integers(0, 3)) == 0:
+        return data.draw(JUNK)
+    copy: Any = body.copy()
+    at = data.draw(st.sampled_from(sorted(body) if isinstance(body, dict) else range(len(body))))
+    if data.draw(st.integers(0, 4)) == 0:
+        del copy[at]
+    else:
+        copy[at] = spoiled(body[at], data)
+    return copy
+
+
+@pytest.fixture(scope="module")
+def pliable() -> Iterator[tuple[Any, list[Any]]]:
+    """A server, and a list whose last turn it takes next: starting one for each example costs more than the example."""
+    turns: list[Any] = []
+    with wires.serving(lambda asked: turns[-1]) as server:
+        yield server, turns
+
+
+@each_wire
+@settings(max_examples=25)
+@given(data=st.data())
+def test_whatever_a_server_says_there_is_an_answer_or_a_sentence(
+    wire: Wire, pliable: tuple[Any, list[Any]], data: st.DataObject
+) -> None:
+    server, turns = pliable
+    if data.draw(st.booleans(), label="streamed"):
+        lines = b"".join(wire.stream([PLAN[:9], PLAN[9:]]).chunks).decode().split("\n")
+        at = data.draw(st.sampled_from([i for i, line in enumerate(lines) if line.startswith("data: {")]))
+        lines[at] = f"data: {json.dumps(spoiled(json.loads(lines[at][6:]), data))}"
+        turn, heard = wires.Turn(["\n".join(lines).encode()], streamed=True), list[str]().append
+    else:
+        turn, heard = wires.plain(spoiled(json.loads(b"".join(wire.answer(PLAN).chunks)), data)), None
+    turns.append(turn)
+    try:
+        answer = model_at(wire, server.url).answer(TALK, {"type": "object"}, seconds=30, heard=heard)
+    except UnreachableError as error:
+        sound(error)
+    else:
+        assert isinstance(answer.text, str)
+        assert answer.end in ("done", "cut", "declined")
+
+
+@pytest.mark.parametrize("seconds", [0.0, -1.0])
+def test_without_time_nobody_is_asked(seconds: float) -> None:
+    assert "did not answer within" in fails(wires.OpenAI, wires.OpenAI.answer(PLAN), seconds=seconds)
 
 
 @each_wire
