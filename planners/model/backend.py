@@ -31,13 +31,14 @@ class Answer:
     Attributes:
         text: its words, meant to be JSON of the schema; nothing is promised.
         usage: of this one request.
-        end: "done"; "cut", it stopped at its longest answer; "declined", it or its provider refused to answer, and
-            `text` is what it said instead.
+        end: "done"; "cut", it stopped at its longest answer; "closed", so too, and the back end completed the text by
+            the schema without asking: valid, but not what was meant, so not to be carried out; "declined", it or its
+            provider refused to answer, and `text` is what it said instead.
     """
 
     text: str
     usage: Usage
-    end: Literal["done", "cut", "declined"] = "done"
+    end: Literal["done", "cut", "closed", "declined"] = "done"
 
 
 class UnreachableError(BackendError):

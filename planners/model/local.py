@@ -74,10 +74,8 @@ class LocalModel:
     def answer(
         self, messages: Sequence[Message], schema: dict[str, Any], *, seconds: float, heard: Heard | None = None
     ) -> Answer:
-        """See `ModelBackend.answer`. The text is valid by the schema, whatever the model wants.
-
-        An answer that was cut, by time or by length, is brought to its end without the model: it is valid, but not what
-        the model would have said, and not to be carried out.
+        """See `ModelBackend.answer`. The text is valid by the schema, whatever the model wants; one that took too long
+        is brought to its end without the model, and its `end` says "closed".
 
         Raises:
             UnreachableError: the prompt does not fit the model's window, the schema cannot be followed, no token came
@@ -98,7 +96,7 @@ class LocalModel:
             raise self._failed(error) from error
         spent = round(time.perf_counter() - started, 3)
         usage = Usage(model=self.name[:200], requests=1, input_tokens=len(prompt), output_tokens=taken, seconds=spent)
-        return Answer(text.text, usage, "done" if taken == len(text.tokens) else "cut")
+        return Answer(text.text, usage, "done" if taken == len(text.tokens) else "closed")
 
     def _write(self, prompt: list[int], text: Constrained, room: int, until: float, heard: Heard) -> int:
         """Write the answer to its end; how many of its tokens the model had a part in."""

@@ -194,10 +194,13 @@ class _Said:
         """
         if answer.end == "declined":
             return _Outcome("not_understood", reason=f"the model declined: {answer.text}")
+        cut = "the answer was cut off because it is too long; answer shorter, with fewer operations"
+        if answer.end == "closed":  # valid, but half of what was meant
+            self.wrong = cut
+            return self.wrong
         try:
             said = reply.read(answer.text)
         except reply.ReplyError as error:
-            cut = "the answer was cut off because it is too long; answer shorter, with fewer operations"
             self.wrong = cut if answer.end == "cut" else str(error)
             return self.wrong
         ops = guard.settled(said.ops)

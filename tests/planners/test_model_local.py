@@ -16,7 +16,8 @@ from scenewright.gaussians.errors import BackendError
 from scenewright.planners import model as models
 from scenewright.planners.model import reply
 from scenewright.planners.model.backend import Answer, Message, UnreachableError
-from scenewright.planners.plan import EditPlan
+from scenewright.planners.model.planner import ModelPlanner
+from scenewright.planners.plan import EditPlan, NoPlanError, Usage
 
 pytest.importorskip("llguidance", reason="pip install 'scenewright[models]'")
 
@@ -145,7 +146,7 @@ def test_what_is_too_long_is_cut_and_still_valid(parts: checkpoint.Checkpoint, l
     pieces: list[str] = []
     answer = brief.answer(asked(WORDS[0], "JSON."), SCHEMA, seconds=120, heard=pieces.append)
     EditPlan.model_validate_json(answer.text)
-    assert answer.end == "cut" and "".join(pieces) == answer.text
+    assert answer.end == "closed" and "".join(pieces) == answer.text
     assert longest <= answer.usage.output_tokens < longest + 20  # forced tokens may go a little beyond
 
 
@@ -160,13 +161,28 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 def test_time_cuts_it_short(clock: None, llama: local.LocalModel) -> None:
     answer = llama.answer(asked(WORDS[0]), SCHEMA, seconds=14)
     EditPlan.model_validate_json(answer.text)
-    assert answer.end == "cut" and 1 < answer.usage.output_tokens < 60
+    assert answer.end == "closed" and 1 < answer.usage.output_tokens < 60
 
 
 @pytest.mark.parametrize("seconds", [1.5, 3.5])
 def test_no_time_at_all_is_said(clock: None, llama: local.LocalModel, seconds: float) -> None:
     with pytest.raises(UnreachableError, match="allow more seconds"):
         llama.answer(asked(WORDS[0]), SCHEMA, seconds=seconds)
+
+
+class Halting:
+    """A back end whose every answer is a valid plan that was brought to its end without the model."""
+
+    name, sees, window = "transformers:halting", False, 100_000
+
+    def answer(self, messages: Any, schema: Any, *, seconds: float, heard: Any = None) -> Answer:
+        plan = {"verdict": "ok", "ops": [{"op": "delete", "target": {"text": "chair"}}]}
+        return Answer(json.dumps(plan), Usage(model=self.name, requests=1), "closed")
+
+
+def test_half_a_plan_is_never_carried_out() -> None:
+    with pytest.raises(NoPlanError, match="cut off"):
+        ModelPlanner(Halting()).plan("delete the chair on the left")
 
 
 def test_a_prompt_beyond_the_window_is_said(llama: local.LocalModel) -> None:
