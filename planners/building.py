@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 import time
+import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -156,7 +157,8 @@ def _timed(seconds: dict[str, float], stage: str) -> Iterator[None]:
 def _layout(graph: SceneGraph, drawn: Sequence[Node], things: Mapping[NodeId, Asset], seed: int) -> Layout:
     """The things where they come to rest, in the order of `drawn`."""
     width, depth, height = graph.room.size
-    layout = Layout(width, depth, height, WALLS, np.random.default_rng([0x5CE7E, seed & 0xFFFFFFFF]))
+    names = zlib.crc32(" ".join(n.label for n in drawn).encode())  # two rooms of one seed need not share their paint
+    layout = Layout(width, depth, height, WALLS, np.random.default_rng([names, seed & 0xFFFFFFFF]))
     boxes = settled(graph, things)
     number = {n.id: i for i, n in enumerate(drawn)}
     for node in drawn:

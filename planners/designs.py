@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..gaussians.assets import forge, registry
 from ..gaussians.assets.forge import Asset
@@ -27,9 +28,11 @@ from .graph import Node
 from .settling import Load, level_error
 from .shelf import Shelf
 
+Array = NDArray[np.float64]
 TRIES = 10  # designs looked at; their proportions spread enough that the nearest is within a third of most sizes
 ENOUGH = 0.15  # a stretch of one side against another by e^0.15, 16 %, is not seen
 TOLD = 0.8  # one by e^0.8, more than twice, is told
+_SLIGHT = 0.15  # of the longest side: shorter ones are thicknesses
 _TURNED = 0.5  # a quarter turn has to save this much: it also turns the front
 _DRAFT = 0.3  # detail at which a design is asked whether it carries something
 _THIN = 0.005  # metres: the least side that can be made
@@ -86,10 +89,12 @@ class Workshop:
             color = parse(BASIC["gray"]) if rgb is None else rgb
             why = f"no asset is called {node.label!r}: {said} is drawn as a plain block"
             return Made(_block(size, color, self.detail), (*notes, why), True)
+        if " ".join(normalise(node.label)) in _LIKE:
+            notes = (*notes, f"no asset is called {node.label!r}: {said} is drawn as a {kind.name}")
         best = self._nearest(kind, size, rgb, loads, f"{node.label}{node.color}")
         if best.stretch > TOLD:
-            told = f"{said} is stretched {math.exp(best.stretch):.1f} times against the proportions of a {kind.name}"
-            notes = (*notes, told)
+            times = math.exp(best.stretch)
+            notes = (*notes, f"{said} is stretched: one side {times:.1f} times as much as another of our {kind.name!r}")
         return Made(best.finished(size, kind.name, self.detail), notes)
 
     def _nearest(self, kind: registry.Kind, size: Vec3, rgb: Rgb | None, loads: Sequence[Load], salt: str) -> _Design:
@@ -139,8 +144,11 @@ class _Design:
         return forge.finished(forge.fitted(self.pieces, size), kind, self.rgb, self.seed, detail)
 
 
-def _stretch(span: np.ndarray, size: Vec3) -> float:
-    gain = np.log(np.array(size) / span)
+def _stretch(span: Array, size: Vec3) -> float:
+    """Logarithm of the largest gain over the smallest; how thin a thin side is (a rug's, a cord's) does not count."""
+    wanted = np.array(size)
+    thin = (wanted < _SLIGHT * wanted.max()) & (span < _SLIGHT * span.max())
+    gain = np.log(wanted / span)[~thin]
     return float(gain.max() - gain.min())
 
 
@@ -160,8 +168,9 @@ def kind_of(label: str) -> registry.Kind | None:
 
 
 def _by_synonym(words: tuple[str, ...]) -> registry.Kind | None:
-    """The kind that a phrase names in other words."""
+    """The kind that a phrase names in other words, or that looks enough like it."""
     others = sorted(synonyms.same(words)) if words else []
+    others += [normalise(_LIKE[" ".join(words)])] if " ".join(words) in _LIKE else []
     return next((k for other in others if (k := _known(" ".join(other), own=False)) is not None), None)
 
 
@@ -175,6 +184,43 @@ def _known(phrase: str, own: bool) -> registry.Kind | None:
     return found if not own or phrase == plain or " " in phrase or phrase in _PLAIN else None
 
 
+# What has no kind of its own is drawn as what it resembles most.
+_LIKE = {
+    "banquette": "sofa",
+    "booth": "sofa",
+    "daybed": "sofa",
+    "kitchen island": "counter",
+    "island": "counter",
+    "host stand": "lectern",
+    "pedestal": "side table",
+    "sculpture pedestal": "side table",
+    "blanket": "cushion",
+    "dog bed": "cushion",
+    "projector screen": "whiteboard",
+    "disco ball": "pendant lamp",
+    "ceiling fan": "pendant lamp",
+    "air hockey table": "pool table",
+    "flower bucket": "flowers",
+    "watering can": "kettle",
+    "pen holder": "mug",
+    "tip jar": "vase",
+    "umbrella stand": "bin",
+    "safe": "nightstand",
+    "server rack": "wardrobe",
+    "fitting room": "shower",
+    "toy": "toy car",
+    "drum kit": "drum",
+    "elliptical": "treadmill",
+    "rowing machine": "treadmill",
+    "punching bag": "beanbag",
+    "game console": "radio",
+    "projector": "radio",
+    "food warmer": "microwave",
+    "coffee grinder": "kettle",
+    "napkin holder": "box",
+    "popcorn machine": "arcade machine",
+    "medicine cabinet": "cabinet",
+}
 # Synonyms of one word that may close a longer label: "velvet couch" is a couch, a "parking space bench" still a bench.
 _PLAIN = frozenset({
     "couch", "settee", "loveseat", "plant", "fern", "palm", "bookcase", "cupboard", "sideboard", "credenza", "lamp",

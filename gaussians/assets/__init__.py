@@ -15,14 +15,17 @@ from . import (  # noqa: F401
     kitchen,
     leisure,
     lighting,
+    offices,
     openings,
     overhead,
+    pastimes,
     plants,
     seating,
     shops,
     stands,
     storage,
     tables,
+    wares,
 )  # fmt: skip
 from .forge import Asset, Parts, kinds, make
 from .registry import KINDS, Kind, find

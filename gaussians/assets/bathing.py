@@ -15,6 +15,7 @@ from .shapes import (
     box,
     boxes,
     cylinder,
+    disc,
     extrude,
     join,
     lathe,
@@ -24,6 +25,16 @@ from .shapes import (
     rounded_rectangle,
     tube,
 )
+
+Rows = list[tuple[float, ...]]
+_STEEL = Material((0.75, 0.76, 0.78), "brushed")
+
+
+def _white(tone: Tone) -> Material:
+    """The colour that was asked for, or the white of such things."""
+    if not tone.asked:
+        tone.color = (0.94, 0.94, 0.92)
+    return Material(tone.color, main=True)
 
 
 def _tap(x: float, y: float, z: float, high: float, steel: Material) -> Piece:
@@ -187,4 +198,85 @@ def washing_machine(rng: Rng, tone: Tone) -> list[Piece]:
         cylinder(0.035, 0.025, bevel=0.006).turned("x", 90).moved(w * 0.05, y - 0.008, h - 0.08).named("knob", steel),
         box(w * 0.25, 0.01, 0.06, (-w * 0.32, y - 0.008, h - 0.11), 0.003).named("drawer", mat.shaded(0.92)),
         panel(0.1, 0.04, (w * 0.3, y - 0.011, h - 0.1)).named("display", Material((0.2, 0.7, 0.5), "screen", seed=3)),
+    ]
+
+
+@kind(
+    "shower",
+    ((0.7, 1.6), (0.7, 1.2), (1.8, 2.3)),
+    synonyms=("shower cabin", "shower cubicle", "shower stall"),
+    palette="light",
+    against_wall=True,
+    shown=False,
+)
+def shower(rng: Rng, tone: Tone) -> list[Piece]:
+    w, h = rng.uniform(0.85, 1.0), rng.uniform(1.95, 2.1)
+    white, t = _white(tone), 0.03
+    tiles = Material((0.86, 0.92, 0.93), "tiles", (0.7, 0.8, 0.83), 0.15)
+    posts: Rows = [(t, t, h, sx * (w - t) / 2, sy * (w - t) / 2, 0) for sx in (-1, 1) for sy in (-1, 1)]
+    posts += [(w, t, t, 0, -(w - t) / 2, h - t), (t, w, t, -(w - t) / 2, 0, h - t)]
+    head = [(0, w * 0.44, 1.0), (0, w * 0.44, h * 0.96), (0, w * 0.3, h * 0.99), (0, w * 0.14, h * 0.97)]
+    glass = Material((0.78, 0.88, 0.9), "glass", (0.93, 0.97, 0.98))
+    return [
+        box(w, w, 0.1, (0, 0, 0), 0.02).named("tray", white),
+        disc(0.045, (0, 0, 0.102)).named("drain", _STEEL),
+        boxes(
+            [(w - t, 0.012, h - 0.1, 0, w / 2 - 0.01, 0.1), (0.012, w - t, h - 0.1, w / 2 - 0.01, 0, 0.1)], 0.0
+        ).named("tile", tiles),
+        boxes(posts, 0.004).named("frame", _STEEL),
+        box(0.008, w * 0.9, h * 0.4, (-w / 2 + 0.015, 0, 0.12), 0.0).named("glass", glass),
+        tube(head, 0.012, smooth=17).named("pipe", _STEEL),
+        lathe([(0.02, 0.03), (0.11, 0.0), (0, 0.0)], (0, w * 0.14, h * 0.94)).named("head", _STEEL),
+        cylinder(0.03, 0.05, (0, w * 0.42, 1.05)).named("valve", _STEEL),
+    ]
+
+
+@kind(
+    "towel rack",
+    ((0.3, 1.0), (0.05, 0.3), (0.08, 1.0)),
+    support="wall",
+    synonyms=("towel rail", "towel bar", "towel holder"),
+    palette="fabric",
+    shown=False,
+)
+def towel_rack(rng: Rng, tone: Tone) -> list[Piece]:
+    w, h = rng.uniform(0.5, 0.66), rng.uniform(0.4, 0.55)
+    cloth = tone.textile(0.05, 0.7)
+    out = [rod((-w / 2, -0.05, h - 0.02), (w / 2, -0.05, h - 0.02), 0.011).named("bar", _STEEL, 1.3)]
+    out.append(
+        boxes([(0.03, 0.08, 0.03, s * (w / 2 - 0.02), -0.02, h - 0.035) for s in (-1, 1)]).named("mount", _STEEL)
+    )
+    for k in range(int(rng.integers(1, 3))):
+        x, wide, drop = (k * 2 - 1) * w * 0.22, w * rng.uniform(0.3, 0.4), h * rng.uniform(0.75, 0.95)
+        out.append(
+            boxes([(wide, 0.012, drop, x, -0.066, h - drop), (wide, 0.03, 0.014, x, -0.05, h - 0.014)], 0.004).named(
+                "towel", cloth if k == 0 else tone.accent()
+            )
+        )
+    return out
+
+
+@kind(
+    "dishwasher",
+    ((0.4, 0.7), (0.45, 0.7), (0.75, 0.95)),
+    synonyms=("dish washer",),
+    palette="appliance",
+    against_wall=True,
+    shown=False,
+)
+def dishwasher(rng: Rng, tone: Tone) -> list[Piece]:
+    w, d, h, mat = 0.6, rng.uniform(0.56, 0.6), rng.uniform(0.82, 0.87), tone.main
+    y, dark = -d / 2, tone.plain("#26282c")
+    return [
+        box(w, d, h, (0, 0, 0), 0.012).named("body", mat),
+        box(w * 0.95, 0.02, h * 0.72, (0, y - 0.004, 0.1), 0.006).named("door", mat.shaded(1.05)),
+        box(w * 0.95, 0.02, 0.09, (0, y - 0.004, h - 0.11), 0.004).named(
+            "panel", dark if chance(rng, 0.6) else mat.shaded(0.75)
+        ),
+        rod((-w * 0.36, y - 0.045, h * 0.76), (w * 0.36, y - 0.045, h * 0.76), 0.012).named("handle", _STEEL),
+        boxes([(0.02, 0.03, 0.02, s * w * 0.34, y - 0.025, h * 0.76 - 0.01) for s in (-1, 1)]).named("mount", _STEEL),
+        boxes([(0.02, 0.008, 0.015, x * w, y - 0.015, h - 0.07) for x in (-0.3, -0.2, -0.1, 0.25)]).named(
+            "button", tone.plain("#c8d2d8")
+        ),
+        box(w * 0.94, d * 0.9, 0.08, (0, 0.03, 0.0), 0.0).named("plinth", dark),
     ]
