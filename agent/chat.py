@@ -98,10 +98,8 @@ class Chat:
         """One line: a command, an answer to an open question, or an instruction. Errors become one sentence."""
         self._before = self.session.planned
         try:
-            if line.startswith("/"):
-                self._command(line)
-            else:
-                self._instruction(line)
+            with self.terminal.interruptible():
+                self._command(line) if line.startswith("/") else self._instruction(line)
         except KeyboardInterrupt:
             self._tell("cancelled; nothing was changed", {"verdict": "cancelled"})
         except InstructionError as error:

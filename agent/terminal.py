@@ -7,9 +7,13 @@ from __future__ import annotations
 
 import json
 import shutil
+import signal
 import sys
+import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from types import FrameType
 from typing import Any, NoReturn, TextIO
 
 import typer
@@ -31,6 +35,7 @@ class Terminal:
         self.debug = False
         self._line_open = False
         self._last_progress = 0.0
+        self._interrupted = False
 
     @property
     def out(self) -> TextIO:
@@ -62,7 +67,13 @@ class Terminal:
             self._write(self.out, drawn)
 
     def progress(self, stage: str, fraction: float) -> None:
-        """How far long work is, `fraction` in [0, 1]; drawn on a terminal only, at most ten times a second."""
+        """How far long work is, `fraction` in [0, 1]; drawn on a terminal only, at most ten times a second.
+
+        Raises:
+            KeyboardInterrupt: the user interrupted, and Python lost it (see `interruptible`).
+        """
+        if self._interrupted:
+            raise KeyboardInterrupt
         if not self.err.isatty():
             return
         now = time.monotonic()
@@ -77,6 +88,29 @@ class Terminal:
         if fraction >= 1:
             self.clear()
         self.err.flush()
+
+    @contextmanager
+    def interruptible(self) -> Iterator[None]:
+        """Long work that one Ctrl-C ends.
+
+        Python drops an interrupt that arrives while a weak reference dies, which they do all the time while the
+        libraries of language models are imported; the next sign of progress then passes it on.
+        """
+        if threading.current_thread() is not threading.main_thread():
+            yield  # where no signals arrive
+            return
+
+        def note(number: int, frame: FrameType | None) -> None:
+            self._interrupted = True
+            raise KeyboardInterrupt
+
+        self._interrupted = False
+        before = signal.signal(signal.SIGINT, note)
+        try:
+            yield
+        finally:
+            signal.signal(signal.SIGINT, before or signal.SIG_DFL)
+            self._interrupted = False
 
     def clear(self) -> None:
         """Remove an unfinished progress line."""

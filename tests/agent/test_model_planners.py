@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -266,6 +267,30 @@ def test_ctrl_c_while_a_model_plans_leaves_everything(boxes: Scene, encoder: Any
     out = _talk(session, "frobnicate the blue thing", "/history")
     assert "cancelled; nothing was changed" in out and "  1. make the green thing blue" in out
     assert session.scene is before and session.last is last and session.done == ("make the green thing blue",)
+
+
+def test_an_interrupt_that_python_lost_is_passed_on(
+    boxes: Scene, encoder: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import signal
+
+    terminal = Terminal(io.StringIO(), io.StringIO())
+
+    class Busy(Fake):
+        def plan(self, text: str, *, previous: str | None = None, sight: Any = None) -> EditPlan:
+            with suppress(KeyboardInterrupt):  # as a weak reference's callback does
+                signal.raise_signal(signal.SIGINT)
+            return super().plan(text, previous=previous, sight=sight)
+
+    handler = signal.getsignal(signal.SIGINT)
+    session = Session(boxes, Busy(progress=terminal.progress), encoder, viewer=boxes.cameras[0])
+    chat = Chat(session, terminal)
+    chat.say(HARD)
+    assert session.scene is boxes and "cancelled" in terminal.out.getvalue()  # type: ignore[attr-defined]
+    assert signal.getsignal(signal.SIGINT) is handler
+    session.planner = "grammar"
+    chat.say("delete the green thing")
+    assert session.done == ("delete the green thing",)
 
 
 def test_an_answer_to_a_question_asks_no_model_and_another_instruction_asks_it_once(
