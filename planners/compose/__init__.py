@@ -1,1 +1,11 @@
-"""From a sentence to a furnished room: what belongs into it, then where it goes (the layout solver)."""
+"""A sentence to a room: briefs, what rooms are like, and how one is composed."""
+
+from __future__ import annotations
+
+from .brief import Brief, RefusedError
+from .compose import Composition, compose
+from .problems import problem_of
+from .reading import read
+from .sampling import sample_brief
+
+__all__ = ["Brief", "Composition", "RefusedError", "compose", "problem_of", "read", "sample_brief"]

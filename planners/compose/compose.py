@@ -1,0 +1,151 @@
+"""A sentence to a room: read or proposed as a brief, posed as a problem, laid out.
+
+Knows the order of the work and who proposes the brief. Refuses to know words, habits and the search for places.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from ..layout import solve
+from ..layout.problem import Conflict, Layout, Problem
+from ..plan import Usage
+from .brief import Brief, RefusedError
+from .problems import Posed, problem_of
+from .reading import read
+
+if TYPE_CHECKING:
+    from ..model.backend import ModelBackend
+
+_GROWTH = (1.0, 1.12, 1.25, 1.45, 1.7)  # how much longer the sides of a room without a stated size become, in turn
+EMBEDDED = "embedded"
+Mode = Literal["auto", "model"]
+
+
+@dataclass(frozen=True)
+class Composition:
+    """A room that was composed.
+
+    Attributes:
+        brief: what was asked for, as it was understood.
+        problem: what that means for the layout.
+        layout: what stands where; its `conflicts` say what cannot be as it was asked for.
+        remarks: what a person should know of the reading and the furnishing, a sentence each.
+        names: ids of the graph's nodes that the brief asked for, and the ids of its things.
+        proposer: who made the brief: "embedded", the model's name, or "given".
+        prompt_hash: of the prompt, "" where no model was asked.
+        usage: what the model was asked for, None where none was.
+    """
+
+    brief: Brief
+    problem: Problem
+    layout: Layout
+    remarks: tuple[str, ...] = ()
+    names: dict[int, str] | None = None
+    proposer: str = EMBEDDED
+    prompt_hash: str = ""
+    usage: Usage | None = None
+
+    @property
+    def ok(self) -> bool:
+        """Whether everything that was asked for is there as it was asked for."""
+        return self.layout.ok
+
+
+def compose(
+    text: str | Brief,
+    *,
+    seed: int = 0,
+    planner: ModelBackend | None = None,
+    mode: Mode = "auto",
+    effort: float = 1.0,
+    seconds: float = 120.0,
+) -> Composition:
+    """A room from a description.
+
+    Args:
+        text: a description in words, or a brief.
+        seed: the same words and seed give the same room.
+        planner: a language model that proposes the brief; without one the embedded reading does.
+        mode: "auto" asks the model only where the embedded reading did not understand everything; "model" always.
+        effort: of the layout solver.
+        seconds: the longest that the model may take, all attempts together.
+
+    Raises:
+        UserError: the text is too long to be a description.
+        RefusedError: it describes no room.
+        BackendError: the model gave no brief.
+    """
+    brief, proposer, prompt_hash, usage = _brief(text, planner, mode, seconds)
+    posed, layout = arranged(brief, seed, effort)
+    unknown = [f"not understood: {', '.join(brief.unknown)}"] if brief.unknown else []
+    remarks = (*unknown, *brief.remarks, *posed.remarks)
+    return Composition(brief, posed.problem, layout, remarks, posed.names, proposer, prompt_hash, usage)
+
+
+def arranged(brief: Brief, seed: int, effort: float) -> tuple[Posed, Layout]:
+    """A brief laid out; a room whose size nobody stated is made larger until all that was asked for fits."""
+    best: tuple[Posed, Layout] | None = None
+    for grow in _GROWTH:
+        posed = problem_of(brief, seed, grow=grow)
+        layout = _judged(posed, solve(posed.problem, seed, effort=effort))
+        if best is None or _failures(layout) < _failures(best[1]):
+            best = posed, layout
+        if layout.ok or not _may_grow(brief):
+            break
+    assert best is not None
+    return best
+
+
+def _failures(layout: Layout) -> int:
+    return len(layout.conflicts) + sum(w.hard for w in layout.broken)
+
+
+def _may_grow(brief: Brief) -> bool:
+    said = brief.size
+    return said is None or (said.area is None and (said.width is None or said.depth is None))
+
+
+def _judged(posed: Posed, layout: Layout) -> Layout:
+    """The layout; what is asked for and missing is a conflict even where the search for its cause found none."""
+    asked = {i.id: i for i in posed.problem.items if not i.optional}
+    told = {s for c in layout.conflicts for s in c.subjects}
+    missing = [asked[i] for i in layout.left_out if i in asked and i not in told]
+    if not missing:
+        return layout
+    width, depth, _ = posed.problem.size
+    more = tuple(
+        Conflict(
+            statements=(
+                f"the {i.label} ({i.id}) is {i.size[0]:.2f} m wide and {i.size[1]:.2f} m deep",
+                f"the room is {width:.2f} m wide and {depth:.2f} m deep",
+            ),
+            subjects=(i.id,),
+        )
+        for i in missing
+    )
+    return layout.model_copy(update={"conflicts": (*layout.conflicts, *more)})
+
+
+def _brief(
+    text: str | Brief, planner: ModelBackend | None, mode: Mode, seconds: float
+) -> tuple[Brief, str, str, Usage | None]:
+    """The brief, who made it, and what that took."""
+    if isinstance(text, Brief):
+        return text, "given", "", None
+    if planner is None:
+        return read(text), EMBEDDED, "", None
+    embedded: Brief | None = None
+    if mode == "auto":
+        try:
+            embedded = read(text)
+        except RefusedError as refusal:
+            if refusal.verdict != "not_understood":
+                raise
+        if embedded is not None and not embedded.unknown:
+            return embedded, EMBEDDED, "", None
+    from .proposing import propose
+
+    proposal = propose(text, planner, seconds=seconds, heard=embedded)
+    return proposal.brief, planner.name, proposal.prompt_hash, proposal.usage

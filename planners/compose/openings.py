@@ -1,0 +1,132 @@
+"""Doors, windows and beams: what belongs to the building and has its place before anything is arranged.
+
+Knows walls and the frame of layouts. Refuses to know furniture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..graph import Size
+from ..layout.problem import Item, Stand, Wall
+from . import knowledge
+from .brief import Brief
+
+_SILL = 0.9  # metres from the floor to a window
+_EDGE = 0.12  # metres from an opening to the corner at least
+_YAWS: dict[Wall, float] = {"north": 0.0, "east": -90.0, "south": 180.0, "west": 90.0}
+_LIGHT: tuple[Wall, ...] = ("north", "west", "east", "south")
+
+
+@dataclass
+class _Walls:
+    """Which stretches of the walls are taken, metres along each from its middle."""
+
+    size: Size
+    taken: dict[Wall, list[tuple[float, float]]]
+
+    def length(self, wall: Wall) -> float:
+        return self.size[0] if wall in ("north", "south") else self.size[1]
+
+    def free(self, wall: Wall, along: float, width: float) -> bool:
+        low, high = along - width / 2, along + width / 2
+        fits = abs(along) + width / 2 <= self.length(wall) / 2 - 0.02
+        return fits and all(high <= a or low >= b for a, b in self.taken[wall])
+
+    def stand(self, wall: Wall, along: float, size: Size, bottom: float) -> Stand:
+        """Where an opening is that begins at height `bottom`; its back is in the wall's plane."""
+        half, middle = size[1] / 2, bottom + size[2] / 2
+        x, y = self.size[0] / 2 - half, self.size[1] / 2 - half
+        spot = {"north": (along, y), "south": (along, -y), "east": (x, along), "west": (-x, along)}[wall]
+        return Stand(position=(round(spot[0], 4), round(spot[1], 4), round(middle, 4)), yaw=_YAWS[wall])
+
+
+def openings(brief: Brief, size: Size, rng: np.random.Generator, ids: Iterator[int]) -> tuple[list[Item], list[Item]]:
+    """Doors and windows of a room, each with its place on a wall.
+
+    Args:
+        brief: says how many, or nothing.
+        size: of the room.
+        rng: chooses walls and places.
+        ids: numbers for them.
+    """
+    walls = _Walls(size, {w: [] for w in _LIGHT})
+    asked = {t.name: t for t in brief.things if t.name in ("door", "window")}
+    doors = asked["door"].count if "door" in asked else 1
+    low, high = knowledge.room(brief.kind).windows
+    drawn = int(rng.integers(low, high + 1))
+    needs = any(r.name == "at_window" for r in brief.relations)
+    windows = asked["window"].count if "window" in asked else 0 if "window" in brief.without else max(drawn, int(needs))
+    if "door" in brief.without:
+        doors = 0
+    order: list[Wall] = ["south", "east", "west", "north"]
+    shift = int(rng.integers(0, 3))
+    entered = order[shift:3] + order[:shift] + ["north"]
+    made = [_doors(walls, ids, entered[i % 4], rng) for i in range(doors)]
+    big = 1.35 if "window" in asked and asked["window"].scale in ("large", "huge") else 1.0
+    lit = [w for w in _LIGHT if w != entered[0]] or list(_LIGHT)
+    glazed = [_window(walls, ids, lit[i % len(lit)], big, rng) for i in range(windows)]
+    return [d for d in made if d], [w for w in glazed if w]
+
+
+def _doors(walls: _Walls, ids: Iterator[int], wall: Wall, rng: np.random.Generator) -> Item | None:
+    kind = knowledge.things()["door"]
+    length, height = walls.length(wall), walls.size[2]
+    width = round(min(float(rng.uniform(*kind.size[0])), length - 0.1), 3)
+    size = (width, 0.06, round(min(2.0, height - 0.05), 3))
+    if width < 0.4 or size[2] < 0.5:
+        return None
+    side = 1 if rng.random() < 0.5 else -1
+    for at in (side, -side, 0):
+        along = at * max(length / 2 - width / 2 - _EDGE, 0.0)
+        if walls.free(wall, along, width):
+            walls.taken[wall].append((along - width / 2, along + width / 2))
+            stand = walls.stand(wall, along, size, 0.0)
+            color = "brown" if rng.random() < 0.5 else "white"
+            way = min(0.9, walls.size[1 if wall in ("north", "south") else 0] / 2)
+            return Item(
+                id=next(ids), label="door", color=color, size=size, support="wall", stand=stand, clear=(way, 0, 0, 0)
+            )
+    return None
+
+
+def _window(walls: _Walls, ids: Iterator[int], wall: Wall, big: float, rng: np.random.Generator) -> Item | None:
+    kind = knowledge.things()["window"]
+    length, height = walls.length(wall), walls.size[2]
+    width = round(min(float(rng.uniform(*kind.size[0])) * big, length - 2 * _EDGE), 3)
+    bottom = min(_SILL, height * 0.35) if big == 1.0 else min(0.5, height * 0.2)
+    tall = round(min(float(rng.uniform(*kind.size[2])) * big, height - bottom - 0.15), 3)
+    if width < 0.3 or tall < 0.3:
+        return None
+    reach = length / 2 - width / 2 - _EDGE
+    for along in (0.0, -reach, reach, -reach / 2, reach / 2):
+        if walls.free(wall, along, width):
+            walls.taken[wall].append((along - width / 2, along + width / 2))
+            size = (width, 0.08, tall)
+            stand = walls.stand(wall, along, size, bottom)
+            return Item(id=next(ids), label="window", color="white", size=size, support="wall", stand=stand)
+    return None
+
+
+def beams(size: Size, count: int, section: Size, color: str, ids: Iterator[int]) -> list[Item]:
+    """Beams from the left to the right wall, evenly over the depth.
+
+    Args:
+        size: of the room.
+        count: how many; no more than stand half a metre apart.
+        section: depth and height are those of a beam.
+        color: of all.
+        ids: numbers for them.
+    """
+    number = max(1, min(count, int(size[1] / 0.5)))
+    deep, tall = section[1], min(section[2], size[2] / 8)
+    box = (round(size[0] - 0.02, 3), deep, round(tall, 3))
+    made = []
+    for i in range(number):
+        y = size[1] * ((i + 0.5) / number - 0.5)
+        stand = Stand(position=(0.0, round(y, 4), round(size[2] - tall / 2, 4)))
+        made.append(Item(id=next(ids), label="beam", color=color, size=box, support="ceiling", stand=stand))
+    return made
