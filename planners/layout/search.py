@@ -11,7 +11,8 @@ import numpy as np
 
 from ..graph import SHELL
 from .bodies import FLAT, HEAD, Body, Member, Prepared
-from .places import Place, places
+from .places import places
+from .prices import Place
 from .shapes import F64, Flags, Spot
 from .state import State
 
@@ -52,7 +53,7 @@ class Search:
             if rough < raw:
                 raw = rough
                 self._better(state, bodies)
-            self._load(state)
+            self._load(state, 0.0 if start == 0 else 0.4)
             price = state.price()
             idle = 0 if price < least else idle + 1
             if price < least:
@@ -79,12 +80,12 @@ class Search:
             found += [Body((Member(m.item),)) for m in others if m.item in self.loose]
         return found
 
-    def _load(self, state: State) -> None:
+    def _load(self, state: State, noise: float) -> None:
         """Place what stands on other things."""
         carried = [i for i, item in enumerate(self.prepared.items) if item.support not in SHELL and item.stand is None]
         for i in sorted(carried, key=lambda i: (len(self.prepared.carriers[i]), -self.urgent[i], -self._size(i), i)):
             if not self.prepared.is_circular(i):
-                self._put(state, Body((Member(i),)), 0.0)
+                self._put(state, Body((Member(i),)), noise)
 
     def _size(self, i: int) -> float:
         return self.prepared.items[i].size[0] * self.prepared.items[i].size[1]
