@@ -118,9 +118,9 @@ def _graph(wish: str, seed: int, planner: str, best: bool) -> SceneGraph:
 
     if wish.lower().endswith(".json"):
         return SceneGraph.read(Path(wish))
-    from ...planners.compose.compose import compose
+    from ...planners.composing import composed
 
-    composition = compose(wish, seed=seed, planner=None if planner == "auto" else planner)
+    composition = composed(wish, seed=seed, planner=planner)
     for remark in composition.remarks:
         terminal.say(f"note: {remark}")
     layout = composition.layout

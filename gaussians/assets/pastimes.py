@@ -101,7 +101,8 @@ def arcade_machine(rng: Rng, tone: Tone) -> list[Piece]:
     shown=False,
 )
 def dart_board(rng: Rng, tone: Tone) -> list[Piece]:
-    r, black, cream = 0.225, Material(tone.color if tone.asked else (0.1, 0.1, 0.11), main=True), tone.plain("#eadfbf")
+    r, cream = rng.uniform(0.22, 0.27), tone.plain("#eadfbf")
+    black = Material(tone.color if tone.asked else (0.1, 0.1, 0.11), main=True)
     tone.color = black.color
     out = [cylinder(r, 0.035, bevel=0.004).named("rim", black)]
     for k in range(20):

@@ -170,7 +170,7 @@ _SIDE = st.floats(0.0, 3.0)
     st.lists(st.tuples(_LABELS, st.tuples(_SIDE, _SIDE, _SIDE), st.floats(-359, 360), st.integers(0, 6)), max_size=4)
 )
 def test_any_graph_is_built(rows: list[tuple[str, tuple[float, float, float], float, int]]) -> None:
-    """Whatever boxes, names, turns and rings of supports a graph has, every node that is no floor gets its Gaussians."""
+    """Whatever boxes, names, turns and rings of supports a graph has, every node but floors gets Gaussians."""
     supports: list[Any] = ["floor", "wall", "ceiling"]
     nodes = []
     for i, (label, size, yaw, pick) in enumerate(rows):
@@ -281,8 +281,9 @@ def test_a_folder_gives_what_its_files_captions_and_tags_name(tmp_path: Path) ->
 
 def test_a_mesh_stands_upright_and_faces_the_viewer(tmp_path: Path) -> None:
     """glTF: y up, front +z. A wedge whose slope looks to +z must slope towards -y and keep its top up."""
-    wedge = trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 0, 1], [0, 1, 0], [1, 1, 0]],
-                            [[0, 1, 5], [0, 5, 4], [0, 2, 3], [0, 3, 1], [2, 4, 5], [2, 5, 3], [0, 4, 2], [1, 3, 5]])  # fmt: skip
+    corners = [[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 0, 1], [0, 1, 0], [1, 1, 0]]
+    back, base, slope = [[0, 5, 1], [0, 4, 5]], [[0, 1, 3], [0, 3, 2]], [[2, 3, 5], [2, 5, 4]]
+    wedge = trimesh.Trimesh(corners, [*back, *base, *slope, [0, 2, 4], [1, 5, 3]])
     wedge.export(tmp_path / "wedge.glb")
     scene = build(graph_of({"label": "wedge", "size": [1, 1, 1], "position": [0, 0]}), assets=tmp_path)
     means = scene.cloud.means[scene.cloud.group == 0]
