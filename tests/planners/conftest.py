@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -43,6 +44,12 @@ def tiny_llama(tmp_path_factory: pytest.TempPathFactory) -> Path:
     )  # fmt: skip
     LlamaForCausalLM(config).save_pretrained(folder)
     return folder
+
+
+@pytest.fixture
+def copied(tiny_llama: Path, tmp_path: Path) -> Path:
+    """A folder of one's own to break."""
+    return Path(shutil.copytree(tiny_llama, tmp_path / "model"))
 
 
 def save_tokenizer(folder: Path) -> None:
