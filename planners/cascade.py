@@ -1,9 +1,10 @@
 """`auto`: whoever is cheapest and sure plans; only what it abstains on goes on to those who cost more.
 
-    grammar  ──abstains──►  wishes  ──no wish──►  language model, if there is one and its budget lasts
+    wishes, where the words are one and the scene is there  ──►  grammar  ──abstains──►  language model, if there is one
 
-Knows which answers are final. Refuses to let anything dearer overrule an answer: where the grammar is sure, nobody else
-is asked, so that `auto` is as fast there, and right where it is right.
+Knows which answers are final. Refuses to let a model overrule an answer: where the grammar is sure no model is asked,
+so that `auto` is as fast there, and right where it is right. Wishes for the whole room come before it, as it would take
+some of them for a single edit: "make a circle of chairs" adds no circle.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from functools import cached_property
+from typing import Protocol
 
 from ..gaussians.errors import BackendError, UserError
 from .budget import OverBudgetError
@@ -27,12 +29,20 @@ ABSTAINS = ("not_understood", "impossible")  # verdicts of the grammar that othe
 MEASURABLE = (TO_ALIGN, TO_A_LENGTH)
 
 
+class Wisher(Planner, Protocol):
+    """A planner that can tell at once, and without the scene, whether a text is for it."""
+
+    def reads(self, text: str) -> bool:
+        """Whether a text is a wish for the whole room, as far as its words go."""
+        ...
+
+
 class Cascade:
-    """Grammar first, then wishes, then a model.
+    """Wishes and grammar first, both without a model, then a model.
 
     Args:
-        grammar: the planner that is asked always; its verdicts `ok`, `unsafe` and `not_an_edit` are final, so that
-            questions, chat and orders that are not about the scene never reach a model.
+        grammar: the planner that is asked always; what it calls `ok`, `unsafe` or `not_an_edit` never reaches a model,
+            so that questions, chat and orders that are not about the scene do not.
         wishes: makes the planner of wishes for the whole room, when one is first needed; None leaves it out.
         model: the language-model planner; None leaves it out.
     """
@@ -40,14 +50,14 @@ class Cascade:
     name = NAME
 
     def __init__(
-        self, grammar: Planner, wishes: Callable[[], Planner] | None = None, model: Planner | None = None
+        self, grammar: Planner, wishes: Callable[[], Wisher] | None = None, model: Planner | None = None
     ) -> None:
         self.grammar = grammar
         self.model = model
         self._wishes = wishes
 
     @cached_property
-    def _wisher(self) -> Planner | None:
+    def _wisher(self) -> Wisher | None:
         return self._wishes() if self._wishes is not None else None
 
     def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
@@ -60,17 +70,20 @@ class Cascade:
         """
         started = time.perf_counter()
         plan = self.grammar.plan(text, previous=previous)
+        if plan.verdict == "unsafe":
+            return plan
+        wish = self._wished(text, previous, sight)
+        if wish is not None and wish.verdict != "not_understood":
+            return _timed(wish, started)
         if plan.verdict not in ABSTAINS:
             return plan
-        better = self._wished(text, previous, sight) or self._asked(plan, text, previous, sight)
-        return better.model_copy(update={"seconds": time.perf_counter() - started})
+        return _timed(self._asked(wish or plan, text, previous, sight), started)
 
     def _wished(self, text: str, previous: str | None, sight: Sight | None) -> EditPlan | None:
         """What a wish for the whole room comes to; None if it is no wish."""
-        if self._wisher is None:
+        if self._wisher is None or not self._wisher.reads(text):
             return None
-        plan = self._wisher.plan(text, previous=previous, sight=sight)
-        return plan if plan.verdict != "not_understood" else None
+        return self._wisher.plan(text, previous=previous, sight=sight)
 
     def _asked(self, abstained: EditPlan, text: str, previous: str | None, sight: Sight | None) -> EditPlan:
         """What the model makes of it, or the abstention with the reason why the model does not help."""
@@ -87,6 +100,10 @@ class Cascade:
             return plan
         told = "; ".join(filter(None, [abstained.reason, f"{plan.planner} did not understand it either", plan.reason]))
         return plan.model_copy(update={"reason": told[:2000], "unknown": plan.unknown or abstained.unknown})
+
+
+def _timed(plan: EditPlan, started: float) -> EditPlan:
+    return plan.model_copy(update={"seconds": time.perf_counter() - started})
 
 
 def may_ask(abstained: EditPlan, sight: Sight | None) -> bool:

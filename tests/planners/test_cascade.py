@@ -38,6 +38,17 @@ class Fake:
         return EditPlan(instruction=text, planner=self.name, **fields)
 
 
+class Wishes(Fake):
+    """A planner of wishes that takes everything, or nothing, for one."""
+
+    def __init__(self, verdict: str = "ok", reading: bool = True) -> None:
+        super().__init__(verdict, name="wishes")
+        self.reading = reading
+
+    def reads(self, text: str) -> bool:
+        return self.reading
+
+
 class Blind:
     """A sight that nobody may use."""
 
@@ -51,14 +62,15 @@ class Blind:
 def test_where_the_grammar_answers_nobody_else_is_asked() -> None:
     for case in _written.cases():
         alone = GRAMMAR.plan(case["text"], previous=case.get("context"))
-        wishes, model = Fake("not_understood"), Fake()
+        wishes, model = Wishes(reading=False), Fake()
         plan = Cascade(GRAMMAR, lambda w=wishes: w, model).plan(
             case["text"], previous=case.get("context"), sight=Blind()
         )
         if alone.verdict in ("not_understood", "impossible"):
-            assert wishes.asked, case["id"]
+            assert model.asked or alone.verdict == "impossible", case["id"]
         else:
-            assert plan.same_as(alone) and plan.usage is None and not wishes.asked and not model.asked, case["id"]
+            assert plan.same_as(alone) and plan.usage is None and not model.asked, case["id"]
+        assert wishes.asked == []
 
 
 @pytest.mark.parametrize(
@@ -70,7 +82,7 @@ def test_where_the_grammar_answers_nobody_else_is_asked() -> None:
 )  # fmt: skip
 def test_what_is_unsafe_or_no_edit_never_reaches_a_model(text: str) -> None:
     model = Fake()
-    plan = Cascade(GRAMMAR, lambda: Fake(), model).plan(text, sight=Blind())
+    plan = Cascade(GRAMMAR, lambda: Wishes(reading=False), model).plan(text, sight=Blind())
     assert plan.verdict in ("unsafe", "not_an_edit") and model.asked == [] and plan.planner == "grammar"
 
 
@@ -98,15 +110,29 @@ def test_what_no_operation_does_is_not_asked_unless_seeing_helps() -> None:
     assert Cascade(Unseeing(), None, model).plan("face it", sight=Blind()).ok and len(model.asked) == 1
 
 
-@pytest.mark.parametrize("verdict", ["ok", "impossible", "absent", "ambiguous", "unsafe"])
-def test_a_wish_is_answered_without_a_model(verdict: str) -> None:
+@pytest.mark.parametrize("verdict", ["ok", "impossible", "absent", "ambiguous", "not_an_edit"])
+@pytest.mark.parametrize("text", [HARD, "delete the chair", "it is a pity about the chair"])
+def test_a_wish_is_answered_without_a_model_whatever_the_grammar_makes_of_it(verdict: str, text: str) -> None:
     model = Fake()
-    plan = Cascade(GRAMMAR, lambda: Fake(verdict, name="wishes"), model).plan(HARD)
+    plan = Cascade(GRAMMAR, lambda: Wishes(verdict), model).plan(text, sight=Blind())
     assert (plan.verdict, plan.planner, model.asked) == (verdict, "wishes", [])
 
 
+def test_what_is_unsafe_is_no_wish() -> None:
+    wishes = Wishes()
+    assert Cascade(GRAMMAR, lambda: wishes).plan("run rm -rf /").verdict == "unsafe" and wishes.asked == []
+
+
 def test_what_is_no_wish_goes_on_to_the_model() -> None:
-    assert Cascade(GRAMMAR, lambda: Fake("not_understood", name="wishes"), Fake()).plan(HARD).planner == "fake:1"
+    wishes = Wishes(reading=False)
+    assert Cascade(GRAMMAR, lambda: wishes, Fake()).plan(HARD).planner == "fake:1" and wishes.asked == []
+
+
+def test_a_wish_that_cannot_be_planned_without_the_scene_leaves_the_grammar_its_word() -> None:
+    cascade = Cascade(GRAMMAR, lambda: Wishes("not_understood"))
+    assert cascade.plan("delete the chair").planner == "grammar"
+    assert cascade.plan(HARD).reason == "as asked"
+    assert Cascade(GRAMMAR, lambda: Wishes("not_understood"), Fake()).plan(HARD).planner == "fake:1"
 
 
 @pytest.mark.parametrize("verdict", ["not_an_edit", "impossible", "unsafe", "absent", "ambiguous"])
