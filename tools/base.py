@@ -21,7 +21,7 @@ from ..gaussians.camera import Camera
 from ..gaussians.language.query import Query
 from ..gaussians.language.selection import Selection, mask_of
 from ..gaussians.scene import Frame, Scene
-from .alternatives import either, given
+from .alternatives import NOT_GIVEN, either, given
 from .receipt import Check, Pixels, Receipt, SelectionSummary
 
 __all__ = [
@@ -38,13 +38,15 @@ Spot = Literal[
 ColorName = Annotated[str, Field(min_length=1, max_length=40)]
 AssetName = Annotated[str, Field(min_length=1, max_length=60)]
 
+Way = Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False)]
+
 METRES: dict[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 # Spots that make no sense without something to be placed against.
 _NEED_ANCHOR = {
     "under", "above", "next_to", "left_of", "right_of", "in_front_of", "behind", "opposite", "between", "inside"
 }  # fmt: skip
 _RELATIVE = [s for s in get_args(Spot) if s in _NEED_ANCHOR and s != "between"]
-_ABSOLUTE = [s for s in get_args(Spot) if s not in _NEED_ANCHOR]
+_ABSOLUTE = [s for s in get_args(Spot) if s not in (*_NEED_ANCHOR, "on")]
 
 
 class Length(BaseModel):
@@ -85,19 +87,24 @@ class Placement(BaseModel):
         frozen=True,
         extra="forbid",
         json_schema_extra=either(
-            {"relation": given(enum=_RELATIVE), "anchors": given(minItems=1, maxItems=1)},
-            {"relation": given(enum=["between"]), "anchors": given(minItems=1)},
-            {"relation": given(enum=_ABSOLUTE), "anchors": {"maxItems": 1}},
+            {"relation": given(enum=_RELATIVE), "anchors": given(minItems=1, maxItems=1), "offset": NOT_GIVEN},
+            {"relation": given(enum=["between"]), "anchors": given(minItems=1), "offset": NOT_GIVEN},
+            {"relation": given(enum=_ABSOLUTE), "anchors": {"maxItems": 1}, "offset": NOT_GIVEN},
+            {"relation": given(enum=["on"]), "anchors": {"maxItems": 1}},
         ),
     )
 
     relation: Spot
     anchors: Annotated[tuple[Query, ...], Field(max_length=2)] = ()
+    offset: tuple[Way, Way] | None = None
+    """With "on": how far from the middle of the anchor, or of the floor, metres along the scene graph's x and y."""
 
     @model_validator(mode="after")
     def _anchored(self) -> Self:
         if self.relation in _NEED_ANCHOR and not self.anchors:
             raise ValueError(f'place "{self.relation}" needs an anchor: say {self.relation.replace("_", " ")} what')
+        if self.offset is not None and self.relation != "on":
+            raise ValueError(f'an offset goes with "on", not with "{self.relation}"')
         if len(self.anchors) > 1 and self.relation != "between":
             raise ValueError(f'place "{self.relation}" takes one anchor, got {len(self.anchors)}')
         return self

@@ -50,6 +50,8 @@ class Regions(Surroundings):
         start: Array | None,
     ) -> list[Region]:  # fmt: skip
         plan = np.array(axes[:2])
+        if place is not None and place.offset is not None:
+            start = self._off(place.offset, anchors)
         if place is None or not anchors:
             return [self._room_region(size, plan, place.relation if place is not None else "on", start)]
         relation, anchor = place.relation, anchors[0]
@@ -64,6 +66,12 @@ class Regions(Surroundings):
                 raise InstructionError("'between' needs two things: name both")
             return [self._between_region(size, plan, anchors[0], anchors[1])]
         return [self._beside_region(size, plan, anchor, relation, start)]
+
+    def _off(self, offset: tuple[float, float], anchors: Sequence[Body]) -> Array:
+        """`[3]` a point that far from the middle of an anchor, or of the floor where there is none."""
+        middle = sum(self._room_bounds) / 2 @ np.array(self.room_axes[:2]) if not anchors else anchors[0].center
+        way = np.array(offset) / (self.frame.metres_per_unit or 1.0)
+        return np.asarray(middle + way @ self.frame.basis()[:2])
 
     def _room_region(self, size: Vec3, plan: Array, relation: str, start: Array | None) -> Region:
         room = np.array(self.room_axes[:2])

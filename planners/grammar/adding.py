@@ -14,6 +14,9 @@ from .described import Noun, union
 from .nodes import Node, Refusal, tokens, trees
 from .rules import MOTIONS, Rules, known
 
+# Named in the plural and added as one.
+_IN_PLURAL = ("scissors", "stairs", "headphones", "streamers", "streamer", "balloons", "balloon", "lights", "light",
+              "garlands", "garland", "bunting")  # fmt: skip
 _SOME = 3  # "some cushions", as "a few"
 
 
@@ -35,7 +38,7 @@ class Adding(Rules):
             raise Refusal("say what it should stand next to, or on")
         found[-1], place = (found[-1], motion.place) if motion.place else places.destination(found[-1], "PUT")
         ops = []
-        for noun in found:
+        for noun in map(_unhung, found):
             noun, own = places.destination(_with_height(noun), "PUT")
             where = own or place
             count = self._count(noun)
@@ -66,7 +69,7 @@ class Adding(Rules):
     def _count(self, noun: Noun) -> int:
         if noun.number is not None:
             return places.whole(noun.number, str(noun.number))
-        if not noun.plural or nouns.singular(noun.query.text) in ("scissors", "stairs", "headphones"):
+        if not noun.plural or nouns.head(noun.query.text) in _IN_PLURAL:
             return 1
         if noun.article == "indef":
             return _SOME
@@ -132,6 +135,21 @@ class Adding(Rules):
         number = tokens(node, "NUMBER")
         times = places.whole(number[0].value, number[0].text) if number else None
         return [{"op": "duplicate", "target": union(found), **_counted(times), **motion.fields()}]
+
+
+def _unhung(noun: Noun) -> Noun:
+    """A new thing "from the ceiling" without these words, which go without saying.
+
+    Raises:
+        Refusal: such things do not hang there.
+    """
+    kept = tuple(p for p in noun.posts if not (p.anchors and nouns.head(p.anchors[0].query.text) == "ceiling"))
+    if kept == noun.posts:
+        return noun
+    name = "pendant lamp" if noun.query.text in ("lamp", "light") else noun.query.text
+    if not sizes.hangs(name):
+        raise Refusal(f"a {name} does not hang from the ceiling", noun.query.text, verdict="impossible")
+    return replace(noun, posts=kept, query=noun.query.model_copy(update={"text": name}))
 
 
 def _with_height(noun: Noun) -> Noun:

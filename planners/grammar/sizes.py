@@ -1,4 +1,4 @@
-"""How tall a "small mug" is, from the catalogue of what can be made. Knows nothing of sentences."""
+"""How tall a "small mug" is, and what hangs, from the catalogue of what can be made. Knows nothing of sentences."""
 
 from __future__ import annotations
 
@@ -21,3 +21,13 @@ def usual_height(name: str, size: str) -> float | None:
     except UserError:
         return None
     return lowest if size in _SMALL else highest
+
+
+def hangs(name: str) -> bool:
+    """Whether things of this kind in the catalogue hang from a ceiling."""
+    from ...gaussians.assets import find
+
+    try:
+        return find(name).support == "ceiling"
+    except UserError:
+        return False

@@ -13,7 +13,7 @@ from ...gaussians.errors import InstructionError
 from ...gaussians.language.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import either, nonzero
-from ..base import Affine, Context, Outcome, TargetedOp
+from ..base import Affine, Context, Outcome, TargetedOp, Way
 from ..bookkeeping import carried
 from ..checks import carried_as_asked, collision_free, counted, supported
 from ..receipt import Check
@@ -22,8 +22,6 @@ from ..rows import Draft
 from ..shape import axis_rotation, turn
 from ..space import Array, Body, bodies_of
 from ..support import support_height
-
-Way = Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False)]
 
 
 class Arrange(TargetedOp):

@@ -1,0 +1,243 @@
+"""Figures of things: in a circle, on an arc, in rows, around a table, mirrored about the room's middle.
+
+Knows where each figure puts its things. Refuses to know the solver: a figure is exact, so it is moved about as a whole
+until nothing is in its way.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from ..graph import Node
+from ..layout import Wish as LayoutWish
+from . import solving
+from .floor import clear
+from .goals import Clear, Formation, Where
+from .room import CannotError, Room, copied, toward, wrapped
+
+Slot = tuple[float, float, float]  # x, y, yaw
+Slots = list[Slot]
+
+_ELBOW = 0.15  # metres between neighbours
+_SMALLEST = 0.6  # metres, radius of a circle of people who talk
+_LATTICE = 0.2  # metres between places where a figure is tried
+_TURNS = 12  # ways to turn a circle that are tried
+_LIKE = 0.3  # difference in size within which two things of a name are a pair
+
+
+def form(room: Room, goal: Formation) -> None:
+    """Put things into a figure.
+
+    Raises:
+        CannotError: they are too few, are not there, or there is no room.
+    """
+    things = [n for n in room.find(goal.things) if room.moves(n)]
+    about = room.one(goal.about) if goal.about is not None else None
+    things = [n for n in things if about is None or n.id != about.id]
+    if len(things) < (1 if goal.shape == "around" else 2):
+        raise CannotError(f"{goal.things.describe()}: there are not enough that can be moved")
+    if goal.shape == "around" and about is not None and about.label.split()[-1:] in (["table"], ["desk"]):
+        _at_table(room, things, about)
+    else:
+        slots = _placed(room, goal, things, about)
+        _assign(room, things, slots)
+    where = f" around the {about.label}" if about is not None and goal.shape == "around" else ""
+    shape = {"circle": " in a circle", "arc": " on an arc", "row": f" in {goal.rows} row{'s' * (goal.rows > 1)}"}
+    room.told.append(f"{len(things)} things{shape.get(goal.shape, '')}{where}")
+
+
+def _at_table(room: Room, things: Sequence[Node], table: Node) -> None:
+    """Chairs at the free sides of a table, turned to it.
+
+    Raises:
+        CannotError: there is no room for them.
+    """
+    wishes = [LayoutWish(subject=n.id, name="around", objects=(table.id,)) for n in things]
+    own = frozenset(n.id for n in things)
+    reason = ""
+    for loose in (own, own | {table.id}, frozenset(n.id for n in room.nodes.values() if room.moves(n)) | own):
+        trial = copied(room)
+        try:
+            solving.rearranged(trial, loose, wishes, [])
+        except CannotError as error:
+            reason = str(error)
+            continue
+        room.nodes = trial.nodes
+        return
+    raise CannotError(f"not all of them find room around the {table.label}: {reason}")
+
+
+def _placed(room: Room, goal: Formation, things: Sequence[Node], about: Node | None) -> Slots:
+    """The figure where it fits and the way to it is short; where it fits nowhere, floor is cleared for it.
+
+    Raises:
+        CannotError: there is no room for it, whatever is moved.
+    """
+    if found := _best(room, goal, things, about):
+        return found
+    reach = max(math.hypot(x, y) for x, y, _ in _figure(goal, things, None, (0.0, 0.0), 0.0))
+    width = 2 * reach + 1.5 * max(max(n.size[:2]) for n in things)
+    trial = copied(room)
+    for node in things:  # they make way for themselves
+        del trial.nodes[node.id]
+    try:
+        clear(trial, Clear(goal.where or Where(), width, "it"))
+    except CannotError as error:
+        raise CannotError(f"there is no room for that figure: {error}") from error
+    kept = {n.id: room.nodes[n.id] for n in things}
+    room.nodes = {**trial.nodes, **kept}
+    if found := _best(room, goal, things, about):
+        return found
+    raise CannotError("there is no room for that figure")
+
+
+def _best(room: Room, goal: Formation, things: Sequence[Node], about: Node | None) -> Slots:
+    """The free figure with the shortest ways; empty if there is none."""
+    ids = [n.id for n in things]
+    tried = [(slots, _matched(things, slots)) for slots in _tried(room, goal, things, about) if _within(room, slots)]
+    tried.sort(key=lambda t: sum(math.dist(things[i].position[:2], t[0][j][:2]) for i, j in t[1]))
+    for slots, order in tried:
+        if all(room.fits(things[i].id, *slots[j], but=ids) for i, j in order):
+            return slots
+    return []
+
+
+def _within(room: Room, slots: Slots) -> bool:
+    return all(abs(x) < room.size[0] / 2 and abs(y) < room.size[1] / 2 for x, y, _ in slots)
+
+
+def _tried(room: Room, goal: Formation, things: Sequence[Node], about: Node | None) -> Iterator[Slots]:
+    """The figure at every place of the floor, or about what it is about, turned every way."""
+    turns = (
+        [360.0 / _TURNS * k for k in range(_TURNS)] if goal.shape in ("circle", "around") else [0.0, 90.0, 180.0, 270.0]
+    )
+    if goal.shape in ("circle", "around", "arc") and about is not None:
+        places = [about.position[:2]]
+        turns = [15.0 * k for k in range(24)] if goal.shape == "arc" else turns
+    elif goal.where is not None:
+        anchor = room.one(goal.where.anchor) if goal.where.anchor is not None else None
+        near = (0.0, 0.0) if anchor is None else anchor.position[:2]
+        places = sorted(_floor(room), key=lambda p: math.dist(p, near))[:40]
+    else:
+        places = _floor(room)
+    for place in places:
+        for turn in turns:
+            yield _figure(goal, things, about, place, turn)
+
+
+def _floor(room: Room) -> list[tuple[float, float]]:
+    width, depth, _ = room.size
+    xs = np.arange(-width / 2 + 0.5, width / 2 - 0.4, _LATTICE)
+    ys = np.arange(-depth / 2 + 0.5, depth / 2 - 0.4, _LATTICE)
+    return [(float(x), float(y)) for x in xs for y in ys]
+
+
+def _figure(
+    goal: Formation, things: Sequence[Node], about: Node | None, place: tuple[float, float], turn: float
+) -> Slots:
+    """Slots of a figure with its middle at a place."""
+    if goal.shape == "row":
+        return _rows(goal, things, about, place, turn)
+    span = 180.0 if goal.shape == "arc" else 360.0
+    count = len(things)
+    need = sum(n.size[0] + _ELBOW for n in things) / math.radians(span)
+    inner = 0.0 if about is None else math.hypot(*about.size[:2]) / 2 + 0.1
+    if goal.shape == "arc" and about is not None:
+        inner = max(inner, 1.4)
+    radius = max(need, _SMALLEST, inner) + max(n.size[1] for n in things) / 2
+    step = span / max(count - 1, 1) if goal.shape == "arc" else span / count
+    slots = Slots()
+    for k in range(count):
+        angle = math.radians(turn + k * step)
+        x, y = place[0] + radius * math.cos(angle), place[1] + radius * math.sin(angle)
+        slots.append((x, y, toward((x, y), place)))
+    return slots
+
+
+def _rows(
+    goal: Formation, things: Sequence[Node], about: Node | None, place: tuple[float, float], turn: float
+) -> Slots:
+    """Rows side by side, one behind the other, all turned the same way."""
+    yaw = turn
+    if about is not None:
+        yaw = 90.0 * round(toward(place, about.position[:2]) / 90.0)
+    each = math.ceil(len(things) / goal.rows)
+    pitch = max(n.size[0] for n in things) + _ELBOW
+    behind = max(n.size[1] for n in things) + 0.4
+    c, s = math.cos(math.radians(yaw)), math.sin(math.radians(yaw))
+    slots = Slots()
+    for k in range(len(things)):
+        row, seat = divmod(k, each)
+        u = (seat - (min(each, len(things) - row * each) - 1) / 2) * pitch
+        v = (row - (goal.rows - 1) / 2) * behind
+        slots.append((place[0] + c * u - s * v, place[1] + s * u + c * v, wrapped(yaw)))
+    return slots
+
+
+def _matched(things: Sequence[Node], slots: Slots) -> list[tuple[int, int]]:
+    """Who goes where, so that the ways are short together (Kuhn 1955)."""
+    away = [[math.dist(n.position[:2], s[:2]) for s in slots] for n in things]
+    rows, columns = linear_sum_assignment(np.array(away))
+    return [(int(i), int(j)) for i, j in zip(rows, columns, strict=True)]
+
+
+def _assign(room: Room, things: Sequence[Node], slots: Slots) -> None:
+    for i, j in _matched(things, slots):
+        room.put(things[i].id, *slots[j])
+
+
+def mirror(room: Room) -> None:
+    """Every two things of a kind mirrored about the axis of the largest thing that faces the room.
+
+    Raises:
+        CannotError: no two things are alike, or there is no room.
+    """
+    movable = [n for n in room.nodes.values() if room.moves(n)]
+    if len(movable) < 3:
+        raise CannotError("there is nothing to mirror")
+    axis = max(movable, key=lambda n: n.size[0] * n.size[1])
+    c, s = math.cos(math.radians(axis.yaw)), math.sin(math.radians(axis.yaw))
+    done = 0
+    for one, other in _pairs([n for n in movable if n.id != axis.id]):
+        u, v = (_local(n, axis, c, s) for n in (one, other))
+        aside, along = (abs(u[0]) + abs(v[0])) / 2, (u[1] + v[1]) / 2
+        left, right = (one, other) if u[0] <= v[0] else (other, one)
+        for node, x in ((left, -aside), (right, aside)):
+            yaw = 90.0 * round((node.yaw - axis.yaw) / 90.0)
+            yaw = yaw if node is left else -_local_yaw(room, left, axis)
+            px, py = axis.position[0] + c * x - s * along, axis.position[1] + s * x + c * along
+            if not room.fits(node.id, px, py, wrapped(axis.yaw + yaw), but=(one.id, other.id)):
+                raise CannotError(f"the {node.label} has no room where its mirror image would be")
+            room.put(node.id, px, py, wrapped(axis.yaw + yaw))
+        done += 1
+    if not done:
+        raise CannotError("no two things here are alike, so nothing can be mirrored")
+    room.told.append(f"{done} pair{'s' if done > 1 else ''} mirrored about the {axis.label}")
+
+
+def _local(node: Node, axis: Node, c: float, s: float) -> tuple[float, float]:
+    dx, dy = node.position[0] - axis.position[0], node.position[1] - axis.position[1]
+    return c * dx + s * dy, c * dy - s * dx
+
+
+def _local_yaw(room: Room, node: Node, axis: Node) -> float:
+    return room.nodes[node.id].yaw - axis.yaw
+
+
+def _pairs(nodes: Sequence[Node]) -> Iterator[tuple[Node, Node]]:
+    """Things of one name and size, two and two, those that are alone left out."""
+    left = list(nodes)
+    while left:
+        one = left.pop(0)
+        alike = [n for n in left if n.label == one.label and _is_like(one, n)]
+        if alike:
+            left.remove(alike[0])
+            yield one, alike[0]
+
+
+def _is_like(a: Node, b: Node) -> bool:
+    return all(abs(x - y) <= _LIKE * max(x, y) for x, y in zip(sorted(a.size), sorted(b.size), strict=True))

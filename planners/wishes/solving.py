@@ -1,0 +1,110 @@
+"""Wishes that the layout solver fulfils: floor kept free, things at walls, seats that see, a corner to read in.
+
+Knows how a room becomes a problem: what may move where it was, all else with its stand. Refuses to know how problems
+are solved. Few things are let go at first, and all only where few do not help: who asks for some floor does not ask
+for another room.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Sequence
+
+import numpy as np
+
+from ..grammar.words import bag
+from ..graph import Node
+from ..layout import Item, Keepout, Layout, Problem, Stand, solve
+from ..layout import Wish as LayoutWish
+from .room import CannotError, Id, Room, wrapped
+
+MARGIN = 0.05  # metres from the measured walls: a room's size is that of its shell
+GAP = 0.03  # metres by which things are taken for larger, so that they stand apart
+AT_WALL = 0.3  # metres from a wall within which a thing counts as standing at it
+_FRONTED = bag(
+    "sofa couch armchair chair seat bench loveseat recliner bed desk shelf bookshelf bookcase cabinet wardrobe dresser "
+    "nightstand sideboard television tv stand piano monitor screen mirror speaker clock crib"
+)
+_LONG = bag("bed bathtub chaise")  # their short side is at the wall
+
+
+def rearranged(
+    room: Room, free: Collection[Id], wishes: Sequence[LayoutWish], discs: Sequence[Keepout], seed: int = 0
+) -> None:
+    """Move the free things so that wishes and discs hold; the room is then as found.
+
+    Raises:
+        CannotError: that cannot be; the message says what conflicts.
+    """
+    layout = solve(_problem(room, free, wishes, discs), seed)
+    if not layout.ok or layout.left_out:
+        raise CannotError(conflict(layout))
+    for node in layout.graph.nodes:
+        if node.id in free:
+            room.put(node.id, node.position[0], node.position[1], _original(room, node))
+
+
+def _original(room: Room, node: Node) -> float:
+    """The yaw of the thing itself, of which the problem may have had the long side across.
+
+    What has no front turns no farther than its footprint asks for.
+    """
+    was = room.nodes[node.id]
+    yaw = wrapped(node.yaw - 90.0) if is_crosswise(was) else node.yaw
+    if _FRONTED & set(was.label.split()):
+        return yaw
+    square = abs(was.size[0] - was.size[1]) <= GAP
+    return wrapped(was.yaw + math.remainder(yaw - was.yaw, 90.0 if square else 180.0))
+
+
+def is_crosswise(node: Node) -> bool:
+    """Whether a thing is deeper than wide though its long side belongs along a wall."""
+    return node.size[1] > 1.2 * node.size[0] and not _LONG & set(node.label.split())
+
+
+def conflict(layout: Layout) -> str:
+    """Why a layout does not hold, in a sentence."""
+    told = [" and ".join(c.statements) for c in layout.conflicts[:2]]
+    return "these cannot all be: " + "; ".join(told) if told else "there is no room for that"
+
+
+def _problem(room: Room, free: Collection[Id], wishes: Sequence[LayoutWish], discs: Sequence[Keepout]) -> Problem:
+    width, depth, height = room.size
+    walled = {w.subject for w in wishes if w.name in ("against_wall", "in_corner")}
+    riders = {r for id in free for r in room.riders(id)}
+    items = [_item(room, n, n.id in free, n.id in walled) for n in room.nodes.values() if n.id not in riders]
+    return Problem(
+        size=(width - 2 * MARGIN, depth - 2 * MARGIN, height),
+        items=tuple(items),
+        wishes=tuple(wishes),
+        free=tuple(discs),
+        walkway=0.0,
+    )
+
+
+def _item(room: Room, node: Node, free: bool, walled: bool) -> Item:
+    """A thing of the room as the solver knows things; one whose carrier moves is not among them."""
+    stand = Stand(position=node.position, yaw=node.yaw)
+    known = {"id": node.id, "label": node.label, "color": node.color, "support": node.support}
+    if not free:
+        return Item(**known, size=node.size, stand=stand)  # type: ignore[arg-type]
+    width, depth, height = node.size
+    yaw = node.yaw
+    if is_crosswise(node):
+        width, depth, yaw = depth, width, wrapped(yaw + 90.0)
+    was = Stand(position=node.position, yaw=wrapped(90.0 * round(yaw / 90.0)))
+    size = (width + GAP, depth + GAP, height)
+    return Item(**known, size=size, was=was, backed=walled)  # type: ignore[arg-type]
+
+
+def in_disc(node: Node, disc: tuple[float, float, float]) -> bool:
+    """Whether a thing reaches into a disc of floor (x, y, radius)."""
+    x, y, _ = node.box.local(np.array([[disc[0], disc[1], node.position[2]]]))[0]
+    aside = max(abs(float(x)) - node.size[0] / 2, 0.0), max(abs(float(y)) - node.size[1] / 2, 0.0)
+    return math.hypot(*aside) < disc[2]
+
+
+def at_wall(room: Room, node: Node) -> bool:
+    """Whether a thing stands at a wall already."""
+    corners = abs(node.box.corners()[:, :2]).max(axis=0)
+    return bool(min(room.size[0] / 2 - corners[0], room.size[1] / 2 - corners[1]) < AT_WALL)

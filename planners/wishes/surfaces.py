@@ -1,0 +1,194 @@
+"""Wishes for what stands on things: tidied away, cleared off, a table laid.
+
+Knows which things are small, which carry others, and where people sit. Refuses to throw anything away: what has to go
+from a desk goes onto something else.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...tools.base import Placement
+from ...tools.ops.insert import Insert
+from ...tools.ops.move import Move
+from ..grammar.words import bag
+from ..graph import Node
+from . import solving
+from .goals import Declutter, SetTable
+from .room import SEATS, SMALL, CannotError, Id, Room, is_flat, is_likely, wrapped
+from .steps import target
+
+_CARRIES = bag("table desk shelf bookshelf bookcase dresser nightstand cabinet sideboard counter stand chest")
+_STORES = ("bookshelf", "bookcase", "shelf", "cabinet", "sideboard", "dresser", "chest", "nightstand")
+# What stands on a desk because it is used there.
+_STAYS = bag("lamp monitor keyboard mouse laptop computer television tv telephone screen printer microwave")
+_ON_FLOOR = bag("shoe rug bin basket ball pot plant mat scale drum suitcase guitar fan box")
+_REACH = 0.75  # metres from a table within which a seat counts as at it
+_FULL = 0.6  # share of a top that may be taken
+_RIM = 0.2  # metres from the edge of a table to the middle of a plate
+_PLATE = 0.34  # metres that a place at a table takes
+
+
+def tidy(room: Room) -> None:
+    """Furniture straight and flush with its wall, small things from the floor onto furniture.
+
+    Raises:
+        CannotError: there is nothing to put things on.
+    """
+    straight = sum(_straighten(room, n) for n in list(room.nodes.values()) if room.moves(n) and max(n.size) >= SMALL)
+    loose = [n for n in room.nodes.values() if _is_loose(room, n)]
+    taken = dict[Id, float]()
+    for node in loose:
+        _put_away(room, node, _surfaces(room), taken)
+    if straight:
+        room.told.append(f"{straight} thing{'s' if straight > 1 else ''} straightened")
+    if loose:
+        room.told.append(f"{len(loose)} small thing{'s' if len(loose) > 1 else ''} picked up from the floor")
+
+
+def _straighten(room: Room, node: Node) -> bool:
+    """Turn a thing to the nearest quarter and bring it flush with the wall it stands at, where that is free."""
+    x, y, _ = node.position
+    yaw = wrapped(90.0 * round(node.yaw / 90.0))
+    width, depth = (node.size[0], node.size[1]) if round(yaw / 90.0) % 2 == 0 else (node.size[1], node.size[0])
+    reach = (room.size[0] / 2 - solving.MARGIN - width / 2, room.size[1] / 2 - solving.MARGIN - depth / 2)
+    flush = [
+        math.copysign(most, at) if solving.MARGIN < most - abs(at) < solving.AT_WALL else at
+        for at, most in zip((x, y), reach, strict=True)
+    ]
+    for there in (flush, [x, y]):
+        moved = abs(wrapped(yaw - node.yaw)) > 1.0 or math.dist(there, (x, y)) > solving.MARGIN
+        if moved and room.fits(node.id, *there, yaw):
+            room.put(node.id, *there, yaw)
+            return True
+    return False
+
+
+def _is_loose(room: Room, node: Node) -> bool:
+    """Whether a small thing lies on the floor that belongs on furniture."""
+    words = set(node.label.split())
+    small = node.support == "floor" and max(node.size) < SMALL and not is_flat(node)
+    return small and bool(words) and not words & _ON_FLOOR and is_likely(node)
+
+
+def _surfaces(room: Room) -> list[Node]:
+    """What carries things, the best first: shelves before tables."""
+    found = [n for n in room.nodes.values() if set(n.label.split()) & _CARRIES and n.support == "floor"]
+    return sorted(found, key=lambda n: (not set(n.label.split()) & set(_STORES), -n.size[0] * n.size[1]))
+
+
+def _put_away(room: Room, node: Node, surfaces: Sequence[Node], taken: dict[Id, float]) -> None:
+    """Put a thing on the nearest thing that has room for it.
+
+    Raises:
+        CannotError: none has.
+    """
+    area = node.size[0] * node.size[1]
+    free = []
+    for carrier in surfaces:
+        load = taken.get(carrier.id, 0.0) + sum(
+            n.size[0] * n.size[1] for n in room.nodes.values() if n.support == carrier.id
+        )
+        fits = max(node.size[:2]) <= 1.2 * min(carrier.size[:2])
+        if fits and load + area <= _FULL * carrier.size[0] * carrier.size[1]:
+            free.append(carrier)
+    if not free:
+        raise CannotError(f"there is nothing with room for the {node.label}: add a shelf, or say what to take away")
+    near = min(free, key=lambda n: math.dist(n.position[:2], node.position[:2]))
+    taken[near.id] = taken.get(near.id, 0.0) + area
+    place = Placement(relation="on", anchors=(target(near),))
+    room.ops.append(Move(target=target(node), place=place))
+
+
+def declutter(room: Room, goal: Declutter) -> None:
+    """What stands on something and is not used there goes onto something else.
+
+    Raises:
+        CannotError: nothing else has room for it.
+    """
+    surface = room.one(goal.surface)
+    if surface is None:
+        raise CannotError("say what to clear off")
+    on = [n for n in room.nodes.values() if n.support == surface.id]
+    extra = [n for n in on if not set(n.label.split()) & _STAYS]
+    others = [n for n in _surfaces(room) if n.id != surface.id]
+    taken = dict[Id, float]()
+    for node in extra:
+        _put_away(room, node, others, taken)
+    room.told.append(f"{len(extra)} of {len(on)} things cleared off the {surface.label}")
+
+
+def set_table(room: Room, goal: SetTable) -> None:
+    """A plate and a glass before every seat, or evenly around the table where nobody sits yet.
+
+    Raises:
+        CannotError: the table is not there or too small.
+    """
+    tables = [n for n in room.find(goal.table.model_copy(update={"pick": "all"})) if n.support == "floor"]
+    if not tables:
+        raise CannotError("say which table")
+    table = max(tables, key=lambda n: n.size[0] * n.size[1])  # people eat at the largest
+    seats = [n for n in room.nodes.values() if set(n.label.split()) & SEATS and _gap(n, table) < _REACH]
+    people = goal.people or len(seats) or 2
+    places = _places(table, seats, people)
+    if places is None:
+        raise CannotError(f"the {table.label} is too small for {people}")
+    c, s = math.cos(math.radians(table.yaw)), math.sin(math.radians(table.yaw))
+    for asset, back, aside in (("plate", 0.0, 0.0), ("wine glass", 0.14, 0.14)):
+        for u, v, du, dv in places:
+            x, y = u + back * du - aside * dv, v + back * dv + aside * du
+            offset = (round(c * x - s * y, 3), round(s * x + c * y, 3))
+            place = Placement(relation="on", anchors=(target(table),), offset=offset)
+            room.ops.append(Insert(asset=asset, place=place))
+    short = f", of whom {len(seats)} have a seat" if len(seats) < people else ""
+    room.told.append(f"the {table.label} is set for {people}{short}")
+
+
+def _gap(node: Node, table: Node) -> float:
+    """Metres from the middle of a seat to the edge of a table."""
+    at = table.box.local(_middle(node))[0]
+    x, y = abs(float(at[0])) - table.size[0] / 2, abs(float(at[1])) - table.size[1] / 2
+    return math.hypot(max(x, 0.0), max(y, 0.0))
+
+
+def _places(table: Node, seats: Sequence[Node], people: int) -> list[tuple[float, float, float, float]] | None:
+    """Plates in the table's axes, with the way inward: before the seats first, then where there is most room.
+
+    None if they do not fit.
+    """
+    width, depth, _ = table.size
+    sides = []
+    for length, across, turn in ((width, depth, False), (depth, width, True)):
+        count = int(length / _PLATE)
+        for sign in (-1.0, 1.0):
+            for k in range(count):
+                along = (k + 0.5) * length / count - length / 2
+                rim = sign * max(across / 2 - _RIM, 0.0)
+                inward = -sign
+                sides.append((rim, along, inward, 0.0) if turn else (along, rim, 0.0, inward))
+    chosen: list[tuple[float, float, float, float]] = []
+    wanted = [tuple(float(v) for v in table.box.local(_middle(n))[0, :2]) for n in seats]
+    for at in wanted[:people]:
+        free = [p for p in sides if all(_far(p, q) for q in chosen)]
+        if free:
+            chosen.append(min(free, key=lambda p: math.dist(p[:2], at)))
+    while len(chosen) < people:
+        free = [p for p in sides if all(_far(p, q) for q in chosen)]
+        if not free:
+            return None
+        chosen.append(
+            max(free, key=lambda p: (min((math.dist(p[:2], q[:2]) for q in chosen), default=0.0), -abs(p[0])))
+        )
+    return chosen
+
+
+def _far(p: Sequence[float], q: Sequence[float]) -> bool:
+    return math.dist(p[:2], q[:2]) >= _PLATE * 0.95
+
+
+def _middle(node: Node) -> NDArray[np.float64]:
+    return np.array([node.position])
