@@ -54,6 +54,8 @@ def _type(field: dict[str, Any]) -> str:
     if "enum" in field:
         return "one of " + ", ".join(json.dumps(v) for v in field["enum"])
     kind = str(field.get("type", "value"))
+    if "prefixItems" in field:
+        return "list of " + ", ".join(map(_type, field["prefixItems"]))
     if kind == "array":
         return f"list of at most {field.get('maxItems', 'any number of')}: {_type(field['items'])}"
     limits = " and ".join(form.format(f"{field[key]:g}") for key, form in _LIMITS if key in field)

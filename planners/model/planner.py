@@ -36,8 +36,8 @@ class ModelPlanner:
         attempts: how often it may be asked about one instruction; later ones repair what was wrong.
         seconds: the longest that all of them may take together.
         pictures: whether to show it the viewer's picture, if it sees and there is one.
-        progress: told that planning goes on whenever a piece of an answer arrives. The share is a guess, as nobody
-            knows how long an answer will be.
+        progress: told that planning goes on whenever a piece of an answer arrives; without it answers are not
+            streamed. The share is a guess, as nobody knows how long an answer will be.
 
     Raises:
         UserError: attempts or seconds allow no answer.
@@ -56,7 +56,7 @@ class ModelPlanner:
             raise UserError(f"a model needs at least one attempt and some time, got {attempts} and {seconds:g} s")
         self.backend = backend
         self._attempts, self._seconds, self._pictures = attempts, seconds, pictures
-        self._progress = progress or (lambda stage, share: None)
+        self._progress = progress
 
     @property
     def name(self) -> str:
@@ -137,7 +137,9 @@ class _Outcome:
 class _Asking:
     """One conversation with a model: what it was told, until when it may answer, and what that cost."""
 
-    def __init__(self, backend: ModelBackend, first: tuple[Message, ...], deadline: float, progress: Progress) -> None:
+    def __init__(
+        self, backend: ModelBackend, first: tuple[Message, ...], deadline: float, progress: Progress | None
+    ) -> None:
         self._backend, self._first, self._deadline, self._progress = backend, first, deadline, progress
         self._messages = first
         self.usage: Usage | None = None
@@ -154,22 +156,31 @@ class _Asking:
         if self.late:
             return None
         stage = f"planning with {self._backend.name}" + (f", attempt {attempt}" if attempt > 1 else "")
-        heard = 0
-
-        def hear(piece: str) -> None:
-            nonlocal heard
-            heard += len(piece)
-            self._progress(stage, heard / (heard + _USUAL_ANSWER))
-
-        self._progress(stage, 0.0)
-        answer = self._backend.answer(self._messages, reply.schema(), seconds=left, heard=hear)
-        self._progress(stage, 1.0)
+        heard = _Heard(self._progress, stage) if self._progress is not None else None
+        answer = self._backend.answer(self._messages, reply.schema(), seconds=left, heard=heard)
+        if heard is not None:
+            heard.done()
         self.usage = answer.usage if self.usage is None else self.usage.plus(answer.usage)
         return answer
 
     def again(self, answer: str, fault: str) -> None:
         """Say what was wrong with the last answer."""
         self._messages = repaired(self._first, answer, fault)
+
+
+class _Heard:
+    """Tells that an answer is coming in; how much of it is there is a guess."""
+
+    def __init__(self, progress: Progress, stage: str) -> None:
+        self._progress, self._stage, self._characters = progress, stage, 0
+        progress(stage, 0.0)
+
+    def __call__(self, piece: str) -> None:
+        self._characters += len(piece)
+        self._progress(self._stage, self._characters / (self._characters + _USUAL_ANSWER))
+
+    def done(self) -> None:
+        self._progress(self._stage, 1.0)
 
 
 @dataclass

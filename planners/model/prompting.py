@@ -1,7 +1,7 @@
 """The messages that ask a language model for a plan: rules, operations and examples, then the scene and the words.
 
 Knows what goes into a prompt and how much fits. Refuses to know what a model answers. The same input gives the same
-bytes, and the first message depends on nothing but the model's window, so that providers can keep it.
+bytes, and the first message depends on nothing but how much fits, so that providers can keep it.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from .pruning import MOST_TOKENS, described, tokens
 
 ECHO_CHARS = 2000  # of an answer that is shown to the model again
 FAULT_CHARS = 1500
-_ANSWER = 0.25  # share of the window that is left to the answer, and to what is said about one that was no good
+_LEAST_ANSWER = 2048  # tokens left to the answer, and to what is said about one that was no good
 _REQUEST = 1200  # tokens that examples leave to the scene and the instruction
 _LEAST_SCENE = 200  # tokens; with less no scene is worth showing
-_PICTURE = 1600  # tokens; what providers count for a picture of ours, rather too many
+_PICTURE = 1100  # tokens; what providers count for a picture of 768 pixels across, rather too many
 _FILES = ("plan", "plan_request", "plan_repair", "plan_examples")
 _NO_SCENE = "(none is shown: answer in words, without ids, and without the verdicts absent and ambiguous)"
 
@@ -60,12 +60,12 @@ def messages(request: Request, window: int) -> tuple[Message, ...]:
     Raises:
         BackendError: not even the rules fit.
     """
-    rules = system(window)
+    room = window - max(_LEAST_ANSWER, window // 8) - (_PICTURE if request.picture else 0)
+    rules = system(room)
     bare = _asked(request, _NO_SCENE)
-    fixed = tokens(rules) + tokens(bare) + (_PICTURE if request.picture else 0)
-    left = int(window * (1 - _ANSWER)) - fixed
+    left = room - tokens(rules) - tokens(bare)
     if left < (_LEAST_SCENE if request.graph is not None else 0):
-        need = math.ceil((fixed + _LEAST_SCENE) / (1 - _ANSWER) / 1024)
+        need = math.ceil((window - left + _LEAST_SCENE) / 1024)
         raise BackendError(
             f"the model's window of {window} tokens is too short for the rules of planning; use a model, or set its "
             f"server, to {need}k tokens or more"
@@ -84,11 +84,15 @@ def repaired(first: tuple[Message, ...], answer: str, fault: str) -> tuple[Messa
 
 
 @cache
-def system(window: int) -> str:
-    """The rules, with as many examples as fit beside a request, the most telling first."""
+def system(room: int) -> str:
+    """The rules, with as many examples as fit, the most telling first.
+
+    Args:
+        room: tokens that the rules and the request may have together.
+    """
     scene, every = _examples()
     bare = _rules("(none)")
-    left = int(window * (1 - _ANSWER)) - tokens(bare) - _REQUEST - tokens(scene)
+    left = room - tokens(bare) - _REQUEST - tokens(scene)
     kept = [scene]
     for example in every:
         left -= tokens(example) + 1

@@ -71,7 +71,11 @@ class Reply(BaseModel):
 
 @cache
 def _schema() -> dict[str, Any]:
-    return _bare(Reply.model_json_schema())
+    made: dict[str, Any] = _bare(Reply.model_json_schema())
+    for definition in made["$defs"].values():
+        if "const" in definition["properties"].get("op", {}):  # the type has a default, but nobody else knows it
+            definition["required"] = ["op", *definition.get("required", [])]
+    return made
 
 
 def schema() -> dict[str, Any]:
