@@ -32,7 +32,7 @@ Array = NDArray[np.float64]
 TRIES = 10  # designs looked at; their proportions spread enough that the nearest is within a third of most sizes
 ENOUGH = 0.15  # a stretch of one side against another by e^0.15, 16 %, is not seen
 TOLD = 0.8  # one by e^0.8, more than twice, is told
-_SLIGHT = 0.15  # of the longest side: shorter ones are thicknesses
+_SLIGHT = 0.2  # of the longest side: shorter ones are thicknesses
 _TURNED = 0.5  # a quarter turn has to save this much: it also turns the front
 _DRAFT = 0.3  # detail at which a design is asked whether it carries something
 _THIN = 0.005  # metres: the least side that can be made
@@ -147,7 +147,7 @@ class _Design:
 def _stretch(span: Array, size: Vec3) -> float:
     """Logarithm of the largest gain over the smallest; how thin a thin side is (a rug's, a cord's) does not count."""
     wanted = np.array(size)
-    thin = (wanted < _SLIGHT * wanted.max()) & (span < _SLIGHT * span.max())
+    thin = (wanted < _SLIGHT * wanted.max()) & (span < 2 * _SLIGHT * span.max())
     gain = np.log(wanted / span)[~thin]
     return float(gain.max() - gain.min())
 

@@ -189,9 +189,9 @@ def _sampled(pieces: Sequence[Piece], detail: float) -> surface.Samples:
     return samples[~surface.covered(samples)]
 
 
-def flat_gaussians(samples: surface.Samples, rgb: Array) -> GaussianCloud:
-    """One flat Gaussian a cell, of SH degree 0; `rgb [N, 3]` is what it shows."""
-    tangent = samples.size * COVER
+def flat_gaussians(samples: surface.Samples, rgb: Array, cover: float = COVER) -> GaussianCloud:
+    """One flat Gaussian a cell, of SH degree 0; `rgb [N, 3]` is what it shows, `cover` its deviation over the cell."""
+    tangent = samples.size * cover
     tangent = np.maximum(tangent, 0.08 * tangent.max(axis=1, keepdims=True))  # no needles
     scales = np.concatenate([tangent, np.maximum(THIN * tangent.min(axis=1, keepdims=True), 2e-4)], axis=1)
     n = len(rgb)

@@ -18,7 +18,7 @@ from torch import Tensor
 from ..camera import Vec3
 from ..cloud import GaussianCloud, concat
 from . import light, surface
-from .forge import flat_gaussians
+from .forge import COVER, flat_gaussians
 from .layout import Layout, Placed
 from .materials import WOODS, Material, Tone
 from .shapes import Piece, box, boxes, quad
@@ -35,10 +35,12 @@ class Look:
     Attributes:
         floor: "planks", "tiles", "carpet" or "plain".
         walls: their paint, as `color.parse` takes it.
+        cover: standard deviation of their Gaussians over the length of a cell: more is closer, and less crisp.
     """
 
     floor: str | None = None
     walls: str | None = None
+    cover: float = COVER
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +70,7 @@ def raised(layout: Layout, rng: np.random.Generator, detail: float, ceiling: boo
     bright = light.bake(samples.xyz, samples.normal, space, sun)
     bright = np.where(bright < SOFT, SOFT - SHADE * (SOFT - bright), bright)
     bright = np.where(samples.normal[:, 2] > 0.9, 0.84 * bright, 0.86 + 0.3 * (bright - 0.85))
-    structure = flat_gaussians(samples, surface.albedo(shell, samples) * bright[:, None])
+    structure = flat_gaussians(samples, surface.albedo(shell, samples) * bright[:, None], look.cover)
     clouds, ids, start = [structure], [torch.full((len(structure),), STRUCTURE, dtype=torch.int32)], len(structure)
     for i, cloud in enumerate(placed):
         clouds.append(cloud.replace(ids=torch.arange(start, start + len(cloud))))

@@ -35,9 +35,9 @@ def overview(layout: Layout, ceiling: bool) -> Camera:
     It stands back until the room's width and depth fill the picture.
     """
     w, d, h = layout.w, layout.d, layout.h
-    side, fov = _clearer_side(layout), 52.0
-    back = max(1.6, 0.52 * w - 0.12 * d + 0.35 * h - 0.6)
-    low, aim = (min(h - 0.45, 2.1), 0.42 * h) if ceiling else (h + 0.1 * d, 0.28 * h)
+    side, fov = _clearer_side(layout), 46.0
+    back = max(2.0, 0.58 * w + 0.3)
+    low, aim = (min(h - 0.45, 2.1), 0.42 * h) if ceiling else (h + 0.12 * d, 0.25 * h)
     eye = (side * 0.2 * w, -0.5 * d - back, low)
     return Camera.look_at(eye, (-side * 0.02 * w, 0.0, aim), (0, 0, 1), 960, 640, fov, "overview")
 
