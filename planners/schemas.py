@@ -13,6 +13,7 @@ from typing import Any
 from ..gaussians.errors import UserError
 from ..gaussians.language.query import Query
 from ..tools import registry
+from .compose.brief import Brief
 from .graph import SceneGraph
 from .plan import EditPlan
 
@@ -22,12 +23,14 @@ _MAKERS: dict[str, Callable[[], dict[str, Any]]] = {
     "graph": SceneGraph.model_json_schema,
     "ops": registry.schema,
     "query": Query.model_json_schema,
+    "brief": Brief.model_json_schema,
 }
 NAMES = tuple(_MAKERS)
 
 
 def schema(name: str) -> dict[str, Any]:
-    """The JSON Schema of an edit plan ("plan"), a scene graph, one operation ("ops") or a query.
+    """The JSON Schema of an edit plan ("plan"), a scene graph, one operation ("ops"), a query or a
+    brief of a room to compose.
 
     An operation's description is its docstring and an example in words; `examples` holds the same as JSON.
 

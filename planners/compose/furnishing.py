@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from math import ceil
 
 import numpy as np
@@ -69,7 +70,8 @@ class Furnishing:
         return next((g for g in self.groups if g.asked and kind.role == g.kind.role), None)
 
     def count(self) -> int:
-        return sum(g.count for g in self.groups)
+        """How many things there are, without what comes in numbers: chairs and beams."""
+        return sum(g.count for g in self.groups if g.kind.seats != 1 and g.kind.name != "beam")
 
     def ask(self) -> None:
         """What the brief wants."""
@@ -97,7 +99,7 @@ class Furnishing:
             number *= others.count
         number = min(number, 60 if most is None else max(most, 1))
         bonds = [b for w in habit.wishes if (b := self._bond(w))]
-        if kind.support == "surface" and not any(b.name == "on" for b in bonds) and not self.carrier(kind):
+        if kind.support == "surface" and not any(b.name == "on" for b in bonds) and not self.carrier(kind, True):
             return False
         thing = Thing(id=self._key(kind.name), name=kind.name, count=number, optional=True)
         self.groups.append(Group(thing.id, thing, kind, bonds))
@@ -123,11 +125,13 @@ class Furnishing:
         used = {g.key for g in self.groups}
         return name if name not in used else next(k for i in range(2, 99) if (k := f"{name} {i}") not in used)
 
-    def carrier(self, kind: knowledge.ThingKind) -> Group | None:
-        """The group that a small thing is put on."""
+    def carrier(self, kind: knowledge.ThingKind, usual: bool = False) -> Group | None:
+        """The group that a small thing is put on; only one that it is usually found on, if `usual`."""
         for name in kind.on:
             if (found := self.find(name)) and (found.kind.top or found.kind.name in kind.on):
                 return found
+        if usual:
+            return None
         return next((g for g in self.groups if g.kind.top and g.kind.support == "floor"), None)
 
     def seat(self) -> None:
@@ -163,7 +167,7 @@ class Furnishing:
             return
         goal = self._goal(area)
         chosen = [knowledge.styles()[s] for s in self.brief.styles if s in knowledge.styles()]
-        for habit in self.room.must:
+        for habit in (*self.room.must, *self._companions()):
             self.add(habit)
         adds = [n for s in chosen for n in s.adds]
         usual = sorted(self.room.usual, key=lambda h: h.thing not in adds)
@@ -178,6 +182,10 @@ class Furnishing:
         for habit in self.room.usual:
             if self.count() < min(_FEWEST, goal):
                 self.add(habit)
+
+    def _companions(self) -> list[knowledge.Habit]:
+        """What comes with things that were asked for: a chair with a desk."""
+        return [h for h in self.room.usual if h.each and (g := self.find(h.each)) and g.asked]
 
     def _goal(self, area: float | None) -> int:
         """How many things make this room full enough."""
@@ -250,4 +258,4 @@ def pairs(subjects: Sequence[int], objects: Sequence[int]) -> Iterable[tuple[int
 
 def chained(items: Sequence[int]) -> list[tuple[int, int]]:
     """Each with the one before."""
-    return [(b, a) for a, b in zip(items, items[1:], strict=False)]
+    return [(b, a) for a, b in pairwise(items)]

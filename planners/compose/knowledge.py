@@ -6,7 +6,6 @@ Sizes are those of furniture as it is sold and of rooms as they are built, round
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
@@ -258,4 +257,3 @@ def summary(kind: RoomKind) -> str:
 
 def _span(span: Sequence[float]) -> str:
     return f"{span[0]:g}-{span[1]:g} m"
-

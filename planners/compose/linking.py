@@ -1,4 +1,4 @@
-"""Which relation is said of which thing: "next to it", "a counter with a pastry display", "one on each side of the bed".
+"""Which relation is said of which thing: "next to it", "a counter with a pastry display", "one on each side of it".
 
 Knows the order in which people speak of things and places. Refuses to know how things are named (reading.py).
 """
@@ -183,10 +183,10 @@ class Linker:
         behind = self._structure(texts, i, *found) if found else 0
         if behind:
             return behind
-        if spot := match(vocabulary.SPOTS, texts, i):
-            if not found or spot[1] >= found[1]:
-                self._spot(spot[0])
-                return spot[1]
+        spot = match(vocabulary.SPOTS, texts, i)
+        if spot and (not found or spot[1] >= found[1]):
+            self._spot(spot[0])
+            return spot[1]
         if not found or not self._relates(texts, i, found[0], found[1]):
             return 0
         self._finish()

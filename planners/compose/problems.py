@@ -131,9 +131,7 @@ class _Pose:
 
     def _place(self, group: Group, size: Size) -> None:
         """Items of a group, as many as there is room for where they are only a habit."""
-        color = sizing.color_of(
-            group, self.brief.styles, self.rng, vocabulary.MATERIALS.get(group.thing.material, "")
-        )
+        color = sizing.color_of(group, self.brief.styles, self.rng, vocabulary.MATERIALS.get(group.thing.material, ""))
         if group.kind.name == "beam":
             number = group.count if group.count > 2 else max(3, round(self.room[1] / 1.3))
             made = beams(self.room, number, size, color, self.ids)
@@ -159,7 +157,9 @@ class _Pose:
 
     def _tops(self, carrier: Group, number: int) -> list[int]:
         tops = self.of.get(carrier.key, [])
-        return [tops[i * len(tops) // number] if number >= len(tops) else tops[i] for i in range(number)] if tops else []
+        if number <= len(tops):
+            return tops[:number]
+        return [tops[i * len(tops) // number] for i in range(number)] if tops else []
 
     def _takes(self, top: int, size: Size, group: Group) -> bool:
         """Whether a top has room for one more; what was asked for is put there in any case."""

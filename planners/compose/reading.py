@@ -13,14 +13,14 @@ from typing import Any
 
 from ...gaussians.errors import UserError
 from .. import synonyms
-from ..grammar import lexicon, nouns, quantities, spelling
+from ..grammar import lexicon, nouns, quantities
 from ..grammar.reading import color_at, is_plain, match
-from ..grammar.unsafe import unsafe_words
-from ..grammar.words import clean, split
+from ..grammar.words import clean
 from . import amounts, knowledge, vocabulary
 from .amounts import Side
 from .brief import Brief, RefusedError
 from .drafts import Said, brief_of
+from .hearing import refuse_others, words_of
 from .linking import Linker
 
 _MARKS = frozenset(".;!?\n:")
@@ -34,54 +34,16 @@ def read(text: str) -> Brief:
         RefusedError: it describes no room: a question, an edit, chat, or words that nobody knows.
     """
     cleaned = clean(text)
-    if phrase := unsafe_words(cleaned):
+    if phrase := unsafewords_of(cleaned):
         raise RefusedError("this is not about a room", "unsafe", (phrase[:60],))
     if any(c in cleaned for c in "{}<>[]\\"):
         raise RefusedError("this is code or data, not a description in words", "not_understood")
-    texts, slips = _words(cleaned)
-    _refuse_others(texts)
+    texts, slips = words_of(cleaned)
+    refuse_others(texts)
     reader = _Reader(texts)
     reader.remarks += slips
     reader.run()
     return reader.brief()
-
-
-def _words(cleaned: str) -> tuple[list[str], list[str]]:
-    """The words in lower case, possessives joined ("childrens room"), slips corrected; and a remark for each slip."""
-    joined: list[str] = []
-    for word in split(cleaned):
-        if word.text == "'s" and joined:
-            joined[-1] += "" if joined[-1].endswith("s") else "s"
-        elif word.text not in ('"', "'"):
-            joined.append(word.text)
-    told, fixed = [], []
-    for text in joined:
-        meant = "" if _is_known(text) else spelling.slips(text, knowledge.every_word())
-        if meant:
-            told.append(f"read “{text}” as {meant}")
-        fixed.append(meant or text)
-    return fixed, told
-
-
-def _is_known(text: str) -> bool:
-    known = knowledge.every_word() | vocabulary.FILLER | vocabulary.ABSTRACT | vocabulary.PEOPLE
-    return text in known or nouns.singular(text) in known
-
-
-def _refuse_others(texts: Sequence[str]) -> None:
-    """Raise for questions and for edits of a scene that is there."""
-    words = [t for t in texts if t not in ("please", ",", "hi", "hello", "hey")]
-    first = words[0] if words else ""
-    if not any(t[0].isalpha() for t in texts if t):
-        raise RefusedError("there are no words", "not_an_edit")
-    asks = texts[-1] == "?" or first in ("what", "where", "who", "why", "how", "which", "when")
-    if asks and not set(words) & (vocabulary.BUILD | {"room"}):
-        raise RefusedError("this is a question, not a description of a room", "not_an_edit", (first,))
-    verb = match(lexicon.VERB_PHRASES, words, 0)
-    if verb and verb[0][0] in vocabulary.EDITS and not knowledge.lookup(knowledge.thing_words(), words, 0):
-        raise RefusedError(
-            f"“{first}” changes a scene that is there; describe a room, or use `scenewright edit`", "impossible", (first,)
-        )
 
 
 class _Reader:
@@ -226,7 +188,7 @@ class _Reader:
         behind = self.texts[end] if end < len(self.texts) else ","
         person = behind in vocabulary.PEOPLE
         ends = self.texts[i] != "of" and (behind in (",", "and", "with", "in") or behind in _MARKS)
-        if not person and not (behind in ("seater", "seat")) and not (opener and ends):
+        if not person and behind not in ("seater", "seat") and not (opener and ends):
             return 0
         last = self.linker.last
         tables = last.said.count or 1 if last is not None and opener and last.kind and last.kind.top else 1

@@ -85,7 +85,8 @@ def room_size(
     where = {"tiny": 0.0, "small": 0.15, "normal": None, "large": 0.85, "huge": 1.0}[brief.scale]
     shares = rng.random(3) if where is None else np.full(3, where)
     width, depth, height = (
-        float(low + (high - low) * t) for (low, high), t in zip((kind.width, kind.depth, kind.height), shares, strict=True)
+        float(low + (high - low) * t)
+        for (low, high), t in zip((kind.width, kind.depth, kind.height), shares, strict=True)
     )
     stretch = max(1.0, sqrt(_needed(groups) / (width * depth)), _backs(groups) / (2 * (width + depth))) * grow
     width, depth = width * stretch, depth * stretch
@@ -94,8 +95,9 @@ def room_size(
             ratio = sqrt(said.area / (width * depth))
             width, depth = width * ratio, depth * ratio
         area = said.area or width * depth
-        width, depth = said.width or (area / said.depth if said.depth else width), said.depth or (
-            area / said.width if said.width else depth
+        width, depth = (
+            said.width or (area / said.depth if said.depth else width),
+            said.depth or (area / said.width if said.width else depth),
         )
     return (
         round(max(width, 0.01 if said else _SMALLEST), 2),

@@ -26,7 +26,7 @@ RELATIONS: dict[Phrase, str] = {tuple(p.split()): n for p, n in SAID.items() if 
     "over, hanging over, hung over, hanging above, mounted above, hung above, up above": "above",
     "under, underneath, beneath": "under",
     "at the foot of, in front of, at the front of, before": "in_front_of",
-    "facing, turned to, turned toward, turned towards, facing toward, facing towards, looking at, pointed at, opposite, "
+    "facing, turned to, turned toward, turned towards, facing toward, facing towards, looking at, opposite, "
     "opposite to, across from, looking out of, looking out, overlooking, that faces, which faces": "facing",
     "around, all around, gathered around, arranged around, set around": "around",
     "between, in between": "between",
@@ -44,10 +44,10 @@ RELATIONS: dict[Phrase, str] = {tuple(p.split()): n for p, n in SAID.items() if 
 # Relations that take none, or whose object is a part of the room.
 SPOTS: dict[Phrase, str] = _table({
     "in the middle, in the center, in the centre, centered, centred, in the middle of the room, in the center of the "
-    "room, in the centre of the room, centered in the room, centred in the room, centrally, in the middle of it, at the "
-    "center, at the centre, at its center, in its center, at the center of the room, at the centre of the room": "center",
-    "in the corner, in a corner, in one corner, in the corners, in each corner, in every corner, at the corners, in all "
-    "corners, in the corner of the room, in a corner of the room, in the corners of the room, in the other corner, "
+    "room, in the centre of the room, centered in the room, centred in the room, centrally, at the "
+    "center, at the centre, in its center, at the center of the room, at the centre of the room": "center",
+    "in the corner, in a corner, in one corner, in the corners, in each corner, in every corner, at the corners, "
+    "in all corners, in the corner of the room, in a corner of the room, in the corners of the room, in the other corner, "
     "in another corner, at the corners of the room, in opposite corners, in the far corner, in two corners": "corner",
     "in a row, in rows, lined up, in a line, in two rows, side by side, next to each other, in three rows, aligned, "
     "beside each other, parallel to each other": "row",
@@ -117,8 +117,8 @@ ABSTRACT = bag(
 )
 NEGATIONS = phrases(
     "no, without, without any, without a, not any, lacking, minus, free of, instead of, rather than, but no, does not "
-    "have, do not have, has no, have no, there is no, there are no, do not want, do not add, do not include, excluding, "
-    "except, never, with no, and no, not have, do not need, do not put, leave out, skip, not, none of, sans"
+    "have, do not have, has no, have no, there is no, there are no, do not want, do not add, do not include, "
+    "excluding, except, never, with no, and no, not have, do not need, do not put, leave out, skip, not, none of, sans"
 )
 ONLY = phrases(
     "only, nothing else, just, nothing more, and nothing else, nothing but, empty, unfurnished, otherwise empty, no "

@@ -1,0 +1,173 @@
+"""A language model proposes a brief: asked with what is known of rooms, repaired where its answer is not valid.
+
+Knows the prompt, the type of the answer and how often it may be repaired. Refuses to take anything from an answer that
+is not a valid brief, and to know which model is asked.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from dataclasses import dataclass
+from functools import cache
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from ... import prompts
+from ...gaussians.errors import BackendError
+from ..grammar.unsafe import unsafe_words
+from ..grammar.words import clean
+from ..model.backend import Message, ModelBackend
+from ..plan import Usage
+from . import knowledge
+from .brief import Brief, RefusedError, Relation, Thing
+
+REPAIRS = 3
+_LONGEST = 200_000  # characters of an answer that are looked at
+_FAULT = 900  # characters of a complaint that goes back to the model
+_EXAMPLE = Brief(
+    kind="coffee shop",
+    scale="small",
+    things=(
+        Thing(id="round table", name="round table", count=3),
+        Thing(id="counter", name="counter"),
+        Thing(id="cake", name="cake"),
+    ),
+    relations=(Relation(subject="cake", name="on", objects=("counter",)),),
+    without=("potted plant",),
+)
+
+
+class Proposed(BaseModel):
+    """What the model answers: a brief, or a verdict with its reason."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    verdict: Literal["ok", "not_an_edit", "not_understood", "impossible", "unsafe"]
+    reason: Annotated[str, Field(max_length=400)] = ""
+    brief: Brief | None = None
+
+    @model_validator(mode="after")
+    def _whole(self) -> Self:
+        if (self.verdict == "ok") != (self.brief is not None):
+            raise ValueError('verdict "ok" comes with a brief, and every other verdict without')
+        if self.verdict != "ok" and not self.reason:
+            raise ValueError(f'verdict "{self.verdict}" needs a reason')
+        if self.brief is not None and not (self.brief.things or self.brief.habits):
+            raise ValueError("the brief holds nothing: name things, or leave habits on")
+        return self
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A model's brief, the hash of the prompt that it answered, and what it took."""
+
+    brief: Brief
+    prompt_hash: str
+    usage: Usage
+
+
+def propose(text: str, model: ModelBackend, *, seconds: float = 120.0, heard: Brief | None = None) -> Proposal:
+    """The brief that a model proposes for a description.
+
+    Args:
+        text: the description.
+        model: who is asked.
+        seconds: the longest that all attempts together may take.
+        heard: what the embedded reading made of it; says which kind of room the prompt tells about.
+
+    Raises:
+        UserError: the text is too long to be a description.
+        RefusedError: it asks for something else than a room, or the model says that it describes none.
+        BackendError: the model cannot be reached, or gave no valid brief after all attempts.
+    """
+    cleaned = clean(text)
+    if phrase := unsafe_words(cleaned):
+        raise RefusedError("this is not about a room", "unsafe", (phrase[:60],))
+    ends = time.monotonic() + seconds
+    messages = [Message("system", _system(heard)), Message("user", f"Description: {json.dumps(cleaned)}\nAnswer:")]
+    usage = Usage(model=model.name)
+    fault = ""
+    for _ in range(1 + REPAIRS):
+        left = ends - time.monotonic()
+        if left <= 0:
+            raise BackendError(
+                f"{model.name} gave no brief within {seconds:g} s; allow more time or describe it shorter"
+            )
+        answer = model.answer(messages, schema(), seconds=left)
+        usage = usage.plus(answer.usage)
+        if answer.end == "declined":
+            raise BackendError(f"{model.name} declined to answer; describe the room in other words")
+        try:
+            found = _read(answer.text if answer.end == "done" else answer.text + " (cut off)")
+        except ValueError as error:
+            fault = str(error)[:_FAULT]
+            repair = prompts.load("compose_repair").fill(fault=fault)
+            messages = [*messages[:2], Message("assistant", answer.text[:_LONGEST]), Message("user", repair)]
+            continue
+        return Proposal(_accepted(found), prompt_hash(), usage)
+    raise BackendError(f"{model.name} gave no valid brief in {1 + REPAIRS} attempts; the last fault: {fault}")
+
+
+def _accepted(found: Proposed) -> Brief:
+    if found.brief is None:
+        assert found.verdict != "ok"
+        raise RefusedError(found.reason, found.verdict)
+    return found.brief
+
+
+@cache
+def _schema_text() -> str:
+    return json.dumps(Proposed.model_json_schema())
+
+
+def schema() -> dict[str, Any]:
+    """The JSON Schema of an answer: that of the very type that validates."""
+    made: dict[str, Any] = json.loads(_schema_text())
+    return made
+
+
+def prompt_hash() -> str:
+    """Of the prompt files that a proposal is asked with."""
+    return prompts.short_hash(*(prompts.load(name).hash for name in ("compose", "compose_repair")))
+
+
+def _system(heard: Brief | None) -> str:
+    """The prompt, with what is known of the kind of room that was heard, or of rooms in general."""
+    kind = knowledge.room(heard.kind if heard else "room")
+    example = {"verdict": "ok", "brief": _EXAMPLE.model_dump(mode="json", exclude_defaults=True)}
+    return prompts.load("compose").fill(
+        relations=", ".join(knowledge.RELATIONS),
+        rooms=", ".join(sorted(knowledge.rooms())),
+        knowledge=f"Usual in a {knowledge.summary(kind)}",
+        things=", ".join(sorted(knowledge.things())),
+        example=json.dumps(example),
+    )
+
+
+def _read(text: str) -> Proposed:
+    """The one JSON object of an answer, which may stand in a fence.
+
+    Raises:
+        ValueError: there is none, or it is not valid; the message is for the model.
+    """
+    bare = text.strip().removeprefix("```json").removeprefix("```").removesuffix("```").strip()
+    if len(bare) > _LONGEST:
+        raise ValueError(f"the answer has {len(bare)} characters; answer shorter")
+    try:
+        return Proposed.model_validate(_given(json.loads(bare)))
+    except ValidationError as error:
+        faults = error.errors(include_url=False, include_input=False)[:4]
+        raise ValueError("\n".join(f"{'.'.join(map(str, f['loc']))}: {f['msg']}" for f in faults)) from error
+    except RecursionError as error:
+        raise ValueError("the JSON is nested too deeply") from error
+    except ValueError as error:
+        raise ValueError(f"the answer is no valid JSON: {error}") from error
+
+
+def _given(node: Any) -> Any:
+    """Without fields that are null: models that must name every field say so what they leave out."""
+    if isinstance(node, dict):
+        return {k: _given(v) for k, v in node.items() if v is not None}
+    return [_given(item) for item in node] if isinstance(node, list) else node
