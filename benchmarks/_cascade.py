@@ -15,6 +15,7 @@ from ..gaussians.errors import BackendError
 from ..planners import load
 from ..planners.cascade import Cascade
 from ..planners.plan import EditPlan, Planner, Sight
+from ..planners.wishes import WishPlanner
 from . import _scripted, _written
 from ._written import Judged
 from .harness import Metric, Point
@@ -48,7 +49,7 @@ def measure(quick: bool) -> tuple[tuple[Metric, ...], tuple[Point, ...], tuple[s
     todo = cases[::EVERY] if spec and quick else cases
     alone = _written.measure(grammar, todo)
     model = load(spec) if spec else _scripted.Scripted(USUAL, SEED)
-    cascade = _written.measure(Cascade(grammar, None, model), todo, accounted=not spec)
+    cascade = _written.measure(Cascade(grammar, WishPlanner, model), todo, accounted=not spec)
     asked = sum(j.asked for j in cascade) / len(cascade)
     found = [
         *_figures("grammar", alone),

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import os
 import re
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..gaussians.errors import UserError
 from .budget import Ledger, Metered, Progress
 from .plan import EditPlan, Planner
+
+if TYPE_CHECKING:
+    from .cascade import Wisher
 
 __all__ = ["EditPlan", "Planner", "load"]
 
@@ -21,10 +24,10 @@ def load(
 ) -> Planner:
     """The planner that one string names.
 
-    "grammar" reads plain English without a model. "auto" goes on from the grammar to wishes for the whole room and
-    then to the language model that the environment names (`SCENEWRIGHT_MODEL`), if it names one; "auto:MODEL" names
-    it here. A model alone ("openai:…", see `planners.model.FORMS`) plans everything. A model of "auto" is loaded when
-    it is first asked.
+    "grammar" reads plain English without a model. "auto" adds wishes for the whole room, and where both abstain the
+    language model that the environment names (`SCENEWRIGHT_MODEL`), if it names one; "auto:MODEL" names it here. A
+    model alone ("openai:…", see `planners.model.FORMS`) plans everything. A model of "auto" is loaded when it is first
+    asked.
 
     Args:
         ledger: what models may cost, and have cost; without one an account of its own, with the usual patience.
@@ -49,7 +52,7 @@ def load(
     if kind == "auto" and (model.is_model(named) or not (colon or named)):
         from .cascade import Cascade
 
-        return Cascade(_grammar(), None, _metered(named, **settings) if named else None)
+        return Cascade(_grammar(), _wishes, _metered(named, **settings) if named else None)
     known = f"planners are auto, grammar, {', '.join(model.FORMS)}, and auto: before one of these"
     if spec == "auto":
         raise UserError(f"{MODEL_VARIABLE} names no language model ({_public(named)!r}); {known}")
@@ -60,6 +63,12 @@ def _grammar() -> Planner:
     from .grammar import GrammarPlanner
 
     return GrammarPlanner()
+
+
+def _wishes() -> Wisher:
+    from .wishes import WishPlanner
+
+    return WishPlanner()
 
 
 def _metered(spec: str, *, ledger: Ledger, pictures: bool, progress: Progress | None) -> Metered:

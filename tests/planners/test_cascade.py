@@ -202,6 +202,17 @@ def test_auto_takes_the_model_of_the_environment(monkeypatch: pytest.MonkeyPatch
     assert load("grammar").name == "grammar"
 
 
+def test_auto_knows_wishes_for_the_whole_room() -> None:
+    from scenewright.agent.sight import StageSight
+
+    sight = StageSight(_written.stage("living_room"))
+    plan = load("auto").plan("push the furniture to the walls and clear a dance floor in the middle", sight=sight)
+    assert plan.planner == "wishes" and plan.ok and len(plan.ops) > 1
+    assert (
+        load("grammar").plan("push the furniture to the walls and clear a dance floor", sight=sight).planner != "wishes"
+    )
+
+
 def test_a_model_of_auto_that_cannot_be_loaded_is_no_error_and_one_alone_is() -> None:
     plan = load("auto:transformers:/no/such/folder").plan(HARD)
     assert plan.verdict == "not_understood" and "the model gave no plan" in plan.reason
