@@ -11,16 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 from ...gaussians.errors import ScenewrightError
 from ...tools.base import EditOp
-from ..checking import Violation, check
 from ..graph import SceneGraph
 from ..plan import MAX_OPS, EditPlan
-from . import fulfilling
 from .goals import Plain
 from .reading import Reader, Reading, Unread
 from .room import CannotError, Room, copied
-from .steps import moves
 
 if TYPE_CHECKING:
+    from ..checking import Violation
     from ..plan import Sight
 
 NAME = "wishes"
@@ -68,6 +66,10 @@ class WishPlanner:
         Raises:
             CannotError: a wish cannot come true.
         """
+        # The solver takes half a second to import; every instruction is read, and few are wishes.
+        from . import fulfilling
+        from .steps import moves
+
         if sight is None:
             return {"verdict": "not_understood", "reason": "a wish for a room needs the scene: open one first"}
         try:
@@ -93,6 +95,8 @@ def _refuse_worse(before: SceneGraph, after: SceneGraph) -> None:
     Raises:
         CannotError: they would.
     """
+    from ..checking import check
+
     known = {_key(v) for v in check(before.model_copy(update={"relations": ()})).violations}
     fresh = [v for v in check(after).violations if v.kind != "reach" and _key(v) not in known]
     if fresh:
