@@ -83,14 +83,18 @@ class Remote:
         except ImportError as error:
             raise BackendError(f"pydantic-ai cannot be used ({error}): pip install -U 'scenewright[llm]'") from None
         begun = time.monotonic()
+        refusals: list[Exception] = []
 
         async def work(emit: Emit) -> Reply:
-            return await self._insist(messages, schema, begun + seconds, emit if heard is not None else None)
+            return await self._insist(messages, schema, begun + seconds, emit if heard is not None else None, refusals)
 
         reply = wait(work, seconds, heard)
         waited = time.monotonic() - begun
         if isinstance(reply, Failed):
-            raise UnreachableError(remote_errors.say(reply.error, self._address, seconds))
+            late = (
+                isinstance(reply.error, TimeoutError) and refusals
+            )  # what used the time up tells more than that it is
+            raise UnreachableError(remote_errors.say(late[-1] if late else reply.error, self._address, seconds))
         usage = Usage(
             model=self.name,
             requests=1,
@@ -102,9 +106,18 @@ class Remote:
         return Answer(text=reply.text, usage=usage, end=reply.end)
 
     async def _insist(
-        self, messages: Sequence[Message], schema: dict[str, Any], deadline: float, emit: Callable[[str], None] | None
+        self,
+        messages: Sequence[Message],
+        schema: dict[str, Any],
+        deadline: float,
+        emit: Callable[[str], None] | None,
+        refusals: list[Exception],
     ) -> Reply:
-        """Ask until there is an answer, with less where more is refused, again where that may help."""
+        """Ask until there is an answer, with less where more is refused, again where that may help.
+
+        Args:
+            refusals: those after which it was asked again because the server is busy or broken are added here.
+        """
         left = deadline - time.monotonic()
         extras, tries, spoken = self._extras, 0, False
 
@@ -125,7 +138,10 @@ class Remote:
                     pause = remote_errors.pause(error, tries) if less is None else 0.0
                     if spoken or pause is None or pause >= deadline - time.monotonic():
                         raise
-                    extras, tries = less or extras, tries + (less is None)
+                    if less is None:
+                        refusals.append(error)
+                        tries += 1
+                    extras = less or extras
                     await asyncio.sleep(pause)
                 else:
                     self._extras = extras

@@ -385,9 +385,9 @@ def test_a_busy_server_that_asks_for_more_patience_than_there_is_ends_it_at_once
 @each_wire
 def test_a_server_that_stays_busy_is_given_up_when_time_is_up(wire: Wire) -> None:
     with wires.serving(wire.error(429, "slow down")) as server, pytest.raises(UnreachableError) as caught:
-        model_at(wire, server.url).answer(TALK, schema("plan"), seconds=1)
+        model_at(wire, server.url).answer(TALK, schema("plan"), seconds=2)
     assert "no more requests" in sound(caught.value)
-    assert len(server.asked) > 3  # pauses of 0.01, 0.02, 0.04, … seconds
+    assert len(server.asked) > 1
 
 
 def test_an_empty_purse_is_not_waited_for() -> None:
