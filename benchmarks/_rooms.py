@@ -202,10 +202,11 @@ def _habits(items: Sequence[Item]) -> Iterator[Wish]:
         habit = THINGS[item.label].habit if item.label in THINGS else ""
         name, _, partner = habit.partition(" ")
         if habit and not partner:
-            yield Wish(subject=item.id, name=name, hard=False)
+            yield Wish.model_validate({"subject": item.id, "name": name, "hard": False})
         elif habit and (partners := [n for n in names if str(n).rpartition(" ")[0] == partner]):
             k = int(str(item.id).rpartition(" ")[2]) - 1
-            yield Wish(subject=item.id, name=name, objects=(partners[k % len(partners)],), hard=False)
+            partner_id = partners[k % len(partners)]
+            yield Wish.model_validate({"subject": item.id, "name": name, "objects": (partner_id,), "hard": False})
 
 
 def _relations(

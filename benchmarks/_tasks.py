@@ -23,7 +23,7 @@ class Row(NamedTuple):
     """A kind of thing: how many, width, depth and height in metres, what carries it, whether its back wants a wall."""
 
     label: str
-    count: int
+    number: int
     size: tuple[float, float, float]
     support: str = "floor"
     backed: bool = False
@@ -192,7 +192,7 @@ def tasks() -> Iterator[tuple[str, Problem]]:
 
 
 def _problem(task: Task, size: tuple[float, float, float]) -> Problem:
-    counts = {r.label: r.count for r in task.rows}
+    counts = {r.label: r.number for r in task.rows}
     items = [
         Item(
             id=f"{r.label} {k + 1}",
@@ -202,7 +202,7 @@ def _problem(task: Task, size: tuple[float, float, float]) -> Problem:
             backed=r.backed,
         )
         for r in task.rows
-        for k in range(r.count)
+        for k in range(r.number)
     ]
     return Problem(size=size, items=tuple(items), wishes=tuple(_wishes(task, counts)))
 

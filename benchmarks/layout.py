@@ -52,7 +52,7 @@ def judge(kind: str, problem: Problem, effort: float = 1.0) -> Judged:
     started = time.process_time()
     layout = solve(problem, effort=effort)
     seconds = time.process_time() - started
-    wrong = Counter(v.kind for v in check(layout.graph).violations)
+    wrong = Counter[str](v.kind for v in check(layout.graph).violations)
     hard, soft = (_kept(problem, layout, hard) for hard in (True, False))
     lost = sum(i.id in layout.left_out and not i.optional for i in problem.items)
     failed = hard[0] < hard[1] or lost
@@ -128,7 +128,7 @@ def run(quick: bool = False) -> Result:
             "is not included: figures published for that benchmark are not comparable."
             if tasks
             else _data.missing("layout_tasks"),
-            "Colliding, out of bounds, unsupported and unreached are the neutral checker's words (`scenewright check`); a "
+            "Colliding, out of bounds, unsupported, unreached: the neutral checker's words (`scenewright check`); a "
             "wish counts as kept where the checker confirms it, or, of those that a graph cannot state, the solver.",
             "seconds: processor time of one solve, explanation of conflicts included (run it with OMP_NUM_THREADS=1).",
             "points: the effort of the solver on composed and witnessed rooms.",

@@ -221,10 +221,18 @@ class _Explainer:
             return item.model_copy(update={"clear": (0.0,) * 4})
         changes: dict[str, object] = {"optional": False, "clear": (0.0,) * 4, "backed": False}
         if Statement("size", item.id) not in stated:
-            changes["size"] = _SPECK
+            changes["size"] = self._any_size(item)
         if Statement("stand", item.id) not in stated:
             changes["stand"] = None
         return item.model_copy(update=changes)
+
+    def _any_size(self, item: Item) -> tuple[float, float, float]:
+        """The size of a thing of which none is stated: tiny, but wide enough for what stands on it."""
+        row = self.prepared.index[item.id]
+        rows = zip(self.prepared.items, self.prepared.carriers, strict=True)
+        side = sum(max(i.size[:2]) for i, chain in rows if chain[:1] == (row,))
+        width, deep = (min(side, 0.8 * s) for s in self.problem.size[:2])
+        return (width, deep, item.size[2]) if side else _SPECK
 
     def _item(self, name: NodeId) -> Item:
         return self.prepared.items[self.prepared.index[name]]

@@ -113,7 +113,7 @@ def _anywhere(state: State, body: Body, width: float, deep: float, frame: Spot =
             else:
                 spans.append(_steps(-side / 2 - low, side / 2 - high, step))
         else:
-            more = ((), ()) if carried else _beside(state, body, (x0, x1, y0, y1))
+            more = _abreast(state, body, frame, (x0, x1, y0, y1)) if carried else _beside(state, body, (x0, x1, y0, y1))
             xs, ys = (_joined(span, extra) for span, extra in zip(spans, more, strict=True))
             yield Lattice(xs, ys, yaw)
 
@@ -162,6 +162,21 @@ def _joined(steps: F64, extra: Any) -> F64:
     """The steps, and the further positions that lie between them."""
     more = [e for e in extra if steps[0] <= e <= steps[-1]]
     return np.unique(np.concatenate([steps, more])) if more and len(steps) > 1 else steps
+
+
+def _abreast(
+    state: State, body: Body, carrier: Spot, extents: tuple[float, float, float, float]
+) -> tuple[list[float], list[float]]:
+    """Coordinates on a thing at which a body touches what stands there already."""
+    xs, ys = list[float](), list[float]()
+    above = state.prepared.carriers[body.first][0]
+    for spot, chain in zip(state.spots, state.prepared.carriers, strict=True):
+        if spot is not None and chain[:1] == (above,):
+            u, v = carrier.local(spot.x, spot.y)
+            hx, hy = spot._replace(yaw=spot.yaw - carrier.yaw).half
+            xs += [u - hx - extents[1], u + hx - extents[0]]
+            ys += [v - hy - extents[3], v + hy - extents[2]]
+    return xs, ys
 
 
 def _beside(state: State, body: Body, extents: tuple[float, float, float, float]) -> tuple[list[float], list[float]]:

@@ -16,7 +16,7 @@ from .measures import behind_gap, measure, walls_gaps
 from .shapes import F64, Lattice, Spot, meetings, shifted
 from .state import HARD, SOFT, USED, WALLED, State, placed
 
-_MOVED, _TURNED = 1.5, 1.5  # price of a metre away from where a thing was, and metres that a quarter turn is worth
+_MOVED, _TURNED = 3.0, 1.0  # price of a metre away from where a thing was, and metres that a quarter turn is worth
 _CROWDED = 0.3  # share of a top from which things are put close together
 _FREE = 0.55  # metres; what is larger and wants no wall stands free, with room around it
 

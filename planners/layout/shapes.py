@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -50,6 +51,7 @@ class Spot(NamedTuple):
         return dx * c + dy * s, dy * c - dx * s
 
 
+@lru_cache(maxsize=4096)
 def turned(yaw: float) -> tuple[float, float]:
     """Cosine and sine of degrees; exact for quarter turns, so that boxes against walls are flush."""
     quarter = yaw % 360.0

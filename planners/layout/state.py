@@ -135,7 +135,7 @@ class State:
     def used(self) -> int:
         """How many zones have something standing in them."""
         tied, chains = self.prepared.tied, self.prepared.carriers
-        count = 0
+        count, solids = 0, list(self.solids(set()))
         for i, zones in enumerate(self.zones):
             for zone in zones:
                 count += any(
@@ -145,7 +145,7 @@ class State:
                     and min(zone.high, s.high) - max(zone.low, s.low) > EPSILON
                     and math.hypot(zone.x - s.x, zone.y - s.y) < math.hypot(zone.w, zone.d) + math.hypot(s.w, s.d)
                     and depth(zone, s) > EPSILON
-                    for j, s in self.solids(set())
+                    for j, s in solids
                 )
         return count
 
