@@ -15,7 +15,7 @@ from ...gaussians.color import names as color_names
 from ...gaussians.language.encoders.words import normalise
 from .. import synonyms
 from ..grammar.verbs import VERBS
-from ..graph import SceneGraph
+from ..graph import Node, SceneGraph
 from ..wordwise import vocabulary
 
 MAX_CHARS, MAX_WORDS = 48, 8
@@ -53,11 +53,14 @@ def cleaned(graph: SceneGraph) -> SceneGraph:
 
     Ids, boxes and supports are kept, so that everything can still be pointed at.
     """
-    nodes = tuple(
-        n.model_copy(update={"label": plain(n.label) or "", "color": plain(n.color, most=3) or ""}) for n in graph.nodes
-    )
+    nodes = tuple(map(_cleaned, graph.nodes))
     relations = tuple((a, name, b) for a, said, b in graph.relations if (name := plain(said, most=4)))
     return graph.model_copy(update={"nodes": nodes, "relations": relations})
+
+
+def _cleaned(node: Node) -> Node:
+    shown = {"label": plain(node.label) or "", "color": plain(node.color, most=3) or ""}
+    return node if shown == {"label": node.label, "color": node.color} else node.model_copy(update=shown)
 
 
 @cache
