@@ -1,0 +1,137 @@
+"""The parts of the layout solver against the slow and neutral ones: overlaps, ways, relations."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from scenewright.planners.checking import check
+from scenewright.planners.graph import Node, RoomShape, SceneGraph
+from scenewright.planners.layout.measures import measure
+from scenewright.planners.layout.shapes import Lattice, Spot, blocked, depth, in_disc, near
+from scenewright.planners.layout.ways import Ways
+from scenewright.planners.walking import WIDTH, unreached
+from scenewright.tools.space import overlap
+
+SIZE = (6.0, 5.0, 2.5)
+sides = st.floats(0.1, 2.0)
+yaws = st.one_of(st.sampled_from([0.0, 90.0, 180.0, -90.0]), st.floats(-179.0, 180.0))
+ulp = 1e-5  # metres; two ways to compute one distance
+
+
+@st.composite
+def spots(draw: st.DrawFn, turns: st.SearchStrategy[float] = yaws, on_floor: bool = False) -> Spot:
+    low = 0.0 if on_floor else draw(st.sampled_from([0.0, 0.4, 1.2]))
+    x, y = draw(st.floats(-2.0, 2.0)), draw(st.floats(-1.5, 1.5))
+    return Spot(x, y, draw(turns), draw(sides), draw(sides), low, low + draw(sides))
+
+
+def node(id: str, spot: Spot, support: str = "floor") -> Node:
+    size = (spot.w, spot.d, spot.high - spot.low)
+    middle = (spot.x, spot.y, (spot.low + spot.high) / 2)
+    return Node(id=id, label=id, size=size, position=middle, yaw=spot.yaw, support=support)  # type: ignore[arg-type]
+
+
+def graph(*nodes: Node, relations: tuple[tuple[str, str, str], ...] = ()) -> SceneGraph:
+    return SceneGraph(room=RoomShape(size=SIZE), nodes=nodes, relations=relations)
+
+
+@settings(max_examples=60, deadline=None)
+@given(spots(), st.lists(spots(), min_size=1, max_size=3), yaws)
+def test_forbidden_middles_are_those_at_which_boxes_are_in_each_other(
+    one: Spot, others: list[Spot], frame: float
+) -> None:
+    lattice = Lattice(np.linspace(-2.5, 2.5, 9), np.linspace(-2.0, 2.0, 7), one.yaw)
+    taken = np.zeros((9, 7), bool)
+    blocked(lattice, one._replace(x=0.0, y=0.0), others, taken)
+    for i, x in enumerate(lattice.xs):
+        for j, y in enumerate(lattice.ys):
+            here = node("a", one._replace(x=float(x), y=float(y))).box
+            deep = max(overlap(here, node("b", other).box) for other in others)
+            if deep == 0.0 or deep > ulp:
+                assert taken[i, j] == (deep > 0.0)
+
+
+@settings(max_examples=60, deadline=None)
+@given(spots(), st.floats(0.1, 2.0))
+def test_a_disc_is_reached_into_where_a_point_of_the_box_is_in_it(one: Spot, radius: float) -> None:
+    lattice = Lattice(np.linspace(-3, 3, 7), np.linspace(-3, 3, 7), one.yaw)
+    found = in_disc(lattice, one._replace(x=0.0, y=0.0), 0.3, -0.2, radius)
+    for i, x in enumerate(lattice.xs):
+        for j, y in enumerate(lattice.ys):
+            u, v = one._replace(x=float(x), y=float(y)).local(0.3, -0.2)
+            inside = np.hypot(u - np.clip(u, -one.w / 2, one.w / 2), v - np.clip(v, -one.d / 2, one.d / 2))
+            assert found[i, j] == (inside < radius) or abs(inside - radius) < ulp
+
+
+@settings(max_examples=80, deadline=None)
+@given(spots(), spots())
+def test_gaps_are_symmetric_and_tell_overlaps(one: Spot, other: Spot) -> None:
+    assert float(near(one, other)) == pytest.approx(float(near(other, one)), abs=ulp)
+    if float(near(one, other)) > ulp:
+        assert float(depth(one, other)) <= ulp
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(spots(on_floor=True), min_size=1, max_size=5))
+def test_ways_find_what_the_checker_finds(things: list[Spot]) -> None:
+    ways = Ways((SIZE[0], SIZE[1]), WIDTH)
+    for k, spot in enumerate(things):
+        ways.put(f"t{k}", spot, asked=spot.high > 0.05)
+    scene = graph(*(node(f"t{k}", spot) for k, spot in enumerate(things)))
+    assert ways.unreached() == {n.id for n, _ in unreached(scene)}
+
+
+def test_what_is_taken_away_leaves_no_trace() -> None:
+    ways = Ways((SIZE[0], SIZE[1]), WIDTH)
+    before = ways.taken.copy()
+    ways.put("a", Spot(0.5, 0.5, 30.0, 1.0, 2.0, 0.0, 1.0), asked=True)
+    assert (ways.taken != before).any()
+    ways.take("a")
+    assert (ways.taken == before).all() and not ways.unreached()
+
+
+@settings(max_examples=150, deadline=None)
+@given(
+    spots(st.sampled_from([0.0, 90.0, 180.0, -90.0])),
+    spots(st.sampled_from([0.0, 90.0, 180.0, -90.0])),
+    st.sampled_from(["left_of", "right_of", "in_front_of", "behind", "next_to", "facing", "above"]),
+)
+def test_what_is_measured_as_kept_is_kept_by_the_checkers_word(one: Spot, other: Spot, name: str) -> None:
+    kept, _ = measure(name, SIZE, one, [other], [])
+    assume(bool(kept))
+    report = check(graph(node("a", one), node("b", other), relations=(("a", name, "b"),)))
+    assert "relation" not in {v.kind for v in report.violations}
+
+
+@given(
+    st.sampled_from(["left_of", "behind", "next_to", "facing", "around", "aligned_with", "far_from"]), spots(), spots()
+)
+def test_many_places_at_once_are_measured_as_each_alone(name: str, one: Spot, other: Spot) -> None:
+    xs, ys = np.linspace(-2, 2, 5), np.linspace(-1.5, 1.5, 5)
+    kept, cost = measure(name, SIZE, one._replace(x=xs, y=ys), [other], [])
+    for k in range(5):
+        alone, price = measure(name, SIZE, one._replace(x=xs[k], y=ys[k]), [other], [])
+        assert bool(np.broadcast_to(kept, 5)[k]) == bool(alone)
+        assert float(np.broadcast_to(cost, 5)[k]) == pytest.approx(float(price))
+
+
+def test_wishes_of_the_room() -> None:
+    box = Spot(0.0, 0.0, 0.0, 1.0, 0.5, 0.0, 1.0)
+    at = {
+        "against_wall": (box._replace(y=SIZE[1] / 2 - 0.25), box),
+        "in_corner": (box._replace(x=SIZE[0] / 2 - 0.5, y=SIZE[1] / 2 - 0.25), box._replace(y=SIZE[1] / 2 - 0.25)),
+        "in_center": (box, box._replace(x=2.0)),
+    }
+    for name, (good, bad) in at.items():
+        assert measure(name, SIZE, good, [], [])[0] and not measure(name, SIZE, bad, [], [])[0], name
+    window = Spot(0.0, 2.45, 0.0, 1.0, 0.1, 1.0, 2.0)
+    assert measure("at_window", SIZE, box._replace(y=2.0), [], [window])[0]
+    assert not measure("at_window", SIZE, box, [], [window])[0] and not measure("at_window", SIZE, box, [], [])[0]
+    a, b = box._replace(x=-2.0), box._replace(x=2.0)
+    assert (
+        measure("between", SIZE, box, [a, b], [])[0]
+        and not measure("between", SIZE, box._replace(y=2.0), [a, b], [])[0]
+    )
