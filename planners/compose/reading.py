@@ -15,6 +15,7 @@ from ...gaussians.errors import UserError
 from .. import synonyms
 from ..grammar import lexicon, nouns, quantities
 from ..grammar.reading import color_at, is_plain, match
+from ..grammar.unsafe import unsafe_words
 from ..grammar.words import clean
 from . import amounts, knowledge, vocabulary
 from .amounts import Side
@@ -34,7 +35,7 @@ def read(text: str) -> Brief:
         RefusedError: it describes no room: a question, an edit, chat, or words that nobody knows.
     """
     cleaned = clean(text)
-    if phrase := unsafewords_of(cleaned):
+    if phrase := unsafe_words(cleaned):
         raise RefusedError("this is not about a room", "unsafe", (phrase[:60],))
     if any(c in cleaned for c in "{}<>[]\\"):
         raise RefusedError("this is code or data, not a description in words", "not_understood")

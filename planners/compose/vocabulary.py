@@ -47,8 +47,9 @@ SPOTS: dict[Phrase, str] = _table({
     "room, in the centre of the room, centered in the room, centred in the room, centrally, at the "
     "center, at the centre, in its center, at the center of the room, at the centre of the room": "center",
     "in the corner, in a corner, in one corner, in the corners, in each corner, in every corner, at the corners, "
-    "in all corners, in the corner of the room, in a corner of the room, in the corners of the room, in the other corner, "
-    "in another corner, at the corners of the room, in opposite corners, in the far corner, in two corners": "corner",
+    "in all corners, in the corner of the room, in a corner of the room, in the corners of the room, "
+    "in the other corner, in another corner, "
+    "at the corners of the room, in opposite corners, in the far corner, in two corners": "corner",
     "in a row, in rows, lined up, in a line, in two rows, side by side, next to each other, in three rows, aligned, "
     "beside each other, parallel to each other": "row",
     "facing each other, opposite each other, facing one another, face to face, across from each other": "mutual",
