@@ -109,7 +109,7 @@ class Demo:
             _save(scene, self.folder / "room.ply", self.force)
         log = self.folder / "session.jsonl"
         log.unlink(missing_ok=True)  # only with force: see _prepare
-        session = Session(scene, encoder=self.encoder, log=log, progress=self.progress, seed=self.seed)
+        session = Session(scene, "grammar", self.encoder, log=log, progress=self.progress, seed=self.seed)
         session.viewer = _viewer(scene, self.size)
         with timed(self.seconds, "embed"):
             session.embed()

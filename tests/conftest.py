@@ -12,6 +12,7 @@ from hypothesis import settings
 settings.register_profile("scenewright", deadline=None, derandomize=True)
 settings.load_profile("scenewright")
 
+os.environ.pop("SCENEWRIGHT_MODEL", None)  # no test asks the model of whoever runs it
 os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")  # as the package does, for tests that import torch before it
 
 _DATA = Path(os.environ.get("SCENEWRIGHT_DATA", Path(__file__).resolve().parents[1] / "../shared/data")).resolve()
