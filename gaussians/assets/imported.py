@@ -26,8 +26,8 @@ Array = NDArray[np.float64]
 MOST_BYTES = 256 << 20
 MOST_FACES = 4_000_000
 MOST_SPLATS = 60_000  # of one thing: more is thinned evenly, as a room holds dozens of them
-SAMPLES = 9_000  # Gaussians a mesh
-WIDER = 1.5  # samples fall at random: wider cells close the holes between them
+SAMPLES = 10_000  # Gaussians a mesh
+WIDER = 1.35  # samples fall at random: wider cells close the holes between them
 # Rows: x, y, z of ours in a file whose y points up: its front +z becomes our -y.
 _FROM_Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
@@ -111,12 +111,13 @@ def _splat_asset(cloud: GaussianCloud, turn: Array, size: Vec3, kind: str) -> As
 
 
 def _mesh_asset(path: Path, turn: Array, size: Vec3, kind: str, tint: Rgb | None) -> Asset:
-    xyz, normal, rgb = _surface(path)
+    xyz, normal, rgb, area = _surface(path)
     xyz, normal = xyz @ turn.T, normal @ turn.T
     gain, foot = _gain(xyz.min(axis=0), xyz.max(axis=0), size)
     xyz, normal = (xyz - foot) * gain, normal / gain
+    # A patch with unit normal n grows by det(A) |A^-T n| under the stretch A; samples are even over the old surface.
+    area *= float(np.prod(gain) * np.linalg.norm(normal, axis=1).mean())
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
-    area = float(2 * (size[0] * size[1] + size[1] * size[2] + size[0] * size[2]))
     side = np.full((len(xyz), 2), WIDER * np.sqrt(area / len(xyz)))
     samples = Samples(xyz, frames(normal), side, np.zeros((len(xyz), 2)), np.zeros(len(xyz), dtype=np.int64))
     albedo = rgb if tint is None else np.tile(np.array(tint), (len(rgb), 1))
@@ -124,8 +125,8 @@ def _mesh_asset(path: Path, turn: Array, size: Vec3, kind: str, tint: Rgb | None
     return _asset(unlit, unlit.cloud(np.array([-0.45, -0.6, 0.66])), size, kind)
 
 
-def _surface(path: Path) -> tuple[Array, Array, Array]:
-    """Even points on a mesh, their normals and display colours, in the file's frame."""
+def _surface(path: Path) -> tuple[Array, Array, Array, float]:
+    """Even points on a mesh, their normals and display colours, and its area, in the file's frame and unit."""
     try:
         import trimesh
 
@@ -151,7 +152,7 @@ def _surface(path: Path) -> tuple[Array, Array, Array]:
     good = np.isfinite(xyz).all(axis=1) & np.isfinite(normal).all(axis=1) & np.isfinite(rgb).all(axis=1)
     if good.sum() < 10:
         raise FileError(f"the mesh in {path.name} has no surface")
-    return xyz[good], normal[good], rgb[good]
+    return xyz[good], normal[good], rgb[good], total
 
 
 def _sampled(mesh: Any, count: int, seed: int) -> tuple[Array, Array, Array]:
