@@ -1,8 +1,8 @@
-"""Photographs and where they were taken from: `transforms.json`, as nerfstudio and instant-ngp write it.
+"""Photographs and where they were taken from: `transforms.json`, as nerfstudio and instant-ngp write it, or COLMAP.
 
-Poses there are camera-to-world in OpenGL axes (+x right, +y up, +z backward), intrinsics in pixels, once for all frames
-or for each (https://docs.nerf.studio/quickstart/data_conventions.html); ours are world-to-camera in OpenCV axes.
-Knows the file. Refuses to know what is done with the photographs; lens distortion is not undone.
+Poses in `transforms.json` are camera-to-world in OpenGL axes (+x right, +y up, +z backward), intrinsics in pixels, once
+for all frames or for each (https://docs.nerf.studio/quickstart/data_conventions.html); ours are world-to-camera in
+OpenCV axes. Knows the file, and when to leave it to `colmap`. Refuses to know what is done with the photographs.
 """
 
 from __future__ import annotations
@@ -19,9 +19,12 @@ from numpy.typing import NDArray
 
 from ..camera import Camera
 from ..errors import FileError, UserError
+from ..lens import Lens
+from . import colmap
 from .foreign import read_json
 
 TRANSFORMS = "transforms.json"
+_MODELS = ("OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "RADIAL", "SIMPLE_RADIAL", "PERSPECTIVE")
 LONGEST = 1 << 16  # pixels of a side: no photograph is longer, and masks as large as one must fit into memory
 
 
@@ -33,11 +36,13 @@ class Capture:
         path: the file that says so.
         cameras: one a photograph, of its full size, named by its file name without suffix.
         photos: the photographs' paths, which need not exist.
+        lenses: what each camera's lens does, which the cameras themselves leave out.
     """
 
     path: Path
     cameras: tuple[Camera, ...]
     photos: tuple[Path, ...]
+    lenses: tuple[Lens, ...]
 
     def camera(self, name: str) -> Camera | None:
         """The camera of the photograph `name` (with or without folder and suffix), or None."""
@@ -46,12 +51,17 @@ class Capture:
 
 
 def read_capture(path: Path) -> Capture:
-    """The capture in a `transforms.json`, or in a folder that holds one.
+    """The capture in a `transforms.json`, or in a folder that holds one or a COLMAP model (with photographs in
+    `images`).
 
     Raises:
         FileError: it is not there, or is no such file.
     """
     file = path / TRANSFORMS if path.is_dir() else path
+    if path.is_dir() and not file.exists() and (sparse := colmap.find(path)) is not None:
+        views = colmap.read_views(sparse)
+        taken = [path / "images" / view.name for view in views]
+        return _capture(sparse, [v.camera for v in views], taken, [v.lens for v in views])
     try:
         told = read_json(file)
     except FileError as error:
@@ -59,19 +69,26 @@ def read_capture(path: Path) -> Capture:
     frames = told.get("frames") if isinstance(told, dict) else None
     if not isinstance(frames, list) or not frames:
         raise FileError(f"{file} lists no frames; give a transforms.json as nerfstudio writes it")
-    cameras, photos = [], []
+    cameras: list[Camera] = []
+    photos: list[Path] = []
+    lenses: list[Lens] = []
     for i, frame in enumerate(frames):
         try:
             photo = file.parent / _text(frame["file_path"])
             cameras.append(_camera({**told, **frame}, photo.stem))
+            lenses.append(_lens({**told, **frame}))
         except (KeyError, TypeError, ValueError, ArithmeticError, UserError) as error:
             missing = f"has no {error}" if isinstance(error, KeyError) else f"is broken: {error}"
             raise FileError(f"{file}: frame {i} {missing}") from error
         photos.append(photo)
+    return _capture(file, cameras, photos, lenses)
+
+
+def _capture(file: Path, cameras: list[Camera], photos: list[Path], lenses: list[Lens]) -> Capture:
     twice = sorted(name for name, times in Counter(c.name for c in cameras).items() if times > 1)
     if twice:
         raise FileError(f"{file}: two frames are called {twice[0]}; photographs need different names")
-    return Capture(file, tuple(cameras), tuple(photos))
+    return Capture(file, tuple(cameras), tuple(photos), tuple(lenses))
 
 
 def _text(told: Any) -> str:
@@ -101,3 +118,18 @@ def _camera(told: Mapping[str, Any], name: str) -> Camera:
     fx = float(told["fl_x"]) if "fl_x" in told else 0.5 * width / math.tan(0.5 * float(told["camera_angle_x"]))
     fy, cx, cy = (float(told.get(key, usual)) for key, usual in (("fl_y", fx), ("cx", width / 2), ("cy", height / 2)))
     return Camera(world, fx, fy, cx, cy, width, height, name)
+
+
+def _lens(told: Mapping[str, Any]) -> Lens:
+    """One frame's lens.
+
+    Raises:
+        TypeError, ValueError: its distortion is not finite numbers, or another one than a polynomial's.
+    """
+    model = told.get("camera_model", "OPENCV")
+    if model not in _MODELS:
+        raise ValueError(f"camera_model {model!r} is not one of {', '.join(_MODELS)}; undistort the photographs first")
+    values = [float(told.get(key, 0.0)) for key in ("k1", "k2", "k3", "p1", "p2")]
+    if not all(map(math.isfinite, values)):
+        raise ValueError("its lens distortion is not finite")
+    return Lens(*values)
