@@ -45,6 +45,19 @@ class Adam:
         flat = (a.reshape(-1) for a in (values, gradient, self.first, self.second))
         compiled.run(_step, compiled.workers(), *flat, numbers)
 
+    def take(self, rows: NDArray[np.int64]) -> None:
+        """Keep only some rows, in the order given."""
+        self.first, self.second = (np.ascontiguousarray(a[rows]) for a in (self.first, self.second))
+
+    def extend(self, count: int) -> None:
+        """Add rows that were never stepped."""
+        nothing = np.zeros((count, *self.first.shape[1:]), np.float32)
+        self.first, self.second = (np.concatenate([a, nothing]) for a in (self.first, self.second))
+
+    def forget(self, rows: NDArray[np.int64]) -> None:
+        """Let some rows begin anew."""
+        self.first[rows] = self.second[rows] = 0
+
 
 @exact
 def _step(worker, workers, values, gradient, first, second, numbers):  # type: ignore[no-untyped-def]

@@ -1,0 +1,193 @@
+"""When Gaussians come and go while a scene is trained: two strategies behind one protocol.
+
+`Budgeted` keeps to a number: Gaussians that have become transparent move onto opaque ones, new ones are copies of
+these, and a group of copies is made so that together it looks like the one it came from; a little noise lets faint ones
+wander (Kheradmand et al. 2024, "3D Gaussian Splatting as Markov Chain Monte Carlo"). `Classic` splits and clones where
+footprints are pulled about, prunes what is faint, and now and then makes everything faint (Kerbl et al. 2023).
+
+Knows parameters and gradients. Refuses to know pictures and time.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from .. import rotations
+from .parameters import Parameters
+
+F32 = NDArray[np.float32]
+I64 = NDArray[np.int64]
+
+FAINT = 0.005  # opacity below which a Gaussian is as good as gone
+
+
+class Growth(Protocol):
+    """A strategy. It changes parameters in place."""
+
+    def regularise(self, gradients: dict[str, F32], scales: F32, opacities: F32) -> None:
+        """Add to the gradients what the strategy wants besides a good picture."""
+        ...
+
+    def stepped(self, parameters: Parameters, centers: F32, size: tuple[int, int], rate: float) -> None:
+        """After each step: note gradients of the footprints' centres `[N, 2]` (1/px, of a picture of `size`)."""
+        ...
+
+    def change(self, parameters: Parameters, step: int) -> None:
+        """Every so many steps: let Gaussians come and go."""
+        ...
+
+
+@dataclass
+class Budgeted:
+    """Growth by opacity under a budget.
+
+    Attributes:
+        most: Gaussians.
+        rng: what copies are drawn by.
+        share: how many are added at a time, of those there are.
+        opacity, scale: weights of the mean opacity and the mean scale in the loss: what a picture does not need fades.
+        noise: of faint Gaussians, times the rate of means and their own covariance.
+    """
+
+    most: int
+    rng: np.random.Generator
+    share: float = 0.05
+    opacity: float = 0.01
+    scale: float = 0.01
+    noise: float = 5e5
+
+    def regularise(self, gradients: dict[str, F32], scales: F32, opacities: F32) -> None:
+        """See `Growth`."""
+        count = np.float32(max(len(opacities), 1))
+        gradients["logits"] += np.float32(self.opacity) / count * opacities * (1 - opacities)
+        gradients["logs"] += np.float32(self.scale) / (3 * count) * scales
+
+    def stepped(self, parameters: Parameters, centers: F32, size: tuple[int, int], rate: float) -> None:
+        """See `Growth`."""
+        opacities = parameters.opacities
+        rows = np.flatnonzero(opacities < 0.1)  # beyond it there is no noise to speak of: exp(-9.5) of it
+        if not len(rows):
+            return
+        axes = _axes(parameters, rows)
+        with np.errstate(over="ignore"):
+            amount = rate * self.noise / (1 + np.exp(100 * (opacities[rows] - FAINT)))
+        noise = self.rng.standard_normal((len(rows), 3), dtype=np.float32) * amount[:, None]
+        along = np.einsum("nij,ni->nj", axes, noise)
+        parameters.means[rows] += np.einsum("nij,nj->ni", axes, along).astype(np.float32)
+
+    def change(self, parameters: Parameters, step: int) -> None:
+        """See `Growth`."""
+        opacities = parameters.opacities
+        count = len(parameters)
+        dead, alive = np.flatnonzero(opacities <= FAINT), np.flatnonzero(opacities > FAINT)
+        added = max(0, min(self.most, int((1 + self.share) * count)) - count)
+        if not len(alive) or not len(dead) + added:
+            return
+        weights = opacities[alive].astype(np.float64)
+        source = alive[self.rng.choice(len(alive), len(dead) + added, p=weights / weights.sum())]
+        copied = np.unique(source)
+        times = np.bincount(source, minlength=count)[copied] + 1
+        opacity, scale = shared(opacities[copied], np.exp(parameters.logs[copied]), times)
+        opacity = np.clip(opacity, FAINT, 1 - 1e-6)
+        parameters.logits[copied] = np.log(opacity / (1 - opacity))
+        parameters.logs[copied] = np.log(scale)
+        parameters.forget(copied)
+        parameters.put(dead, source[: len(dead)])
+        parameters.append(source[len(dead) :])
+
+
+MOST_SHARED = 50  # copies of one Gaussian that are told apart: the sums alternate and lose digits beyond
+
+
+def shared(opacities: F32, scales: F32, times: I64) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Opacity `[M]` and scales `[M, 3]` of each of `times` copies in one place that together look like one Gaussian.
+
+    Kheradmand et al. 2024, equation 9: the same transmittance at the centre, the same light in all.
+    """
+    times = np.minimum(times, MOST_SHARED)
+    whole = opacities.astype(np.float64)
+    each = 1 - (1 - whole) ** (1 / times)
+    light = np.zeros(len(whole))
+    for i in range(1, int(times.max(initial=1)) + 1):
+        rows = times >= i
+        for k in range(i):
+            light[rows] += math.comb(i - 1, k) * (-1) ** k / math.sqrt(k + 1) * each[rows] ** (k + 1)
+    return each, scales * (whole / light)[:, None]
+
+
+@dataclass
+class Classic:
+    """Split, clone, prune and reset, as published.
+
+    Attributes:
+        extent: of the scene, scene units: what is large or small is said in shares of it.
+        rng: what splits are drawn by.
+        most: Gaussians, beyond which none are added; None: as many as come.
+        pull: mean length of a centre's gradient, in 1/(half the picture), from which a Gaussian is not enough.
+        reset_every: changes between two resets of the opacities.
+    """
+
+    extent: float
+    rng: np.random.Generator
+    most: int | None = None
+    pull: float = 2e-4
+    reset_every: int = 30
+    _sum: F32 = field(default_factory=lambda: np.zeros(0, np.float32), repr=False)
+    _times: F32 = field(default_factory=lambda: np.zeros(0, np.float32), repr=False)
+    _changes: int = 0
+
+    def regularise(self, gradients: dict[str, F32], scales: F32, opacities: F32) -> None:
+        """See `Growth`: nothing."""
+
+    def stepped(self, parameters: Parameters, centers: F32, size: tuple[int, int], rate: float) -> None:
+        """See `Growth`."""
+        if len(self._sum) != len(parameters):
+            self._sum, self._times = np.zeros((2, len(parameters)), np.float32)
+        pulled = np.linalg.norm(centers * (np.array(size, np.float32) / 2), axis=1)
+        self._sum += pulled
+        self._times += pulled > 0
+
+    def change(self, parameters: Parameters, step: int) -> None:
+        """See `Growth`."""
+        self._changes += 1
+        pulled = self._sum / np.maximum(self._times, 1) >= self.pull
+        if self.most is not None and len(parameters) + pulled.sum() > self.most:
+            pulled[:] = False
+        large = np.exp(parameters.logs).max(axis=1) > 0.01 * self.extent
+        self._split(parameters, np.flatnonzero(pulled & large))
+        parameters.append(np.flatnonzero(pulled & ~large))
+        gone = np.zeros(len(parameters), bool)
+        gone[np.flatnonzero(pulled & large)] = True  # two smaller ones stand in its place
+        gone |= parameters.opacities < FAINT
+        if self._changes > self.reset_every:
+            gone |= np.exp(parameters.logs).max(axis=1) > 0.1 * self.extent
+        if not gone.all():
+            parameters.take(np.flatnonzero(~gone))
+        if self._changes % self.reset_every == 0:
+            faint = 2 * FAINT
+            parameters.logits[:] = np.minimum(parameters.logits, np.float32(math.log(faint / (1 - faint))))
+            parameters.memory["logits"].forget(np.arange(len(parameters)))
+        self._sum = self._times = np.zeros(0, np.float32)
+
+    def _split(self, parameters: Parameters, rows: I64) -> None:
+        """Add two smaller ones for each, drawn from it."""
+        for _ in range(2):
+            first = len(parameters)
+            parameters.append(rows)
+            axes = _axes(parameters, rows)
+            drawn = np.einsum("nij,nj->ni", axes, self.rng.standard_normal((len(rows), 3)))
+            parameters.means[first:] += drawn.astype(np.float32)
+            parameters.logs[first:] -= np.float32(math.log(1.6))
+
+
+def _axes(parameters: Parameters, rows: I64) -> NDArray[np.float32]:
+    """`[M, 3, 3]`: the axes of some Gaussians as columns, each as long as its standard deviation."""
+    quats = torch.nn.functional.normalize(torch.from_numpy(parameters.quats[rows]), dim=1)
+    axes: NDArray[np.float32] = rotations.to_matrix(quats).numpy() * np.exp(parameters.logs[rows])[:, None, :]
+    return axes

@@ -1,0 +1,146 @@
+"""The loop of training: a photograph, a step, and now and then Gaussians that come and go.
+
+Knows the order of things and the schedule. Refuses to know files, and which strategy grows the scene. Progress is
+counted in steps or in seconds; counted in steps, the same photographs, start and seed give the same bytes.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..camera import Camera
+from ..render.cpu import gradient
+from .growth import Growth
+from .loss import photometric
+from .parameters import Parameters, chained
+
+F32 = NDArray[np.float32]
+BLACK = (0.0, 0.0, 0.0)
+
+MEANS = 1.6e-4  # rate of means at the start, in shares of the scene's extent
+FALL = 0.01  # of that rate is left at the end
+EVERY = 100  # steps between two changes of the number of Gaussians
+QUIET = 300  # steps before the first
+SETTLED = 0.8  # of the training, after which the number stays
+
+
+@dataclass(frozen=True, eq=False)
+class Shot:
+    """A photograph to learn from: `photo [H, W, 3]` uint8, undistorted, of the camera's size."""
+
+    camera: Camera
+    photo: NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """How long and how.
+
+    Attributes:
+        steps, seconds: what ends training, whichever is given; exactly one of them.
+        coarse: share of the training on photographs of half the size.
+        degree: of the harmonics at the end; bands are added one by one in the first half.
+        similarity: share of SSIM in the loss.
+    """
+
+    steps: int | None = None
+    seconds: float | None = None
+    coarse: float = 0.0
+    degree: int = 0
+    similarity: float = 0.2
+
+
+class Trainer:
+    """A training under way.
+
+    Args:
+        shots: photographs to learn from.
+        start: the parameters; changed in place.
+        growth: how Gaussians come and go.
+        extent: radius of the scene as the cameras stand around it, scene units.
+        schedule: how long and how.
+        rng: what the order of photographs is drawn by.
+    """
+
+    def __init__(
+        self,
+        shots: Sequence[Shot],
+        start: Parameters,
+        growth: Growth,
+        extent: float,
+        schedule: Schedule,
+        rng: np.random.Generator,
+    ) -> None:
+        self.parameters, self.growth, self.schedule = start, growth, schedule
+        self._shots, self._extent, self._rng = shots, extent, rng
+        self._order: list[int] = []
+        self.steps, self.seconds = 0, 0.0
+
+    @property
+    def done(self) -> float:
+        """Share of the training behind us, in [0, 1]."""
+        schedule = self.schedule
+        share = self.steps / schedule.steps if schedule.steps else self.seconds / (schedule.seconds or math.inf)
+        return min(1.0, share)
+
+    def step(self) -> float:
+        """One photograph; returns its loss."""
+        started, done = time.perf_counter(), self.done
+        if not self._order:
+            self._order = self._rng.permutation(len(self._shots)).tolist()
+        shot = self._shots[self._order.pop()]
+        camera, photo = halved(shot) if done < self.schedule.coarse else (shot.camera, _unit(shot.photo))
+        if 0.5 * (self.parameters.degree + 1) / (self.schedule.degree + 1) <= done:
+            self.parameters.widen(min(self.parameters.degree + 1, self.schedule.degree))
+        loss = self._learn(camera, photo, MEANS * self._extent * FALL**done)
+        self.steps += 1
+        if self.steps % EVERY == 0 and self.steps >= QUIET and done < SETTLED:
+            self.growth.change(self.parameters, self.steps)
+            self.parameters.take(along_a_curve(self.parameters.means))
+        self.seconds += time.perf_counter() - started
+        return loss
+
+    def _learn(self, camera: Camera, photo: F32, rate: float) -> float:
+        columns = self.parameters.columns()
+        drawn = gradient.draw(columns, camera, BLACK)
+        loss, slope = photometric(drawn.rgb, photo, self.schedule.similarity)
+        found = gradient.undraw(drawn, slope, np.zeros(slope.shape[:2], np.float32))
+        gradients = chained(found, columns[2], columns[3])
+        self.growth.regularise(gradients, columns[2], columns[3])
+        self.parameters.step(gradients, rate)
+        self.growth.stepped(self.parameters, found.centers, (camera.width, camera.height), rate)
+        return loss
+
+
+def _unit(photo: NDArray[np.uint8]) -> F32:
+    return photo.astype(np.float32) / np.float32(255)
+
+
+def halved(shot: Shot) -> tuple[Camera, F32]:
+    """Camera and photograph at half the size; an odd last row or column is left out."""
+    height, width = shot.camera.height // 2, shot.camera.width // 2
+    even = _unit(shot.photo[: 2 * height, : 2 * width]).reshape(height, 2, width, 2, 3)
+    whole = shot.camera
+    camera = Camera(
+        whole.world_to_camera, whole.fx / 2, whole.fy / 2, whole.cx / 2, whole.cy / 2, width, height, whole.name
+    )
+    return camera, np.ascontiguousarray(even.mean(axis=(1, 3), dtype=np.float32))
+
+
+def along_a_curve(means: F32) -> NDArray[np.int64]:
+    """Rows in the order of a Morton curve: what is near in space is near in memory, which renders a third faster."""
+    low, high = np.quantile(means, [0.01, 0.99], axis=0)
+    cells = np.clip((means - low) / np.maximum(high - low, 1e-12), 0, 1 - 1e-6) * 1024
+    code = np.zeros(len(means), np.int64)
+    for axis in range(3):
+        bits = cells[:, axis].astype(np.int64)
+        for shift, mask in ((16, 0x030000FF), (8, 0x0300F00F), (4, 0x030C30C3), (2, 0x09249249)):
+            bits = (bits | (bits << shift)) & mask
+        code |= bits << axis
+    return np.argsort(code, kind="stable")
