@@ -111,9 +111,12 @@ class Prepared:
 
     def wants_wall(self, i: int) -> bool:
         """Whether an item's back belongs against a wall."""
-        return self.items[i].backed or any(
-            w.subject == self.items[i].id and w.name in _BESIDE_WALL for w in self.problem.wishes
-        )
+        return i in self._walled
+
+    @cached_property
+    def _walled(self) -> frozenset[int]:
+        wished = {self.index[w.subject] for w in self.problem.wishes if w.name in _BESIDE_WALL}
+        return frozenset(wished | {i for i, item in enumerate(self.items) if item.backed})
 
     def zones(self, i: int) -> tuple[Spot, ...]:
         """The room that using an item takes, in its own axes; before a door its leaf swings."""

@@ -31,7 +31,8 @@ def measure(name: str, size: Sequence[float], one: Spot, others: Sequence[Spot],
     Coordinates of each box may be numbers or arrays of one length.
     """
     if name in _AIMS:
-        return _beside(_AIMS[name], one, others[0])
+        kept, cost = _beside(_AIMS[name], one, others[0])
+        return kept, cost + _before(one, others[0]) if name == "in_front_of" else cost
     if name in _PAIRS:
         return _PAIRS[name](one, others[0])
     if name in _ROOM:
@@ -56,6 +57,13 @@ def _beside(aim: tuple[float, float], one: Spot, other: Spot) -> Measured:
     reach = np.hypot(dx, dy)
     cosine = (dx * aim[0] + dy * aim[1]) / np.maximum(reach, 1e-9)
     return cosine >= _CONE, 1.0 - cosine + 0.12 * reach
+
+
+def _before(one: Spot, other: Spot) -> Any:
+    """How far one is from being before the other's own front too: best is what both viewer and thing call in front."""
+    dx, dy = one.x - other.x, one.y - other.y
+    fx, fy = other.front
+    return 1.0 - (dx * fx + dy * fy) / np.maximum(np.hypot(dx, dy), 1e-9)
 
 
 def _next_to(one: Spot, other: Spot) -> Measured:

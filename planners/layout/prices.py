@@ -14,7 +14,7 @@ from .bodies import FLAT, Body, Member
 from .grounds import EYE, FLOOR, extents_of
 from .measures import behind_gap, measure, walls_gaps
 from .shapes import F64, Lattice, Spot, meetings, shifted
-from .state import HARD, SOFT, USED, WALLED, State, placed
+from .state import BACKED, HARD, SOFT, USED, WALLED, State, placed
 
 _MOVED, _TURNED = 3.0, 1.0  # price of a metre away from where a thing was, and metres that a quarter turn is worth
 _CROWDED = 0.3  # share of a top from which things are put close together
@@ -158,7 +158,7 @@ def habits(state: State, body: Body, place: Place) -> F64:
     total += 2.0 * np.maximum(1.2 - (ahead - here.d / 2), 0.0)
     if prepared.wants_wall(body.first):
         gap = np.minimum(behind_gap(here, state.size), 3.0)
-        total += np.where(gap > 0.02, WALLED + 4.0 * gap, 0.0)
+        total += np.where(gap > BACKED, WALLED + 4.0 * gap, 0.0)
     elif item.size[2] <= FLAT:
         total += 0.3 * np.hypot(here.x, here.y)
     elif len(body.members) == 1 and not prepared.wishes_of[body.first] and item.was is None:

@@ -19,6 +19,7 @@ from .state import State
 _TRIES = 6  # places that are looked at for a way to everything, before the best of them is taken
 _APART = 0.35  # metres between such places
 _IDLE = 4  # starts without a better layout, after which no more are made
+_IDLE_TIDY = 2  # the same where only habits are at stake
 _WORTH = 0.05  # price by which a second look must better the layout to be worth another
 
 
@@ -58,7 +59,8 @@ class Search:
             idle = 0 if price < least else idle + 1
             if price < least:
                 best, least = state.copy(), price
-            if not self._blame(state) or idle >= _IDLE * max(self.effort, 1.0):
+            patience = _IDLE if self._blame(state) else _IDLE_TIDY if self._tidy(state) else 0
+            if idle >= patience * max(self.effort, 1.0):
                 break
         state.restore(best)
         return state
@@ -191,6 +193,13 @@ class Search:
             for k in (i, *self.prepared.carriers[i]):
                 self.urgent[k] += 1.0
         return bool(guilty)
+
+    def _tidy(self, state: State) -> bool:
+        """Make what has no wall behind it, or no room for its use, more urgent; whether there was any such thing."""
+        untidy = {*state.unbacked(), *state.used()}
+        for i in untidy:
+            self.urgent[i] += 0.5
+        return bool(untidy)
 
     def _loosen(self, parts: set[int]) -> None:
         """Part bodies over a wish that is not kept: its own things, and those of one body with it that are bound."""

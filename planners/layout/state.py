@@ -11,13 +11,14 @@ from collections.abc import Iterator
 import numpy as np
 
 from .bodies import DOORS, FLAT, Body, Member, Prepared
-from .measures import measure
+from .measures import behind_gap, measure
 from .problem import Keepout, Stand
 from .shapes import EPSILON, Spot, depth, shifted, wrapped
 from .ways import floors
 
 HARD, SOFT, USED, WALLED, LOST = 1000.0, 12.0, 60.0, 60.0, 400.0  # prices; the unit is about a metre off
 LEFT_OUT, SPARED = 4000.0, 600.0  # of leaving out what must be there, and what may be absent
+BACKED = 0.02  # metres between a back and the wall behind it
 _TIGHT = 25.0  # price of a thing that one gets to only by squeezing through
 
 
@@ -130,15 +131,24 @@ class State:
             kept, cost = self.holds(row)
             total += (2.0 if wish.hard else 1.5) * min(cost, 10.0)
             total += 0.0 if kept else (HARD if wish.hard else SOFT)
-        return total + USED * self.used()
+        return total + USED * len(self.used()) + WALLED * len(self.unbacked())
 
-    def used(self) -> int:
-        """How many zones have something standing in them."""
+    def unbacked(self) -> list[int]:
+        """Free things on the floor that want a wall behind them and have none."""
+        return [
+            i
+            for i, (item, spot) in enumerate(zip(self.prepared.items, self.spots, strict=True))
+            if spot is not None and item.stand is None and item.support == "floor" and self.prepared.wants_wall(i)
+            if not behind_gap(spot, self.size) <= BACKED
+        ]
+
+    def used(self) -> list[int]:
+        """Whose room for use something stands in: an item for each such zone."""
         tied, chains = self.prepared.tied, self.prepared.carriers
-        count, solids = 0, list(self.solids(set()))
+        found, solids = list[int](), list(self.solids(set()))
         for i, zones in enumerate(self.zones):
             for zone in zones:
-                count += any(
+                if any(
                     j != i
                     and (i, j) not in tied
                     and i not in chains[j]
@@ -146,8 +156,9 @@ class State:
                     and math.hypot(zone.x - s.x, zone.y - s.y) < math.hypot(zone.w, zone.d) + math.hypot(s.w, s.d)
                     and depth(zone, s) > EPSILON
                     for j, s in solids
-                )
-        return count
+                ):
+                    found.append(i)
+        return found
 
     def stand(self, i: int) -> Stand | None:
         """Where an item is, as the problem says it: to a tenth of a millimetre."""
