@@ -124,6 +124,9 @@ def _graph(wish: str, seed: int, planner: str, best: bool) -> SceneGraph:
     for remark in composition.remarks:
         terminal.say(f"note: {remark}")
     layout = composition.layout
+    if layout.left_out:
+        label = {item.id: item.label for item in composition.problem.items}
+        terminal.say(f"left out, as there is no room: {', '.join(f'{label[i]} ({i})' for i in layout.left_out)}")
     if layout.conflicts and not best:
         _refuse_conflict(layout.conflicts, layout.graph)
     for conflict in layout.conflicts:

@@ -15,7 +15,7 @@ from scenewright.gaussians.files import load
 from scenewright.gaussians.language.store import load_field
 from scenewright.planners import composing
 from scenewright.planners.graph import SceneGraph
-from scenewright.planners.layout.problem import Conflict, Layout
+from scenewright.planners.layout.problem import Conflict, Item, Layout, Problem
 
 CHAIR = {"id": 1, "label": "chair", "color": "red", "size": [0.5, 0.5, 0.9], "position": [0.0, 0.0, 0.45]}
 GIZMO = {"id": 2, "label": "gizmo", "size": [0.4, 0.4, 0.4], "position": [1.0, 0.0, 0.2]}
@@ -27,6 +27,7 @@ class Composed:
     """As much of a composition as the command looks at."""
 
     layout: Layout
+    problem: Problem = Problem(size=(3, 3, 2.5), items=(Item(id=9, label="harp", size=(1, 1, 2), optional=True),))
     remarks: tuple[str, ...] = ("cozy also means warm light, which boxes do not show",)
 
 
@@ -54,7 +55,7 @@ def _composer(monkeypatch: pytest.MonkeyPatch, *conflicts: Conflict) -> list[dic
 
     def composed(text: str, **options: Any) -> Composed:
         asked.append({"text": text, **options})
-        return Composed(Layout(graph=SceneGraph.model_validate(ROOM), conflicts=conflicts))
+        return Composed(Layout(graph=SceneGraph.model_validate(ROOM), conflicts=conflicts, left_out=(9,)))
 
     monkeypatch.setattr(composing, "composed", composed)
     return asked
@@ -84,7 +85,7 @@ def test_words_are_composed_with_seed_and_planner(call: Any, monkeypatch: pytest
     code, out, err = call("a small room", "--seed", "7", "--planner", "grammar", "--json")
     assert code == 0 and SceneGraph.model_validate_json(out).nodes
     assert asked == [{"text": "a small room", "seed": 7, "planner": "grammar"}]
-    assert "warm light" in err
+    assert "warm light" in err and "harp (9)" in err
 
 
 def test_a_conflict_writes_nothing_unless_the_best_is_wanted(
