@@ -82,10 +82,9 @@ def judge(found: Resolved, case: dict[str, Any]) -> Outcome:
         wanted = case.get("steps", ())
         same = len(found.steps) == len(wanted) and all(map(_same, found.steps, wanted))
         return "right" if same else "wrong_edit"
-    if found.plan.verdict == expected:
-        return "right"  # said by the planner itself, whose plan has no place for candidates
     if found.verdict == expected:
-        candidates = set(case.get("candidates", found.candidates))
+        # Where the planner itself says so, its plan has no place for candidates.
+        candidates = set(case.get("candidates", found.candidates) if found.plan.ops else found.candidates)
         return "right" if candidates == set(found.candidates) else "wrong_answer"
     return "unanswered" if found.verdict == "not_understood" else "wrong_answer"
 
