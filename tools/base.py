@@ -45,6 +45,7 @@ METRES: dict[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft
 _NEED_ANCHOR = {
     "under", "above", "next_to", "left_of", "right_of", "in_front_of", "behind", "opposite", "between", "inside"
 }  # fmt: skip
+_OFFSET = ("on", "against")
 _RELATIVE = [s for s in get_args(Spot) if s in _NEED_ANCHOR and s != "between"]
 _ABSOLUTE = [s for s in get_args(Spot) if s not in (*_NEED_ANCHOR, "on")]
 
@@ -91,20 +92,22 @@ class Placement(BaseModel):
             {"relation": given(enum=["between"]), "anchors": given(minItems=1), "offset": NOT_GIVEN},
             {"relation": given(enum=_ABSOLUTE), "anchors": {"maxItems": 1}, "offset": NOT_GIVEN},
             {"relation": given(enum=["on"]), "anchors": {"maxItems": 1}},
+            {"relation": given(enum=["against"]), "anchors": {"maxItems": 0}},
         ),
     )
 
     relation: Spot
     anchors: Annotated[tuple[Query, ...], Field(max_length=2)] = ()
     offset: tuple[Way, Way] | None = None
-    """With "on": how far from the middle of the anchor, or of the floor, metres along the scene graph's x and y."""
+    """With "on", or "against" a wall: near which point, metres along the scene graph's x and y from the middle of the
+    anchor or of the floor."""
 
     @model_validator(mode="after")
     def _anchored(self) -> Self:
         if self.relation in _NEED_ANCHOR and not self.anchors:
             raise ValueError(f'place "{self.relation}" needs an anchor: say {self.relation.replace("_", " ")} what')
-        if self.offset is not None and self.relation != "on":
-            raise ValueError(f'an offset goes with "on", not with "{self.relation}"')
+        if self.offset is not None and (self.relation not in _OFFSET or (self.relation != "on" and self.anchors)):
+            raise ValueError(f'an offset goes with "on", or "against" a wall, not with "{self.describe()}"')
         if len(self.anchors) > 1 and self.relation != "between":
             raise ValueError(f'place "{self.relation}" takes one anchor, got {len(self.anchors)}')
         return self

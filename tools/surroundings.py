@@ -22,6 +22,7 @@ from .grid import Bool, obstacle_points
 from .measure import OPAQUE
 from .space import Array, Body, as_vec, centimetre
 
+_LOW = 240.0  # centimetres, height of a low room
 _SAMPLE = 50_000  # points on which extents of the room are measured
 FLOOR_WORDS = frozenset({"floor", "ground", "carpet", "room"})
 
@@ -95,13 +96,15 @@ class Surroundings:
 
     @cached_property
     def ceiling(self) -> float:
-        """Height along up of the ceiling, or of the highest solid points where none is known."""
+        """Height along up of the ceiling; where none is known that of the highest solid points, or of a low room."""
         field = self.scene.language
         tops = [g for g in field.groups if g.label == "ceiling" and g.level == "structure" and g.count] if field else []
         if tops:
             return min(float(np.array(g.box.center) @ self.up) - g.box.size[2] / 2 for g in tops)
         heights = self.thin @ self.up.astype(np.float32)
-        return float(np.quantile(heights, 0.995)) if len(heights) else self.floor
+        highest = float(np.quantile(heights, 0.995)) if len(heights) else self.floor
+        low = self.floor + _LOW * centimetre(self.frame, 1.0)
+        return highest if self.frame.metres_per_unit is None else max(highest, low)
 
     def bounds_for(self, size: Vec3, plan: Array) -> tuple[Array, Array]:
         """Bounds, along the room's axes, of the centre of a footprint along `plan` that stays in the room."""

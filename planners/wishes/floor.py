@@ -9,17 +9,16 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Sequence
 
+from ...gaussians import assets
 from ...gaussians.language.query import Query
 from ...tools.base import Placement
 from ...tools.ops.insert import Insert
-from ...tools.ops.rotate import Rotate
 from ..graph import Node
 from ..layout import Keepout
 from ..layout import Wish as LayoutWish
 from . import solving
 from .goals import Clear, ReadingCorner, See, Spread, Walls, Where
 from .room import SMALL, CannotError, Id, Room, copied, toward
-from .steps import target
 
 _DANCE = 0.3  # of the shorter side of the room is the radius of a dance floor
 _WIDTHS = {"yoga mat": 1.9, "mat": 1.9, "exercise": 2.0, "exercises": 2.0, "yoga": 1.9, "playpen": 1.4, "crib": 1.5,
@@ -49,18 +48,16 @@ def clear(room: Room, goal: Clear, free: Collection[Id] = (), wishes: Sequence[L
             reason = f"the {stuck[0].label} stays where it is, and stands in the way"
             continue
         inside = {n.id for n in room.nodes.values() if room.moves(n) and solving.in_disc(n, (*disc, keep.radius))}
-        movable = {n.id for n in room.nodes.values() if room.moves(n)}
-        for loose in dict.fromkeys((frozenset(inside | set(free)), frozenset(movable))):
-            trial = copied(room)
-            try:
-                if loose:
-                    solving.rearranged(trial, loose, wishes, [keep])
-            except CannotError as error:
-                reason = str(error)
-                continue
-            room.nodes = trial.nodes
-            room.told.append(f"{2 * radius:.1f} m of floor {_place(goal.where)} are free for {goal.called}")
-            return
+        party, bound = solving.seated(room, inside) if not wishes else (set[Id](), [])
+        tries = [frozenset(inside | party | set(free)), _movable(room)]
+        try:
+            if tries[0]:
+                solving.eased(room, tries, [*wishes, *bound], [keep], "things are in the way")
+        except CannotError as error:
+            reason = str(error)
+            continue
+        room.told.append(f"{2 * radius:.1f} m of floor {_place(goal.where)} are free for {goal.called}")
+        return
     raise CannotError(f"no floor can be freed {_place(goal.where)}: {reason}")
 
 
@@ -153,19 +150,8 @@ def push(room: Room, goals: Sequence[Walls], floor: Clear | None) -> None:
     if floor is not None:
         clear(room, floor, free, wishes)
     elif free:
-        reason = ""
-        movable = frozenset(n.id for n in room.nodes.values() if room.moves(n))
-        for loose in dict.fromkeys((frozenset(free), movable)):
-            trial = copied(room)
-            try:
-                solving.rearranged(trial, loose, wishes, [])
-            except CannotError as error:
-                reason = str(error)
-                continue
-            room.nodes = trial.nodes
-            break
-        else:
-            raise CannotError(f"not everything finds a place at a wall: {reason}")
+        tries = [frozenset(free), _movable(room)]
+        solving.eased(room, tries, wishes, [], "not everything finds a place at a wall")
     count = len(free)
     room.told.append(f"{count} thing{'s' if count != 1 else ''} pushed to the walls" if free else "all is at the walls")
 
@@ -261,55 +247,49 @@ def _apart(spot: tuple[float, float], node: Node, done: Sequence[Node]) -> float
 
 
 def reading_corner(room: Room, goal: ReadingCorner) -> None:
-    """A seat in a corner or where it was said, a lamp and a shelf or table beside it; what is missing is added.
+    """A seat in a corner or where it was said, a lamp and a table beside it; what is missing is added.
 
     Raises:
         CannotError: there is no room for it.
     """
-    seat = _first(room, ("armchair", "chair"))
-    lamp = _first(room, ("floor lamp",))
-    side = _first(room, ("side table", "stool", "bookshelf"))
-    if seat is None:
-        place = Placement(relation="corner")
-        if goal.where is not None and goal.where.anchor is not None:
-            place = Placement(relation=goal.where.relation, anchors=(goal.where.anchor,))
-        room.ops.append(Insert(asset="armchair", place=place))
-        beside = Query(last=True)
-    else:
-        _to_corner(room, goal, seat, [n for n in (lamp, side) if n is not None])
-        beside = target(seat)
-    for missing, asset in ((lamp, "floor lamp"), (side, "side table")):
-        if missing is None:
-            room.ops.append(Insert(asset=asset, place=Placement(relation="next_to", anchors=(beside,))))
-            beside = beside if seat is not None else Query(text="armchair", pick="any")
-    if seat is None:
-        room.ops.insert(1, Rotate(target=Query(last=True), toward=Query(text="floor")))
-    room.told.append("a seat, a lamp and a table make a reading corner")
-
-
-def _first(room: Room, labels: Sequence[str]) -> Node | None:
-    """The first thing of one of these names that may move."""
-    nodes = (n for label in labels for n in room.nodes.values() if n.label == label and room.moves(n))
-    return next(nodes, None)
-
-
-def _to_corner(room: Room, goal: ReadingCorner, seat: Node, others: Sequence[Node]) -> None:
+    pieces = [_first(room, labels) or _new(room, labels[0]) for labels in _READING]
+    seat, *others = pieces
     wishes = [LayoutWish(subject=n.id, name="next_to", objects=(seat.id,)) for n in others]
     anchor = room.one(goal.where.anchor) if goal.where is not None and goal.where.anchor is not None else None
     if anchor is None:
         wishes.append(LayoutWish(subject=seat.id, name="in_corner"))
     else:
         wishes.append(LayoutWish(subject=seat.id, name="next_to", objects=(anchor.id,)))
-    mine = frozenset((seat.id, *(n.id for n in others)))
+    trial = copied(room)
+    trial.nodes |= {n.id: n for n in pieces}
+    mine = frozenset(n.id for n in pieces)
     small = frozenset(n.id for n in room.nodes.values() if room.moves(n) and max(n.size[:2]) < 2 * SMALL)
-    reason = ""
-    for loose in (mine, mine | small, frozenset(n.id for n in room.nodes.values() if room.moves(n))):
-        trial = copied(room)
-        try:
-            solving.rearranged(trial, loose, wishes, [])
-        except CannotError as error:
-            reason = str(error)
-            continue
-        room.nodes = trial.nodes
-        return
-    raise CannotError(f"there is no room for a reading corner: {reason}")
+    solving.eased(
+        trial, [mine, mine | small, mine | _movable(room)], wishes, [], "there is no room for a reading corner"
+    )
+    for node in pieces:
+        if node.id not in room.nodes:
+            there = trial.nodes.pop(node.id)
+            place = Placement(relation="against" if node is seat else "on", offset=there.position[:2])
+            room.ops.append(Insert(asset=node.label, place=place))
+    room.nodes = trial.nodes
+    room.told.append("a seat, a lamp and a table make a reading corner")
+
+
+_READING = (("armchair", "chair"), ("floor lamp",), ("side table", "stool"))
+
+
+def _new(room: Room, label: str) -> Node:
+    """A thing that is not there yet, as large as such things are at most, in the middle of the room."""
+    width, depth, height = (0.9 * most for _, most in assets.find(label).sizes)
+    return Node(id=f"new {label}", label=label, size=(width, depth, height), position=(0.0, 0.0, height / 2))
+
+
+def _movable(room: Room) -> frozenset[Id]:
+    return frozenset(n.id for n in room.nodes.values() if room.moves(n))
+
+
+def _first(room: Room, labels: Sequence[str]) -> Node | None:
+    """The first thing of one of these names that may move."""
+    nodes = (n for label in labels for n in room.nodes.values() if n.label == label and room.moves(n))
+    return next(nodes, None)

@@ -58,17 +58,9 @@ def _at_table(room: Room, things: Sequence[Node], table: Node) -> None:
     """
     wishes = [LayoutWish(subject=n.id, name="around", objects=(table.id,)) for n in things]
     own = frozenset(n.id for n in things)
-    reason = ""
-    for loose in (own, own | {table.id}, frozenset(n.id for n in room.nodes.values() if room.moves(n)) | own):
-        trial = copied(room)
-        try:
-            solving.rearranged(trial, loose, wishes, [])
-        except CannotError as error:
-            reason = str(error)
-            continue
-        room.nodes = trial.nodes
-        return
-    raise CannotError(f"not all of them find room around the {table.label}: {reason}")
+    movable = frozenset(n.id for n in room.nodes.values() if room.moves(n))
+    complaint = f"not all of them find room around the {table.label}"
+    solving.eased(room, [own, own | {table.id}, movable | own], wishes, [], complaint)
 
 
 def _placed(room: Room, goal: Formation, things: Sequence[Node], about: Node | None) -> Slots:
@@ -85,7 +77,7 @@ def _placed(room: Room, goal: Formation, things: Sequence[Node], about: Node | N
     for node in things:  # they make way for themselves
         del trial.nodes[node.id]
     try:
-        clear(trial, Clear(goal.where or Where(), width, "it"))
+        clear(trial, Clear(goal.where or Where(), width, f"the {goal.shape}"))
     except CannotError as error:
         raise CannotError(f"there is no room for that figure: {error}") from error
     kept = {n.id: room.nodes[n.id] for n in things}
@@ -124,6 +116,9 @@ def _tried(room: Room, goal: Formation, things: Sequence[Node], about: Node | No
         places = sorted(_floor(room), key=lambda p: math.dist(p, near))[:40]
     else:
         places = _floor(room)
+    if goal.shape == "circle" and about is None:
+        for table in (n for n in room.nodes.values() if n.label.split()[-1:] == ["table"] and n not in things):
+            yield from (_figure(goal, things, table, table.position[:2], turn) for turn in turns)
     for place in places:
         for turn in turns:
             yield _figure(goal, things, about, place, turn)

@@ -37,7 +37,7 @@ def fulfil(room: Room, goals: Sequence[Goal]) -> None:
     Raises:
         CannotError: one cannot.
     """
-    todo = [g for g in goals if not isinstance(g, Plain)]
+    todo: list[Goal] = [g for g in goals if not isinstance(g, Plain)]
     if any(isinstance(g, Party) for g in todo):
         rest = [g for g in goals if not isinstance(g, Party)]
         todo = [g for g in todo if not isinstance(g, Party)] if rest else _party(room)

@@ -23,8 +23,8 @@ _PUT = (
     r"|position|get|seat|shift|stand|have|assemble|align)"
 )
 _SPACE = (
-    r"(?:(?:free|empty|open|clear|extra|floor|dance|dancing) )*"
-    r"(?P<called>space|room|area|spot|floor|dance floor|dancefloor|dancing space)"
+    r"(?:(?:free|empty|open|clear|extra) )*"
+    r"(?P<called>dance floor|dance area|dancing space|dancefloor|(?:floor )?(?:space|room|area)|spot|floor)"
 )
 _AMOUNT = r"(?:(?:some|a|an|enough|the|a bit of|a little|a lot of|lots of|more|plenty of|as much) )?"
 _GRAND = r"(?:(?:big|large|wide|small|little|spacious|generous|nice) )*"
@@ -53,7 +53,8 @@ PATTERNS: dict[str, tuple[str, ...]] = {
         rf"(?:keep|leave|make) the {_MIDDLE} (?:free|clear|empty|open)",
     ),
     "walls": (
-        rf"{_PUT} {_THINGS} (?:back )?(?:to|against|along|up against|at|around|over to|out to|towards?) (?:all )?(?:the )?"
+        rf"{_PUT} {_THINGS} (?:back )?(?:to|against|along|up against|at|around|over to|out to"
+        rf"|towards?) (?:all )?(?:the )?"
         rf"(?:walls|wall|sides|edges|edge|perimeter|periphery)(?: of {_ROOM})?",
         rf"line (?:the walls|{_ROOM}) with {_THINGS}",
         rf"line {_THINGS} up (?:along|against) the (?:wall|walls)",
@@ -61,17 +62,20 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "circle": (
         rf"{_PUT} {_THINGS} (?:in|into|to form|so they form|as|to make) (?:a|one) (?:big |large |small |wide |round )?"
         rf"(?:circle|ring|round)(?: {_WHERE})?{_FACING}",
-        rf"(?:form|make|create|build) (?:a|one) (?:big |large |small |wide )?(?:circle|ring) (?:with|of|from|out of|using) "
+        rf"(?:form|make|create|build) (?:a|one) (?:big |large |small |wide )?(?:circle|ring) (?:with"
+        rf"|of|from|out of|using) "
         rf"{_THINGS}(?: {_WHERE})?",
     ),
     "arc": (
-        rf"{_PUT} {_THINGS} (?:in|into|to form|as|to make) (?:a|one) (?:semicircle|semi circle|half circle|arc|horseshoe|u)"
+        rf"{_PUT} {_THINGS} (?:in|into|to form|as|to make) (?:a|one) (?:semicircle|semi circle"
+        rf"|half circle|arc|horseshoe|u)"
         rf"(?: shape)?{_FACING}",
         rf"(?:form|make|create) (?:a|one) (?:semicircle|semi circle|half circle|arc|horseshoe) (?:with|of|from|out of) "
         rf"{_THINGS}{_FACING}",
     ),
     "row": (
-        rf"{_PUT} {_THINGS} (?:in|into|to form|as) (?:a|an|(?P<rows>one|two|three|four)) (?:single |straight |neat |even )*"
+        rf"{_PUT} {_THINGS} (?:in|into|to form|as) (?:a|an|(?P<rows>one|two|three|four)) (?:single "
+        rf"|straight |neat |even )*"
         rf"(?:row|line|rows|lines){_FACING}",
         rf"(?:line up|align) {_THINGS}{_FACING}",
         rf"line {_THINGS} up{_FACING}",
@@ -79,30 +83,36 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     ),
     "around": (rf"{_PUT} {_THINGS} (?:around|round|all around) {_GOAL}",),
     "tidy": (
-        rf"(?:tidy|tidy up|neaten|neaten up|straighten|straighten up|straighten out|clean up|sort out|organise|organize)"
+        rf"(?:tidy|tidy up|neaten|neaten up|straighten|straighten up|straighten out|clean up|sort out"
+        rf"|organise|organize)"
         rf"(?: {_MESS})?(?: up| out)?",
         rf"(?:make|get|put|leave) {_MESS} (?:look )?{_NEAT}",
         rf"(?:put|bring|get) {_MESS} (?:in|into|back in) (?:order|its place|place|shape)",
     ),
     "declutter": (
         rf"(?:declutter|clear off|clean off|empty|clear up|tidy up|tidy|unclutter) {_GOAL}(?: off)?",
-        rf"(?:take|move|get|clear) (?:everything|all things|all the stuff|all the things|the stuff|the clutter|the things) "
+        rf"(?:take|move|get|clear) (?:everything|all things|all the stuff|all the things|the stuff"
+        rf"|the clutter|the things) "
         rf"(?:off|off of|from|away from) {_GOAL}",
     ),
     "set_table": (rf"(?:set|lay|prepare|set up) (?P<goal>(?:the|a|my|our) (?:[a-z]+ )??table){_FOR}{_PEOPLE}{_FOR}",),
     "see": (
-        rf"{_PUT} {_THINGS} (?:so|so that|such that|in a way that) {_EVERYBODY} (?:can )?(?:sees?|faces?|watch|look at) "
+        rf"{_PUT} {_THINGS} (?:so|so that|such that|in a way that) {_EVERYBODY} (?:can )?(?:sees?"
+        rf"|faces?|watch|look at) "
         rf"{_GOAL}",
         rf"(?:turn|point|face|orient|rotate|aim) (?P<things>all the seats|the seats|all seats|the seating) "
         rf"(?:to|toward|towards|at|to face) {_GOAL}",
     ),
     "watch": (
         r"(?:(?:i|we) (?:want|would like|like|plan) to |set up to |prepare to |get ready to )?watch "
-        r"(?:a |the |some )?(?:movie|movies|film|films|tv|television|game|match|football)(?: (?:with|together)[a-z ]*)?",
-        rf"(?:prepare|set up|get|arrange|rearrange) {_ROOM} (?:ready )?for (?:a |the |our )?(?:movie|film|tv) (?:night|evening)",
+        r"(?:a |the |some )?(?:movie|movies|film|films|tv|television|game|match|football)(?: (?:with"
+        r"|together)[a-z ]*)?",
+        rf"(?:prepare|set up|get|arrange|rearrange) {_ROOM} (?:ready )?for (?:a |the |our )?(?:movie"
+        rf"|film|tv) (?:night|evening)",
     ),
     "spread": (
-        rf"(?:spread|spread out|distribute|scatter|disperse) {_THINGS}(?: out)?(?: (?:evenly|apart|around|everywhere|more))*"
+        rf"(?:spread|spread out|distribute|scatter|disperse) {_THINGS}(?: out)?(?: (?:evenly|apart"
+        rf"|around|everywhere|more))*"
         rf"(?: (?:all )?(?:around|over|about|across|throughout|in) {_ROOM})?(?: evenly)?",
     ),
     "reading_corner": (
@@ -111,10 +121,12 @@ PATTERNS: dict[str, tuple[str, ...]] = {
         rf"(?: {_WHERE})?",
     ),
     "symmetric": (
-        rf"(?:make|arrange|rearrange|get|set up) (?:{_MESS}|the furniture|the layout|the arrangement) (?:look )?(?:more )?{_EVEN}",
+        rf"(?:make|arrange|rearrange|get|set up) (?:{_MESS}|the furniture|the layout"
+        rf"|the arrangement) (?:look )?(?:more )?{_EVEN}",
     ),
     "become": (
-        rf"(?:turn|convert|transform|change|make|remake|redo) (?:{_ROOM}|it)(?: (?:into|to|in to|as))? (?:a|an) (?:new )?"
+        rf"(?:turn|convert|transform|change|make|remake|redo) (?:{_ROOM}|it)(?: (?:into|to|in to"
+        rf"|as))? (?:a|an) (?:new )?"
         r"(?P<kind>[a-z ]*?(?:nursery|office|bedroom|kitchen|dining room|living room|library|gym|playroom|cafe|studio"
         r"|classroom|studio|bathroom|study))",
     ),

@@ -87,7 +87,7 @@ class Reader:
             if found is None:
                 raise Unread("this is no wish for a room that is understood", *self._blamed(words))
             goals += [goal for goal, _ in found]
-            wished |= any(mine for _, mine in found)
+            wished |= any(mine and not _is_plain_enough(goal) for goal, mine in found)
         if not goals or not wished:
             raise Unread("this is no wish for a room", *(text.split()[:1]))
         return Reading(tuple(goals), wished)
@@ -251,10 +251,13 @@ def _declutter(reader: Reader, parts: Parts) -> Goal:
 
 
 def _walls(reader: Reader, parts: Parts) -> Goal:
-    things = reader.things(parts)
-    if things is not None and things.pick == "one":
-        raise Unread("one thing is moved by itself", parts["things"])
-    return Walls(things)
+    said = parts.get("things", "")
+    return Walls(None if said in _EVERYTHING else reader.noun(said))
+
+
+def _is_plain_enough(goal: Goal) -> bool:
+    """Whether the grammar does as well: one thing to the wall is one move."""
+    return isinstance(goal, Walls) and goal.things is not None and goal.things.pick == "one" and not goal.things.also
 
 
 def _spread(reader: Reader, parts: Parts) -> Goal:

@@ -132,8 +132,14 @@ class Room:
 
     def taken(self, box: Node, but: Iterable[Id] = ()) -> list[Node]:
         """What a thing would stand in; rugs are stood upon."""
-        own = {box.id, *but}
-        around = (n for n in self.nodes.values() if n.id not in own and not is_flat(n))
+        own, (x, y, _), reach = {box.id, *but}, box.position, math.hypot(*box.size[:2])
+        around = (
+            n
+            for n in self.nodes.values()
+            if math.hypot(n.position[0] - x, n.position[1] - y) < (reach + math.hypot(*n.size[:2])) / 2
+            and n.id not in own
+            and not is_flat(n)
+        )
         return [n for n in around if n.support != box.id and n.id != box.support and overlap(n.box, box.box) > TOUCHING]
 
     def inside(self, node: Node) -> bool:

@@ -12,15 +12,18 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
+from ...tools.space import overlap
 from ..grammar.words import bag
 from ..graph import Node
 from ..layout import Item, Keepout, Layout, Problem, Stand, solve
 from ..layout import Wish as LayoutWish
-from .room import CannotError, Id, Room, wrapped
+from .room import SEATS, CannotError, Id, Room, copied, toward, wrapped
 
 MARGIN = 0.05  # metres from the measured walls: a room's size is that of its shell
 GAP = 0.03  # metres by which things are taken for larger, so that they stand apart
 AT_WALL = 0.3  # metres from a wall within which a thing counts as standing at it
+_LEAF = 0.7  # metres before a door that are nobody's place
+_CHAIR = 0.75  # metres; larger seats are not pulled up to a table
 _FRONTED = bag(
     "sofa couch armchair chair seat bench loveseat recliner bed desk shelf bookshelf bookcase cabinet wardrobe dresser "
     "nightstand sideboard television tv stand piano monitor screen mirror speaker clock crib"
@@ -42,6 +45,65 @@ def rearranged(
     for node in layout.graph.nodes:
         if node.id in free:
             room.put(node.id, node.position[0], node.position[1], _original(room, node))
+
+
+def eased(
+    room: Room,
+    tries: Sequence[frozenset[Id]],
+    wishes: Sequence[LayoutWish],
+    discs: Sequence[Keepout],
+    complaint: str,
+) -> None:
+    """Rearrange with few things let go, or more where that does not do.
+
+    Raises:
+        CannotError: it does not do with any; the message is the complaint and why the last try failed.
+    """
+    reason, least = "", None
+    for loose in dict.fromkeys(tries):
+        trial = copied(room)
+        try:
+            rearranged(trial, loose, wishes, discs)
+        except CannotError as error:
+            reason = str(error)
+            continue
+        if not _barred(trial, loose):
+            room.nodes = trial.nodes
+            return
+        least = least or trial
+    if least is None:
+        raise CannotError(f"{complaint}: {reason}")
+    room.nodes = least.nodes
+
+
+def _barred(room: Room, moved: Collection[Id]) -> bool:
+    """Whether one of the things that moved stands before a door."""
+    doors = [n for n in room.nodes.values() if n.label.split()[-1:] == ["door"]]
+    leaves = [d.model_copy(update={"size": (d.size[0], d.size[1] + 2 * _LEAF, d.size[2])}) for d in doors]
+    return any(overlap(leaf.box, room.nodes[i].box) > GAP for leaf in leaves for i in moved if i in room.nodes)
+
+
+def seated(room: Room, free: Collection[Id]) -> tuple[set[Id], list[LayoutWish]]:
+    """Who sits at a table that may move, with the wish to stay at it: chairs go where their table goes."""
+    along, wishes = set[Id](), list[LayoutWish]()
+    for table in (n for n in room.nodes.values() if n.label.split()[-1:] == ["table"]):
+        chairs = [n for n in room.nodes.values() if SEATS & set(n.label.split()[-1:]) and _sits(n, table)]
+        if table.id in free or any(n.id in free for n in chairs):
+            along |= {n.id for n in chairs if room.moves(n)}
+            wishes += [
+                LayoutWish(subject=n.id, name="around", objects=(table.id,), hard=False)
+                for n in chairs
+                if room.moves(n) and max(n.size[:2]) < _CHAIR
+            ]
+    return along, wishes
+
+
+def _sits(node: Node, table: Node) -> bool:
+    """Whether a seat is close to a table and turned to it."""
+    aside = np.abs(table.box.local(np.array([node.position]))[0, :2]) - np.array(table.size[:2]) / 2
+    close = float(np.linalg.norm(np.maximum(aside, 0.0))) < node.size[1] / 2 + 0.3
+    off = toward(node, (table.position[0], table.position[1])) - node.yaw
+    return close and abs(math.remainder(off, 360.0)) < 60.0
 
 
 def _original(room: Room, node: Node) -> float:
@@ -71,6 +133,7 @@ def conflict(layout: Layout) -> str:
 def _problem(room: Room, free: Collection[Id], wishes: Sequence[LayoutWish], discs: Sequence[Keepout]) -> Problem:
     width, depth, height = room.size
     walled = {w.subject for w in wishes if w.name in ("against_wall", "in_corner")}
+    walled |= {id for id in free if at_wall(room, room.nodes[id])}
     riders = {r for id in free for r in room.riders(id)}
     items = [_item(room, n, n.id in free, n.id in walled) for n in room.nodes.values() if n.id not in riders]
     return Problem(

@@ -30,13 +30,14 @@ def moves(start: Room, goal: Room) -> list[Arrange]:
     waiting = {i: n for i, n in waiting.items() if _leads(now, goal, i) and _is_elsewhere(now.nodes[i], n)}
     known = _known(now)
     found: list[Arrange] = []
+    parked = set[Id]()
     while waiting:
         free = [i for i, n in waiting.items() if _may(now, i, n, known)]
         if free:
             found.append(_step(now, waiting[free[0]]))
             del waiting[free[0]]
         else:
-            found.append(_aside(now, waiting, known))
+            found.append(_aside(now, waiting, known, parked))
     return found
 
 
@@ -82,20 +83,21 @@ def _step(now: Room, there: Node) -> Arrange:
     )
 
 
-def _aside(now: Room, waiting: Mapping[Id, Node], known: frozenset[frozenset[Id]]) -> Arrange:
-    """Set the smallest thing that waits, or is in the way, where it is in nobody's way.
+def _aside(now: Room, waiting: Mapping[Id, Node], known: frozenset[frozenset[Id]], parked: set[Id]) -> Arrange:
+    """Set the smallest thing that waits where it is in nobody's way, each thing once.
 
     Raises:
         CannotError: there is no such place.
     """
     goals = list(waiting.values())
-    for id in sorted(waiting, key=lambda i: math.prod(now.nodes[i].size[:2])):
+    for id in sorted(set(waiting) - parked, key=lambda i: math.prod(now.nodes[i].size[:2])):
         node = now.nodes[id]
         for x, y in _around(now, node):
             there = node.model_copy(update={"position": (x, y, node.position[2])})
             clear = now.inside(there) and _may(now, id, there, known)
             others = Room(now.stage, {g.id: g for g in goals if g.id != id})
             if clear and not others.taken(there):
+                parked.add(id)
                 return _step(now, there)
     names = ", ".join(f"the {now.nodes[i].label}" for i in list(waiting)[:4])
     raise CannotError(f"{names}: each stands where another should go, and nothing can be set aside meanwhile")
@@ -107,7 +109,8 @@ def _around(room: Room, node: Node) -> list[tuple[float, float]]:
     xs = [-width / 2 + _LATTICE * k for k in range(1, int(width / _LATTICE))]
     ys = [-depth / 2 + _LATTICE * k for k in range(1, int(depth / _LATTICE))]
     places = [(x, y) for x in xs for y in ys]
-    return sorted(places, key=lambda p: math.dist(p, node.position[:2]))
+    away = [p for p in places if math.dist(p, node.position[:2]) > _LATTICE]
+    return sorted(away, key=lambda p: math.dist(p, node.position[:2]))
 
 
 def target(node: Node) -> Query:

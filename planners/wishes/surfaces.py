@@ -27,6 +27,8 @@ _STORES = ("bookshelf", "bookcase", "shelf", "cabinet", "sideboard", "dresser", 
 # What stands on a desk because it is used there.
 _STAYS = bag("lamp monitor keyboard mouse laptop computer television tv telephone screen printer microwave")
 _ON_FLOOR = bag("shoe rug bin basket ball pot plant mat scale drum suitcase guitar fan box")
+Place = tuple[float, float, float, float]  # of a plate, and the way from the guest to the middle
+
 _REACH = 0.75  # metres from a table within which a seat counts as at it
 _FULL = 0.6  # share of a top that may be taken
 _RIM = 0.2  # metres from the edge of a table to the middle of a plate
@@ -56,16 +58,17 @@ def _straighten(room: Room, node: Node) -> bool:
     yaw = wrapped(90.0 * round(node.yaw / 90.0))
     width, depth = (node.size[0], node.size[1]) if round(yaw / 90.0) % 2 == 0 else (node.size[1], node.size[0])
     reach = (room.size[0] / 2 - solving.MARGIN - width / 2, room.size[1] / 2 - solving.MARGIN - depth / 2)
-    flush = [
-        math.copysign(most, at) if solving.MARGIN < most - abs(at) < solving.AT_WALL else at
-        for at, most in zip((x, y), reach, strict=True)
-    ]
-    for there in (flush, [x, y]):
-        moved = abs(wrapped(yaw - node.yaw)) > 1.0 or math.dist(there, (x, y)) > solving.MARGIN
-        if moved and room.fits(node.id, *there, yaw):
-            room.put(node.id, *there, yaw)
+    for to_x, to_y in ((_flush(x, reach[0]), _flush(y, reach[1])), (x, y)):
+        moved = abs(wrapped(yaw - node.yaw)) > 1.0 or math.dist((to_x, to_y), (x, y)) > solving.MARGIN
+        if moved and room.fits(node.id, to_x, to_y, yaw):
+            room.put(node.id, to_x, to_y, yaw)
             return True
     return False
+
+
+def _flush(at: float, most: float) -> float:
+    """A coordinate brought to the wall it is near to."""
+    return math.copysign(most, at) if solving.MARGIN < most - abs(at) < solving.AT_WALL else at
 
 
 def _is_loose(room: Room, node: Node) -> bool:
@@ -155,35 +158,40 @@ def _gap(node: Node, table: Node) -> float:
     return math.hypot(max(x, 0.0), max(y, 0.0))
 
 
-def _places(table: Node, seats: Sequence[Node], people: int) -> list[tuple[float, float, float, float]] | None:
-    """Plates in the table's axes, with the way inward: before the seats first, then where there is most room.
+def _places(table: Node, seats: Sequence[Node], people: int) -> list[Place] | None:
+    """Plates in the table's axes, with the way inward: before the seats, then where there is most room.
 
     None if they do not fit.
     """
+    chosen: list[Place] = []
+    before = [_before(table, *table.box.local(_middle(n))[0, :2]) for n in seats]
+    for options in (before, _rim(table)):
+        while len(chosen) < people and (free := [p for p in options if all(_far(p, q) for q in chosen)]):
+            chosen.append(max(free, key=lambda p: min((math.dist(p[:2], q[:2]) for q in chosen), default=0.0)))
+    return chosen if len(chosen) == people else None
+
+
+def _rim(table: Node) -> list[Place]:
+    """Places all around a table, side by side."""
     width, depth, _ = table.size
-    sides = []
-    for length, across, turn in ((width, depth, False), (depth, width, True)):
+    found: list[Place] = []
+    for length, side in ((width, 0), (depth, 1)):
         count = int(length / _PLATE)
-        for sign in (-1.0, 1.0):
-            for k in range(count):
-                along = (k + 0.5) * length / count - length / 2
-                rim = sign * max(across / 2 - _RIM, 0.0)
-                inward = -sign
-                sides.append((rim, along, inward, 0.0) if turn else (along, rim, 0.0, inward))
-    chosen: list[tuple[float, float, float, float]] = []
-    wanted = [tuple(float(v) for v in table.box.local(_middle(n))[0, :2]) for n in seats]
-    for at in wanted[:people]:
-        free = [p for p in sides if all(_far(p, q) for q in chosen)]
-        if free:
-            chosen.append(min(free, key=lambda p: math.dist(p[:2], at)))
-    while len(chosen) < people:
-        free = [p for p in sides if all(_far(p, q) for q in chosen)]
-        if not free:
-            return None
-        chosen.append(
-            max(free, key=lambda p: (min((math.dist(p[:2], q[:2]) for q in chosen), default=0.0), -abs(p[0])))
-        )
-    return chosen
+        for k in range(count):
+            along = (k + 0.5) * length / count - length / 2
+            for far in (-9.0, 9.0):
+                found.append(_before(table, *((along, far) if side == 0 else (far, along))))
+    return found
+
+
+def _before(table: Node, u: float, v: float) -> Place:
+    """The place at a table's rim that is nearest to a point beside it, in the table's axes, and the way inward."""
+    half = [max(s / 2 - _RIM, 0.0) for s in table.size[:2]]
+    beyond = abs(u) - table.size[0] / 2, abs(v) - table.size[1] / 2
+    x, y = max(-half[0], min(u, half[0])), max(-half[1], min(v, half[1]))
+    if beyond[0] >= beyond[1]:
+        return (math.copysign(half[0], u), y, -math.copysign(1.0, u), 0.0)
+    return (x, math.copysign(half[1], v), 0.0, -math.copysign(1.0, v))
 
 
 def _far(p: Sequence[float], q: Sequence[float]) -> bool:
