@@ -20,6 +20,7 @@ from scenewright.planners.layout.problem import Conflict, Item, Layout, Problem
 CHAIR = {"id": 1, "label": "chair", "color": "red", "size": [0.5, 0.5, 0.9], "position": [0.0, 0.0, 0.45]}
 GIZMO = {"id": 2, "label": "gizmo", "size": [0.4, 0.4, 0.4], "position": [1.0, 0.0, 0.2]}
 ROOM = {"room": {"size": [3.0, 3.0, 2.5]}, "nodes": [CHAIR, GIZMO]}
+HARP = Problem(size=(3, 3, 2.5), items=(Item(id=9, label="harp", size=(1, 1, 2), optional=True),))
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Composed:
     """As much of a composition as the command looks at."""
 
     layout: Layout
-    problem: Problem = Problem(size=(3, 3, 2.5), items=(Item(id=9, label="harp", size=(1, 1, 2), optional=True),))
+    problem: Problem = HARP
     remarks: tuple[str, ...] = ("cozy also means warm light, which boxes do not show",)
 
 
