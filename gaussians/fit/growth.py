@@ -39,7 +39,7 @@ class Growth(Protocol):
         ...
 
     def change(self, parameters: Parameters, step: int) -> None:
-        """Every so many steps: let Gaussians come and go."""
+        """Every so many steps: let Gaussians come and go. What was noted before is forgotten."""
         ...
 
 
@@ -130,17 +130,16 @@ class Classic:
         rng: what splits are drawn by.
         most: Gaussians, beyond which none are added; None: as many as come.
         pull: mean length of a centre's gradient, in 1/(half the picture), from which a Gaussian is not enough.
-        reset_every: changes between two resets of the opacities.
+        reset_every: steps between two resets of the opacities.
     """
 
     extent: float
     rng: np.random.Generator
     most: int | None = None
     pull: float = 2e-4
-    reset_every: int = 30
+    reset_every: int = 3000
     _sum: F32 = field(default_factory=lambda: np.zeros(0, np.float32), repr=False)
     _times: F32 = field(default_factory=lambda: np.zeros(0, np.float32), repr=False)
-    _changes: int = 0
 
     def regularise(self, gradients: dict[str, F32], scales: F32, opacities: F32) -> None:
         """See `Growth`: nothing."""
@@ -155,8 +154,8 @@ class Classic:
 
     def change(self, parameters: Parameters, step: int) -> None:
         """See `Growth`."""
-        self._changes += 1
         pulled = self._sum / np.maximum(self._times, 1) >= self.pull
+        pulled = pulled if len(pulled) else np.zeros(len(parameters), bool)
         if self.most is not None and len(parameters) + pulled.sum() > self.most:
             pulled[:] = False
         large = np.exp(parameters.logs).max(axis=1) > 0.01 * self.extent
@@ -165,11 +164,11 @@ class Classic:
         gone = np.zeros(len(parameters), bool)
         gone[np.flatnonzero(pulled & large)] = True  # two smaller ones stand in its place
         gone |= parameters.opacities < FAINT
-        if self._changes > self.reset_every:
+        if step > self.reset_every:
             gone |= np.exp(parameters.logs).max(axis=1) > 0.1 * self.extent
         if not gone.all():
             parameters.take(np.flatnonzero(~gone))
-        if self._changes % self.reset_every == 0:
+        if step % self.reset_every == 0:
             faint = 2 * FAINT
             parameters.logits[:] = np.minimum(parameters.logits, np.float32(math.log(faint / (1 - faint))))
             parameters.memory["logits"].forget(np.arange(len(parameters)))

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,7 +66,7 @@ class Trainer:
         growth: how Gaussians come and go.
         extent: radius of the scene as the cameras stand around it, scene units.
         schedule: how long and how.
-        rng: what the order of photographs is drawn by.
+        rng: what the order of photographs is drawn by; the same as growth has, so that one state holds both.
     """
 
     def __init__(
@@ -81,6 +82,24 @@ class Trainer:
         self._shots, self._extent, self._rng = shots, extent, rng
         self._order: list[int] = []
         self.steps, self.seconds = 0, 0.0
+
+    def state(self) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Arrays and plain values from which `restore` goes on to the same bytes, right after `changed` steps."""
+        rng = self._rng.bit_generator.state
+        return self.parameters.state(), {
+            "steps": self.steps, "seconds": self.seconds, "order": self._order, "rng": rng,
+        }  # fmt: skip
+
+    def restore(self, arrays: Mapping[str, Any], values: Mapping[str, Any]) -> None:
+        """Go on from a state; raises KeyError or ValueError if it is none."""
+        self.parameters = Parameters.load(arrays)
+        self.steps, self.seconds, self._order = values["steps"], values["seconds"], list(values["order"])
+        self._rng.bit_generator.state = values["rng"]
+
+    @property
+    def changed(self) -> bool:
+        """Whether growth has nothing in mind: when a state is whole."""
+        return self.steps % EVERY == 0
 
     @property
     def done(self) -> float:
@@ -100,7 +119,7 @@ class Trainer:
             self.parameters.widen(min(self.parameters.degree + 1, self.schedule.degree))
         loss = self._learn(camera, photo, MEANS * self._extent * FALL**done)
         self.steps += 1
-        if self.steps % EVERY == 0 and self.steps >= QUIET and done < SETTLED:
+        if self.changed and self.steps >= QUIET and done < SETTLED:
             self.growth.change(self.parameters, self.steps)
             self.parameters.take(along_a_curve(self.parameters.means))
         self.seconds += time.perf_counter() - started

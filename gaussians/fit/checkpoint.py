@@ -1,0 +1,54 @@
+"""A training on the disk, so that it goes on where a crash ended it: one safetensors file, replaced whole.
+
+Knows the file. Refuses to know what the numbers mean. Nothing in it is code; a file of another training, or a broken
+one, is refused.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import FileError
+from ..files import writing
+
+VERSION = "1"
+
+
+def keep(path: Path, arrays: Mapping[str, Any], state: Mapping[str, Any]) -> None:
+    """Write arrays and a JSON state; an older checkpoint is replaced only by a whole one.
+
+    Raises:
+        FileError: it cannot be written (a full disk).
+    """
+    from safetensors.numpy import save
+
+    told = {"version": VERSION, "state": json.dumps(state)}
+    tensors = {name: np.ascontiguousarray(value) for name, value in arrays.items()}
+    with writing(path, force=True) as file:
+        file.write(save(tensors, told))
+
+
+def resume(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
+    """Arrays and state of a checkpoint; None if there is none.
+
+    Raises:
+        FileError: it is there but cannot be used; the message says to take it away.
+    """
+    from safetensors import SafetensorError, safe_open
+
+    if not path.exists():
+        return None
+    try:
+        with safe_open(path, "numpy") as file:
+            told = file.metadata() or {}
+            arrays = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
+        if told.get("version") != VERSION:
+            raise ValueError(f"its version is {told.get('version')!r}, not {VERSION}")
+        return arrays, json.loads(told["state"])
+    except (OSError, SafetensorError, ValueError, KeyError) as error:
+        raise FileError(f"{path} is no checkpoint to go on from ({error}); delete it to begin anew") from error
