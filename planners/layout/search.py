@@ -20,6 +20,7 @@ _TRIES = 6  # places that are looked at for a way to everything, before the best
 _APART = 0.35  # metres between such places
 _IDLE = 4  # starts without a better layout, after which no more are made
 _IDLE_TIDY = 2  # the same where only habits are at stake
+_WORK = 150  # times that something is placed, at usual effort, after which no new start is made
 _WORTH = 0.05  # price by which a second look must better the layout to be worth another
 
 
@@ -60,7 +61,7 @@ class Search:
             if price < least:
                 best, least = state.copy(), price
             patience = _IDLE if self._blame(state) else _IDLE_TIDY if self._tidy(state) else 0
-            if idle >= patience * max(self.effort, 1.0):
+            if idle >= patience * max(self.effort, 1.0) or self.placed >= _WORK * self.effort:
                 break
         state.restore(best)
         return state
@@ -195,10 +196,14 @@ class Search:
         return bool(guilty)
 
     def _tidy(self, state: State) -> bool:
-        """Make what has no wall behind it, or no room for its use, more urgent; whether there was any such thing."""
+        """Make what has no wall behind it, no room, or breaks a habit, more urgent; whether there was any such."""
         untidy = {*state.unbacked(), *state.used()}
+        for row, wish in enumerate(self.prepared.problem.wishes):
+            if not wish.hard and not state.holds(row)[0]:
+                untidy |= set(self.prepared.parties[row])
         for i in untidy:
-            self.urgent[i] += 0.5
+            for k in (i, *self.prepared.carriers[i]):
+                self.urgent[k] += 0.5
         return bool(untidy)
 
     def _loosen(self, parts: set[int]) -> None:
