@@ -28,7 +28,7 @@ from .goals import (
 )
 from .room import CannotError, Room
 
-_STREAMERS, _BALLOONS = 2, 2  # of what hangs and stands at a party that nobody described
+_BALLOONS = 2  # bunches at a party that nobody described
 
 
 def fulfil(room: Room, goals: Sequence[Goal]) -> None:
@@ -54,8 +54,11 @@ def fulfil(room: Room, goals: Sequence[Goal]) -> None:
 
 def _party(room: Room) -> list[Goal]:
     """What a party takes that nobody described."""
-    room.ops += [Insert(asset="streamers", count=_STREAMERS), Insert(asset="balloons", count=_BALLOONS)]
-    room.told.append(f"{_STREAMERS} streamers and {_BALLOONS} bunches of balloons put up")
+    lamps = any(n.support == "ceiling" for n in room.nodes.values())
+    if not lamps:  # they would hang in each other
+        room.ops.append(Insert(asset="streamers"))
+    room.ops.append(Insert(asset="balloons", count=_BALLOONS))
+    room.told.append(f"{'' if lamps else 'streamers and '}{_BALLOONS} bunches of balloons put up")
     return [Walls(), Clear(Where(), called="dance floor")]
 
 

@@ -33,7 +33,9 @@ class Arrange(TargetedOp):
     """
 
     model_config = ConfigDict(
-        json_schema_extra=either(*({n: nonzero(1000)} for n in ("x", "y", "z")), {"turn": nonzero(360)})
+        json_schema_extra=either(
+            {"x": nonzero(1000)}, {"y": nonzero(1000)}, {"z": nonzero(1000)}, {"turn": nonzero(360)}
+        )
     )
     example: ClassVar[tuple[str, dict[str, Any]]] = (
         "shift the armchair by 0.4 m along x and -1.2 m along y and turn it by 90 degrees",
