@@ -12,7 +12,7 @@ from typing import Any, Literal
 from ..layout.problem import Wall, WishName
 from . import knowledge
 from .amounts import Side
-from .brief import Brief, Relation, RoomSize, Scale, Thing
+from .brief import Brief, RefusedError, Relation, RoomSize, Scale, Thing
 
 _BARE_PLURAL = 2  # "chairs" where the kind of room has no habit of them
 _MOST = 60  # of one thing
@@ -201,8 +201,14 @@ def _thing(draft: Draft, id: str, count: int) -> Thing:
 
 
 def _side(length: float | None) -> float | None:
-    """A stated length as far as a brief takes it."""
-    return None if length is None else min(max(round(length, 3), 0.005), 100.0)
+    """A stated length.
+
+    Raises:
+        RefusedError: no room and no thing is so long or so short.
+    """
+    if length is not None and not 0.005 <= length <= 100:
+        raise RefusedError(f"{length:g} m is no size that can be built; say one from 0.005 m to 100 m", "impossible")
+    return None if length is None else round(length, 3)
 
 
 def _room_size(sides: dict[Side, float]) -> RoomSize | None:
