@@ -17,12 +17,13 @@ from ..grammar.words import bag
 from ..graph import Node
 from ..layout import Item, Keepout, Layout, Problem, Stand, solve
 from ..layout import Wish as LayoutWish
-from .room import SEATS, CannotError, Id, Room, copied, toward, wrapped
+from .room import SEATS, CannotError, Id, Room, copied, wrapped
 
 MARGIN = 0.05  # metres from the measured walls: a room's size is that of its shell
 GAP = 0.03  # metres by which things are taken for larger, so that they stand apart
 AT_WALL = 0.3  # metres from a wall within which a thing counts as standing at it
 _LEAF = 0.7  # metres before a door that are nobody's place
+_PULLED_UP = 0.3  # metres between a table and who sits at it
 _CHAIR = 0.75  # metres; larger seats are not pulled up to a table
 _FRONTED = bag(
     "sofa couch armchair chair seat bench loveseat recliner bed desk shelf bookshelf bookcase cabinet wardrobe dresser "
@@ -99,11 +100,9 @@ def seated(room: Room, free: Collection[Id]) -> tuple[set[Id], list[LayoutWish]]
 
 
 def _sits(node: Node, table: Node) -> bool:
-    """Whether a seat is close to a table and turned to it."""
+    """Whether a seat is pulled up to a table."""
     aside = np.abs(table.box.local(np.array([node.position]))[0, :2]) - np.array(table.size[:2]) / 2
-    close = float(np.linalg.norm(np.maximum(aside, 0.0))) < node.size[1] / 2 + 0.3
-    off = toward(node, (table.position[0], table.position[1])) - node.yaw
-    return close and abs(math.remainder(off, 360.0)) < 60.0
+    return float(np.linalg.norm(np.maximum(aside, 0.0))) < max(node.size[:2]) / 2 + _PULLED_UP
 
 
 def _original(room: Room, node: Node) -> float:
