@@ -19,7 +19,7 @@ from .terminal import explain, terminal
 
 VERBS = (
     "demo", "info", "embed", "select", "plan", "schema", "check", "compose", "edit", "chat", "render", "convert",
-    "bench", "doctor",
+    "fit", "bench", "doctor",
 )  # fmt: skip
 
 app = typer.Typer(

@@ -1,0 +1,124 @@
+"""`scenewright fit CAPTURE -o scene.ply`: photographs with poses to a trained scene."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from ..options import Debug, Force, Json, Seed
+from ..terminal import terminal
+
+if TYPE_CHECKING:
+    from ...gaussians.fit import Fitted, Photos, Settings, Status
+
+
+def command(
+    capture: Annotated[
+        Path, typer.Argument(metavar="CAPTURE", help="A folder with transforms.json or a COLMAP model (sparse/0).")
+    ],
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="Where to write the scene (.ply).")],
+    minutes: Annotated[float | None, typer.Option("--minutes", help="How long to train (5 unless --steps).")] = None,
+    steps: Annotated[
+        int | None, typer.Option("--steps", help="How many steps instead: the same bytes every time.")
+    ] = None,
+    most: Annotated[int, typer.Option("--max-gaussians", metavar="N", help="The budget of Gaussians.")] = 200_000,
+    degree: Annotated[
+        int,
+        typer.Option("--sh-degree", min=0, max=3, help="Degree of the harmonics: how colour changes with the view."),
+    ] = 0,
+    scale: Annotated[
+        float | None, typer.Option("--scale", help="Learn from photographs so many times their size; 1 is whole.")
+    ] = None,
+    growth: Annotated[
+        Literal["budgeted", "classic"],
+        typer.Option("--growth", help="How Gaussians come and go: to a number, or as first published."),
+    ] = "budgeted",
+    report: Annotated[
+        Path | None,
+        typer.Option("--report", metavar="FOLDER", help="Write report.json and pictures beside held-out photographs."),
+    ] = None,
+    seed: Seed = 0,
+    force: Force = False,
+    as_json: Json = False,
+    debug: Debug = False,
+) -> None:
+    """Train a scene on photographs whose poses are known, on the CPU.
+
+    Every eighth photograph is held out and measured with. Training goes on from its last checkpoint
+    (OUTPUT.checkpoint) if it was ended before its time.
+    """
+    from ...gaussians.errors import UserError
+    from ...gaussians.files import save
+    from ...gaussians.fit import Settings, fit, take_photos
+    from ..targets import make_folder, refuse_existing
+
+    if minutes is not None and steps is not None:
+        raise UserError("give --minutes or --steps, not both")
+    refuse_existing([output, *([report / "report.json"] if report is not None else [])], force)
+    seconds = None if steps is not None else 60 * (5.0 if minutes is None else minutes)
+    settings = Settings(seconds, steps, most, degree, growth, seed=seed)
+    if report is not None:
+        make_folder(report)
+    photos = take_photos(capture, scale, terminal.progress)
+    terminal.say(_told(photos))
+    kept = output.with_name(output.name + ".checkpoint")
+    if kept.exists():
+        terminal.say(f"going on from {kept}")
+    done = fit(photos, settings, kept=kept, told=_tell)
+    save(done.scene, output, force=force)
+    data = _data(done, photos, settings, output)
+    if report is not None:
+        _write_report(done, photos, data, report, force)
+    terminal.result(_summary(done, output), data)
+
+
+def _told(photos: Photos) -> str:
+    height, width = photos.shots[0].photo.shape[:2]
+    points = f"{len(photos.points.means):,} surveyed points" if len(photos.points.means) else "no surveyed points"
+    return f"{len(photos.shots)} photographs at {width}x{height}, {len(photos.held)} held out, {points}"
+
+
+def _tell(status: Status) -> None:
+    seen = "" if status.psnr != status.psnr else f", {status.psnr:.2f} dB held out"
+    left = f"{status.left / 60:.1f} min left" if status.left >= 60 else f"{status.left:.0f} s left"
+    terminal.progress(
+        f"step {status.steps}, loss {status.loss:.4f}{seen}, {status.gaussians:,} Gaussians, {left}", status.share
+    )
+
+
+def _summary(done: Fitted, output: Path) -> str:
+    how = f"{done.quality.psnr:.2f} dB, SSIM {done.quality.ssim:.3f} on {len(done.quality.each)} held-out photographs"
+    return f"{output}: {len(done.scene.cloud):,} Gaussians, {how}, {done.steps} steps in {done.seconds:.0f} s"
+
+
+def _data(done: Fitted, photos: Photos, settings: Settings, output: Path) -> dict[str, Any]:
+    return {
+        "path": str(output),
+        "gaussians": len(done.scene.cloud),
+        "sh_degree": done.scene.cloud.degree,
+        "bytes": output.stat().st_size,
+        "psnr": round(done.quality.psnr, 4),
+        "ssim": round(done.quality.ssim, 4),
+        "held_out": {name: [round(v, 4) for v in values] for name, values in done.quality.each.items()},
+        "photographs": len(photos.shots),
+        "steps": done.steps,
+        "seconds": round(done.seconds, 2),
+        "curve": [[round(s, 2), round(p, 3)] for s, p in done.curve],
+        "growth": settings.growth,
+        "seed": settings.seed,
+    }
+
+
+def _write_report(done: Fitted, photos: Photos, data: dict[str, Any], folder: Path, force: bool) -> None:
+    """The figures, and of each held-out photograph a picture: as taken, as rendered, their difference fourfold."""
+    from ...gaussians.files import writing
+    from ...gaussians.fit.quality import beside
+    from ..pictures import save_png
+
+    with writing(folder / "report.json", force=force) as file:
+        file.write((json.dumps(data, indent=2) + "\n").encode())
+    for shot in photos.held:
+        save_png(beside(done.scene.cloud, shot), folder / f"{shot.camera.name}.png", force=force)
