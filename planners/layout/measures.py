@@ -25,11 +25,22 @@ AT_TABLE = 0.4  # metres between a thing and what it stands around
 IN_LINE = 0.05  # metres between the middles of aligned things
 
 
-def measure(name: str, size: Sequence[float], one: Spot, others: Sequence[Spot], windows: Sequence[Spot]) -> Measured:
+def measure(
+    name: str,
+    size: Sequence[float],
+    one: Spot,
+    others: Sequence[Spot],
+    windows: Sequence[Spot],
+    wall: str | None = None,
+) -> Measured:
     """Whether "one name others" holds in a room of `size`, and a cost that grows with the distance from ideal.
 
-    Coordinates of each box may be numbers or arrays of one length.
+    Coordinates of each box may be numbers or arrays of one length. `wall`: the one that is meant, if one is.
     """
+    if wall is not None:
+        kept, cost = measure(name, size, one, others, windows)
+        gap = walls_gaps(one, size)[("west", "east", "south", "north").index(wall)]
+        return kept & (gap <= (CORNER if name == "in_corner" else NEAR_WALL)), cost + gap
     if name in _AIMS:
         kept, cost = _beside(_AIMS[name], one, others[0])
         return kept, cost + _before(one, others[0]) if name == "in_front_of" else cost

@@ -48,7 +48,7 @@ def _priced(state: State, body: Body, ground: Ground, lattice: Lattice) -> Place
             _out_of_discs(state, lattice, moving, frame, taken)
         if taken.all():
             return None
-        use(state, lattice, member, moving, solids, frame, price)
+        price += use(state, lattice, member, moving, solids, frame)
     free = np.argwhere(~taken)
     x, y = shifted(frame.x, frame.y, frame.yaw, lattice.xs[free[:, 0]], lattice.ys[free[:, 1]])
     place = Place(body, x, y, lattice.yaw + frame.yaw, ground.low, price[free[:, 0], free[:, 1]])

@@ -83,9 +83,9 @@ def use(
     moving: Spot,
     solids: list[tuple[int, Spot]],
     frame: Spot,
-    price: F64,
-) -> None:
-    """Add the price of standing in the room that another needs for its use, or of having too little oneself."""
+) -> F64:
+    """The price of standing in the room that another needs for its use, or of having too little oneself."""
+    price = np.zeros((len(lattice.xs), len(lattice.ys)))
     prepared, i = state.prepared, member.item
     for zone in prepared.zones(i):
         room = placed(zone, moving)
@@ -106,6 +106,7 @@ def use(
         ]
         for window, meets in meetings(lattice, moving, zones):
             price[window] += USED * np.asarray(meets)
+    return price
 
 
 def wished(state: State, body: Body, place: Place) -> F64:
@@ -127,7 +128,7 @@ def wished(state: State, body: Body, place: Place) -> F64:
         if wish.name in ("on", "inside") and parts[1] in prepared.carriers[parts[0]]:
             continue
         one, *others = (s for s in spots if s is not None)
-        kept, cost = measure(wish.name, state.size, one, others, state.windows)
+        kept, cost = measure(wish.name, state.size, one, others, state.windows, wish.wall)
         missed = (HARD if wish.hard else SOFT) * (0.3 if proxied else 1.0)
         total += np.where(kept, 0.0, missed) + (2.0 if wish.hard else 1.5) * np.minimum(cost, 10.0)
     return total

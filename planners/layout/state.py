@@ -118,7 +118,7 @@ class State:
         if wish.name in ("on", "inside") and parts[1] in self.prepared.carriers[parts[0]]:
             return True, 0.0
         one, *others = (s for s in spots if s is not None)
-        kept, cost = measure(wish.name, self.size, one, others, self.windows)
+        kept, cost = measure(wish.name, self.size, one, others, self.windows, wish.wall)
         return bool(kept), float(cost)
 
     def price(self) -> float:
