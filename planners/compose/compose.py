@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from ..checking import check
 from ..layout import solve
 from ..layout.problem import Conflict, Layout, Problem
 from ..plan import Usage
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from ..model.backend import ModelBackend
 
 _GROWTH = (1.0, 1.12, 1.25, 1.45, 1.7)  # how much longer the sides of a room without a stated size become, in turn
+_STRIDE = 7919  # between the seeds of attempts, so that neighbouring seeds of users share none
 EMBEDDED = "embedded"
 Mode = Literal["auto", "model"]
 
@@ -86,20 +88,17 @@ def compose(
 
 def arranged(brief: Brief, seed: int, effort: float) -> tuple[Posed, Layout]:
     """A brief laid out; a room whose size nobody stated is made larger until all that was asked for fits."""
-    best: tuple[Posed, Layout] | None = None
-    for grow in _GROWTH:
+    best: tuple[int, Posed, Layout] | None = None
+    for attempt, grow in enumerate(_GROWTH):
         posed = problem_of(brief, seed, grow=grow)
-        layout = _judged(posed, solve(posed.problem, seed, effort=effort))
-        if best is None or _failures(layout) < _failures(best[1]):
-            best = posed, layout
-        if layout.ok or not _may_grow(brief):
+        layout = _judged(posed, solve(posed.problem, seed + _STRIDE * attempt, effort=effort))
+        failures = len(layout.conflicts) + sum(w.hard for w in layout.broken) + len(check(layout.graph).violations)
+        if best is None or failures < best[0]:
+            best = failures, posed, layout
+        if failures == 0 or (attempt and layout.conflicts and not _may_grow(brief)):
             break
     assert best is not None
-    return best
-
-
-def _failures(layout: Layout) -> int:
-    return len(layout.conflicts) + sum(w.hard for w in layout.broken)
+    return best[1:]
 
 
 def _may_grow(brief: Brief) -> bool:

@@ -46,7 +46,12 @@ def refuse_others(texts: Sequence[str]) -> None:
     if asks and not set(words) & (vocabulary.BUILD | {"room"}):
         raise RefusedError("this is a question, not a description of a room", "not_an_edit", (first,))
     verb = match(lexicon.VERB_PHRASES, words, 0)
-    if verb and verb[0][0] in vocabulary.EDITS and not knowledge.lookup(knowledge.thing_words(), words, 0):
+    if (
+        verb
+        and first not in vocabulary.BUILD
+        and verb[0][0] in vocabulary.EDITS
+        and not knowledge.lookup(knowledge.thing_words(), words, 0)
+    ):
         raise RefusedError(
             f"“{first}” changes a scene that is there; describe a room, or use `scenewright edit`",
             "impossible",

@@ -62,12 +62,13 @@ def openings(brief: Brief, size: Size, rng: np.random.Generator, ids: Iterator[i
     windows = asked["window"].count if "window" in asked else 0 if "window" in brief.without else max(drawn, int(needs))
     if "door" in brief.without:
         doors = 0
-    order: list[Wall] = ["south", "east", "west", "north"]
+    order: list[Wall] = ["south", "east", "west"]
     shift = int(rng.integers(0, 3))
-    entered = order[shift:3] + order[:shift] + ["north"]
+    named = {r.wall for r in brief.relations if r.wall}  # a wall that things were said to stand at is left to them
+    entered: list[Wall] = sorted([*order[shift:], *order[:shift], "north"], key=lambda w: w in named)
     made = [_doors(walls, ids, entered[i % 4], rng) for i in range(doors)]
     big = 1.35 if "window" in asked and asked["window"].scale in ("large", "huge") else 1.0
-    lit = [w for w in _LIGHT if w != entered[0]] or list(_LIGHT)
+    lit = [w for w in _LIGHT if w != entered[0] and w not in named] or list(_LIGHT)
     glazed = [_window(walls, ids, lit[i % len(lit)], big, rng) for i in range(windows)]
     return [d for d in made if d], [w for w in glazed if w]
 
