@@ -9,14 +9,17 @@ from __future__ import annotations
 import functools
 import importlib
 import pkgutil
+from collections.abc import Callable
 from pathlib import Path
+from typing import BinaryIO
 
 from ..errors import FileError, UserError
 from ..scene import Scene
+from .arrange import arranged
 from .atomic import writing
 from .format import HEAD_BYTES, Format, Report
 
-__all__ = ["Format", "Report", "formats", "load", "load_with_report", "save", "writing"]
+__all__ = ["Format", "Report", "formats", "load", "load_with_report", "save", "writer", "writing"]
 
 
 @functools.cache
@@ -86,18 +89,32 @@ def _by_suffix(path: Path) -> Format | None:
 
 
 def save(scene: Scene, path: str | Path, force: bool = False) -> None:
-    """Write a scene in the format its name asks for, in row order, whole or not at all.
+    """Write a scene in the format its name asks for, whole or not at all.
+
+    Rows keep their order, but for formats where neighbours share storage (compressed .ply, SPZ, SOG): there they are
+    arranged along a Morton curve, unless the scene has a language field, which is bound to rows.
 
     Raises:
         UserError: the format cannot be written, the scene is empty, or the file exists and `force` is not set.
         FileError: the folder is missing or the disk refuses; an existing file is then unchanged.
     """
     path = Path(path)
+    write = writer(path)
+    if len(scene.cloud) == 0:
+        raise UserError("there is nothing to save: the scene holds zero Gaussians")
+    with writing(path, force) as file:
+        write(scene, file)
+
+
+def writer(path: Path) -> Callable[[Scene, BinaryIO], None]:
+    """What writes a scene in the format that a name asks for, arranged as `save` says.
+
+    Raises:
+        UserError: no format that can be written has this name.
+    """
     known = _by_suffix(path)
     if known is None or known.write is None:
         writable = ", ".join(s for f in formats() if f.write for s in f.suffixes)
         raise UserError(f"cannot write {path.name}: scenes are written as {writable}")
-    if len(scene.cloud) == 0:
-        raise UserError("there is nothing to save: the scene holds zero Gaussians")
-    with writing(path, force) as file:
-        known.write(scene, file)
+    write, arranges = known.write, known.arranges
+    return lambda scene, file: write(arranged(scene) if arranges and scene.language is None else scene, file)

@@ -1,4 +1,4 @@
-"""PlayCanvas' compressed .ply: 256 Gaussians share a chunk of bounds, each is four 32-bit words. Read only.
+"""PlayCanvas' compressed .ply: 256 Gaussians share a chunk of bounds, each is four 32-bit words.
 
 Knows the layout as written by SuperSplat and splat-transform (github.com/playcanvas/splat-transform, reader of
 compressed PLY): element `chunk` with float bounds of position, log scale and, in newer files, colour; element
@@ -9,7 +9,7 @@ other three in 10 each) and colour with opacity (8 bits each); optional element 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import BinaryIO, TypeVar
+from typing import Any, BinaryIO, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,7 @@ from .format import Format, Report
 
 NAME = "PlayCanvas compressed .ply"
 _CHUNK = 256
+_LOG_LIMIT = 20.0
 _PACKED = ("packed_position", "packed_rotation", "packed_scale", "packed_color")
 _POSITION, _SCALE, _COLOR = ("x", "y", "z"), ("scale_x", "scale_y", "scale_z"), ("r", "g", "b")
 _Words = NDArray[np.uint32]
@@ -159,4 +160,60 @@ def _rotations(words: _Words) -> values.Floats:
     return values.smallest_three(_unpack(words, (2, 10, 10, 10))[:, 1:], words >> np.uint32(30))
 
 
-FORMAT = Format(NAME, (".compressed.ply",), recognises, read)
+def write(scene: Scene, file: BinaryIO) -> None:
+    """Write the scene in row order; rows of one chunk should lie close together (`arrange.arranged`).
+
+    Log scales beyond ±20 (2e-9 and 5e8 units) are cut off there, so that one flat Gaussian does not spoil its chunk,
+    and coefficients above the constant one beyond ±4, which the format cannot hold.
+    """
+    cloud = values.columns(scene.cloud)
+    means, sh, n = cloud["means"].astype(np.float64), cloud["sh"], len(cloud["means"])
+    logs = np.clip(values.logs_from_scales(cloud["scales"]).astype(np.float64), -_LOG_LIMIT, _LOG_LIMIT)
+    colors = sh[:, 0].astype(np.float64) * SH_C0 + 0.5
+    chunks, words = np.empty((-(-n // _CHUNK), 18), "<f4"), np.empty((n, 4), "<u4")
+    for part, (column, (low, high), widths) in enumerate(
+        ((means, (0, 3), (11, 10, 11)), (logs, (6, 9), (11, 10, 11)), (colors, (12, 15), (8, 8, 8)))
+    ):
+        fractions = _chunked(column, chunks[:, low:high], chunks[:, high : high + 3])
+        words[:, (0, 2, 3)[part]] = _pack(fractions, widths)
+    words[:, 3] = (words[:, 3] << np.uint32(8)) | values.codes(cloud["opacities"], 255)
+    thirds, largest = values.without_largest(cloud["quats"])
+    words[:, 1] = (largest.astype(np.uint32) << np.uint32(30)) | _pack(thirds / 2 + 0.5, (10, 10, 10))
+    rest = sh[:, 1:].transpose(0, 2, 1).reshape(n, -1)  # to channel-major
+    file.write(_header(scene, len(chunks), rest.shape[1]))
+    file.write(chunks.tobytes())
+    file.write(words.tobytes())
+    for start in range(0, n if rest.shape[1] else 0, ply.BLOCK_ROWS):
+        block = rest[start : start + ply.BLOCK_ROWS]
+        file.write(np.clip(np.floor(block * 32 + 128), 0, 255).astype(np.uint8).tobytes())
+
+
+def _header(scene: Scene, chunks: int, rest: int) -> bytes:
+    """The header's bytes for `rest` coefficients a Gaussian above the constant one."""
+    bounds = [f"{end}_{n}" for group in (_POSITION, _SCALE, _COLOR) for end in ("min", "max") for n in group]
+    lines = ["ply", "format binary_little_endian 1.0", *(f"comment {note}" for note in comments.describe(scene))]
+    lines += [f"element chunk {chunks}", *(f"property float {name}" for name in bounds)]
+    lines += [f"element vertex {len(scene.cloud)}", *(f"property uint {name}" for name in _PACKED)]
+    if rest:
+        lines += [f"element sh {len(scene.cloud)}", *(f"property uchar f_rest_{i}" for i in range(rest))]
+    return ("\n".join([*lines, "end_header"]) + "\n").encode("ascii")
+
+
+def _chunked(column: NDArray[np.float64], low: NDArray[Any], high: NDArray[Any]) -> NDArray[np.float64]:
+    """Fractions `[N, 3]` of `column` between the bounds of its chunks, which are stored into `low` and `high`."""
+    starts = np.arange(0, len(column), _CHUNK)
+    low[:], high[:] = np.minimum.reduceat(column, starts), np.maximum.reduceat(column, starts)
+    chunk = np.arange(len(column)) // _CHUNK
+    base, span = low[chunk].astype(np.float64), (high.astype(np.float64) - low)[chunk]
+    return np.divide(column - base, span, out=np.zeros_like(column), where=span > 0)
+
+
+def _pack(fractions: NDArray[np.float64], widths: tuple[int, ...]) -> _Words:
+    """`[N]` words of fields in [0, 1], the last in the lowest bits."""
+    words = np.zeros(len(fractions), np.uint32)
+    for i, width in enumerate(widths):
+        words = (words << np.uint32(width)) | values.codes(fractions[:, i], (1 << width) - 1)
+    return words
+
+
+FORMAT = Format(NAME, (".compressed.ply",), recognises, read, write, arranges=True)

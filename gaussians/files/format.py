@@ -42,7 +42,9 @@ class Format:
         recognises: `(path, head)` whether the content is this format's; `head` is the first `HEAD_BYTES` of the file,
             empty for a folder. Must be cheap and must not raise.
         read: the scene and a report; raises FileError for anything it cannot read.
-        write: puts the scene into a binary file opened for writing, or None if the format is only read.
+        write: puts the scene into a binary file opened for writing, row by row in order, or None if the format is
+            only read.
+        arranges: whether rows beside each other share storage, so that neighbours in space should be neighbours there.
     """
 
     name: str
@@ -50,3 +52,4 @@ class Format:
     recognises: Callable[[Path, bytes], bool]
     read: Callable[[Path], tuple[Scene, Report]]
     write: Callable[[Scene, BinaryIO], None] | None = None
+    arranges: bool = False

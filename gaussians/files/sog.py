@@ -2,7 +2,7 @@
 
 Knows the specification at developer.playcanvas.com/user-manual/gaussian-splatting/formats/sog: one pixel a Gaussian,
 row by row; positions as 16 bits of a signed logarithm, the three smaller components of a rotation in a byte each,
-scales and colours through codebooks, the bands above the constant one through a palette. Read only.
+scales and colours through codebooks, the bands above the constant one through a palette. Writing is in `sog_writing`.
 Refuses to trust the archive: names with a folder in them, entries and images far larger than the file justifies.
 """
 
@@ -24,17 +24,16 @@ from ..errors import FileError
 from ..scene import Scene
 from . import values
 from .format import Format, Report
+from .sog_writing import PALETTE_COLUMNS, PALETTE_LIMIT, write
 
 NAME = "SOG version 2"
 META = "meta.json"
 
 # Real scenes need 8 to 20 bytes a Gaussian; a file of constant images compresses without bound.
-_MIN_BYTES_A_GAUSSIAN = 1 / 16
-_FREE_GAUSSIANS = 1 << 20  # allowed whatever the size of the file
+_MIN_BYTES_A_GAUSSIAN = 1 / 4
+_FREE_GAUSSIANS = 1 << 18  # allowed whatever the size of the file
 _SPARE_PIXELS = 1 << 16  # writers round the image's sides up
 _META_LIMIT = 1 << 24
-_PALETTE_COLUMNS = 64
-_PALETTE_LIMIT = 1 << 16  # labels have 16 bits
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Triple = tuple[Finite, Finite, Finite]
@@ -63,7 +62,7 @@ class _Quats(_Part):
 
 
 class _Palette(_Part):
-    count: Annotated[int, Field(ge=1, le=_PALETTE_LIMIT)]
+    count: Annotated[int, Field(ge=1, le=PALETTE_LIMIT)]
     bands: Annotated[int, Field(ge=1, le=3)]
     codebook: Codebook
     files: tuple[FileName, FileName]
@@ -223,11 +222,11 @@ def _bands(images: _Images, palette: _Palette) -> values.Floats:
     """
     centroids, labels = palette.files
     k = next(k for k, degree in SH_BANDS.items() if degree == palette.bands)
-    width, rows = _PALETTE_COLUMNS * (k - 1), -(-palette.count // _PALETTE_COLUMNS)
+    width, rows = PALETTE_COLUMNS * (k - 1), -(-palette.count // PALETTE_COLUMNS)
     picture = images.decode(centroids, 2 * width * rows + _SPARE_PIXELS)
     if picture.shape[0] < rows or picture.shape[1] < width:
         raise FileError(f"{images.bundle.path}: {centroids} is too small for {palette.count:,} sets of coefficients")
-    codes = picture[:rows, :width, :3].reshape(rows * _PALETTE_COLUMNS, k - 1, 3)[: palette.count]
+    codes = picture[:rows, :width, :3].reshape(rows * PALETTE_COLUMNS, k - 1, 3)[: palette.count]
     sets = _decode(images.bundle.path, palette.codebook, codes)
     pixels = images.pixels(labels).astype(np.int64)
     chosen = pixels[:, 0] + 256 * pixels[:, 1]
@@ -237,4 +236,4 @@ def _bands(images: _Images, palette: _Palette) -> values.Floats:
     return bands
 
 
-FORMAT = Format(NAME, (".sog",), recognises, read)
+FORMAT = Format(NAME, (".sog",), recognises, read, write, arranges=True)

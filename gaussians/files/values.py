@@ -77,6 +77,30 @@ def smallest_three(thirds: NDArray[np.float64], largest: NDArray[np.integer]) ->
     return quats.astype(np.float32)
 
 
+def without_largest(quats: Floats) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """What `smallest_three` takes apart from its range: the inverse, for quaternions `[N, 4]` in any order.
+
+    Returns:
+        `[N, 3]` the components left, in order, times √2 and so in [-1, 1], of the one of q and -q whose largest is
+        positive; and `[N]` the index of the largest.
+    """
+    unit = unit_quats(quats)[0].astype(np.float64)
+    index = np.argmax(np.abs(unit), axis=1)
+    sign = np.where(np.take_along_axis(unit, index[:, None], axis=1) < 0, -1.0, 1.0)
+    rest = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])[index]
+    return np.clip(np.take_along_axis(unit, rest, axis=1) * sign * np.sqrt(2), -1, 1), index
+
+
+def codes(values: NDArray[np.floating], top: int) -> NDArray[np.uint32]:
+    """Values in [0, 1] to the nearest of `top + 1` even steps; what lies outside goes to the nearer end."""
+    return np.rint(np.clip(values, 0, 1) * top).astype(np.uint32)
+
+
+def columns(cloud: GaussianCloud) -> dict[str, Floats]:
+    """The cloud's columns as NumPy arrays, by name."""
+    return {name: column.detach().cpu().numpy() for name, column in cloud.columns()}
+
+
 def unit_quats(quats: Floats) -> tuple[Floats, int]:
     """Quaternions `[N, 4]` of unit length, and how many had none (they become the identity).
 

@@ -14,7 +14,13 @@ from scenewright.gaussians.errors import FileError
 
 def test_formats_have_distinct_names_and_suffixes() -> None:
     found = files.formats()
-    assert {f.name for f in found} == {"INRIA .ply", "PlayCanvas compressed .ply", "SOG version 2"}
+    assert {f.name for f in found} == {
+        "INRIA .ply",
+        "PlayCanvas compressed .ply",
+        "SOG version 2",
+        "Niantic SPZ",
+        "antimatter15 .splat",
+    }
     suffixes = [s for f in found for s in f.suffixes]
     assert len(set(suffixes)) == len(suffixes) and all(s == s.lower() and s.startswith(".") for s in suffixes)
 
