@@ -132,8 +132,9 @@ def set_table(room: Room, goal: SetTable) -> None:
         CannotError: the table is not there or too small.
     """
     tables = [n for n in room.find(goal.table.model_copy(update={"pick": "all"})) if n.support == "floor"]
+    tables = [n for n in tables if n.label.split()[-1:] in (["table"], ["island"])]  # nobody dines at a desk
     if not tables:
-        raise CannotError("say which table")
+        raise CannotError("there is no table to be set", "absent")
     table = max(tables, key=lambda n: n.size[0] * n.size[1])  # people eat at the largest
     seats = [n for n in room.nodes.values() if set(n.label.split()) & SEATS and _gap(n, table) < _REACH]
     people = goal.people or len(seats) or 2
