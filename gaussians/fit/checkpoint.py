@@ -28,7 +28,7 @@ def keep(path: Path, arrays: Mapping[str, Any], state: Mapping[str, Any]) -> Non
     from safetensors.numpy import save
 
     told = {"version": VERSION, "state": json.dumps(state)}
-    tensors = {name: np.ascontiguousarray(value) for name, value in arrays.items()}
+    tensors = {name: np.asarray(value, order="C") for name, value in arrays.items()}
     with writing(path, force=True) as file:
         file.write(save(tensors, told))
 

@@ -29,6 +29,7 @@ from .train import Schedule, Trainer
 WATCHED = 6  # held-out photographs that are looked at on the way
 LOOKS = 20  # how often
 KEEP_EVERY = 30.0  # seconds between checkpoints
+TELL_EVERY = 0.5  # seconds between two words to the user
 
 
 @dataclass(frozen=True)
@@ -99,7 +100,7 @@ def fit(
 
     Args:
         kept: where checkpoints go; training goes on from the one that is there, and takes it away in the end.
-        told: called about twice a second.
+        told: called every `TELL_EVERY` seconds.
 
     Raises:
         FileError: the checkpoint belongs to another training, or cannot be written.
@@ -143,7 +144,7 @@ def _train(
             arrays, values = trainer.state()
             checkpoint.keep(kept, arrays, {**values, "name": name, "curve": curve})
             saved = time.monotonic()
-        if now - spoken >= 0.5 or trainer.done >= 1:
+        if now - spoken >= TELL_EVERY or trainer.done >= 1:
             left = trainer.seconds * (1 / max(trainer.done, 1e-9) - 1)
             told(Status(trainer.steps, trainer.done, loss, psnr, len(trainer.parameters), left))
             spoken = now

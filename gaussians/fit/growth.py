@@ -24,6 +24,7 @@ from .parameters import Parameters
 F32 = NDArray[np.float32]
 I64 = NDArray[np.int64]
 
+FARTHEST = 3.0  # of its own widths that a faint Gaussian wanders in a step
 FAINT = 0.005  # opacity below which a Gaussian is as good as gone
 
 
@@ -74,12 +75,12 @@ class Budgeted:
         rows = np.flatnonzero(opacities < 0.1)  # beyond it there is no noise to speak of: exp(-9.5) of it
         if not len(rows):
             return
-        axes = _axes(parameters, rows)
         with np.errstate(over="ignore"):
             amount = rate * self.noise / (1 + np.exp(100 * (opacities[rows] - FAINT)))
-        noise = self.rng.standard_normal((len(rows), 3), dtype=np.float32) * amount[:, None]
-        along = np.einsum("nij,ni->nj", axes, noise)
-        parameters.means[rows] += np.einsum("nij,nj->ni", axes, along).astype(np.float32)
+        # Published is the covariance times noise, which throws wide ones out of the scene.
+        share = np.minimum(amount[:, None] * np.exp(parameters.logs[rows]), FARTHEST)
+        noise = share * self.rng.standard_normal((len(rows), 3), dtype=np.float32)
+        parameters.means[rows] += np.einsum("nij,nj->ni", _axes(parameters, rows), noise).astype(np.float32)
 
     def change(self, parameters: Parameters, step: int) -> None:
         """See `Growth`."""
