@@ -1,34 +1,205 @@
-"""`scenewright convert IN OUT`: the same scene in another format."""
+"""`scenewright convert IN OUT`: the same scene in another format, smaller if asked for, and what that costs."""
 
 from __future__ import annotations
 
+import time
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..options import Debug, Force, Json, SceneFile
 from ..terminal import terminal
 
+if TYPE_CHECKING:
+    from ...gaussians.camera import Camera
+    from ...gaussians.scene import Scene
+
+VIEW_SIZE = 384  # pixels a side of the pictures that are compared
+PRUNE_SIZE = 160  # pixels a side of the views that say which Gaussians matter
+PRUNE_VIEWS = 64
+
 
 def command(
     scene: SceneFile,
     output: Annotated[Path, typer.Argument(metavar="OUT", help="Where to write; its suffix says the format.")],
+    sh_degree: Annotated[
+        int | None, typer.Option("--sh-degree", min=0, max=3, metavar="N", help="Cut harmonics to this degree.")
+    ] = None,
+    max_gaussians: Annotated[
+        int | None,
+        typer.Option("--max-gaussians", min=1, metavar="N", help="Keep the N that matter most to what can be seen."),
+    ] = None,
+    crop: Annotated[
+        str | None, typer.Option("--crop", metavar="x0,y0,z0,x1,y1,z1", help="Keep what lies in this box.")
+    ] = None,
+    crop_sphere: Annotated[
+        str | None, typer.Option("--crop-sphere", metavar="x,y,z,r", help="Keep what lies in this sphere.")
+    ] = None,
+    views: Annotated[
+        int, typer.Option("--views", min=0, max=24, help="Views to measure the loss from; 0 measures nothing.")
+    ] = 4,
+    spz_version: Annotated[
+        int, typer.Option("--spz-version", min=2, max=4, help="Version of .spz, for readers that lag behind.")
+    ] = 4,
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Write a scene in another format.
+    """Write a scene in another format, and tell what that saves and loses.
 
-    Read: INRIA .ply, PlayCanvas .compressed.ply, SOG (.sog, or a folder with meta.json). Written: INRIA .ply.
+    Read and written: INRIA .ply, PlayCanvas .compressed.ply and SOG (.sog; read from a folder with meta.json as well),
+    Niantic .spz (version 1 is read only), antimatter15 .splat (which holds no harmonics above the constant colour).
     """
-    from ...gaussians.files import load_with_report, save
+    from ...gaussians.files import load_with_report, writer
     from ..targets import refuse_existing
 
     refuse_existing([output], force)
+    writer(output)  # refuses a name that no format has
+    box, ball = _numbers(crop, 6, "--crop"), _numbers(crop_sphere, 4, "--crop-sphere")
+    start = time.perf_counter()
     loaded, report = load_with_report(scene)
-    save(loaded, output, force=force)
-    for note in report.notes:
+    read = time.perf_counter() - start
+    cut = _cut(loaded, box, ball)
+    cameras = _views(cut, views) if views else ()
+    smaller = _smaller(cut, sh_degree, max_gaussians, cameras)
+    start = time.perf_counter()
+    _save(smaller, output, force, spz_version)
+    told = _Told(scene, output, report.format, report.rows, len(smaller.cloud), read, time.perf_counter() - start)
+    told.notes += report.notes
+    told.measure(cut, smaller, cameras)
+    for note in told.notes:
         terminal.say(f"note: {note}")
-    data = {"path": str(output), "from": report.format, "gaussians": len(loaded.cloud), "notes": list(report.notes)}
-    terminal.result(f"{output}: {len(loaded.cloud):,} Gaussians, from {report.format}", data)
+    terminal.result(told.text(), told.data())
+
+
+@dataclass
+class _Told:
+    """What a conversion did, for people and programs. Times in seconds."""
+
+    source: Path
+    output: Path
+    format: str
+    before: int
+    after: int
+    read: float
+    write: float
+    notes: list[str] = field(default_factory=list)
+    psnr: tuple[float, ...] = ()
+
+    def measure(self, truth: Scene, written: Scene, cameras: tuple[Camera, ...]) -> None:
+        """Read back what was written, compare pictures, and note what the format has no place for."""
+        from ...gaussians.files import load
+        from ...gaussians.reduce import psnr
+
+        back = load(self.output)
+        if back.cloud.degree < written.cloud.degree:
+            self.notes.append(f"harmonics of degree {written.cloud.degree} were cut to {back.cloud.degree}")
+        if back.frame != written.frame or len(back.cameras) < len(written.cameras):
+            self.notes.append("up, scale and cameras of the scene were left out: only .ply files hold them")
+        self.psnr = psnr(truth.cloud, back.cloud, cameras)
+
+    def data(self) -> dict[str, Any]:
+        old, new = _size(self.source), _size(self.output)
+        mean = sum(self.psnr) / len(self.psnr) if self.psnr else None
+        return {
+            "path": str(self.output),
+            "from": self.format,
+            "gaussians": self.after,
+            "gaussians_before": self.before,
+            "bytes": new,
+            "bytes_before": old,
+            "psnr": mean,
+            "psnr_least": min(self.psnr) if self.psnr else None,
+            "views": len(self.psnr),
+            "read_seconds": self.read,
+            "write_seconds": self.write,
+            "notes": self.notes,
+        }
+
+    def text(self) -> str:
+        data = self.data()
+        count = f"{self.after:,} Gaussians" + (f" of {self.before:,}" if self.after != self.before else "")
+        share = data["bytes"] / max(data["bytes_before"], 1)
+        lines = [
+            f"{self.output}: {count}, from {self.format}",
+            f"size: {data['bytes_before']:,} -> {data['bytes']:,} bytes ({share:.0%}), "
+            f"{data['bytes'] / self.after:.1f} a Gaussian",
+        ]
+        if self.psnr:
+            lines.append(
+                f"pictures: {data['psnr']:.1f} dB PSNR to the original over {data['views']} views, "
+                f"{data['psnr_least']:.1f} dB at worst"
+            )
+        return "\n".join([*lines, f"time: read {self.read:.2f} s, written {self.write:.2f} s"])
+
+
+def _numbers(text: str | None, count: int, option: str) -> list[float] | None:
+    """`count` finite numbers between commas."""
+    import math
+
+    from ...gaussians.errors import UserError
+
+    if text is None:
+        return None
+    try:
+        found = [float(word) for word in text.split(",")]
+    except ValueError:
+        found = []
+    if len(found) != count or not all(math.isfinite(number) for number in found):
+        raise UserError(f"{option} takes {count} numbers with commas between them and no spaces, not {text!r}")
+    return found
+
+
+def _cut(scene: Scene, box: list[float] | None, ball: list[float] | None) -> Scene:
+    from ...gaussians import reduce
+
+    if box:
+        scene = reduce.crop_box(scene, (box[0], box[1], box[2]), (box[3], box[4], box[5]))
+    if ball:
+        scene = reduce.crop_sphere(scene, (ball[0], ball[1], ball[2]), ball[3])
+    return scene
+
+
+def _views(scene: Scene, count: int) -> tuple[Camera, ...]:
+    """Where the loss is measured: the scene's own cameras if it has any, evenly; else the views that see most."""
+    from ...gaussians.language.views import choose_views, fit_camera
+
+    own = scene.cameras
+    if own:
+        return tuple(fit_camera(own[i * len(own) // count], VIEW_SIZE, VIEW_SIZE) for i in range(min(count, len(own))))
+    return tuple(camera.resized(VIEW_SIZE, VIEW_SIZE) for camera in choose_views(scene, count).cameras)
+
+
+def _smaller(scene: Scene, degree: int | None, most: int | None, measured: tuple[Camera, ...]) -> Scene:
+    """Fewer Gaussians as other views than the measured ones see them, and fewer harmonics."""
+    from ...gaussians.language.views import candidates, fit_camera
+    from ...gaussians.reduce import most_visible
+
+    if most is not None and most < len(scene.cloud):
+        own = scene.cameras[:: -(-len(scene.cameras) // PRUNE_VIEWS) or 1]
+        pool = [fit_camera(camera, PRUNE_SIZE, PRUNE_SIZE) for camera in own]
+        pool += candidates(scene.cloud, scene.frame, PRUNE_SIZE)
+        poses = {camera.world_to_camera.tobytes() for camera in measured}
+        scene = most_visible(scene, most, [c for c in pool if c.world_to_camera.tobytes() not in poses] or pool)
+    if degree is not None and degree < scene.cloud.degree:
+        scene = scene.replace(cloud=scene.cloud.with_degree(degree))
+    return scene
+
+
+def _save(scene: Scene, output: Path, force: bool, spz_version: int) -> None:
+    from ...gaussians.files import save, spz, writing
+    from ...gaussians.files.arrange import arranged
+
+    if output.suffix.lower() == ".spz" and spz_version != spz.LATEST:
+        with writing(output, force) as file:
+            spz.write(arranged(scene), file, spz_version)
+    else:
+        save(scene, output, force)
+
+
+def _size(path: Path) -> int:
+    """Bytes of a file, or of all files in a folder (or beside a meta.json)."""
+    folder = path if path.is_dir() else path.parent if path.name == "meta.json" else None
+    return path.stat().st_size if folder is None else sum(p.stat().st_size for p in folder.iterdir() if p.is_file())

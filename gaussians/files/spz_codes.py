@@ -133,7 +133,7 @@ def pack_harmonics(rest: values.Floats) -> Bytes:
     flip = np.prod(np.array(RIGHT_UP_BACK) ** _PARITY[:count], axis=1).astype(np.float32)
     step = np.where(np.arange(count) < 3, 1 << (8 - BITS_FIRST), 1 << (8 - BITS_HIGHER)).astype(np.float32)
     scaled = np.clip(rest * flip[:, None], -1, 1) * np.float32(128) / step[:, None]
-    return _bytes((np.rint(scaled) * step[:, None] + 128).reshape(len(rest), -1))
+    return _bytes((np.rint(scaled) * step[:, None] + 128).reshape(len(rest), 3 * count))
 
 
 def _bytes(scaled: NDArray[np.floating]) -> Bytes:
