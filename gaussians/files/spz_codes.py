@@ -123,7 +123,7 @@ def harmonics(packed: Bytes, signs: Signs) -> values.Floats:
     """Coefficients above the constant one `[N, K - 1, 3]` of bytes `[N, 3 (K - 1)]`, colour innermost."""
     count = packed.shape[1] // 3
     flip = np.prod(np.array(signs) ** _PARITY[:count], axis=1).astype(np.float32) / np.float32(128)
-    bands: values.Floats = (packed.reshape(-1, count, 3).astype(np.float32) - np.float32(128)) * flip[:, None]
+    bands: values.Floats = (packed.reshape(len(packed), count, 3).astype(np.float32) - np.float32(128)) * flip[:, None]
     return bands
 
 
