@@ -5,7 +5,8 @@ Knows planners, budgets and which words are no text. Refuses to know what become
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import re
+from typing import TYPE_CHECKING, Literal
 
 from ..gaussians.errors import UserError
 from ..gaussians.language.query import Query
@@ -13,6 +14,22 @@ from ..gaussians.language.query import Query
 if TYPE_CHECKING:
     from ..planners.budget import Budget, Progress
     from ..planners.plan import EditPlan, Planner, Sight, Usage
+
+_STEPS: tuple[tuple[Literal["undo", "redo"], re.Pattern[str]], ...] = (
+    (
+        "undo",
+        re.compile(
+            r"(please )?(undo|take (that|it|this) back|revert)( (that|it|this|the last (one|step|edit|change)))?", re.I
+        ),
+    ),
+    ("redo", re.compile(r"(please )?(redo|do (that|it) again)( (that|it|this))?", re.I)),
+)
+
+
+def step_meant(text: str) -> Literal["undo", "redo"] | None:
+    """Whether words ask to go a step back or forward; None if they ask for something else."""
+    said = text.strip().rstrip(".!")
+    return next((step for step, words in _STEPS if words.fullmatch(said)), None)
 
 
 class Reader:
@@ -86,12 +103,24 @@ class Reader:
 
         return _query(in_passing(self._planner).plan(f"select {text}", sight=self._sight))
 
-    def description(self, text: str) -> Query | None:
-        """What is described: by a phrase, or as what an instruction is about; None if the words do neither.
+    def query(self, phrase: str | Query) -> Query:
+        """What is described: by a phrase, as what an instruction is about, or by a query itself.
 
         Raises:
-            as `plan`.
+            UserError: the words do neither.
+            BackendError: as `plan`.
         """
+        query = phrase if isinstance(phrase, Query) else self._described(phrase)
+        if query is None:
+            raise UserError(f"{phrase!r} is no description of things; say for example 'the red chair'")
+        return query
+
+    def subject(self, text: str) -> Query | None:
+        """What an instruction is about in the end, None if it is not understood; raises as `plan`."""
+        about = [query for op in self.plan(text).ops if (query := op.query()) is not None]
+        return about[-1] if about else None
+
+    def _described(self, text: str) -> Query | None:
         from ..planners.cascade import in_passing
 
         quick = in_passing(self._planner)

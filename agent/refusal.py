@@ -29,6 +29,13 @@ class ImpossibleError(InstructionError):
         self.verdict = verdict
 
 
+def retold(error: ScenewrightError, message: str) -> ScenewrightError:
+    """The same error, of the same kind and with what else it carries, in other words."""
+    other = type(error).__new__(type(error), message)  # kinds differ in what they are made of
+    other.__dict__.update(error.__dict__)
+    return other
+
+
 def refusal(plan: EditPlan) -> ScenewrightError:
     """The error that a plan without operations stands for."""
     reason = plan.reason or "this was not understood; say it in other words"

@@ -1,6 +1,6 @@
 """What a session log asks to be done again: the instructions that stood in the end, as plans that fit another scene.
 
-Knows records and plans. Refuses to know how a plan is carried out.
+Knows records and plans. Refuses to know how a plan is carried out. All of a session is read before any of it is done.
 """
 
 from __future__ import annotations
@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..gaussians.errors import FileError, ScenewrightError
+from ..gaussians.errors import FileError, ScenewrightError, UserError
 from .clarify import exchange, queries
-from .log import Record
+from .log import Record, read_log
 from .result import Result
 
 if TYPE_CHECKING:
@@ -25,6 +25,37 @@ class Replayed:
     text: str
     result: Result | None
     error: ScenewrightError | None
+
+
+@dataclass(frozen=True)
+class Deed:
+    """What was done in a session: its words, its plan, and the digest of the cloud that it was done to."""
+
+    text: str
+    plan: EditPlan
+    before: str | None
+
+    def on(self, digest: str) -> EditPlan:
+        """The plan for the cloud of this digest; in another than its own, ids of groups mean nothing."""
+        return self.plan if self.before == digest else portable(self.plan)
+
+
+def deeds(log: str | Path, session: int) -> list[Deed]:
+    """What stood in the end of a session, oldest first.
+
+    Args:
+        session: which of the sessions in the log, counted from the first (0) or the last (-1).
+
+    Raises:
+        FileError: the log cannot be read.
+        UserError: it holds no such session.
+    """
+    sessions = read_log(log).sessions()
+    if not sessions:
+        raise UserError(f"{log} holds no session; give a log written with --log")
+    if not -len(sessions) <= session < len(sessions):
+        raise UserError(f"{log} holds {len(sessions)} sessions; there is none number {session}")
+    return [Deed(str(r["text"]), read_plan(r, log), r.get("before")) for r in standing(sessions[session])]
 
 
 def standing(records: list[Record]) -> list[Record]:

@@ -1,53 +1,43 @@
-"""A session: one scene, instructions in a straight line, undo, redo, a log and replay.
+"""A session: instructions about one scene in a straight line, answers to questions, and replay.
 
     do(text) -> planner.plan -> EditPlan -> for each operation: resolve, apply, check -> Receipt -> log -> Result
 
-Knows the order of things and what to keep. Refuses to know grammar, pixels and tensors. An instruction is carried out
-whole or not at all, and its record is on the disk before the session moves on.
+Knows the order of things. Refuses to know grammar, pixels and tensors, and leaves the scene and its past to the
+workspace that it is. An instruction is carried out whole or not at all, and its record is on the disk before the
+session moves on.
 """
 
 from __future__ import annotations
 
-import re
 import time
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..gaussians.camera import Camera
-from ..gaussians.errors import AbsentError, AmbiguousError, ScenewrightError, UserError
+from ..gaussians.errors import ScenewrightError, UserError
 from ..gaussians.language.query import Query
 from ..gaussians.language.selection import Selection
 from ..gaussians.scene import Scene
-from . import records
-from .clarify import Question, answered, find_question, queries
-from .history import History, State
-from .log import SessionLog, read_log
-from .reading import Reader
-from .refusal import refusal
-from .replay import Replayed, portable, read_plan, standing
+from .carrying import Stopped, carry_out, names_things
+from .clarify import answered
+from .history import State
+from .reading import Reader, step_meant
+from .refusal import refusal, retold
+from .replay import Replayed, deeds
 from .result import Result
 from .sight import SessionSight
 from .stopwatch import timed
+from .workspace import Progress, Workspace
 
 if TYPE_CHECKING:
     from ..gaussians.language.encoders import Encoder
     from ..gaussians.language.explain import Explanation
     from ..planners.budget import Budget
     from ..planners.plan import EditPlan, Planner, Usage
-    from ..tools.base import Context
-    from ..tools.receipt import Receipt
-
-Progress = Callable[[str, float], None]  # stage in words, share done in [0, 1]
-
-_UNDO = re.compile(
-    r"(please )?(undo|take (that|it|this) back|revert)( (that|it|this|the last (one|step|edit|change)))?", re.I
-)
-_REDO = re.compile(r"(please )?(redo|do (that|it) again)( (that|it|this))?", re.I)
 
 
-class Session:
+class Session(Workspace):
     """A conversation about one scene.
 
     Args:
@@ -85,50 +75,12 @@ class Session:
         budget: str | Budget | None = None,
         pictures: bool = False,
     ) -> None:
-        self._encoder = encoder
-        self._viewer = viewer
-        self._progress = progress or (lambda stage, fraction: None)
-        self._reader = Reader(planner, SessionSight(self), budget, pictures, self._progress)
-        self._seed = seed
-        self.pixel_checks = pixel_checks
-        self._history = History(State(scene))
-        self._log = SessionLog(log) if log is not None else None
-        self.question: Question | None = None
-        self._write("open", lambda: records.opening(self._history.present))
+        progress = progress or (lambda stage, fraction: None)
+        # The planner first: a name that is none leaves no log behind.
+        self._reader = Reader(planner, SessionSight(self), budget, pictures, progress)
+        super().__init__(scene, encoder, log, viewer, progress=progress, seed=seed, pixel_checks=pixel_checks)
 
-    # -- what it is now ---------------------------------------------------------------------------------------------
-
-    @property
-    def scene(self) -> Scene:
-        """The scene as it stands."""
-        return self._history.present.scene
-
-    @property
-    def last(self) -> Selection | None:
-        """What "it" means."""
-        return self._history.present.last
-
-    @property
-    def viewer(self) -> Camera:
-        """Whose left and right are meant."""
-        if self._viewer is None:
-            from .views import default_view
-
-            self._viewer = default_view(self.scene)
-        return self._viewer
-
-    @viewer.setter
-    def viewer(self, camera: Camera) -> None:
-        self._viewer = camera
-
-    @property
-    def encoder(self) -> Encoder:
-        """The encoder, loaded when first needed."""
-        if isinstance(self._encoder, str):
-            from ..gaussians.language import encoders
-
-            self._encoder = encoders.load(self._encoder)
-        return self._encoder
+    # -- who reads --------------------------------------------------------------------------------------------------
 
     @property
     def planner(self) -> str:
@@ -154,12 +106,6 @@ class Session:
         """The plan that was made last, whatever came of it."""
         return self._reader.last
 
-    @property
-    def done(self) -> tuple[str, ...]:
-        """The instructions that led to the present scene, oldest first."""
-        states = [*self._history.past, self._history.present]
-        return tuple(s.text for s in states if s.text)
-
     # -- one instruction --------------------------------------------------------------------------------------------
 
     def do(self, text: str) -> Result:
@@ -174,16 +120,13 @@ class Session:
             InstructionError: it cannot be done as said.
             BackendError: a language model that was named as the only planner gave no plan.
         """
-        said = text.strip().rstrip(".!")
-        if _UNDO.fullmatch(said):
-            return self.undo()
-        if _REDO.fullmatch(said):
-            return self.redo()
+        if (step := step_meant(text)) is not None:
+            return self.undo() if step == "undo" else self.redo()
         started = time.perf_counter()
         try:
             plan = self.plan(text)
         except ScenewrightError as error:
-            self._refused(text, None, error)
+            self._journal.refused(text, None, error, self._history.present)
             raise
         return self.apply(plan, planned_in=time.perf_counter() - started)
 
@@ -209,10 +152,10 @@ class Session:
         try:
             result, state = self._carry_out(plan, seconds, dry_run=False)
         except ScenewrightError as error:
-            self._refused(plan.instruction, plan, error)
+            self._journal.refused(plan.instruction, plan, error, self._history.present)
             raise
         with timed(seconds, "log"):
-            self._write("do", lambda: records.deed(result, self._history.present, state))
+            self._journal.done(result, self._history.present, state)
         self._history.advance(state)
         return result
 
@@ -236,9 +179,7 @@ class Session:
         Raises:
             UserError: the phrase was not understood.
         """
-        query = phrase if isinstance(phrase, Query) else self._reader.description(phrase)
-        if query is None:
-            raise UserError(f"{phrase!r} is no description of things; say for example 'the red chair'")
+        query = self._reader.query(phrase)
         self.embed()
         found = self._context(self.last).resolve(self.scene, query)
         if found.verdict == "found":
@@ -272,9 +213,7 @@ class Session:
         from ..gaussians.language.explain import explain
         from ..gaussians.language.resolve import Resolver
 
-        query = phrase if isinstance(phrase, Query) else self._reader.description(phrase)
-        if query is None:
-            raise UserError(f"{phrase!r} is no description of things; say for example 'the red chair'")
+        query = self._reader.query(phrase)
         return explain(Resolver(self.embed(), self.viewer, self.encoder, self.last), query)
 
     def recall(self, text: str | None) -> None:
@@ -283,58 +222,11 @@ class Session:
         An instruction that cannot be read or found leaves "it" without a meaning.
         """
         last: Selection | None = None
-        targets = [q for op in self._reader.plan(text).ops if (q := op.query()) is not None] if text else []
-        if targets:
+        if text and (about := self._reader.subject(text)) is not None:
             scene = self.embed()
-            found = self._context(None).resolve(scene, targets[-1])
+            found = self._context(None).resolve(scene, about)
             last = found if found.verdict == "found" else None
         self._history.amend(replace(self._history.present, last=last, spoken=text or ""))
-
-    def embed(self) -> Scene:
-        """The scene with its language field, made now if it has none."""
-        if self.scene.language is None:
-            from ..gaussians.language.embed import embed
-
-            present = self._history.present
-            state = replace(present, scene=embed(present.scene, self.encoder, progress=self._progress))
-            self._write("embed", lambda: records.embedding(present, state))
-            self._history.amend(state)
-        return self.scene
-
-    # -- back and forth ---------------------------------------------------------------------------------------------
-
-    def undo(self) -> Result:
-        """Take the last instruction back: the scene is again the very value it was.
-
-        Raises:
-            UserError: there is nothing to undo.
-        """
-        return self._step("undo", self._history.behind(), self._history.present.text, self._history.back)
-
-    def redo(self) -> Result:
-        """Do again what was taken back.
-
-        Raises:
-            UserError: there is nothing to redo.
-        """
-        ahead = self._history.ahead()
-        return self._step("redo", ahead, ahead.text, self._history.forth)
-
-    def _step(self, kind: str, to: State, text: str, move: Callable[[], State]) -> Result:
-        before = self._history.present
-        self._write(kind, lambda: {"text": text, "before": before.digest, "after": to.digest})
-        move()
-        self.question = None
-        return Result(f"{kind}: {text}", None, (), before.scene, to.scene, self.viewer, to.last)
-
-    # -- files ------------------------------------------------------------------------------------------------------
-
-    def save(self, path: str | Path, force: bool = False) -> None:
-        """Write the scene to a file; an existing one only with `force`."""
-        from ..gaussians.files import save
-
-        save(self.scene, path, force=force)
-        self._write("save", lambda: {"path": str(path), "digest": self._history.present.digest})
 
     def replay(self, log: str | Path, *, session: int = -1, skip_failed: bool = False) -> list[Replayed]:
         """Carry out what another session did, here: words are resolved again, ids only where the scene is the same.
@@ -351,92 +243,36 @@ class Session:
             FileError: the log cannot be read.
             UserError: it holds no such session.
         """
-        sessions = read_log(log).sessions()
-        if not sessions:
-            raise UserError(f"{log} holds no session; give a log written with --log")
-        if not -len(sessions) <= session < len(sessions):
-            raise UserError(f"{log} holds {len(sessions)} sessions; there is none number {session}")
         outcome: list[Replayed] = []
-        for record in standing(sessions[session]):
-            plan = read_plan(record, log)
-            if record.get("before") != self._history.present.digest:
-                plan = portable(plan)
+        for deed in deeds(log, session):
             try:
-                outcome.append(Replayed(record["text"], self.apply(plan), None))
+                result = self.apply(deed.on(self._history.present.digest))
+                outcome.append(Replayed(deed.text, result, None))
             except ScenewrightError as error:
                 if not skip_failed:
                     for _ in outcome:
                         self.undo()
-                    raise type(error)(
-                        f"replay stopped at {record['text']!r}, all of it was taken back: {error}"
-                    ) from error
-                outcome.append(Replayed(record["text"], None, error))
+                    told = f"replay stopped at {deed.text!r}, all of it was taken back: {error}"
+                    raise retold(error, told) from error
+                outcome.append(Replayed(deed.text, None, error))
         return outcome
-
-    def close(self) -> None:
-        """Close the log."""
-        if self._log is not None:
-            self._log.close()
 
     # -- inside -----------------------------------------------------------------------------------------------------
 
     def _carry_out(self, plan: EditPlan, seconds: dict[str, float], *, dry_run: bool) -> tuple[Result, State]:
-        from ..tools.run import carry_out
-
         self.question = None
         if not plan.ops:
             raise refusal(plan)
-        if any(True for op in plan.ops for _ in queries(op)):
+        if names_things(plan):
             with timed(seconds, "embed"):
                 self.embed()
         before = self._history.present
-        scene, last = before.scene, before.last
-        receipts: list[Receipt] = []
         with timed(seconds, "edit"):
-            for step, op in enumerate(plan.ops):
-                context = self._context(last)
-                try:
-                    scene, receipt, last = carry_out(scene, op, context)
-                except ScenewrightError as error:
-                    self.question = self._question(plan, step, error, scene, context)
-                    raise _in_plan(error, plan, step) from error
-                receipts.append(_signed(receipt, plan, dry_run))
-        state = State(scene, last, plan.instruction, plan.instruction)
-        result = Result(
-            plan.instruction, plan, tuple(receipts), before.scene, scene, self.viewer, last, seconds, dry_run
-        )
+            try:
+                state, receipts = carry_out(plan, before, self._context, dry_run=dry_run)
+            except Stopped as stopped:
+                self.question = stopped.question
+                raise stopped.error from stopped.__cause__
+        viewer, last = self.viewer, state.last
+        result = Result(plan.instruction, plan, receipts, before.scene, state.scene, viewer, last, seconds, dry_run)
         return result, state
-
-    def _context(self, last: Selection | None) -> Context:
-        from ..tools.base import Context
-
-        encoder = self.encoder if self.scene.language is not None else None
-        return Context(viewer=self.viewer, last=last, encoder=encoder, seed=self._seed, pixel_checks=self.pixel_checks)
-
-    def _question(
-        self, plan: EditPlan, step: int, error: ScenewrightError, scene: Scene, context: Context
-    ) -> Question | None:
-        if not isinstance(error, AmbiguousError | AbsentError):
-            return None
-        verdict = "ambiguous" if isinstance(error, AmbiguousError) else "absent"
-        return find_question(plan, step, verdict, lambda query: context.resolve(scene, query))
-
-    def _write(self, kind: str, fields: Callable[[], dict[str, Any]]) -> None:
-        if self._log is not None:
-            self._log.append(kind, fields())
-
-    def _refused(self, text: str, plan: EditPlan | None, error: ScenewrightError) -> None:
-        self._write("failed", lambda: records.refused(text, plan, error, self._history.present))
-
-
-def _signed(receipt: Receipt, plan: EditPlan, dry_run: bool) -> Receipt:
-    """The receipt with what only the session knows: who planned it, and whether anything was kept."""
-    return receipt.model_copy(update={"backends": {**receipt.backends, "planner": plan.planner}, "dry_run": dry_run})
-
-
-def _in_plan(error: ScenewrightError, plan: EditPlan, step: int) -> ScenewrightError:
-    """The error, saying where in a compound instruction it arose and that the whole of it was rolled back."""
-    if len(plan.ops) == 1:
-        return error
-    where = f"step {step + 1} of {len(plan.ops)} ({plan.ops[step].op}) failed, nothing was changed"
-    return type(error)(f"{where}: {error}")
