@@ -21,6 +21,7 @@ from ..gaussians import compiled, files
 from ..gaussians.camera import Camera, Vec3
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.render import reference, render
+from . import _gradient
 from .harness import Metric, Point, Result
 
 DATA = Path(__file__).resolve().parents[1] / "../shared/data"  # unless SCENEWRIGHT_DATA says otherwise
@@ -81,6 +82,7 @@ def run(quick: bool) -> Result:
             truth = reference.render(cloud, case.camera, BLACK, torch.float64).rgb
             metrics += _measure(case, truth, repeats)
             if size == sizes[0]:
+                metrics += _gradient.measure(name, cloud, case.camera, repeats)
                 for way, value in _dial(case, truth, repeats).items():
                     found.setdefault(way, []).append(value)
     notes += [
