@@ -16,6 +16,7 @@ from prompt_toolkit.output import DummyOutput
 
 from scenewright.agent.chat import COMMANDS, Chat
 from scenewright.agent.completion import ChatCompleter
+from scenewright.agent.lines import Lines
 from scenewright.agent.session import Session
 from scenewright.agent.terminal import Terminal
 from scenewright.gaussians.scene import Scene
@@ -50,6 +51,12 @@ def test_an_ambiguity_is_asked_back_and_answered(boxes: Scene, encoder: Any) -> 
     session, out, _ = _talk(boxes, encoder, "delete the red thing", "the left one")
     assert "  1. red box" in out and "Which one?" in out
     assert set(session.scene.cloud.group.unique().tolist()) == {1, 2, 3}
+
+
+def test_a_question_does_not_stand_in_the_way_of_undoing(boxes: Scene, encoder: Any) -> None:
+    session, out, _ = _talk(boxes, encoder, "make the green thing blue", "delete the red thing", "undo", "1")
+    assert session.scene is boxes and session.question is None
+    assert "undo: make the green thing blue" in out
 
 
 def test_a_question_can_be_passed_over(boxes: Scene, encoder: Any) -> None:
@@ -112,13 +119,9 @@ def test_ctrl_c_cancels_the_instruction_not_the_program(
 
 
 def test_ctrl_c_at_the_prompt_and_ctrl_d() -> None:
-    terminal = Terminal(io.StringIO(), io.StringIO())
     with create_pipe_input() as pipe:
         pipe.send_text("half a line\x03\x04")
-        chat = Chat.__new__(Chat)
-        chat.terminal, chat._pipe_input, chat._screen = terminal, pipe, DummyOutput()
-        chat._words = lambda: ()  # type: ignore[method-assign]
-        assert list(chat._lines()) == []
+        assert list(Lines(COMMANDS, tuple, input=pipe, output=DummyOutput())) == []
 
 
 @pytest.mark.parametrize(
@@ -133,7 +136,7 @@ def test_ctrl_c_at_the_prompt_and_ctrl_d() -> None:
     ],
 )
 def test_completion(typed: str, offered: list[str]) -> None:
-    completer = ChatCompleter(tuple(COMMANDS), lambda: ["chair", "coffee table", "delete", "move"])
+    completer = ChatCompleter(COMMANDS, lambda: ["chair", "coffee table", "delete", "move"])
     found = [c.text for c in completer.get_completions(Document(typed), None)]  # type: ignore[arg-type]
     assert found == offered
 
