@@ -30,12 +30,14 @@ def measure(name: str, cloud: GaussianCloud, camera: Camera, repeats: int) -> li
     weights = torch.randn(camera.height, camera.width, 3, generator=torch.Generator().manual_seed(0))
 
     def fast(columns: Columns) -> Tensor:
-        return differentiable.draw(*(columns[n] for n in NAMES), camera)[0]
+        return differentiable.draw(**columns, camera=camera)[0]
 
     def slow(columns: Columns) -> Tensor:
         return reference.render(cloud.replace(**columns), camera, BLACK).rgb
 
-    least, stages, found = math.inf, {}, {}
+    least = math.inf
+    stages: dict[str, float] = {}
+    found: Columns = {}
     for _ in range(repeats):
         seconds, each, found = _once(fast, cloud, weights)
         if seconds < least:
