@@ -30,7 +30,7 @@ def measure(name: str, cloud: GaussianCloud, camera: Camera, repeats: int) -> li
     weights = torch.randn(camera.height, camera.width, 3, generator=torch.Generator().manual_seed(0))
 
     def fast(columns: Columns) -> Tensor:
-        return differentiable.draw(**columns, camera=camera)[0]
+        return differentiable.draw(**columns, camera=camera, background=BLACK, centers=None)[0]
 
     def slow(columns: Columns) -> Tensor:
         return reference.render(cloud.replace(**columns), camera, BLACK).rgb
