@@ -39,8 +39,11 @@ class Tile:
     good: bool = True
 
 
-def save_png(picture: Picture, path: str | Path, force: bool = False) -> None:
-    """Write a picture, whole or not at all; an existing file only with `force`."""
+def save_png(picture: NDArray[np.uint8 | np.uint16], path: str | Path, force: bool = False) -> None:
+    """Write a picture, whole or not at all; an existing file only with `force`.
+
+    `[H, W, 3]` colours, `[H, W, 4]` with alpha, or `[H, W]` of up to 16 bits.
+    """
     with writing(path, force) as file:
         Image.fromarray(np.ascontiguousarray(picture)).save(file, format="PNG", optimize=True)
 

@@ -43,13 +43,19 @@ def choose_view(scene: Scene, view: str = "auto", size: str | None = None) -> Ca
 
 def default_view(scene: Scene) -> Camera:
     """The scene's first camera, or a view from which much of it can be seen."""
-    from ..gaussians.language.orient import estimate_frame
-    from ..gaussians.language.surface import surface_of
     from ..gaussians.language.views import default_viewer
 
-    if not scene.cameras and scene.frame.up_source == "unknown":
-        scene = scene.replace(frame=estimate_frame(surface_of(scene.cloud), scene.cameras, scene.frame))
-    return default_viewer(scene, *PICTURE)
+    return default_viewer(scene if scene.cameras else framed(scene), *PICTURE)
+
+
+def framed(scene: Scene) -> Scene:
+    """The scene with up and floor estimated, if nobody said which way is up."""
+    if scene.frame.up_source != "unknown":
+        return scene
+    from ..gaussians.language.orient import estimate_frame
+    from ..gaussians.language.surface import surface_of
+
+    return scene.replace(frame=estimate_frame(surface_of(scene.cloud), scene.cameras, scene.frame))
 
 
 def with_frame(scene: Scene, up: str | None, metres_per_unit: float | None) -> Scene:

@@ -1,43 +1,192 @@
-"""`scenewright render SCENE -o FILE.png`: a picture of a scene."""
+"""`scenewright render SCENE -o FILE`: a picture of a scene, or a film along a ring, a capture's cameras or a path."""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..options import Debug, Force, Json, SceneFile, Size, View
+from ..targets import refuse_existing
 from ..terminal import terminal
+from ..views import PICTURE, choose_view, parse_size
+
+if TYPE_CHECKING:
+    from ...gaussians.camera import Camera, Render
+    from ...gaussians.scene import Scene
+    from ..shots import Shots
+
+Timing = tuple[float | None, float | None]
+
+_GIF = (480, 320)  # pixels, where nothing else is asked for: a GIF grows fast
 
 
 def command(
     scene: SceneFile,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="Where to write the picture (.png).")],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "--output", "-o", metavar="FILE", help="A .png, .gif or .mp4, a folder, or a pattern as %04d.png."
+        ),
+    ],
     view: View = "auto",
+    orbit: Annotated[
+        int | None, typer.Option("--orbit", metavar="N", help="N pictures once around the scene, or its middle.")
+    ] = None,
+    cameras: Annotated[
+        Path | None,
+        typer.Option(
+            "--cameras",
+            metavar="SOURCE",
+            help="Every camera of a capture (transforms.json, COLMAP folder) or scene; with --orbit, the ring they "
+            "stood on.",
+        ),
+    ] = None,
+    path: Annotated[
+        Path | None, typer.Option("--path", metavar="FILE", help="A camera path: keyframes in JSON, or nerfstudio's.")
+    ] = None,
+    seconds: Annotated[float | None, typer.Option(help="How long the film lasts.")] = None,
+    fps: Annotated[float | None, typer.Option(help="Pictures a second; 25 if nothing says otherwise.")] = None,
     size: Size = None,
     background: Annotated[str, typer.Option(help="Colour behind everything: a CSS name or #rrggbb.")] = "black",
+    alpha: Annotated[bool, typer.Option("--alpha", help="PNGs with a transparent background.")] = False,
+    depth: Annotated[
+        bool, typer.Option("--depth", help="16-bit PNGs of depth: thousandths of a scene unit, 0 where nothing is.")
+    ] = False,
     backend: Annotated[str, typer.Option(help="Renderer: 'auto', 'cpu' or 'reference'.")] = "auto",
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Draw a scene as one of its cameras, or one that you give, sees it."""
+    """Draw a scene as a camera sees it, or a film: around it, from a capture's cameras, or along a path."""
     from ...gaussians.color import parse
     from ...gaussians.files import load
     from ...gaussians.render import render
-    from ..pictures import save_png
-    from ..targets import refuse_existing, require_png
-    from ..views import choose_view
+    from ..film import is_film
 
-    require_png(output)
-    refuse_existing([output], force)
+    film = is_film(output)
+    wishes = {"--view": view != "auto", "--orbit": orbit is not None, "--cameras": cameras is not None}
+    wishes |= {"--path": path is not None, "--seconds": seconds is not None, "--fps": fps is not None}
+    _refuse_contradictions([wish for wish, made in wishes.items() if made], output, film)
+    _refuse_kinds(alpha, depth, output)
+    behind = (0.0, 0.0, 0.0) if alpha else parse(background)
+    finish = _transparent if alpha else _thousandths if depth else _plain
+
+    def draw(camera: Camera) -> Any:
+        return finish(render(loaded.cloud, camera, behind, backend))
+
+    if not film:
+        refuse_existing([output], force)
     loaded = load(scene)
-    camera = choose_view(loaded, view, size)
+    if film:
+        _film(draw, _shots(loaded, orbit, cameras, path, (seconds, fps), size, output), output, force)
+    else:
+        _still(draw, choose_view(loaded, view, size), output, force)
+
+
+def _refuse_contradictions(wishes: list[str], output: Path, film: bool) -> None:
+    """Options that cannot be had together.
+
+    Raises:
+        UserError: there are such; the message names them.
+    """
+    from ...gaussians.errors import UserError
+
+    which = [wish for wish in wishes if wish in ("--view", "--orbit", "--cameras", "--path")]
+    if len(which) > 1 and which != ["--orbit", "--cameras"]:
+        raise UserError(f"{' and '.join(which)} are different pictures; ask for one")
+    if film and which in ([], ["--view"]):
+        raise UserError(f"{output} is for many pictures; say which: --orbit 75, --cameras CAPTURE or --path FILE")
+    many = [wish for wish in wishes if wish != "--view"]
+    if not film and many:
+        raise UserError(f"{many[0]} is for many pictures; write a .gif, an .mp4 or a folder instead of {output.name}")
+
+
+def _refuse_kinds(alpha: bool, depth: bool, output: Path) -> None:
+    """Transparency and depth go into PNGs only.
+
+    Raises:
+        UserError: both are asked for, or neither can be stored there.
+    """
+    from ...gaussians.errors import UserError
+
+    if alpha and depth:
+        raise UserError("--alpha and --depth are different pictures; ask for one")
+    if (alpha or depth) and output.suffix.lower() in (".gif", ".mp4"):
+        raise UserError(f"{'--alpha' if alpha else '--depth'} needs PNGs; write a folder instead of {output.name}")
+
+
+def _still(draw: Callable[[Camera], Any], camera: Camera, output: Path, force: bool) -> None:
+    from ..pictures import save_png
+
     started = time.perf_counter()
-    picture = render(loaded.cloud, camera, parse(background), backend).to_uint8()
+    picture = draw(camera)
     seconds = round(time.perf_counter() - started, 3)
     save_png(picture, output, force)
     data = {"path": str(output), "size": [camera.width, camera.height], "view": camera.name, "seconds": seconds}
     terminal.result(f"{output}: {camera.width}x{camera.height}, drawn in {seconds} s", data)
+
+
+def _shots(
+    scene: Scene, orbit: int | None, cameras: Path | None, path: Path | None, timing: Timing, size: str | None, to: Path
+) -> Shots:
+    """The pictures of a film; `timing` holds its seconds and its pictures a second."""
+    from .. import shots
+
+    asked = None if size is None else parse_size(size)
+    usual = _GIF if to.suffix.lower() == ".gif" else PICTURE
+    if path is not None:
+        return shots.along(scene, path, asked, usual, *timing)
+    if orbit is not None:
+        return shots.orbit(scene, cameras, orbit, asked or usual, *timing)
+    assert cameras is not None
+    return shots.own(cameras, asked, *timing)
+
+
+def _film(draw: Callable[[Camera], Any], shots: Shots, output: Path, force: bool) -> None:
+    from .. import film
+
+    sizes = {(camera.width, camera.height) for camera in shots.cameras}
+    film.check(output, shots.names, sizes, shots.fps, force)
+    count = len(shots.cameras)
+    started = time.perf_counter()
+
+    def drawn(i: int) -> Any:
+        terminal.progress(f"drawing {i + 1} of {count}", i / count)
+        return draw(shots.cameras[i])
+
+    with terminal.interruptible():
+        size = film.write(output, shots.names, drawn, shots.fps, force)
+    terminal.clear()
+    spent = round(time.perf_counter() - started, 3)
+    width, height = next(iter(sizes)) if len(sizes) == 1 else (None, None)
+    data = {"path": str(output), "pictures": count, "size": [width, height] if width else None, "bytes": size}
+    data |= {"fps": round(shots.fps, 3), "lasts": round(shots.seconds, 3), "seconds": spent}
+    of = f" of {width}x{height}" if width else ""
+    lasts = "" if film.picture_paths(output, shots.names) else f", {shots.seconds:.1f} s at {shots.fps:g} a second"
+    pictures = "1 picture" if count == 1 else f"{count} pictures"
+    terminal.result(f"{output}: {pictures}{of}{lasts}, {size / 1e6:.1f} MB, drawn in {spent} s", data)
+
+
+def _plain(drawn: Render) -> Any:
+    """`[H, W, 3]` uint8."""
+    return drawn.to_uint8()
+
+
+def _transparent(drawn: Render) -> Any:
+    """`[H, W, 4]` uint8, colours as they are without the black behind them."""
+    import torch
+
+    alpha = drawn.alpha[..., None]
+    straight = torch.cat([drawn.rgb / alpha.clamp(min=1e-6), alpha], dim=-1)
+    return (straight.clamp(0, 1) * 255 + 0.5).to(torch.uint8).cpu().numpy()
+
+
+def _thousandths(drawn: Render) -> Any:
+    """`[H, W]` uint16, depth in thousandths of a scene unit; what is too far for 16 bits is 65535."""
+    import numpy as np
+
+    return (drawn.depth.cpu().numpy() * 1000 + 0.5).clip(0, 65535).astype(np.uint16)

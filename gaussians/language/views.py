@@ -55,7 +55,7 @@ class Views:
 
 def choose_views(scene: Scene, most: int = MOST, size: int = SIZE) -> Views:
     """Greedy set cover over the scene's own cameras if it has enough, else over eyes around and inside it."""
-    rows, cloud = _sample(scene.cloud)
+    rows, cloud = sample(scene.cloud)
     own = [_small(c, size) for c in scene.cameras]
     pool = own if len(own) >= most else own + candidates(scene.cloud, scene.frame, size)
     if not len(cloud) or not pool:
@@ -76,7 +76,7 @@ def choose_views(scene: Scene, most: int = MOST, size: int = SIZE) -> Views:
     return Views(tuple(pool[i] for i in chosen), rows, seen[chosen], 1 - visible / len(cloud))
 
 
-def _sample(cloud: GaussianCloud) -> tuple[NDArray[np.int64], GaussianCloud]:
+def sample(cloud: GaussianCloud) -> tuple[NDArray[np.int64], GaussianCloud]:
     """Rows and cloud of at most SAMPLE Gaussians, grown so that the fewer still cover what all covered."""
     step = max(1, -(-len(cloud) // SAMPLE))
     rows = np.arange(0, len(cloud), step)
@@ -91,7 +91,7 @@ def default_viewer(scene: Scene, width: int = 640, height: int = 480) -> Camera:
     pool = candidates(scene.cloud, scene.frame, 96)
     if not pool:
         return Camera.look_at([0, -3, 1], [0, 0, 0], scene.frame.up, width, height)
-    _, cloud = _sample(scene.cloud)
+    _, cloud = sample(scene.cloud)
     heights = scene.frame.heights(cloud.means.numpy())
     low, high = np.quantile(heights, [0.02, 0.98])
     raised = torch.from_numpy(heights > low + ABOVE * (high - low))
