@@ -1,9 +1,12 @@
-"""Shared fixtures: where the real data lies, and seeds."""
+"""Shared fixtures: where the real data lies, seeds, and packages that are not there."""
 
 from __future__ import annotations
 
+import builtins
 import os
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -24,3 +27,19 @@ def data_dir() -> Path:
     if not _DATA.is_dir():
         pytest.skip(f"real data not found at {_DATA}; set SCENEWRIGHT_DATA to run this test")
     return _DATA
+
+
+@pytest.fixture
+def uninstalled(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
+    """Called with a package's name, lets it look as if it were not installed."""
+    real = builtins.__import__
+
+    def remove(package: str) -> None:
+        def refuse(name: str, *args: Any, **kwargs: Any) -> Any:
+            if name == package:
+                raise ModuleNotFoundError(f"No module named {package!r}", name=package)
+            return real(name, *args, **kwargs)
+
+        monkeypatch.setattr(builtins, "__import__", refuse)
+
+    return remove

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import torch
@@ -10,7 +12,10 @@ from numpy.typing import NDArray
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.color import rgb_to_lab
+from scenewright.gaussians.files import save
+from scenewright.gaussians.language import encoders
 from scenewright.gaussians.language.field import Box, Group, LanguageField
+from scenewright.gaussians.language.store import save_field
 from scenewright.gaussians.scene import Frame, Scene
 
 _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -70,3 +75,12 @@ def boxes() -> Scene:
 @pytest.fixture
 def encoder() -> NamesOnly:
     return NamesOnly()
+
+
+@pytest.fixture
+def room(boxes: Scene, encoder: NamesOnly, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The boxes in a file with a saved field, and an encoder that fits it."""
+    monkeypatch.setattr(encoders, "load", lambda spec="auto": encoder)
+    save(boxes, tmp_path / "boxes.ply")
+    save_field(boxes, tmp_path / "boxes.ply")
+    return tmp_path / "boxes.ply"

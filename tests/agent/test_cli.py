@@ -13,9 +13,8 @@ from PIL import Image
 from scenewright.agent import cli
 from scenewright.agent.log import read_log
 from scenewright.agent.terminal import terminal
-from scenewright.gaussians.files import load, save
-from scenewright.gaussians.language import encoders
-from scenewright.gaussians.language.store import beside, save_field
+from scenewright.gaussians.files import load
+from scenewright.gaussians.language.store import beside
 from scenewright.gaussians.scene import Scene
 
 
@@ -44,15 +43,6 @@ def call(capsys: pytest.CaptureFixture[str]) -> Any:
         return Answer(code if isinstance(code, int) else 1, streams.out, streams.err)
 
     return run
-
-
-@pytest.fixture
-def room(boxes: Scene, encoder: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The boxes in a file with a saved field, and an encoder that fits it."""
-    monkeypatch.setattr(encoders, "load", lambda spec="auto": encoder)
-    save(boxes, tmp_path / "boxes.ply")
-    save_field(boxes, tmp_path / "boxes.ply")
-    return tmp_path / "boxes.ply"
 
 
 def test_help_lists_every_verb(call: Any) -> None:

@@ -17,9 +17,7 @@ from scenewright.agent.session import Session
 from scenewright.agent.terminal import Terminal
 from scenewright.gaussians.errors import AbsentError, UserError
 from scenewright.gaussians.files import save
-from scenewright.gaussians.language import encoders
 from scenewright.gaussians.language.query import Query
-from scenewright.gaussians.language.store import save_field
 from scenewright.gaussians.scene import Scene
 
 GREEN = Query(text="thing", colors=("green",))
@@ -101,14 +99,6 @@ def test_an_explanation_names_every_term_and_threshold(boxes: Scene, encoder: An
         assert (e.outcome == "fails") == any(not t.holds for t in e.terms)
     assert [(role, inner.verdict) for role, inner in explained.inside] == [("left of", "found")]
     assert json.loads(json.dumps(explained.to_json()))["candidates"][0]["terms"][0]["threshold"] > 0
-
-
-@pytest.fixture
-def room(boxes: Scene, encoder: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(encoders, "load", lambda spec="auto": encoder)
-    save(boxes, tmp_path / "boxes.ply")
-    save_field(boxes, tmp_path / "boxes.ply")
-    return tmp_path / "boxes.ply"
 
 
 def _call(capsys: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str, str]:

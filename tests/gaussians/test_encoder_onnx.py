@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import builtins
 import json
 import shutil
 import sys
 import warnings
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -246,15 +246,8 @@ def test_the_pooled_output_is_taken_where_it_is_the_only_vector(copy: Path) -> N
     np.testing.assert_allclose(encoder.encode_images(pictures), expected, atol=_SAME)
 
 
-def test_a_missing_library_names_the_fix(exported_clip: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    real = builtins.__import__
-
-    def refuse(name: str, *args: Any, **kwargs: Any) -> Any:
-        if name == "tokenizers":
-            raise ModuleNotFoundError("No module named 'tokenizers'", name="tokenizers")
-        return real(name, *args, **kwargs)
-
-    monkeypatch.setattr(builtins, "__import__", refuse)
+def test_a_missing_library_names_the_fix(exported_clip: Path, uninstalled: Callable[[str], None]) -> None:
+    uninstalled("tokenizers")
     with pytest.raises(BackendError, match=r"pip install 'scenewright\[models\]'"):
         encoders.load(f"onnx:{exported_clip}").encode_text(["chair"])
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import builtins
 import importlib.util
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -63,15 +63,8 @@ def test_a_broken_folder_is_said(saved_clip: Path, tmp_path: Path) -> None:
         encoders.load(f"open_clip:{tmp_path}")
 
 
-def test_a_missing_extra_names_the_fix(monkeypatch: pytest.MonkeyPatch) -> None:
-    real = builtins.__import__
-
-    def refuse(name: str, *args: Any, **kwargs: Any) -> Any:
-        if name == "open_clip":
-            raise ModuleNotFoundError("No module named 'open_clip'", name="open_clip")
-        return real(name, *args, **kwargs)
-
-    monkeypatch.setattr(builtins, "__import__", refuse)
+def test_a_missing_extra_names_the_fix(monkeypatch: pytest.MonkeyPatch, uninstalled: Callable[[str], None]) -> None:
+    uninstalled("open_clip")
     monkeypatch.setattr("scenewright.gaussians.language.encoders.open_clip.import_torchvision", lambda: None)
     with pytest.raises(BackendError, match=r"pip install 'scenewright\[models\]'"):
         encoders.load("open_clip:ViT-B-32/openai")

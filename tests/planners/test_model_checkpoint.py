@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import builtins
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -160,15 +160,8 @@ def test_a_name_in_the_cache_is_not_fetched(
 
 
 @pytest.mark.parametrize("package", ["transformers", "llguidance"])
-def test_a_missing_extra_names_the_fix(tiny_llama: Path, monkeypatch: pytest.MonkeyPatch, package: str) -> None:
-    real = builtins.__import__
-
-    def refuse(name: str, *args: Any, **kwargs: Any) -> Any:
-        if name == package:
-            raise ModuleNotFoundError(f"No module named {package!r}", name=package)
-        return real(name, *args, **kwargs)
-
-    monkeypatch.setattr(builtins, "__import__", refuse)
+def test_a_missing_extra_names_the_fix(tiny_llama: Path, uninstalled: Callable[[str], None], package: str) -> None:
+    uninstalled(package)
     with pytest.raises(BackendError, match=rf"{package} is not installed; run: pip install 'scenewright\[models\]'"):
         models.load(f"transformers:{tiny_llama}")
 
