@@ -1,9 +1,13 @@
-"""Where real data lies, and what to say where it does not."""
+"""Where real data lies and what to say where it does not, and the reading of instructions that were written down."""
 
 from __future__ import annotations
 
+import json
 import os
 from pathlib import Path
+from typing import Any
+
+from ..gaussians.errors import FileError
 
 
 def folder(name: str) -> Path | None:
@@ -16,3 +20,14 @@ def folder(name: str) -> Path | None:
 def missing(name: str) -> str:
     """The note of a benchmark that had to do without."""
     return f"{name}: not measured, the data are not here; set SCENEWRIGHT_DATA to the folder that holds {name}"
+
+
+def instructions(path: Path) -> list[dict[str, Any]]:
+    """A set of written instructions, one JSON object a line.
+
+    Raises:
+        FileError: the set is not there (it is in the repository, not in the installed package).
+    """
+    if not path.is_file():
+        raise FileError(f"no instructions at {path}; run this benchmark from a checkout of the repository")
+    return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]

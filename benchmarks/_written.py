@@ -17,12 +17,12 @@ from pathlib import Path
 from typing import Any, Literal
 
 from ..agent.sight import StageSight
-from ..gaussians.errors import FileError
 from ..planners.graph import SceneGraph
 from ..planners.impossible import Step
 from ..planners.on_graph import Resolved, resolve_text
 from ..planners.plan import Planner
 from ..planners.stage import Stage
+from . import _data
 
 FOLDER = Path(__file__).resolve().parent.parent / "tests" / "planners" / "written"
 Outcome = Literal["right", "wrong_edit", "wrong_answer", "unanswered"]
@@ -53,15 +53,8 @@ class Judged:
 
 
 def cases(folder: Path = FOLDER) -> list[dict[str, Any]]:
-    """The written instructions; `steps` with targets, or a `verdict`.
-
-    Raises:
-        FileError: the set is not there (it is in the repository, not in the installed package).
-    """
-    path = folder / "instructions.jsonl"
-    if not path.is_file():
-        raise FileError(f"no instructions at {path}; run this benchmark from a checkout of the repository")
-    return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+    """The written instructions, each with `steps` and their targets or a `verdict`; raises as `_data.instructions`."""
+    return _data.instructions(folder / "instructions.jsonl")
 
 
 def is_held(case: dict[str, Any]) -> bool:

@@ -8,7 +8,6 @@ instructions judged by their operations alone; and sentences of other people, of
 
 from __future__ import annotations
 
-import json
 import subprocess
 import sys
 import time
@@ -17,7 +16,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args
 
-from ..gaussians.errors import FileError
 from ..planners import load
 from ..planners.plan import EditPlan, Planner
 from ..tools import registry
@@ -45,14 +43,8 @@ class Answer:
 
 
 def cases(path: Path = CASES) -> list[dict[str, Any]]:
-    """The written instructions.
-
-    Raises:
-        FileError: the set is not there (it is in the repository, not in the installed package).
-    """
-    if not path.is_file():
-        raise FileError(f"no instructions at {path}; run this benchmark from a checkout of the repository")
-    return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+    """The written instructions; raises as `_data.instructions`."""
+    return _data.instructions(path)
 
 
 def judge(plan: EditPlan, case: dict[str, Any]) -> Outcome:
