@@ -15,15 +15,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..gaussians.camera import Camera
-from ..gaussians.errors import AbsentError, AmbiguousError, InstructionError, ScenewrightError, UserError
+from ..gaussians.errors import AmbiguousError, InstructionError, UserError
 from ..gaussians.scene import Scene
+from .casting import Ids, agreement, cast_of, tried
 from .look import Picture, after, numbered, picture
 from .pictures import Tile, contact_sheet, save_png
 from .result import Result
-from .script import SCRIPT, Cast, Role, Thing, Turn
+from .script import SCRIPT, Cast, Role, Turn
 from .session import Session
 from .stopwatch import timed
 from .targets import make_folder
@@ -34,11 +34,9 @@ if TYPE_CHECKING:
 
 TRIES = 40  # sentences a role may offer before it is left out
 AGREES = 0.5  # intersection over union from which a choice counts as the thing that was meant
-VISIBLE = 0.002  # share of the picture from which a thing is worth speaking of
 FILES = ("room.ply", "edited.ply", "session.jsonl", "contact_sheet.png")
 
 Say = Callable[[str], None]
-Ids = NDArray[np.int32]
 
 
 @dataclass(frozen=True)
@@ -158,7 +156,7 @@ class Demo:
 
     def _converse(self, session: Session, room: Room) -> None:
         truth = np.asarray(room.truth.ids)
-        cast = _cast(room, session.viewer)
+        cast = cast_of(room, session.viewer)
         for name, role in SCRIPT:
             with timed(self.seconds, "choose what to say"):
                 turn = self._first_that_fits(session, role, cast, truth)
@@ -180,8 +178,8 @@ class Demo:
         for turn in itertools.islice(role(cast), TRIES):
             if mistaken & {t.id for t in turn.about}:
                 continue
-            fits, result = _tried(session, turn)
-            overlap = _overlap(result, turn, truth) if result is not None else None
+            fits, result = tried(session, turn)
+            overlap = agreement(result, turn, truth) if result is not None else None
             if fits and (overlap is None or overlap >= AGREES):
                 return turn
             if fits:
@@ -220,7 +218,7 @@ class Demo:
         if result is not None:
             with timed(self.seconds, "pictures"):
                 shots.append(after(result, session.viewer))
-        overlap = _overlap(result, turn, truth) if result is not None and not answered else None
+        overlap = agreement(result, turn, truth) if result is not None and not answered else None
         files = self._keep(number, shots)
         step = Step(number, text, outcome, result is not None, seconds, overlap, files)
         self.steps.append(step)
@@ -255,71 +253,7 @@ def _viewer(scene: Scene, size: tuple[int, int]) -> Camera:
     return default_viewer(scene, *size)
 
 
-def _cast(room: Room, viewer: Camera) -> Cast:
-    """Who can be spoken of: things by the pixels they fill, and kinds that are not there."""
-    import torch
-
-    from ..gaussians.assets import kinds
-    from ..gaussians.render import render
-
-    ids = torch.as_tensor(np.asarray(room.truth.ids), dtype=torch.int32)
-    seen = render(room.scene.cloud.replace(group=ids), viewer).group
-    table = room.truth.objects
-    things = [Thing(o.id, o.kind, o.color, *_seen(seen.numpy() == o.id)) for o in table]
-    visible = [t for t in things if t.pixels >= VISIBLE * viewer.width * viewer.height]
-    there = {t.kind for t in things}
-    # A "lamp" is not absent from a room with a floor lamp.
-    words = {word for kind in there for word in kind.split()}
-    absent = [k for k in kinds(shown=True) if k not in there and not set(k.split()) & words]
-    return Cast(sorted(visible, key=lambda t: -t.pixels), absent, set())
-
-
-def _seen(mask: NDArray[np.bool_]) -> tuple[int, float]:
-    """How many pixels, and their mean place from left to right."""
-    columns = mask.nonzero()[1]
-    return len(columns), float(columns.mean() / mask.shape[1]) if len(columns) else 0.5
-
-
-def _tried(session: Session, turn: Turn) -> tuple[bool, Result | None]:
-    """Whether a sentence leads where it ought to, and the result it would have."""
-    if turn.outcome == "undo":
-        return len(session.done) > 0, None
-    try:
-        result = session.preview(turn.text)
-        return turn.outcome == "edit", result
-    except AmbiguousError:
-        return turn.outcome == "ambiguous" and _answer_helps(session, turn.answer), None
-    except AbsentError:
-        return turn.outcome == "absent", None
-    except ScenewrightError:
-        return False, None
-
-
-def _answer_helps(session: Session, answer: str) -> bool:
-    try:
-        session.preview(session.answered(answer))
-    except ScenewrightError:
-        return False
-    return True
-
-
 def _sentence(result: Result) -> str:
     if not result.receipts:
         return "the scene is again exactly as it was"
     return "; ".join(r.sentence() for r in result.receipts)
-
-
-def _overlap(result: Result, turn: Turn, truth: Ids) -> float | None:
-    """How well what was chosen agrees with the builder's list, over the Gaussians the room began with."""
-    language = result.before.language
-    if not turn.about or language is None:
-        return None
-    cloud = result.before.cloud
-    ids, column = cloud.ids.numpy(), cloud.group.numpy()
-    groups = {g for r in result.receipts for g in r.selection.groups}
-    leaves = [leaf for g in groups for leaf in language.leaves(g)]
-    original = ids < len(truth)
-    chosen = np.isin(column[original], leaves)
-    meant = np.isin(truth[ids[original]], [t.id for t in turn.about])
-    union = int((chosen | meant).sum())
-    return float((chosen & meant).sum() / union) if union else None
