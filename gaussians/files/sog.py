@@ -103,9 +103,14 @@ class _Bundle:
     def _from_zip(self, name: str, limit: int) -> bytes:
         try:
             with zipfile.ZipFile(self.path) as archive:
-                if archive.getinfo(name).file_size > limit:
+                entry = archive.getinfo(name)
+                if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+                    raise FileError(f"{self.path}: its part {name} is packed in a way that SOG does not know")
+                with archive.open(entry) as part:  # piece by piece, because the archive may lie about the size
+                    data = part.read(limit + 1) if entry.file_size <= limit else b""
+                if entry.file_size > limit or len(data) > limit:
                     raise FileError(f"{self.path}: its part {name} is larger than such a part can be")
-                return archive.read(name)
+                return data
         except KeyError as error:
             raise FileError(f"{self.path}: the part {name} is missing from the archive") from error
         except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError, NotImplementedError) as error:

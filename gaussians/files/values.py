@@ -13,7 +13,7 @@ import torch
 from numpy.typing import NDArray
 
 from ..cloud import GaussianCloud
-from ..errors import FileError
+from ..errors import FileError, UserError
 
 Floats = NDArray[np.float32]
 
@@ -97,8 +97,21 @@ def codes(values: NDArray[np.floating], top: int) -> NDArray[np.uint32]:
 
 
 def columns(cloud: GaussianCloud) -> dict[str, Floats]:
-    """The cloud's columns as NumPy arrays, by name."""
-    return {name: column.detach().cpu().numpy() for name, column in cloud.columns()}
+    """The cloud's columns as NumPy arrays, by name, for formats whose steps a number that is not finite would spoil.
+
+    Raises:
+        UserError: some rows hold NaN or infinite values.
+    """
+    found = {name: column.detach().cpu().numpy() for name, column in cloud.columns()}
+    sound = np.isfinite(found["opacities"])
+    for name in ("means", "quats", "scales", "sh"):
+        sound &= _finite_rows(found[name])
+    if not sound.all():
+        raise UserError(
+            f"{int((~sound).sum()):,} Gaussians hold NaN or infinite values, which only INRIA .ply can store; leave "
+            "them out first"
+        )
+    return found
 
 
 def unit_quats(quats: Floats) -> tuple[Floats, int]:
