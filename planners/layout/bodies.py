@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from ..graph import SHELL
-from .problem import Item, Problem
+from .problem import Item, Problem, Wall
 from .shapes import EPSILON, Spot, depth, shifted
 
 DOORS = frozenset({"door", "doorway", "entrance", "gate", "exit", "front door", "entry"})
@@ -21,6 +21,7 @@ TUCKED = 0.03  # metres between a table and what stands around it
 _ELBOW = 0.08  # metres between neighbours at a table
 _SWING = 0.9  # metres before a door that its leaf takes at most
 HEAD = 1.9  # metres; using a thing takes no more height
+_BEFORE = ("around", "in_front_of", "between", "under", "on", "inside", "above", "below")
 _BESIDE_WALL = ("against_wall", "in_corner", "at_window")
 
 
@@ -101,13 +102,25 @@ class Prepared:
 
     @cached_property
     def tied(self) -> frozenset[tuple[int, int]]:
-        """Pairs of items that a wish brings together: one may stand in the other's free space."""
-        near = ("around", "facing", "next_to", "in_front_of", "between", "under", "on", "inside", "above", "below")
+        """Pairs of items that a wish brings together: one may stand in the other's free space, but before it."""
+        return self._pairs(("facing", "next_to", *_BEFORE))
+
+    @cached_property
+    def joined(self) -> frozenset[tuple[int, int]]:
+        """Pairs of which one may stand before the other as well: a stool at a piano, not a side table at a sofa."""
+        return self._pairs(_BEFORE)
+
+    def _pairs(self, names: tuple[str, ...]) -> frozenset[tuple[int, int]]:
         pairs = set[tuple[int, int]]()
         for wish, (one, *others) in zip(self.problem.wishes, self.parties, strict=True):
-            if wish.name in near:
+            if wish.name in names:
                 pairs |= {p for o in others for p in ((one, o), (o, one))}
         return frozenset(pairs)
+
+    def may_enter(self, one: int, zone: Spot, other: int) -> bool:
+        """Whether something may stand in a zone, given in its owner's axes, of what it has to do with."""
+        before = zone.y < 0 and zone.x == 0
+        return (one, other) in (self.joined if before else self.tied)
 
     def wants_wall(self, i: int) -> bool:
         """Whether an item's back belongs against a wall."""
@@ -117,6 +130,20 @@ class Prepared:
     def _walled(self) -> frozenset[int]:
         wished = {self.index[w.subject] for w in self.problem.wishes if w.name in _BESIDE_WALL}
         return frozenset(wished | {i for i, item in enumerate(self.items) if item.backed})
+
+    @cached_property
+    def named(self) -> dict[int, frozenset[Wall]]:
+        """The walls that were named for an item."""
+        found = defaultdict[int, set[Wall]](set)
+        for wish in self.problem.wishes:
+            if wish.wall:
+                found[self.index[wish.subject]].add(wish.wall)
+        return {i: frozenset(walls) for i, walls in found.items()}
+
+    @cached_property
+    def zones_of(self) -> tuple[tuple[Spot, ...], ...]:
+        """For each item the room that using it takes, in its own axes."""
+        return tuple(tuple(self.zones(i)) for i in range(len(self.items)))
 
     def zones(self, i: int) -> tuple[Spot, ...]:
         """The room that using an item takes, in its own axes; before a door its leaf swings."""

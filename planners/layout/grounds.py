@@ -121,7 +121,8 @@ def _anywhere(state: State, body: Body, width: float, deep: float, frame: Spot =
 def _along_walls(state: State, body: Body) -> Iterator[Lattice]:
     """Positions with the back of the first thing at a wall."""
     width, deep, _ = state.size
-    back = state.prepared.items[body.first].size[1] / 2
+    item = state.prepared.items[body.first]
+    back = item.size[1] / 2 + (item.aisle if item.backed else 0.0)
     for yaw in TURNS:
         x0, x1, y0, y1 = extents_of(state, body, yaw)
         low, high = np.array([-width / 2 - x0, -deep / 2 - y0]), np.array([width / 2 - x1, deep / 2 - y1])

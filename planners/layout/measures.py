@@ -22,6 +22,8 @@ NEAR_WALL = 0.1  # metres between a thing and the wall it is against
 CORNER = 0.25  # metres to either wall of the corner that a thing is in
 IN_REACH = 0.6  # metres from a window: what is at it
 AT_TABLE = 0.4  # metres between a thing and what it stands around
+WALLS = ("west", "east", "south", "north")
+_INWARD = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))  # from each of them
 IN_LINE = 0.05  # metres between the middles of aligned things
 
 
@@ -38,9 +40,13 @@ def measure(
     Coordinates of each box may be numbers or arrays of one length. `wall`: the one that is meant, if one is.
     """
     if wall is not None:
-        kept, cost = measure(name, size, one, others, windows)
-        gap = walls_gaps(one, size)[("west", "east", "south", "north").index(wall)]
-        return kept & (gap <= (CORNER if name == "in_corner" else NEAR_WALL)), cost + gap
+        row = WALLS.index(wall)
+        kept, cost = measure(name, size, one, others, [w for w in windows if _wall_of(w, size) == row])
+        gap = walls_gaps(one, size)[row]
+        if name == "at_window":
+            return kept, cost + gap
+        turned = one.front[0] * _INWARD[row][0] + one.front[1] * _INWARD[row][1]
+        return kept & (gap <= (CORNER if name == "in_corner" else NEAR_WALL)), cost + gap + 0.5 * (1.0 - turned)
     if name in _AIMS:
         kept, cost = _beside(_AIMS[name], one, others[0])
         return kept, cost + _before(one, others[0]) if name == "in_front_of" else cost
@@ -152,6 +158,11 @@ def walls_gaps(one: Spot, size: Sequence[float]) -> tuple[Any, Any, Any, Any]:
         one.y - hy + size[1] / 2,
         size[1] / 2 - one.y - hy,
     )
+
+
+def _wall_of(one: Spot, size: Sequence[float]) -> int:
+    """The wall nearest to a thing, as a row of `WALLS`."""
+    return int(np.argmin([float(g) for g in walls_gaps(one, size)]))
 
 
 def behind_gap(one: Spot, size: Sequence[float]) -> Any:

@@ -14,7 +14,7 @@ from .bodies import FLAT, Body, Member
 from .grounds import EYE, FLOOR, extents_of
 from .measures import behind_gap, measure, walls_gaps
 from .shapes import F64, Lattice, Spot, meetings, shifted
-from .state import BACKED, HARD, SOFT, USED, WALLED, State, placed
+from .state import BACKED, HARD, OPEN, SOFT, USED, WALLED, State, placed
 
 _MOVED, _TURNED = 3.0, 1.0  # price of a metre away from where a thing was, and metres that a quarter turn is worth
 _CROWDED = 0.3  # share of a top from which things are put close together
@@ -87,9 +87,9 @@ def use(
     """The price of standing in the room that another needs for its use, or of having too little oneself."""
     price = np.zeros((len(lattice.xs), len(lattice.ys)))
     prepared, i = state.prepared, member.item
-    for zone in prepared.zones(i):
+    for zone in prepared.zones_of[i]:
         room = placed(zone, moving)
-        others = [s for j, s in solids if (i, j) not in prepared.tied and i not in prepared.carriers[j]]
+        others = [s for j, s in solids if not prepared.may_enter(i, zone, j) and i not in prepared.carriers[j]]
         for window, meets in meetings(lattice, room, others):
             price[window] = np.maximum(price[window], USED * np.asarray(meets))
         if frame is FLOOR:
@@ -101,8 +101,9 @@ def use(
         zones = [
             in_frame(z, frame)
             for j, zs in enumerate(state.zones)
-            if zs and (i, j) not in prepared.tied and j not in prepared.carriers[i]
-            for z in zs
+            if zs and j not in prepared.carriers[i]
+            for local, z in zip(prepared.zones_of[j], zs, strict=False)
+            if not prepared.may_enter(j, local, i)
         ]
         for window, meets in meetings(lattice, moving, zones):
             price[window] += USED * np.asarray(meets)
@@ -139,6 +140,8 @@ def habits(state: State, body: Body, place: Place) -> F64:
     prepared, item = state.prepared, state.prepared.items[body.first]
     here = moved(state, body.members[0], place)
     total = np.zeros(len(place.price))
+    if prepared.problem.open:
+        total += sum(OPEN * np.asarray(state.hides(m.item, moved(state, m, place))) for m in body.members)
     if item.was is not None:
         turned = abs((place.yaw - item.was.yaw + 180.0) % 360.0 - 180.0) / 90.0
         away = np.hypot(place.x - item.was.position[0], place.y - item.was.position[1])
@@ -158,7 +161,7 @@ def habits(state: State, body: Body, place: Place) -> F64:
     )
     total += 2.0 * np.maximum(1.2 - (ahead - here.d / 2), 0.0)
     if prepared.wants_wall(body.first):
-        gap = np.minimum(behind_gap(here, state.size), 3.0)
+        gap = np.abs(np.minimum(behind_gap(here, state.size), 3.0) - item.aisle)
         total += np.where(gap > BACKED, WALLED + 4.0 * gap, 0.0)
     elif item.size[2] <= FLAT:
         total += 0.3 * np.hypot(here.x, here.y)

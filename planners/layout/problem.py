@@ -42,6 +42,7 @@ class Item(BaseModel):
         height: of its underside over the floor, for what hangs on a wall; None leaves it to the solver.
         clear: metres kept free before, behind, left and right of it for using it: a drawer, a chair, a way through.
         backed: its back belongs against a wall.
+        aisle: metres between its back and that wall, where somebody works behind it: a counter.
         optional: may be left out where there is no room.
     """
 
@@ -57,6 +58,7 @@ class Item(BaseModel):
     height: Metres | None = None
     clear: tuple[Metres, Metres, Metres, Metres] = (0.0, 0.0, 0.0, 0.0)
     backed: bool = False
+    aisle: Metres = 0.0
     optional: bool = False
 
 
@@ -106,6 +108,7 @@ class Problem(BaseModel):
         wishes: what is wanted of them.
         free: floor to be kept free.
         walkway: metres between things that a person passes, where there is a choice.
+        open: walls that the room is looked at through: nothing hangs there or turns a tall back to them unless wished.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -115,6 +118,7 @@ class Problem(BaseModel):
     wishes: Annotated[tuple[Wish, ...], Field(max_length=4096)] = ()
     free: Annotated[tuple[Keepout, ...], Field(max_length=16)] = ()
     walkway: Metres = 0.6
+    open: Annotated[tuple[Wall, ...], Field(max_length=4)] = ()
 
     @model_validator(mode="after")
     def _closed(self) -> Self:

@@ -17,10 +17,12 @@ from .shapes import F64, Flags, Spot
 from .state import State
 
 _TRIES = 6  # places that are looked at for a way to everything, before the best of them is taken
+_SEEK = 30  # such places where all of the first shut something off
 _APART = 0.35  # metres between such places
 _IDLE = 4  # starts without a better layout, after which no more are made
 _IDLE_TIDY = 2  # the same where only habits are at stake
 _WORK = 150  # times that something is placed, at usual effort, after which no new start is made
+_FIRST = 3.0  # urgency, in square metres, of what shut others off: it is placed before them the next time
 _WORTH = 0.05  # price by which a second look must better the layout to be worth another
 
 
@@ -38,6 +40,7 @@ class Search:
         self.rng = np.random.default_rng(seed)
         self.loose = set[int]()
         self.placed = 0  # how often something was placed: the work done so far
+        self.blocking = set[int]()  # what shut others off, wherever it was put
         self.urgent = [0.0] * len(prepared.items)
         things = max(len(prepared.items), 1)
         self.starts = max(1, min(round(12 * effort), round(effort * 200 / things)))
@@ -122,17 +125,27 @@ class Search:
         if not found:
             return False
         self.placed += 1
-        state.place(*self._reachable(state, found))
+        before = state.lost()
+        state.place(*self._reachable(state, found, before))
+        if state.lost() <= before:
+            return True
+        self.blocking |= {m.item for m in body.members}
+        if all(self.prepared.items[m.item].optional for m in body.members):
+            state.remove(body)
+            return False
         return True
 
-    def _reachable(self, state: State, found: list[Place]) -> tuple[Body, float, float, float, float]:
-        """The cheapest place, with what it shuts off counted in."""
+    def _reachable(self, state: State, found: list[Place], before: int) -> tuple[Body, float, float, float, float]:
+        """The cheapest place, with what it shuts off counted in; `before` so many things were shut off already."""
         price = np.concatenate([p.price for p in found])
         x, y = np.concatenate([p.x for p in found]), np.concatenate([p.y for p in found])
         which = np.repeat(np.arange(len(found)), [len(p.price) for p in found])
         best: tuple[Body, float, float, float, float] | None = None
-        least = np.inf
-        for _ in range(_TRIES):
+        least, open_way = np.inf, False
+        for tried in range(_SEEK):
+            if tried >= _TRIES and open_way:
+                break
+            self.placed += tried > 0 and tried % _TRIES == 0
             k = int(price.argmin())
             if not price[k] < least:
                 break
@@ -140,6 +153,7 @@ class Search:
             here = (place.body, float(x[k]), float(y[k]), place.yaw, place.low)
             state.place(*here)
             total = float(price[k]) + state.crowded()
+            open_way = open_way or state.lost() <= before
             state.remove(place.body)
             if total < least:
                 best, least = here, total
@@ -188,6 +202,9 @@ class Search:
             if wish.hard and not state.holds(row)[0]:
                 guilty |= set(self.prepared.parties[row])
                 self._loosen(set(self.prepared.parties[row]))
+        for i in self.blocking:
+            self.urgent[i] += _FIRST
+        self.blocking = set()
         lost = state.ways[-1].unreached()
         guilty |= {i for i in lost if isinstance(i, int)}
         for i in guilty:

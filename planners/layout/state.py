@@ -7,18 +7,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
-from .bodies import DOORS, FLAT, Body, Member, Prepared
-from .measures import behind_gap, measure
+from .bodies import DOORS, FLAT, HEAD, Body, Member, Prepared
+from .measures import behind_gap, measure, walls_gaps
 from .problem import Keepout, Stand
 from .shapes import EPSILON, Spot, depth, shifted, wrapped
 from .ways import floors
 
-HARD, SOFT, USED, WALLED, LOST = 1000.0, 12.0, 60.0, 60.0, 400.0  # prices; the unit is about a metre off
-LEFT_OUT, SPARED = 4000.0, 600.0  # of leaving out what must be there, and what may be absent
+HARD, SOFT, USED, WALLED, OPEN, LOST = 1000.0, 12.0, 60.0, 60.0, 45.0, 400.0  # prices; the unit is about a metre off
+LEFT_OUT, SPARED = 4000.0, 300.0  # of leaving out what must be there, and what may be absent
 BACKED = 0.02  # metres between a back and the wall behind it
+_LOW, _NEAR = 0.6, 0.6  # metres; what is lower does not hide a room, what is farther from the open wall neither
 _TIGHT = 25.0  # price of a thing that one gets to only by squeezing through
 
 
@@ -61,7 +63,7 @@ class State:
         """Place one item."""
         item = self.prepared.items[i]
         self.spots[i] = spot
-        self.zones[i] = tuple(placed(z, spot) for z in self.prepared.zones(i))
+        self.zones[i] = tuple(placed(z, spot) for z in self.prepared.zones_of[i])
         for floor in self.ways:
             solid = item.support == "floor" and item.size[2] > FLAT
             floor.put(i, spot, asked=solid, door=item.label.lower().strip() in DOORS)
@@ -131,7 +133,33 @@ class State:
             kept, cost = self.holds(row)
             total += (2.0 if wish.hard else 1.5) * min(cost, 10.0)
             total += 0.0 if kept else (HARD if wish.hard else SOFT)
-        return total + USED * len(self.used()) + WALLED * len(self.unbacked())
+        return total + USED * len(self.used()) + WALLED * len(self.unbacked()) + OPEN * len(self.hiding())
+
+    def lost(self) -> int:
+        """How many things nobody gets to."""
+        return len(self.ways[-1].unreached())
+
+    def hiding(self) -> list[int]:
+        """What the solver hung on, or turned with a tall back to, a wall that the room is looked at through."""
+        return [
+            i
+            for i, (item, spot) in enumerate(zip(self.prepared.items, self.spots, strict=True))
+            if spot is not None and item.stand is None and bool(self.hides(i, spot))
+        ]
+
+    def hides(self, i: int, spot: Spot) -> Any:
+        """Whether an item would hide the room from who looks in, at one place or at many."""
+        item, hidden = self.prepared.items[i], np.zeros(np.shape(spot.x), bool)
+        if item.support not in ("floor", "wall") or (item.support == "floor" and item.size[2] < _LOW):
+            return hidden
+        fx, fy = spot.front
+        back = (("west", fx), ("east", -fx), ("south", fy), ("north", -fy))
+        gaps = dict(zip(("west", "east", "south", "north"), walls_gaps(spot, self.size), strict=True))
+        for wall, along in back:
+            if wall in self.prepared.problem.open and wall not in self.prepared.named.get(i, ()):
+                turned = along > 0.7 or item.size[2] > HEAD - 0.5
+                hidden = hidden | (np.asarray(gaps[wall] < _NEAR) & turned)
+        return hidden
 
     def unbacked(self) -> list[int]:
         """Free things on the floor that want a wall behind them and have none."""
@@ -139,18 +167,18 @@ class State:
             i
             for i, (item, spot) in enumerate(zip(self.prepared.items, self.spots, strict=True))
             if spot is not None and item.stand is None and item.support == "floor" and self.prepared.wants_wall(i)
-            if not behind_gap(spot, self.size) <= BACKED
+            if not abs(behind_gap(spot, self.size) - item.aisle) <= BACKED
         ]
 
     def used(self) -> list[int]:
         """Whose room for use something stands in: an item for each such zone."""
-        tied, chains = self.prepared.tied, self.prepared.carriers
+        chains = self.prepared.carriers
         found, solids = list[int](), list(self.solids(set()))
         for i, zones in enumerate(self.zones):
-            for zone in zones:
+            for local, zone in zip(self.prepared.zones_of[i], zones, strict=False):
                 if any(
                     j != i
-                    and (i, j) not in tied
+                    and not self.prepared.may_enter(i, local, j)
                     and i not in chains[j]
                     and min(zone.high, s.high) - max(zone.low, s.low) > EPSILON
                     and math.hypot(zone.x - s.x, zone.y - s.y) < math.hypot(zone.w, zone.d) + math.hypot(s.w, s.d)

@@ -16,6 +16,12 @@ _WORDS = {
     "far_from": "is far from {}", "aligned_with": "is in line with {}",
 }  # fmt: skip
 
+_AT_WALL = {
+    "against_wall": "is against the {} wall",
+    "in_corner": "is in a corner at the {} wall",
+    "at_window": "is at a window in the {} wall",
+}
+
 
 def said_item(item: Item) -> str:
     """A thing by its label and id."""
@@ -30,7 +36,10 @@ def said_room(size: Sequence[float]) -> str:
 def said_wish(wish: Wish, item: Callable[[NodeId], Item]) -> str:
     """A wish: "the bed (3) is against a wall"."""
     others = (said_item(item(o)) for o in wish.objects)
-    return f"{said_item(item(wish.subject))} {_WORDS[wish.name].format(*others)}"
+    words = _WORDS[wish.name].format(*others)
+    if wish.wall:
+        words = _AT_WALL[wish.name].format(wish.wall)
+    return f"{said_item(item(wish.subject))} {words}"
 
 
 def said_keepout(keepout: Keepout) -> str:
