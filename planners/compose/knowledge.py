@@ -39,6 +39,7 @@ class ThingKind(_Entry):
         like: what it stands in for: who asks for a queen bed needs no other "bed".
         on: names of the things that a small one is usually found on, the likeliest first.
         backed: its back belongs against a wall.
+        aisle: metres between its back and that wall, where somebody works behind it.
         front: whether it has a side that people look at or use.
         round: whether all its sides are alike.
         top: whether small things are put on it.
@@ -54,6 +55,7 @@ class ThingKind(_Entry):
     like: Name | None = None
     on: tuple[Name, ...] = ()
     backed: bool = False
+    aisle: Share = 0.0
     front: bool = False
     round: bool = False
     top: bool = False

@@ -16,6 +16,7 @@ from . import knowledge
 from .brief import Brief
 
 _SILL = 0.9  # metres from the floor to a window
+_BEFORE = 0.3  # metres before a window that nothing taller than its sill belongs in
 _EDGE = 0.12  # metres from an opening to the corner at least
 _YAWS: dict[Wall, float] = {"north": 0.0, "east": -90.0, "south": 180.0, "west": 90.0}
 _LIGHT: tuple[Wall, ...] = ("north", "west", "east", "south")
@@ -62,13 +63,15 @@ def openings(brief: Brief, size: Size, rng: np.random.Generator, ids: Iterator[i
     windows = asked["window"].count if "window" in asked else 0 if "window" in brief.without else max(drawn, int(needs))
     if "door" in brief.without:
         doors = 0
-    order: list[Wall] = ["south", "east", "west"]
-    shift = int(rng.integers(0, 3))
+    order: list[Wall] = ["east", "west"] if rng.random() < 0.5 else ["west", "east"]
     named = {r.wall for r in brief.relations if r.wall}  # a wall that things were said to stand at is left to them
-    entered: list[Wall] = sorted([*order[shift:], *order[:shift], "north"], key=lambda w: w in named)
+    own = {r.wall for r in brief.relations if r.subject == "door"}
+    entered: list[Wall] = sorted([*order, "north", "south"], key=lambda w: (w not in own, w == "south", w in named))
     made = [_doors(walls, ids, entered[i % 4], rng) for i in range(doors)]
     big = 1.35 if "window" in asked and asked["window"].scale in ("large", "huge") else 1.0
-    lit = [w for w in _LIGHT if w != entered[0] and w not in named] or list(_LIGHT)
+    shown = {r.wall for r in brief.relations if r.subject == "window"}
+    lit = [w for w in _LIGHT if w in shown] or [w for w in _LIGHT if w != entered[0] and w not in {*named, "south"}]
+    lit = lit or list(_LIGHT)
     glazed = [_window(walls, ids, lit[i % len(lit)], big, rng) for i in range(windows)]
     return [d for d in made if d], [w for w in glazed if w]
 
@@ -108,7 +111,8 @@ def _window(walls: _Walls, ids: Iterator[int], wall: Wall, big: float, rng: np.r
             walls.taken[wall].append((along - width / 2, along + width / 2))
             size = (width, 0.08, tall)
             stand = walls.stand(wall, along, size, bottom)
-            return Item(id=next(ids), label="window", color="white", size=size, support="wall", stand=stand)
+            box = Item(id=next(ids), label="window", color="white", size=size, support="wall", stand=stand)
+            return box.model_copy(update={"height": round(bottom, 3), "clear": (_BEFORE, 0.0, 0.0, 0.0)})
     return None
 
 

@@ -20,6 +20,7 @@ from .openings import beams, openings
 
 _PACKED = 0.5  # share of a top that small things may take by habit
 _OVERHEAD = 1.95  # metres under what hangs from the ceiling
+_FLUSH = ("against_wall", "in_corner", "at_window")  # said of a counter, nobody works behind it
 _EYE = 1.5  # metres, the middle of what hangs on a wall
 
 
@@ -101,6 +102,7 @@ class _Pose:
             items=tuple(self.items),
             wishes=tuple(dict.fromkeys(self.wishes)),
             free=free if "dance floor" in self.brief.features else (),
+            open=("south",),
         )
         return Posed(problem, self.names, tuple(dict.fromkeys(self.remarks)))
 
@@ -200,6 +202,7 @@ class _Pose:
             height=self._height(group, size) if support == "wall" else None,
             clear=kind.clear if floor else (0.0, 0.0, 0.0, 0.0),
             backed=kind.backed and floor,
+            aisle=0.0 if any(b.hard and b.name in _FLUSH for b in group.bonds) else kind.aisle if floor else 0.0,
             optional=not group.asked,
         )
 

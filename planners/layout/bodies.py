@@ -218,16 +218,22 @@ class Prepared:
         return grounded and table not in parts
 
     def _seats(self, table: int, seated: list[int]) -> Iterator[Member]:
-        """Places around a table, in its axes, evenly on its sides; a side at a wall stays empty."""
+        """Places around a table, in its axes, evenly on its sides; a side at a wall stays empty.
+
+        Of a thing with an aisle behind it: there if more is kept free there than before it, as at a teacher's desk.
+        """
         width, deep, _ = self.items[table].size
         sides = {"front": width, "back": width, "left": deep, "right": deep}
-        if self.wants_wall(table):
+        item = self.items[table]
+        if item.aisle and item.clear[1] > item.clear[0]:
+            sides = {"back": width}
+        elif self.wants_wall(table):
             del sides["back"]
         on: dict[str, list[int]] = {s: [] for s in sides}
         for i in seated:
             need = self.items[i].size[0] + _ELBOW
             load = {s: (sum(self.items[j].size[0] + _ELBOW for j in on[s]) + need) / (sides[s] + _ELBOW) for s in on}
-            if self.wants_wall(table) and load["front"] <= 1.0:
+            if self.wants_wall(table) and load.get("front", 2.0) <= 1.0:
                 on["front"].append(i)
             elif ((best := min(load, key=lambda s: load[s])) and load[best] <= 1.0) or not on[best]:
                 on[best].append(i)

@@ -100,7 +100,7 @@ class Search:
         """What is placed first: what failed before, what is large or wants a wall, rugs and hung things last."""
         item = self.prepared.items[body.first]
         late = {"floor": 0.0, "wall": 1.0, "ceiling": 2.0}[str(item.support)]
-        if item.support == "wall" and (item.height or 0.0) + item.size[2] < 1.0:
+        if item.support == "wall" and ((item.height or 0.0) + item.size[2] < 1.0 or self._faced(body.first)):
             late = 0.0
         if item.support == "floor" and item.size[2] <= FLAT:
             late = 1.5
@@ -109,6 +109,11 @@ class Search:
         urgent = max(self.urgent[m.item] for m in body.members)
         walled = 0.5 if self.prepared.wants_wall(body.first) else 0.0
         return late, float(item.optional), -(urgent + area + 0.2 * min(bound, 5) + walled), float(body.first)
+
+    def _faced(self, i: int) -> bool:
+        """Whether others are to look at an item: a whiteboard is hung before the desks are set out."""
+        rows = ((r, self.prepared.parties[r]) for r in self.prepared.wishes_of[i])
+        return any(self.prepared.problem.wishes[r].name == "facing" and i in parts[1:] for r, parts in rows)
 
     def _settle(self, state: State, body: Body, noise: float) -> list[Body]:
         """Place a body; if there is no room for all of it at once, its things one by one."""
