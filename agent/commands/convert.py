@@ -60,13 +60,14 @@ def command(
     box, ball = _numbers(crop, 6, "--crop"), _numbers(crop_sphere, 4, "--crop-sphere")
     start = time.perf_counter()
     loaded, report = load_with_report(scene)
-    read = time.perf_counter() - start
+    read, size = time.perf_counter() - start, _size(scene)
     cut = _cut(loaded, box, ball)
     cameras = _views(cut, views) if views else ()
     smaller = _smaller(cut, sh_degree, max_gaussians, cameras)
     start = time.perf_counter()
     _save(smaller, output, force, spz_version)
-    told = _Told(scene, output, report.format, report.rows, len(smaller.cloud), read, time.perf_counter() - start)
+    wrote = time.perf_counter() - start
+    told = _Told(output, report.format, (report.rows, size), (len(smaller.cloud), _size(output)), (read, wrote))
     told.notes += report.notes
     told.measure(cut, smaller, cameras)
     for note in told.notes:
@@ -76,15 +77,13 @@ def command(
 
 @dataclass
 class _Told:
-    """What a conversion did, for people and programs. Times in seconds."""
+    """What a conversion did, for people and programs: Gaussians and bytes `before` and `after`, seconds of both ways."""
 
-    source: Path
     output: Path
     format: str
-    before: int
-    after: int
-    read: float
-    write: float
+    before: tuple[int, int]
+    after: tuple[int, int]
+    seconds: tuple[float, float]
     notes: list[str] = field(default_factory=list)
     psnr: tuple[float, ...] = ()
 
@@ -101,38 +100,33 @@ class _Told:
         self.psnr = psnr(truth.cloud, back.cloud, cameras)
 
     def data(self) -> dict[str, Any]:
-        old, new = _size(self.source), _size(self.output)
-        mean = sum(self.psnr) / len(self.psnr) if self.psnr else None
         return {
             "path": str(self.output),
             "from": self.format,
-            "gaussians": self.after,
-            "gaussians_before": self.before,
-            "bytes": new,
-            "bytes_before": old,
-            "psnr": mean,
+            "gaussians": self.after[0],
+            "gaussians_before": self.before[0],
+            "bytes": self.after[1],
+            "bytes_before": self.before[1],
+            "psnr": sum(self.psnr) / len(self.psnr) if self.psnr else None,
             "psnr_least": min(self.psnr) if self.psnr else None,
             "views": len(self.psnr),
-            "read_seconds": self.read,
-            "write_seconds": self.write,
+            "read_seconds": self.seconds[0],
+            "write_seconds": self.seconds[1],
             "notes": self.notes,
         }
 
     def text(self) -> str:
-        data = self.data()
-        count = f"{self.after:,} Gaussians" + (f" of {self.before:,}" if self.after != self.before else "")
-        share = data["bytes"] / max(data["bytes_before"], 1)
+        (count, size), (old_count, old_size) = self.after, self.before
         lines = [
-            f"{self.output}: {count}, from {self.format}",
-            f"size: {data['bytes_before']:,} -> {data['bytes']:,} bytes ({share:.0%}), "
-            f"{data['bytes'] / self.after:.1f} a Gaussian",
+            f"{self.output}: {count:,} Gaussians{f' of {old_count:,}' if count != old_count else ''}, from {self.format}",
+            f"size: {old_size:,} -> {size:,} bytes ({size / max(old_size, 1):.0%}), {size / count:.1f} a Gaussian",
         ]
         if self.psnr:
+            mean = sum(self.psnr) / len(self.psnr)
             lines.append(
-                f"pictures: {data['psnr']:.1f} dB PSNR to the original over {data['views']} views, "
-                f"{data['psnr_least']:.1f} dB at worst"
+                f"pictures: {mean:.1f} dB PSNR to the original over {len(self.psnr)} views, {min(self.psnr):.1f} at worst"
             )
-        return "\n".join([*lines, f"time: read {self.read:.2f} s, written {self.write:.2f} s"])
+        return "\n".join([*lines, f"time: read {self.seconds[0]:.2f} s, written {self.seconds[1]:.2f} s"])
 
 
 def _numbers(text: str | None, count: int, option: str) -> list[float] | None:
