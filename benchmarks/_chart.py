@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +34,7 @@ def draw(result: Result, path: Path) -> Path:
     axes = figure.add_subplot()
     _fill(axes, result)
     figure.draw_without_rendering()  # labels are placed in pixels, which stand only now
-    _name(axes, result.points, labelled(result))
+    _name(axes, result.points, labelled(result), result.cost_of)
     data = io.BytesIO()
     figure.savefig(data, format=kind)
     try:
@@ -63,20 +63,25 @@ def _fill(axes: Any, result: Result) -> None:
     for index, method in enumerate(methods):
         own = [point for point in result.points if point.method == method]
         color = COLORS[index % len(COLORS)]
-        where = [p.seconds for p in own], [p.accuracy for p in own]
+        where = [result.cost_of(p) for p in own], [p.accuracy for p in own]
         mark = MARKS[index // len(COLORS) % len(MARKS)]
         axes.scatter(*where, s=45, color=color, marker=mark, label=method, zorder=3)
         if lines:
             axes.plot(*where, color=color, linewidth=0.8, alpha=0.5, zorder=2)
     front = result.front()
     axes.step(
-        [p.seconds for p in front], [p.accuracy for p in front], where="post", color="0.6", zorder=1, label="front"
+        [result.cost_of(p) for p in front],
+        [p.accuracy for p in front],
+        where="post",
+        color="0.6",
+        zorder=1,
+        label="front",
     )
     chosen = [point for point in result.points if point.default]
     if chosen:
-        where = [p.seconds for p in chosen], [p.accuracy for p in chosen]
+        where = [result.cost_of(p) for p in chosen], [p.accuracy for p in chosen]
         axes.scatter(*where, s=190, facecolors="none", edgecolors="black", linewidths=1.5, zorder=4, label="default")
-    axes.set_xlabel("seconds (logarithmic; left is better)")
+    axes.set_xlabel(f"{result.cost} (logarithmic; left is better)")
     axes.set_ylabel(f"{result.accuracy} (up is better)")
     machine = ", ".join(f"{result.machine[key]} {unit}".strip() for key, unit in _MACHINE if key in result.machine)
     axes.set_title(f"{result.title}\n{machine}" if machine else result.title, fontsize=10)
@@ -86,13 +91,13 @@ def _fill(axes: Any, result: Result) -> None:
     axes.legend(fontsize=8, **beside)
 
 
-def _name(axes: Any, points: Sequence[Point], named: Sequence[Point]) -> None:
+def _name(axes: Any, points: Sequence[Point], named: Sequence[Point], cost: Callable[[Point], float]) -> None:
     """Write each label where it hides least: not over points, not over labels that stand already."""
     gain = axes.figure.dpi / 72
-    spots = axes.transData.transform([(p.seconds, p.accuracy) for p in points]) / gain
+    spots = axes.transData.transform([(cost(p), p.accuracy) for p in points]) / gain
     taken = [(x - 4, y - 4, x + 4, y + 4) for x, y in spots]
     for point in named:
-        x, y = axes.transData.transform((point.seconds, point.accuracy)) / gain
+        x, y = axes.transData.transform((cost(point), point.accuracy)) / gain
         text = point.setting or point.method
         boxes = [_box(x, y, spot, text) for spot in SPOTS]
         hidden = [sum(_overlap(box, other) for other in taken) for box in boxes]
@@ -100,7 +105,7 @@ def _name(axes: Any, points: Sequence[Point], named: Sequence[Point]) -> None:
         taken.append(boxes[best])
         side = "left" if SPOTS[best][0] > 0 else "right"
         axes.annotate(
-            text, (point.seconds, point.accuracy), xytext=SPOTS[best], textcoords="offset points", fontsize=8, ha=side
+            text, (cost(point), point.accuracy), xytext=SPOTS[best], textcoords="offset points", fontsize=8, ha=side
         )
 
 

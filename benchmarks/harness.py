@@ -95,6 +95,7 @@ class Result:
         metrics, points: the figures.
         notes: what a reader must know to judge them, a sentence each.
         seeds: seeds of everything random.
+        cost: what the points' accuracy is bought with on the chart: time, or bytes.
         name, quick, seconds, machine, versions, revision: stamped by `run`.
     """
 
@@ -104,6 +105,7 @@ class Result:
     points: tuple[Point, ...]
     notes: tuple[str, ...] = ()
     seeds: tuple[int, ...] = ()
+    cost: Literal["seconds", "bytes"] = "seconds"
     name: str = ""
     quick: bool = False
     seconds: float = 0.0
@@ -145,12 +147,16 @@ class Result:
         )
 
     def front(self) -> tuple[Point, ...]:
-        """The Pareto front, fastest first: points that no other beats in both time and accuracy."""
+        """The Pareto front, cheapest first: points that no other beats in both `cost` and accuracy."""
         best: list[Point] = []
-        for point in sorted(self.points, key=lambda p: (p.seconds, -p.accuracy)):
+        for point in sorted(self.points, key=lambda p: (self.cost_of(p), -p.accuracy)):
             if not best or point.accuracy > best[-1].accuracy:
                 best.append(point)
         return tuple(best)
+
+    def cost_of(self, point: Point) -> float:
+        """What a point costs on the chart, in the unit of `cost`."""
+        return point.seconds if self.cost == "seconds" else point.bytes
 
     def to_markdown(self) -> str:
         """The goals, the points, all figures and the surroundings, as a section of a page."""
@@ -166,7 +172,7 @@ class Result:
             lines.append("")
         if self.points:
             lines += [
-                f"| method | setting | time | {self.accuracy} | memory | |",
+                f"| method | setting | time | {self.accuracy} | {'memory' if self.cost == 'seconds' else 'size'} | |",
                 "| --- | --- | ---: | ---: | ---: | --- |",
             ]
             lines += [

@@ -77,7 +77,8 @@ def command(
 
 @dataclass
 class _Told:
-    """What a conversion did, for people and programs: Gaussians and bytes `before` and `after`, seconds of both ways."""
+    """What a conversion did, for people and programs: Gaussians and bytes before and after, seconds of reading and
+    writing."""
 
     output: Path
     format: str
@@ -117,14 +118,15 @@ class _Told:
 
     def text(self) -> str:
         (count, size), (old_count, old_size) = self.after, self.before
+        of_all = f" of {old_count:,}" if count != old_count else ""
         lines = [
-            f"{self.output}: {count:,} Gaussians{f' of {old_count:,}' if count != old_count else ''}, from {self.format}",
+            f"{self.output}: {count:,} Gaussians{of_all}, from {self.format}",
             f"size: {old_size:,} -> {size:,} bytes ({size / max(old_size, 1):.0%}), {size / count:.1f} a Gaussian",
         ]
         if self.psnr:
-            mean = sum(self.psnr) / len(self.psnr)
+            mean, views = sum(self.psnr) / len(self.psnr), len(self.psnr)
             lines.append(
-                f"pictures: {mean:.1f} dB PSNR to the original over {len(self.psnr)} views, {min(self.psnr):.1f} at worst"
+                f"pictures: {mean:.1f} dB PSNR to the original over {views} views, {min(self.psnr):.1f} dB at worst"
             )
         return "\n".join([*lines, f"time: read {self.seconds[0]:.2f} s, written {self.seconds[1]:.2f} s"])
 
