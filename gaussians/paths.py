@@ -71,6 +71,9 @@ class CameraPath:
 
         If every keyframe has a target, the camera looks at a target that moves as smoothly as itself; otherwise
         it turns along a spline of unit quaternions.
+
+        Raises:
+            UserError: on its way the camera would stand in its own target.
         """
         at = np.clip(np.asarray(times, dtype=np.float64), 0.0, self.seconds)
         knots = np.array([k.time - self.keyframes[0].time for k in self.keyframes])

@@ -22,7 +22,7 @@ def _blocks(language: str) -> list[str]:
 def _commands() -> list[list[str]]:
     import shlex
 
-    lines = [line for block in _blocks("sh") for line in block.splitlines()]
+    lines = [line for block in _blocks("sh") for line in block.replace("\\\n", "").splitlines()]
     lines += re.findall(r"`(scenewright [^`]+)`", README.replace("\n", " "))
     return [shlex.split(line, comments=True)[1:] for line in lines if line.startswith("scenewright ")]
 

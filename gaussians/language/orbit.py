@@ -26,8 +26,9 @@ FOV = 50.0  # degrees, of eyes of our own choice
 MIDDLE = 0.75  # of the scene's extent: what lies within is what an orbit is to show, not walls and far background
 DISTANCES = (0.7, 1.0, 1.4, 2.0, 2.8)  # of the middle half's extent
 ELEVATIONS = (10.0, 28.0)  # degrees
-ALONE = 0.5  # of the pictures filled: with less there is nothing around what is seen
-WHOLE = 2.5  # half diagonals from which all of a thing is in the picture
+WHOLE = (1.2, 1.4, 1.7, 2.1, 2.5)  # half diagonals away: the first from which next to all is in the picture is taken
+NEXT_TO_ALL = 0.99
+WORTH = 2.0  # times, to have all in the picture: of a thing alone that is wanted, of a room only its walls are seen
 LOOKS = 8  # pictures by which a ring is judged
 SIDE = 128  # pixels of each
 
@@ -113,7 +114,7 @@ def _walked(frame: Frame, cameras: Sequence[Camera]) -> Ring | None:
 
 
 def _sought(scene: Scene) -> Ring:
-    """The ring whose worst view shows most of the scene's middle; for a thing alone, one from which all of it is seen.
+    """The ring whose worst view shows most of the scene's middle; for a thing alone, one that shows all of it.
 
     From outside a room the middle is hidden; too near, most of it is out of the picture or behind something.
     """
@@ -129,17 +130,12 @@ def _sought(scene: Scene) -> Ring:
     middle = middle if middle.any() else raised
     focus = np.median(local[raised], axis=0)
     reach = float(np.median(np.linalg.norm(local[raised] - focus, axis=1))) + 1e-6
-    tried = []
-    for elevation in ELEVATIONS:
-        for distance in DISTANCES:
-            ring = _about(scene.frame, focus, distance * reach, elevation)
-            score, first, filled = _judged(ring, cloud, middle)
-            tried.append((score, filled, elevation, replace(ring, start=ring.start + 360 / LOOKS * first)))
-    _, filled, elevation, best = max(tried, key=lambda t: t[0])
-    if filled >= ALONE:
-        return best
-    whole = _about(scene.frame, (low + high) / 2, WHOLE * float(np.linalg.norm(high - low)) / 2 + 1e-6, elevation)
-    return replace(whole, start=best.start)
+    tried = [(_about(scene.frame, focus, d * reach, e), 1.0) for e in ELEVATIONS for d in DISTANCES]
+    some = local[solid][:: max(1, int(solid.sum()) // 20_000)]
+    tried += [(_around(scene.frame, some, low, high, e), WORTH) for e in ELEVATIONS]
+    judged = [(_judged(ring, cloud, middle), ring, worth) for ring, worth in tried]
+    (_, first), ring, _ = max(judged, key=lambda t: t[0][0] * t[2])
+    return replace(ring, start=ring.start + 360 / LOOKS * first)
 
 
 def _about(frame: Frame, focus: F64, distance: float, elevation: float) -> Ring:
@@ -150,12 +146,29 @@ def _about(frame: Frame, focus: F64, distance: float, elevation: float) -> Ring:
     return Ring(frame, center @ basis, distance * float(np.cos(e)), focus @ basis)
 
 
-def _judged(ring: Ring, cloud: GaussianCloud, middle: NDArray[np.bool_]) -> tuple[float, int, float]:
-    """A ring's score (what its worst view shows of the middle, times what all views show together), the number of its
-    best view, and how much of the pictures is filled.
+def _around(frame: Frame, points: F64, low: F64, high: F64, elevation: float) -> Ring:
+    """The nearest ring about the box from `low` to `high` that has next to all `points` `[P, 3]` in every picture, all
+    in the frame's basis.
     """
-    weights = np.stack([contributions(cloud, c).numpy() for c in ring.cameras(LOOKS, SIDE, SIDE)])
-    seen = weights[:, middle] > SEEN
+    half = float(np.linalg.norm(high - low)) / 2 + 1e-6
+    for distance in WHOLE:
+        ring = _about(frame, (low + high) / 2, distance * half, elevation)
+        if min(_framed(camera, points @ frame.basis()) for camera in ring.cameras(LOOKS, SIDE, SIDE)) >= NEXT_TO_ALL:
+            break
+    return ring
+
+
+def _framed(camera: Camera, points: F64) -> float:
+    """Share of world points that lie within the picture."""
+    pixels, depth = camera.project(points)
+    return float(((depth > 0) & (pixels >= 0).all(axis=1) & (pixels <= SIDE).all(axis=1)).mean())
+
+
+def _judged(ring: Ring, cloud: GaussianCloud, middle: NDArray[np.bool_]) -> tuple[float, int]:
+    """A ring's score (what its worst view shows of the middle, times what all views show together) and the number of
+    its best view.
+    """
+    views = ring.cameras(LOOKS, SIDE, SIDE)
+    seen = np.stack([(contributions(cloud, camera) > SEEN).numpy()[middle] for camera in views])
     shown = seen.mean(axis=1)
-    filled = float(weights.sum()) / (LOOKS * SIDE**2)
-    return float(shown.min() * seen.any(axis=0).mean()), int(np.argmax(shown)), filled
+    return float(shown.min() * seen.any(axis=0).mean()), int(np.argmax(shown))
