@@ -15,7 +15,7 @@ from .amounts import Side
 from .brief import Brief, RefusedError, Relation, RoomSize, Scale, Thing
 
 _BARE_PLURAL = 2  # "chairs" where the kind of room has no habit of them
-_MOST = 60  # of one thing
+MOST = 60  # of one thing
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ class Book:
             if own is None:
                 own = max(habits.get(draft.name, 0), _BARE_PLURAL) if draft.plural and not draft.each else 1
             times = count(draft.each, deep + 1) if draft.each is not None and deep < 4 else 1
-            return max(1, min(own * times, _MOST))
+            return max(1, min(own * times, MOST))
 
         for draft in self.drafts:
             found[id(draft)] = count(draft)
@@ -214,7 +214,7 @@ def _side(length: float | None) -> float | None:
 def _room_size(sides: dict[Side, float]) -> RoomSize | None:
     if not sides:
         return None
-    depth = sides.get("depth", sides.get("long"))
+    depth = sides.get("depth", sides.get("long", sides.get("any")))  # "a 1 m closet" is one by one
     width = sides.get("width", sides.get("any"))
     area = sides.get("area")
     return RoomSize(

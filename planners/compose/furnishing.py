@@ -59,6 +59,7 @@ class Furnishing:
         self.room = knowledge.room(brief.kind)
         self.groups: list[Group] = []
         self.remarks: list[str] = []
+        self.pending: list[tuple[Group, Sequence[str]]] = []  # wishes to things that are not there yet
         self.without = {_role(w) for w in brief.without} | set(brief.without)
 
     def find(self, name: str) -> Group | None:
@@ -98,12 +99,22 @@ class Furnishing:
                 return False
             number *= others.count
         number = min(number, 60 if most is None else max(most, 1))
-        bonds = [b for w in habit.wishes if (b := self._bond(w))]
+        wishes = [(w, self._bond(w)) for w in habit.wishes]
+        bonds = [b for _, b in wishes if b]
         if kind.support == "surface" and not any(b.name == "on" for b in bonds) and not self.carrier(kind, True):
             return False
         thing = Thing(id=self._key(kind.name), name=kind.name, count=number, optional=True)
         self.groups.append(Group(thing.id, thing, kind, bonds))
+        self.pending += [(self.groups[-1], w) for w, b in wishes if b is None]
         return True
+
+    def settle(self) -> None:
+        """Relations of habits to things that were taken in after them."""
+        for group, wish in self.pending:
+            bond = self._bond(wish)
+            if bond is not None and bond.name != "on":
+                group.bonds.append(bond)
+        self.pending = []
 
     def _there(self, kind: knowledge.ThingKind) -> bool:
         """Whether the brief asked for it or its like, or the room has it already."""
@@ -238,6 +249,7 @@ def furnish(brief: Brief, rng: np.random.Generator, area: float | None) -> Furni
     made.ask()
     made.seat()
     made.fill(area)
+    made.settle()
     made.support_small()
     return made
 

@@ -13,6 +13,8 @@ from ..grammar.words import split
 from . import knowledge, vocabulary
 from .brief import RefusedError
 
+_GREETINGS = frozenset({"hi", "hello", "hey"})
+
 
 def words_of(cleaned: str) -> tuple[list[str], list[str]]:
     """The words in lower case, possessives joined ("childrens room"), slips corrected; and a remark for each slip."""
@@ -38,8 +40,10 @@ def _is_known(text: str) -> bool:
 
 def refuse_others(texts: Sequence[str]) -> None:
     """Raise for questions and for edits of a scene that is there."""
-    words = [t for t in texts if t not in ("please", ",", "hi", "hello", "hey")]
+    words = [t for t in texts if t not in ("please", ",", *_GREETINGS)]
     first = words[0] if words else ""
+    if not any(w[0].isalpha() for w in words if w) and set(texts) & _GREETINGS:
+        raise RefusedError("this is a greeting; describe a room, or say what is in it", "not_an_edit")
     if not any(t[0].isalpha() for t in texts if t):
         raise RefusedError("there are no words", "not_an_edit")
     asks = texts[-1] == "?" or first in ("what", "where", "who", "why", "how", "which", "when")

@@ -5,7 +5,7 @@ Knows walls and the frame of layouts. Refuses to know furniture.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -114,6 +114,39 @@ def _window(walls: _Walls, ids: Iterator[int], wall: Wall, big: float, rng: np.r
             box = Item(id=next(ids), label="window", color="white", size=size, support="wall", stand=stand)
             return box.model_copy(update={"height": round(bottom, 3), "clear": (_BEFORE, 0.0, 0.0, 0.0)})
     return None
+
+
+def curtains(windows: Sequence[Item], count: int, size: Size, height: float, color: str, ids: Iterator[int]) -> list[Item]:
+    """Curtains before windows, one before each, from above it to its sill; the room before the window is theirs.
+
+    Args:
+        windows: of the room.
+        count: how many curtains at most.
+        size: of a curtain where it hangs freely; its depth is kept.
+        height: of the room.
+        color: of all.
+        ids: numbers for them.
+    """
+    made = []
+    for window in windows[:count]:
+        stand = window.stand
+        assert stand is not None  # openings are placed where they are made
+        low = max((window.height or 0.0) - 0.1, 0.05)
+        high = min(stand.position[2] + window.size[2] / 2 + 0.18, height - 0.02)
+        room = [abs(stand.position[k] - w.stand.position[k]) - w.size[0] / 2 for w in windows for k in (0, 1)
+                if w is not window and w.stand and w.stand.yaw == stand.yaw]  # fmt: skip
+        width = min(1.3 * window.size[0], *(2 * max(r, window.size[0] / 2) for r in room if r > 0.1), 9.0)
+        away = window.size[1] / 2 + size[1] / 2 + 0.01
+        inward = {0.0: (0.0, -1.0), 180.0: (0.0, 1.0), 90.0: (1.0, 0.0), -90.0: (-1.0, 0.0)}[stand.yaw]
+        x, y = (round(c + away * i, 4) for c, i in zip(stand.position[:2], inward, strict=True))
+        made.append(
+            Item(
+                id=next(ids), label="curtain", color=color, size=(round(width, 3), size[1], round(high - low, 3)),
+                support="wall", stand=Stand(position=(x, y, round((low + high) / 2, 4)), yaw=stand.yaw),
+                height=round(low, 3), clear=(_BEFORE, 0.0, 0.0, 0.0),
+            )
+        )  # fmt: skip
+    return made
 
 
 def beams(size: Size, count: int, section: Size, color: str, ids: Iterator[int]) -> list[Item]:

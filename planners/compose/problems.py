@@ -16,7 +16,7 @@ from ..layout.problem import Item, Keepout, Problem, Wish, WishName
 from . import knowledge, sizing, vocabulary
 from .brief import Brief
 from .furnishing import Bond, Furnishing, Group, chained, furnish, pairs
-from .openings import beams, openings
+from .openings import beams, curtains, openings
 
 _PACKED = 0.5  # share of a top that small things may take by habit
 _OVERHEAD = 1.95  # metres under what hangs from the ceiling
@@ -140,17 +140,27 @@ class _Pose:
             self.items += made
             self._know(group, made)
             return
+        hung = self._curtains(group, size, color) if group.kind.name == "curtain" and self.of["window"] else []
         carrier = self._carrier(group)
         support = group.thing.support or ("floor" if group.kind.support == "surface" else group.kind.support)
         size = self._fitted(group, size, support) if carrier is None else size
-        tops = self._tops(carrier, group.count) if carrier else [None] * group.count
+        number = group.count - len(hung) if group.asked or not hung else 0
+        tops = self._tops(carrier, number) if carrier else [None] * number
         made = [
             self._item(group, size, color, support if top is None else top)
             for top in tops
             if top is None or self._takes(top, size, group)
         ]
         self.items += made
-        self._know(group, made)
+        self._know(group, [*hung, *made])
+
+    def _curtains(self, group: Group, size: Size, color: str) -> list[Item]:
+        """Curtains before the windows that have none: as many as were asked for, by habit before every one."""
+        bare = [i for i in self.items if i.label == "window" and any(i.clear)]
+        made = curtains(bare, group.count if group.asked else len(bare), size, self.room[2], color, self.ids)
+        behind = {w.id: w.model_copy(update={"clear": (0.0,) * 4}) for w in bare[: len(made)]}
+        self.items = [behind.get(i.id, i) for i in self.items] + made
+        return made
 
     def _know(self, group: Group, made: Sequence[Item]) -> None:
         self.of[group.key] = [_number(i) for i in made]

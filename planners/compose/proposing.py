@@ -100,7 +100,9 @@ def propose(text: str, model: ModelBackend, *, seconds: float = 120.0, heard: Br
         if answer.end == "declined":
             raise BackendError(f"{model.name} declined to answer; describe the room in other words")
         try:
-            found = _read(answer.text if answer.end == "done" else answer.text + " (cut off)")
+            if answer.end != "done":  # a text that was closed by its grammar is valid, but half of what was meant
+                raise ValueError("the answer was cut off at its longest; answer shorter")
+            found = _read(answer.text)
         except ValueError as error:
             fault = str(error)[:_FAULT]
             repair = prompts.load("compose_repair").fill(fault=fault)

@@ -20,7 +20,7 @@ from ..grammar.words import clean
 from . import amounts, knowledge, vocabulary
 from .amounts import Side
 from .brief import Brief, RefusedError
-from .drafts import Said, brief_of
+from .drafts import MOST, Said, brief_of
 from .hearing import refuse_others, words_of
 from .linking import Linker
 
@@ -83,10 +83,15 @@ class _Reader:
         if not self.kind and not any(d.kind for d in book.drafts):
             told = f": “{' '.join(self.unknown[:5])}” is not understood" if self.unknown else ""
             raise RefusedError(
-                f"this describes no room{told}; say a kind of room or what is in it", "not_understood",
+                f"this describes no room{told}; say a kind of room or what is in it",
+                "not_understood" if self.unknown else "not_an_edit",
                 tuple(self.unknown[:64]),
             )  # fmt: skip
         for draft in book.drafts:
+            if (draft.said.count or 0) > MOST:
+                self.remarks.append(
+                    f"{draft.said.count} of the {draft.name} were asked for, {MOST} of a kind are the most"
+                )
             if draft.kind is None:
                 self.remarks.append(f"nobody said how large a {draft.name} is; it is a plain box of half a metre")
             if draft.said.shape and draft.said.shape not in draft.name:
@@ -201,7 +206,7 @@ class _Reader:
             self.said = replace(self.said, count=found[0])
             return found[1]
         number = quantities.read(self.texts[i:])
-        if number and number.kind == "NUMBER" and number.value == int(number.value) and 1 <= number.value <= 200:
+        if number and number.kind == "NUMBER" and number.value == int(number.value) and 1 <= number.value <= 10**6:
             self.said = replace(self.said, count=int(number.value))
             return number.taken
         return 0
@@ -250,6 +255,8 @@ class _Reader:
         if self.linker.in_room():
             if name != "room" and not self.kind:
                 self.kind = name
+            self.size.update(said.sides)
+            self.scale = said.scale or self.scale
             self.about_room = True
             return
         if not self.kind or self.kind == "room":

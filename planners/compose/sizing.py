@@ -22,6 +22,7 @@ _SIT = 0.58  # metres of a table's edge that one chair takes
 _PASSAGE = 0.35  # metres around each thing on the floor, half of a way between two
 _FULL = 0.72  # share of a floor that things with their clear space and passages may take
 _BACKS = 0.62  # share of the walls that backed things may take
+_LONGEST = 2.0  # times as long as usual a room becomes of which one side is stated
 _SMALLEST = 1.0  # metres, of a room's side
 
 
@@ -34,7 +35,9 @@ def size_of(group: Group, rng: np.random.Generator) -> Size:
     width, depth, height = (
         s if s is not None else float(d) for s, d in zip((thing.width, thing.depth, thing.height), drawn, strict=True)
     )
-    if kind.round and (thing.width is None or thing.depth is None):
+    if kind.round and kind.support == "wall":
+        width = height = thing.width or thing.height or (width + height) / 2
+    elif kind.round and (thing.width is None or thing.depth is None):
         width = depth = thing.width or thing.depth or (width + depth) / 2
     return round(width, 3), round(depth, 3), round(height, 3)
 
@@ -96,8 +99,8 @@ def room_size(
             width, depth = width * ratio, depth * ratio
         area = said.area or width * depth
         width, depth = (
-            said.width or (area / said.depth if said.depth else width),
-            said.depth or (area / said.width if said.width else depth),
+            said.width or (min(area / said.depth, _LONGEST * kind.width[1]) if said.depth else width),
+            said.depth or (min(area / said.width, _LONGEST * kind.depth[1]) if said.width else depth),
         )
     return (
         round(max(width, 0.01 if said else _SMALLEST), 2),

@@ -128,7 +128,7 @@ ONLY = phrases(
 PRONOUNS = bag("it them this that these those which one ones another other others each")
 FILLER = bag(
     "a an the and or with of to for in at is are be has have having featuring features feature including includes "
-    "include containing contains contain there that which also plus then please i we you would like want need needs "
+    "include holding containing contains contain there that which also plus then please i we you would like want need needs "
     "wants could can should must make create build design generate compose furnish imagine give me us my our your "
     "their its set up show draw let put place placed located positioned mounted standing sitting arranged laid out "
     "nicely very really quite rather some any hmm maybe perhaps ideally preferably it was so as well too about "

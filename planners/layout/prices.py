@@ -12,7 +12,7 @@ import numpy as np
 from ..graph import SHELL
 from .bodies import FLAT, Body, Member
 from .grounds import EYE, FLOOR, extents_of
-from .measures import behind_gap, measure, walls_gaps
+from .measures import WALLS, behind_gap, measure, walls_gaps
 from .shapes import F64, Lattice, Spot, meetings, shifted
 from .state import BACKED, HARD, OPEN, SOFT, USED, WALLED, State, placed
 
@@ -166,7 +166,8 @@ def habits(state: State, body: Body, place: Place) -> F64:
     elif item.size[2] <= FLAT:
         total += 0.3 * np.hypot(here.x, here.y)
     elif len(body.members) == 1 and not prepared.wishes_of[body.first] and item.was is None:
-        total += 1.2 * np.min(walls_gaps(here, state.size), axis=0)
+        gaps = zip(WALLS, walls_gaps(here, state.size), strict=True)
+        total += 1.2 * np.min([g for wall, g in gaps if wall not in prepared.problem.open], axis=0, initial=1e3)
     return total
 
 

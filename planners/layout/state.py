@@ -20,7 +20,7 @@ from .ways import floors
 HARD, SOFT, USED, WALLED, OPEN, LOST = 1000.0, 12.0, 60.0, 60.0, 45.0, 400.0  # prices; the unit is about a metre off
 LEFT_OUT, SPARED = 4000.0, 300.0  # of leaving out what must be there, and what may be absent
 BACKED = 0.02  # metres between a back and the wall behind it
-_LOW, _NEAR = 0.6, 0.6  # metres; what is lower does not hide a room, what is farther from the open wall neither
+_LOW, _HIDING, _NEAR = 0.4, 1.4, 0.6  # metres: what hides no room, what does however it is turned, and how near
 _TIGHT = 25.0  # price of a thing that one gets to only by squeezing through
 
 
@@ -152,12 +152,13 @@ class State:
         item, hidden = self.prepared.items[i], np.zeros(np.shape(spot.x), bool)
         if item.support not in ("floor", "wall") or (item.support == "floor" and item.size[2] < _LOW):
             return hidden
+        backed = item.support == "wall" or self.prepared.wants_wall(i)
         fx, fy = spot.front
         back = (("west", fx), ("east", -fx), ("south", fy), ("north", -fy))
         gaps = dict(zip(("west", "east", "south", "north"), walls_gaps(spot, self.size), strict=True))
         for wall, along in back:
             if wall in self.prepared.problem.open and wall not in self.prepared.named.get(i, ()):
-                turned = along > 0.7 or item.size[2] > HEAD - 0.5
+                turned = (along > 0.7 and backed) or item.size[2] > _HIDING
                 hidden = hidden | (np.asarray(gaps[wall] < _NEAR) & turned)
         return hidden
 
