@@ -16,6 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
+from scenewright.gaussians import rotations
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import FileError, UserError
@@ -328,3 +329,17 @@ def test_a_photograph_that_is_none_is_named(tmp_path: Path) -> None:
 def test_scales_beyond_the_whole_are_refused(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="--scale must lie between 0 and 1"):
         take_photos(capture(tmp_path), 1.5)
+
+
+def test_faint_gaussians_wander_along_their_axes_and_others_stay() -> None:
+    parameters = Parameters.of(world(60))
+    parameters.logs[:] = np.log(np.float32([0.1, 0.001, 0.001]))  # needles
+    parameters.logits[:30] = -7.0
+    before = parameters.means.copy()
+    Budgeted(60, np.random.default_rng(0)).stepped(parameters, np.zeros((60, 2), np.float32), (9, 9), 1e-3)
+    moved = parameters.means - before
+    assert not moved[30:].any()
+    quats = torch.nn.functional.normalize(torch.from_numpy(parameters.quats), dim=1)
+    needle = rotations.to_matrix(quats)[:30, :, 0].numpy()
+    along = np.abs((moved[:30] * needle).sum(axis=1))
+    assert (np.linalg.norm(moved[:30], axis=1) <= along + 0.02).all() and along.mean() > 0.05

@@ -31,6 +31,8 @@ def unproject(worker, workers, columns, view, records, seen, footprints, out, co
             break
         for k in range(start, min(start + ROWS, seen.shape[0])):
             n = seen[k]
+            if not _moves(n, footprints):
+                continue  # hidden behind finished pixels, as many are
             toward = (means[n, 0] - view.ex, means[n, 1] - view.ey, means[n, 2] - view.ez)
             moved = _shaped(n, toward, quats, scales, view, footprints, d_quats, d_scales)
             turned = _shaded(n, toward, sh, records, footprints, d_sh)
@@ -38,6 +40,15 @@ def unproject(worker, workers, columns, view, records, seen, footprints, out, co
                 d_means[n, axis] += moved[axis] + turned[axis]
             if opacities[n] < ONE:
                 d_opacities[n] -= footprints[n, D_SHIFT] / (EIGHT * opacities[n])
+
+
+@helper
+def _moves(n, footprints):  # type: ignore[no-untyped-def]
+    """Whether anything of row `n`'s footprint has a gradient."""
+    largest = ZERO
+    for place in range(footprints.shape[1]):
+        largest = max(largest, abs(footprints[n, place]))
+    return largest > ZERO
 
 
 @helper
