@@ -28,7 +28,8 @@ _SIDES = {"left": "leftmost", "right": "rightmost", "near": "nearest", "closest"
           "far": "farthest", "big": "largest", "bigger": "largest", "biggest": "largest", "larger": "largest",
           "small": "smallest", "smaller": "smallest", "tall": "tallest", "taller": "tallest", "short": "shortest",
           "shorter": "shortest", "upper": "highest", "top": "highest", "higher": "highest", "lower": "lowest",
-          "bottom": "lowest", "first": "", "last": ""}  # fmt: skip
+          "bottom": "lowest", "middle": "middle", "center": "middle", "centre": "middle", "front": "nearest",
+          "back": "farthest", "first": "", "last": ""}  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)

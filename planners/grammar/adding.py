@@ -78,6 +78,8 @@ class Adding(Rules):
     def _asset(self, noun: Noun) -> Fields:
         """Name and colour of a new thing."""
         query, posts = noun.query, noun.posts
+        if nouns.head(query.text) in nouns.PLACES:
+            raise Refusal("room is made by moving what is there; say what", query.text)
         contents = f" of {posts[0].anchors[0].said}" if len(posts) == 1 and posts[0].kind == "part" else ""
         if not noun.is_new or query.relations or query.not_colors or (posts and not contents.strip(" of")):
             raise Refusal("a new thing is named by what it is: a red floor lamp", query.text)

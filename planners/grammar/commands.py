@@ -7,14 +7,15 @@ gives operations as fields, which the registry of tools validates.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 from ...gaussians.language.query import Query
 from . import changes, nouns
 from .adding import Adding
 from .changes import Fields
-from .described import all_of, union
+from .described import Noun, all_of, union
 from .moving import Moving
 from .nodes import Node, Refusal, tokens, trees
 from .rules import MOTIONS, known
@@ -68,16 +69,22 @@ class Commands(Moving, Shaping, Adding):
         found = self._nouns(node)
         if any(p.word.startswith(("onto", "into")) for n in found for p in n.posts):
             return self._moved(found, node, "MOVE")  # "chuck the cushion onto the bed"
+        _require_clear_end(found)
         return [{"op": "delete", "target": known(found)}]
 
     def _clear(self, node: Node) -> list[Fields]:
+        """ "clear the plants" removes them; "clear the table" and "clear the corner" say nothing of what is there."""
         found = self._nouns(node)
-        if any(nouns.head(n.query.text) in nouns.SURFACES for n in found):
-            raise Refusal("say whether to remove it or everything on it", "clear")
+        if (place := next((n for n in found if _is_cleared(n)), None)) is not None:
+            there = nouns.head(place.query.text) in nouns.PLACES
+            raise Refusal(f"say {'what is to go from there' if there else 'whether to remove it or everything on it'}",
+                          "clear")  # fmt: skip
+        _require_clear_end(found)
         return [{"op": "delete", "target": union(found)}]
 
     def _drop(self, node: Node) -> list[Fields]:
-        if trees(node, *MOTIONS) or any(n.posts for n in self._nouns(node)):
+        found = self._nouns(node)
+        if trees(node, *MOTIONS) or any(n.posts or n.article == "all" for n in found):
             raise Refusal("say put or delete", "drop")
         return self._targeted(node, "delete")
 
@@ -189,6 +196,24 @@ class Commands(Moving, Shaping, Adding):
         if any(fresh):
             raise Refusal("name what to move and what to add in two clauses")
         return self._moved(found, node, "PUT")
+
+
+def _is_cleared(noun: Noun) -> bool:
+    """Whether a noun is rather what is freed than what goes: a place, what carries or holds things, a part of it."""
+    places = nouns.SURFACES | nouns.FURNITURE | nouns.EVERYWHERE | nouns.PLACES
+    of_a_thing = any(p.kind == "part" for p in noun.posts) or any(r.name == "part_of" for r in noun.query.relations)
+    return noun.query.last or of_a_thing or nouns.head(noun.query.text) in places
+
+
+def _require_clear_end(found: Sequence[Noun]) -> None:
+    """Raise if it is open where a list ends: "remove the cushions from the sofa and the armchair".
+
+    Raises:
+        Refusal: it is.
+    """
+    for noun, following in pairwise(found):
+        if any(p.kind == "off" for p in noun.posts) and not following.posts:
+            raise Refusal("say in two clauses what it is taken from and what else goes", following.said)
 
 
 def _all_of(target: Query | None, out: Query, node: Node) -> Query | None:

@@ -46,6 +46,9 @@ SURFACES = bag(
 CONTAINERS = bag("box basket bin bag drawer bowl bucket crate jar cup mug vase wardrobe closet chest sink")
 SEATS = bag("chair armchair sofa couch bed stool bench recliner loveseat")
 EVERYWHERE = bag("floor ground wall ceiling room")
+# Where things stand, and no things: "clear some space", "empty the corner".
+PLACES = bag("space room area spot place zone region part corner path way passage aisle entrance doorway gap half")
+NOTHING = bag("space gap place clutter mess")  # no kind of thing is called so, whatever stands there
 FURNITURE = bag(
     "sofa couch armchair chair bed table desk wardrobe cabinet bookshelf bookcase dresser sideboard bench stool shelf "
     "ottoman nightstand door window wall fireplace piano fridge oven stove bathtub toilet sink counter "

@@ -22,6 +22,9 @@ from .words import bag
 _SHAPES = bag("round square rectangular oval circular wooden metal plastic glass leather striped plain patterned")
 PARTS = frozenset({"part", "piece", "area", "region", "bit"})  # of things, found by their own colour
 
+_MIDDLES = frozenset({"middle", "centre", "center", "left side", "right side"})
+_SIDES = _MIDDLES | {"left", "right", "front", "back", "rear", "top", "bottom"}
+
 
 class Phrases:
     """Builds nouns; remembers the last head noun for "the green one"."""
@@ -65,7 +68,8 @@ class Phrases:
         """A noun phrase with what stands behind it."""
         core, *rest = node.children
         assert isinstance(core, Tree)
-        head = self.core(core)
+        among = bool(rest) and isinstance(rest[0], Tree) and str(rest[0].data) == "part"
+        head = self.core(core, among)
         if head.query.text:
             self.antecedent, self.colors = _unshaped(head.query.text), head.query.colors
         headless = not tokens(core, "NOUN", "ONE", "THING") and bool(tokens(core, "SUP", "ORDINAL"))
@@ -117,8 +121,10 @@ class Phrases:
                 found[-1] = replace(found[-1], query=updated(found[-1].query, pick=tag_of(child).value))
         return tuple(found)
 
-    def core(self, node: Node) -> Noun:
-        """A noun without what stands behind it."""
+    def core(self, node: Node, among: bool = False) -> Noun:
+        """A noun without what stands behind it; `among` if that says of which things it is ("the left of the two")."""
+        if not among:
+            self._require_thing(tag_of(node.children[-1]))  # type: ignore[arg-type]
         if owner := trees(node, "core"):
             return self._owned(node, self.core(owner[0]))
         first = tag_of(node.children[0])  # type: ignore[arg-type]
@@ -130,6 +136,20 @@ class Phrases:
         if first.type == "OTHERS":
             return Noun(Query(text=self.antecedent, pick="all", exclude=(Query(last=True),)), "all", True)
         return self._common(node)
+
+    def _require_thing(self, last: Tag) -> None:
+        """Raise if a phrase ends in a place of the room: "clear the middle", "move the left side".
+
+        A side may also be short for what is there, where something was spoken of: "delete the left chair", "and the
+        right". The middle is hardly ever.
+
+        Raises:
+            Refusal: it does.
+        """
+        if last.type == "SUP" and not self.sharing and last.text in (_MIDDLES if self.antecedent else _SIDES):
+            raise Refusal(f"the {last.text} is a place; say what is there, or which one", last.text)
+        if last.type == "NOUN" and nouns.singular(str(last.value).split()[-1]) in nouns.NOTHING:
+            raise Refusal("that is no kind of thing; name the things", last.text)
 
     def _owned(self, node: Node, owner: Noun) -> Noun:
         """ "the table's legs"."""

@@ -93,7 +93,7 @@ class Special:
         if text == "over" and length == 1 and verb in ("TURN", "FLIP") and not rest:
             return self._put("UPSIDE", None, i, 1)
         if text in ("away", "out") and length == 1 and verb not in ("TAKE", "") and not rest:
-            return self._put("DIR", "forward", i, 1) if verb in ("MOVE", "PUT") else None
+            return self._put("DIR", "forward", i, 1) if verb == "MOVE" else None  # "put it away" says no place
         if text in ("closer", "nearer") and after == "to" and length == 2 and verb not in ("", "MOVE", "PUT", "TAKE"):
             return self._put("NEAR", "nearest_to", i, 2)
         if text in ("higher", "lower") and verb in ("MOVE", "PUT", "") and not self.read.nouny(i + 1):

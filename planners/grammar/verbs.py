@@ -20,13 +20,13 @@ VERBS: dict[str, Entry] = {
         ("DELETE", None),
         "delete, remove, erase, eliminate, discard, take away, take out, get rid of, throw away, throw out, "
         "chuck out, "
-        "chuck, chuck away, take down, lose, clear away, clear out, zap, kill, nuke, dump, ditch, trash, scrap, "
+        "chuck, chuck away, take down, lose, clear away, zap, kill, nuke, dump, ditch, trash, scrap, "
         "destroy, banish, "
         "dispose of, do away with, bin, axe, purge, expunge, wipe out, rub out, delete away, get out, toss, toss out, "
         "yank, yank out, rip out, oust, evict, vaporize, obliterate, get shot of, junk, kick out, boot out, strip out, "
         "toss away, chuck in the bin, throw in the trash, be rid of, remove away, rid us of, hoover up",
     ),
-    **same(("CLEAR", None), "clear, clear off, wipe"),
+    **same(("CLEAR", None), "clear, clear off, clear out"),
     **same(("DROP", None), "drop"),
     **same(("TAKE", None), "take, throw, get, pick up, grab"),
     **same(
@@ -130,7 +130,7 @@ UNSUPPORTED: dict[str, str] = {
     **same("moving parts and switches cannot be operated", "open, close, shut, turn on, turn off, switch on, "
             "switch off, unlock, lock, fold, unfold, light up, dim"),
     **same("only whole scenes of what is there can be edited, not what happens to it", "break, smash, bend, burn, "
-            "fill, empty, clean, wash, dust, polish, animate, cook, play, eat, wear, throw a party"),
+            "fill, empty, clean, wipe, wash, dust, polish, animate, cook, play, eat, wear, throw a party"),
     **same("what was hidden comes back with undo", "unhide, reveal, restore, bring back"),
     **same("say what to select instead", "clear the selection, invert the selection, clear selection, "
             "invert selection, deselect, unselect, select none, select nothing, reset the selection"),

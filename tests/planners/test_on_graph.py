@@ -194,6 +194,42 @@ def test_what_is_unclear_is_not_done(text: str) -> None:
     assert ask(text).verdict in ("not_understood", "not_an_edit")
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "push the furniture to the walls and clear the middle", "clear the centre",
+        "turn the armchairs around and clear the middle", "clear some space",
+        "clear the area around the sofa", "clear out the corner", "clear the wall",
+        "clear the armchair", "clear the top of the bookshelf", "clear the left side", "delete the back",
+        "make the middle red", "move the left side up", "hide the center", "remove everything from the middle",
+        "remove the furniture from the middle", "move everything from the middle to the walls", "add some space",
+        "make some space between the sofa and the coffee table", "get rid of the clutter", "drop everything",
+        "put the mug away", "put everything away", "put everything in its place",
+        "remove the cushions from the sofa and the armchairs",
+    ],
+)  # fmt: skip
+def test_places_are_no_things_to_edit(text: str) -> None:
+    found = ask(text)
+    assert found.verdict == "not_understood" and not found.steps
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("delete the middle of the three cushions", {14}),
+        ("delete the leftmost armchair", {2}),
+        ("delete the left armchair and the right one", {2, 3}),
+        ("clear the plants", {12, 13}),
+        ("clear the plants out", {12, 13}),
+        ("clear everything from the coffee table", {17, 18}),
+        ("remove the mug from the coffee table and the lamp on the side table", {17, 7}),
+    ],
+)
+def test_sides_and_clearing_still_reach_things(text: str, meant: set[int]) -> None:
+    found = ask(text)
+    assert {t for step in found.steps for t in step.targets} == meant, found.reason
+
+
 texts = st.sampled_from([c["text"] for c in _written.cases()])
 
 
