@@ -25,6 +25,7 @@ from . import (  # noqa: F401
     stands,
     storage,
     tables,
+    training,
     wares,
 )  # fmt: skip
 from .forge import Asset, Parts, kinds, make
