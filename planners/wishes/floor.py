@@ -56,7 +56,8 @@ def clear(room: Room, goal: Clear, free: Collection[Id] = (), wishes: Sequence[L
         except CannotError as error:
             reason = str(error)
             continue
-        room.told.append(f"{2 * radius:.1f} m of floor {_place(goal.where)} are free for {goal.called}")
+        what_for = "" if goal.called.startswith("free ") else f" for {goal.called}"
+        room.told.append(f"{2 * radius:.1f} m of floor {_place(goal.where)} are free{what_for}")
         return
     raise CannotError(f"no floor can be freed {_place(goal.where)}: {reason}")
 

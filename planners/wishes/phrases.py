@@ -33,6 +33,7 @@ _MAKE = (
     r"(?:clear|clear out|clear up|make|free up|free|open up|open|create|leave|get|keep|provide|reserve|have|need|want"
     r"|i need|we need|i want|we want|i would like|we would like|give me|give us)"
 )
+_FREE = r"(?:clear|clear out|clear up|make|create|free|free up|open up)"
 _WHY = r"(?:for|to|so|where) (?P<why>[a-z ]+?)"
 _FREED = r"(?: (?:free|clear|empty|open))?"
 _EVERYBODY = r"(?:everybody|everyone|all of us|we all|they all|all|we|people|they|each of them|anybody|anyone)"
@@ -51,6 +52,9 @@ PATTERNS: dict[str, tuple[str, ...]] = {
         rf"{_MAKE} {_AMOUNT}{_SIZE}{_GRAND}{_SPACE}{_FREED} {_WHY}(?: {_WHERE})?",
         rf"(?:clear|clear out|clear up|empty|free|free up|open up|vacate) the {_MIDDLE}",
         rf"(?:keep|leave|make) the {_MIDDLE} (?:free|clear|empty|open)",
+        rf"{_FREE} (?:(?:some|more|enough|plenty of|a bit of|a little|a lot of|lots of) )?"
+        r"(?:(?:free|empty|open|clear|extra|more|floor) )*(?:space|room)",
+        r"(?:clear|free|free up|open up) the floor",
     ),
     "walls": (
         rf"{_PUT} {_THINGS} (?:back )?(?:to|against|along|up against|at|around|over to|out to"

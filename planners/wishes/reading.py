@@ -7,13 +7,15 @@ and to guess: an instruction of which any clause is not understood is not read a
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 
 from ...gaussians.language.query import Query
-from ..grammar import GrammarPlanner, lexicon, nouns, quantities
-from ..grammar.words import clean, split
+from ...tools.base import EditOp
+from ..grammar import GrammarPlanner, nouns, quantities
+from ..grammar.words import split
+from .clauses import plain, sentences
 from .goals import (
     Become,
     Clear,
@@ -36,13 +38,12 @@ from .phrases import COMPILED
 
 Parts = dict[str, str]
 
-_ENDS = frozenset(".;!:\n")
 _JOINTS = frozenset({",", "and", "then", "&", "but", "also", "plus"})
+_JOINED = 4  # what a joint inside a clause costs: more than any clause
+_ONES = frozenset({"one", "ones", "other", "others"})
 _EVERYTHING = frozenset({"everything", "furniture", "the furniture", "all furniture", "all the furniture", "all"})
 _COUNTS = {"a": 1, "couple": 2, "both": 2, "us": 2}
 _TO_METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048, "units": 1.0}
-_OPENERS = tuple(sorted((*lexicon.POLITE, *lexicon.FILLER), key=len, reverse=True))
-_SOUND = frozenset({"i want", "i need"})  # openers that some wishes begin with
 _BEFORE = frozenset({"in front of", "before"})
 
 
@@ -82,7 +83,7 @@ class Reader:
         """
         goals: list[Goal] = []
         wished = False
-        for words in _sentences(text):
+        for words in sentences(text):
             found = self._clauses(words)
             if found is None:
                 raise Unread("this is no wish for a room that is understood", *self._blamed(words))
@@ -93,7 +94,11 @@ class Reader:
         return Reading(tuple(goals), wished)
 
     def _clauses(self, words: tuple[str, ...]) -> list[tuple[Goal, bool]] | None:
-        """A sentence as clauses, as few as possible, wishes rather than plain edits; None if that is not possible."""
+        """A sentence as clauses, wishes rather than plain edits; None if that is not possible.
+
+        Parted wherever both sides can be read, so that no clause is swallowed by a phrase of another ("make room for a
+        piano and add one") and a wish beside an edit is read as what it is; otherwise as few clauses as possible.
+        """
 
         @cache
         def rest(start: int) -> tuple[int, tuple[tuple[Goal, bool], ...]] | None:
@@ -108,7 +113,7 @@ class Reader:
                 if (goal := self._clause(words[start:end])) is None or (after := rest(end)) is None:
                     continue
                 mine = not isinstance(goal, Plain)
-                cost = after[0] + (2 if mine else 3)
+                cost = after[0] + (2 if mine else 3) + _JOINED * sum(w in _JOINTS for w in words[start:end])
                 if best is None or cost < best[0]:
                     best = (cost, ((goal, mine), *after[1]))
             return best
@@ -118,14 +123,14 @@ class Reader:
 
     def _clause(self, words: tuple[str, ...]) -> Goal | None:
         """One clause as a goal, None if it is not understood."""
-        said = " ".join(_plain(words))
+        said = " ".join(plain(words))
         for kind, pattern in COMPILED:
             matched = pattern.fullmatch(said)
             goal = self._goal(kind, {k: v for k, v in matched.groupdict().items() if v}) if matched else None
             if goal is not None:
                 return goal
         plan = self.grammar.plan(" ".join(words)) if said else None
-        return Plain(plan.ops) if plan is not None and plan.ok else None
+        return Plain(plan.ops) if plan is not None and plan.ok and not _refers_back(words, plan.ops) else None
 
     def _goal(self, kind: str, parts: Parts) -> Goal | None:
         """The goal of a matched pattern; None if its noun phrases are none."""
@@ -162,30 +167,15 @@ class Reader:
 
     def _blamed(self, words: Sequence[str]) -> tuple[str, ...]:
         """The words of a sentence that no way of saying a wish has, else all of it."""
-        strange = [w for w in _plain(words) if w not in _vocabulary() and not nouns.is_known(w) and w not in _JOINTS]
+        strange = [w for w in plain(words) if w not in _vocabulary() and not nouns.is_known(w) and w not in _JOINTS]
         return tuple(strange) or (" ".join(words),)
 
 
-def _sentences(text: str) -> Iterator[tuple[str, ...]]:
-    """The words of each sentence; a colon parts a headline from what it means."""
-    words: list[str] = []
-    for word in (*(w.text for w in split(clean(text))), "."):
-        if word in _ENDS or word == "?":
-            if words:
-                yield tuple(words)
-            words = []
-        else:
-            words.append(word)
-
-
-def _plain(words: Sequence[str]) -> list[str]:
-    """The words of a clause without politeness before and filler in and behind it."""
-    kept = [w for w in words if w not in (",", '"')]
-    while found := next((p for p in _OPENERS if tuple(kept[: len(p)]) == p and " ".join(p) not in _SOUND), None):
-        kept = kept[len(found) :]
-    while found := next((p for p in lexicon.FILLER if p and tuple(kept[-len(p) :]) == p and p[-1] != "room"), None):
-        kept = kept[: -len(found)]
-    return [w for w in kept if w not in ("please", "just", "simply")]
+def _refers_back(words: Sequence[str], ops: Sequence[EditOp]) -> bool:
+    """Whether a clause speaks of what another named: "it", "the red ones". Beside a wish, which moves many things,
+    nobody can tell what that is."""
+    nameless = any(query is not None and not query.text for query in (op.query() for op in ops))
+    return '"last":true' in ops[0].model_dump_json() or (nameless and bool(_ONES & set(words)))
 
 
 @cache
@@ -225,6 +215,9 @@ def _width(said: str) -> float:
 
 
 def _clear(reader: Reader, parts: Parts) -> Goal:
+    purpose = parts.get("why", "").split()
+    if any(w in _JOINTS and len(purpose) - i > 3 for i, w in enumerate(purpose)):
+        raise Unread("what it is for goes on too long", *purpose)  # into another clause: "for a piano, then add one"
     called = parts.get("why") or {"area": "free area", "spot": "free spot"}.get(parts.get("called", ""), "")
     called = called or ("dance floor" if "danc" in parts.get("called", "") else "free floor")
     width = _width(parts["size"]) if "size" in parts else None
