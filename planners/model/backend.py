@@ -9,8 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, Protocol
 
-from ...gaussians.errors import BackendError
-from ..plan import Usage
+from ..plan import NoPlanError, Usage
 
 Heard = Callable[[str], None]  # called with each piece of the answer as it arrives
 
@@ -41,9 +40,9 @@ class Answer:
     end: Literal["done", "cut", "closed", "declined"] = "done"
 
 
-class UnreachableError(BackendError):
+class UnreachableError(NoPlanError):
     """The model gave no answer: server down, key missing or wrong, no such model, timeout, rate limit, nonsense on
-    the wire. The message says which, what to do, and never holds a key."""
+    the wire. The message says which, what to do, and never holds a key. `usage` is what answers before it cost."""
 
 
 class ModelBackend(Protocol):

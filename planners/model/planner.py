@@ -16,7 +16,7 @@ from ...gaussians.errors import ScenewrightError, UserError
 from ...tools.base import EditOp
 from ..plan import EditPlan, NoPlanError, Planner, Sight, Usage, Verdict
 from . import reply
-from .backend import Answer, Message, ModelBackend
+from .backend import Answer, Message, ModelBackend, UnreachableError
 from .guard import Fault, Guard
 from .labels import cleaned
 from .prompting import Request, messages, prompt_hash, repaired
@@ -71,8 +71,8 @@ class ModelPlanner:
 
         Raises:
             UserError: the text is empty, no text, or too long to be an instruction.
-            UnreachableError: the model cannot be reached.
-            NoPlanError: it gave no valid plan in all its attempts, or in the time it had. (Both are a BackendError.)
+            UnreachableError: the model cannot be reached, or not any more. (A NoPlanError.)
+            NoPlanError: it gave no valid plan in all its attempts, or in the time it had. (A BackendError.)
         """
         _require_words(text)
         started = time.monotonic()
@@ -157,15 +157,23 @@ class _Asking:
             return None
         stage = f"planning with {self._backend.name}" + (f", attempt {attempt}" if attempt > 1 else "")
         heard = _Heard(self._progress, stage) if self._progress is not None else None
-        answer = self._backend.answer(self._messages, reply.schema(), seconds=left, heard=heard)
+        try:
+            answer = self._backend.answer(self._messages, reply.schema(), seconds=left, heard=heard)
+        except UnreachableError as error:
+            cost = _sum(self.usage, error.usage)  # the attempts before it were paid for
+            raise UnreachableError(str(error), cost) from error
         if heard is not None:
             heard.done()
-        self.usage = answer.usage if self.usage is None else self.usage.plus(answer.usage)
+        self.usage = _sum(self.usage, answer.usage)
         return answer
 
     def again(self, answer: str, fault: str) -> None:
         """Say what was wrong with the last answer."""
         self._messages = repaired(self._first, answer, fault)
+
+
+def _sum(before: Usage | None, after: Usage | None) -> Usage | None:
+    return after if before is None else before if after is None else before.plus(after)
 
 
 class _Heard:

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from scenewright.gaussians.errors import BackendError, UserError
 from scenewright.planners import model
+from scenewright.planners.budget import Ledger, Metered
 from scenewright.planners.graph import Node, RoomShape, SceneGraph
 from scenewright.planners.model import planner as planner_module
 from scenewright.planners.model.backend import Answer, Message, UnreachableError
@@ -203,6 +204,20 @@ def test_who_cannot_be_reached_is_no_bad_answer() -> None:
     with pytest.raises(UnreachableError, match="start it"):
         ModelPlanner(backend).plan("delete the vase")
     assert len(backend.asked) == 1
+
+
+def test_who_cannot_be_reached_any_more_has_cost_what_was_answered_before() -> None:
+    def reached_once(cost: Usage | None) -> Usage | None:
+        paid = Answer("no", Usage(model="m", requests=1, input_tokens=10, dollars=0.25))
+        ledger, lost = Ledger(), UnreachableError("the server is gone; start it", cost)
+        metered = Metered("m", lambda _: ModelPlanner(ScriptedModel(paid, lost)), ledger)
+        with pytest.raises(UnreachableError, match="start it") as caught:
+            metered.plan("delete the vase")
+        assert ledger.spent == caught.value.usage
+        return ledger.spent
+
+    assert reached_once(None) == Usage(model="m", requests=1, input_tokens=10, dollars=0.25)
+    assert reached_once(Usage(model="m", requests=1)) == Usage(model="m", requests=2, input_tokens=10, dollars=0.25)
 
 
 # -- time, sizes, settings -------------------------------------------------------------------------------------------
