@@ -15,7 +15,7 @@ from .amounts import Side
 from .brief import Brief, RefusedError, Relation, RoomSize, Scale, Thing
 
 _BARE_PLURAL = 2  # "chairs" where the kind of room has no habit of them
-MOST = 60  # of one thing
+_MOST = 60  # of one thing
 
 
 @dataclass(frozen=True)
@@ -115,6 +115,18 @@ class Book:
                 continue
             self.link(Link(chair, "around", (tables[-1],), hard=False))
 
+    def remarks(self) -> list[str]:
+        """What of the things cannot be had or shown as it was said, a sentence each."""
+        found = []
+        for draft in self.drafts:
+            if (draft.said.count or 0) > _MOST:
+                found.append(f"{draft.said.count} of “{draft.name}” were asked for; {_MOST} of a kind are the most")
+            if draft.kind is None:
+                found.append(f"nobody said how large a {draft.name} is; it is a plain box of half a metre")
+            if draft.said.shape and draft.said.shape not in draft.name:
+                found.append(f"the shape of the {draft.name} ({draft.said.shape}) is not shown")
+        return found
+
     def counts(self, room: str) -> dict[int, int]:
         """How many of each draft, by its identity."""
         habits = {h.thing: h.count[1] for h in knowledge.room(room).habits}
@@ -125,7 +137,7 @@ class Book:
             if own is None:
                 own = max(habits.get(draft.name, 0), _BARE_PLURAL) if draft.plural and not draft.each else 1
             times = count(draft.each, deep + 1) if draft.each is not None and deep < 4 else 1
-            return max(1, min(own * times, MOST))
+            return max(1, min(own * times, _MOST))
 
         for draft in self.drafts:
             found[id(draft)] = count(draft)

@@ -116,37 +116,53 @@ def _window(walls: _Walls, ids: Iterator[int], wall: Wall, big: float, rng: np.r
     return None
 
 
-def curtains(windows: Sequence[Item], count: int, size: Size, height: float, color: str, ids: Iterator[int]) -> list[Item]:
-    """Curtains before windows, one before each, from above it to its sill; the room before the window is theirs.
+def draped(
+    items: Sequence[Item], most: int, size: Size, height: float, color: str, ids: Iterator[int]
+) -> tuple[list[Item], list[Item]]:
+    """The items with curtains before windows that have none, one before each, and the curtains.
+
+    A curtain hangs from above its window to below the sill; the room before the window becomes the curtain's.
 
     Args:
-        windows: of the room.
-        count: how many curtains at most.
+        items: doors and windows among them.
+        most: how many curtains at most.
         size: of a curtain where it hangs freely; its depth is kept.
         height: of the room.
         color: of all.
         ids: numbers for them.
     """
-    made = []
-    for window in windows[:count]:
-        stand = window.stand
-        assert stand is not None  # openings are placed where they are made
-        low = max((window.height or 0.0) - 0.1, 0.05)
-        high = min(stand.position[2] + window.size[2] / 2 + 0.18, height - 0.02)
-        room = [abs(stand.position[k] - w.stand.position[k]) - w.size[0] / 2 for w in windows for k in (0, 1)
-                if w is not window and w.stand and w.stand.yaw == stand.yaw]  # fmt: skip
-        width = min(1.3 * window.size[0], *(2 * max(r, window.size[0] / 2) for r in room if r > 0.1), 9.0)
-        away = window.size[1] / 2 + size[1] / 2 + 0.01
-        inward = {0.0: (0.0, -1.0), 180.0: (0.0, 1.0), 90.0: (1.0, 0.0), -90.0: (-1.0, 0.0)}[stand.yaw]
-        x, y = (round(c + away * i, 4) for c, i in zip(stand.position[:2], inward, strict=True))
-        made.append(
-            Item(
-                id=next(ids), label="curtain", color=color, size=(round(width, 3), size[1], round(high - low, 3)),
-                support="wall", stand=Stand(position=(x, y, round((low + high) / 2, 4)), yaw=stand.yaw),
-                height=round(low, 3), clear=(_BEFORE, 0.0, 0.0, 0.0),
-            )
-        )  # fmt: skip
-    return made
+    windows = [i for i in items if i.label == "window" and any(i.clear)]
+    openings = [i for i in items if i.label in ("window", "door")]
+    made = [_curtain(w, openings, size[1], height, color, next(ids)) for w in windows[:most]]
+    bare = {w.id: w.model_copy(update={"clear": (0.0,) * 4}) for w in windows[:most]}
+    return [*(bare.get(i.id, i) for i in items), *made], made
+
+
+def _curtain(window: Item, openings: Sequence[Item], deep: float, height: float, color: str, number: int) -> Item:
+    """A curtain wider than its window, as far as its neighbours on the wall let it."""
+    stand = window.stand
+    assert stand is not None  # openings are placed where they are made
+    along = 0 if stand.yaw in (0.0, 180.0) else 1
+    width = 1.3 * window.size[0]
+    for other in openings:
+        if other is not window and other.stand is not None and other.stand.yaw == stand.yaw:
+            apart = abs(other.stand.position[along] - stand.position[along])
+            width = min(width, max(apart + (window.size[0] - other.size[0]) / 2, window.size[0]))
+    low = max((window.height or 0.0) - 0.1, 0.05)
+    high = min(stand.position[2] + window.size[2] / 2 + 0.18, height - 0.02)
+    away = window.size[1] / 2 + deep / 2 + 0.01
+    inward = {0.0: (0.0, -1.0), 180.0: (0.0, 1.0), 90.0: (1.0, 0.0), -90.0: (-1.0, 0.0)}[stand.yaw]
+    x, y = (round(c + away * i, 4) for c, i in zip(stand.position[:2], inward, strict=True))
+    return Item(
+        id=number,
+        label="curtain",
+        color=color,
+        size=(round(width, 3), deep, round(high - low, 3)),
+        support="wall",
+        stand=Stand(position=(x, y, round((low + high) / 2, 4)), yaw=stand.yaw),
+        height=round(low, 3),
+        clear=(_BEFORE, 0.0, 0.0, 0.0),
+    )
 
 
 def beams(size: Size, count: int, section: Size, color: str, ids: Iterator[int]) -> list[Item]:

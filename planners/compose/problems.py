@@ -16,7 +16,7 @@ from ..layout.problem import Item, Keepout, Problem, Wish, WishName
 from . import knowledge, sizing, vocabulary
 from .brief import Brief
 from .furnishing import Bond, Furnishing, Group, chained, furnish, pairs
-from .openings import beams, curtains, openings
+from .openings import beams, draped, openings
 
 _PACKED = 0.5  # share of a top that small things may take by habit
 _OVERHEAD = 1.95  # metres under what hangs from the ceiling
@@ -48,22 +48,9 @@ def problem_of(brief: Brief, seed: int = 0, *, grow: float = 1.0) -> Posed:
         grow: how much longer each side of the room is made that the brief does not state.
     """
     made = furnish(brief, np.random.default_rng([seed, 0]), sizing.stated_area(brief))
-    sized = _sized(made, np.random.default_rng([seed, 1]))
+    sized = sizing.sized(made, np.random.default_rng([seed, 1]))
     room = sizing.room_size(brief, sized, np.random.default_rng([seed, 2]), grow)
     return _Pose(brief, made, sized, room, seed).posed()
-
-
-def _sized(made: Furnishing, rng: np.random.Generator) -> list[tuple[Group, Size]]:
-    """Every group with the size of its things; tables are as large as their chairs need."""
-    found = []
-    for group in made.groups:
-        size = sizing.size_of(group, rng)
-        chairs = [g for g in made.groups for b in g.bonds if b.name == "around" and made.find(b.objects[0]) is group]
-        sat = -(-sum(g.count for g in chairs) // group.count)
-        if sat > 1 and group.thing.width is None and group.kind.top:
-            size = sizing.table_for(size, sat, group.kind.round)
-        found.append((group, size))
-    return found
 
 
 class _Pose:
@@ -140,7 +127,10 @@ class _Pose:
             self.items += made
             self._know(group, made)
             return
-        hung = self._curtains(group, size, color) if group.kind.name == "curtain" and self.of["window"] else []
+        hung: list[Item] = []
+        if group.kind.name == "curtain" and group.thing.support in (None, "wall"):
+            most = group.count if group.asked else len(self.items)
+            self.items, hung = draped(self.items, most, size, self.room[2], color, self.ids)
         carrier = self._carrier(group)
         support = group.thing.support or ("floor" if group.kind.support == "surface" else group.kind.support)
         size = self._fitted(group, size, support) if carrier is None else size
@@ -153,14 +143,6 @@ class _Pose:
         ]
         self.items += made
         self._know(group, [*hung, *made])
-
-    def _curtains(self, group: Group, size: Size, color: str) -> list[Item]:
-        """Curtains before the windows that have none: as many as were asked for, by habit before every one."""
-        bare = [i for i in self.items if i.label == "window" and any(i.clear)]
-        made = curtains(bare, group.count if group.asked else len(bare), size, self.room[2], color, self.ids)
-        behind = {w.id: w.model_copy(update={"clear": (0.0,) * 4}) for w in bare[: len(made)]}
-        self.items = [behind.get(i.id, i) for i in self.items] + made
-        return made
 
     def _know(self, group: Group, made: Sequence[Item]) -> None:
         self.of[group.key] = [_number(i) for i in made]

@@ -20,7 +20,7 @@ from ..grammar.words import clean
 from . import amounts, knowledge, vocabulary
 from .amounts import Side
 from .brief import Brief, RefusedError
-from .drafts import MOST, Said, brief_of
+from .drafts import Said, brief_of
 from .hearing import refuse_others, words_of
 from .linking import Linker
 
@@ -87,15 +87,7 @@ class _Reader:
                 "not_understood" if self.unknown else "not_an_edit",
                 tuple(self.unknown[:64]),
             )  # fmt: skip
-        for draft in book.drafts:
-            if (draft.said.count or 0) > MOST:
-                self.remarks.append(
-                    f"{draft.said.count} of the {draft.name} were asked for, {MOST} of a kind are the most"
-                )
-            if draft.kind is None:
-                self.remarks.append(f"nobody said how large a {draft.name} is; it is a plain box of half a metre")
-            if draft.said.shape and draft.said.shape not in draft.name:
-                self.remarks.append(f"the shape of the {draft.name} ({draft.said.shape}) is not shown")
+        self.remarks += book.remarks()
         for name in dict.fromkeys(self.styles):
             if unshown := knowledge.styles()[name].unshown:
                 self.remarks.append(f"{name} also means {unshown}, which boxes do not show")
@@ -136,7 +128,7 @@ class _Reader:
             return 0
         behind = self.texts[i + found.taken : i + found.taken + 1]
         last = self.linker.last
-        if behind and behind[0] not in (",", ".", ";", "!", "with", "and", "in", "for", "that", "which", "where"):
+        if behind and (behind[0] == "of" or behind[0] not in {",", *_MARKS, "where", *vocabulary.FILLER}):
             self.said = replace(self.said, sides={**self.said.sides, **found.sides})
         elif self.about_room or last is None or (not self.size and _before(self.texts, i) in (",", ";", ".", ":")):
             self.size.update(found.sides)

@@ -13,7 +13,7 @@ import numpy as np
 from ..graph import Size
 from . import knowledge
 from .brief import Brief, Scale
-from .furnishing import Group
+from .furnishing import Furnishing, Group
 
 _SCALES: dict[Scale, tuple[float, float]] = {  # (where in the range, factor)
     "tiny": (0.0, 0.7), "small": (0.0, 0.85), "normal": (0.5, 1.0), "large": (1.0, 1.15), "huge": (1.0, 1.4),
@@ -51,6 +51,19 @@ def table_for(size: Size, chairs: int, round_one: bool) -> Size:
     ends = 2 * int(depth / _SIT)
     need = ceil(max(chairs - ends, 0) / 2) * _SIT
     return round(max(width, need), 3), depth, height
+
+
+def sized(made: Furnishing, rng: np.random.Generator) -> list[tuple[Group, Size]]:
+    """Every group with the size of its things; tables are as large as their chairs need."""
+    found = []
+    for group in made.groups:
+        size = size_of(group, rng)
+        chairs = [g for g in made.groups for b in g.bonds if b.name == "around" and made.find(b.objects[0]) is group]
+        sat = -(-sum(g.count for g in chairs) // group.count)
+        if sat > 1 and group.thing.width is None and group.kind.top:
+            size = table_for(size, sat, group.kind.round)
+        found.append((group, size))
+    return found
 
 
 def color_of(group: Group, styles: Sequence[str], rng: np.random.Generator, material_color: str) -> str:

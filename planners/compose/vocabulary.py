@@ -128,10 +128,10 @@ ONLY = phrases(
 PRONOUNS = bag("it them this that these those which one ones another other others each")
 FILLER = bag(
     "a an the and or with of to for in at is are be has have having featuring features feature including includes "
-    "include holding containing contains contain there that which also plus then please i we you would like want need needs "
+    "include containing contains contain there that which also plus then please i we you would like want need needs "
     "wants could can should must make create build design generate compose furnish imagine give me us my our your "
     "their its set up show draw let put place placed located positioned mounted standing sitting arranged laid out "
-    "nicely very really quite rather some any hmm maybe perhaps ideally preferably it was so as well too about "
+    "holding nicely very really quite rather some any hmm maybe perhaps ideally preferably it was so as well too about "
     "approximately roughly measuring measures size sized dimensions dimension room-size following here dream lovely "
     "hanging hung leaning filled stocked equipped decorated furnished lined inspired themed styled by from into such "
     "like but while all where into matching comes come along complete together small-scale style type kind sort "

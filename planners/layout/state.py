@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from .bodies import DOORS, FLAT, HEAD, Body, Member, Prepared
+from .bodies import DOORS, FLAT, Body, Member, Prepared
 from .measures import behind_gap, measure, walls_gaps
 from .problem import Keepout, Stand
 from .shapes import EPSILON, Spot, depth, shifted, wrapped
@@ -159,7 +159,7 @@ class State:
         for wall, along in back:
             if wall in self.prepared.problem.open and wall not in self.prepared.named.get(i, ()):
                 turned = (along > 0.7 and backed) or item.size[2] > _HIDING
-                hidden = hidden | (np.asarray(gaps[wall] < _NEAR) & turned)
+                hidden = hidden | (np.asarray(gaps[wall] < _NEAR + item.aisle) & turned)
         return hidden
 
     def unbacked(self) -> list[int]:
