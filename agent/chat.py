@@ -18,7 +18,7 @@ from .halfblocks import depth_of, draw
 from .lines import Lines
 from .reading import step_meant
 from .refusal import verdict_of
-from .resolved import candidate_json, planner_json
+from .resolved import candidate_json, planner_json, refusal_json
 from .tables import coloured
 
 if TYPE_CHECKING:
@@ -89,7 +89,8 @@ class Chat:
             if self.terminal.debug:
                 raise
             said = "\n".join([str(error), *asked(self._fresh)])
-            self.tell(said, {"verdict": verdict_of(error), "reason": str(error), **planner_json(self._fresh)}, "red")
+            data = {"verdict": verdict_of(error), "reason": str(error), **refusal_json(error, self._fresh)}
+            self.tell(said, data, "red")
         except Exception as error:  # a mistake of ours must not cost the user what was not saved yet
             if self.terminal.debug:
                 raise

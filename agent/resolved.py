@@ -10,9 +10,9 @@ import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..gaussians.errors import InstructionError, UserError
+from ..gaussians.errors import InstructionError, ScenewrightError, UserError
 from ..gaussians.language.selection import Candidate, Selection
-from .refusal import verdict_of
+from .refusal import NotUnderstoodError, verdict_of
 
 if TYPE_CHECKING:
     from ..planners.impossible import Step
@@ -81,6 +81,21 @@ def planner_json(plan: EditPlan | None) -> dict[str, Any]:
         return {"planner": "", "prompt_hash": "", "usage": None}
     usage = plan.usage.model_dump(mode="json") if plan.usage is not None else None
     return {"planner": plan.planner, "prompt_hash": plan.prompt_hash, "usage": usage}
+
+
+def refusal_json(error: ScenewrightError, plan: EditPlan | None) -> dict[str, Any]:
+    """Who planned what was refused, what that took, and the verdict of an instruction that was read.
+
+    Args:
+        plan: what was planned; None if nothing was, though asking in vain may have cost something.
+    """
+    from ..planners.plan import NoPlanError
+
+    read = isinstance(error, InstructionError | NotUnderstoodError)
+    told = {**planner_json(plan), **({"verdict": verdict_of(error)} if read else {})}
+    if isinstance(error, NoPlanError) and error.usage is not None:
+        told["usage"] = error.usage.model_dump(mode="json")
+    return told
 
 
 def graph_plan(stage: Stage, planner: Planner, text: str, context: str | None = None) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from typing import Any, NoReturn, TextIO
 
 import typer
 
-from ..gaussians.errors import AbsentError, InstructionError, ScenewrightError, UserError
+from ..gaussians.errors import AbsentError, ScenewrightError, UserError
 
 
 class Terminal:
@@ -123,8 +123,8 @@ class Terminal:
         stream.write(text + "\n")
         stream.flush()
 
-    def refuse(self, error: InstructionError, data: Mapping[str, Any], choices: Sequence[str] = ()) -> NoReturn:
-        """An instruction that was not carried out: the reason, what it hesitated between, and exit code 3."""
+    def refuse(self, error: ScenewrightError, data: Mapping[str, Any], choices: Sequence[str] = ()) -> NoReturn:
+        """An instruction that was not carried out: the reason, what it hesitated between, and the error's exit code."""
         if self.as_json:
             self.row(data)
         self.say(f"scenewright: {error}")
@@ -139,10 +139,12 @@ terminal = Terminal()  # the process has one standard output; options set its fl
 
 
 def explain(error: ScenewrightError) -> dict[str, Any]:
-    """An error as data: its verdict, what to do, and the exit code."""
+    """An error as data: its verdict, what to do, the exit code, and what a model cost that was asked in vain."""
     name = type(error).__name__.removesuffix("Error")
     verdict = "".join(f"_{c.lower()}" if c.isupper() else c for c in name).lstrip("_")
-    return {"verdict": verdict, "reason": str(error), "exit_code": error.exit_code}
+    told = {"verdict": verdict, "reason": str(error), "exit_code": error.exit_code}
+    usage = getattr(error, "usage", None)
+    return told if usage is None else {**told, "usage": usage.model_dump(mode="json")}
 
 
 def read_batch(path: str) -> list[dict[str, Any]]:

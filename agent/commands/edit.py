@@ -28,7 +28,7 @@ from ..options import (
     View,
 )
 from ..stopwatch import timed
-from ..terminal import terminal
+from ..terminal import explain, terminal
 
 if TYPE_CHECKING:
     from ..result import Result
@@ -120,23 +120,21 @@ def _check_targets(output: Path | None, pictures: Path | None, force: bool) -> N
 
 
 def _instruct(session: Session, text: str, dry_run: bool) -> Result:
-    """Do what was said, or say why not and what it hesitated between."""
-    from ...gaussians.errors import InstructionError, UserError
+    """Do what was said, or say why not, what it hesitated between, and what asking a model took all the same."""
+    from ...gaussians.errors import ScenewrightError
     from ..asked import asked
-    from ..refusal import verdict_of
-    from ..resolved import candidate_json, planner_json
+    from ..resolved import candidate_json, refusal_json
 
     try:
         return session.preview(text) if dry_run else session.do(text)
-    except (InstructionError, UserError) as error:
+    except ScenewrightError as error:
         for line in asked(session.planned):
             terminal.say(line)
-        if isinstance(error, UserError):
+        if terminal.debug:
             raise
         candidates = session.question.candidates if session.question else ()
-        data = {"verdict": verdict_of(error), "reason": str(error), "exit_code": error.exit_code,
-                "candidates": [candidate_json(c) for c in candidates], **planner_json(session.planned)}  # fmt: skip
-        terminal.refuse(error, data, [c.describe() for c in candidates])
+        told = {"candidates": [candidate_json(c) for c in candidates], **refusal_json(error, session.planned)}
+        terminal.refuse(error, {**explain(error), **told}, [c.describe() for c in candidates])
 
 
 def _replay(session: Session, log: Path) -> list[Result]:

@@ -57,7 +57,8 @@ class Query(BaseModel):
         last: the selection of the instruction before ("it", "them").
         grow: metres by which what was found reaches out to the Gaussians around it; if negative draws back from them.
         invert: everything but what was found; after growing.
-        groups: explicit group ids (from a picked candidate or a planner that saw the graph); overrides `text`.
+        groups: explicit group ids (from a picked candidate or a planner that saw the graph); overrides `text` and
+            `pick`: whoever numbers things means each of them.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")

@@ -21,7 +21,7 @@ from scenewright.agent.terminal import Terminal
 from scenewright.gaussians.errors import AmbiguousError, BackendError, UserError
 from scenewright.gaussians.scene import Scene
 from scenewright.planners import model as models
-from scenewright.planners.plan import EditPlan, Usage
+from scenewright.planners.plan import EditPlan, NoPlanError, Usage
 from scenewright.tools.registry import parse
 
 HARD = "frobnicate the green thing"
@@ -323,18 +323,6 @@ def test_progress_is_drawn_on_a_terminal_and_removed(boxes: Scene, encoder: Any,
     assert f"asking {SPEC}" in screen.getvalue() and screen.getvalue().endswith("\r\x1b[K")
 
 
-@pytest.fixture
-def room(boxes: Scene, encoder: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    from scenewright.gaussians.files import save
-    from scenewright.gaussians.language import encoders
-    from scenewright.gaussians.language.store import save_field
-
-    monkeypatch.setattr(encoders, "load", lambda spec="auto": encoder)
-    save(boxes, tmp_path / "boxes.ply")
-    save_field(boxes, tmp_path / "boxes.ply")
-    return tmp_path / "boxes.ply"
-
-
 def _call(capsys: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str, str]:
     from scenewright.agent import cli
 
@@ -374,6 +362,40 @@ def test_a_refused_edit_tells_of_the_model_too(
     told = json.loads(out)
     assert (code, told["verdict"], told["usage"]["seconds"]) == (3, "absent", 2.0)
     assert f"planned by {SPEC} in 2.0 s\n" in err and "there is no widget" in err
+
+
+@pytest.mark.parametrize(("verdict", "code"), [("not_understood", 2), ("not_an_edit", 2), ("impossible", 3)])
+def test_whatever_is_refused_has_its_cost_in_the_answer(
+    room: Path, boxes: Scene, encoder: Any, fake: list[Fake], capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch, verdict: str, code: int,
+) -> None:  # fmt: skip
+    monkeypatch.setattr(Fake, "plan", lambda self, text, previous=None, sight=None: EditPlan(
+        instruction=text, planner=SPEC, verdict=verdict, reason="as said", usage=Usage(model=SPEC, requests=3),
+    ))  # fmt: skip
+    left, out, err = _call(capsys, "edit", room, HARD, "--dry-run", "--json", "--planner", f"auto:{SPEC}")
+    told = json.loads(out)
+    assert left == told["exit_code"] == code and told["verdict"] == verdict and told["usage"]["requests"] == 3
+    assert "as said" in told["reason"] and "as said" in err
+    terminal = Terminal(io.StringIO(), io.StringIO())
+    terminal.as_json = True
+    Chat(Session(boxes, f"auto:{SPEC}", encoder, viewer=boxes.cameras[0]), terminal).say(HARD)
+    said = json.loads(terminal.out.getvalue())  # type: ignore[attr-defined]
+    assert (said["verdict"], said["usage"]["requests"], said["planner"]) == (verdict, 3, SPEC)
+
+
+@pytest.mark.parametrize("verb", ["edit", "plan"])
+def test_a_model_that_is_lost_has_cost_what_it_answered_before(
+    room: Path, capsys: pytest.CaptureFixture[str], verb: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def load_planner(spec: str, **_: Any) -> Fake:
+        planner = Fake()
+        planner.error = NoPlanError("the server is gone", Usage(model=SPEC, requests=2))
+        return planner
+
+    monkeypatch.setattr(models, "load_planner", load_planner)
+    words = [HARD, "--dry-run"] if verb == "edit" else [HARD]
+    code, out, _ = _call(capsys, verb, room, *words, "--json", "--planner", SPEC)
+    assert code == json.loads(out)["exit_code"] == 4 and json.loads(out)["usage"]["requests"] == 2
 
 
 @pytest.mark.parametrize("verb", ["edit", "plan", "chat"])
