@@ -19,6 +19,8 @@ from .rehearsal import Rehearsal, with_queries
 _LOOSE = ("all", "any", "rest")
 _WORD = re.compile(r"[^\W\d_]+")
 _OPEN_CHOICE = re.compile(r"\b(?:any|some|either|one of|random|whichever|whatever)\b")
+_SEVERAL = re.compile(r"\b(?:all|every\w*|each|both|any\w*|whole|entire|ones?|others?|rest|set|pair|group|\d+)\b")
+_THE = r"\b(?:the|this|that|my|our|your) "
 # Words that do not tell one thing from another of its kind: what to do, how far, and what ties a sentence together.
 _PLAIN_WORDS = """
 a an the this that it its please kindly can could would will you i we me us my our your to of and then now just let s
@@ -56,6 +58,28 @@ def without_guesses(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple
         # One is asked for, however many ids there were: never all that the words fit.
         return named.model_copy(update={"groups": (), "pick": "one" if named.pick in _LOOSE else named.pick})
 
+    return tuple(with_queries(op, settled) for op in ops)
+
+
+def numbered(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple[EditOp, ...]:
+    """The operations with one thing meant where one was said: "delete the chair" is never all chairs, nor any.
+
+    Only where the words can be followed: the name is that of things here, and stands once in the instruction, in the
+    singular, after "the" or its like, without a word for several or for any.
+    """
+    said = text.lower()
+    heads = {w for node in scene.graph.nodes for w in words(node.label)[-1:]}
+
+    def settled(query: Query) -> Query:
+        noun = query.text.lower().split()[-1:]
+        if query.pick not in ("all", "any") or query.groups or not noun or not heads & set(words(noun[0])):
+            return query
+        here = [w for w in _WORD.findall(said) if set(words(w)) & set(words(noun[0]))]
+        one = here == noun and re.search(rf"{_THE}(?:[\w-]+ ){{0,3}}{re.escape(noun[0])}\b", said)
+        return query.model_copy(update={"pick": "one"}) if one else query
+
+    if _OPEN_CHOICE.search(said) or _SEVERAL.search(said):
+        return tuple(ops)
     return tuple(with_queries(op, settled) for op in ops)
 
 

@@ -1,8 +1,8 @@
 """What a valid plan may still have wrong: ids of nothing, colours that are none, edits that nobody asked for.
 
 Knows what was said, the operations, and the scene's graph where there is one. Refuses to mend a plan, except that ids
-which choose where the words leave open are taken out, so that the editor asks. Each fault is told to the model; what it
-comes to if the model insists is said with it (`Fault.verdict`).
+which choose where the words leave open are taken out, and "all" where they speak of one, so that the editor asks. Each
+fault is told to the model; what it comes to if the model insists is said with it (`Fault.verdict`).
 
 Absent and ambiguous phrases are no fault of a plan in the end: the graph holds only those names that the encoder is
 sure of, while the session resolves against the scene itself, and can show the user what it hesitates between. So the
@@ -12,9 +12,10 @@ the last word.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 from ...gaussians.color import parse as parse_color
 from ...gaussians.errors import UserError
@@ -22,13 +23,14 @@ from ...gaussians.language.query import Query
 from ...gaussians.language.terms import STRUCTURE
 from ...tools.base import EditOp
 from ..colorwords import plain_color
+from ..grammar.verbs import VERBS
 from ..graph import SceneGraph
 from ..impossible import MAKES_PLACE
 from ..on_graph import Resolved
 from ..plan import Planner, Verdict
 from ..stage import Id
 from ..wordwise import words
-from .choosing import stems, without_guesses
+from .choosing import numbered, stems, without_guesses
 from .grounds import Ground, said
 from .pruning import Relevance
 from .rehearsal import Rehearsal, queries
@@ -42,6 +44,8 @@ _TAKES: dict[str, tuple[Ground, ...]] = {
 }
 _HIDES = 0.15  # opacity from which a thing is as good as gone
 _MANY = 4  # things taken away that nobody named
+_FILLERS = re.compile(r"^(?:(?:and|now|then|next|ok|okay|please|so)\b[\s,]*)+")
+_TOO = re.compile(r"\b(?:too|also|as well|same|again|likewise|either|neither)\b")
 _EVERYTHING = frozenset({"", "everything", "anything", "thing", "object", "item", "stuff", "furniture"})
 
 
@@ -79,8 +83,11 @@ class Guard:
         self._scene = Rehearsal(graph, previous, recall) if graph is not None else None
 
     def settled(self, ops: Sequence[EditOp]) -> tuple[EditOp, ...]:
-        """The operations without ids that choose between things which the instruction leaves open."""
-        return tuple(ops) if self._scene is None else without_guesses(ops, self._text, self._scene)
+        """The operations without ids that choose between things which the instruction leaves open, and without "all"
+        where it speaks of one."""
+        if self._scene is None:
+            return tuple(ops)
+        return numbered(without_guesses(ops, self._text, self._scene), self._text, self._scene)
 
     def faults(self, ops: Sequence[EditOp]) -> list[Fault]:
         """What is wrong with the operations, worst first; of each kind one."""
@@ -144,7 +151,7 @@ class Guard:
     def _groundless(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
         """Operations that take something away, where nobody asked for that."""
         for op in _taking(ops):
-            asked = any(said(g, self._text, self._previous) for g in _TAKES[op.op])
+            asked = any(said(g, self._text, self._before) for g in _TAKES[op.op])
             if not asked and not (op.op == "replace" and self._names(getattr(op, "asset", ""))):
                 what = f"{op.op} {op.subject()}"
                 told = (
@@ -155,7 +162,7 @@ class Guard:
 
     def _sweeping(self, ops: Sequence[EditOp], played: Resolved | None) -> Iterator[Fault]:
         """Everything taken away, or much that nobody named, where nobody said "all"."""
-        if said("all", self._text, self._previous):
+        if said("all", self._text, self._before):
             return
         sweeping = [op for op in _taking(ops) if op.op != "isolate" and _is_everything(op.query())]
         unnamed = self._unnamed(played)
@@ -164,16 +171,23 @@ class Guard:
             told = f"the instruction does not say that {what} should go. Do only what it says"
             yield Fault("sweeping", told, "not_understood", f"{_REFUSED}: remove {what}. {_SAY}")
 
+    @cached_property
+    def _before(self) -> str | None:
+        """The instruction before, where it is a ground too: this one has no command of its own, or says "too"."""
+        own = _FILLERS.sub("", self._text.casefold()).split(maxsplit=1)
+        commands = bool(own) and own[0] in _commands() and not _TOO.search(self._text.casefold())
+        return None if commands else self._previous
+
     @property
     def _count(self) -> int:
         return len(self._scene.graph.nodes) if self._scene is not None else 0
 
     def _unnamed(self, played: Resolved | None) -> set[Id]:
-        """What would be taken away and goes by no name or colour that was said."""
+        """What would be taken away and goes by no name or colour that was said; walls and floor are no nodes."""
         if played is None or self._scene is None:
             return set()
         gone = {i for s in played.steps if _takes(s.op) and s.op.op != "isolate" for i in s.targets}
-        return {i for i in gone if not self._relevance.named(self._index[i])} if gone else set()
+        return {i for i in gone if i not in self._index or not self._relevance.named(self._index[i])}
 
     @cached_property
     def _relevance(self) -> Relevance:
@@ -215,6 +229,13 @@ _IF_AMBIGUOUS = (
     "same ops with this verdict. Do not choose by id"
 )
 _SAY = "If you mean it, say so ('delete …', 'keep only …', 'delete everything')"
+
+
+@cache
+def _commands() -> frozenset[str]:
+    """First words of commands, but for those that begin "do the same"."""
+    alike = {phrase.split()[0] for phrase, (kind, _) in VERBS.items() if kind == "SAME"}
+    return frozenset(phrase.split()[0] for phrase in VERBS) - alike
 
 
 def _takes(op: EditOp) -> bool:

@@ -262,3 +262,51 @@ def test_refusals_are_told_before_what_may_stand() -> None:
 
 def test_no_operations_have_no_faults() -> None:
     assert faults("hello") == []
+
+
+# -- one, and not all ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "pick", "settled"),
+    [
+        ("delete the armchair", "armchair", "all", "one"),
+        ("delete the armchair", "armchair", "any", "one"),
+        ("now make my old armchair red", "armchair", "all", "one"),
+        ("delete the armchairs", "armchair", "all", "all"),
+        ("delete every armchair", "armchair", "all", "all"),
+        ("delete an armchair", "armchair", "any", "any"),
+        ("delete any of the armchair things", "armchair", "any", "any"),
+        ("delete the armchair on the left and the one by the sofa", "armchair", "all", "all"),
+        ("delete the armchair and that armchair", "armchair", "all", "all"),
+        ("delete the furniture", "furniture", "all", "all"),
+        ("lösche den Sessel", "armchair", "all", "all"),
+        ("delete the armchair", "armchair", "largest", "largest"),
+    ],
+)
+def test_where_one_was_said_it_is_never_all(text: str, name: str, pick: str, settled: str) -> None:
+    (made,) = guard(text).settled([op("delete", name, q_pick=pick)])
+    query = made.query()
+    assert query is not None and query.pick == settled
+
+
+@pytest.mark.parametrize(
+    ("text", "grounded"),
+    [
+        ("make the sofa teal", False),
+        ("now, please paint the sofa teal", False),
+        ("and the sofa", True),
+        ("the sofa as well", True),
+        ("do the same to the sofa", True),
+        ("get the sofa too", True),
+        ("und das Sofa", True),
+    ],
+)
+def test_a_command_of_its_own_takes_no_ground_from_the_one_before(text: str, grounded: bool) -> None:
+    found = kinds(text, op("delete", "sofa"), previous="delete the floor lamp")
+    assert ("groundless" not in found) == grounded
+
+
+def test_everything_that_went_before_is_no_ground_for_everything_now() -> None:
+    planned = op("opacity", "everything", q_pick="all", value=0.0)
+    assert "sweeping" in kinds("hide the sofa", planned, previous="show everything")
