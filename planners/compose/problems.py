@@ -131,10 +131,12 @@ class _Pose:
         if group.kind.name == "curtain" and group.thing.support in (None, "wall"):
             most = group.count if group.asked else len(self.items)
             self.items, hung = draped(self.items, most, size, self.room[2], color, self.ids)
+            if hung and len(hung) < group.count and group.asked:
+                self.remarks.append("curtains hang in pairs, one pair before each window")
         carrier = self._carrier(group)
         support = group.thing.support or ("floor" if group.kind.support == "surface" else group.kind.support)
         size = self._fitted(group, size, support) if carrier is None else size
-        number = group.count - len(hung) if group.asked or not hung else 0
+        number = 0 if hung else group.count
         tops = self._tops(carrier, number) if carrier else [None] * number
         made = [
             self._item(group, size, color, support if top is None else top)

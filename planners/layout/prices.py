@@ -14,7 +14,7 @@ from .bodies import FLAT, Body, Member
 from .grounds import EYE, FLOOR, extents_of
 from .measures import WALLS, behind_gap, measure, walls_gaps
 from .shapes import F64, Lattice, Spot, meetings, shifted
-from .state import BACKED, HARD, OPEN, SOFT, USED, WALLED, State, placed
+from .state import BACKED, HARD, SOFT, USED, WALLED, State, placed
 
 _MOVED, _TURNED = 3.0, 1.0  # price of a metre away from where a thing was, and metres that a quarter turn is worth
 _CROWDED = 0.3  # share of a top from which things are put close together
@@ -141,7 +141,9 @@ def habits(state: State, body: Body, place: Place) -> F64:
     here = moved(state, body.members[0], place)
     total = np.zeros(len(place.price))
     if prepared.problem.open:
-        total += sum(OPEN * np.asarray(state.hides(m.item, moved(state, m, place))) for m in body.members)
+        total += sum(
+            state.exposure(m.item) * np.asarray(state.hides(m.item, moved(state, m, place))) for m in body.members
+        )
     if item.was is not None:
         turned = abs((place.yaw - item.was.yaw + 180.0) % 360.0 - 180.0) / 90.0
         away = np.hypot(place.x - item.was.position[0], place.y - item.was.position[1])

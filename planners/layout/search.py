@@ -100,8 +100,10 @@ class Search:
         """What is placed first: what failed before, what is large or wants a wall, rugs and hung things last."""
         item = self.prepared.items[body.first]
         late = {"floor": 0.0, "wall": 1.0, "ceiling": 2.0}[str(item.support)]
-        if item.support == "wall" and ((item.height or 0.0) + item.size[2] < 1.0 or self._faced(body.first)):
+        if item.support == "wall" and (item.height or 0.0) + item.size[2] < 1.0:
             late = 0.0
+        if item.support == "wall" and self._faced(body.first):
+            late = -1.0
         if item.support == "floor" and item.size[2] <= FLAT:
             late = 1.5
         area = sum(self.prepared.area(m.item) for m in body.members)

@@ -17,7 +17,15 @@ from .problem import Keepout, Stand
 from .shapes import EPSILON, Spot, depth, shifted, wrapped
 from .ways import floors
 
-HARD, SOFT, USED, WALLED, OPEN, LOST = 1000.0, 12.0, 60.0, 60.0, 45.0, 400.0  # prices; the unit is about a metre off
+HARD, SOFT, USED, WALLED, OPEN, HUNG, LOST = (
+    1000.0,
+    12.0,
+    60.0,
+    60.0,
+    45.0,
+    250.0,
+    400.0,
+)  # prices; the unit is about a metre off
 LEFT_OUT, SPARED = 4000.0, 300.0  # of leaving out what must be there, and what may be absent
 BACKED = 0.02  # metres between a back and the wall behind it
 _LOW, _HIDING, _NEAR = 0.4, 1.4, 0.6  # metres: what hides no room, what does however it is turned, and how near
@@ -133,7 +141,12 @@ class State:
             kept, cost = self.holds(row)
             total += (2.0 if wish.hard else 1.5) * min(cost, 10.0)
             total += 0.0 if kept else (HARD if wish.hard else SOFT)
-        return total + USED * len(self.used()) + WALLED * len(self.unbacked()) + OPEN * len(self.hiding())
+        return (
+            total
+            + USED * len(self.used())
+            + WALLED * len(self.unbacked())
+            + sum(self.exposure(i) for i in self.hiding())
+        )
 
     def lost(self) -> int:
         """How many things nobody gets to."""
@@ -146,6 +159,10 @@ class State:
             for i, (item, spot) in enumerate(zip(self.prepared.items, self.spots, strict=True))
             if spot is not None and item.stand is None and bool(self.hides(i, spot))
         ]
+
+    def exposure(self, i: int) -> float:
+        """Price of an item at a wall that the room is looked at through: what hangs there hangs in the air."""
+        return HUNG if self.prepared.items[i].support == "wall" else OPEN
 
     def hides(self, i: int, spot: Spot) -> Any:
         """Whether an item would hide the room from who looks in, at one place or at many."""

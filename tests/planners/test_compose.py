@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 
 import pytest
 
@@ -14,6 +15,7 @@ from scenewright.planners.compose import Brief, RefusedError, compose, knowledge
 from scenewright.planners.compose.brief import Thing
 from scenewright.planners.compose.furnishing import pairs
 from scenewright.planners.compose.proposing import REPAIRS
+from scenewright.planners.layout import solve
 from scenewright.planners.model.backend import Answer
 from scenewright.planners.model.scripted import ScriptedModel
 from scenewright.planners.plan import Usage
@@ -57,9 +59,7 @@ def test_a_grand_piano_in_a_closet_is_refused_with_the_reason() -> None:
     assert check(made.layout.graph).ok
 
 
-@pytest.mark.parametrize(
-    "text", [OFFICE, BEDROOM, SHOP, "a living room for six people", "a music room"]
-)
+@pytest.mark.parametrize("text", [OFFICE, BEDROOM, SHOP, "a living room for six people", "a music room"])
 def test_what_is_composed_passes_the_checker(text: str) -> None:
     made = compose(text, seed=3)
     assert made.ok, made.layout.conflicts
@@ -144,6 +144,74 @@ def test_every_kind_of_room_composes(kind: str) -> None:
     assert check(made.layout.graph).violations == ()
 
 
+@pytest.mark.parametrize("seed", [3, 11])
+def test_the_solver_itself_lets_people_in(seed: int) -> None:
+    """The host stand and the bar counter used to box the door of these restaurants in."""
+    assert check(solve(problem_of(read("a restaurant"), seed).problem, seed).graph).violations == ()
+
+
+@pytest.mark.parametrize("text", ["a bookstore", "a coffee shop", "a bedroom", "a living room for six", "a classroom"])
+@pytest.mark.parametrize("seed", [1, 2])
+def test_rooms_are_furnished_as_people_do(text: str, seed: int) -> None:
+    made = compose(text, seed=seed)
+    graph = made.layout.graph
+    width, depth, _ = graph.room.size
+    for node in graph.nodes:
+        if node.support == "wall":
+            assert node.position[1] > 0.3 - depth / 2, f"{node.label} hangs where the viewer looks in"
+        kind = knowledge.thing(node.label)
+        if kind and kind.aisle:
+            x, y = node.position[:2]
+            fx, fy = {0: (0, -1), 180: (0, 1), 90: (1, 0), -90: (-1, 0)}[round(node.yaw)]
+            behind = (width / 2 + fx * x if fx else depth / 2 + fy * y) - node.size[1] / 2
+            assert 0.75 <= behind <= 1.2, f"who works behind the {node.label} has {behind:.2f} m"
+    stands = [n for n in graph.nodes if n.label == "nightstand"]
+    if len(stands) == 2:
+        bed = next(n for n in graph.nodes if n.label == "bed")
+        turn = math.radians(bed.yaw)
+        sides = [math.cos(turn) * (s.position[0] - bed.position[0]) + math.sin(turn) * (s.position[1] - bed.position[1])
+                 for s in stands]  # fmt: skip
+        assert sides[0] * sides[1] < 0
+
+
+def test_curtains_hang_before_windows() -> None:
+    graph = compose("a bedroom with curtains", seed=4).layout.graph
+    windows = [n for n in graph.nodes if n.label == "window"]
+    for curtain in (n for n in graph.nodes if n.label == "curtain"):
+        assert min(math.dist(curtain.position[:2], w.position[:2]) for w in windows) < 0.15
+
+
+def test_round_things_on_walls_stay_flat() -> None:
+    graph = compose("a game room with a dart board and a clock").layout.graph
+    for node in graph.nodes:
+        if node.label in ("dart board", "clock"):
+            assert node.size[1] < 0.07 and node.size[0] == node.size[2]
+
+
+PIANOS = [
+    "a grand piano in a 1 m closet",
+    "a 1 m closet with a grand piano",
+    "put a grand piano in a closet of 1 m",
+    "a closet with a grand piano, 1 m",
+    "a 1 m wide closet with a grand piano",
+    "a tiny closet of 1 by 1 m holding a grand piano",
+    "in a one metre closet there is a grand piano",
+]
+
+
+@pytest.mark.parametrize("text", PIANOS)
+def test_a_piano_that_does_not_fit_is_refused_with_both_sizes(text: str) -> None:
+    (conflict,) = compose(text).layout.conflicts
+    piano, room = conflict.statements
+    assert piano.startswith("the grand piano") and " m wide" in piano
+    assert room.startswith("the room is 1 m wide")
+
+
+def test_more_than_can_be_arranged_is_capped_and_told() -> None:
+    brief = read("500 chairs")
+    assert brief.things[0].count == 60 and any("500" in r and "60" in r for r in brief.remarks)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", list(knowledge.rooms()))
 @pytest.mark.parametrize("scale", ["small", "large"])
@@ -217,6 +285,14 @@ def test_what_the_model_refuses_is_refused() -> None:
     declined = ScriptedModel(Answer("I cannot", Usage(model="scripted", requests=1), "declined"))
     with pytest.raises(BackendError, match="declined"):
         compose("a zorblax room", planner=declined, mode="model")
+
+
+def test_an_answer_that_was_closed_for_the_model_is_not_taken() -> None:
+    closed = Answer(PROPOSED, Usage(model="scripted", requests=1), "closed")
+    model = ScriptedModel(closed, PROPOSED)
+    made = compose("a zorblax room", planner=model, mode="model")
+    assert made.usage is not None and made.usage.requests == 2
+    assert "cut off" in model.asked[1][-1].text
 
 
 def test_a_model_never_sees_what_is_unsafe() -> None:

@@ -58,6 +58,8 @@ def test_a_word_that_nobody_knows_is_named(text: str) -> None:
         ("delete the chair", "impossible"),
         ("move the sofa to the left", "impossible"),
         ("what is the weather?", "not_an_edit"),
+        ("hello", "not_an_edit"),
+        ("hi there", "not_an_edit"),
         ("", "not_an_edit"),
         ("🎉🎉", "not_an_edit"),
         ("asdf qwer zxcv", "not_understood"),

@@ -281,3 +281,59 @@ def test_supports_of_the_graph_exist() -> None:
     layout = solve(room(item("table", (9, 9, 0.9)), hung))
     assert layout.left_out == ("table",)
     assert layout.graph.node("vase").support in SHELL
+
+
+def test_a_habit_that_would_box_others_in_is_left_out() -> None:
+    door = item("door", (0.9, 0.06, 2.0), support="wall", stand=Stand(position=(0.0, -2.97, 1.0), yaw=180.0))
+    wide = item("counter", (2.9, 0.6, 1.0), optional=True, stand=None)
+    chair = item("chair", (0.5, 0.5, 0.9))
+    layout = solve(room(door, wide, chair, size=(3.0, 6.0, 2.5), wishes=(wish("chair", "far_from", "door"),)))
+    assert not any(v.kind == "reach" for v in check(layout.graph).violations)
+
+
+def test_a_place_is_sought_from_which_everything_can_be_reached() -> None:
+    """A long counter fits across a corridor at hundreds of places, and along it at a few."""
+    door = item("door", (0.9, 0.06, 2.0), support="wall", stand=Stand(position=(0.0, -2.97, 1.0), yaw=180.0))
+    box = item("box", (0.5, 0.5, 0.5), stand=Stand(position=(0.0, 2.7, 0.25)))
+    counter = item("counter", (2.2, 0.6, 1.0))
+    layout = solve(room(door, box, counter, size=(2.3, 6.0, 2.5)))
+    assert check(layout.graph).violations == ()
+    assert len(layout.graph.nodes) == 3
+
+
+def test_what_works_behind_a_counter_has_its_aisle() -> None:
+    counter = item("counter", (2.0, 0.6, 1.0), backed=True, aisle=0.8, clear=(0.7, 0.75, 0.0, 0.0))
+    for seed in range(4):
+        node = solve(room(counter, size=(5.0, 6.0, 2.5)), seed).graph.node("counter")
+        x, y = node.position[:2]
+        fx, fy = {0: (0, -1), 180: (0, 1), 90: (1, 0), -90: (-1, 0)}[round(node.yaw)]
+        to_wall = (2.5 + fx * x if fx else 3.0 + fy * y) - 0.3
+        assert to_wall == pytest.approx(0.8, abs=0.021)
+
+
+def test_nothing_hangs_on_the_wall_that_one_looks_in_through_unless_wished() -> None:
+    pictures = [item(f"picture {k}", (0.8, 0.03, 0.6), support="wall") for k in range(4)]
+    shelf = item("shelf", (1.0, 0.35, 1.8), backed=True)
+    seen = solve(room(*pictures, shelf, open=("south",))).graph
+    assert min(n.position[1] for n in seen.nodes) > -1.8
+    said = Wish(subject="picture 0", name="against_wall", wall="south")
+    there = solve(room(*pictures, shelf, open=("south",), wishes=(said,)))
+    assert there.kept == (said,)
+    assert there.graph.node("picture 0").position[1] < -1.9
+
+
+def test_a_named_wall_is_kept_and_told() -> None:
+    north = Wish(subject="a", name="against_wall", wall="north")
+    assert solve(room(item("a"), wishes=(north,))).graph.node("a").position[1] == pytest.approx(1.75, abs=0.1)
+    east = Wish(subject="a", name="against_wall", wall="east")
+    west = Wish(subject="a", name="against_wall", wall="west")
+    (conflict,) = solve(room(item("a"), wishes=(east, west))).conflicts
+    assert {"the a (a) is against the east wall", "the a (a) is against the west wall"} <= set(conflict.statements)
+
+
+def test_at_a_window_of_a_named_wall() -> None:
+    left = item("left window", (1.2, 0.08, 1.2), support="wall", stand=Stand(position=(-1.96, 0.0, 1.5), yaw=90.0))
+    back = item("back window", (1.2, 0.08, 1.2), support="wall", stand=Stand(position=(0.0, 1.96, 1.5)))
+    west = Wish(subject="a", name="at_window", wall="west")
+    node = solve(room(left, back, item("a"), wishes=(west,))).graph.node("a")
+    assert node.position[0] < -1.0 and abs(node.position[1]) < 1.5
