@@ -1,7 +1,7 @@
-"""Ids that choose between things which the user's words leave open: found, and taken out.
+"""What chooses between things which the user's words leave open (ids, colours, "all"): found, and taken out.
 
-Knows which words of an instruction tell one thing from another of its kind. Refuses to choose itself: without the ids
-the words stand, and whoever resolves them finds several and asks.
+Knows which words of an instruction tell one thing from another of its kind. Refuses to choose itself: what was said
+stands, and whoever resolves it finds several and asks.
 """
 
 from __future__ import annotations
@@ -57,6 +57,25 @@ def without_guesses(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple
             return query
         # One is asked for, however many ids there were: never all that the words fit.
         return named.model_copy(update={"groups": (), "pick": "one" if named.pick in _LOOSE else named.pick})
+
+    return tuple(with_queries(op, settled) for op in ops)
+
+
+def without_inventions(ops: Sequence[EditOp], text: str, previous: str | None) -> tuple[EditOp, ...]:
+    """The operations without colours that nobody said, where every word of the instruction is accounted for without
+    them: "delete the chair", and a model that says the red one. A word that is not (another tongue's, "crimson", "my")
+    may be what the colour was read from.
+    """
+    said = stems(f"{text} {previous or ''}")
+    used = {s for op in ops for value in _strings(op.model_dump(exclude_defaults=True)) for s in stems(value)}
+    if not all(stems(word) <= _plain() | used for word in _WORD.findall(text.lower())):
+        return tuple(ops)
+
+    def settled(query: Query) -> Query:
+        if not query.text or query.last or query.groups:
+            return query
+        heard = tuple(c for c in query.colors if stems(c) & said)
+        return query.model_copy(update={"colors": heard}) if heard != query.colors else query
 
     return tuple(with_queries(op, settled) for op in ops)
 

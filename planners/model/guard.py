@@ -1,8 +1,8 @@
 """What a valid plan may still have wrong: ids of nothing, colours that are none, edits that nobody asked for.
 
 Knows what was said, the operations, and the scene's graph where there is one. Refuses to mend a plan, except that ids
-which choose where the words leave open are taken out, and "all" where they speak of one, so that the editor asks. Each
-fault is told to the model; what it comes to if the model insists is said with it (`Fault.verdict`).
+and colours which choose where the words leave open are taken out, and "all" where they speak of one, so that the editor
+asks. Each fault is told to the model; what it comes to if the model insists is said with it (`Fault.verdict`).
 
 Absent and ambiguous phrases are no fault of a plan in the end: the graph holds only those names that the encoder is
 sure of, while the session resolves against the scene itself, and can show the user what it hesitates between. So the
@@ -30,7 +30,7 @@ from ..on_graph import Resolved
 from ..plan import Planner, Verdict
 from ..stage import Id
 from ..wordwise import words
-from .choosing import numbered, stems, without_guesses
+from .choosing import numbered, stems, without_guesses, without_inventions
 from .grounds import Ground, said
 from .pruning import Relevance
 from .rehearsal import Rehearsal, queries
@@ -83,11 +83,12 @@ class Guard:
         self._scene = Rehearsal(graph, previous, recall) if graph is not None else None
 
     def settled(self, ops: Sequence[EditOp]) -> tuple[EditOp, ...]:
-        """The operations without ids that choose between things which the instruction leaves open, and without "all"
-        where it speaks of one."""
+        """The operations without ids and colours that choose between things which the instruction leaves open, and
+        without "all" where it speaks of one."""
         if self._scene is None:
             return tuple(ops)
-        return numbered(without_guesses(ops, self._text, self._scene), self._text, self._scene)
+        said = without_inventions(without_guesses(ops, self._text, self._scene), self._text, self._previous)
+        return numbered(said, self._text, self._scene)
 
     def faults(self, ops: Sequence[EditOp]) -> list[Fault]:
         """What is wrong with the operations, worst first; of each kind one."""

@@ -310,3 +310,27 @@ def test_a_command_of_its_own_takes_no_ground_from_the_one_before(text: str, gro
 def test_everything_that_went_before_is_no_ground_for_everything_now() -> None:
     planned = op("opacity", "everything", q_pick="all", value=0.0)
     assert "sweeping" in kinds("hide the sofa", planned, previous="show everything")
+
+
+@pytest.mark.parametrize(
+    ("text", "previous", "kept"),
+    [
+        ("delete the armchair", None, ()),
+        ("please move the armchair to the left", None, ()),
+        ("delete the green armchair", None, ("green",)),
+        ("delete the armchair", "make the green lamp red", ("green",)),
+        ("delete the emerald armchair", None, ("green",)),
+        ("delete her armchair", None, ("green",)),
+        ("lösche den grünen Sessel", None, ("green",)),
+    ],
+)
+def test_colours_that_nobody_said_choose_nothing(text: str, previous: str | None, kept: tuple[str, ...]) -> None:
+    planned = op("move", "armchair", q_colors=["green"], direction="left")
+    (made,) = guard(text, previous).settled([planned])
+    query = made.query()
+    assert query is not None and query.colors == kept and query.text == "armchair"
+
+
+def test_a_colour_to_paint_with_is_none_to_look_for() -> None:
+    (made,) = guard("paint the armchair green").settled([op("recolor", "armchair", q_colors=["gray"], color="green")])
+    assert made.query().colors == () and made.color == "green"  # type: ignore[attr-defined,union-attr]
