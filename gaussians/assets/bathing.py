@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .materials import Material, Tone
+from .materials import STEEL, Material, Tone
 from .parts import Rng, chance, fronts
 from .registry import kind
 from .shapes import (
@@ -27,14 +27,6 @@ from .shapes import (
 )
 
 Rows = list[tuple[float, ...]]
-_STEEL = Material((0.75, 0.76, 0.78), "brushed")
-
-
-def _white(tone: Tone) -> Material:
-    """The colour that was asked for, or the white of such things."""
-    if not tone.asked:
-        tone.color = (0.94, 0.94, 0.92)
-    return Material(tone.color, main=True)
 
 
 def _tap(x: float, y: float, z: float, high: float, steel: Material) -> Piece:
@@ -211,7 +203,7 @@ def washing_machine(rng: Rng, tone: Tone) -> list[Piece]:
 )
 def shower(rng: Rng, tone: Tone) -> list[Piece]:
     w, h = rng.uniform(0.85, 1.0), rng.uniform(1.95, 2.1)
-    white, t = _white(tone), 0.03
+    white, t = tone.in_white(), 0.03
     tiles = Material((0.86, 0.92, 0.93), "tiles", (0.7, 0.8, 0.83), 0.15)
     posts: Rows = [(t, t, h, sx * (w - t) / 2, sy * (w - t) / 2, 0) for sx in (-1, 1) for sy in (-1, 1)]
     posts += [(w, t, t, 0, -(w - t) / 2, h - t), (t, w, t, -(w - t) / 2, 0, h - t)]
@@ -219,15 +211,15 @@ def shower(rng: Rng, tone: Tone) -> list[Piece]:
     glass = Material((0.78, 0.88, 0.9), "glass", (0.93, 0.97, 0.98))
     return [
         box(w, w, 0.1, (0, 0, 0), 0.02).named("tray", white),
-        disc(0.045, (0, 0, 0.102)).named("drain", _STEEL),
+        disc(0.045, (0, 0, 0.102)).named("drain", STEEL),
         boxes(
             [(w - t, 0.012, h - 0.1, 0, w / 2 - 0.01, 0.1), (0.012, w - t, h - 0.1, w / 2 - 0.01, 0, 0.1)], 0.0
         ).named("tile", tiles),
-        boxes(posts, 0.004).named("frame", _STEEL),
+        boxes(posts, 0.004).named("frame", STEEL),
         box(0.008, w * 0.9, h * 0.4, (-w / 2 + 0.015, 0, 0.12), 0.0).named("glass", glass),
-        tube(head, 0.012, smooth=17).named("pipe", _STEEL),
-        lathe([(0.02, 0.03), (0.11, 0.0), (0, 0.0)], (0, w * 0.14, h * 0.94)).named("head", _STEEL),
-        cylinder(0.03, 0.05, (0, w * 0.42, 1.05)).named("valve", _STEEL),
+        tube(head, 0.012, smooth=17).named("pipe", STEEL),
+        lathe([(0.02, 0.03), (0.11, 0.0), (0, 0.0)], (0, w * 0.14, h * 0.94)).named("head", STEEL),
+        cylinder(0.03, 0.05, (0, w * 0.42, 1.05)).named("valve", STEEL),
     ]
 
 
@@ -242,10 +234,8 @@ def shower(rng: Rng, tone: Tone) -> list[Piece]:
 def towel_rack(rng: Rng, tone: Tone) -> list[Piece]:
     w, h = rng.uniform(0.5, 0.66), rng.uniform(0.4, 0.55)
     cloth = tone.textile(0.05, 0.7)
-    out = [rod((-w / 2, -0.05, h - 0.02), (w / 2, -0.05, h - 0.02), 0.011).named("bar", _STEEL, 1.3)]
-    out.append(
-        boxes([(0.03, 0.08, 0.03, s * (w / 2 - 0.02), -0.02, h - 0.035) for s in (-1, 1)]).named("mount", _STEEL)
-    )
+    out = [rod((-w / 2, -0.05, h - 0.02), (w / 2, -0.05, h - 0.02), 0.011).named("bar", STEEL, 1.3)]
+    out.append(boxes([(0.03, 0.08, 0.03, s * (w / 2 - 0.02), -0.02, h - 0.035) for s in (-1, 1)]).named("mount", STEEL))
     for k in range(int(rng.integers(1, 3))):
         x, wide, drop = (k * 2 - 1) * w * 0.22, w * rng.uniform(0.3, 0.4), h * rng.uniform(0.75, 0.95)
         out.append(
@@ -273,8 +263,8 @@ def dishwasher(rng: Rng, tone: Tone) -> list[Piece]:
         box(w * 0.95, 0.02, 0.09, (0, y - 0.004, h - 0.11), 0.004).named(
             "panel", dark if chance(rng, 0.6) else mat.shaded(0.75)
         ),
-        rod((-w * 0.36, y - 0.045, h * 0.76), (w * 0.36, y - 0.045, h * 0.76), 0.012).named("handle", _STEEL),
-        boxes([(0.02, 0.03, 0.02, s * w * 0.34, y - 0.025, h * 0.76 - 0.01) for s in (-1, 1)]).named("mount", _STEEL),
+        rod((-w * 0.36, y - 0.045, h * 0.76), (w * 0.36, y - 0.045, h * 0.76), 0.012).named("handle", STEEL),
+        boxes([(0.02, 0.03, 0.02, s * w * 0.34, y - 0.025, h * 0.76 - 0.01) for s in (-1, 1)]).named("mount", STEEL),
         boxes([(0.02, 0.008, 0.015, x * w, y - 0.015, h - 0.07) for x in (-0.3, -0.2, -0.1, 0.25)]).named(
             "button", tone.plain("#c8d2d8")
         ),

@@ -81,6 +81,9 @@ PALETTES: dict[str, tuple[str, ...]] = {
 }  # fmt: skip
 
 
+STEEL = Material((0.75, 0.76, 0.78), "brushed")
+
+
 class Tone:
     """The colours of one design: the main one, as asked for or drawn from the kind's palette, and companions."""
 
@@ -100,6 +103,12 @@ class Tone:
         if self.rng.random() < 0.6:
             return mix(self.color, (0.97, 0.96, 0.93), 0.75) if light < 0.6 else shade(self.color, 0.55)
         return mix(self.color, (0.08, 0.08, 0.1), 0.6) if light > 0.35 else mix(self.color, (1, 1, 1), 0.55)
+
+    def in_white(self) -> Material:
+        """The colour that was asked for, or the white of baths and kitchen fronts, which the tone takes on."""
+        if not self.asked:
+            self.color = (0.94, 0.94, 0.92)
+        return Material(self.color, main=True)
 
     @property
     def main(self) -> Material:

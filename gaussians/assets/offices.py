@@ -4,20 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from .materials import Material, Tone
+from .materials import STEEL, Material, Tone
 from .parts import Rng, chance
 from .registry import kind
 from .shapes import Piece, box, boxes, join, lathe, panel, rod
 
 Rows = list[tuple[float, ...]]
-_STEEL = Material((0.75, 0.76, 0.78), "brushed")
-
-
-def _white(tone: Tone) -> Material:
-    """The colour that was asked for, or the white of such things."""
-    if not tone.asked:
-        tone.color = (0.94, 0.94, 0.92)
-    return Material(tone.color, main=True)
 
 
 @kind(
@@ -94,7 +86,7 @@ def locker(rng: Rng, tone: Tone) -> list[Piece]:
         *out,
         boxes(doors, 0.004).named("door", mat.shaded(1.1)),
         boxes(slots, 0.0).named("slot", mat.shaded(0.35), 1.2),
-        boxes(pulls).named("handle", _STEEL),
+        boxes(pulls).named("handle", STEEL),
     ]
 
 
@@ -128,7 +120,7 @@ def cubby(rng: Rng, tone: Tone) -> list[Piece]:
     shown=False,
 )
 def water_cooler(rng: Rng, tone: Tone) -> list[Piece]:
-    mat, h = _white(tone), rng.uniform(0.92, 1.0)
+    mat, h = tone.in_white(), rng.uniform(0.92, 1.0)
     water = Material((0.45, 0.7, 0.9), "glass", (0.8, 0.92, 0.98))
     jug = lathe(
         [(0.05, 0.0), (0.06, 0.04), (0.13, 0.1), (0.135, 0.2), (0.13, 0.34), (0.09, 0.36), (0, 0.36)],
@@ -143,7 +135,7 @@ def water_cooler(rng: Rng, tone: Tone) -> list[Piece]:
             box(0.025, 0.05, 0.03, (s * 0.045, -0.18, h * 0.8), 0.006).named("tap", tone.plain(c))
             for s, c in ((-1, "#2a5ac8"), (1, "#c8201e"))
         ),
-        box(0.2, 0.07, 0.02, (0, -0.18, h * 0.6), 0.004).named("tray", _STEEL),
+        box(0.2, 0.07, 0.02, (0, -0.18, h * 0.6), 0.004).named("tray", STEEL),
     ]
 
 

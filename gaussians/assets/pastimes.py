@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from .materials import Material, Tone
+from .materials import STEEL, Material, Tone
 from .parts import Rng, chance, shell
 from .registry import kind
 from .shapes import Piece, ball, blob, box, boxes, cylinder, disc, join, legs4, panel, rod, tube
 
 Rows = list[tuple[float, ...]]
-_STEEL = Material((0.75, 0.76, 0.78), "brushed")
 
 
 @kind(
@@ -85,7 +84,7 @@ def arcade_machine(rng: Rng, tone: Tone) -> list[Piece]:
         box(w, d * 0.3, 0.2, (0, d * 0.0, h - 0.2), 0.01).named("hood", mat),
         panel(w * 0.86, 0.14, (0, -d * 0.155, h - 0.17)).named("sign", Material((1.0, 0.85, 0.3), "glow", (1, 1, 0.9))),
         panel(w * 0.8, 0.5, (0, d * 0.04, 1.0)).named("screen", Material((0.3, 0.2, 0.7), "screen", seed=tone.seed)),
-        rod((-0.14, -d * 0.38, 0.96), (-0.14, -d * 0.38, 1.06), 0.008).named("stick", _STEEL),
+        rod((-0.14, -d * 0.38, 0.96), (-0.14, -d * 0.38, 1.06), 0.008).named("stick", STEEL),
         ball(0.026, (-0.14, -d * 0.38, 1.07)).named("knob", tone.plain("#c8201e")),
         join(*knobs).named("button", tone.plain("#f2d31b")),
         box(w * 0.4, 0.012, 0.3, (0, -d * 0.305, 0.3), 0.004).named("coin door", dark),
@@ -153,7 +152,7 @@ def dumbbell_rack(rng: Rng, tone: Tone) -> list[Piece]:
             ]
     return [
         boxes(rows, 0.006).named("frame", mat),
-        join(*grips).named("grip", _STEEL, 0.8),
+        join(*grips).named("grip", STEEL, 0.8),
         join(*ends).named("weight", iron, 0.8),
     ]
 

@@ -4,20 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from .materials import Material, Tone
+from .materials import STEEL, Material, Tone
 from .parts import Rng, chance, fronts
 from .registry import kind
 from .shapes import Piece, ball, blob, box, boxes, cylinder, join, lathe, legs4, panel, ring, rod, tube
 
 Rows = list[tuple[float, ...]]
-_STEEL = Material((0.75, 0.76, 0.78), "brushed")
-
-
-def _white(tone: Tone) -> Material:
-    """The colour that was asked for, or the white of such things."""
-    if not tone.asked:
-        tone.color = (0.94, 0.94, 0.92)
-    return Material(tone.color, main=True)
 
 
 @kind(
@@ -42,10 +34,10 @@ def vending_machine(rng: Rng, tone: Tone) -> list[Piece]:
         box(w, d, h, (0, 0, 0), 0.02).named("body", mat),
         box(w * 0.7, 0.012, h * 0.62, (-w * 0.11, y - 0.002, h * 0.3), 0.0).named("window", dark),
         boxes([(w * 0.7, 0.02, 0.012, -w * 0.11, y - 0.008, h * 0.31 + k * 0.215) for k in range(5)]).named(
-            "shelf", _STEEL
+            "shelf", STEEL
         ),
         box(w * 0.6, 0.012, h * 0.12, (-w * 0.11, y - 0.002, h * 0.1), 0.0).named("flap", dark),
-        box(w * 0.16, 0.012, h * 0.3, (w * 0.37, y - 0.003, h * 0.5), 0.0).named("panel", _STEEL),
+        box(w * 0.16, 0.012, h * 0.3, (w * 0.37, y - 0.003, h * 0.5), 0.0).named("panel", STEEL),
         panel(w * 0.12, 0.1, (w * 0.37, y - 0.012, h * 0.72)).named(
             "display", Material((0.2, 0.6, 0.8), "screen", seed=1)
         ),
@@ -61,7 +53,7 @@ def vending_machine(rng: Rng, tone: Tone) -> list[Piece]:
     shown=False,
 )
 def mannequin(rng: Rng, tone: Tone) -> list[Piece]:
-    skin, cloth = _white(tone), tone.accent()
+    skin, cloth = tone.in_white(), tone.accent()
     skirt = chance(rng, 0.5)
     trunk = lathe(
         [(0.06, 0.82), (0.17, 0.88), (0.13, 1.05), (0.18, 1.25), (0.17, 1.4), (0.06, 1.47), (0.05, 1.52)], smooth=25
@@ -72,7 +64,7 @@ def mannequin(rng: Rng, tone: Tone) -> list[Piece]:
         for s in (-1, 1)
     ]
     out = [
-        cylinder(0.2, 0.02, bevel=0.006).named("base", _STEEL),
+        cylinder(0.2, 0.02, bevel=0.006).named("base", STEEL),
         trunk.named("top", cloth),
         join(*legs).named("leg", skin),
         join(*arms).named("arm", skin),
