@@ -16,7 +16,7 @@ from . import slashes
 from .asked import asked
 from .halfblocks import depth_of, draw
 from .lines import Lines
-from .reading import step_meant
+from .reading import dismisses, step_meant
 from .refusal import verdict_of
 from .resolved import candidate_json, planner_json, refusal_json
 from .tables import coloured
@@ -100,6 +100,10 @@ class Chat:
     def _instruction(self, text: str) -> None:
         question = self.session.question
         if question is not None and question.selection.verdict == "ambiguous" and step_meant(text) is None:
+            if dismisses(text):
+                self.session.question = None
+                self.tell("nothing was changed", {"verdict": "cancelled"})
+                return
             try:
                 result = self.session.answer(text)
             except UserError:

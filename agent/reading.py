@@ -32,6 +32,16 @@ def step_meant(text: str) -> Literal["undo", "redo"] | None:
     return next((step for step, words in _STEPS if words.fullmatch(said)), None)
 
 
+_DISMISSED = re.compile(
+    r"(never ?mind|forget (it|that)|cancel( (it|that))?|none|none of (them|these|those)|neither|no|stop)", re.I
+)
+
+
+def dismisses(text: str) -> bool:
+    """Whether words say that a question need not be answered."""
+    return _DISMISSED.fullmatch(text.strip().rstrip(".!")) is not None
+
+
 class Reader:
     """Reads for one session. `last` is the plan that was made last, whatever came of it.
 

@@ -59,6 +59,13 @@ def test_a_question_does_not_stand_in_the_way_of_undoing(boxes: Scene, encoder: 
     assert "undo: make the green thing blue" in out
 
 
+@pytest.mark.parametrize("words", ["never mind", "None of them.", "cancel"])
+def test_a_question_can_be_dismissed(boxes: Scene, encoder: Any, words: str) -> None:
+    session, out, _ = _talk(boxes, encoder, "delete the red thing", words, "1")
+    assert session.scene is boxes and session.question is None
+    assert "nothing was changed" in out and "does not say which" not in out
+
+
 def test_a_question_can_be_passed_over(boxes: Scene, encoder: Any) -> None:
     session, _, _ = _talk(boxes, encoder, "delete the red thing", "delete the green thing")
     assert set(session.scene.cloud.group.unique().tolist()) == {0, 2, 3}
