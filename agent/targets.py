@@ -22,6 +22,16 @@ def refuse_existing(paths: Iterable[Path], force: bool) -> None:
             raise UserError(f"{path} exists; choose another name, or overwrite it with --force")
 
 
+def require_folder(path: Path) -> None:
+    """Say at once that there is no folder for a file.
+
+    Raises:
+        FileError: there is none.
+    """
+    if not path.absolute().parent.is_dir():
+        raise FileError(f"the folder {path.absolute().parent} does not exist; create it first")
+
+
 def make_folder(path: Path) -> None:
     """Make a folder, and those above it, if it is not there.
 

@@ -152,7 +152,8 @@ class SceneGraph(BaseModel):
         try:
             data = json.loads(path.read_text(encoding="utf-8"))
         except (OSError, ValueError) as error:
-            raise FileError(f"cannot read the scene graph {path}: {error}") from error
+            why = (error.strerror if isinstance(error, OSError) else None) or str(error)
+            raise FileError(f"cannot read the scene graph {path}: {why}") from error
         if isinstance(data, dict) and "room" not in data:
             data = {**data, "room": {"size": _extent_of(data.get("nodes"))}}
         try:

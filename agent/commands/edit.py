@@ -109,9 +109,13 @@ def command(
 
 
 def _check_targets(output: Path | None, pictures: Path | None, force: bool) -> None:
-    """Say at once, not after the work, that a file would be overwritten or cannot be there."""
-    from ..targets import make_folder, refuse_existing
+    """Say at once, not after the work, that a file would be overwritten, cannot be there or has no format."""
+    from ...gaussians.files import writer
+    from ..targets import make_folder, refuse_existing, require_folder
 
+    if output is not None:
+        writer(output)
+        require_folder(output)
     wanted = [output] if output else []
     wanted += [pictures / name for name in ("before.png", "after.png")] if pictures else []
     refuse_existing(wanted, force)

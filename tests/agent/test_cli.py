@@ -435,3 +435,15 @@ def test_info_gives_the_graph_of_an_embedded_scene(call: Any, room: Path, tmp_pa
     told = call("plan", "select everything", "--graph", written, "--resolve", "--json")
     assert told.data["verdict"] == "ok"
     assert {n["id"] for n in answer.data["nodes"]} <= set(told.data["steps"][0]["targets"])
+
+
+def test_an_edit_that_could_not_be_written_is_not_begun(
+    call: Any, room: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from scenewright.agent import opening
+
+    monkeypatch.setattr(opening, "open_session", lambda _: pytest.fail("the work was begun"))
+    lost = call("edit", room, "delete the green thing", "-o", tmp_path / "nowhere" / "out.ply")
+    assert lost.code == 4 and "nowhere does not exist; create it first" in lost.err
+    named = call("edit", room, "delete the green thing", "-o", tmp_path / "out.txt")
+    assert named.code == 2 and "cannot write out.txt" in named.err
