@@ -21,7 +21,10 @@ def _debug(value: bool) -> bool:
 
 
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="A scene file or folder (see `convert --help`).")]
-Output = Annotated[Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to write the scene (.ply).")]
+Output = Annotated[
+    Path | None,
+    typer.Option("--output", "-o", metavar="FILE", help="Where to write the scene; its suffix says the format."),
+]
 Json = Annotated[bool, typer.Option("--json", callback=_json, is_eager=True, help="Print the result as JSON.")]
 Debug = Annotated[
     bool, typer.Option("--debug", callback=_debug, is_eager=True, help="Let errors through with their traceback.")

@@ -105,6 +105,8 @@ def _refuse_early(targets: _Targets, assets: Path | None) -> None:
     refuse_existing(wanted, targets.force)
     if targets.picture is not None:
         require_png(targets.picture)
+    if targets.graph is not None and targets.graph.suffix.lower() != ".json":
+        raise UserError(f"{targets.graph} is where the scene graph goes, as .json; a scene is written with --scene")
     for path in wanted:
         if not path.absolute().parent.is_dir():
             raise UserError(f"there is no folder {path.parent}; make it, or write {path.name} elsewhere")

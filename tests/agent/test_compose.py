@@ -159,6 +159,12 @@ def test_python_composes_a_graph_or_names_the_conflict(monkeypatch: pytest.Monke
     assert sw.compose("a small room", best=True).nodes
 
 
+def test_a_scene_is_not_written_where_the_graph_goes(call: Any, tmp_path: Path) -> None:
+    answer = call("compose", "a small bathroom", "-o", tmp_path / "room.ply")
+    assert answer.code == 2 and "a scene is written with --scene" in answer.err
+    assert not list(tmp_path.iterdir())
+
+
 def test_planners_that_cannot_compose_are_refused(call: Any) -> None:
     code, _, err = call("a bedroom", "--planner", "nonsense")
     assert code == 2 and "grammar" in err
