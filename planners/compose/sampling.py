@@ -33,6 +33,7 @@ def sample_brief(kind: str, objects: int, seed: int) -> Brief:
     for habit in order:
         if left > 0 and made.add(habit, most=left):
             left -= made.groups[-1].count
+    made.settle()
     things = [
         Thing(id="door", name="door"),
         Thing(id="window", name="window"),
