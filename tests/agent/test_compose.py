@@ -160,7 +160,7 @@ def test_python_composes_a_graph_or_names_the_conflict(monkeypatch: pytest.Monke
 
 
 def test_a_scene_is_not_written_where_the_graph_goes(call: Any, tmp_path: Path) -> None:
-    code, _, err = call("compose", "a small bathroom", "-o", tmp_path / "room.ply")
+    code, _, err = call("a small bathroom", "-o", tmp_path / "room.ply")
     assert code == 2 and "a scene is written with --scene" in err
     assert not list(tmp_path.iterdir())
 
