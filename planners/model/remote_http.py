@@ -35,6 +35,7 @@ def open_client(address: Address, seconds: float) -> httpx2.AsyncClient:
     except (ImportError, ValueError):  # a kind of proxy that needs another package, or none at all
         raise ProxyError from None
     client.headers["Accept-Encoding"] = "identity"  # so that bytes counted are bytes held
+    client.headers["Connection"] = "close"  # a kept one may be closing as the next request goes out on it
     client.event_hooks["response"].append(_bound)
     return client
 

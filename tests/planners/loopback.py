@@ -94,7 +94,9 @@ class Server:
             def _send(self, turn: Turn) -> None:
                 chunks = turn.chunks if turn.streamed else list(turn.chunks)
                 self.send_response(turn.status)
-                headers = {"Content-Type": "text/event-stream" if turn.streamed else "application/json", **turn.headers}
+                kind = "text/event-stream" if turn.streamed else "application/json"
+                # It closes after every turn: unsaid, a client's next request may meet the closing connection.
+                headers = {"Content-Type": kind, "Connection": "close", **turn.headers}
                 if turn.streamed:
                     headers["Transfer-Encoding"] = "chunked"
                 else:
