@@ -15,9 +15,8 @@ from typing import Literal
 
 import numpy as np
 
-from ..camera import Camera
 from ..errors import FileError, UserError
-from ..scene import Frame, Scene
+from ..scene import Scene
 from . import checkpoint
 from .growth import Budgeted, Classic, Growth
 from .parameters import Parameters
@@ -116,7 +115,7 @@ def fit(
     _train(trainer, photos, curve, kept, name, told)
     made = trainer.parameters.cloud()
     cameras = tuple(sorted((s.camera for s in (*photos.shots, *photos.held)), key=lambda camera: camera.name))
-    scene = Scene(made, Frame(up=_up(cameras), up_source="estimated"), cameras)
+    scene = Scene(made, cameras=cameras)
     quality = measure(made, photos.held)
     if kept is not None:
         kept.unlink(missing_ok=True)
@@ -175,10 +174,3 @@ def _resumed(trainer: Trainer, kept: Path, name: str) -> list[tuple[float, float
         return [(float(s), float(p)) for s, p in values["curve"]]
     except (KeyError, ValueError, TypeError) as error:
         raise FileError(f"{kept} is no checkpoint to go on from ({error}); delete it to begin anew") from error
-
-
-def _up(cameras: tuple[Camera, ...]) -> tuple[float, float, float]:
-    """Photographs are held upright, most of them: the mean of the images' upward directions."""
-    up = -np.mean([c.world_to_camera[1, :3] for c in cameras], axis=0)
-    x, y, z = (up / max(float(np.linalg.norm(up)), 1e-9)).tolist()
-    return (x, y, z) if np.linalg.norm(up) > 1e-3 else (0.0, 0.0, 1.0)
