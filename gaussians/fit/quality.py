@@ -41,7 +41,7 @@ def measure(cloud: GaussianCloud, shots: Sequence[Shot]) -> Quality:
     each = {}
     for shot in shots:
         seen = render(cloud, shot.camera).rgb.clamp(0, 1)
-        photo = torch.from_numpy(shot.photo.astype(np.float32) / 255)
+        photo = torch.from_numpy(shot.colors)
         off = float((seen - photo).square().mean(dtype=torch.float64))
         each[shot.camera.name] = (min(BEST, -10 * math.log10(max(off, 1e-12))), float(similarity(seen, photo)))
     psnr, ssim = np.mean(list(each.values()), axis=0).tolist() if each else (math.nan, math.nan)

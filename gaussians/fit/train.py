@@ -38,6 +38,11 @@ class Shot:
     camera: Camera
     photo: NDArray[np.uint8]
 
+    @property
+    def colors(self) -> F32:
+        """`[H, W, 3]`, in [0, 1]."""
+        return self.photo.astype(np.float32) / np.float32(255)
+
 
 @dataclass(frozen=True)
 class Schedule:
@@ -114,7 +119,7 @@ class Trainer:
         if not self._order:
             self._order = self._rng.permutation(len(self._shots)).tolist()
         shot = self._shots[self._order.pop()]
-        camera, photo = halved(shot) if done < self.schedule.coarse else (shot.camera, _unit(shot.photo))
+        camera, photo = halved(shot) if done < self.schedule.coarse else (shot.camera, shot.colors)
         if 0.5 * (self.parameters.degree + 1) / (self.schedule.degree + 1) <= done:
             self.parameters.widen(min(self.parameters.degree + 1, self.schedule.degree))
         loss = self._learn(camera, photo, MEANS * self._extent * FALL**done)
@@ -137,14 +142,10 @@ class Trainer:
         return loss
 
 
-def _unit(photo: NDArray[np.uint8]) -> F32:
-    return photo.astype(np.float32) / np.float32(255)
-
-
 def halved(shot: Shot) -> tuple[Camera, F32]:
     """Camera and photograph at half the size; an odd last row or column is left out."""
     height, width = shot.camera.height // 2, shot.camera.width // 2
-    even = _unit(shot.photo[: 2 * height, : 2 * width]).reshape(height, 2, width, 2, 3)
+    even = shot.colors[: 2 * height, : 2 * width].reshape(height, 2, width, 2, 3)
     whole = shot.camera
     camera = Camera(
         whole.world_to_camera, whole.fx / 2, whole.fy / 2, whole.cx / 2, whole.cy / 2, width, height, whole.name
