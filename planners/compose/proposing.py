@@ -19,6 +19,7 @@ from ...gaussians.errors import BackendError
 from ..grammar.unsafe import unsafe_words
 from ..grammar.words import clean
 from ..model.backend import Message, ModelBackend
+from ..model.strict import DECODER, TooDeepError, given_only
 from ..plan import Usage
 from . import knowledge
 from .brief import Brief, RefusedError, Relation, Thing
@@ -158,18 +159,11 @@ def _read(text: str) -> Proposed:
     if len(bare) > _LONGEST:
         raise ValueError(f"the answer has {len(bare)} characters; answer shorter")
     try:
-        return Proposed.model_validate(_given(json.loads(bare)))
+        return Proposed.model_validate(given_only(DECODER.decode(bare)))
     except ValidationError as error:
         faults = error.errors(include_url=False, include_input=False)[:4]
         raise ValueError("\n".join(f"{'.'.join(map(str, f['loc']))}: {f['msg']}" for f in faults)) from error
-    except RecursionError as error:
+    except (TooDeepError, RecursionError) as error:
         raise ValueError("the JSON is nested too deeply") from error
     except ValueError as error:
         raise ValueError(f"the answer is no valid JSON: {error}") from error
-
-
-def _given(node: Any) -> Any:
-    """Without fields that are null: models that must name every field say so what they leave out."""
-    if isinstance(node, dict):
-        return {k: _given(v) for k, v in node.items() if v is not None}
-    return [_given(item) for item in node] if isinstance(node, list) else node

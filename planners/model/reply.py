@@ -6,18 +6,17 @@ wrong with it. Refuses to know how the model was asked and what stands in the sc
 
 from __future__ import annotations
 
-import json
 from functools import cache
-from typing import Annotated, Any, NoReturn, Self, get_args
+from typing import Annotated, Any, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from ...tools.alternatives import either, given
 from ...tools.registry import AnyOp
 from ..plan import MAX_OPS, Verdict
+from .strict import DECODER, TooDeepError, given_only
 
 MAX_CHARS = 65_536  # of an answer; the longest plans are a tenth of it
-_MAX_DEPTH = 40  # of the JSON, where a query in a query is four deeper; nobody says so much in one breath
 _FAULTS = 4  # named at once
 _FAULT_CHARS = 240  # of each
 _HESITANT = ("absent", "ambiguous")
@@ -105,10 +104,10 @@ def read(text: str) -> Reply:
     if len(text) > MAX_CHARS:
         raise ReplyError(f"the answer has {len(text)} characters, at most {MAX_CHARS} are read; answer shorter")
     try:
-        return Reply.model_validate(_given(_object(text)))
+        return Reply.model_validate(given_only(_object(text)))
     except ValidationError as error:
         raise ReplyError(_told(error)) from error
-    except RecursionError as error:
+    except (TooDeepError, RecursionError) as error:
         raise ReplyError("the JSON is nested too deeply") from error
 
 
@@ -122,36 +121,13 @@ def _object(text: str) -> dict[str, Any]:
     if start < 0:
         raise ReplyError("the answer holds no JSON object; answer with one JSON object and nothing else")
     try:
-        found, end = _DECODER.raw_decode(text, start)
+        found, end = DECODER.raw_decode(text, start)
     except ValueError as error:
         raise ReplyError(f"the answer is no valid JSON: {str(error)[:_FAULT_CHARS]}") from error
     if any(c in text[:start] + text[end:] for c in "{}[]"):
         raise ReplyError("the answer holds more than one JSON object; answer with one and nothing else")
     assert isinstance(found, dict)
     return found
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    made = dict(pairs)
-    if len(made) != len(pairs):
-        raise ValueError("a field is given twice")
-    return made
-
-
-def _no_number(name: str) -> NoReturn:
-    raise ValueError(f"{name} is no number in JSON")
-
-
-_DECODER = json.JSONDecoder(object_pairs_hook=_unique, parse_constant=_no_number)
-
-
-def _given(node: Any, depth: int = 0) -> Any:
-    """Without fields that are null: models that must name every field say so what they leave out."""
-    if depth > _MAX_DEPTH:
-        raise ReplyError("the JSON is nested too deeply")
-    if isinstance(node, dict):
-        return {k: _given(v, depth + 1) for k, v in node.items() if v is not None}
-    return [_given(item, depth + 1) for item in node] if isinstance(node, list) else node
 
 
 def _told(error: ValidationError) -> str:
