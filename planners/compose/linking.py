@@ -40,13 +40,12 @@ class Linker:
         self._ahead: list[tuple[WishName, tuple[Draft, ...], Wall | None]] = []
         self._negating = False
         self._each = False
-        self._loose = True  # whether what comes stands by itself
 
     # ---- punctuation and little words ------------------------------------------------------------------------------
 
     def comma(self) -> None:
         self._finish()
-        self.parent, self._negating, self._loose = None, False, True
+        self.parent, self._negating = None, False
 
     def stop(self) -> None:
         self.comma()
