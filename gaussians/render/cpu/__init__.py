@@ -44,19 +44,32 @@ class Bins:
 
 def render(cloud: GaussianCloud, camera: Camera, background: Vec3) -> Render:
     """See `scenewright.gaussians.render.render`."""
+    out = canvas(camera)
+    for _ in drawn(_columns(cloud), camera, background, out):
+        pass
+    return Render(*(torch.from_numpy(channel).to(cloud.device) for channel in out))
+
+
+def canvas(camera: Camera) -> tuple[Array, ...]:
+    """Room for a picture: rgb `[H, W, 3]`, alpha, depth `[H, W]` float32, group `[H, W]` int32."""
     h, w = camera.height, camera.width
-    out = (
+    return (
         np.empty((h, w, 3), np.float32), np.empty((h, w), np.float32), np.empty((h, w), np.float32),
         np.empty((h, w), np.int32),
     )  # fmt: skip
-    columns, behind = _columns(cloud), tuple(np.float32(channel) for channel in background)
-    count = compiled.workers()
+
+
+def drawn(
+    columns: tuple[Array, ...], camera: Camera, background: Vec3, out: tuple[Array, ...]
+) -> Iterator[tuple[int, int, Bins]]:
+    """Draw into a canvas, strip after strip; each is given with its footprints, which need not be kept."""
+    behind, count = tuple(np.float32(channel) for channel in background), compiled.workers()
     scratch = blend.make_scratch(count)
-    for top, bottom, bins in _strips(columns, camera, count, 0, h):
+    for top, bottom, bins in _strips(columns, camera, count, 0, camera.height):
         strip = tuple(channel[top:bottom] for channel in out)
-        drawn = bins.first, bins.entries, bins.records, (w, bottom - top), LIMITS
-        compiled.run(blend.draw, count, *drawn, behind, strip, scratch, _counter())
-    return Render(*(torch.from_numpy(channel).to(cloud.device) for channel in out))
+        sorted_ = bins.first, bins.entries, bins.records, (camera.width, bottom - top), LIMITS
+        compiled.run(blend.draw, count, *sorted_, behind, strip, scratch, _counter())
+        yield top, bottom, bins
 
 
 def contributions(cloud: GaussianCloud, camera: Camera) -> Tensor:

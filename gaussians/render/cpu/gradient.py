@@ -1,6 +1,6 @@
 """There and back: a picture with what it takes to carry its gradient back to the Gaussians.
 
-Knows the order of the stages of both ways. Refuses to know their insides (`blend`, `backward`, `unproject`) and
+Knows the order of the stages of both ways. Refuses to know their insides (`backward`, `unproject`) and
 torch's bookkeeping (`..differentiable`).
 """
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ... import compiled
 from ...camera import Camera, Vec3
-from . import LIMITS, Bins, _counter, _strips, backward, blend, unproject
+from . import LIMITS, Bins, _counter, backward, canvas, drawn, unproject
 
 Array = NDArray[Any]
 
@@ -44,35 +44,23 @@ class Gradients:
 
 def draw(columns: tuple[Array, ...], camera: Camera, background: Vec3) -> Drawn:
     """Draw five columns of a cloud (means, quats, scales, opacities, sh; float32, contiguous)."""
-    h, w = camera.height, camera.width
-    out = (
-        np.empty((h, w, 3), np.float32), np.empty((h, w), np.float32), np.empty((h, w), np.float32),
-        np.empty((h, w), np.int32),
-    )  # fmt: skip
-    group, behind = np.zeros(len(columns[0]), np.int32), tuple(np.float32(channel) for channel in background)
-    count = compiled.workers()
-    scratch = blend.make_scratch(count)
-    strips = []
-    for top, bottom, bins in _strips((*columns, group), camera, count, 0, h):
-        strip = tuple(channel[top:bottom] for channel in out)
-        drawn = bins.first, bins.entries, bins.records, (w, bottom - top), LIMITS
-        compiled.run(blend.draw, count, *drawn, behind, strip, scratch, _counter())
-        strips.append((top, bottom, bins))
-    return Drawn(columns, out[0], out[1], tuple(strips))
+    out = canvas(camera)
+    strips = tuple(drawn((*columns, np.zeros(len(columns[0]), np.int32)), camera, background, out))
+    return Drawn(columns, out[0], out[1], strips)
 
 
-def undraw(drawn: Drawn, d_rgb: Array, d_alpha: Array) -> Gradients:
+def undraw(picture: Drawn, d_rgb: Array, d_alpha: Array) -> Gradients:
     """Carry the gradient of a picture, `[H, W, 3]` and `[H, W]`, back to the columns. Same input, same bytes."""
-    columns, count = drawn.columns, compiled.workers()
+    columns, count = picture.columns, compiled.workers()
     means, quats, scales, opacities, sh = out = tuple(np.zeros_like(column) for column in columns)
     centers = np.zeros((len(columns[0]), 2), np.float32)
     scratch = backward.make_scratch(count)
-    for top, bottom, bins in drawn.strips:
-        picture = drawn.rgb[top:bottom], drawn.alpha[top:bottom]
+    for top, bottom, bins in picture.strips:
+        seen = picture.rgb[top:bottom], picture.alpha[top:bottom]
         gradient = d_rgb[top:bottom], d_alpha[top:bottom]
         each = np.empty((len(bins.entries), backward.GRADIENT), np.float32)
         sorted_ = bins.first, bins.entries, bins.records, (d_alpha.shape[1], bottom - top), LIMITS
-        compiled.run(backward.unblend_tiles, count, *sorted_, picture, gradient, each, scratch, _counter())
+        compiled.run(backward.unblend_tiles, count, *sorted_, seen, gradient, each, scratch, _counter())
         total = np.zeros((len(columns[0]), backward.GRADIENT), np.float32)
         compiled.run(backward.collect, count, bins.entries, each, total)
         shaped = columns, bins.view, bins.records, bins.rows, total, out
