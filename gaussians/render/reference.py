@@ -7,7 +7,7 @@ Knows the convention and nothing of speed; the fast back ends are tested against
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -53,9 +53,18 @@ class Splats:
         return Splats(**{name: column[index] for name, column in vars(self).items()})
 
 
-def render(cloud: GaussianCloud, camera: Camera, background: Vec3, dtype: torch.dtype = torch.float32) -> Render:
-    """See `scenewright.gaussians.render.render`. With `dtype` float64 all arithmetic is, and the picture's channels."""
+def render(
+    cloud: GaussianCloud,
+    camera: Camera,
+    background: Vec3,
+    dtype: torch.dtype = torch.float32,
+    centers: Tensor | None = None,
+) -> Render:
+    """See `scenewright.gaussians.render.render`. With `dtype` float64 all arithmetic is, and the picture's channels.
+    `centers` are those of `render.differentiable.draw`: `[N, 2]` zeros for the gradient of the footprints' centres."""
     splats = project(cloud, camera, dtype)
+    if centers is not None:
+        splats = replace(splats, center=splats.center + centers[splats.row])
     h, w, like = camera.height, camera.width, splats.center
     rgb = like.new_tensor(background).repeat(h, w, 1)
     alpha, depth = like.new_zeros(h, w), like.new_zeros(h, w)
@@ -113,6 +122,16 @@ def split(cloud: GaussianCloud, camera: Camera, labels: NDArray[np.int32]) -> Sp
         return summed(len(cloud), np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0))
     row, label, weight = (torch.cat(column).cpu().numpy() for column in zip(*parts, strict=True))
     return summed(len(cloud), row, label, weight)
+
+
+def pairs(cloud: GaussianCloud, camera: Camera) -> int:
+    """How many times a Gaussian is blended into a pixel: the work that no renderer of this convention can avoid."""
+    splats, count = project(cloud, camera), 0
+    for y, x, index in _tiles(splats, camera):
+        box = (slice(y, min(y + TILE, camera.height)), slice(x, min(x + TILE, camera.width)))
+        for _, weights, _ in _blend(splats.take(index), _pixel_centers(box, splats.center)):
+            count += int((weights > 0).sum())
+    return count
 
 
 def project(cloud: GaussianCloud, camera: Camera, dtype: torch.dtype = torch.float32) -> Splats:

@@ -1,0 +1,68 @@
+"""The least time that blending a picture can take, and how many times that the renderer takes.
+
+Knows the pairs that must be blended and the renderer's block of SIMD code. A pair is one Gaussian in one pixel whose
+alpha there is at least 1/255, in front of where the pixel is finished: pairs of pixels, as the readable renderer counts
+them, not lanes of blocks, of which many idle. The time of a pair is that of the very block code the renderer runs, at
+its best: all lanes busy, all records in the first-level cache, nothing sorted, copied or stored. So
+
+    floor = pairs x time of a pair / workers
+
+and what the renderer takes beyond is idle lanes, the walk over tiles and lists, and memory.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numba
+import numpy as np
+
+from ..gaussians import compiled
+from ..gaussians.camera import Camera
+from ..gaussians.cloud import GaussianCloud
+from ..gaussians.render import cpu, reference
+from ..gaussians.render.cpu import blend, project, simd
+from .harness import Metric
+
+STAGE = "draw"  # the kernel that blends
+TRIALS, ROUNDS = 25, 200  # least of so many, each of so many chunks
+ALPHA = 0.01  # of every pair that is timed: a chunk of them leaves pixels open
+
+
+def measure(cloud: GaussianCloud, camera: Camera, key: str, raster: float) -> list[Metric]:
+    """The floor of a case whose raster stage took `raster` seconds, and their ratio; measured here and now."""
+    pairs, each = reference.pairs(cloud, camera), pair_seconds()
+    floor = pairs * each / compiled.workers()
+    return [
+        Metric(f"{key}.pairs", pairs, "count"),
+        Metric(f"{key}.pair", each * 1e9, "ns", "lower", 0.15),
+        Metric(f"{key}.floor", floor * 1e3, "ms"),
+        Metric(f"{key}.raster", raster * 1e3, "ms", "lower", 0.15),
+        Metric(f"{key}.raster_over_floor", raster / floor, "x", "lower", 0.15),
+    ]
+
+
+def pair_seconds() -> float:
+    """Seconds that one worker's block code takes for one pair, at best."""
+    chunk = np.zeros(blend.CHUNK * project.RECORD, np.float32)
+    chunk.reshape(blend.CHUNK, project.RECORD)[:, project.SHIFT] = -math.log(ALPHA) / 8  # alpha = exp(-8 (0 + shift))
+    chunk.reshape(blend.CHUNK, project.RECORD)[:, project.RED : project.DEPTH + 1] = 0.5
+    listed, state = np.arange(blend.CHUNK, dtype=np.uint8), np.zeros(simd.STATE, np.float32)
+    _blend_often(chunk, listed, state, cpu.LIMITS, 1)
+    least = math.inf
+    for _ in range(TRIALS):
+        start = time.perf_counter()
+        _blend_often(chunk, listed, state, cpu.LIMITS, ROUNDS)
+        least = min(least, time.perf_counter() - start)
+    return least / (ROUNDS * blend.CHUNK * simd.LANES)
+
+
+# Multiply-adds fuse as in the renderer's kernels. Not kept on disk: the cache would not see the block's code change.
+@numba.njit(nogil=True, boundscheck=False, fastmath={"contract"})
+def _blend_often(chunk, listed, state, limits, rounds):  # type: ignore[no-untyped-def]
+    """Blend a whole chunk into one block, `rounds` times, each time from the start."""
+    for _ in range(rounds):
+        for lane in range(simd.LANES):
+            state[lane] = np.float32(1)
+        simd.blend_block(chunk, listed, len(listed), state, 0, np.float32(0), np.float32(0), limits)
