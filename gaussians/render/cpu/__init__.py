@@ -32,11 +32,10 @@ MAX_ENTRIES = 1 << 26  # footprints times tiles held at once (256 MB); a picture
 class Bins:
     """Footprints sorted into tiles: `entries[first[t]:first[t + 1]]` are the rows that touch tile t, nearest first.
 
-    `rows` are all that have a footprint, each once; `view` is what they were projected by.
+    `view` is what they were projected by.
     """
 
     view: project.View
-    rows: Array
     records: Array
     first: Array
     entries: Array
@@ -148,7 +147,7 @@ def _bin(columns: tuple[Array, ...], camera: Camera, count: int, top: int, botto
         return None
     entries = np.empty(total, np.int32)
     compiled.run(order.fill_tiles, count, rows, records, corner, mask, view, wide, places, entries)
-    return Bins(view, rows, records, first, entries)
+    return Bins(view, records, first, entries)
 
 
 def _counter() -> Array:

@@ -63,7 +63,7 @@ def undraw(picture: Drawn, d_rgb: Array, d_alpha: Array) -> Gradients:
         compiled.run(backward.unblend_tiles, count, *sorted_, seen, gradient, each, scratch, _counter())
         total = np.zeros((len(columns[0]), backward.GRADIENT), np.float32)
         compiled.run(backward.collect, count, bins.entries, each, total)
-        shaped = columns, bins.view, bins.records, bins.rows, total, out
+        shaped = columns, bins.view, bins.records, total, out
         compiled.run(unproject.unproject, count, *shaped, _counter())
         centers += total[:, :2]
     return Gradients(means, quats, scales, opacities, sh, centers)

@@ -18,19 +18,19 @@ SIX, EIGHT = f4(6), f4(8)
 
 
 @kernel
-def unproject(worker, workers, columns, view, records, seen, footprints, out, counter):  # type: ignore[no-untyped-def]
+def unproject(worker, workers, columns, view, records, footprints, out, counter):  # type: ignore[no-untyped-def]
     """Add to `out`, the gradients of means, quats, scales, opacities and harmonics, what the footprints say.
 
-    `columns` are those five, `seen` `[M]` the rows with a footprint, each once, `footprints` `[N, GRADIENT]`.
+    `columns` are those five, `footprints` `[N, GRADIENT]`, zeros for what has no footprint. Rows are taken as they lie
+    in memory: in the order of depth, most of the time went into waiting for it.
     """
     means, quats, scales, opacities, sh = columns
     d_means, d_quats, d_scales, d_opacities, d_sh = out
     while True:
         start = fetch_add(counter, 1) * ROWS
-        if start >= seen.shape[0]:
+        if start >= means.shape[0]:
             break
-        for k in range(start, min(start + ROWS, seen.shape[0])):
-            n = seen[k]
+        for n in range(start, min(start + ROWS, means.shape[0])):
             if not _moves(n, footprints):
                 continue  # hidden behind finished pixels, as many are
             toward = (means[n, 0] - view.ex, means[n, 1] - view.ey, means[n, 2] - view.ez)
