@@ -11,12 +11,14 @@ Knows parameters and gradients. Refuses to know pictures and time.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from torch import Tensor
 
 from .. import compiled, rotations
 from ..compiled import exact
@@ -24,6 +26,7 @@ from .parameters import Parameters
 
 F32 = NDArray[np.float32]
 I64 = NDArray[np.int64]
+Numbers = TypeVar("Numbers", F32, Tensor)  # on the host, or on a device
 f4 = np.float32
 
 WANDERING = 0.07  # opacity from which there is no noise to speak of: a seven-hundredth of the most
@@ -34,12 +37,16 @@ FAINT = 0.005  # opacity below which a Gaussian is as good as gone
 class Growth(Protocol):
     """A strategy. It changes parameters in place."""
 
-    def regularise(self, gradients: dict[str, F32], scales: F32, opacities: F32) -> None:
+    def regularise(self, gradients: dict[str, Numbers], scales: Numbers, opacities: Numbers) -> None:
         """Add to the gradients what the strategy wants besides a good picture."""
         ...
 
     def stepped(self, parameters: Parameters, centers: F32, size: tuple[int, int], rate: float) -> None:
         """After each step: note gradients of the footprints' centres `[N, 2]` (1/px, of a picture of `size`)."""
+        ...
+
+    def stepped_there(self, values: Mapping[str, Tensor], centers: Tensor, size: tuple[int, int], rate: float) -> None:
+        """`stepped`, where the arrays of the parameters and the gradients are tensors on a device."""
         ...
 
     def change(self, parameters: Parameters, step: int) -> None:
@@ -66,11 +73,12 @@ class Budgeted:
     scale: float = 0.01
     noise: float = 5e5
 
-    def regularise(self, gradients: dict[str, F32], scales: F32, opacities: F32) -> None:
+    def regularise(self, gradients: dict[str, Numbers], scales: Numbers, opacities: Numbers) -> None:
         """See `Growth`."""
         count = np.float32(max(len(opacities), 1))
-        gradients["logits"] += np.float32(self.opacity) / count * opacities * (1 - opacities)
-        gradients["logs"] += np.float32(self.scale) / (3 * count) * scales
+        by_opacity, by_scale = np.float32(self.opacity) / count, np.float32(self.scale) / (3 * count)
+        gradients["logits"] += float(by_opacity) * opacities * (1 - opacities)
+        gradients["logs"] += float(by_scale) * scales
 
     def stepped(self, parameters: Parameters, centers: F32, size: tuple[int, int], rate: float) -> None:
         """See `Growth`."""
@@ -78,13 +86,28 @@ class Budgeted:
         rows = np.flatnonzero(opacities < WANDERING)
         if not len(rows):
             return
-        with np.errstate(over="ignore"):
-            amount = rate * self.noise / (1 + np.exp(100 * (opacities[rows] - FAINT)))
-        # Published is the covariance times noise, which throws wide ones out of the scene.
-        share = np.minimum(amount[:, None] * np.exp(parameters.logs[rows]), FARTHEST)
-        noise = share.astype(np.float32) * self.rng.standard_normal((len(rows), 3), dtype=np.float32)
+        noise = self._noise(opacities[rows], parameters.logs[rows], rate)
         columns = parameters.means, parameters.quats, parameters.logs
         compiled.run(_along_axes, compiled.workers(), rows, *columns, noise)
+
+    def stepped_there(self, values: Mapping[str, Tensor], centers: Tensor, size: tuple[int, int], rate: float) -> None:
+        """See `Growth`. Chance is drawn on the host, so that one generator tells the whole training."""
+        opacities = values["logits"].sigmoid()
+        rows = (opacities < WANDERING).nonzero().squeeze(1)
+        if not len(rows):
+            return
+        logs = values["logs"][rows]
+        noise = torch.from_numpy(self._noise(opacities[rows].cpu().numpy(), logs.cpu().numpy(), rate)).to(logs.device)
+        axes = rotations.to_matrix(rotations.normalize(values["quats"][rows]))
+        values["means"][rows] += (axes * (noise * logs.exp())[:, None, :]).sum(dim=2)
+
+    def _noise(self, opacities: F32, logs: F32, rate: float) -> F32:
+        """How far faint Gaussians `[M]` wander in one step, in their own widths `[M, 3]`."""
+        with np.errstate(over="ignore"):
+            amount = rate * self.noise / (1 + np.exp(100 * (opacities - FAINT)))
+        # Published is the covariance times noise, which throws wide ones out of the scene.
+        share = np.minimum(amount[:, None] * np.exp(logs), FARTHEST)
+        return share.astype(np.float32) * self.rng.standard_normal((len(opacities), 3), dtype=np.float32)
 
     def change(self, parameters: Parameters, step: int) -> None:
         """See `Growth`."""
@@ -146,13 +169,20 @@ class Classic:
     _sum: F32 = field(default_factory=lambda: np.zeros(0, np.float32), repr=False)
     _times: F32 = field(default_factory=lambda: np.zeros(0, np.float32), repr=False)
 
-    def regularise(self, gradients: dict[str, F32], scales: F32, opacities: F32) -> None:
+    def regularise(self, gradients: dict[str, Numbers], scales: Numbers, opacities: Numbers) -> None:
         """See `Growth`: nothing."""
 
     def stepped(self, parameters: Parameters, centers: F32, size: tuple[int, int], rate: float) -> None:
         """See `Growth`."""
-        if len(self._sum) != len(parameters):
-            self._sum, self._times = np.zeros((2, len(parameters)), np.float32)
+        self._note(centers, size)
+
+    def stepped_there(self, values: Mapping[str, Tensor], centers: Tensor, size: tuple[int, int], rate: float) -> None:
+        """See `Growth`."""
+        self._note(centers.cpu().numpy(), size)
+
+    def _note(self, centers: F32, size: tuple[int, int]) -> None:
+        if len(self._sum) != len(centers):
+            self._sum, self._times = np.zeros((2, len(centers)), np.float32)
         pulled = np.linalg.norm(centers * (np.array(size, np.float32) / 2), axis=1)
         self._sum += pulled
         self._times += pulled > 0

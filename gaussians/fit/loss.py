@@ -62,7 +62,7 @@ def reference(picture: Tensor, photo: Tensor, share: float = 0.2) -> Tensor:
 def similarity(picture: Tensor, photo: Tensor) -> Tensor:
     """Mean SSIM of two pictures `[H, W, 3]` with values in [0, 1]."""
     x, y = (p.permute(2, 0, 1)[:, None] for p in (picture, photo))
-    taps = torch.from_numpy(_taps()).to(picture.dtype)
+    taps = torch.from_numpy(_taps()).to(picture)
 
     def blur(image: Tensor) -> Tensor:
         along = torch.nn.functional.conv2d(image, taps.view(1, 1, 1, -1), padding=(0, REACH))

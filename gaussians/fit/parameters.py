@@ -93,12 +93,10 @@ class Parameters:
 
     def step(self, gradients: Mapping[str, F32], rate: float) -> None:
         """One step against the gradients of the arrays; `rate` is that of means, scene units."""
-        rates = {
-            "means": rate, "quats": QUATS, "logs": SCALES, "logits": OPACITIES, "constant": CONSTANT, "higher": HIGHER,
-        }  # fmt: skip
+        each = rates(rate)
         for name, values in self.arrays().items():
             if values.size:
-                self.memory[name].step(values, gradients[name], rates[name])
+                self.memory[name].step(values, gradients[name], each[name])
 
     def take(self, rows: I64) -> None:
         """Only some rows, in the order given."""
@@ -146,6 +144,13 @@ class Parameters:
         names = [f.name for f in fields(cls) if f.name != "memory"]
         memory = {n: Adam(told[f"{n}.first"], told[f"{n}.second"], int(told[f"{n}.steps"])) for n in names}
         return cls(**{n: told[n] for n in names}, memory=memory)
+
+
+def rates(means: float) -> dict[str, float]:
+    """The rate of every array of `Parameters`, by its name."""
+    return {
+        "means": means, "quats": QUATS, "logs": SCALES, "logits": OPACITIES, "constant": CONSTANT, "higher": HIGHER,
+    }  # fmt: skip
 
 
 def chained(found: Any, scales: F32, opacities: F32) -> dict[str, F32]:

@@ -1,7 +1,8 @@
 """The loop of training: a photograph, a step, and now and then Gaussians that come and go.
 
-Knows the order of things and the schedule. Refuses to know files, and which strategy grows the scene. Progress is
-counted in steps or in seconds; counted in steps, the same photographs, start and seed give the same bytes.
+Knows the order of things and the schedule. Refuses to know files, where a step happens (`engine`), and which strategy
+grows the scene. Progress is counted in steps or in seconds; counted in steps, on the CPU, the same photographs, start
+and seed give the same bytes.
 """
 
 from __future__ import annotations
@@ -16,13 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..camera import Camera
-from ..render.cpu import gradient
+from .engine import BLACK as BLACK
+from .engine import CpuEngine, Maker
 from .growth import Growth
-from .loss import photometric
-from .parameters import Parameters, chained
+from .parameters import Parameters
 
 F32 = NDArray[np.float32]
-BLACK = (0.0, 0.0, 0.0)
 
 MEANS = 1.6e-4  # rate of means at the start, in shares of the scene's extent
 FALL = 0.01  # of that rate is left at the end
@@ -72,6 +72,7 @@ class Trainer:
         extent: radius of the scene as the cameras stand around it, scene units.
         schedule: how long and how.
         rng: what the order of photographs is drawn by; the same as growth has, so that one state holds both.
+        engine: makes what the steps happen in.
     """
 
     def __init__(
@@ -82,11 +83,18 @@ class Trainer:
         extent: float,
         schedule: Schedule,
         rng: np.random.Generator,
+        engine: Maker = CpuEngine,
     ) -> None:
-        self.parameters, self.growth, self.schedule = start, growth, schedule
+        self.growth, self.schedule = growth, schedule
+        self._engine = engine(start, growth, schedule.similarity)
         self._shots, self._extent, self._rng = shots, extent, rng
         self._order: list[int] = []
         self.steps, self.seconds = 0, 0.0
+
+    @property
+    def parameters(self) -> Parameters:
+        """As they are now, on the host. To be changed, if at all, before the next step."""
+        return self._engine.fetch()
 
     def state(self) -> tuple[dict[str, Any], dict[str, Any]]:
         """Arrays and plain values from which `restore` goes on to the same bytes, right after `changed` steps."""
@@ -97,7 +105,7 @@ class Trainer:
 
     def restore(self, arrays: Mapping[str, Any], values: Mapping[str, Any]) -> None:
         """Go on from a state; raises KeyError or ValueError if it is none."""
-        self.parameters = Parameters.load(arrays)
+        self._engine.send(Parameters.load(arrays))
         self.steps, self.seconds, self._order = values["steps"], values["seconds"], list(values["order"])
         self._rng.bit_generator.state = values["rng"]
 
@@ -120,26 +128,20 @@ class Trainer:
             self._order = self._rng.permutation(len(self._shots)).tolist()
         shot = self._shots[self._order.pop()]
         camera, photo = halved(shot) if done < self.schedule.coarse else (shot.camera, shot.colors)
-        if 0.5 * (self.parameters.degree + 1) / (self.schedule.degree + 1) <= done:
-            self.parameters.widen(min(self.parameters.degree + 1, self.schedule.degree))
+        degree, most = self._engine.degree, self.schedule.degree
+        if degree < most and 0.5 * (degree + 1) / (most + 1) <= done:
+            self.parameters.widen(degree + 1)
         loss = self._learn(camera, photo, MEANS * self._extent * FALL**done)
         self.steps += 1
         if self.changed and self.steps >= QUIET and done < SETTLED:
-            self.growth.change(self.parameters, self.steps)
-            self.parameters.take(along_a_curve(self.parameters.means))
+            parameters = self.parameters
+            self.growth.change(parameters, self.steps)
+            parameters.take(along_a_curve(parameters.means))
         self.seconds += time.perf_counter() - started
         return loss
 
     def _learn(self, camera: Camera, photo: F32, rate: float) -> float:
-        columns = self.parameters.columns()
-        drawn = gradient.draw(columns, camera, BLACK)
-        loss, slope = photometric(drawn.rgb, photo, self.schedule.similarity)
-        found = gradient.undraw(drawn, slope, np.zeros(slope.shape[:2], np.float32))
-        gradients = chained(found, columns[2], columns[3])
-        self.growth.regularise(gradients, columns[2], columns[3])
-        self.parameters.step(gradients, rate)
-        self.growth.stepped(self.parameters, found.centers, (camera.width, camera.height), rate)
-        return loss
+        return self._engine.learn(camera, photo, rate)
 
 
 def halved(shot: Shot) -> tuple[Camera, F32]:
