@@ -14,6 +14,7 @@ FORMATS = ("png", "svg", "pdf")
 COLORS = ("#1b6ca8", "#d1495b", "#3c8d5a", "#b0792b", "#6a4c93", "#4a4e52", "#17a2a2", "#c2649b", "#8a8f1d", "#e08b6d")
 MARKS = "osD^v"  # with each round of the colours another, so that no two methods look alike
 FEW = 12  # points up to which each is named; of more only those that one would choose, and the ends of each method
+CLOSE = 1000  # times from the least cost to the greatest, up to which 2 and 5 are marked too
 SPOTS = ((7, 6), (7, -12), (-7, 6), (-7, -12), (7, 17), (7, -23), (-7, 17), (-7, -23))  # of a label, best first; points
 LETTER = (4.4, 9.0)  # width and height of a letter of a label, points
 
@@ -45,14 +46,15 @@ def draw(result: Result, path: Path) -> Path:
 
 
 def labelled(result: Result) -> tuple[Point, ...]:
-    """The points that are named: all of a few; of many the front, the defaults, and both ends of each method."""
+    """The points that are named: all of a few; of many the front, the defaults, and both ends of each method, as far as
+    they have a setting (those on the way of a curve have none)."""
     if len(result.points) <= FEW:
         return result.points
     wanted = {*result.front(), *(p for p in result.points if p.default)}
     for method in dict.fromkeys(p.method for p in result.points):
         own = [p for p in result.points if p.method == method]
         wanted |= {own[0], own[-1]}
-    return tuple(p for p in result.points if p in wanted)
+    return tuple(p for p in result.points if p in wanted and p.setting)
 
 
 def _fill(axes: Any, result: Result) -> None:
@@ -87,8 +89,19 @@ def _fill(axes: Any, result: Result) -> None:
     axes.set_title(f"{result.title}\n{machine}" if machine else result.title, fontsize=10)
     axes.grid(True, which="major", color="0.9")
     axes.margins(x=0.15, y=0.15)
+    _number(axes, result)
     beside = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0)} if lines else {"loc": "best"}
     axes.legend(fontsize=8, **beside)
+
+
+def _number(axes: Any, result: Result) -> None:
+    """Plain numbers along the cost, closer where it spans little."""
+    from matplotlib.ticker import EngFormatter, LogLocator, NullFormatter, StrMethodFormatter
+
+    low, high = axes.get_xlim()
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < CLOSE * low else (1,)))
+    axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}") if result.cost == "seconds" else EngFormatter("B"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def _name(axes: Any, points: Sequence[Point], named: Sequence[Point], cost: Callable[[Point], float]) -> None:
