@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from .. import rotations
 from ..camera import Camera
 from ..errors import FileError, UserError
-from ..lens import Lens
+from ..lens import Lens, check_lens
 
 # Name of each model by its number, and what its parameters are called.
 _MODELS: dict[int, tuple[str, tuple[str, ...]]] = {
@@ -65,6 +65,8 @@ def read_views(folder: Path) -> list[View]:
     """
     path = _one_of(folder, "cameras")
     cameras = dict(_binary_cameras(path) if path.suffix == ".bin" else _text_cameras(path))
+    if not cameras:
+        raise FileError(f"{path} lists no cameras; it may be cut short")
     path = _one_of(folder, "images")
     found = []
     for name, number, quat, offset in _binary_images(path) if path.suffix == ".bin" else _text_images(path):
@@ -93,7 +95,7 @@ def _one_of(folder: Path, name: str) -> Path:
     for kind in ("bin", "txt"):
         if (folder / f"{name}.{kind}").is_file():
             return folder / f"{name}.{kind}"
-    raise FileError(f"{folder} has no {name}.bin or {name}.txt; give the folder that COLMAP wrote its model to")
+    raise FileError(f"{folder} has no {name}.bin or {name}.txt; give the folder that COLMAP wrote its whole model to")
 
 
 def _view(path: Path, name: str, told: tuple[int, int, Mapping[str, float]], quat: Any, offset: Any) -> View:
@@ -109,11 +111,12 @@ def _view(path: Path, name: str, told: tuple[int, int, Mapping[str, float]], qua
             raise ValueError(f"a photograph of {width}x{height} pixels is none")
         fx, fy = values.get("fx", values.get("f", 0.0)), values.get("fy", values.get("f", 0.0))
         camera = Camera(turn, fx, fy, values["cx"], values["cy"], width, height, Path(name).stem)
+        lens = Lens(*(float(values.get(key, 0.0)) for key in ("k1", "k2", "k3", "p1", "p2")))
+        if not np.isfinite([lens.k1, lens.k2, lens.p1, lens.p2]).all():
+            raise ValueError("its lens distortion is not finite")
+        check_lens(camera, lens)
     except (UserError, ValueError) as error:
         raise FileError(f"{path}: {name} is broken: {error}") from error
-    lens = Lens(*(float(values.get(key, 0.0)) for key in ("k1", "k2", "k3", "p1", "p2")))
-    if not np.isfinite([lens.k1, lens.k2, lens.p1, lens.p2]).all():
-        raise FileError(f"{path}: the lens of {name} is not finite")
     return View(name, camera, lens)
 
 
@@ -218,8 +221,10 @@ def _text_cameras(path: Path) -> Iterator[tuple[int, tuple[int, int, Mapping[str
             raise _unknown(path, words[1] if len(words) > 1 else "")
         names = _BY_NAME[words[1]]
         number, width, height, *values = _numbers(path, [words[0], *words[2:]])
-        if len(values) != len(names) or not np.isfinite([number, width, height]).all():
+        if len(values) != len(names):
             raise FileError(f"{path}: camera {words[0]} has {len(values)} parameters, {words[1]} has {len(names)}")
+        if not np.isfinite([number, width, height]).all():
+            raise FileError(f"{path}: camera {words[0]} of {words[2]}x{words[3]} pixels is none")
         yield int(number), (int(width), int(height), dict(zip(names, values, strict=True)))
 
 
@@ -234,7 +239,17 @@ def _text_images(path: Path) -> Iterator[tuple[str, int, Any, Any]]:
         if not np.isfinite(numbers).all():
             raise FileError(f"{path}: the pose of {words[9]} is not finite")
         yield " ".join(words[9:]), int(numbers[7]), numbers[:4], numbers[4:7]
-        next(lines, None)  # the points it sees
+        if not _sees(next(lines, [])):
+            raise FileError(f"{path}: the line after {words[9]} lists no points; every photograph takes two lines, "
+                            "the second of which may be empty")  # fmt: skip
+
+
+def _sees(words: list[str]) -> bool:
+    """Whether a line is what a photograph's second one is: pixels x, y and a point's number, over and over."""
+    try:
+        return len(words) % 3 == 0 and all(int(number) >= -1 for number in words[2:12:3])
+    except ValueError:
+        return False
 
 
 def _text_points(path: Path) -> Iterator[tuple[float, ...]]:

@@ -27,7 +27,7 @@ def read_json(path: Path) -> Any:
         FileError: it cannot be read, is no JSON, or is nested too deeply to be any file of ours.
     """
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
+        return json.loads(path.read_text(encoding="utf-8-sig"))  # Windows marks its files
     except OSError as error:
         raise FileError(f"cannot read {path}: {error.strerror or error}") from error
     except (ValueError, RecursionError) as error:

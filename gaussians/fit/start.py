@@ -17,11 +17,12 @@ from .photos import Photos
 OPACITY = 0.5
 SCATTERED = 30_000  # Gaussians, where no points were surveyed
 FEWEST = 100  # surveyed points, below which they are no start
+FARTHEST = 1e4  # times as far as the middle one of them: what lies there is no survey's
 
 
 def start(photos: Photos, most: int, rng: np.random.Generator) -> GaussianCloud:
     """At most `most` Gaussians of degree 0, each as wide as the mean distance to its three nearest neighbours."""
-    means, colors = photos.points.means, photos.points.colors
+    means, colors = _distinct(photos)
     if len(means) < FEWEST:
         means, colors = _scattered(photos, min(SCATTERED, most), rng)
     if len(means) > most:
@@ -35,6 +36,18 @@ def start(photos: Photos, most: int, rng: np.random.Generator) -> GaussianCloud:
     mean, quat, scale = (torch.from_numpy(np.ascontiguousarray(t, np.float32)) for t in tensors)
     color = torch.from_numpy(colors.astype(np.float32))
     return GaussianCloud.create(mean, quat, scale, torch.full((len(mean),), OPACITY), color_to_dc(color)[:, None])
+
+
+def _distinct(photos: Photos) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The surveyed points, each place once, without what is absurdly far off."""
+    means = photos.points.means
+    if not len(means):
+        return means, photos.points.colors
+    away = np.abs(means - np.median(means, axis=0)).max(axis=1)  # of any size: no squares
+    near = np.flatnonzero(away <= FARTHEST * max(float(np.median(away)), photos.extent))
+    _, first = np.unique(means[near], axis=0, return_index=True)
+    kept = near[np.sort(first)]
+    return means[kept], photos.points.colors[kept]
 
 
 def _scattered(photos: Photos, count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

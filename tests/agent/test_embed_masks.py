@@ -82,7 +82,7 @@ def test_masks_name_what_text_vectors_then_find(files: Path, call: Any) -> None:
     [
         (("--masks", "magic"), 4, "unknown source of masks"),
         (("--masks", "folder:nowhere"), 4, "no masks at"),
-        (("--capture", "nowhere.json"), 4, "give a transforms.json with --capture"),
+        (("--capture", "nowhere.json"), 4, "a capture is a transforms.json, or a folder"),
     ],
 )
 def test_a_source_that_is_none_is_named(
