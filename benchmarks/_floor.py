@@ -22,11 +22,11 @@ from ..gaussians import compiled
 from ..gaussians.camera import Camera
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.render import cpu, reference
-from ..gaussians.render.cpu import blend, project, simd
+from ..gaussians.render.cpu import lanes, project, simd, touch
 from .harness import Metric
 
 STAGE = "draw"  # the kernel that blends
-TRIALS, ROUNDS = 25, 200  # least of so many, each of so many chunks
+TRIALS, ROUNDS = 25, 400  # least of so many, each of so many chunks
 ALPHA = 0.01  # of every pair that is timed: a chunk of them leaves pixels open
 
 
@@ -45,24 +45,24 @@ def measure(cloud: GaussianCloud, camera: Camera, key: str, raster: float) -> li
 
 def pair_seconds() -> float:
     """Seconds that one worker's block code takes for one pair, at best."""
-    chunk = np.zeros(blend.CHUNK * project.RECORD, np.float32)
-    chunk.reshape(blend.CHUNK, project.RECORD)[:, project.SHIFT] = -math.log(ALPHA) / 8  # alpha = exp(-8 (0 + shift))
-    chunk.reshape(blend.CHUNK, project.RECORD)[:, project.RED : project.DEPTH + 1] = 0.5
-    listed, state = np.arange(blend.CHUNK, dtype=np.uint8), np.zeros(simd.STATE, np.float32)
-    _blend_often(chunk, listed, state, cpu.LIMITS, 1)
+    records = np.zeros((touch.CHUNK, project.RECORD), np.float32)
+    records[:, project.SHIFT] = -math.log(ALPHA) / 8  # alpha = exp(-8 (0 + shift)) everywhere
+    records[:, project.RED : project.DEPTH + 1] = 0.5
+    chunk, state, every = records.reshape(-1), np.zeros(simd.STATE, np.float32), np.uint64(2**touch.CHUNK - 1)
+    _blend_often(chunk, every, state, cpu.LIMITS, 1)
     least = math.inf
     for _ in range(TRIALS):
         start = time.perf_counter()
-        _blend_often(chunk, listed, state, cpu.LIMITS, ROUNDS)
+        _blend_often(chunk, every, state, cpu.LIMITS, ROUNDS)
         least = min(least, time.perf_counter() - start)
-    return least / (ROUNDS * blend.CHUNK * simd.LANES)
+    return least / (ROUNDS * touch.CHUNK * lanes.LANES)
 
 
 # Multiply-adds fuse as in the renderer's kernels. Not kept on disk: the cache would not see the block's code change.
 @numba.njit(nogil=True, boundscheck=False, fastmath={"contract"})
-def _blend_often(chunk, listed, state, limits, rounds):  # type: ignore[no-untyped-def]
+def _blend_often(chunk, slots, state, limits, rounds):  # type: ignore[no-untyped-def]
     """Blend a whole chunk into one block, `rounds` times, each time from the start."""
     for _ in range(rounds):
-        for lane in range(simd.LANES):
+        for lane in range(lanes.LANES):
             state[lane] = np.float32(1)
-        simd.blend_block(chunk, listed, len(listed), state, 0, np.float32(0), np.float32(0), limits)
+        simd.blend_block(chunk, slots, state, 0, np.float32(0), np.float32(0), limits)

@@ -11,9 +11,9 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import fetch_add, helper, kernel
-from .blend import CHUNK, _gather
+from .blend import _gather
+from .lanes import LANES
 from .project import L1, L2, L3, ONE, RECORD, TILE, ZERO, Array, X, Y, f4
-from .simd import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, LANES
 from .simd_backward import (
     ACROSS,
     ACROSS_Y,
@@ -27,6 +27,7 @@ from .simd_backward import (
     STATE,
     unblend,
 )
+from .touch import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, CHUNK
 
 # Gradient of a footprint: centre (px), the three fields of its exponent, shift, colour.
 GRADIENT = 9
@@ -36,7 +37,7 @@ D_X, D_Y, D_L1, D_L2, D_L3, D_SHIFT, D_RED, D_GREEN, D_BLUE = range(GRADIENT)
 def make_scratch(workers: int) -> tuple[Array, ...]:
     """What each worker writes: chunk, touched, state, sums, one row a worker."""
     return (
-        np.empty((workers, CHUNK * RECORD), np.float32), np.empty((workers, CHUNK), np.int64),
+        np.empty((workers, CHUNK * RECORD), np.float32), np.empty((workers, CHUNK), np.uint16),
         np.empty((workers, BLOCKS * STATE), np.float32), np.empty((workers, LANES), np.float32),
     )  # fmt: skip
 

@@ -4,7 +4,7 @@ Knows tiles, chunks and the image. Refuses to know where records come from and w
 
 A tile of 16x16 pixels is 16 blocks of 16 lanes. Its footprints are taken in chunks: each is copied next to its
 neighbours and marked with the blocks its ellipse really touches; then each block, with its whole state in registers,
-runs over its own list. Finished blocks cost nothing, and colour, depth and group share every exponential.
+runs over those that touch it. Finished blocks cost nothing, and colour, depth and group share every exponential.
 """
 
 from __future__ import annotations
@@ -12,25 +12,11 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import fetch_add, helper, kernel
+from .lanes import LANES, lane_sum
 from .project import RECORD, TILE, Array
-from .simd import (
-    BLOCK_HEIGHT,
-    BLOCK_WIDTH,
-    BLOCKS,
-    BLOCKS_WIDE,
-    LANES,
-    REST,
-    STATE,
-    WINNER,
-    blend_block,
-    fetch,
-    lane_sum,
-    store_block,
-    take,
-    weigh_block,
-)
+from .simd import REST, STATE, WINNER, blend_block, store_block, weigh_block
+from .touch import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, CHUNK, fetch, slots_touching, take
 
-CHUNK = 128  # footprints a tile takes at once: 8 KB of records, well inside the first-level cache
 AHEAD = 8  # records are fetched this many entries before they are needed
 
 f4 = np.float32
@@ -38,11 +24,11 @@ ZERO, ONE = f4(0), f4(1)
 
 
 def make_scratch(workers: int) -> tuple[Array, ...]:
-    """What each worker writes while it draws: chunk, touched, listed, state, alive, weights, one row a worker."""
+    """What each worker writes while it draws: chunk, touched, state, alive, weights, one row a worker."""
     return (
-        np.empty((workers, CHUNK * RECORD), np.float32), np.empty((workers, CHUNK), np.int64),
-        np.empty((workers, CHUNK), np.uint8), np.empty((workers, BLOCKS * STATE), np.float32),
-        np.empty((workers, BLOCKS), np.bool_), np.empty((workers, CHUNK * LANES), np.float32),
+        np.empty((workers, CHUNK * RECORD), np.float32), np.empty((workers, CHUNK), np.uint16),
+        np.empty((workers, BLOCKS * STATE), np.float32), np.empty((workers, BLOCKS), np.bool_),
+        np.empty((workers, CHUNK * LANES), np.float32),
     )  # fmt: skip
 
 
@@ -54,13 +40,7 @@ def draw(worker, workers, first, entries, records, size, limits, background, out
     depth, group `[H, W]`, the last int32), `scratch` from `make_scratch`, `counter` `[1]` int64 holding 0.
     """
     tiles_wide = (size[0] + TILE - 1) // TILE
-    chunk, touched, listed, state, alive = (
-        scratch[0][worker],
-        scratch[1][worker],
-        scratch[2][worker],
-        scratch[3][worker],
-        scratch[4][worker],
-    )
+    chunk, touched, state, alive = scratch[0][worker], scratch[1][worker], scratch[2][worker], scratch[3][worker]
     while True:
         tile = fetch_add(counter, 1)
         if tile >= first.shape[0] - 1:
@@ -71,7 +51,7 @@ def draw(worker, workers, first, entries, records, size, limits, background, out
         while start < stop:
             count = min(CHUNK, stop - start)
             _gather(entries, start, count, stop, records, chunk, touched, f4(x), f4(y))
-            start = stop if _draw_chunk(chunk, touched, count, listed, state, alive, limits) else start + count
+            start = stop if _draw_chunk(chunk, touched, state, alive, limits) else start + count
         _finish(state, x, y, size, background, out)
 
 
@@ -104,29 +84,21 @@ def _gather(entries, start, count, stop, records, chunk, touched, x, y):  # type
     for slot in range(count):
         fetch(records, entries[min(start + slot + AHEAD, stop - 1)])
         touched[slot] = take(records, entries[start + slot], chunk, slot, x, y)
+    for slot in range(count, CHUNK):
+        touched[slot] = 0
 
 
 @helper
-def _list(touched, count, block, listed):  # type: ignore[no-untyped-def]
-    """Slots of the chunk that touch a block, in order, without a branch to mispredict; returns how many."""
-    found = 0
-    for slot in range(count):
-        listed[found] = slot
-        found += (touched[slot] >> block) & 1
-    return found
-
-
-@helper
-def _draw_chunk(chunk, touched, count, listed, state, alive, limits):  # type: ignore[no-untyped-def]
+def _draw_chunk(chunk, touched, state, alive, limits):  # type: ignore[no-untyped-def]
     """Blend a chunk into every open block; returns whether the tile is finished."""
     finished = True
     for block in range(BLOCKS):
         if not alive[block]:
             continue
-        found = _list(touched, count, block, listed)
-        if found > 0:
+        slots = slots_touching(touched, block)
+        if slots != 0:
             x, y = f4(block % BLOCKS_WIDE * BLOCK_WIDTH), f4(block // BLOCKS_WIDE * BLOCK_HEIGHT)
-            alive[block] = blend_block(chunk, listed, found, state, block * STATE, x, y, limits) != 0
+            alive[block] = blend_block(chunk, slots, state, block * STATE, x, y, limits) != 0
         finished = finished and not alive[block]
     return finished
 
@@ -165,14 +137,8 @@ def _store_pixels(state, offset, left, top, size, background, out):  # type: ign
 def weigh(worker, workers, first, entries, records, size, limits, share, scratch, counter):  # type: ignore[no-untyped-def]
     """As `draw`, but write each entry's summed weight in its tile to `share` `[entries]`, which holds zeros."""
     tiles_wide = (size[0] + TILE - 1) // TILE
-    chunk, touched, listed, state, alive = (
-        scratch[0][worker],
-        scratch[1][worker],
-        scratch[2][worker],
-        scratch[3][worker],
-        scratch[4][worker],
-    )
-    weights = scratch[5][worker]
+    chunk, touched, state, alive = scratch[0][worker], scratch[1][worker], scratch[2][worker], scratch[3][worker]
+    weights = scratch[4][worker]
     while True:
         tile = fetch_add(counter, 1)
         if tile >= first.shape[0] - 1:
@@ -184,24 +150,23 @@ def weigh(worker, workers, first, entries, records, size, limits, share, scratch
             count = min(CHUNK, stop - start)
             _gather(entries, start, count, stop, records, chunk, touched, f4(x), f4(y))
             weights[:] = ZERO
-            finished = _weigh_chunk(chunk, touched, count, listed, state, alive, weights, limits)
+            finished = _weigh_chunk(chunk, touched, state, alive, weights, limits)
             for slot in range(count):
                 share[start + slot] = lane_sum(weights, slot)
             start += count
 
 
 @helper
-def _weigh_chunk(chunk, touched, count, listed, state, alive, weights, limits):  # type: ignore[no-untyped-def]
+def _weigh_chunk(chunk, touched, state, alive, weights, limits):  # type: ignore[no-untyped-def]
     """Weigh a chunk in every open block; returns whether the tile is finished."""
     finished = True
     for block in range(BLOCKS):
         if not alive[block]:
             continue
-        found = _list(touched, count, block, listed)
-        if found > 0:
+        slots = slots_touching(touched, block)
+        if slots != 0:
             x, y = f4(block % BLOCKS_WIDE * BLOCK_WIDTH), f4(block // BLOCKS_WIDE * BLOCK_HEIGHT)
-            at = block * LANES
-            alive[block] = weigh_block(chunk, listed, found, state, at, weights, x, y, limits) != 0
+            alive[block] = weigh_block(chunk, slots, state, block * LANES, weights, x, y, limits) != 0
         finished = finished and not alive[block]
     return finished
 

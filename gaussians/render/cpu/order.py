@@ -7,13 +7,9 @@ on the number of workers.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from llvmlite import ir
-from numba import types
 
-from ...compiled import helper, intrinsic, kernel
+from ...compiled import helper, kernel
 from .project import (
     EXTREME,
     L3,
@@ -28,20 +24,11 @@ from .project import (
     tile_rows,
     tile_span,
 )
+from .touch import lowest_bit
 
 DIGIT = 11  # bits sorted at once: 2048 counters stay in the first-level cache
 BUCKETS = 1 << DIGIT
 DIGITS = 3  # 3 x 11 bits hold the 31 of a positive float
-
-
-@intrinsic
-def _lowest_bit(typing_context: Any, value: Any) -> Any:
-    """Index of the lowest set bit of a uint64 that is not 0."""
-
-    def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
-        return builder.cttz(arguments[0], ir.Constant(ir.IntType(1), 1))
-
-    return types.int64(types.uint64), generate
 
 
 @kernel
@@ -112,7 +99,7 @@ def count_tiles(worker, workers, order, records, corner, mask, view, tiles_wide,
                     mine[row * tiles_wide + column] += 1
         base = np.int64(corner[n] >> 16) * tiles_wide + np.int64(corner[n] & 0xFFFF)
         while touched != 0:
-            bit = _lowest_bit(touched)
+            bit = lowest_bit(touched)
             touched &= touched - np.uint64(1)
             mine[base + bit // MASK_SIDE * tiles_wide + bit % MASK_SIDE] += 1
 
@@ -149,7 +136,7 @@ def fill_tiles(worker, workers, order, records, corner, mask, view, tiles_wide, 
                     mine[tile] += 1
         base = np.int64(corner[n] >> 16) * tiles_wide + np.int64(corner[n] & 0xFFFF)
         while touched != 0:
-            bit = _lowest_bit(touched)
+            bit = lowest_bit(touched)
             touched &= touched - np.uint64(1)
             tile = base + bit // MASK_SIDE * tiles_wide + bit % MASK_SIDE
             entries[mine[tile]] = n

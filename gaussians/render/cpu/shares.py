@@ -9,9 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import fetch_add, helper, kernel
-from .blend import CHUNK, _begin, _gather, _list, _weigh_chunk
-from .project import TILE, Array
-from .simd import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, LANES, lane_sum, weigh_block
+from .blend import _begin, _gather, _weigh_chunk
+from .lanes import LANES, lane_sum
+from .project import BIT, TILE, Array
+from .simd import weigh_block
+from .touch import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, CHUNK, lowest_bit, slots_touching
 
 PIXELS = TILE * TILE  # of a tile, so the most labels it can have
 
@@ -53,14 +55,8 @@ def split(worker, workers, first, entries, records, size, limits, plan, share, s
     """
     tiles_wide = (size[0] + TILE - 1) // TILE
     local, count, place = plan
-    chunk, touched, listed, state, alive = (
-        scratch[0][worker],
-        scratch[1][worker],
-        scratch[2][worker],
-        scratch[3][worker],
-        scratch[4][worker],
-    )
-    weights = scratch[5][worker]
+    chunk, touched, state, alive = scratch[0][worker], scratch[1][worker], scratch[2][worker], scratch[3][worker]
+    weights = scratch[4][worker]
     while True:
         tile = fetch_add(counter, 1)
         if tile >= first.shape[0] - 1:
@@ -74,7 +70,7 @@ def split(worker, workers, first, entries, records, size, limits, plan, share, s
             _gather(entries, start, taken, stop, records, chunk, touched, f4(x), f4(y))
             if labels == 1:
                 weights[:] = ZERO
-                finished = _weigh_chunk(chunk, touched, taken, listed, state, alive, weights, limits)
+                finished = _weigh_chunk(chunk, touched, state, alive, weights, limits)
                 for slot in range(taken):
                     share[to + slot] = lane_sum(weights, slot)
             else:
@@ -82,27 +78,24 @@ def split(worker, workers, first, entries, records, size, limits, plan, share, s
                 for block in range(BLOCKS):
                     if alive[block]:
                         left, top = block % BLOCKS_WIDE * BLOCK_WIDTH, block // BLOCKS_WIDE * BLOCK_HEIGHT
-                        found = _list(touched, taken, block, listed)
-                        for k in range(found):
-                            for lane in range(LANES):
-                                weights[listed[k] * LANES + lane] = ZERO
-                        if found > 0:
+                        slots = slots_touching(touched, block)
+                        if slots != 0:
+                            weights[:] = ZERO
                             at = block * LANES
-                            alive[block] = (
-                                weigh_block(chunk, listed, found, state, at, weights, f4(left), f4(top), limits) != 0
-                            )
-                            _share_out(weights, listed, found, local, x + left, y + top, labels, share, to)
+                            alive[block] = weigh_block(chunk, slots, state, at, weights, f4(left), f4(top), limits) != 0
+                            _share_out(weights, slots, local, x + left, y + top, labels, share, to)
                         finished = finished and not alive[block]
             to += taken * labels
             start += taken
 
 
 @helper
-def _share_out(weights, listed, found, local, left, top, labels, share, to):  # type: ignore[no-untyped-def]
+def _share_out(weights, slots, local, left, top, labels, share, to):  # type: ignore[no-untyped-def]
     """Add the weights of a block's pixels to the shares of their labels. Pixels beyond the image weigh nothing."""
     height, width = local.shape
-    for k in range(found):
-        slot = listed[k]
+    while slots != 0:
+        slot = lowest_bit(slots)
+        slots &= slots - BIT
         for lane in range(LANES):
             weight = weights[slot * LANES + lane]
             if weight > ZERO:

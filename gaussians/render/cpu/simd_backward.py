@@ -16,20 +16,10 @@ from llvmlite import ir
 from numba import types
 
 from ...compiled import intrinsic
+from .lanes import F32, I32, I64, LANES, Lanes, pointer_to
 from .project import BLUE, GREEN, RECORD, RED
-from .simd import (
-    _F32,
-    _I32,
-    _I64,
-    BLOCK_HEIGHT,
-    BLOCK_WIDTH,
-    BLOCKS_WIDE,
-    LANES,
-    _data,
-    _Lanes,
-    behind_it,
-    footprint,
-)
+from .simd import behind_it, footprint
+from .touch import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS_WIDE
 
 # A block's state: transmittance, `g . colour` still to come from behind, gradient of red, green and blue.
 CHANNELS = 5
@@ -50,15 +40,15 @@ def unblend(typing_context: Any, chunk: Any, slot: Any, blocks: Any, state: Any,
     signature = types.int64(chunk, types.int64, types.int64, state, sums, limits)
 
     def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
-        v = _Lanes(builder)
-        chunk, state, sums = (_data(context, builder, signature, arguments, i) for i in (0, 3, 4))
-        record = v.at(chunk, builder.mul(arguments[1], ir.Constant(_I64, RECORD)))
+        v = Lanes(builder)
+        chunk, state, sums = (pointer_to(context, builder, signature, arguments, i) for i in (0, 3, 4))
+        record = v.at(chunk, builder.mul(arguments[1], ir.Constant(I64, RECORD)))
         limits = v.spread_all(arguments[5])
         entry, head, done = builder.block, builder.append_basic_block("block"), builder.append_basic_block("summed")
-        zero, one = ir.Constant(_I64, 0), ir.Constant(_I64, 1)
+        zero, one = ir.Constant(I64, 0), ir.Constant(I64, 1)
         builder.branch(head)
         builder.position_at_end(head)
-        left, still_open = builder.phi(_I64), builder.phi(_I64)
+        left, still_open = builder.phi(I64), builder.phi(I64)
         totals = [builder.phi(v.same(0).type) for _ in range(SUMS)]
         block = builder.cttz(left, ir.Constant(ir.IntType(1), 1))
         added, alive = _in_block(v, record, block, state, limits)
@@ -80,12 +70,12 @@ def unblend(typing_context: Any, chunk: Any, slot: Any, blocks: Any, state: Any,
 
 
 def _in_block(
-    v: _Lanes, record: ir.Value, block: ir.Value, state: ir.Value, limits: list[ir.Value]
+    v: Lanes, record: ir.Value, block: ir.Value, state: ir.Value, limits: list[ir.Value]
 ) -> tuple[list[ir.Value], ir.Value]:
     """What the 16 pixels of one block add, and whether (int64) any of them is still open; the state moves on."""
     b = v.b
     x, y = _pixels_of(v, block)
-    offset = b.mul(block, ir.Constant(_I64, STATE))
+    offset = b.mul(block, ir.Constant(I64, STATE))
     t, to_come, *g = (v.load(v.at(state, offset, channel * LANES)) for channel in range(CHANNELS))
     alpha, along, across, field = footprint(v, record, x, y, limits)
     behind, still_open = behind_it(v, t, alpha, limits[1])
@@ -102,21 +92,21 @@ def _in_block(
     v.store(behind, v.at(state, offset))
     v.store(to_come, v.at(state, offset, LANES))
     added = [d_along, v.mul(d_along, x), v.mul(d_along, y), d_across, v.mul(d_across, y), d_q]
-    alive = b.zext(b.icmp_unsigned("!=", v.bits(still_open), ir.Constant(_I64, 0)), _I64)
+    alive = b.zext(b.icmp_unsigned("!=", v.bits(still_open), ir.Constant(I64, 0)), I64)
     return [*added, *(v.mul(weight, channel) for channel in g)], alive
 
 
-def _pixels_of(v: _Lanes, block: ir.Value) -> tuple[ir.Value, ir.Value]:
+def _pixels_of(v: Lanes, block: ir.Value) -> tuple[ir.Value, ir.Value]:
     """Pixel centres of a block of a tile, from the tile's corner."""
-    wide, high = ir.Constant(_I64, BLOCKS_WIDE), v.constant([i // BLOCK_WIDTH + 0.5 for i in range(LANES)])
-    left = v.b.mul(v.b.urem(block, wide), ir.Constant(_I64, BLOCK_WIDTH))
-    top = v.b.mul(v.b.udiv(block, wide), ir.Constant(_I64, BLOCK_HEIGHT))
+    wide, high = ir.Constant(I64, BLOCKS_WIDE), v.constant([i // BLOCK_WIDTH + 0.5 for i in range(LANES)])
+    left = v.b.mul(v.b.urem(block, wide), ir.Constant(I64, BLOCK_WIDTH))
+    top = v.b.mul(v.b.udiv(block, wide), ir.Constant(I64, BLOCK_HEIGHT))
     columns = v.constant([i % BLOCK_WIDTH + 0.5 for i in range(LANES)])
-    x, y = (v.spread(v.b.uitofp(corner, _F32)) for corner in (left, top))
+    x, y = (v.spread(v.b.uitofp(corner, F32)) for corner in (left, top))
     return v.add(x, columns), v.add(y, high)
 
 
-def _lane_sums(v: _Lanes, vectors: list[ir.Value]) -> ir.Value:
+def _lane_sums(v: Lanes, vectors: list[ir.Value]) -> ir.Value:
     """One vector whose lane i is the sum of the lanes of vector i; always added in the same order."""
     size = LANES
     while size > 1:
@@ -129,5 +119,5 @@ def _lane_sums(v: _Lanes, vectors: list[ir.Value]) -> ir.Value:
             for a, b in zip(vectors[::2], vectors[1::2], strict=True)
         ]
         size = half
-    assert len(vectors) == 1 and vectors[0].type.count == LANES and _I32.width == 32
+    assert len(vectors) == 1 and vectors[0].type.count == LANES and I32.width == 32
     return vectors[0]

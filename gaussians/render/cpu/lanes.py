@@ -1,0 +1,116 @@
+"""Explicit SIMD: vectors of numbers, as LLVM spells them.
+
+Knows LLVM's vector instructions. Refuses to know what is computed with them. Compilers do not vectorise the renderer's
+loops by themselves, so they are written as LLVM vectors, which LLVM lowers to AVX-512, AVX2, SSE or NEON.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+
+from ...compiled import intrinsic
+
+LANES = 16
+F32, I16, I32, I64 = ir.FloatType(), ir.IntType(16), ir.IntType(32), ir.IntType(64)
+VECTOR, INTEGERS = ir.VectorType(F32, LANES), ir.VectorType(I32, LANES)
+_FUSE = ("contract",)  # multiply-adds may fuse; nothing else is relaxed
+
+
+class Lanes:
+    """16 pixels (or another `count` of numbers) at once: a thin spelling of LLVM's vector instructions."""
+
+    def __init__(self, builder: ir.IRBuilder, count: int = LANES) -> None:
+        self.b, self.count = builder, count
+
+    def constant(self, values: Sequence[float]) -> ir.Value:
+        return ir.Constant(ir.VectorType(F32, len(values)), [ir.Constant(F32, float(np.float32(v))) for v in values])
+
+    def same(self, value: float) -> ir.Value:
+        return self.constant([value] * self.count)
+
+    def spread(self, scalar: ir.Value) -> ir.Value:
+        """A scalar in every lane."""
+        nothing = ir.Constant(ir.VectorType(scalar.type, self.count), ir.Undefined)
+        first = self.b.insert_element(nothing, scalar, ir.Constant(I32, 0))
+        return self.b.shuffle_vector(first, nothing, ir.Constant(ir.VectorType(I32, self.count), [0] * self.count))
+
+    def spread_all(self, numbers: ir.Value) -> list[ir.Value]:
+        """Each number of a tuple in every lane of its own vector."""
+        return [self.spread(number) for number in cgutils.unpack_tuple(self.b, numbers)]  # type: ignore[no-untyped-call]
+
+    def at(self, base: ir.Value, offset: ir.Value, step: int = 0) -> ir.Value:
+        """Pointer to element `offset + step`."""
+        return self.b.gep(base, [self.b.add(offset, ir.Constant(I64, step))])
+
+    def load(self, pointer: ir.Value, kind: ir.Type = VECTOR) -> ir.Value:
+        value = self.b.load(self.b.bitcast(pointer, kind.as_pointer()))
+        value.align = 4
+        return value
+
+    def store(self, value: ir.Value, pointer: ir.Value) -> None:
+        self.b.store(value, self.b.bitcast(pointer, value.type.as_pointer())).align = 4
+
+    def add(self, x: ir.Value, y: ir.Value) -> ir.Value:
+        return self.b.fadd(x, y, _FUSE)
+
+    def sub(self, x: ir.Value, y: ir.Value) -> ir.Value:
+        return self.b.fsub(x, y, _FUSE)
+
+    def mul(self, x: ir.Value, y: ir.Value) -> ir.Value:
+        return self.b.fmul(x, y, _FUSE)
+
+    def less(self, x: ir.Value, y: ir.Value) -> ir.Value:
+        return self.b.fcmp_ordered("<", x, y)
+
+    def min(self, x: ir.Value, y: ir.Value) -> ir.Value:
+        return self.b.select(self.less(x, y), x, y)
+
+    def max(self, x: ir.Value, y: ir.Value) -> ir.Value:
+        return self.b.select(self.less(x, y), y, x)
+
+    def sqrt(self, x: ir.Value) -> ir.Value:
+        kind = ir.FunctionType(x.type, [x.type])
+        name = f"llvm.sqrt.v{self.count}f32"
+        function = cgutils.get_or_insert_function(self.b.module, kind, name)  # type: ignore[no-untyped-call]
+        return self.b.call(function, [x])
+
+    def pick(self, x: ir.Value, y: ir.Value, lanes: Iterable[int]) -> ir.Value:
+        """A vector of the named lanes of x (0 to 15, if it has 16) and y (from there on)."""
+        chosen = [ir.Constant(I32, lane) for lane in lanes]
+        return self.b.shuffle_vector(x, y, ir.Constant(ir.VectorType(I32, len(chosen)), chosen))
+
+    def bits(self, mask: ir.Value) -> ir.Value:
+        """A mask as the low bits of an int64."""
+        low = self.b.bitcast(mask, ir.IntType(mask.type.count))
+        return low if low.type == I64 else self.b.zext(low, I64)
+
+
+def pointer_to(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any, index: int) -> ir.Value:
+    """Pointer to the first element of array argument `index`."""
+    return context.make_array(signature.args[index])(context, builder, arguments[index]).data
+
+
+@intrinsic
+def lane_sum(typing_context: Any, weights: Any, slot: Any) -> Any:
+    """Sum of row `slot` of `weights` `[CHUNK, LANES]`, always in the same order: halves, quarters and so on.
+
+    A plain loop may be reordered, and LLVM keeps two versions of it and picks one by the addresses of its arrays.
+    """
+
+    def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
+        v = Lanes(builder)
+        base = pointer_to(context, builder, signature, arguments, 0)
+        row = v.load(v.at(base, builder.mul(arguments[1], ir.Constant(I64, LANES))))
+        half = LANES // 2
+        while half:
+            row = v.add(v.pick(row, row, range(half)), v.pick(row, row, range(half, 2 * half)))
+            half //= 2
+        return builder.extract_element(row, ir.Constant(I32, 0))
+
+    return types.float32(weights, types.int64), generate
