@@ -68,7 +68,7 @@ def examine() -> list[Finding]:
     return [
         *needed,
         *(check() for check in (_cuda, _encoder, _torchvision, _open_clip, _onnx, _vectors)),
-        *(check() for check in (_masks_of_files, _masks_of_sam, _transformers, _charts, _ffmpeg)),
+        *(check() for check in (_masks_of_files, _masks_of_sam, _transformers, _poses, _charts, _ffmpeg)),
         *(_planner(kind) for kind in PLANNERS),
         *(check() for check in (_planner_here, _planner_of_auto)),
     ]
@@ -196,6 +196,11 @@ def _masks_of_sam() -> Finding:
 
 def _transformers() -> Finding:
     return _distribution("transformers", "local language and vision models", needed=False, fix=_MODELS)
+
+
+def _poses() -> Finding:
+    serves = "poses of photographs that come without (fit)"
+    return _distribution("pycolmap", serves, needed=False, fix='pip install "scenewright[sfm]"')
 
 
 def _charts() -> Finding:

@@ -2,7 +2,8 @@
 
 Poses in `transforms.json` are camera-to-world in OpenGL axes (+x right, +y up, +z backward), intrinsics in pixels, once
 for all frames or for each (https://docs.nerf.studio/quickstart/data_conventions.html); ours are world-to-camera in
-OpenCV axes. Knows the file, and when to leave it to `colmap`. Refuses to know what is done with the photographs.
+OpenCV axes. Knows the file, when to leave it to `colmap`, and when a folder has photographs alone.
+Refuses to know what is done with the photographs.
 """
 
 from __future__ import annotations
@@ -10,8 +11,8 @@ from __future__ import annotations
 import math
 import os
 from collections import Counter
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,7 @@ from .foreign import read_json
 TRANSFORMS = "transforms.json"
 _MODELS = ("OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "RADIAL", "SIMPLE_RADIAL", "PERSPECTIVE")
 _SUFFIXES = (".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".JPEG", ".webp")
+PICTURES = (".jpg", ".jpeg", ".png")
 LONGEST = 1 << 16  # pixels of a side: no photograph is longer, and masks as large as one must fit into memory
 FARTHEST = 1e15  # scene units: squares of it are still float32
 ROUNDED = 5e-3  # by which a rotation written with few digits may be off, and
@@ -60,9 +62,14 @@ def read_capture(path: Path) -> Capture:
     `images`).
 
     Raises:
-        FileError: it is not there, or is no such file.
+        FileError: it is not there, or is no such file, or is a folder of photographs without poses.
     """
     file = path / TRANSFORMS if path.is_dir() else path
+    if found := photographs_alone(path):
+        raise FileError(
+            f"{path} has {len(found)} photographs but no poses; `scenewright fit {path} -o SCENE.ply` estimates them "
+            "and keeps them in SCENE.ply.poses, which is a capture"
+        )
     if path.is_dir() and not file.exists() and (sparse := colmap.find(path)) is not None:
         views = colmap.read_views(sparse)
         taken = [path / "images" / view.name for view in views]
@@ -91,6 +98,38 @@ def read_capture(path: Path) -> Capture:
             raise FileError(f"{file}: frame {i} {missing}") from error
         photos.append(photo)
     return _capture(file, cameras, photos, lenses)
+
+
+def photographs_alone(path: Path) -> list[Path]:
+    """The photographs of a folder that says nothing of poses, by name: those in `images`, or else in the folder itself.
+    Empty where there are poses, or no photographs.
+
+    Raises:
+        FileError: the folder cannot be looked into.
+    """
+    if not path.is_dir() or (path / TRANSFORMS).exists() or colmap.find(path) is not None:
+        return []
+    for folder in (path / "images", path):
+        try:
+            listed = list(folder.iterdir()) if folder.is_dir() else []
+        except OSError as error:
+            raise FileError(f"cannot look into {folder}: {error.strerror or error}") from error
+        files = [p for p in listed if p.suffix.lower() in PICTURES and not p.name.startswith(".") and p.is_file()]
+        if files:
+            return sorted(files, key=lambda p: p.name)
+    return []
+
+
+def described(cameras: Sequence[Camera], lenses: Sequence[Lens], paths: Sequence[str]) -> dict[str, Any]:
+    """What a `transforms.json` says of photographs at `paths`, which are relative to its folder: the reverse of
+    `read_capture`."""
+    frames = []
+    for camera, lens, path in zip(cameras, lenses, paths, strict=True):
+        pose = np.linalg.inv(camera.world_to_camera) * [1, -1, -1, 1]  # OpenCV to OpenGL axes
+        told = {"fl_x": camera.fx, "fl_y": camera.fy, "cx": camera.cx, "cy": camera.cy}
+        size = {"w": camera.width, "h": camera.height}
+        frames.append({"file_path": path, "transform_matrix": pose.tolist(), **told, **size, **asdict(lens)})
+    return {"camera_model": "OPENCV", "frames": frames}
 
 
 def _capture(file: Path, cameras: list[Camera], photos: list[Path], lenses: list[Lens]) -> Capture:

@@ -15,7 +15,7 @@ import numpy as np
 from ..camera import Camera
 from ..errors import FileError, UserError
 from ..files import colmap
-from ..files.capture import Capture, is_file, read_capture
+from ..files.capture import Capture, is_file, photographs_alone, read_capture
 from ..lens import Lens, straightened
 from .picture import SMALLEST, read_photo
 from .poses import check_colors, check_views
@@ -39,6 +39,8 @@ class Photos:
         points: surveyed points, perhaps none.
         extent: radius of a ball that holds the cameras, scene units, a tenth larger.
         odd: what a user should look at before the work, if anything.
+        surveyed: the folder that keeps poses which had to be estimated; None where they were given.
+        unplaced: names of photographs left out because no pose was found for them.
     """
 
     shots: tuple[Shot, ...]
@@ -46,22 +48,40 @@ class Photos:
     points: colmap.Points
     extent: float
     odd: str | None = None
+    surveyed: Path | None = None
+    unplaced: tuple[str, ...] = ()
 
 
-def take_photos(path: Path, scale: float | None = None, progress: Progress = lambda stage, share: None) -> Photos:
+def take_photos(
+    path: Path,
+    scale: float | None = None,
+    progress: Progress = lambda stage, share: None,
+    poses: Path | None = None,
+) -> Photos:
     """The photographs of a capture.
 
     Args:
-        path: a folder with `transforms.json` or a COLMAP model, or the former itself.
+        path: a folder with `transforms.json` or a COLMAP model, or the former itself; or one with photographs alone,
+            in `images` or itself.
         scale: of the photographs' sides, in (0, 1]; None halves them until the longer side is at most `LONGEST`.
+        poses: a folder to keep poses in that have to be estimated, and to find them in the next time; without one,
+            photographs alone are refused.
 
     Raises:
         FileError: the capture cannot be read, a photograph is missing, broken or of another shape than its camera, the
             poses do not see the points that were surveyed with them, or there is nothing to learn from.
-        UserError: the scale is out of range.
+        UserError: the scale is out of range, or something else stands at `poses`.
+        BackendError: poses have to be estimated, and pycolmap is not installed or failed.
     """
     if scale is not None and not 0 < scale <= 1:
         raise UserError(f"--scale must lie between 0 and 1, got {scale:g}")
+    surveyed: Path | None = None
+    unplaced: tuple[str, ...] = ()
+    if poses is not None and (alone := photographs_alone(path)):
+        from .survey import survey
+
+        unplaced = survey(alone, poses, progress)
+        path = surveyed = poses
     capture = read_capture(path)
     points = _points(path if path.is_dir() else path.parent)
     _check_present(capture)
@@ -83,7 +103,7 @@ def take_photos(path: Path, scale: float | None = None, progress: Progress = lam
     if not apart > STILL * np.abs(eyes).max():
         raise FileError(f"{capture.path}: all cameras stand in one place, from where nothing tells how far things are; "
                         "take photographs from several places")  # fmt: skip
-    return Photos(tuple(learnt), tuple(held), points, 1.1 * apart, odd)
+    return Photos(tuple(learnt), tuple(held), points, 1.1 * apart, odd, surveyed, unplaced)
 
 
 def _check_present(capture: Capture) -> None:
