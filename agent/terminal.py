@@ -11,6 +11,7 @@ import signal
 import sys
 import threading
 import time
+import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from types import FrameType
@@ -58,8 +59,8 @@ class Terminal:
         self._write(self.out, text)
 
     def say(self, text: str) -> None:
-        """A remark for a person."""
-        self._write(self.err, text)
+        """A remark for a person; what could steer a terminal, in names that others wrote, is left out."""
+        self._write(self.err, "".join(c for c in text if c in "\n\t" or unicodedata.category(c) != "Cc"))
 
     def picture(self, drawn: str) -> None:
         """A picture in text; left out where the output is for a program."""

@@ -30,6 +30,7 @@ from ..gaussians.errors import FileError, UserError
 from ..gaussians.files import writing
 from ..gaussians.files.colmap import Points
 from ..gaussians.fit import Photos, Settings, fit, take_photos
+from ..gaussians.fit.checkpoint import drop
 from ..gaussians.fit.fitting import LOOKS, WATCHED
 from ..gaussians.fit.quality import measure
 from ..gaussians.fit.train import Shot
@@ -186,6 +187,7 @@ def make_of(photos: Photos) -> Make:
         )  # fmt: skip
         with writing(place / f"{run.name}.json", force=True) as file:
             file.write(json.dumps(asdict(made)).encode())
+        drop(place / f"{run.name}.checkpoint")
 
     return make
 

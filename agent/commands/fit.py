@@ -53,32 +53,55 @@ def command(
     from ...gaussians.errors import UserError
     from ...gaussians.files import save
     from ...gaussians.fit import Settings, fit, take_photos
-    from ..targets import make_folder, refuse_existing
+    from ...gaussians.fit.checkpoint import drop
 
     if minutes is not None and steps is not None:
         raise UserError("give --minutes or --steps, not both")
-    refuse_existing([output, *([report / "report.json"] if report is not None else [])], force)
+    _check_targets(output, report, force)
     seconds = None if steps is not None else 60 * (5.0 if minutes is None else minutes)
     settings = Settings(seconds, steps, most, degree, growth, seed=seed)
-    if report is not None:
-        make_folder(report)
     photos = take_photos(capture, scale, terminal.progress)
     terminal.say(_told(photos))
     kept = output.with_name(output.name + ".checkpoint")
     if kept.exists():
         terminal.say(f"going on from {kept}")
-    done = fit(photos, settings, kept=kept, told=_tell)
+    try:
+        done = fit(photos, settings, kept=kept, told=_tell)
+    except KeyboardInterrupt:
+        terminal.say(f"the same command goes on from {kept}" if kept.exists() else "nothing was kept yet")
+        raise
     save(done.scene, output, force=force)
+    drop(kept)
     data = _data(done, photos, settings, output)
     if report is not None:
         _write_report(done, photos, data, report, force)
     terminal.result(_summary(done, output), data)
 
 
+def _check_targets(output: Path, report: Path | None, force: bool) -> None:
+    """Say at once, not after the training, that a file would be overwritten, cannot be there or has no format."""
+    from ...gaussians.errors import UserError
+    from ...gaussians.files import writer
+    from ..targets import make_folder, refuse_existing, require_folder
+
+    writer(output)
+    require_folder(output)
+    if output.is_dir() or output == report:
+        raise UserError(f"{output} is a folder; give the name of a file in it")
+    refuse_existing([output, *([report / "report.json"] if report is not None else [])], force)
+    if report is not None:
+        make_folder(report)
+
+
 def _told(photos: Photos) -> str:
+    from ...gaussians.fit.start import FEWEST
+
     height, width = photos.shots[0].photo.shape[:2]
-    points = f"{len(photos.points.means):,} surveyed points" if len(photos.points.means) else "no surveyed points"
-    return f"{len(photos.shots)} photographs at {width}x{height}, {len(photos.held)} held out, {points}"
+    many = len(photos.points.means)
+    points = f"{many:,} surveyed points" if many else "no surveyed points, so poses cannot be checked"
+    few = "; too few to begin from, so Gaussians begin anywhere" if many < FEWEST else ""
+    told = f"{len(photos.shots)} photographs at {width}x{height}, {len(photos.held)} held out, {points}{few}"
+    return told if photos.odd is None else f"{told}\nwarning: {photos.odd}"
 
 
 def _tell(status: Status) -> None:

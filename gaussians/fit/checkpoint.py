@@ -6,8 +6,10 @@ one, is refused.
 
 from __future__ import annotations
 
+import contextlib
 import json
 from collections.abc import Mapping
+from glob import escape
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +33,13 @@ def keep(path: Path, arrays: Mapping[str, Any], state: Mapping[str, Any]) -> Non
     tensors = {name: np.asarray(value, order="C") for name, value in arrays.items()}
     with writing(path, force=True) as file:
         file.write(save(tensors, told))
+
+
+def drop(path: Path) -> None:
+    """Take a checkpoint away, and what a crash in the middle of writing one left behind."""
+    for part in (path, *path.parent.glob(f".{escape(path.name)}.*.part")):
+        with contextlib.suppress(OSError):
+            part.unlink(missing_ok=True)
 
 
 def resume(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:

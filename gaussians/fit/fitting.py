@@ -98,7 +98,8 @@ def fit(
     """Train a scene.
 
     Args:
-        kept: where checkpoints go; training goes on from the one that is there, and takes it away in the end.
+        kept: where checkpoints go; training goes on from the one that is there. Whoever has saved the scene takes it
+            away (`checkpoint.drop`), so that a disk which is full in the end costs no training.
         told: called every `TELL_EVERY` seconds.
 
     Raises:
@@ -117,8 +118,6 @@ def fit(
     cameras = tuple(sorted((s.camera for s in (*photos.shots, *photos.held)), key=lambda camera: camera.name))
     scene = Scene(made, cameras=cameras)
     quality = measure(made, photos.held)
-    if kept is not None:
-        kept.unlink(missing_ok=True)
     return Fitted(scene, quality, trainer.steps, trainer.seconds, tuple(curve))
 
 
