@@ -85,4 +85,6 @@ Up = Annotated[str | None, typer.Option("--up", metavar="X,Y,Z", help="Which way
 Scale = Annotated[
     float | None, typer.Option("--metres-per-unit", metavar="M", help="The scene's scale, where its file says nothing.")
 ]
-Seed = Annotated[int, typer.Option("--seed", min=0, help="What varies between two runs; the same seed gives the same bytes.")]
+Seed = Annotated[
+    int, typer.Option("--seed", min=0, help="What varies between two runs; the same seed gives the same bytes.")
+]

@@ -50,7 +50,7 @@ def command(
     Every eighth photograph is held out and measured with. Training goes on from its last checkpoint
     (OUTPUT.checkpoint) if it was ended before its time.
     """
-    from ...gaussians.errors import UserError
+    from ...gaussians.errors import FileError, UserError
     from ...gaussians.files import save
     from ...gaussians.fit import Settings, fit, take_photos
     from ...gaussians.fit.checkpoint import drop
@@ -68,14 +68,21 @@ def command(
     try:
         done = fit(photos, settings, kept=kept, told=_tell)
     except KeyboardInterrupt:
-        terminal.say(f"the same command goes on from {kept}" if kept.exists() else "nothing was kept yet")
+        terminal.say(_left(kept))
         raise
-    save(done.scene, output, force=force)
+    try:
+        save(done.scene, output, force=force)
+    except FileError as error:
+        raise FileError(f"{error}; {_left(kept)}") from error
     drop(kept)
     data = _data(done, photos, settings, output)
     if report is not None:
         _write_report(done, photos, data, report, force)
     terminal.result(_summary(done, output), data)
+
+
+def _left(kept: Path) -> str:
+    return f"the same command goes on from {kept}" if kept.exists() else "no checkpoint was kept yet"
 
 
 def _check_targets(output: Path, report: Path | None, force: bool) -> None:
