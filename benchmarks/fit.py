@@ -89,7 +89,7 @@ def _points(name: str, title: str, made: Made) -> Iterator[Point]:
     for look, (seconds, psnr) in enumerate(made.curve):
         end = look == last
         if end or look + 1 in SHOWN:
-            setting = f"{psnr:.1f} dB" if end else ""
+            setting = f"{name}: {psnr:.1f} dB" if end else ""
             yield Point(title, setting, seconds, psnr, made.peak, default=end and name == "default-5")
 
 
