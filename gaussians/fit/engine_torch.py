@@ -96,7 +96,7 @@ class TorchEngine:
             self._step(gradients, rate)
             pulled = torch.zeros_like(centers) if centers.grad is None else centers.grad
             self._growth.stepped_there(self._values, pulled, (camera.width, camera.height), rate)
-        return float(loss)
+        return loss.item()
 
     def _step(self, gradients: dict[str, Tensor], rate: float) -> None:
         """One step of Adam, as `adam.Adam`."""

@@ -22,12 +22,12 @@ from .shares import Split
 
 __all__ = ["Split", "backends", "contributions", "render", "split"]
 
-_MODULES = {"cpu": ".cpu", "reference": ".reference"}
+_MODULES = {"cpu": ".cpu", "reference": ".reference", "cuda": ".cuda"}
 _AUTO = "cpu"
 
 
 class Backend(Protocol):
-    """What a back end module offers. Equal input gives equal bytes."""
+    """What a back end module offers. Equal input gives equal bytes; on a GPU, sums over pixels to their rounding."""
 
     def render(self, cloud: GaussianCloud, camera: Camera, background: Vec3) -> Render: ...
 
@@ -48,14 +48,14 @@ def render(cloud: GaussianCloud, camera: Camera, background: Vec3 = (0.0, 0.0, 0
     Drawing the same input twice gives the same bytes.
 
     Args:
-        cloud: the Gaussians; moved to the CPU by back ends that live there.
+        cloud: the Gaussians; moved to the device that the back end draws on, and the picture back to theirs.
         camera: pose, intrinsics and image size.
         background: display-space colour behind everything.
         backend: "auto" (the fast CPU renderer), or a name from `backends()`.
 
     Raises:
         UserError: `background` is not three finite numbers.
-        BackendError: no such back end, or its package is not installed.
+        BackendError: no such back end, or its package or device is not there.
     """
     if len(background) != 3 or not all(math.isfinite(channel) for channel in background):
         raise UserError(f"background must be three finite numbers, red green blue, got {background!r}")
@@ -68,7 +68,7 @@ def contributions(cloud: GaussianCloud, camera: Camera, backend: str = "auto") -
     The sum over Gaussians is the sum of alpha over pixels. Zero means not seen: outside the view or hidden.
 
     Raises:
-        BackendError: no such back end, or its package is not installed.
+        BackendError: no such back end, or its package or device is not there.
     """
     return _load(backend).contributions(cloud, camera)
 
@@ -83,7 +83,7 @@ def split(cloud: GaussianCloud, camera: Camera, labels: NDArray[np.integer], bac
 
     Raises:
         UserError: `labels` has another size than the camera, or holds no integers.
-        BackendError: no such back end, or its package is not installed.
+        BackendError: no such back end, or its package or device is not there.
     """
     if labels.shape != (camera.height, camera.width) or not np.issubdtype(labels.dtype, np.integer):
         raise UserError(
