@@ -105,15 +105,16 @@ def _number(axes: Any, result: Result) -> None:
 
 
 def _name(axes: Any, points: Sequence[Point], named: Sequence[Point], cost: Callable[[Point], float]) -> None:
-    """Write each label where it hides least: not over points, not over labels that stand already."""
+    """Write each label where it hides least: within the axes, not over points or labels that stand already."""
     gain = axes.figure.dpi / 72
+    frame = tuple(edge / gain for edge in axes.get_window_extent().extents)
     spots = axes.transData.transform([(cost(p), p.accuracy) for p in points]) / gain
     taken = [(x - 4, y - 4, x + 4, y + 4) for x, y in spots]
     for point in named:
         x, y = axes.transData.transform((cost(point), point.accuracy)) / gain
         text = point.setting or point.method
         boxes = [_box(x, y, spot, text) for spot in SPOTS]
-        hidden = [sum(_overlap(box, other) for other in taken) for box in boxes]
+        hidden = [sum(_overlap(box, other) for other in taken) - _overlap(box, frame) for box in boxes]
         best = hidden.index(min(hidden))
         taken.append(boxes[best])
         side = "left" if SPOTS[best][0] > 0 else "right"
