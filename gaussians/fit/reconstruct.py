@@ -151,15 +151,25 @@ def _chosen(alike: NDArray[np.int64]) -> Iterator[tuple[int, int]]:
 
 
 def reconstruct(database: Path, folder: Path) -> Any | None:
-    """The model that holds the most photographs; None if there is none."""
+    """The model that holds the most photographs; None if there is none. What it left out is then tried one by one."""
     options = pycolmap.GlobalPipelineOptions()
     options.random_seed = options.mapper.random_seed = SEED
     options.mapper.rotation_averaging.random_seed = options.mapper.global_positioning.random_seed = SEED
     options.mapper.retriangulation.random_seed = SEED
-    scratch = folder / "models"
-    scratch.mkdir()
-    models = pycolmap.global_mapping(database, folder / PICTURES, scratch, options)
-    return max(models.values(), key=lambda model: model.num_reg_images(), default=None)
+    first, then = folder / "global", folder / "added"
+    first.mkdir()
+    then.mkdir()
+    models = pycolmap.global_mapping(database, folder / PICTURES, first, options)
+    if not models:
+        return None
+    which, model = max(models.items(), key=lambda found: found[1].num_reg_images())
+    if model.num_reg_images() == sum(1 for _ in (folder / PICTURES).iterdir()):
+        return model
+    adding = pycolmap.IncrementalPipelineOptions()
+    adding.random_seed = adding.mapper.random_seed = adding.triangulation.random_seed = SEED
+    adding.multiple_models = False
+    more = pycolmap.incremental_mapping(database, folder / PICTURES, then, adding, first / str(which))
+    return max([model, *more.values()], key=lambda found: found.num_reg_images())
 
 
 def _as_taken(model: Any, lots: list[dict[str, Any]]) -> None:
