@@ -52,8 +52,7 @@ def draw(columns: tuple[Array, ...], camera: Camera, background: Vec3) -> Drawn:
 def undraw(picture: Drawn, d_rgb: Array, d_alpha: Array) -> Gradients:
     """Carry the gradient of a picture, `[H, W, 3]` and `[H, W]`, back to the columns. Same input, same bytes."""
     columns, count = picture.columns, compiled.workers()
-    means, quats, scales, opacities, sh = out = tuple(np.zeros_like(column) for column in columns)
-    centers = np.zeros((len(columns[0]), 2), np.float32)
+    out = *(np.zeros_like(column) for column in columns), np.zeros((len(columns[0]), 2), np.float32)
     scratch = backward.make_scratch(count)
     for top, bottom, bins in picture.strips:
         seen = picture.rgb[top:bottom], picture.alpha[top:bottom]
@@ -65,5 +64,4 @@ def undraw(picture: Drawn, d_rgb: Array, d_alpha: Array) -> Gradients:
         compiled.run(backward.collect, count, bins.entries, each, total)
         shaped = columns, bins.view, bins.records, total, out
         compiled.run(unproject.unproject, count, *shaped, _counter())
-        centers += total[:, :2]
-    return Gradients(means, quats, scales, opacities, sh, centers)
+    return Gradients(*out)

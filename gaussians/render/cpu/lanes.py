@@ -19,11 +19,13 @@ from ...compiled import intrinsic
 LANES = 16
 F32, I16, I32, I64 = ir.FloatType(), ir.IntType(16), ir.IntType(32), ir.IntType(64)
 VECTOR, INTEGERS = ir.VectorType(F32, LANES), ir.VectorType(I32, LANES)
-_FUSE = ("contract",)  # multiply-adds may fuse; nothing else is relaxed
 
 
 class Lanes:
-    """16 pixels (or another `count` of numbers) at once: a thin spelling of LLVM's vector instructions."""
+    """16 pixels (or another `count` of numbers) at once: a thin spelling of LLVM's vector instructions.
+
+    Sums and products may fuse and be reordered as the kernel allows that they are compiled into: numba marks them so.
+    """
 
     def __init__(self, builder: ir.IRBuilder, count: int = LANES) -> None:
         self.b, self.count = builder, count
@@ -57,13 +59,13 @@ class Lanes:
         self.b.store(value, self.b.bitcast(pointer, value.type.as_pointer())).align = 4
 
     def add(self, x: ir.Value, y: ir.Value) -> ir.Value:
-        return self.b.fadd(x, y, _FUSE)
+        return self.b.fadd(x, y)
 
     def sub(self, x: ir.Value, y: ir.Value) -> ir.Value:
-        return self.b.fsub(x, y, _FUSE)
+        return self.b.fsub(x, y)
 
     def mul(self, x: ir.Value, y: ir.Value) -> ir.Value:
-        return self.b.fmul(x, y, _FUSE)
+        return self.b.fmul(x, y)
 
     def less(self, x: ir.Value, y: ir.Value) -> ir.Value:
         return self.b.fcmp_ordered("<", x, y)

@@ -1,7 +1,7 @@
 """From Gaussians in the world to footprints in the image: one compiled pass over the rows of a cloud.
 
-Knows the camera, the covariance algebra, the harmonics and which tiles an ellipse touches. Refuses to know order and
-blending. Output is written at the row's own index, so nothing depends on which thread did the work.
+Knows the camera, the covariance algebra and which tiles an ellipse touches. Refuses to know harmonics (`shade`), order
+and blending. Output is written at the row's own index, so nothing depends on which thread did the work.
 
 A footprint's exponent is kept as a sum of squares (Cholesky factor of the inverse covariance), scaled by 1/16:
 `q = (l1 dx + l2 dy)^2 + (l3 dy)^2 = d' inv(cov) d / 16`. It cannot go negative by rounding, costs as little as the
@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from ...camera import Camera
 from ...compiled import fetch_add, helper, kernel
 from .. import convention
+from .shade import shade
 
 Array = NDArray[Any]
 
@@ -37,16 +38,11 @@ Q_MAX = math.log(1 / convention.ALPHA_MIN) / 8  # exp(-8 Q_MAX) is the least alp
 
 # Bare Python floats would promote float32 arithmetic to float64.
 f4 = np.float32
-ZERO, HALF, ONE, TWO, THREE, FOUR, SIXTEEN = (f4(v) for v in (0, 0.5, 1, 2, 3, 4, 16))
+ZERO, HALF, ONE, TWO, FOUR, SIXTEEN = (f4(v) for v in (0, 0.5, 1, 2, 4, 16))
 QUARTER, EIGHTH, PER_TILE = f4(0.25), f4(0.125), f4(1 / TILE)
 HUGE, TINY = f4(3e38), f4(1e-30)
+SLACK = f4(1.01)  # beyond what rounding can amount to
 BIT = np.uint64(1)
-# Normalisation of the real harmonics, in the order of `gaussians/harmonics.py`.
-C0, C1 = f4(0.28209479177387814), f4(0.4886025119029199)
-C20, C21, C22 = f4(1.0925484305920792), f4(0.31539156525252005), f4(0.5462742152960396)
-C30, C31, C32, C33, C34 = (
-    f4(v) for v in (0.5900435899266435, 2.890611442640554, 0.4570457994644658, 0.3731763325901154, 1.445305721320277)
-)
 
 
 class View(NamedTuple):
@@ -134,16 +130,21 @@ def project(worker, workers, means, quats, scales, opacities, sh, group, view, o
             z = view.r20 * dx + view.r21 * dy + view.r22 * dz
             if not (z > view.near and z < view.far and opacities[n] > view.alpha_min and opacities[n] < HUGE):
                 continue
-            quat = (quats[n, 0], quats[n, 1], quats[n, 2], quats[n, 3])
             scale = (scales[n, 0], scales[n, 1], scales[n, 2])
+            inverse = ONE / z
+            u = (view.r00 * dx + view.r01 * dy + view.r02 * dz) * inverse
+            v = (view.r10 * dx + view.r11 * dy + view.r12 * dz) * inverse
+            if _beside(u, v, inverse, scale, view):
+                continue
+            quat = (quats[n, 0], quats[n, 1], quats[n, 2], quats[n, 3])
             opacity = min(opacities[n], ONE)
-            ellipse, reach_x, seen = _footprint(dx, dy, dz, z, quat, scale, opacity, view)
+            ellipse, reach_x, seen = _footprint(u, v, inverse, quat, scale, opacity, view)
             if not seen:
                 continue
             left, top, touched, some = _tiles(ellipse, reach_x, view)
             if not some:
                 continue
-            if not _shade(records, n, sh, dx, dy, dz):
+            if not shade(n, sh, dx, dy, dz, records[n, RED : BLUE + 1]):
                 continue
             _record(records, n, ellipse, view.q_max, z)
             bits[n, GROUP] = group[n]
@@ -156,11 +157,23 @@ def project(worker, workers, means, quats, scales, opacities, sh, group, view, o
 
 
 @helper
-def _footprint(dx, dy, dz, z, quat, scale, opacity, view):  # type: ignore[no-untyped-def]
-    """Ellipse of a Gaussian at offset (dx, dy, dz) from the eye, half its width (px), and whether it can be seen."""
-    inverse = ONE / z
-    u = (view.r00 * dx + view.r01 * dy + view.r02 * dz) * inverse
-    v = (view.r10 * dx + view.r11 * dy + view.r12 * dz) * inverse
+def _beside(u, v, inverse, scale, view):  # type: ignore[no-untyped-def]
+    """Whether a Gaussian seen at the tangents (u, v) would miss the image even as an opaque ball of its largest scale:
+    most of what a camera in a room does not see is known by this at a tenth of the work. NaN tells nothing."""
+    x, y = view.fx * u + view.cx, view.fy * v + view.cy
+    cu, cv = min(max(u, view.u0), view.u1), min(max(v, view.v0), view.v1)
+    largest = max(max(abs(scale[0]), abs(scale[1])), abs(scale[2])) * inverse
+    j, k = view.fx * largest, view.fy * largest
+    stretch = SLACK * SIXTEEN * view.q_max  # variances from its centre to where an opaque ellipse ends, squared
+    reach_x = stretch * (j * j * (ONE + cu * cu) + view.dilation)
+    reach_y = stretch * (k * k * (ONE + cv * cv) + view.dilation)
+    aside, above = max(-x, x - view.width), max(-y, y - view.height)
+    return (aside > ZERO and aside * aside > reach_x) or (above > ZERO and above * above > reach_y)
+
+
+@helper
+def _footprint(u, v, inverse, quat, scale, opacity, view):  # type: ignore[no-untyped-def]
+    """Ellipse of a Gaussian seen at the tangents (u, v), half its width (px), and whether it can be seen."""
     xx, xy, yy, determinant = _covariance(quat, scale, inverse, u, v, view)
     limit = math.log(opacity / view.alpha_min) * EIGHTH  # of q: alpha = opacity * exp(-8 q) >= alpha_min
     x, y = view.fx * u + view.cx, view.fy * v + view.cy
@@ -261,34 +274,3 @@ def _record(records, n, e, q_max, z):  # type: ignore[no-untyped-def]
         e.width,
         e.extreme,
     )
-
-
-@helper
-def _shade(records, n, sh, x, y, z):  # type: ignore[no-untyped-def]
-    """Write the colour of row `n` seen along (x, y, z), `max(0, 0.5 + harmonics)`; returns whether it is finite."""
-    inverse = ONE / math.sqrt(x * x + y * y + z * z)
-    x, y, z = x * inverse, y * inverse, z * inverse
-    finite = True
-    for channel in range(3):
-        value = HALF + _harmonics(n, channel, sh, x, y, z)
-        finite = finite and abs(value) < HUGE
-        records[n, RED + channel] = max(value, ZERO)
-    return finite
-
-
-@helper
-def _harmonics(n, c, sh, x, y, z):  # type: ignore[no-untyped-def]
-    """Channel `c` of the harmonics of row `n` in the unit direction (x, y, z)."""
-    value = C0 * sh[n, 0, c]
-    if sh.shape[1] > 1:
-        value += C1 * (z * sh[n, 2, c] - y * sh[n, 1, c] - x * sh[n, 3, c])
-    if sh.shape[1] > 4:
-        value += C20 * (x * y * sh[n, 4, c] - y * z * sh[n, 5, c] - x * z * sh[n, 7, c])
-        value += C21 * (TWO * z * z - x * x - y * y) * sh[n, 6, c] + C22 * (x * x - y * y) * sh[n, 8, c]
-    if sh.shape[1] > 9:
-        xx, yy, zz = x * x, y * y, z * z
-        value += C31 * x * y * z * sh[n, 10, c] + C33 * z * (TWO * zz - THREE * xx - THREE * yy) * sh[n, 12, c]
-        value -= C30 * (y * (THREE * xx - yy) * sh[n, 9, c] + x * (xx - THREE * yy) * sh[n, 15, c])
-        value -= C32 * (FOUR * zz - xx - yy) * (y * sh[n, 11, c] + x * sh[n, 13, c])
-        value += C34 * z * (xx - yy) * sh[n, 14, c]
-    return value

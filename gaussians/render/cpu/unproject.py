@@ -11,7 +11,8 @@ import math
 
 from ...compiled import fetch_add, helper, kernel
 from .backward import D_L1, D_L2, D_L3, D_RED, D_SHIFT, D_X, D_Y
-from .project import C0, C1, C20, C21, C22, C30, C31, C32, C33, C34, FOUR, HALF, ONE, RED, THREE, TINY, TWO, ZERO, f4
+from .project import FOUR, HALF, ONE, RED, TINY, TWO, ZERO, f4
+from .shade import C0, C1, C20, C21, C22, C30, C31, C32, C33, C34, THREE
 
 ROWS = 2048  # rows a worker takes at a time
 SIX, EIGHT = f4(6), f4(8)
@@ -19,13 +20,13 @@ SIX, EIGHT = f4(6), f4(8)
 
 @kernel
 def unproject(worker, workers, columns, view, records, footprints, out, counter):  # type: ignore[no-untyped-def]
-    """Add to `out`, the gradients of means, quats, scales, opacities and harmonics, what the footprints say.
+    """Add to `out`, the gradients of means, quats, scales, opacities, harmonics and centres, what the footprints say.
 
-    `columns` are those five, `footprints` `[N, GRADIENT]`, zeros for what has no footprint. Rows are taken as they lie
-    in memory: in the order of depth, most of the time went into waiting for it.
+    `columns` are the first five, `footprints` `[N, GRADIENT]`, zeros for what has no footprint. Rows are taken as
+    they lie in memory: in the order of depth, most of the time went into waiting for it.
     """
     means, quats, scales, opacities, sh = columns
-    d_means, d_quats, d_scales, d_opacities, d_sh = out
+    d_means, d_quats, d_scales, d_opacities, d_sh, d_centers = out
     while True:
         start = fetch_add(counter, 1) * ROWS
         if start >= means.shape[0]:
@@ -38,6 +39,8 @@ def unproject(worker, workers, columns, view, records, footprints, out, counter)
             turned = _shaded(n, toward, sh, records, footprints, d_sh)
             for axis in range(3):
                 d_means[n, axis] += moved[axis] + turned[axis]
+            d_centers[n, 0] += footprints[n, D_X]
+            d_centers[n, 1] += footprints[n, D_Y]
             if opacities[n] < ONE:
                 d_opacities[n] -= footprints[n, D_SHIFT] / (EIGHT * opacities[n])
 
