@@ -77,8 +77,8 @@ def read_capture(path: Path) -> Capture:
     try:
         told = read_json(file)
     except FileError as error:
-        raise FileError(f"{error}; a capture is a transforms.json, or a folder with one or with COLMAP's sparse/0"
-                        ) from error  # fmt: skip
+        raise FileError(f"{error}; a capture is a transforms.json, or a folder with one, with COLMAP's sparse/0, or, "
+                        f"for fit alone, with photographs ({', '.join(PICTURES)})") from error  # fmt: skip
     frames = told.get("frames") if isinstance(told, dict) else None
     if not isinstance(frames, list) or not frames:
         raise FileError(f"{file} lists no frames; give a transforms.json as nerfstudio writes it")

@@ -345,8 +345,8 @@ def test_poses_of_a_rendered_scene_are_found_again(tmp_path: Path) -> None:
     found, true = ([c.world_to_camera for c in cs] for cs in ([s.camera for s in shots], cameras))
     eyes, told = (np.stack([-w[:3, :3].T @ w[:3, 3] for w in ws]) for ws in (found, true))
     apart, wanted = (np.linalg.norm(e[:, None] - e[None], axis=2) for e in (eyes, told))
-    # A pixel is a 300th of the depth and 0.2 degrees; where blobs pass before each other, what is found wanders by a few
-    # of them. Solutions that are wrong are off by tens of degrees, and bent.
+    # A pixel is a 300th of the depth and 0.2 degrees; where blobs pass before each other, what is found wanders by a
+    # few of them. Solutions that are wrong are off by tens of degrees, and bent.
     assert np.abs(apart / apart.max() - wanted / wanted.max()).max() < 0.02
     for i in range(1, 20):
         turn = found[i][:3, :3] @ found[0][:3, :3].T @ (true[i][:3, :3] @ true[0][:3, :3].T).T
