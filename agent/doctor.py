@@ -67,7 +67,7 @@ def examine() -> list[Finding]:
     needed = [_distribution(name, serves, needed=True, fix=_REINSTALL) for name, serves in NEEDED.items()]
     return [
         *needed,
-        *(check() for check in (_cuda, _encoder, _torchvision, _open_clip, _onnx, _vectors)),
+        *(check() for check in (_cuda, _gsplat, _encoder, _torchvision, _open_clip, _onnx, _vectors)),
         *(check() for check in (_masks_of_files, _masks_of_sam, _transformers, _poses, _charts, _ffmpeg)),
         *(_planner(kind) for kind in PLANNERS),
         *(check() for check in (_planner_here, _planner_of_auto)),
@@ -125,6 +125,23 @@ def _cuda() -> Finding:
         detail = torch.cuda.get_device_name(0) if usable else "torch finds no CUDA device"
     fix = "" if usable else "not needed; with an NVIDIA GPU: install a CUDA build of torch 2.13 from pytorch.org"
     return Finding("cuda", "tensors and the reference renderer on a GPU", usable, False, version, detail, fix)
+
+
+def _gsplat() -> Finding:
+    """Its wheels on PyPI hold sources, compiled on first use by nvcc; wheels that are compiled name their torch in the
+    version."""
+    version, serves = _version("gsplat"), "rendering and fitting on a GPU (render --backend cuda, fit --device cuda)"
+    if not version:
+        fix = 'not needed; with an NVIDIA GPU: pip install "scenewright[cuda]" beside a CUDA build of torch'
+        return Finding("gsplat", serves, False, False, "", "not installed", fix)
+    if not _cuda().usable:
+        return Finding("gsplat", serves, False, False, version, "installed, but there is no CUDA device", "see cuda")
+    home = os.environ.get("CUDA_HOME") or os.environ.get("CUDA_PATH") or "/usr/local/cuda"
+    nvcc = shutil.which("nvcc") or shutil.which("nvcc", path=os.path.join(home, "bin"))
+    if "+" in version or nvcc:
+        return Finding("gsplat", serves, True, False, version, nvcc or "compiled", "")
+    fix = "install the CUDA toolkit of torch's CUDA version and set CUDA_HOME to it"
+    return Finding("gsplat", serves, False, False, version, "no nvcc to compile its kernels with", fix)
 
 
 def _encoder() -> Finding:

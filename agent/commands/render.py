@@ -56,7 +56,7 @@ def command(
     depth: Annotated[
         bool, typer.Option("--depth", help="16-bit PNGs of depth: thousandths of a scene unit, 0 where nothing is.")
     ] = False,
-    backend: Annotated[str, typer.Option(help="Renderer: 'auto', 'cpu' or 'reference'.")] = "auto",
+    backend: Annotated[str, typer.Option(help="Renderer: 'auto', 'cpu', 'reference' or 'cuda'.")] = "auto",
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,

@@ -31,6 +31,23 @@ def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     assert all("models" in findings[name].fix for name in ("onnx:FOLDER", "masks sam:PATH"))
 
 
+@pytest.mark.parametrize(
+    ("version", "device", "nvcc", "usable", "told"),
+    [("", True, "nvcc", False, "scenewright[cuda]"), ("1.5.3", False, "nvcc", False, "no CUDA device"),
+     ("1.5.3", True, None, False, "no nvcc"), ("1.5.3", True, "/bin/nvcc", True, "/bin/nvcc"),
+     ("1.5.3+pt24cu124", True, None, True, "compiled")],
+)  # fmt: skip
+def test_gsplat_needs_a_device_and_a_compiler(
+    monkeypatch: pytest.MonkeyPatch, version: str, device: bool, nvcc: str | None, usable: bool, told: str
+) -> None:
+    cuda = doctor.Finding("cuda", "", device, False, "", "", "")
+    monkeypatch.setattr(doctor, "_version", lambda name: version)
+    monkeypatch.setattr(doctor, "_cuda", lambda: cuda)
+    monkeypatch.setattr(doctor.shutil, "which", lambda name, path=None: nvcc)
+    found = doctor._gsplat()
+    assert found.usable is usable and told in f"{found.detail} {found.fix}" and found.usable != bool(found.fix)
+
+
 def test_a_cpu_torch_is_not_asked_for_cuda(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(doctor, "_version", lambda name: "2.13.0+cpu")
     assert doctor._cuda().detail == "this torch is a CPU build"
