@@ -22,7 +22,7 @@ import torch
 from ..gaussians import compiled, files
 from ..gaussians.camera import Camera, Vec3
 from ..gaussians.cloud import GaussianCloud
-from ..gaussians.render import reference, render
+from ..gaussians.render import cuda, reference, render
 from . import _floor, _garden, _gradient
 from .harness import Metric, Point, Result
 
@@ -165,6 +165,18 @@ def _measure(case: Case, truth: torch.Tensor, repeats: int) -> list[Metric]:
         Metric(f"{key}.reference.psnr", psnr(slow_rgb, truth), "dB", "higher", 0.05),
         *(Metric(f"{key}.stage.{stage}", seconds * 1e3, "ms") for stage, seconds in stages.items()),
         *_floor.measure(case.cloud, case.camera, key, stages[_floor.STAGE]),
+        *_on_a_gpu(case, truth, key, repeats),
+    ]
+
+
+def _on_a_gpu(case: Case, truth: torch.Tensor, key: str, repeats: int) -> list[Metric]:
+    """The same picture through gsplat, brought back to the host, where there is a device."""
+    if cuda.missing():
+        return []
+    seconds, rgb = _time(lambda: render(case.cloud, case.camera, backend="cuda").rgb, repeats)
+    return [
+        Metric(f"{key}.cuda", seconds * 1e3, "ms", "lower", 0.15),
+        Metric(f"{key}.cuda.psnr", psnr(rgb, truth), "dB", "higher", 0.05),
     ]
 
 
