@@ -45,12 +45,24 @@ def crop_sphere(scene: Scene, center: Vec3, radius: float) -> Scene:
     return _cut(scene, away <= radius, "sphere")
 
 
-def most_visible(scene: Scene, most: int, cameras: Sequence[Camera]) -> Scene:
-    """The `most` Gaussians that matter most to what these cameras see, in their old order.
+def ranked(cloud: GaussianCloud, cameras: Sequence[Camera]) -> NDArray[np.int64]:
+    """Rows of a cloud from the one that matters most to what these cameras see to the least, `[N]`.
 
     A Gaussian counts by the most that it is of any view, its blending weight summed over pixels
     (`render.contributions`; the maximum over views as in Niemeyer et al. 2024, RadSplat), times its opacity. Sums over
     views, roots of them, and size times opacity without looking lost more on real scenes (see docs/files.md).
+    """
+    score = np.zeros(len(cloud), np.float32)
+    for camera in cameras:
+        np.maximum(score, contributions(cloud, camera).numpy(), out=score)
+    score *= cloud.opacities.numpy()
+    # What no camera sees goes last, the larger and more opaque before the smaller.
+    bulk = (cloud.opacities.double().log() + cloud.scales.double().log().sum(dim=1)).numpy()
+    return np.lexsort((-bulk, -score))
+
+
+def most_visible(scene: Scene, most: int, cameras: Sequence[Camera]) -> Scene:
+    """The `most` Gaussians that matter most to what these cameras see (`ranked`), in their old order.
 
     Raises:
         UserError: `most` is not positive, or no camera is given.
@@ -61,13 +73,7 @@ def most_visible(scene: Scene, most: int, cameras: Sequence[Camera]) -> Scene:
         return scene
     if not cameras:
         raise UserError("nothing can be seen of this scene, so there is no telling which Gaussians matter; crop it")
-    score = np.zeros(len(scene.cloud), np.float32)
-    for camera in cameras:
-        np.maximum(score, contributions(scene.cloud, camera).numpy(), out=score)
-    score *= scene.cloud.opacities.numpy()
-    # What no camera sees goes last, the larger and more opaque before the smaller.
-    bulk = (scene.cloud.opacities.double().log() + scene.cloud.scales.double().log().sum(dim=1)).numpy()
-    kept = np.sort(np.lexsort((-bulk, -score))[:most])
+    kept = np.sort(ranked(scene.cloud, cameras)[:most])
     return scene.replace(cloud=scene.cloud[torch.from_numpy(kept)])
 
 

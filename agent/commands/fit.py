@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -26,9 +27,16 @@ def command(
     ] = None,
     most: Annotated[int, typer.Option("--max-gaussians", metavar="N", help="The budget of Gaussians.")] = 200_000,
     degree: Annotated[
-        int,
-        typer.Option("--sh-degree", min=0, max=3, help="Degree of the harmonics: how colour changes with the view."),
-    ] = 0,
+        Literal["auto", "0", "1", "2", "3"],
+        typer.Option("--sh-degree", help="Degree of the harmonics (how colour changes with the view), or by its gain."),
+    ] = "auto",
+    gain: Annotated[
+        float,
+        typer.Option("--gain", metavar="DB", help="What a band, or the last tenth of the Gaussians, must be worth."),
+    ] = 0.05,
+    coarse: Annotated[
+        float, typer.Option("--coarse", metavar="SHARE", help="Share of the training at half the size, from 0 to 1.")
+    ] = 0.0,
     scale: Annotated[
         float | None, typer.Option("--scale", help="Learn from photographs so many times their size; 1 is whole.")
     ] = None,
@@ -59,7 +67,7 @@ def command(
         raise UserError("give --minutes or --steps, not both")
     _check_targets(output, report, force)
     seconds = None if steps is not None else 60 * (5.0 if minutes is None else minutes)
-    settings = Settings(seconds, steps, most, degree, growth, seed=seed)
+    settings = Settings(seconds, steps, most, "auto" if degree == "auto" else int(degree), gain, growth, coarse, seed)
     photos = take_photos(capture, scale, terminal.progress)
     terminal.say(_told(photos))
     kept = output.with_name(output.name + ".checkpoint")
@@ -78,7 +86,7 @@ def command(
     data = _data(done, photos, settings, output)
     if report is not None:
         _write_report(done, photos, data, report, force)
-    terminal.result(_summary(done, output), data)
+    terminal.result("\n".join([_summary(done, output), *_chosen(done)]), data)
 
 
 def _left(kept: Path) -> str:
@@ -124,6 +132,23 @@ def _summary(done: Fitted, output: Path) -> str:
     return f"{output}: {len(done.scene.cloud):,} Gaussians, {how}, {done.steps} steps in {done.seconds:.0f} s"
 
 
+def _chosen(done: Fitted) -> list[str]:
+    """A line on the bands and one on the Gaussians that were tried."""
+    told = []
+    bands = [c for c in done.choices if c.what == "degree"]
+    if bands:
+        tried = ", ".join(f"degree {c.after} {c.psnr[1] - c.psnr[0]:+.2f} dB" for c in bands)
+        told.append(f"harmonics of degree {done.scene.cloud.degree}: {tried} in a short trial")
+    tenths = [c for c in done.choices if c.what == "gaussians"]
+    if left := [c for c in tenths if c.taken]:
+        lost = left[0].psnr[0] - left[-1].psnr[1]
+        told.append(f"{left[0].before - left[-1].after:,} Gaussians left out, which cost {lost:.2f} dB at that moment")
+    elif tenths:
+        worth = tenths[0].psnr[0] - tenths[0].psnr[1]
+        told.append(f"the last tenth of the Gaussians is worth {worth:.2f} dB; more may gain (--max-gaussians)")
+    return told
+
+
 def _data(done: Fitted, photos: Photos, settings: Settings, output: Path) -> dict[str, Any]:
     return {
         "path": str(output),
@@ -137,6 +162,7 @@ def _data(done: Fitted, photos: Photos, settings: Settings, output: Path) -> dic
         "steps": done.steps,
         "seconds": round(done.seconds, 2),
         "curve": [[round(s, 2), round(p, 3)] for s, p in done.curve],
+        "choices": [asdict(c) for c in done.choices],
         "growth": settings.growth,
         "seed": settings.seed,
     }

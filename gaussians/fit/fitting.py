@@ -9,7 +9,7 @@ import hashlib
 import math
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Literal
 
@@ -17,18 +17,20 @@ import numpy as np
 
 from ..errors import FileError, UserError
 from ..scene import Scene
-from . import checkpoint
+from . import checkpoint, choosing
+from .choosing import Choice
 from .growth import Budgeted, Classic, Growth
 from .parameters import Parameters
 from .photos import Photos
 from .quality import Quality, measure
 from .start import start
-from .train import Schedule, Trainer
+from .train import SETTLED, Schedule, Trainer
 
 WATCHED = 6  # held-out photographs that are looked at on the way
 LOOKS = 20  # how often
 KEEP_EVERY = 30.0  # seconds between checkpoints
 TELL_EVERY = 0.5  # seconds between two words to the user
+FORMED = 0.3  # of the training, after which colours that change with the view can be told from a bad shape
 
 
 @dataclass(frozen=True)
@@ -38,7 +40,8 @@ class Settings:
     Attributes:
         seconds, steps: what ends it, whichever is given; exactly one. With steps, the same bytes every time.
         most: Gaussians.
-        degree: of the harmonics, 0 to 3.
+        degree: of the harmonics, 0 to 3; "auto" adds bands while held-out photographs gain by them.
+        gain: dB that a band, or the last tenth of the Gaussians, must be worth on them; None: nothing is left out.
         growth: "budgeted" or "classic", see `growth`.
         coarse: share of the training on photographs of half the size.
         seed: of everything drawn.
@@ -47,7 +50,8 @@ class Settings:
     seconds: float | None = None
     steps: int | None = None
     most: int = 200_000
-    degree: int = 0
+    degree: int | Literal["auto"] = "auto"
+    gain: float | None = choosing.GAIN
     growth: Literal["budgeted", "classic"] = "budgeted"
     coarse: float = 0.0
     seed: int = 0
@@ -57,11 +61,13 @@ class Settings:
             raise UserError("a fit ends after seconds or after steps; give one of the two")
         if not (self.seconds or self.steps or 0) > 0 or not math.isfinite(self.seconds or 0):
             raise UserError("a fit needs more than no time; give --minutes above 0")
-        if self.most < 1 or not 0 <= self.degree <= 3 or not 0 <= self.coarse <= 1:
+        if self.most < 1 or self.degree not in ("auto", 0, 1, 2, 3) or not 0 <= self.coarse <= 1:
             raise UserError(
                 f"a fit needs at least one Gaussian, a degree from 0 to 3 and a share, "
                 f"got {self.most}, {self.degree} and {self.coarse:g}"
             )
+        if not (self.gain or 0) >= 0 or (self.gain is None and self.degree == "auto"):
+            raise UserError(f"bands are chosen by a gain of at least 0 dB, got {self.gain}; give it, or a degree")
 
 
 @dataclass(frozen=True)
@@ -86,6 +92,15 @@ class Fitted:
     steps: int
     seconds: float
     curve: tuple[tuple[float, float], ...]  # seconds, dB on the watched photographs
+    choices: tuple[Choice, ...]  # what was tried, in order
+
+
+@dataclass
+class _Record:
+    """What a training has shown so far."""
+
+    curve: list[tuple[float, float]] = field(default_factory=list)
+    choices: list[Choice] = field(default_factory=list)
 
 
 def fit(
@@ -107,45 +122,76 @@ def fit(
     """
     rng = np.random.default_rng(settings.seed)
     cloud = start(photos, settings.most, rng)
-    schedule = Schedule(settings.steps, settings.seconds, settings.coarse, settings.degree)
+    degree = 0 if settings.degree == "auto" else settings.degree
+    schedule = Schedule(settings.steps, settings.seconds, settings.coarse, degree)
     trainer = Trainer(
         photos.shots, Parameters.of(cloud), _growth(settings, photos.extent, rng), photos.extent, schedule, rng
     )
     name = _name(photos, settings)
-    curve = _resumed(trainer, kept, name) if kept is not None else []
-    _train(trainer, photos, curve, kept, name, told)
+    record = _resumed(trainer, kept, name) if kept is not None else _Record()
+    _train(trainer, photos, settings, record, None if kept is None else (kept, name), told)
     made = trainer.parameters.cloud()
     cameras = tuple(sorted((s.camera for s in (*photos.shots, *photos.held)), key=lambda camera: camera.name))
     scene = Scene(made, cameras=cameras)
     quality = measure(made, photos.held)
-    return Fitted(scene, quality, trainer.steps, trainer.seconds, tuple(curve))
+    return Fitted(scene, quality, trainer.steps, trainer.seconds, tuple(record.curve), tuple(record.choices))
 
 
 def _train(
     trainer: Trainer,
     photos: Photos,
-    curve: list[tuple[float, float]],
-    kept: Path | None,
-    name: str,
+    settings: Settings,
+    record: _Record,
+    kept: tuple[Path, str] | None,
     told: Callable[[Status], None],
 ) -> None:
-    loss, psnr = math.nan, curve[-1][1] if curve else math.nan
-    spoken = saved = time.monotonic()
+    """Step until the end; look, choose, keep and tell on the way."""
+    teller, saved = _Teller(trainer, record, told), time.monotonic()
     while trainer.done < 1:
-        found = trainer.step()
-        loss = found if math.isnan(loss) else 0.95 * loss + 0.05 * found
-        if trainer.done * LOOKS >= len(curve) + 1 and photos.held:
+        loss = trainer.step()
+        if trainer.done * LOOKS >= len(record.curve) + 1:
             psnr = measure(trainer.parameters.cloud(), photos.held[:WATCHED]).psnr
-            curve.append((trainer.seconds, psnr))
-        now = time.monotonic()
-        if kept is not None and trainer.changed and now - saved >= KEEP_EVERY:
+            record.curve.append((trainer.seconds, psnr))
+        if trainer.changed:
+            _choose(trainer, photos, settings, record.choices, teller.stepped)
+        if kept is not None and trainer.changed and time.monotonic() - saved >= KEEP_EVERY:
             arrays, values = trainer.state()
-            checkpoint.keep(kept, arrays, {**values, "name": name, "curve": curve})
+            checkpoint.keep(kept[0], arrays, {**values, "name": kept[1], **asdict(record)})
             saved = time.monotonic()
-        if now - spoken >= TELL_EVERY or trainer.done >= 1:
-            left = trainer.seconds * (1 / max(trainer.done, 1e-9) - 1)
-            told(Status(trainer.steps, trainer.done, loss, psnr, len(trainer.parameters), left))
-            spoken = now
+        teller.stepped(loss)
+
+
+def _choose(
+    trainer: Trainer, photos: Photos, settings: Settings, choices: list[Choice], stepped: Callable[[float], None]
+) -> None:
+    """Try another band once shapes have formed, until one is not worth it; leave out Gaussians once, at the end."""
+    if settings.gain is None:
+        return
+    bands = [c for c in choices if c.what == "degree"]
+    wanted = settings.degree == "auto" and trainer.parameters.degree < choosing.HIGHEST
+    if wanted and all(c.taken for c in bands) and FORMED <= trainer.done < SETTLED:
+        choices.append(choosing.another_band(trainer, photos, settings.gain, stepped))
+    if trainer.done >= SETTLED and not any(c.what == "gaussians" for c in choices):
+        choices += choosing.fewer(trainer, photos, settings.gain)
+
+
+class _Teller:
+    """Tells the user every now and then how far training is."""
+
+    def __init__(self, trainer: Trainer, record: _Record, told: Callable[[Status], None]) -> None:
+        self._trainer, self._record, self._told = trainer, record, told
+        self._loss, self._spoken = math.nan, time.monotonic()
+
+    def stepped(self, loss: float) -> None:
+        """After every step, with its loss."""
+        trainer, curve, now = self._trainer, self._record.curve, time.monotonic()
+        self._loss = loss if math.isnan(self._loss) else 0.95 * self._loss + 0.05 * loss
+        if now - self._spoken < TELL_EVERY and trainer.done < 1:
+            return
+        left = trainer.seconds * (1 / max(trainer.done, 1e-9) - 1)
+        psnr = curve[-1][1] if curve else math.nan
+        self._told(Status(trainer.steps, trainer.done, self._loss, psnr, len(trainer.parameters), left))
+        self._spoken = now
 
 
 def _growth(settings: Settings, extent: float, rng: np.random.Generator) -> Growth:
@@ -160,16 +206,17 @@ def _name(photos: Photos, settings: Settings) -> str:
     return digest.hexdigest()
 
 
-def _resumed(trainer: Trainer, kept: Path, name: str) -> list[tuple[float, float]]:
-    """Go on from a checkpoint if there is one; returns the curve so far."""
+def _resumed(trainer: Trainer, kept: Path, name: str) -> _Record:
+    """Go on from a checkpoint if there is one; returns what it had shown."""
     found = checkpoint.resume(kept)
     if found is None:
-        return []
+        return _Record()
     arrays, values = found
     if values.get("name") != name:
         raise FileError(f"{kept} is of another training (other photographs or settings); delete it to begin anew")
     try:
         trainer.restore(arrays, values)
-        return [(float(s), float(p)) for s, p in values["curve"]]
+        choices = [Choice(**{**c, "psnr": tuple(c["psnr"])}) for c in values["choices"]]
+        return _Record([(float(s), float(p)) for s, p in values["curve"]], choices)
     except (KeyError, ValueError, TypeError) as error:
         raise FileError(f"{kept} is no checkpoint to go on from ({error}); delete it to begin anew") from error

@@ -1,8 +1,9 @@
 """When Gaussians come and go while a scene is trained: two strategies behind one protocol.
 
-`Budgeted` keeps to a number: Gaussians that have become transparent move onto opaque ones, new ones are copies of
-these, and a group of copies is made so that together it looks like the one it came from; a little noise lets faint ones
-wander (Kheradmand et al. 2024, "3D Gaussian Splatting as Markov Chain Monte Carlo"). `Classic` splits and clones where
+`Budgeted` keeps to a number: Gaussians that have become transparent move onto others, new ones are copies, and a group
+of copies is made so that together it looks like the one it came from; a little noise lets faint ones wander (Kheradmand
+et al. 2024, "3D Gaussian Splatting as Markov Chain Monte Carlo"). Copied are not the most opaque alone, as published,
+but those that are also pulled about most, since there the picture is wrong. `Classic` splits and clones where
 footprints are pulled about, prunes what is faint, and now and then makes everything faint (Kerbl et al. 2023).
 
 Knows parameters and gradients. Refuses to know pictures and time.
@@ -55,8 +56,30 @@ class Growth(Protocol):
 
 
 @dataclass
+class _Pulls:
+    """How much the photographs have pulled at the centre of each Gaussian since the number last changed.
+
+    Attributes:
+        sum: `[N]` lengths of the centres' gradients, in 1/(half the picture), added up.
+        times: `[N]` photographs in which there was one.
+    """
+
+    sum: F32 = field(default_factory=lambda: np.zeros(0, np.float32))
+    times: F32 = field(default_factory=lambda: np.zeros(0, np.float32))
+
+    def note(self, centers: F32, size: tuple[int, int]) -> None:
+        """Add the gradients `[N, 2]` (1/px) of a picture of `size`."""
+        if len(self.sum) != len(centers):
+            self.sum, self.times = np.zeros((2, len(centers)), np.float32)
+        x, y = centers[:, 0] * np.float32(size[0] / 2), centers[:, 1] * np.float32(size[1] / 2)
+        pulled = np.sqrt(x * x + y * y)
+        self.sum += pulled
+        self.times += pulled > 0
+
+
+@dataclass
 class Budgeted:
-    """Growth by opacity under a budget.
+    """Growth by error under a budget.
 
     Attributes:
         most: Gaussians.
@@ -72,6 +95,7 @@ class Budgeted:
     opacity: float = 0.01
     scale: float = 0.01
     noise: float = 5e5
+    _pulls: _Pulls = field(default_factory=_Pulls, repr=False)
 
     def regularise(self, gradients: dict[str, Numbers], scales: Numbers, opacities: Numbers) -> None:
         """See `Growth`."""
@@ -82,6 +106,7 @@ class Budgeted:
 
     def stepped(self, parameters: Parameters, centers: F32, size: tuple[int, int], rate: float) -> None:
         """See `Growth`."""
+        self._pulls.note(centers, size)
         opacities = parameters.opacities
         rows = np.flatnonzero(opacities < WANDERING)
         if not len(rows):
@@ -92,6 +117,7 @@ class Budgeted:
 
     def stepped_there(self, values: Mapping[str, Tensor], centers: Tensor, size: tuple[int, int], rate: float) -> None:
         """See `Growth`. Chance is drawn on the host, so that one generator tells the whole training."""
+        self._pulls.note(centers.cpu().numpy(), size)
         opacities = values["logits"].sigmoid()
         rows = (opacities < WANDERING).nonzero().squeeze(1)
         if not len(rows):
@@ -115,9 +141,12 @@ class Budgeted:
         count = len(parameters)
         dead, alive = np.flatnonzero(opacities <= FAINT), np.flatnonzero(opacities > FAINT)
         added = max(0, min(self.most, int((1 + self.share) * count)) - count)
+        pulled, self._pulls = self._pulls.sum, _Pulls()
         if not len(alive) or not len(dead) + added:
             return
         weights = opacities[alive].astype(np.float64)
+        if len(pulled) == count and pulled[alive].any():
+            weights *= pulled[alive]
         source = alive[self.rng.choice(len(alive), len(dead) + added, p=weights / weights.sum())]
         copied = np.unique(source)
         times = np.bincount(source, minlength=count)[copied] + 1
@@ -166,31 +195,23 @@ class Classic:
     most: int | None = None
     pull: float = 2e-4
     reset_every: int = 3000
-    _sum: F32 = field(default_factory=lambda: np.zeros(0, np.float32), repr=False)
-    _times: F32 = field(default_factory=lambda: np.zeros(0, np.float32), repr=False)
+    _pulls: _Pulls = field(default_factory=_Pulls, repr=False)
 
     def regularise(self, gradients: dict[str, Numbers], scales: Numbers, opacities: Numbers) -> None:
         """See `Growth`: nothing."""
 
     def stepped(self, parameters: Parameters, centers: F32, size: tuple[int, int], rate: float) -> None:
         """See `Growth`."""
-        self._note(centers, size)
+        self._pulls.note(centers, size)
 
     def stepped_there(self, values: Mapping[str, Tensor], centers: Tensor, size: tuple[int, int], rate: float) -> None:
         """See `Growth`."""
-        self._note(centers.cpu().numpy(), size)
-
-    def _note(self, centers: F32, size: tuple[int, int]) -> None:
-        if len(self._sum) != len(centers):
-            self._sum, self._times = np.zeros((2, len(centers)), np.float32)
-        pulled = np.linalg.norm(centers * (np.array(size, np.float32) / 2), axis=1)
-        self._sum += pulled
-        self._times += pulled > 0
+        self._pulls.note(centers.cpu().numpy(), size)
 
     def change(self, parameters: Parameters, step: int) -> None:
         """See `Growth`."""
-        pulled = self._sum / np.maximum(self._times, 1) >= self.pull
-        pulled = pulled if len(pulled) else np.zeros(len(parameters), bool)
+        pulled = self._pulls.sum / np.maximum(self._pulls.times, 1) >= self.pull
+        pulled = pulled if len(pulled) == len(parameters) else np.zeros(len(parameters), bool)
         if self.most is not None and len(parameters) + pulled.sum() > self.most:
             pulled[:] = False
         large = np.exp(parameters.logs).max(axis=1) > 0.01 * self.extent
@@ -207,7 +228,7 @@ class Classic:
             faint = 2 * FAINT
             parameters.logits[:] = np.minimum(parameters.logits, np.float32(math.log(faint / (1 - faint))))
             parameters.memory["logits"].forget(np.arange(len(parameters)))
-        self._sum = self._times = np.zeros(0, np.float32)
+        self._pulls = _Pulls()
 
     def _split(self, parameters: Parameters, rows: I64) -> None:
         """Add two smaller ones for each, drawn from it."""

@@ -112,7 +112,7 @@ class Trainer:
     @property
     def changed(self) -> bool:
         """Whether growth has nothing in mind: when a state is whole."""
-        return self.steps % EVERY == 0
+        return self.steps >= QUIET and self.steps % EVERY == 0
 
     @property
     def done(self) -> float:
@@ -133,7 +133,7 @@ class Trainer:
             self.parameters.widen(degree + 1)
         loss = self._learn(camera, photo, MEANS * self._extent * FALL**done)
         self.steps += 1
-        if self.changed and self.steps >= QUIET and done < SETTLED:
+        if self.changed and done < SETTLED:
             parameters = self.parameters
             self.growth.change(parameters, self.steps)
             parameters.take(along_a_curve(parameters.means))
