@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -56,7 +57,7 @@ def test_gaussians_that_nobody_misses_are_left_out_and_no_more() -> None:
     assert len(done.scene.cloud) < 500 and len(tenths) > 2
     assert [c.taken for c in tenths] == [c.psnr[0] - c.psnr[1] < gain for c in tenths]
     assert all(c.taken for c in tenths[:-1]) and not tenths[-1].taken
-    assert all(a.after == b.before and a.psnr[1] == b.psnr[0] for a, b in zip(tenths, tenths[1:], strict=False))
+    assert all(a.after == b.before and a.psnr[1] == b.psnr[0] for a, b in pairwise(tenths))
     assert len(done.scene.cloud) == tenths[-1].before
     kept_all = fit(photos, Settings(steps=600, most=600, degree=0, gain=None))
     assert len(kept_all.scene.cloud) == 600 and not kept_all.choices
