@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import json
 import os
+import statistics
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -31,6 +32,7 @@ from ..gaussians.files import writing
 from ..gaussians.files.colmap import Points
 from ..gaussians.fit import Photos, Settings, fit, take_photos
 from ..gaussians.fit.checkpoint import drop
+from ..gaussians.fit.choosing import Choice
 from ..gaussians.fit.fitting import LOOKS, WATCHED
 from ..gaussians.fit.quality import measure
 from ..gaussians.fit.train import Shot
@@ -44,6 +46,9 @@ CAPTURE, SCALE = "captures/bonsai_room", 0.5  # 400x266
 KEEP, ONLY = "SCENEWRIGHT_BENCH_KEEP", "SCENEWRIGHT_BENCH_ONLY"
 SMALL, SMALL_VIEWS, SMALL_SIZE = 1500, 16, (72, 48)  # the synthetic capture: Gaussians, photographs, pixels
 SEED = 7000
+
+
+Curve = tuple[tuple[float, float], ...]  # seconds of training, and dB
 
 
 @dataclass(frozen=True)
@@ -63,7 +68,8 @@ class Made:
     Attributes:
         settings: as text; a kept training of other settings is made anew.
         psnr, ssim: on all held-out photographs.
-        curve: seconds of training, and dB on the watched held-out photographs.
+        curve: seconds of training, and dB on the watched held-out photographs; the last is the end.
+        choices: bands and numbers of Gaussians that were tried.
         gaussians, degree, steps, seconds: of the training; its seconds do not count measuring and checkpoints.
         bytes: of the scene as an INRIA .ply.
         peak: bytes of memory, the most that its process held at once.
@@ -73,7 +79,8 @@ class Made:
     settings: str
     psnr: float
     ssim: float
-    curve: tuple[tuple[float, float], ...]
+    curve: Curve
+    choices: tuple[Choice, ...]
     gaussians: int
     degree: int
     steps: int
@@ -177,12 +184,14 @@ def make_of(photos: Photos) -> Make:
     fit(small_photos(), Settings(steps=1))  # kernels are compiled once a machine, not once a training
 
     def make(run: Run, place: Path) -> None:
-        cloud, curve, steps, seconds = (_plainly if run.plain else _fitted)(photos, run, place)
+        cloud, curve, choices, steps, seconds = (_plainly if run.plain else _fitted)(photos, run, place)
         quality = measure(cloud, photos.held)
+        watched = statistics.fmean(quality.each[shot.camera.name][0] for shot in photos.held[:WATCHED])
+        curve = (*(look for look in curve if look[0] < seconds), (seconds, watched))
         path = scene_of(run.name, place)
         files.save(Scene(cloud), path, force=True)
         made = Made(
-            repr(run.settings), quality.psnr, quality.ssim, curve, len(cloud), cloud.degree, steps, seconds,
+            repr(run.settings), quality.psnr, quality.ssim, curve, choices, len(cloud), cloud.degree, steps, seconds,
             path.stat().st_size, _peak(), _machine.revision(),
         )  # fmt: skip
         with writing(place / f"{run.name}.json", force=True) as file:
@@ -192,12 +201,12 @@ def make_of(photos: Photos) -> Make:
     return make
 
 
-Outcome = tuple[GaussianCloud, tuple[tuple[float, float], ...], int, float]  # and curve, steps, seconds
+Outcome = tuple[GaussianCloud, Curve, tuple[Choice, ...], int, float]  # the last two: steps and seconds
 
 
 def _fitted(photos: Photos, run: Run, place: Path) -> Outcome:
     done = fit(photos, run.settings, kept=place / f"{run.name}.checkpoint")
-    return done.scene.cloud, done.curve, done.steps, done.seconds
+    return done.scene.cloud, done.curve, done.choices, done.steps, done.seconds
 
 
 def _plainly(photos: Photos, run: Run, place: Path) -> Outcome:
@@ -208,7 +217,7 @@ def _plainly(photos: Photos, run: Run, place: Path) -> Outcome:
         trainer.step()
         if trainer.done * LOOKS >= len(curve) + 1:
             curve.append((trainer.seconds, measure(trainer.parameters.cloud(), photos.held[:WATCHED]).psnr))
-    return trainer.parameters.cloud(), tuple(curve), trainer.steps, trainer.seconds
+    return trainer.parameters.cloud(), tuple(curve), (), trainer.steps, trainer.seconds
 
 
 def _read(place: Path, run: Run) -> Made | None:
@@ -222,7 +231,9 @@ def _read(place: Path, run: Run) -> Made | None:
         return None
     try:
         told = json.loads(path.read_text(encoding="utf-8"))
-        made = Made(**{**told, "curve": tuple((float(s), float(p)) for s, p in told["curve"])})
+        curve = tuple((float(seconds), float(psnr)) for seconds, psnr in told["curve"])
+        choices = tuple(Choice(**{**choice, "psnr": tuple(choice["psnr"])}) for choice in told["choices"])
+        made = Made(**{**told, "curve": curve, "choices": choices})
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise FileError(f"{path} is no kept training ({error}); delete it to make it anew") from error
     return made if made.settings == repr(run.settings) else None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -31,7 +32,7 @@ from scenewright.gaussians.scene import Scene
 def small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(_fits, "SMALL", 300)
     monkeypatch.setattr(_fits, "SMALL_SIZE", (36, 24))
-    monkeypatch.setattr(fit, "QUICK_STEPS", 40)
+    monkeypatch.setattr(fit, "QUICK_STEPS", 400)  # bands are tried and Gaussians left out every hundred
     monkeypatch.setattr(fit_sizes, "QUICK_STEPS", 20)
     for name in (_fits.KEEP, _fits.ONLY):
         monkeypatch.delenv(name, raising=False)
@@ -98,12 +99,16 @@ def test_quick_compares_the_default_with_classic_growth_and_the_plain_recipe() -
     assert found["default-5.over.plain-5"].value == pytest.approx(gain)
     curves = {p.method: [q for q in result.points if q.method == p.method] for p in result.points}
     assert set(curves) == {"default", "classic growth", "plain recipe"}
-    for points in curves.values():
+    for name, points in zip(("default-5", "classic-5", "plain-5"), curves.values(), strict=True):
         seconds = [point.seconds for point in points]
-        assert len(points) == len(fit.SHOWN) + 1 and seconds == sorted(seconds)
-        assert [bool(point.setting) for point in points] == [False] * len(fit.SHOWN) + [True]
+        assert 6 <= len(points) <= len(fit.SHOWN) + 1 and seconds == sorted(set(seconds))
+        assert [bool(point.setting) for point in points] == [False] * (len(points) - 1) + [True]
+        assert seconds[-1] == found[f"{name}.seconds"].value
+        assert points[-1].accuracy == pytest.approx(found[f"{name}.psnr"].value)  # two held out, all of them watched
     assert [p.method for p in result.points if p.default] == ["default"]
     assert any(note.startswith("quick") for note in result.notes)
+    assert math.isfinite(found["default-5.gain_of_band_1"].value) and "plain-5.gain_of_band_1" not in found
+    assert 0 <= found["default-5.left_out"].value < 300
 
 
 def test_all_settings_of_the_hour_are_told_apart() -> None:
