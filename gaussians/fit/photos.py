@@ -85,6 +85,7 @@ def take_photos(
     capture = read_capture(path)
     points = _points(path if path.is_dir() else path.parent)
     _check_present(capture)
+    extent = _extent(capture)
     check_views(capture.path, capture.cameras, points)
     shots = []
     for i, (camera, photo, lens) in enumerate(zip(capture.cameras, capture.photos, capture.lenses, strict=True)):
@@ -98,12 +99,16 @@ def take_photos(
     learnt = [shots[i] for k, i in enumerate(order) if k % HELD_OUT]
     if len(learnt) < LEAST:
         raise FileError(f"{capture.path} has {len(shots)} photographs; at least {LEAST + 1} are needed")
+    return Photos(tuple(learnt), tuple(held), points, extent, odd, surveyed, unplaced)
+
+
+def _extent(capture: Capture) -> float:
     eyes = np.stack([c.position for c in capture.cameras])
     apart = float(np.linalg.norm(eyes - eyes.mean(axis=0), axis=1).max())
-    if not apart > STILL * np.abs(eyes).max():
+    if len(eyes) > 1 and not apart > STILL * np.abs(eyes).max():
         raise FileError(f"{capture.path}: all cameras stand in one place, from where nothing tells how far things are; "
                         "take photographs from several places")  # fmt: skip
-    return Photos(tuple(learnt), tuple(held), points, 1.1 * apart, odd, surveyed, unplaced)
+    return 1.1 * apart
 
 
 def _check_present(capture: Capture) -> None:
