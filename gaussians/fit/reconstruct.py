@@ -151,8 +151,13 @@ def _chosen(alike: NDArray[np.int64]) -> Iterator[tuple[int, int]]:
 
 
 def reconstruct(database: Path, folder: Path) -> Any | None:
-    """The model that holds the most photographs; None if there is none. What it left out is then tried one by one."""
+    """The model that holds the most photographs; None if there is none. What it left out is then tried one by one.
+
+    By one thread: several sum in the order in which they are done, and the same photographs are to give the same poses.
+    """
     options = pycolmap.GlobalPipelineOptions()
+    options.num_threads = options.mapper.num_threads = 1
+    options.mapper.bundle_adjustment.ceres.solver_options.num_threads = 1
     options.random_seed = options.mapper.random_seed = SEED
     options.mapper.rotation_averaging.random_seed = options.mapper.global_positioning.random_seed = SEED
     options.mapper.retriangulation.random_seed = SEED
@@ -166,6 +171,7 @@ def reconstruct(database: Path, folder: Path) -> Any | None:
     if model.num_reg_images() == sum(1 for _ in (folder / PICTURES).iterdir()):
         return model
     adding = pycolmap.IncrementalPipelineOptions()
+    adding.num_threads = adding.mapper.num_threads = 1
     adding.random_seed = adding.mapper.random_seed = adding.triangulation.random_seed = SEED
     adding.multiple_models = False
     more = pycolmap.incremental_mapping(database, folder / PICTURES, then, adding, first / str(which))

@@ -356,6 +356,9 @@ def test_poses_of_a_rendered_scene_are_found_again(tmp_path: Path) -> None:
         assert (shot.camera.width, shot.camera.height) == (camera.width, camera.height)
         assert shot.camera.fx == pytest.approx(camera.fx, rel=0.03)
     assert len({shot.camera.fx for shot in shots}) == 2
+    take_photos(tmp_path / "in", poses=tmp_path / "again")
+    for name in ("transforms.json", "sparse/0/points3D.bin"):
+        assert (tmp_path / "kept" / name).read_bytes() == (tmp_path / "again" / name).read_bytes()
 
 
 @needs_pycolmap
