@@ -30,7 +30,7 @@ from ..gaussians.cloud import GaussianCloud
 from ..gaussians.errors import FileError, UserError
 from ..gaussians.files import writing
 from ..gaussians.files.colmap import Points
-from ..gaussians.fit import Photos, Settings, fit, take_photos
+from ..gaussians.fit import Photos, Settings, checkpoint, fit, take_photos
 from ..gaussians.fit.checkpoint import drop
 from ..gaussians.fit.choosing import Choice
 from ..gaussians.fit.fitting import LOOKS, WATCHED
@@ -196,6 +196,7 @@ def make_of(photos: Photos) -> Make:
         )  # fmt: skip
         with writing(place / f"{run.name}.json", force=True) as file:
             file.write(json.dumps(asdict(made)).encode())
+        checkpoint.drop(_checkpoint(run, place))
         drop(place / f"{run.name}.checkpoint")
 
     return make
@@ -205,8 +206,12 @@ Outcome = tuple[GaussianCloud, Curve, tuple[Choice, ...], int, float]  # the las
 
 
 def _fitted(photos: Photos, run: Run, place: Path) -> Outcome:
-    done = fit(photos, run.settings, kept=place / f"{run.name}.checkpoint")
+    done = fit(photos, run.settings, kept=_checkpoint(run, place))
     return done.scene.cloud, done.curve, done.choices, done.steps, done.seconds
+
+
+def _checkpoint(run: Run, place: Path) -> Path:
+    return place / f"{run.name}.checkpoint"
 
 
 def _plainly(photos: Photos, run: Run, place: Path) -> Outcome:

@@ -88,6 +88,15 @@ def test_the_plain_recipe_adds_bands_by_steps(monkeypatch: pytest.MonkeyPatch) -
     assert degrees == [0, 0, 1, 1, 2, 2, 3, 3, 3, 3]
 
 
+def test_the_plain_recipe_moves_higher_bands_at_the_published_rate() -> None:
+    plain = _plain.PlainEngine(Parameters.of(glossy(300).with_degree(1)), Noting(3.5, np.random.default_rng(0)), 0.2)
+    before = plain.fetch().higher.copy()
+    shot = _fits.small_photos().shots[0]
+    plain.learn(shot.camera, shot.colors, 1e-3)
+    moved = np.abs(plain.fetch().higher - before)
+    assert float(moved.max()) == pytest.approx(2.5e-3 / 20, rel=1e-3)  # Adam's first step is as long as its rate
+
+
 def test_quick_compares_the_default_with_classic_growth_and_the_plain_recipe() -> None:
     result = fit.run(quick=True)
     found = {metric.key: metric for metric in result.metrics}
