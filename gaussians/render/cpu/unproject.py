@@ -1,8 +1,9 @@
 """From the gradient of footprints to that of Gaussians: the chain rule of `project`, one compiled pass over the rows.
 
-Knows the camera, the covariance algebra and the harmonics. Refuses to know pixels. What the way down worked out is
-worked out anew: keeping it for every row would cost more memory traffic than it saves. Names as in `project`: u, v are
-tangents, m and o the rows of the Jacobian in the world, p and q the principal axes seen along x and along y.
+Knows the camera, the covariance algebra and the harmonics. Refuses to know pixels. What the way down worked out
+beyond a footprint's record is worked out anew: keeping it would cost more memory traffic than it saves. Names as
+in `project`: u, v are tangents, m and o the rows of the Jacobian in the world, p and q the principal axes seen along x
+and along y.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import math
 
 from ...compiled import fetch_add, helper, kernel
 from .backward import D_L1, D_L2, D_L3, D_RED, D_SHIFT, D_X, D_Y
-from .project import FOUR, HALF, ONE, RED, TINY, TWO, ZERO, f4
+from .project import FOUR, HALF, L1, L3, ONE, RED, SIXTEEN, SLOPE, TINY, TWO, ZERO, f4
 from .shade import C0, C1, C20, C21, C22, C30, C31, C32, C33, C34, THREE
 
 ROWS = 2048  # rows a worker takes at a time
@@ -35,7 +36,7 @@ def unproject(worker, workers, columns, view, records, footprints, out, counter)
             if not _moves(n, footprints):
                 continue  # hidden behind finished pixels, as many are
             toward = (means[n, 0] - view.ex, means[n, 1] - view.ey, means[n, 2] - view.ez)
-            moved = _shaped(n, toward, quats, scales, view, footprints, d_quats, d_scales)
+            moved = _shaped(n, toward, quats, scales, view, records, footprints, d_quats, d_scales)
             turned = _shaded(n, toward, sh, records, footprints, d_sh)
             for axis in range(3):
                 d_means[n, axis] += moved[axis] + turned[axis]
@@ -55,7 +56,7 @@ def _moves(n, footprints):  # type: ignore[no-untyped-def]
 
 
 @helper
-def _shaped(n, toward, quats, scales, view, footprints, d_quats, d_scales):  # type: ignore[no-untyped-def]
+def _shaped(n, toward, quats, scales, view, records, footprints, d_quats, d_scales):  # type: ignore[no-untyped-def]
     """Gradient of the offset from the eye through centre and shape; those of quats and scales are added."""
     dx, dy, dz = toward
     x = view.r00 * dx + view.r01 * dy + view.r02 * dz
@@ -71,7 +72,7 @@ def _shaped(n, toward, quats, scales, view, footprints, d_quats, d_scales):  # t
     mp = (_dot(m, axes[0]), _dot(m, axes[1]), _dot(m, axes[2]))
     oq = (_dot(o, axes[0]), _dot(o, axes[1]), _dot(o, axes[2]))
     p, q = (mp[0] * s0, mp[1] * s1, mp[2] * s2), (oq[0] * s0, oq[1] * s1, oq[2] * s2)
-    dp, dq = _unconic(n, p, q, view.dilation, footprints)
+    dp, dq = _unconic(n, p, q, view.dilation, records, footprints)
     d_scales[n, 0] += dp[0] * mp[0] + dq[0] * oq[0]
     d_scales[n, 1] += dp[1] * mp[1] + dq[1] * oq[1]
     d_scales[n, 2] += dp[2] * mp[2] + dq[2] * oq[2]
@@ -127,22 +128,22 @@ def _axes(n, quats):  # type: ignore[no-untyped-def]
 
 
 @helper
-def _unconic(n, p, q, dilation, footprints):  # type: ignore[no-untyped-def]
+def _unconic(n, p, q, dilation, records, footprints):  # type: ignore[no-untyped-def]
     """Gradient of the axes seen along x (`p`) and y (`q`) from that of the exponent's fields.
 
-    `l3 = 1 / (4 sqrt(yy))`, `l1 = sqrt(yy / det) / 4`, `l2 = -xy / yy l1`; det is summed from squares, as going down.
+    `l3 = 1 / (4 sqrt(yy))`, `l1 = sqrt(yy / det) / 4`, `l2 = -xy / yy l1`, so that the record holds all but the minors
+    of which det is the sum of squares, as going down.
     """
-    xx, xy, yy = _dot(p, p), _dot(p, q), _dot(q, q)
+    l1, l3, slope = records[n, L1], records[n, L3], records[n, SLOPE]
+    per_yy = SIXTEEN * l3 * l3
+    per_det = per_yy * (SIXTEEN * l1 * l1)
     c0, c1, c2 = p[0] * q[1] - p[1] * q[0], p[0] * q[2] - p[2] * q[0], p[1] * q[2] - p[2] * q[1]
-    det = c0 * c0 + c1 * c1 + c2 * c2 + dilation * (xx + yy) + dilation * dilation
-    yy += dilation
-    l1, l3 = math.sqrt(yy / det) / FOUR, ONE / (FOUR * math.sqrt(yy))
-    d_l2, slope = footprints[n, D_L2], xy / yy
-    d_l1 = footprints[n, D_L1] - slope * d_l2
-    d_xy = -d_l2 * l1 / yy
-    d_det = -HALF * d_l1 * l1 / det
-    d_yy = (HALF * d_l1 * l1 - HALF * footprints[n, D_L3] * l3 - slope * yy * d_xy) / yy + dilation * d_det
+    d_l2 = l1 * footprints[n, D_L2]
+    d_l1 = l1 * footprints[n, D_L1] - slope * d_l2
+    d_xy = -d_l2 * per_yy
+    d_det = -HALF * d_l1 * per_det
     d_xx = dilation * d_det
+    d_yy = (HALF * (d_l1 - footprints[n, D_L3] * l3) + slope * d_l2) * per_yy + d_xx
     g0, g1, g2 = TWO * c0 * d_det, TWO * c1 * d_det, TWO * c2 * d_det
     dp = (
         TWO * p[0] * d_xx + q[0] * d_xy + g0 * q[1] + g1 * q[2],
@@ -179,20 +180,29 @@ def _unturn(n, quats, s, m, o, dp, dq, d_quats):  # type: ignore[no-untyped-def]
 @helper
 def _shaded(n, toward, sh, records, footprints, d_sh):  # type: ignore[no-untyped-def]
     """Gradient of the offset from the eye through the colour; that of the harmonics is added."""
+    gx, gy, gz = ZERO, ZERO, ZERO
+    if sh.shape[1] == 1:  # seen alike from everywhere
+        for channel in range(3):
+            d_sh[n, 0, channel] += C0 * _lit(n, channel, records, footprints)
+        return gx, gy, gz
     length = math.sqrt(_dot(toward, toward))
     x, y, z = toward[0] / length, toward[1] / length, toward[2] / length
-    gx, gy, gz = ZERO, ZERO, ZERO
     for channel in range(3):
-        g = footprints[n, D_RED + channel] if records[n, RED + channel] > ZERO else ZERO
+        g = _lit(n, channel, records, footprints)
         d_sh[n, 0, channel] += C0 * g
-        if sh.shape[1] > 1:
-            a, b, c = _first_bands(n, channel, sh, x, y, z, g, d_sh)
-            gx, gy, gz = gx + a, gy + b, gz + c
+        a, b, c = _first_bands(n, channel, sh, x, y, z, g, d_sh)
+        gx, gy, gz = gx + a, gy + b, gz + c
         if sh.shape[1] > 9:
             a, b, c = _third_band(n, channel, sh, x, y, z, g, d_sh)
             gx, gy, gz = gx + a, gy + b, gz + c
     radial = gx * x + gy * y + gz * z
     return (gx - radial * x) / length, (gy - radial * y) / length, (gz - radial * z) / length
+
+
+@helper
+def _lit(n, channel, records, footprints):  # type: ignore[no-untyped-def]
+    """Gradient of a colour's channel before it is cut off at zero."""
+    return footprints[n, D_RED + channel] if records[n, RED + channel] > ZERO else ZERO
 
 
 @helper
