@@ -14,11 +14,12 @@ import os
 import statistics
 import sys
 import tempfile
+import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
 from pathlib import Path
 
 import numpy as np
@@ -169,10 +170,22 @@ def make_apart(capture: Path) -> Make:
     """Train in processes of their own, so that each one's memory is told apart."""
 
     def make(run: Run, place: Path) -> None:
-        with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as apart:
+        with ProcessPoolExecutor(1, get_context("spawn"), initializer=_end_with_parent) as apart:
             apart.submit(_make_from, capture, run, place).result()
 
     return make
+
+
+def _end_with_parent() -> None:
+    """A training whose benchmark was killed would spoil the figures of the next one."""
+
+    def watch() -> None:
+        parent = parent_process()
+        if parent is not None:
+            parent.join()
+            os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def _make_from(capture: Path, run: Run, place: Path) -> None:
