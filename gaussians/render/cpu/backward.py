@@ -13,7 +13,7 @@ import numpy as np
 from ...compiled import fetch_add, helper, kernel
 from .blend import _gather
 from .lanes import LANES
-from .project import L1, L2, L3, ONE, RECORD, TILE, ZERO, Array, X, Y, f4
+from .project import HALF, L1, L2, L3, ONE, RECORD, TILE, ZERO, Array, X, Y, f4
 from .simd_backward import (
     ACROSS,
     ACROSS_Y,
@@ -89,6 +89,7 @@ def _begin(state, left, top, size, picture, gradient):  # type: ignore[no-untype
             if inside:
                 alive |= 1 << block
                 to_come = -d_alpha[y, x] * (ONE - alpha[y, x])
+            state[at + 5 * LANES], state[at + 6 * LANES] = f4(x - left) + HALF, f4(y - top) + HALF
             for channel in range(3):
                 g = d_rgb[y, x, channel] if inside else ZERO
                 state[at + (2 + channel) * LANES] = g

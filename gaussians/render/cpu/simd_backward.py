@@ -16,13 +16,13 @@ from llvmlite import ir
 from numba import types
 
 from ...compiled import intrinsic
-from .lanes import F32, I32, I64, LANES, Lanes, pointer_to
+from .lanes import I32, I64, LANES, Lanes, pointer_to
 from .project import BLUE, GREEN, RECORD, RED
 from .simd import behind_it, footprint
-from .touch import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS_WIDE
 
-# A block's state: transmittance, `g . colour` still to come from behind, gradient of red, green and blue.
-CHANNELS = 5
+# A block's state: transmittance, `g . colour` still to come from behind, gradient of red, green and blue, and x and y
+# of the pixels from the tile's corner.
+CHANNELS = 7
 STATE = CHANNELS * LANES
 # What a footprint's pixels add up to. With e and f the gradients of the two squared terms of its exponent, and x, y
 # from the tile's corner: e, e x, e y, f, f y, gradient of the shift, of red, green and blue.
@@ -74,9 +74,8 @@ def _in_block(
 ) -> tuple[list[ir.Value], ir.Value]:
     """What the 16 pixels of one block add, and whether (int64) any of them is still open; the state moves on."""
     b = v.b
-    x, y = _pixels_of(v, block)
     offset = b.mul(block, ir.Constant(I64, STATE))
-    t, to_come, *g = (v.load(v.at(state, offset, channel * LANES)) for channel in range(CHANNELS))
+    t, to_come, *g, x, y = (v.load(v.at(state, offset, channel * LANES)) for channel in range(CHANNELS))
     alpha, along, across, field = footprint(v, record, x, y, limits)
     behind, still_open = behind_it(v, t, alpha, limits[1])
     alpha = b.select(still_open, alpha, v.same(0))
@@ -94,16 +93,6 @@ def _in_block(
     added = [d_along, v.mul(d_along, x), v.mul(d_along, y), d_across, v.mul(d_across, y), d_q]
     alive = b.zext(b.icmp_unsigned("!=", v.bits(still_open), ir.Constant(I64, 0)), I64)
     return [*added, *(v.mul(weight, channel) for channel in g)], alive
-
-
-def _pixels_of(v: Lanes, block: ir.Value) -> tuple[ir.Value, ir.Value]:
-    """Pixel centres of a block of a tile, from the tile's corner."""
-    wide, high = ir.Constant(I64, BLOCKS_WIDE), v.constant([i // BLOCK_WIDTH + 0.5 for i in range(LANES)])
-    left = v.b.mul(v.b.urem(block, wide), ir.Constant(I64, BLOCK_WIDTH))
-    top = v.b.mul(v.b.udiv(block, wide), ir.Constant(I64, BLOCK_HEIGHT))
-    columns = v.constant([i % BLOCK_WIDTH + 0.5 for i in range(LANES)])
-    x, y = (v.spread(v.b.uitofp(corner, F32)) for corner in (left, top))
-    return v.add(x, columns), v.add(y, high)
 
 
 def _lane_sums(v: Lanes, vectors: list[ir.Value]) -> ir.Value:
