@@ -23,7 +23,7 @@ def command(
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="Where to write the scene (.ply).")],
     minutes: Annotated[float | None, typer.Option("--minutes", help="How long to train (5 unless --steps).")] = None,
     steps: Annotated[
-        int | None, typer.Option("--steps", help="How many steps instead: the same bytes every time.")
+        int | None, typer.Option("--steps", help="How many steps instead: the same bytes every time (on the CPU).")
     ] = None,
     most: Annotated[int, typer.Option("--max-gaussians", metavar="N", help="The budget of Gaussians.")] = 200_000,
     degree: Annotated[
@@ -44,6 +44,10 @@ def command(
         Literal["budgeted", "classic"],
         typer.Option("--growth", help="How Gaussians come and go: to a number, or as first published."),
     ] = "budgeted",
+    device: Annotated[
+        Literal["auto", "cpu", "cuda"],
+        typer.Option("--device", help="Where to train; auto: on an NVIDIA GPU if gsplat and one are there."),
+    ] = "auto",
     report: Annotated[
         Path | None,
         typer.Option("--report", metavar="FOLDER", help="Write report.json and pictures beside held-out photographs."),
@@ -53,7 +57,7 @@ def command(
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Train a scene on photographs whose poses are known, on the CPU.
+    """Train a scene on photographs whose poses are known, on the CPU or a GPU.
 
     Every eighth photograph is held out and measured with. Training goes on from its last checkpoint
     (OUTPUT.checkpoint) if it was ended before its time.
@@ -62,14 +66,18 @@ def command(
     from ...gaussians.files import save
     from ...gaussians.fit import Settings, fit, take_photos
     from ...gaussians.fit.checkpoint import drop
+    from ...gaussians.fit.engine import device_of
 
     if minutes is not None and steps is not None:
         raise UserError("give --minutes or --steps, not both")
+    where = device_of(device)
     _check_targets(output, report, force)
     seconds = None if steps is not None else 60 * (5.0 if minutes is None else minutes)
-    settings = Settings(seconds, steps, most, "auto" if degree == "auto" else int(degree), gain, growth, coarse, seed)
+    settings = Settings(
+        seconds, steps, most, "auto" if degree == "auto" else int(degree), gain, growth, coarse, seed, where
+    )
     photos = take_photos(capture, scale, terminal.progress)
-    terminal.say(_told(photos))
+    terminal.say(_told(photos) + (", on the GPU" if where == "cuda" else ""))
     kept = output.with_name(output.name + ".checkpoint")
     if kept.exists():
         terminal.say(f"going on from {kept}")
@@ -164,6 +172,7 @@ def _data(done: Fitted, photos: Photos, settings: Settings, output: Path) -> dic
         "curve": [[round(s, 2), round(p, 3)] for s, p in done.curve],
         "choices": [asdict(c) for c in done.choices],
         "growth": settings.growth,
+        "device": settings.device,
         "seed": settings.seed,
     }
 

@@ -99,4 +99,4 @@ def engine_on(device: Literal["cpu", "cuda"]) -> Maker:
     from ..render import cuda
     from .engine_torch import TorchEngine
 
-    return partial(TorchEngine, device="cuda", draw=cuda.draw)
+    return partial(TorchEngine, device=cuda.splatting.DEVICE, draw=cuda.draw)

@@ -19,6 +19,7 @@ from ..errors import FileError, UserError
 from ..scene import Scene
 from . import checkpoint, choosing
 from .choosing import Choice
+from .engine import device_of, engine_on
 from .growth import Budgeted, Classic, Growth
 from .parameters import Parameters
 from .photos import Photos
@@ -45,6 +46,8 @@ class Settings:
         growth: "budgeted" or "classic", see `growth`.
         coarse: share of the training on photographs of half the size.
         seed: of everything drawn.
+        device: where steps happen; "auto" is a GPU where gsplat and one are there. The same bytes every time come from
+            the CPU only.
     """
 
     seconds: float | None = None
@@ -55,6 +58,7 @@ class Settings:
     growth: Literal["budgeted", "classic"] = "budgeted"
     coarse: float = 0.0
     seed: int = 0
+    device: Literal["auto", "cpu", "cuda"] = "cpu"
 
     def __post_init__(self) -> None:
         if (self.seconds is None) == (self.steps is None):
@@ -119,13 +123,15 @@ def fit(
 
     Raises:
         FileError: the checkpoint belongs to another training, or cannot be written.
+        BackendError: the device is not there.
     """
+    engine = engine_on(device_of(settings.device))
     rng = np.random.default_rng(settings.seed)
     cloud = start(photos, settings.most, rng)
     degree = 0 if settings.degree == "auto" else settings.degree
     schedule = Schedule(settings.steps, settings.seconds, settings.coarse, degree)
     trainer = Trainer(
-        photos.shots, Parameters.of(cloud), _growth(settings, photos.extent, rng), photos.extent, schedule, rng
+        photos.shots, Parameters.of(cloud), _growth(settings, photos.extent, rng), photos.extent, schedule, rng, engine
     )
     name = _name(photos, settings)
     record = _resumed(trainer, kept, name) if kept is not None else _Record()
@@ -199,8 +205,8 @@ def _growth(settings: Settings, extent: float, rng: np.random.Generator) -> Grow
 
 
 def _name(photos: Photos, settings: Settings) -> str:
-    """What a checkpoint must be of to go on from: settings and photographs, whatever the time they were given."""
-    digest = hashlib.sha256(repr({**asdict(settings), "seconds": None, "steps": None}).encode())
+    """What a checkpoint must be of to go on from: settings and photographs, whatever its time and device."""
+    digest = hashlib.sha256(repr({**asdict(settings), "seconds": None, "steps": None, "device": None}).encode())
     for shot in photos.shots:
         digest.update(shot.photo.tobytes() + shot.camera.world_to_camera.tobytes())
     return digest.hexdigest()

@@ -4,7 +4,9 @@ whole on a device where there is one."""
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -16,7 +18,8 @@ from numpy.typing import NDArray
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import BackendError
-from scenewright.gaussians.fit import train
+from scenewright.gaussians.files.colmap import Points
+from scenewright.gaussians.fit import Photos, Settings, Status, fit, fitting, train
 from scenewright.gaussians.fit.engine import CpuEngine, Maker, device_of, engine_on
 from scenewright.gaussians.fit.engine_torch import TorchEngine
 from scenewright.gaussians.fit.growth import Budgeted, Classic, Growth
@@ -173,3 +176,28 @@ def test_on_a_device_a_scene_is_learnt_as_on_the_cpu() -> None:
             one.step()
         found.append(measure(one.parameters.cloud(), held).psnr)
     assert abs(found[0] - found[1]) < 0.5
+
+
+def test_a_fit_goes_on_from_its_checkpoint_on_the_other_device(
+    gsplat: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(fitting, "KEEP_EVERY", 0.0)
+    monkeypatch.setattr(fitting, "TELL_EVERY", 0.0)
+    monkeypatch.setattr(train, "QUIET", 100)
+    cloud, kept = blobs(1), tmp_path / "checkpoint"
+    photos = Photos(
+        tuple(shots()[1:]), tuple(shots()[:1]), Points(cloud.means.double().numpy(), np.ones((250, 3))), 3.3
+    )
+
+    class Killed(Exception): ...
+
+    def killed(status: Status) -> None:
+        if status.steps > 105:
+            raise Killed
+
+    settings = Settings(steps=110, most=260, degree=0, gain=None)
+    with pytest.raises(Killed):
+        fit(photos, settings, kept=kept, told=killed)
+    begun: list[int] = []
+    fitted = fit(photos, replace(settings, device="cuda"), kept=kept, told=lambda status: begun.append(status.steps))
+    assert begun[0] == 101 and math.isfinite(fitted.quality.psnr)
