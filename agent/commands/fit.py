@@ -1,4 +1,4 @@
-"""`scenewright fit CAPTURE -o scene.ply`: photographs with poses to a trained scene."""
+"""`scenewright fit CAPTURE -o scene.ply`: photographs, with poses or without, to a trained scene."""
 
 from __future__ import annotations
 
@@ -15,10 +15,15 @@ from ..terminal import terminal
 if TYPE_CHECKING:
     from ...gaussians.fit import Fitted, Photos, Settings, Status
 
+NAMED = 8  # photographs in a warning
+
 
 def command(
     capture: Annotated[
-        Path, typer.Argument(metavar="CAPTURE", help="A folder with transforms.json or a COLMAP model (sparse/0).")
+        Path,
+        typer.Argument(
+            metavar="CAPTURE", help="A folder with transforms.json or COLMAP's sparse/0, or of photographs."
+        ),
     ],
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="Where to write the scene (.ply).")],
     minutes: Annotated[float | None, typer.Option("--minutes", help="How long to train (5 unless --steps).")] = None,
@@ -57,13 +62,15 @@ def command(
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Train a scene on photographs whose poses are known, on the CPU or a GPU.
+    """Train a scene on photographs, on the CPU or a GPU.
 
     Every eighth photograph is held out and measured with. Training goes on from its last checkpoint
-    (OUTPUT.checkpoint) if it was ended before its time.
+    (OUTPUT.checkpoint) if it was ended before its time. Photographs without poses are given them first (extra sfm);
+    they are kept in OUTPUT.poses, and estimated again only if the photographs change.
     """
     from ...gaussians.errors import FileError, UserError
     from ...gaussians.files import save
+    from ...gaussians.files.capture import photographs_alone
     from ...gaussians.fit import Settings, fit, take_photos
     from ...gaussians.fit.checkpoint import drop
     from ...gaussians.fit.engine import device_of
@@ -76,7 +83,10 @@ def command(
     settings = Settings(
         seconds, steps, most, "auto" if degree == "auto" else int(degree), gain, growth, coarse, seed, where
     )
-    photos = take_photos(capture, scale, terminal.progress)
+    poses = output.with_name(output.name + ".poses")
+    if photographs_alone(capture) and not poses.exists():
+        terminal.say(f"the photographs have no poses: estimating them first, on the CPU, to be kept in {poses}")
+    photos = take_photos(capture, scale, terminal.progress, poses)
     terminal.say(_told(photos) + (", on the GPU" if where == "cuda" else ""))
     kept = output.with_name(output.name + ".checkpoint")
     if kept.exists():
@@ -124,6 +134,12 @@ def _told(photos: Photos) -> str:
     points = f"{many:,} surveyed points" if many else "no surveyed points, so poses cannot be checked"
     few = "; too few to begin from, so Gaussians begin anywhere" if many < FEWEST else ""
     told = f"{len(photos.shots)} photographs at {width}x{height}, {len(photos.held)} held out, {points}{few}"
+    if photos.surveyed is not None:
+        told += f", poses estimated: {photos.surveyed} is a capture too"
+    if photos.unplaced:
+        named = ", ".join(photos.unplaced[:NAMED]) + (", ..." if len(photos.unplaced) > NAMED else "")
+        every = len(photos.shots) + len(photos.held) + len(photos.unplaced)
+        told += f"\nwarning: {len(photos.unplaced)} of {every} photographs left out, no place was found: {named}"
     return told if photos.odd is None else f"{told}\nwarning: {photos.odd}"
 
 
@@ -167,6 +183,7 @@ def _data(done: Fitted, photos: Photos, settings: Settings, output: Path) -> dic
         "ssim": round(done.quality.ssim, 4),
         "held_out": {name: [round(v, 4) for v in values] for name, values in done.quality.each.items()},
         "photographs": len(photos.shots),
+        "unplaced": list(photos.unplaced),
         "steps": done.steps,
         "seconds": round(done.seconds, 2),
         "curve": [[round(s, 2), round(p, 3)] for s, p in done.curve],
