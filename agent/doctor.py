@@ -6,6 +6,7 @@ else tells (torchvision beside a CPU torch). Changes nothing and fetches nothing
 
 from __future__ import annotations
 
+import ctypes.util
 import importlib.metadata
 import os
 import platform
@@ -68,7 +69,7 @@ def examine() -> list[Finding]:
     return [
         *needed,
         *(check() for check in (_cuda, _gsplat, _encoder, _torchvision, _open_clip, _onnx, _vectors)),
-        *(check() for check in (_masks_of_files, _masks_of_sam, _transformers, _poses, _charts, _ffmpeg)),
+        *(check() for check in (_masks_of_files, _masks_of_sam, _transformers, _poses, _zstd, _webp, _charts, _ffmpeg)),
         *(_planner(kind) for kind in PLANNERS),
         *(check() for check in (_planner_here, _planner_of_auto)),
     ]
@@ -218,6 +219,23 @@ def _transformers() -> Finding:
 def _poses() -> Finding:
     serves = "poses of photographs that come without (fit)"
     return _distribution("pycolmap", serves, needed=False, fix='pip install "scenewright[sfm]"')
+
+
+def _zstd() -> Finding:
+    """The system's library; the file format's own module is not asked, for it imports torch."""
+    path, serves = ctypes.util.find_library("zstd"), "reading .spz of version 4 (written larger without)"
+    fix = "" if path else "Debian: apt-get install libzstd1; macOS: brew install zstd"
+    return Finding("zstd", serves, bool(path), False, "", path or "not found", fix)
+
+
+def _webp() -> Finding:
+    serves, usable, detail = "reading and writing .sog", False, "pillow is not installed"
+    if _version("pillow"):
+        from PIL import features
+
+        usable = bool(features.check("webp"))
+        detail = f"libwebp {features.version('webp')}" if usable else "this pillow is built without it"
+    return Finding("webp", serves, usable, False, "", detail, "" if usable else "pip install -U pillow")
 
 
 def _charts() -> Finding:

@@ -25,7 +25,7 @@ LOOKED_FROM = 60  # photographs that are enough to judge by
 ENOUGH = 50  # points in a picture, below which their colours say nothing
 PLAIN = 0.02  # spread of the points' brightness, below which their colours say nothing
 BETTER = 0.15  # of correlation that another focal length must gain: on real captures a factor of 2 costs 0.35
-UNLIKE = 0.1  # correlation below which points do not show up: 0.6 on real captures, 0 to 0.2 with wrong poses
+UNLIKE = 0.2  # correlation below which points do not show up: 0.6 on real captures, 0 to 0.2 with wrong poses
 FACTORS = (1 / 8, 1 / 4, 1 / 2, 2, 4, 8)  # what intrinsics of another resolution are off by
 
 
@@ -33,7 +33,7 @@ def check_views(path: Path, cameras: Sequence[Camera], points: Points) -> None:
     """Cameras that do not see what was surveyed with them stand in another frame, or look the other way.
 
     Raises:
-        FileError: half of them do not, or one of them sees not a single point; the message names what is likely.
+        FileError: half of them do not, or one of them sees not a single point; the message says what is likely.
     """
     if not len(points.means):
         return
@@ -41,10 +41,14 @@ def check_views(path: Path, cameras: Sequence[Camera], points: Points) -> None:
     each = np.array([_seen(c, sample) for c in cameras])
     seen = float(np.median(each))
     if seen >= SEEN:
-        few = (camera for camera, share in zip(cameras, each, strict=True) if share == 0)
-        if (blind := next((c for c in few if _seen(c, points.means) == 0), None)) is not None:
-            raise FileError(f"{path}: the photograph {blind.name} sees none of the surveyed points; correct its pose "
-                            "or take it out")  # fmt: skip
+        few = [camera for camera, share in zip(cameras, each, strict=True) if share == 0]
+        blind = [camera.name for camera in few if _seen(camera, points.means) == 0]
+        if len(blind) > len(cameras) // 10:
+            raise FileError(f"{path}: {len(blind)} of {len(cameras)} cameras see none of the surveyed points: poses "
+                            "and points are in different frames; export both from one reconstruction")  # fmt: skip
+        if blind:
+            raise FileError(f"{path}: {', '.join(blind)} see none of the surveyed points; correct the poses of these "
+                            "photographs or take them out")  # fmt: skip
         return
     turned = float(np.median([_seen(_about(c), sample) for c in cameras]))
     told = f"{path}: half of the cameras see less than {SEEN:.0%} of the surveyed points"

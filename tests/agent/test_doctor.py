@@ -98,3 +98,15 @@ def test_the_doctors_table_of_planners_is_that_of_the_planners() -> None:
     }
     named = {f.name.partition(":")[0] for f in doctor.examine() if f.serves.startswith("plans by")}
     assert named == {form.partition(":")[0] for form in FORMS}
+
+
+@pytest.mark.parametrize(("name", "asked"), [("zstd", "ctypes.util.find_library"), ("webp", "PIL.features.check")])
+def test_libraries_of_file_formats_are_told_of(monkeypatch: pytest.MonkeyPatch, name: str, asked: str) -> None:
+    def found() -> doctor.Finding:
+        return next(finding for finding in doctor.examine() if finding.name == name)
+
+    before = found()
+    monkeypatch.setattr(asked, lambda library: None)
+    without = found()
+    assert not before.needed and before.usable == (before.fix == "")
+    assert not without.usable and without.fix

@@ -131,7 +131,9 @@ WRONG: dict[str, tuple[Callable[[Told], object], str]] = {
     "no frames": (lambda t: t.update(frames=[]), "lists no frames"),
     "a frame that is none": (lambda t: t["frames"].__setitem__(1, None), "frame 1 is broken: it is no object"),
     "OpenCV axes": (posed(lambda m: m @ AXES), "its poses are in OpenCV axes"),
-    "one pose in OpenCV axes": (posed(lambda m: m @ AXES, only=5), "p05 sees none of the surveyed points"),
+    "one pose in OpenCV axes": (posed(lambda m: m @ AXES, only=5), "p05 see none of the surveyed points"),
+    "three poses in OpenCV axes": (
+        lambda t: [posed(lambda m: m @ AXES, only=i)(t) for i in (1, 4, 5)], "3 of 12 cameras see none"),
     "world to camera": (posed(np.linalg.inv), "poses and points are in different frames"),
     "transposed poses": (posed(np.transpose), "not 0 0 0 1; it may be transposed"),
     "mirrored poses": (posed(lambda m: m @ np.diag([-1.0, 1, 1, 1])), "mirrors; export right-handed axes"),

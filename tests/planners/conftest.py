@@ -1,10 +1,12 @@
-"""A language model of random weights with a tokenizer of its own, built on the spot: no model can be fetched here."""
+"""What tests of language models share: a model of random weights with a tokenizer of its own, built on the spot since
+none can be fetched here, and `loopback`, importable by that name from every test of this folder."""
 
 from __future__ import annotations
 
 import importlib.util
 import json
 import shutil
+import sys
 from pathlib import Path
 
 import pytest
@@ -23,6 +25,13 @@ TEMPLATE = (
     "{% if add_generation_prompt %}<|assistant|>\n{% endif %}"
 )
 WINDOW = 4096
+
+
+# Tests are collected without packages (--import-mode=importlib), so a module that they share is loaded by its path.
+_spec = importlib.util.spec_from_file_location("loopback", Path(__file__).with_name("loopback.py"))
+assert _spec is not None and _spec.loader is not None
+sys.modules["loopback"] = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(sys.modules["loopback"])
 
 
 @pytest.fixture(scope="session")

@@ -10,13 +10,11 @@ import json
 import logging
 import socket
 import ssl
-import sys
 import threading
 import time
 import traceback
 from collections.abc import Iterator
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import pytest
@@ -32,16 +30,7 @@ from scenewright.planners.schemas import schema
 
 pytest.importorskip("pydantic_ai", reason="needs the extra llm")
 
-
-def _by_path(name: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(name, Path(__file__).with_name(f"{name}.py"))
-    assert spec is not None and spec.loader is not None
-    module = sys.modules[name] = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-wires: Any = _by_path("loopback")
+wires: Any = importlib.import_module("loopback")  # see conftest.py
 Wire = Any
 WIRES = [wires.OpenAI, wires.Anthropic, wires.Google]
 each_wire = pytest.mark.parametrize("wire", WIRES, ids=[wire.kind for wire in WIRES])

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import json
-import sys
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import pytest
@@ -19,16 +17,7 @@ from scenewright.planners.plan import EditPlan, NoPlanError
 
 pytest.importorskip("pydantic_ai", reason="needs the extra llm")
 
-
-def _by_path(name: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(name, Path(__file__).with_name(f"{name}.py"))
-    assert spec is not None and spec.loader is not None
-    module = sys.modules[name] = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-wires: Any = _by_path("loopback")
+wires: Any = importlib.import_module("loopback")  # see conftest.py
 Wire = Any
 WIRES = [wires.OpenAI, wires.Anthropic, wires.Google]
 each_wire = pytest.mark.parametrize("wire", WIRES, ids=[wire.kind for wire in WIRES])
