@@ -1,4 +1,4 @@
-"""From photographs with poses to a trained scene, on the CPU: `take_photos`, then `fit`."""
+"""From photographs with poses to a trained scene, on the CPU or a GPU: `take_photos`, then `fit`."""
 
 from .fitting import Fitted, Settings, Status, fit
 from .photos import Photos, take_photos
