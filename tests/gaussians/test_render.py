@@ -273,7 +273,7 @@ def test_a_float32_cloud_far_from_the_origin() -> None:
 
 def test_bad_requests_are_refused() -> None:
     cloud, camera = random_cloud(0, n=3), random_camera(0)
-    with pytest.raises(BackendError, match="cpu, reference"):
+    with pytest.raises(BackendError, match="cpu, reference, cuda"):
         render(cloud, camera, backend="metal")
     with pytest.raises(BackendError, match="auto"):
         contributions(cloud, camera, backend="")

@@ -19,7 +19,7 @@ from scenewright.gaussians import files
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import BackendError
-from scenewright.gaussians.render import backends, contributions, cuda, differentiable, render, split
+from scenewright.gaussians.render import contributions, cuda, differentiable, render, split
 from scenewright.gaussians.render.cuda import heaviest, splatting
 
 
@@ -237,12 +237,6 @@ def test_a_full_device_is_told_of(gsplat: Any, monkeypatch: pytest.MonkeyPatch) 
     for call in (render, contributions):
         with pytest.raises(BackendError, match="does not fit the GPU's memory; ask for a smaller picture"):
             call(cloud_of(0, n=3), camera_of(0), backend="cuda")
-
-
-def test_the_back_end_is_told_of() -> None:
-    assert "cuda" in backends()
-    with pytest.raises(BackendError, match="cpu, reference, cuda"):
-        render(cloud_of(0, n=3), camera_of(0), backend="metal")
 
 
 # With gsplat, and on a device
