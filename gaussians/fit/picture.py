@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     from PIL.Image import Image as Picture
 
 SMALLEST = 8  # px of a side, below which nothing is to be learnt
-_TURNING = 5  # EXIF orientations from here on turn a picture by a quarter
+# What Pillow's readers raise for cut, overwritten and lying files; RuntimeError is AVIF's.
+_BROKEN = (OSError, ValueError, SyntaxError, EOFError, RuntimeError, MemoryError)
+_TURNING = range(5, 9)  # EXIF orientations that turn a picture by a quarter
 _ORIENTATION = 0x0112
 
 
@@ -38,16 +40,17 @@ def read_photo(path: Path, size: tuple[int, int]) -> NDArray[np.uint8]:
     """
     from PIL import Image, ImageOps, UnidentifiedImageError
 
+    broken = (*_BROKEN, Image.DecompressionBombError)
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # some photographs are large
+            warnings.simplefilter("ignore")  # some photographs are large, or carry a broken thumbnail
             with Image.open(path) as file:
-                turned = not _alike(file.size, size) and file.getexif().get(_ORIENTATION, 1) >= _TURNING
+                turned = not _alike(file.size, size) and file.getexif().get(_ORIENTATION) in _TURNING
                 _check_size(path, file.size[::-1] if turned else file.size, size)
                 return _colors(ImageOps.exif_transpose(file) if turned else file)
     except UnidentifiedImageError as error:
         raise FileError(f"cannot read the photograph {path}: it is no PNG, JPEG or other picture") from error
-    except (OSError, ValueError, SyntaxError, EOFError, Image.DecompressionBombError) as error:
+    except broken as error:
         raise FileError(f"cannot read the photograph {path}: {error}") from error
 
 

@@ -5,6 +5,7 @@ Every refusal names what is wrong and leaves nothing behind.
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import signal
@@ -18,6 +19,8 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 from PIL import Image
 
@@ -26,6 +29,7 @@ from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import FileError
 from scenewright.gaussians.fit import checkpoint, take_photos
+from scenewright.gaussians.fit.picture import read_photo
 from scenewright.gaussians.harmonics import color_to_dc
 from scenewright.gaussians.render import render
 
@@ -294,6 +298,27 @@ def test_a_broken_photograph_is_named(capture: Path, call: Call, save: Callable[
     assert code == 4 and told in said and "p03.png" in said
 
 
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    st.sampled_from(["PNG", "JPEG", "TIFF", "WEBP", "GIF", "BMP"]), st.floats(0, 1, exclude_max=True),
+    st.integers(0, 255), st.booleans(),
+)  # fmt: skip
+def test_pictures_broken_anywhere_are_photographs_or_file_errors(
+    tmp_path: Path, kind: str, place: float, byte: int, cut: bool
+) -> None:
+    path, written = tmp_path / "p", io.BytesIO()
+    Image.fromarray(np.arange(24 * 20 * 3, dtype=np.uint8).reshape(20, 24, 3)).save(written, kind)
+    whole = bytearray(written.getvalue())
+    at = int(len(whole) * place**3)  # headers rather than pixels
+    whole[at] = byte
+    path.write_bytes(whole[:at] if cut else whole)
+    try:
+        photo = read_photo(path, (24, 20))
+        assert photo.dtype == np.uint8 and photo.ndim == 3 and photo.shape[2] == 3
+    except FileError as error:
+        assert str(path) in str(error)
+
+
 def test_photographs_of_nothing_are_refused(capture: Path, call: Call) -> None:
     for path in (capture / "images").iterdir():
         Image.new("RGB", (W, H), (0, 90, 0)).save(path)
@@ -439,6 +464,7 @@ def eager(capture: Path, output: Path) -> list[str]:
     return [sys.executable, "-c", EAGER, "fit", str(capture), "-o", str(output), *options]
 
 
+@pytest.mark.slow
 def test_a_training_that_was_ended_goes_on_to_the_same_bytes(capture: Path, tmp_path: Path) -> None:
     whole = tmp_path / "whole.ply"
     subprocess.run(eager(capture, whole), check=True, capture_output=True)
