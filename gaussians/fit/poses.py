@@ -48,7 +48,7 @@ def check_views(path: Path, cameras: Sequence[Camera], points: Points) -> None:
                             "and points are in different frames; export both from one reconstruction")  # fmt: skip
         if blind:
             raise FileError(f"{path}: {', '.join(blind)} see none of the surveyed points; correct the poses of these "
-                            "photographs or take them out")  # fmt: skip
+                            "photographs or take them out, unless all poses are of another frame")  # fmt: skip
         return
     turned = float(np.median([_seen(_about(c), sample) for c in cameras]))
     told = f"{path}: half of the cameras see less than {SEEN:.0%} of the surveyed points"
