@@ -17,7 +17,7 @@ from .project import RECORD, TILE, Array
 from .simd import REST, STATE, WINNER, blend_block, store_block, weigh_block
 from .touch import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, CHUNK, fetch, slots_touching, take
 
-AHEAD = 8  # records are fetched this many entries before they are needed
+AHEAD = 16  # records are fetched this many entries before they are needed
 
 f4 = np.float32
 ZERO, ONE = f4(0), f4(1)
