@@ -39,6 +39,7 @@ def load(path: Path, seed: int) -> tuple[GaussianCloud, Camera]:
     )
     shown = (torch.tensor(colors, dtype=torch.float32) + 0.5) / 256  # black itself is where gradients end
     sh = color_to_dc(shown)[:, None]
-    cloud = GaussianCloud.create(*(torch.tensor(column, dtype=torch.float32) for column in columns), sh)
+    places, turns, widths, opacities = (torch.tensor(column, dtype=torch.float32) for column in columns)
+    cloud = GaussianCloud.create(places, turns, widths, opacities, sh)
     fx, fy, cx, cy = (float(k[place]) for place in ((0, 0), (1, 1), (0, 2), (1, 2)))
     return cloud, Camera(pose.astype(np.float64), fx, fy, cx, cy, width, height)
