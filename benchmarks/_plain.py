@@ -19,19 +19,19 @@ from ..gaussians.fit import Photos, Settings
 from ..gaussians.fit.engine_torch import TorchEngine
 from ..gaussians.fit.growth import Classic, Growth
 from ..gaussians.fit.parameters import F32, Parameters
-from ..gaussians.fit.parameters import HIGHER as OURS
 from ..gaussians.fit.start import start
 from ..gaussians.fit.train import Schedule, Trainer
 from ..gaussians.render import reference
 
 BAND_EVERY = 1000  # steps between two bands of harmonics
 HIGHEST = 3  # degree
-HIGHER = 2.5e-3 / 20  # rate of the higher bands
 
 
 class PlainEngine(TorchEngine):
     """An `Engine` of torch and the readable renderer. Bands come by steps, as published, not by the schedule, and learn
     at the published rate."""
+
+    higher = 2.5e-3 / 20
 
     def __init__(self, parameters: Parameters, growth: Growth, similarity: float) -> None:
         super().__init__(parameters, growth, similarity, device="cpu", draw=_draw)
@@ -44,13 +44,6 @@ class PlainEngine(TorchEngine):
             self.fetch().widen(degree)
         self._taken += 1
         return super().learn(camera, photo, rate)
-
-    def _step(self, gradients: dict[str, Tensor], rate: float) -> None:
-        before = self._values["higher"].clone()
-        super()._step(gradients, rate)
-        self._values["higher"] = before.lerp(
-            self._values["higher"], HIGHER / OURS
-        )  # a step of Adam is as long as its rate
 
 
 def trainer(photos: Photos, settings: Settings) -> Trainer:

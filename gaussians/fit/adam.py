@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import compiled
-from ..compiled import exact
+from ..compiled import exact, inlined
 
 F32 = NDArray[np.float32]
 BETAS = (0.9, 0.999)
@@ -37,13 +37,19 @@ class Adam:
         """For an array that was never stepped."""
         return cls(np.zeros_like(values), np.zeros_like(values))
 
-    def step(self, values: F32, gradient: F32, rate: float) -> None:
-        """Move `values` in place against their gradient."""
+    def step(self, values: F32, gradient: F32, rate: float, beyond: float | None = None) -> None:
+        """Move `values` in place against their gradient; with `beyond`, the rate of all but the first `[:, 0]`."""
         self.steps += 1
         bias = [1 - beta**self.steps for beta in BETAS]
-        numbers = f4(rate / bias[0]), f4(1 / np.sqrt(bias[1])), f4(EPSILON), f4(BETAS[0]), f4(BETAS[1])
-        flat = (a.reshape(-1) for a in (values, gradient, self.first, self.second))
-        compiled.run(_step, compiled.workers(), *flat, numbers)
+        numbers = f4(1 / np.sqrt(bias[1])), f4(EPSILON), f4(BETAS[0]), f4(BETAS[1])
+        arrays = values, gradient, self.first, self.second
+        if beyond is None or values.shape[1] == 1:
+            flat = (a.reshape(-1) for a in arrays)
+            compiled.run(_step, compiled.workers(), *flat, f4(rate / bias[0]), numbers)
+        else:
+            rows = (a.reshape(len(a), -1) for a in arrays)
+            rates = f4(rate / bias[0]), f4(beyond / bias[0])
+            compiled.run(_step_rows, compiled.workers(), *rows, values.shape[2], rates, numbers)
 
     def take(self, rows: NDArray[np.int64]) -> None:
         """Keep only some rows, in the order given."""
@@ -59,13 +65,29 @@ class Adam:
         self.first[rows] = self.second[rows] = 0
 
 
+@inlined
+def _move(values, gradient, first, second, i, rate, numbers):  # type: ignore[no-untyped-def]
+    scale, epsilon, beta1, beta2 = numbers
+    g = gradient[i]
+    a = beta1 * first[i] + (f4(1) - beta1) * g
+    b = beta2 * second[i] + (f4(1) - beta2) * (g * g)
+    first[i], second[i] = a, b
+    values[i] -= rate * a / (np.sqrt(b) * scale + epsilon)
+
+
 @exact
-def _step(worker, workers, values, gradient, first, second, numbers):  # type: ignore[no-untyped-def]
-    rate, scale, epsilon, beta1, beta2 = numbers
+def _step(worker, workers, values, gradient, first, second, rate, numbers):  # type: ignore[no-untyped-def]
     size = values.shape[0]
     for i in range(size * worker // workers, size * (worker + 1) // workers):
-        g = gradient[i]
-        a = beta1 * first[i] + (f4(1) - beta1) * g
-        b = beta2 * second[i] + (f4(1) - beta2) * (g * g)
-        first[i], second[i] = a, b
-        values[i] -= rate * a / (np.sqrt(b) * scale + epsilon)
+        _move(values, gradient, first, second, i, rate, numbers)
+
+
+@exact
+def _step_rows(worker, workers, values, gradient, first, second, head, rates, numbers):  # type: ignore[no-untyped-def]
+    """Arrays `[N, C]`, of which the first `head` columns go at one rate and the others at another."""
+    count, width = values.shape
+    for n in range(count * worker // workers, count * (worker + 1) // workers):
+        for i in range(head):
+            _move(values[n], gradient[n], first[n], second[n], i, rates[0], numbers)
+        for i in range(head, width):
+            _move(values[n], gradient[n], first[n], second[n], i, rates[1], numbers)

@@ -20,8 +20,8 @@ from .train import EVERY, Trainer
 
 GAIN = 0.05  # dB, below which a band, or a tenth of the Gaussians, is not worth its numbers
 HIGHEST = 3  # degree of harmonics
-TRIAL = 0.04  # of the training that a band is given to show what it gains
-LOOKS = 3  # times that a trial is measured: one look is off by a few hundredths of a dB, as the last photographs pull
+TRIAL = 0.04  # of the training that bands are given to show what they gain
+LOOKS, APART = 6, 25  # looks at the end of a trial, and steps between them: one alone is off by a tenth of a dB
 TENTH = 0.9  # of the Gaussians stay when the least of them are left out
 VIEWS = 48  # photographs by which a Gaussian is judged
 
@@ -44,12 +44,14 @@ class Choice:
     taken: bool
 
 
-def another_band(trainer: Trainer, photos: Photos, gain: float, stepped: Callable[[float], None]) -> Choice:
-    """Train for a while without and with one more band, from the same state, on the same photographs in the same
-    order; go on with the band if the held-out photographs gain by `gain` dB, else without. The time of both counts.
+def bands(trainer: Trainer, photos: Photos, gain: float, stepped: Callable[[float], None]) -> Choice:
+    """Train for a while without and with all bands of harmonics, from the same state, on the same photographs in the
+    same order; go on with them if the held-out photographs gain by `gain` dB, else without. The time of both counts.
+
+    All at once: in so short a time what one band gains is lost in the noise of steps, what three gain is not.
 
     Args:
-        trainer: right after a `changed` step, with a band to go.
+        trainer: right after a `changed` step.
         stepped: called after every step, with its loss.
     """
     degree, count = trainer.parameters.degree, _trial(trainer)
@@ -58,17 +60,32 @@ def another_band(trainer: Trainer, photos: Photos, gain: float, stepped: Callabl
     without, spent = copy.deepcopy(trainer.state()), trainer.seconds
     trainer.restore(*before)
     trainer.seconds = spent
-    trainer.parameters.widen(degree + 1)
+    trainer.parameters.widen(HIGHEST)
     wider = _run(trainer, photos, count, stepped)
     taken = wider - plain >= gain
     if not taken:
         spent = trainer.seconds
         trainer.restore(*without)
         trainer.seconds = spent
-    return Choice("degree", degree, degree + 1, (plain, wider), taken)
+    return Choice("degree", degree, HIGHEST, (plain, wider), taken)
 
 
-def fewer(trainer: Trainer, photos: Photos, gain: float) -> list[Choice]:
+def fewer_bands(trainer: Trainer, photos: Photos, gain: float) -> list[Choice]:
+    """Leave out the highest band, and again, while that costs the held-out photographs less than `gain` dB. What is
+    left can be trained on."""
+    cloud, choices = trainer.parameters.cloud(), []
+    psnr = measure(cloud, photos.held).psnr
+    for degree in range(cloud.degree, 0, -1):
+        less = measure(cloud.with_degree(degree - 1), photos.held).psnr
+        choices.append(Choice("degree", degree, degree - 1, (psnr, less), psnr - less < gain))
+        if not choices[-1].taken:
+            break
+        psnr = less
+        trainer.parameters.narrow(degree - 1)
+    return choices
+
+
+def fewer_gaussians(trainer: Trainer, photos: Photos, gain: float) -> list[Choice]:
     """Leave out the least visible tenth of the Gaussians, and again, while that costs the held-out photographs less
     than `gain` dB. What is left can be trained on.
 
@@ -99,7 +116,8 @@ def _run(trainer: Trainer, photos: Photos, steps: int, stepped: Callable[[float]
     seen = []
     for i in range(steps):
         stepped(trainer.step())
-        if (steps - 1 - i) % (EVERY // 2) == 0 and (steps - 1 - i) < LOOKS * (EVERY // 2):
+        left = steps - 1 - i
+        if left % APART == 0 and left < LOOKS * APART:
             seen.append(measure(trainer.parameters.cloud(), photos.held).psnr)
     return float(np.mean(seen))
 

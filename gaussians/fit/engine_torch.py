@@ -20,7 +20,7 @@ from .adam import BETAS, EPSILON, Adam
 from .engine import BLACK
 from .growth import Growth
 from .loss import reference
-from .parameters import Parameters, rates
+from .parameters import HIGHER, Parameters, rates
 
 F32 = NDArray[np.float32]
 
@@ -44,6 +44,8 @@ class TorchEngine:
         device: of torch.
         draw: draws columns that lie there.
     """
+
+    higher = HIGHER  # rate of all bands but the constant one
 
     def __init__(self, parameters: Parameters, growth: Growth, similarity: float, *, device: str, draw: Draw) -> None:
         self._growth, self._similarity = growth, similarity
@@ -74,7 +76,7 @@ class TorchEngine:
     @property
     def degree(self) -> int:
         """See `Engine`."""
-        return SH_BANDS[1 + self._values["higher"].shape[1]] if self._host is None else self._host.degree
+        return SH_BANDS[self._values["sh"].shape[1]] if self._host is None else self._host.degree
 
     def learn(self, camera: Camera, photo: F32, rate: float) -> float:
         """See `Engine`."""
@@ -82,9 +84,8 @@ class TorchEngine:
             self._upload(self._host)
         leaves = {name: values.detach().requires_grad_() for name, values in self._values.items()}
         scales, opacities = leaves["logs"].exp(), leaves["logits"].sigmoid()
-        sh = torch.cat([leaves["constant"], leaves["higher"]], dim=1)
         centers = torch.zeros(len(scales), 2, device=self._device, requires_grad=True)
-        shown, wanted = (leaves["means"], leaves["quats"], scales, opacities, sh), torch.from_numpy(photo)
+        shown, wanted = (leaves["means"], leaves["quats"], scales, opacities, leaves["sh"]), torch.from_numpy(photo)
         rgb, _ = self._draw(*shown, camera, BLACK, centers)
         # A window's variance is a small difference of large sums, which ten bits, torch's default on GPUs, would lose.
         with torch.backends.cudnn.flags(enabled=True, deterministic=True, allow_tf32=False):
@@ -102,13 +103,14 @@ class TorchEngine:
         """One step of Adam, as `adam.Adam`."""
         for name, each in rates(rate).items():
             values, gradient, (first, second) = self._values[name], gradients[name], self._memory[name]
-            if not values.numel():
-                continue
             self._steps[name] += 1
             bias1, bias2 = (1 - beta ** self._steps[name] for beta in BETAS)
             first.lerp_(gradient, 1 - BETAS[0])
             second.mul_(BETAS[1]).addcmul_(gradient, gradient, value=1 - BETAS[1])
-            values.addcdiv_(first, second.sqrt().div_(bias2**0.5).add_(EPSILON), value=-each / bias1)
+            move = first / second.sqrt().div_(bias2**0.5).add_(EPSILON)
+            if name == "sh":
+                move[:, 1:] *= self.higher / each
+            values.sub_(move, alpha=each / bias1)
 
 
 def _array(values: Tensor) -> F32:

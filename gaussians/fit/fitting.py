@@ -41,7 +41,7 @@ class Settings:
     Attributes:
         seconds, steps: what ends it, whichever is given; exactly one. With steps, the same bytes every time.
         most: Gaussians.
-        degree: of the harmonics, 0 to 3; "auto" adds bands while held-out photographs gain by them.
+        degree: of the harmonics, 0 to 3; "auto" keeps those bands that held-out photographs gain by.
         gain: dB that a band, or the last tenth of the Gaussians, must be worth on them; None: nothing is left out.
         growth: "budgeted" or "classic", see `growth`.
         coarse: share of the training on photographs of half the size.
@@ -170,15 +170,15 @@ def _train(
 def _choose(
     trainer: Trainer, photos: Photos, settings: Settings, choices: list[Choice], stepped: Callable[[float], None]
 ) -> None:
-    """Try another band once shapes have formed, until one is not worth it; leave out Gaussians once, at the end."""
+    """Try all bands once shapes have formed; leave out bands and Gaussians once, when their number is settled."""
     if settings.gain is None:
         return
-    bands = [c for c in choices if c.what == "degree"]
-    wanted = settings.degree == "auto" and trainer.parameters.degree < choosing.HIGHEST
-    if wanted and all(c.taken for c in bands) and FORMED <= trainer.done < SETTLED:
-        choices.append(choosing.another_band(trainer, photos, settings.gain, stepped))
+    if settings.degree == "auto" and not choices and FORMED <= trainer.done < SETTLED:
+        choices.append(choosing.bands(trainer, photos, settings.gain, stepped))
     if trainer.done >= SETTLED and not any(c.what == "gaussians" for c in choices):
-        choices += choosing.fewer(trainer, photos, settings.gain)
+        if settings.degree == "auto":
+            choices += choosing.fewer_bands(trainer, photos, settings.gain)
+        choices += choosing.fewer_gaussians(trainer, photos, settings.gain)
 
 
 class _Teller:

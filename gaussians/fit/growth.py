@@ -30,7 +30,7 @@ I64 = NDArray[np.int64]
 Numbers = TypeVar("Numbers", F32, Tensor)  # on the host, or on a device
 f4 = np.float32
 
-WANDERING = 0.07  # opacity from which there is no noise to speak of: a seven-hundredth of the most
+WANDERING = math.log(0.07 / 0.93)  # logit of an opacity from which there is no noise to speak of: 1/700 of the most
 FARTHEST = 3.0  # of its own widths that a faint Gaussian wanders in a step
 FAINT = 0.005  # opacity below which a Gaussian is as good as gone
 
@@ -71,10 +71,8 @@ class _Pulls:
         """Add the gradients `[N, 2]` (1/px) of a picture of `size`."""
         if len(self.sum) != len(centers):
             self.sum, self.times = np.zeros((2, len(centers)), np.float32)
-        x, y = centers[:, 0] * np.float32(size[0] / 2), centers[:, 1] * np.float32(size[1] / 2)
-        pulled = np.sqrt(x * x + y * y)
-        self.sum += pulled
-        self.times += pulled > 0
+        half = f4(size[0] / 2), f4(size[1] / 2)
+        compiled.run(_add_lengths, compiled.workers(), centers, half, self.sum, self.times)
 
 
 @dataclass
@@ -107,33 +105,32 @@ class Budgeted:
     def stepped(self, parameters: Parameters, centers: F32, size: tuple[int, int], rate: float) -> None:
         """See `Growth`."""
         self._pulls.note(centers, size)
-        opacities = parameters.opacities
-        rows = np.flatnonzero(opacities < WANDERING)
+        rows = np.flatnonzero(parameters.logits < WANDERING)
         if not len(rows):
             return
-        noise = self._noise(opacities[rows], parameters.logs[rows], rate)
+        noise = self._noise(parameters.logits[rows], parameters.logs[rows], rate)
         columns = parameters.means, parameters.quats, parameters.logs
         compiled.run(_along_axes, compiled.workers(), rows, *columns, noise)
 
     def stepped_there(self, values: Mapping[str, Tensor], centers: Tensor, size: tuple[int, int], rate: float) -> None:
         """See `Growth`. Chance is drawn on the host, so that one generator tells the whole training."""
         self._pulls.note(centers.cpu().numpy(), size)
-        opacities = values["logits"].sigmoid()
-        rows = (opacities < WANDERING).nonzero().squeeze(1)
+        rows = (values["logits"] < WANDERING).nonzero().squeeze(1)
         if not len(rows):
             return
-        logs = values["logs"][rows]
-        noise = torch.from_numpy(self._noise(opacities[rows].cpu().numpy(), logs.cpu().numpy(), rate)).to(logs.device)
+        logits, logs = values["logits"][rows].cpu().numpy(), values["logs"][rows]
+        noise = torch.from_numpy(self._noise(logits, logs.cpu().numpy(), rate)).to(logs.device)
         axes = rotations.to_matrix(rotations.normalize(values["quats"][rows]))
         values["means"][rows] += (axes * (noise * logs.exp())[:, None, :]).sum(dim=2)
 
-    def _noise(self, opacities: F32, logs: F32, rate: float) -> F32:
+    def _noise(self, logits: F32, logs: F32, rate: float) -> F32:
         """How far faint Gaussians `[M]` wander in one step, in their own widths `[M, 3]`."""
         with np.errstate(over="ignore"):
+            opacities = f4(1) / (f4(1) + np.exp(-logits))
             amount = rate * self.noise / (1 + np.exp(100 * (opacities - FAINT)))
         # Published is the covariance times noise, which throws wide ones out of the scene.
         share = np.minimum(amount[:, None] * np.exp(logs), FARTHEST)
-        return share.astype(np.float32) * self.rng.standard_normal((len(opacities), 3), dtype=np.float32)
+        return share.astype(np.float32) * self.rng.standard_normal((len(logits), 3), dtype=np.float32)
 
     def change(self, parameters: Parameters, step: int) -> None:
         """See `Growth`."""
@@ -239,6 +236,17 @@ class Classic:
             drawn = np.einsum("nij,nj->ni", axes, self.rng.standard_normal((len(rows), 3)))
             parameters.means[first:] += drawn.astype(np.float32)
             parameters.logs[first:] -= np.float32(math.log(1.6))
+
+
+@exact
+def _add_lengths(worker, workers, vectors, half, sums, times):  # type: ignore[no-untyped-def]
+    """Add the lengths of vectors `[N, 2]`, each coordinate times its `half`, to sums; count those that have one."""
+    count = vectors.shape[0]
+    for n in range(count * worker // workers, count * (worker + 1) // workers):
+        x, y = vectors[n, 0] * half[0], vectors[n, 1] * half[1]
+        length = np.sqrt(x * x + y * y)
+        sums[n] += length
+        times[n] += f4(length > f4(0))
 
 
 @exact

@@ -34,8 +34,7 @@ class Parameters:
         quats: `[N, 4]`, of any length.
         logs: `[N, 3]`, natural logarithms of the scales.
         logits: `[N]`, of the opacities.
-        constant: `[N, 1, 3]`, the constant band of the harmonics.
-        higher: `[N, K - 1, 3]`, the others.
+        sh: `[N, K, 3]`, the constant band first.
         memory: an optimiser for each of them.
     """
 
@@ -43,8 +42,7 @@ class Parameters:
     quats: F32
     logs: F32
     logits: F32
-    constant: F32
-    higher: F32
+    sh: F32
     memory: dict[str, Adam]
 
     @classmethod
@@ -56,8 +54,7 @@ class Parameters:
             "quats": cloud.quats.numpy().copy(),
             "logs": np.log(cloud.scales.numpy()),
             "logits": np.log(opacities / (1 - opacities)).astype(np.float32),
-            "constant": cloud.sh[:, :1].numpy().copy(),
-            "higher": cloud.sh[:, 1:].numpy().copy(),
+            "sh": cloud.sh.numpy().copy(),
         }
         return cls(**values, memory={name: Adam.of(value) for name, value in values.items()})
 
@@ -71,18 +68,13 @@ class Parameters:
     @property
     def degree(self) -> int:
         """Of the harmonics as they are now."""
-        return SH_BANDS[1 + self.higher.shape[1]]
+        return SH_BANDS[self.sh.shape[1]]
 
     @property
     def opacities(self) -> F32:
         """`[N]`."""
         with np.errstate(over="ignore"):  # exp of a large number is infinity, and 1 / infinity what is meant
             return np.float32(1) / (np.float32(1) + np.exp(-self.logits))
-
-    @property
-    def sh(self) -> F32:
-        """`[N, K, 3]`."""
-        return self.constant if self.higher.shape[1] == 0 else np.concatenate([self.constant, self.higher], axis=1)
 
     def columns(self) -> tuple[F32, F32, F32, F32, F32]:
         """Means, quats, scales, opacities and harmonics as a renderer takes them."""
@@ -97,8 +89,7 @@ class Parameters:
         """One step against the gradients of the arrays; `rate` is that of means, scene units."""
         each = rates(rate)
         for name, values in self.arrays().items():
-            if values.size:
-                self.memory[name].step(values, gradients[name], each[name])
+            self.memory[name].step(values, gradients[name], each[name], HIGHER if name == "sh" else None)
 
     def take(self, rows: I64) -> None:
         """Only some rows, in the order given."""
@@ -125,13 +116,20 @@ class Parameters:
 
     def widen(self, degree: int) -> None:
         """Harmonics up to `degree`; new bands begin at zero."""
-        more = (degree + 1) ** 2 - 1 - self.higher.shape[1]
+        more = (degree + 1) ** 2 - self.sh.shape[1]
         if more > 0:
             nothing = np.zeros((len(self), more, 3), np.float32)
-            self.higher = np.concatenate([self.higher, nothing], axis=1)
-            old = self.memory["higher"]
-            first, second = (np.concatenate([m, nothing], axis=1) for m in (old.first, old.second))
-            self.memory["higher"] = Adam(first, second, old.steps)
+            memory = self.memory["sh"]
+            self.sh, memory.first, memory.second = (
+                np.concatenate([a, nothing], axis=1) for a in (self.sh, memory.first, memory.second)
+            )
+
+    def narrow(self, degree: int) -> None:
+        """Harmonics up to `degree` alone."""
+        memory, kept = self.memory["sh"], (degree + 1) ** 2
+        self.sh, memory.first, memory.second = (
+            np.ascontiguousarray(a[:, :kept]) for a in (self.sh, memory.first, memory.second)
+        )
 
     def state(self) -> dict[str, Any]:
         """All arrays, those of the optimisers included, by name; `load` reads them."""
@@ -149,10 +147,8 @@ class Parameters:
 
 
 def rates(means: float) -> dict[str, float]:
-    """The rate of every array of `Parameters`, by its name."""
-    return {
-        "means": means, "quats": QUATS, "logs": SCALES, "logits": OPACITIES, "constant": CONSTANT, "higher": HIGHER,
-    }  # fmt: skip
+    """The rate of every array of `Parameters`, by its name; of the harmonics that of the constant band."""
+    return {"means": means, "quats": QUATS, "logs": SCALES, "logits": OPACITIES, "sh": CONSTANT}
 
 
 def chained(found: Any, scales: F32, opacities: F32) -> dict[str, F32]:
@@ -162,6 +158,5 @@ def chained(found: Any, scales: F32, opacities: F32) -> dict[str, F32]:
         "quats": found.quats,
         "logs": found.scales * scales,
         "logits": found.opacities * opacities * (1 - opacities),
-        "constant": np.ascontiguousarray(found.sh[:, :1]),
-        "higher": np.ascontiguousarray(found.sh[:, 1:]),
+        "sh": found.sh,
     }

@@ -90,10 +90,10 @@ def test_the_plain_recipe_adds_bands_by_steps(monkeypatch: pytest.MonkeyPatch) -
 
 def test_the_plain_recipe_moves_higher_bands_at_the_published_rate() -> None:
     plain = _plain.PlainEngine(Parameters.of(glossy(300).with_degree(1)), Noting(3.5, np.random.default_rng(0)), 0.2)
-    before = plain.fetch().higher.copy()
+    before = plain.fetch().sh.copy()
     shot = _fits.small_photos().shots[0]
     plain.learn(shot.camera, shot.colors, 1e-3)
-    moved = np.abs(plain.fetch().higher - before)
+    moved = np.abs(plain.fetch().sh - before)[:, 1:]
     assert float(moved.max()) == pytest.approx(2.5e-3 / 20, rel=1e-3)  # Adam's first step is as long as its rate
 
 
@@ -116,7 +116,7 @@ def test_quick_compares_the_default_with_classic_growth_and_the_plain_recipe() -
         assert points[-1].accuracy == pytest.approx(found[f"{name}.psnr"].value)  # two held out, all of them watched
     assert [p.method for p in result.points if p.default] == ["default"]
     assert any(note.startswith("quick") for note in result.notes)
-    assert math.isfinite(found["default-5.gain_of_band_1"].value) and "plain-5.gain_of_band_1" not in found
+    assert math.isfinite(found["default-5.gain_of_bands"].value) and "plain-5.gain_of_bands" not in found
     assert 0 <= found["default-5.left_out"].value < 300
 
 
