@@ -20,7 +20,7 @@ from .train import EVERY, Trainer
 
 GAIN = 0.05  # dB, below which a band, or a tenth of the Gaussians, is not worth its numbers
 HIGHEST = 3  # degree of harmonics
-TRIAL = 0.04  # of the training that bands are given to show what they gain
+TRIAL = 0.02  # of the training that bands are given to show what they gain
 LOOKS, APART = 6, 25  # looks at the end of a trial, and steps between them: one alone is off by a tenth of a dB
 TENTH = 0.9  # of the Gaussians stay when the least of them are left out
 VIEWS = 48  # photographs by which a Gaussian is judged
