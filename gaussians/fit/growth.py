@@ -82,17 +82,18 @@ class Budgeted:
     Attributes:
         most: Gaussians.
         rng: what copies are drawn by.
-        share: how many are added at a time, of those there are.
+        share: how many are added at a time, of those there are. Published is 0.05, for trainings several times as long;
+            so is `noise`, 5e5 (measured in docs/fit.md).
         opacity, scale: weights of the mean opacity and the mean scale in the loss: what a picture does not need fades.
         noise: of faint Gaussians, times the rate of means and their own covariance.
     """
 
     most: int
     rng: np.random.Generator
-    share: float = 0.05
+    share: float = 0.15
     opacity: float = 0.01
     scale: float = 0.01
-    noise: float = 5e5
+    noise: float = 5e4
     _pulls: _Pulls = field(default_factory=_Pulls, repr=False)
 
     def regularise(self, gradients: dict[str, Numbers], scales: Numbers, opacities: Numbers) -> None:

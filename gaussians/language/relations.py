@@ -20,6 +20,7 @@ from .field import Boxes, Group
 HOLDS = 0.5
 F64 = NDArray[np.float64]
 SIDEWAYS = ("left_of", "right_of", "in_front_of", "behind")
+RESTS, HANGS = 0.02, 0.1  # of a thing's, or a wall's, height: what begins above is on it; lower stands on the floor
 TOUCH = 0.06  # gap or overlap that still counts as resting on something, as a share of the typical object size
 
 
@@ -74,7 +75,7 @@ def scores(
         return near  # 1 when touching, 0.5 at a gap of 0.6 times the mean of their largest extents
     if name == "inside":
         return _inside(candidates, first, stand)
-    return _vertical(name, candidates, first, stand)
+    return _vertical(name, candidates, first, stand, anchors[0].label == "wall")
 
 
 def distance(a: Group, b: Group) -> float:
@@ -170,14 +171,15 @@ def _overlaps(of: Boxes, over: Boxes) -> F64:
     return share
 
 
-def _vertical(name: str, candidates: Boxes, anchor: Boxes, stand: Stand) -> F64:
+def _vertical(name: str, candidates: Boxes, anchor: Boxes, stand: Stand, wall: bool) -> F64:
     low, high = _heights(candidates, stand.up)
     base, top = (float(v[0]) for v in _heights(anchor, stand.up))
     over = _overlaps(candidates, anchor)
     slack = max(TOUCH * stand.scale, 0.1 * (top - base))
     if name == "on":
         # On a shelf is within the shelf's height; a rug or a floor is thinner than a box is precise.
-        rests = (min(base + 0.02 * (top - base), top - slack) < low) & (low < top + slack)
+        lift = HANGS if wall else RESTS
+        rests = (min(base + lift * (top - base), top - slack) < low) & (low < top + slack)
         smaller = ((high - low) <= 1.5 * (top - base)) | (over > 0.9)
         return np.where(rests & smaller & ((low + high) / 2 > base), over, 0.0)
     either = np.maximum(over, _overlaps(anchor, candidates))

@@ -210,6 +210,12 @@ def test_a_wall_is_where_it_is_nearest() -> None:
     assert holds("in_front_of", sofa, behind) and holds("left_of", sofa, beside)
 
 
+def test_on_a_wall_is_what_hangs_there_not_what_stands_at_it() -> None:
+    wall = wall_at((0, 4, 1.25), (8, 0.3, 2.5))
+    picture, shelf = at((1, 3.9, 1.5), (0.6, 0.1, 0.5)), at((-1, 3.95, 1.0), (0.9, 0.3, 1.85))  # its foot 7 cm above
+    assert holds("on", picture, wall) and not holds("on", shelf, wall)
+
+
 def wall_at(center: Vec3, size: Vec3) -> Group:
     return replace(at(center, size), level="structure", label="wall")
 
