@@ -31,8 +31,7 @@ NOTES = (
     "memory: the most that the process of a training held at once, photographs and all",
     "plain: the recipe as published (Kerbl et al. 2023), gradients by torch through the readable renderer; the same "
     "photographs, start, rates, optimiser and growth as classic, which goes through the compiled path",
-    "gain_of_bands: dB by which held-out photographs gained in the trial of all bands; left_out: Gaussians that were "
-    "not missed at four fifths of the training",
+    "left_out: Gaussians that held-out photographs did not miss at four fifths of the training",
     "the rate of means falls over the time that a training has, so that 5 minutes are no part of 15",
 )
 
@@ -84,9 +83,6 @@ def _metrics(name: str, made: Made) -> Iterator[Metric]:
     yield Metric(f"{name}.sh_degree", made.degree, "1")
     yield Metric(f"{name}.steps", made.steps, "count")
     yield Metric(f"{name}.seconds", made.seconds, "s")
-    for choice in made.choices:
-        if choice.what == "degree" and choice.after > choice.before:
-            yield Metric(f"{name}.gain_of_bands", choice.psnr[1] - choice.psnr[0], "dB")
     if left_out := [c for c in made.choices if c.what == "gaussians"]:
         yield Metric(f"{name}.left_out", sum(c.before - c.after for c in left_out if c.taken), "count")
 

@@ -161,8 +161,8 @@ def _chosen(done: Fitted) -> list[str]:
     told = []
     bands = [c for c in done.choices if c.what == "degree"]
     if bands:
-        tried = ", ".join(f"{c.before} to {c.after} {c.psnr[1] - c.psnr[0]:+.2f} dB" for c in bands)
-        told.append(f"harmonics of degree {done.scene.cloud.degree}; tried: {tried}")
+        tried = ", ".join(f"without degree {c.before} {c.psnr[1] - c.psnr[0]:+.2f} dB" for c in bands)
+        told.append(f"harmonics of degree {done.scene.cloud.degree}: {tried}")
     tenths = [c for c in done.choices if c.what == "gaussians"]
     if left := [c for c in tenths if c.taken]:
         lost = left[0].psnr[0] - left[-1].psnr[1]

@@ -1,12 +1,12 @@
 """No more than a scene needs: bands of harmonics and Gaussians stay where held-out photographs gain by them.
 
-Knows how to train a change beside its absence, and how to find what is not missed. Refuses to know when it is asked.
+Knows how to find what is not missed. Refuses to know when it is asked. Bands are trained first and left out then: what
+they gain in a short trial is lost in the noise of steps, what they are worth when trained is not.
 """
 
 from __future__ import annotations
 
-import copy
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -16,19 +16,17 @@ import torch
 from ..reduce import ranked
 from .photos import Photos
 from .quality import measure
-from .train import EVERY, Trainer
+from .train import Trainer
 
 GAIN = 0.05  # dB, below which a band, or a tenth of the Gaussians, is not worth its numbers
-HIGHEST = 3  # degree of harmonics
-TRIAL = 0.02  # of the training that bands are given to show what they gain
-LOOKS, APART = 6, 25  # looks at the end of a trial, and steps between them: one alone is off by a tenth of a dB
+HIGHEST = 3  # degree of harmonics that is tried
 TENTH = 0.9  # of the Gaussians stay when the least of them are left out
 VIEWS = 48  # photographs by which a Gaussian is judged
 
 
 @dataclass(frozen=True)
 class Choice:
-    """One change that was tried.
+    """Something that was tried without.
 
     Attributes:
         what: "degree" of the harmonics, or number of "gaussians".
@@ -42,32 +40,6 @@ class Choice:
     after: int
     psnr: tuple[float, float]
     taken: bool
-
-
-def bands(trainer: Trainer, photos: Photos, gain: float, stepped: Callable[[float], None]) -> Choice:
-    """Train for a while without and with all bands of harmonics, from the same state, on the same photographs in the
-    same order; go on with them if the held-out photographs gain by `gain` dB, else without. The time of both counts.
-
-    All at once: in so short a time what one band gains is lost in the noise of steps, what three gain is not.
-
-    Args:
-        trainer: right after a `changed` step.
-        stepped: called after every step, with its loss.
-    """
-    degree, count = trainer.parameters.degree, _trial(trainer)
-    before = copy.deepcopy(trainer.state())
-    plain = _run(trainer, photos, count, stepped)
-    without, spent = copy.deepcopy(trainer.state()), trainer.seconds
-    trainer.restore(*before)
-    trainer.seconds = spent
-    trainer.parameters.widen(HIGHEST)
-    wider = _run(trainer, photos, count, stepped)
-    taken = wider - plain >= gain
-    if not taken:
-        spent = trainer.seconds
-        trainer.restore(*without)
-        trainer.seconds = spent
-    return Choice("degree", degree, HIGHEST, (plain, wider), taken)
 
 
 def fewer_bands(trainer: Trainer, photos: Photos, gain: float) -> list[Choice]:
@@ -104,22 +76,6 @@ def fewer_gaussians(trainer: Trainer, photos: Photos, gain: float) -> list[Choic
         psnr, kept = less, len(some)
     trainer.parameters.take(np.sort(order[:kept]))
     return choices
-
-
-def _trial(trainer: Trainer) -> int:
-    """Steps of a trial: whole rounds between two changes, so that a state after it is whole."""
-    return max(1, round(TRIAL * trainer.steps / trainer.done / EVERY)) * EVERY
-
-
-def _run(trainer: Trainer, photos: Photos, steps: int, stepped: Callable[[float], None]) -> float:
-    """Train on; the mean PSNR at the last looks."""
-    seen = []
-    for i in range(steps):
-        stepped(trainer.step())
-        left = steps - 1 - i
-        if left % APART == 0 and left < LOOKS * APART:
-            seen.append(measure(trainer.parameters.cloud(), photos.held).psnr)
-    return float(np.mean(seen))
 
 
 def _spread(count: int, most: int) -> Sequence[int]:

@@ -31,7 +31,6 @@ WATCHED = 6  # held-out photographs that are looked at on the way
 LOOKS = 20  # how often
 KEEP_EVERY = 30.0  # seconds between checkpoints
 TELL_EVERY = 0.5  # seconds between two words to the user
-FORMED = 0.3  # of the training, after which colours that change with the view can be told from a bad shape
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ class Settings:
     Attributes:
         seconds, steps: what ends it, whichever is given; exactly one. With steps, the same bytes every time.
         most: Gaussians.
-        degree: of the harmonics, 0 to 3; "auto" keeps those bands that held-out photographs gain by.
+        degree: of the harmonics, 0 to 3; "auto" trains all and keeps those that held-out photographs gain by.
         gain: dB that a band, or the last tenth of the Gaussians, must be worth on them; None: nothing is left out.
         growth: "budgeted" or "classic", see `growth`.
         coarse: share of the training on photographs of half the size.
@@ -128,7 +127,7 @@ def fit(
     engine = engine_on(device_of(settings.device))
     rng = np.random.default_rng(settings.seed)
     cloud = start(photos, settings.most, rng)
-    degree = 0 if settings.degree == "auto" else settings.degree
+    degree = choosing.HIGHEST if settings.degree == "auto" else settings.degree
     schedule = Schedule(settings.steps, settings.seconds, settings.coarse, degree)
     trainer = Trainer(
         photos.shots, Parameters.of(cloud), _growth(settings, photos.extent, rng), photos.extent, schedule, rng, engine
@@ -159,7 +158,7 @@ def _train(
             psnr = measure(trainer.parameters.cloud(), photos.held[:WATCHED]).psnr
             record.curve.append((trainer.seconds, psnr))
         if trainer.changed:
-            _choose(trainer, photos, settings, record.choices, teller.stepped)
+            _choose(trainer, photos, settings, record.choices)
         if kept is not None and trainer.changed and time.monotonic() - saved >= KEEP_EVERY:
             arrays, values = trainer.state()
             checkpoint.keep(kept[0], arrays, {**values, "name": kept[1], **asdict(record)})
@@ -167,18 +166,13 @@ def _train(
         teller.stepped(loss)
 
 
-def _choose(
-    trainer: Trainer, photos: Photos, settings: Settings, choices: list[Choice], stepped: Callable[[float], None]
-) -> None:
-    """Try all bands once shapes have formed; leave out bands and Gaussians once, when their number is settled."""
-    if settings.gain is None:
+def _choose(trainer: Trainer, photos: Photos, settings: Settings, choices: list[Choice]) -> None:
+    """Leave out bands and Gaussians, once, when their number is settled; the rest of the training makes up for it."""
+    if settings.gain is None or trainer.done < SETTLED or choices:
         return
-    if settings.degree == "auto" and not choices and FORMED <= trainer.done < SETTLED:
-        choices.append(choosing.bands(trainer, photos, settings.gain, stepped))
-    if trainer.done >= SETTLED and not any(c.what == "gaussians" for c in choices):
-        if settings.degree == "auto":
-            choices += choosing.fewer_bands(trainer, photos, settings.gain)
-        choices += choosing.fewer_gaussians(trainer, photos, settings.gain)
+    if settings.degree == "auto":
+        choices += choosing.fewer_bands(trainer, photos, settings.gain)
+    choices += choosing.fewer_gaussians(trainer, photos, settings.gain)
 
 
 class _Teller:

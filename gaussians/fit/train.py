@@ -28,7 +28,7 @@ MEANS = 1.6e-4  # rate of means at the start, in shares of the scene's extent
 FALL = 0.01  # of that rate is left at the end
 EVERY = 100  # steps between two changes of the number of Gaussians
 QUIET = 300  # steps before the first
-SETTLED = 0.8  # of the training, after which the number stays
+SETTLED = 0.8  # of the training, after which numbers of Gaussians and bands stay
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +129,7 @@ class Trainer:
         shot = self._shots[self._order.pop()]
         camera, photo = halved(shot) if done < self.schedule.coarse else (shot.camera, shot.colors)
         degree, most = self._engine.degree, self.schedule.degree
-        if degree < most and 0.5 * (degree + 1) / (most + 1) <= done:
+        if degree < most and 0.5 * (degree + 1) / (most + 1) <= done < SETTLED:  # what is left out then stays out
             self.parameters.widen(degree + 1)
         loss = self._learn(camera, photo, MEANS * self._extent * FALL**done)
         self.steps += 1
