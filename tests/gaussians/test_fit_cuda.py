@@ -51,7 +51,9 @@ def shots(count: int = 9, side: int = 48) -> list[Shot]:
 
 
 def growth_of(name: str, rng: np.random.Generator) -> Growth:
-    return Budgeted(300, rng) if name == "budgeted" else Classic(3.3, rng, 300)
+    """With few copies at a time, and much noise: copies that lie where the one they came from does change their order
+    by a rounding."""
+    return Budgeted(300, rng, share=0.05, noise=5e5) if name == "budgeted" else Classic(3.3, rng, 300)
 
 
 def trainer(engine: Maker, growth: str, steps: int, degree: int = 1, count: int = 200) -> Trainer:
