@@ -122,6 +122,11 @@ class Camera:
         pixels = np.stack([self.fx * local[:, 0] / safe + self.cx, self.fy * local[:, 1] / safe + self.cy], axis=1)
         return pixels, depth
 
+    def shows(self, pixels: NDArray[np.float64], depth: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """`[M]`, which of the points that `project` told of lie in front of the eye and in the picture."""
+        inside = (pixels >= 0).all(axis=1) & (pixels < [self.width, self.height]).all(axis=1)
+        return np.asarray((depth > 0) & inside)
+
 
 @dataclass(frozen=True, eq=False)
 class Render:

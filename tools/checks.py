@@ -101,9 +101,7 @@ def bumps(after: Scene, groups: set[int]) -> tuple[str, ...]:
 def unseen(after: Scene, moved: tuple[Affine, ...], viewer: Camera) -> tuple[str, ...]:
     """A note if something new stands where the viewer does not look."""
     centers = np.stack([after.cloud.means[body.rows].mean(dim=0, dtype=torch.float64).cpu().numpy() for body in moved])
-    pixels, depth = viewer.project(centers)
-    inside = (depth > 0) & (pixels >= 0).all(axis=1) & (pixels < [viewer.width, viewer.height]).all(axis=1)
-    hidden = int((~inside).sum())
+    hidden = int((~viewer.shows(*viewer.project(centers))).sum())
     return (f"{hidden} of {len(moved)} stand outside the current view",) if hidden else ()
 
 

@@ -6,13 +6,14 @@ they gain in a short trial is lost in the noise of steps, what they are worth wh
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 import torch
 
+from ..cloud import GaussianCloud
 from ..reduce import ranked
 from .photos import Photos
 from .quality import measure
@@ -45,15 +46,12 @@ class Choice:
 def fewer_bands(trainer: Trainer, photos: Photos, gain: float) -> list[Choice]:
     """Leave out the highest band, and again, while that costs the held-out photographs less than `gain` dB. What is
     left can be trained on."""
-    cloud, choices = trainer.parameters.cloud(), []
-    psnr = measure(cloud, photos.held).psnr
-    for degree in range(cloud.degree, 0, -1):
-        less = measure(cloud.with_degree(degree - 1), photos.held).psnr
-        choices.append(Choice("degree", degree, degree - 1, (psnr, less), psnr - less < gain))
-        if not choices[-1].taken:
-            break
-        psnr = less
-        trainer.parameters.narrow(degree - 1)
+    cloud = trainer.parameters.cloud()
+    ways = ((degree, cloud.with_degree(degree)) for degree in range(cloud.degree, -1, -1))
+    choices = _while_not_missed("degree", ways, photos, gain)
+    for choice in choices:
+        if choice.taken:
+            trainer.parameters.narrow(choice.after)
     return choices
 
 
@@ -66,16 +64,33 @@ def fewer_gaussians(trainer: Trainer, photos: Photos, gain: float) -> list[Choic
     cloud = trainer.parameters.cloud()
     views = [photos.shots[i].camera for i in _spread(len(photos.shots), VIEWS)]
     order = ranked(cloud, views)
-    psnr, kept, choices = measure(cloud, photos.held).psnr, len(order), []
-    while int(TENTH * kept) > 0:
-        some = np.sort(order[: int(TENTH * kept)])
-        less = measure(cloud[torch.from_numpy(some)], photos.held).psnr
-        choices.append(Choice("gaussians", kept, len(some), (psnr, less), psnr - less < gain))
-        if not choices[-1].taken:
-            break
-        psnr, kept = less, len(some)
+    ways = ((most, cloud[torch.from_numpy(np.sort(order[:most]))]) for most in _tenths(len(order)))
+    choices = _while_not_missed("gaussians", ways, photos, gain)
+    kept = min((choice.after for choice in choices if choice.taken), default=len(order))
     trainer.parameters.take(np.sort(order[:kept]))
     return choices
+
+
+def _while_not_missed(
+    what: Literal["degree", "gaussians"], ways: Iterator[tuple[int, GaussianCloud]], photos: Photos, gain: float
+) -> list[Choice]:
+    """Go from the first of ever smaller clouds to the next while that costs less than `gain`."""
+    before, cloud = next(ways)
+    psnr, choices = measure(cloud, photos.held).psnr, list[Choice]()
+    for after, cloud in ways:
+        less = measure(cloud, photos.held).psnr
+        choices.append(Choice(what, before, after, (psnr, less), psnr - less < gain))
+        if not choices[-1].taken:
+            break
+        before, psnr = after, less
+    return choices
+
+
+def _tenths(count: int) -> Iterator[int]:
+    """A number, and again and again what is left of it without a tenth."""
+    while count > 0:
+        yield count
+        count = int(TENTH * count)
 
 
 def _spread(count: int, most: int) -> Sequence[int]:

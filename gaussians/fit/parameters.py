@@ -7,7 +7,7 @@ by the scene's extent.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -119,17 +119,15 @@ class Parameters:
         more = (degree + 1) ** 2 - self.sh.shape[1]
         if more > 0:
             nothing = np.zeros((len(self), more, 3), np.float32)
-            memory = self.memory["sh"]
-            self.sh, memory.first, memory.second = (
-                np.concatenate([a, nothing], axis=1) for a in (self.sh, memory.first, memory.second)
-            )
+            self._change_bands(lambda bands: np.concatenate([bands, nothing], axis=1))
 
     def narrow(self, degree: int) -> None:
         """Harmonics up to `degree` alone."""
-        memory, kept = self.memory["sh"], (degree + 1) ** 2
-        self.sh, memory.first, memory.second = (
-            np.ascontiguousarray(a[:, :kept]) for a in (self.sh, memory.first, memory.second)
-        )
+        self._change_bands(lambda bands: np.ascontiguousarray(bands[:, : (degree + 1) ** 2]))
+
+    def _change_bands(self, how: Callable[[F32], F32]) -> None:
+        memory = self.memory["sh"]
+        self.sh, memory.first, memory.second = how(self.sh), how(memory.first), how(memory.second)
 
     def state(self) -> dict[str, Any]:
         """All arrays, those of the optimisers included, by name; `load` reads them."""

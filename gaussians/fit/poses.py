@@ -92,7 +92,7 @@ def _inside(camera: Camera, points: NDArray[np.float64]) -> tuple[NDArray[np.flo
     """Pixels `[M, 2]` of points, and which of them are in the picture."""
     with np.errstate(over="ignore", invalid="ignore"):  # a point may lie anywhere
         pixels, depth = camera.project(points)
-        return pixels, (depth > 0) & (pixels >= 0).all(axis=1) & (pixels < [camera.width, camera.height]).all(axis=1)
+        return pixels, camera.shows(pixels, depth)
 
 
 def _alike(shot: Shot, means: NDArray[np.float64], bright: NDArray[np.float64]) -> float:

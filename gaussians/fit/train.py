@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..camera import Camera
-from .engine import BLACK as BLACK
 from .engine import CpuEngine, Maker
 from .growth import Growth
 from .parameters import Parameters
@@ -131,7 +130,7 @@ class Trainer:
         degree, most = self._engine.degree, self.schedule.degree
         if degree < most and 0.5 * (degree + 1) / (most + 1) <= done < SETTLED:  # what is left out then stays out
             self.parameters.widen(degree + 1)
-        loss = self._learn(camera, photo, MEANS * self._extent * FALL**done)
+        loss = self._engine.learn(camera, photo, MEANS * self._extent * FALL**done)
         self.steps += 1
         if self.changed and done < SETTLED:
             parameters = self.parameters
@@ -139,9 +138,6 @@ class Trainer:
             parameters.take(along_a_curve(parameters.means))
         self.seconds += time.perf_counter() - started
         return loss
-
-    def _learn(self, camera: Camera, photo: F32, rate: float) -> float:
-        return self._engine.learn(camera, photo, rate)
 
 
 def halved(shot: Shot) -> tuple[Camera, F32]:
