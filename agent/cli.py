@@ -15,7 +15,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from ..gaussians.errors import ScenewrightError
-from .terminal import explain, terminal
+from .terminal.output import explain, terminal
 
 VERBS = (
     "demo", "info", "embed", "select", "plan", "schema", "check", "compose", "edit", "chat", "render", "convert",

@@ -18,7 +18,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from .log import scrub
+from .session.log import scrub
 
 
 @dataclass(frozen=True)
@@ -168,7 +168,7 @@ def _torchvision() -> Finding:
         return Finding("torchvision", serves, True, False, version, f"matches torch {torch}", "")
     if not _problem("import torchvision"):
         return Finding("torchvision", serves, True, False, version, f"imports beside torch {torch}", "")
-    problem = _problem("from scenewright.gaussians.vision_cure import import_torchvision as cured; cured()")
+    problem = _problem("from scenewright.gaussians.torchvision_fix import import_torchvision as cured; cured()")
     if not problem:
         detail = f"a CUDA build beside torch {torch}: Scenewright cures its import"
         return Finding("torchvision", serves, True, False, version, detail, "")

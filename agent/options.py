@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from .terminal import terminal
+from .terminal.output import terminal
 
 
 def _json(value: bool) -> bool:

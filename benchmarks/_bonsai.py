@@ -19,14 +19,14 @@ from numpy.typing import NDArray
 
 from ..gaussians.camera import Camera
 from ..gaussians.files import load
-from ..gaussians.files.capture import read_capture
+from ..gaussians.files.captures.capture import read_capture
 from ..gaussians.harmonics import color_to_dc
 from ..gaussians.language import masks
-from ..gaussians.language.embed import embed
 from ..gaussians.language.encoders import Encoder
-from ..gaussians.language.encoders.vectors import wrap
-from ..gaussians.language.query import Query
-from ..gaussians.language.resolve import resolve
+from ..gaussians.language.encoders.backends.vectors import wrap
+from ..gaussians.language.field.embed import embed
+from ..gaussians.language.query.query import Query
+from ..gaussians.language.query.resolve import resolve
 from ..gaussians.render import render
 from ..gaussians.scene import Scene
 from .harness import Metric

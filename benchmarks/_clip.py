@@ -22,13 +22,13 @@ from numpy.typing import NDArray
 from ..gaussians.camera import Camera
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.language import encoders
-from ..gaussians.language.calibration import labels, probability
 from ..gaussians.language.encoders import Encoder
-from ..gaussians.language.encoders.vectors import wrap
+from ..gaussians.language.encoders.backends.vectors import wrap
+from ..gaussians.language.encoders.calibration import labels, probability
 from ..gaussians.language.encoders.vocabulary import Vocabulary
-from ..gaussians.language.field import Box, Group, LanguageField
-from ..gaussians.language.query import Query
-from ..gaussians.language.resolve import resolve
+from ..gaussians.language.field.language_field import Box, Group, LanguageField
+from ..gaussians.language.query.query import Query
+from ..gaussians.language.query.resolve import resolve
 from ..gaussians.scene import Scene
 
 F64 = NDArray[np.float64]

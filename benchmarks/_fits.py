@@ -24,17 +24,17 @@ from pathlib import Path
 
 import numpy as np
 
-from ..agent.terminal import terminal
+from ..agent.terminal.output import terminal
 from ..gaussians import files, harmonics
 from ..gaussians.camera import Camera
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.errors import FileError, UserError
 from ..gaussians.files import writing
-from ..gaussians.files.colmap import Points
+from ..gaussians.files.captures.colmap import Points
 from ..gaussians.fit import Photos, Settings, checkpoint, fit, take_photos
 from ..gaussians.fit.checkpoint import drop
-from ..gaussians.fit.choosing import Choice
 from ..gaussians.fit.fitting import LOOKS, WATCHED
+from ..gaussians.fit.held_out_choice import Choice
 from ..gaussians.fit.quality import measure
 from ..gaussians.fit.train import Shot
 from ..gaussians.render import render

@@ -13,14 +13,14 @@ from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..planners.grammar.referring import head_noun, relations_named
+from ..planners.grammar.meaning.referring import head_noun, relations_named
 from ..planners.plan import Planner
-from ..planners.wordwise import THRESHOLD, agreement
+from ..planners.rooms.label_encoder import THRESHOLD, agreement
 from . import _data
 
 _FILE = "nr3d_utterances.json.gz"
-# What people say for a label of this set, beyond everyday synonyms (planners/synonyms.py): the label is one annotator's
-# choice among several words for the thing.
+# What people say for a label of this set, beyond everyday synonyms (gaussians/world/synonyms.py): the label is one
+# annotator's choice among several words for the thing.
 SAID = {
     "storage bin": ("box", "container", "tote", "bin", "crate"),
     "picture": ("frame", "picture frame"),

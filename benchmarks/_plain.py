@@ -16,10 +16,10 @@ from torch import Tensor
 from ..gaussians.camera import Camera, Vec3
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.fit import Photos, Settings
+from ..gaussians.fit.densify import Classic, Growth
 from ..gaussians.fit.engine_torch import TorchEngine
-from ..gaussians.fit.growth import Classic, Growth
+from ..gaussians.fit.initialize import start
 from ..gaussians.fit.parameters import F32, Parameters
-from ..gaussians.fit.start import start
 from ..gaussians.fit.train import Schedule, Trainer
 from ..gaussians.render import reference
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..planners.graph import Node, SceneGraph
 from ..planners.layout.bodies import FLAT
+from ..planners.rooms.graph import Node, SceneGraph
 
 _COLORS = {"floor": "#d9c8a9", "wall": "#8fb0c9", "ceiling": "none", "carried": "#a9c99b"}
 

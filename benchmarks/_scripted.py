@@ -13,13 +13,13 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any
 
-from ..agent.sight import StageSight
+from ..agent.session.sight import StageSight
 from ..gaussians.errors import UserError
 from ..planners import load
-from ..planners.graph import SceneGraph
 from ..planners.plan import EditPlan, Sight, Usage
-from ..planners.stage import Stage
-from ..tools.base import EditOp
+from ..planners.rooms.graph import SceneGraph
+from ..planners.rooms.graph_scene import Stage
+from ..tools.operation import EditOp
 from ..tools.registry import parse
 from . import _written
 

@@ -16,12 +16,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Literal
 
-from ..agent.sight import StageSight
-from ..planners.graph import SceneGraph
+from ..agent.session.sight import StageSight
 from ..planners.impossible import Step
-from ..planners.on_graph import Resolved, resolve_text
 from ..planners.plan import Planner
-from ..planners.stage import Stage
+from ..planners.rooms.graph import SceneGraph
+from ..planners.rooms.graph_scene import Stage
+from ..planners.rooms.plan_on_graph import Resolved, resolve_text
 from . import _data
 
 FOLDER = Path(__file__).resolve().parent.parent / "tests" / "planners" / "written"

@@ -21,11 +21,11 @@ from ..gaussians.camera import Camera
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.color import rgb_to_lab
 from ..gaussians.harmonics import color_to_dc
-from ..gaussians.language.field import Box, Group, LanguageField
+from ..gaussians.language.field.language_field import Box, Group, LanguageField
 from ..gaussians.scene import Frame, Scene
-from ..tools.base import Context
+from ..tools.execute import Done, carry_out
+from ..tools.operation import Context
 from ..tools.registry import parse
-from ..tools.run import Done, carry_out
 from .harness import Metric, Point, Result
 
 GAUSSIANS, QUICK_GAUSSIANS = 1_000_000, 100_000

@@ -20,11 +20,11 @@ import torch
 from ..gaussians import files, harmonics
 from ..gaussians.camera import Camera
 from ..gaussians.cloud import GaussianCloud
-from ..gaussians.files import spz, zstd
-from ..gaussians.files.arrange import arranged
-from ..gaussians.language.views import candidates, choose_views
+from ..gaussians.files.formats import spz, zstd
+from ..gaussians.files.formats.morton import arranged
 from ..gaussians.reduce import most_visible, psnr
 from ..gaussians.scene import Scene
+from ..gaussians.viewpoints.coverage import candidates, choose_views
 from ._data import folder, missing
 from .harness import Metric, Point, Result
 

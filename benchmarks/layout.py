@@ -12,9 +12,9 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from ..planners.checking import check
 from ..planners.compose import knowledge, problem_of, sample_brief
 from ..planners.layout import Item, Keepout, Layout, Problem, Wish, solve
+from ..planners.rooms.check import check
 from . import _data, _rooms, _tasks
 from .harness import Metric, Point, Result
 

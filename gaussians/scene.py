@@ -15,7 +15,7 @@ from .cloud import GaussianCloud
 from .errors import UserError
 
 if TYPE_CHECKING:
-    from .language.field import LanguageField
+    from .language.field.language_field import LanguageField
 
 Source = Literal["given", "file", "estimated", "unknown"]
 

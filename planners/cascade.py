@@ -16,8 +16,8 @@ from typing import Protocol
 
 from ..gaussians.errors import BackendError, UserError
 from .budget import OverBudgetError
-from .grammar.changes import TO_A_LENGTH
-from .grammar.verbs import TO_ALIGN
+from .grammar.meaning.changes import TO_A_LENGTH
+from .grammar.vocabulary.verbs import TO_ALIGN
 from .plan import EditPlan, NoPlanError, Planner, Sight
 
 NAME = "auto"

@@ -11,11 +11,11 @@ from typing import Any
 
 from ..gaussians import assets
 from ..gaussians.errors import InstructionError, UserError
-from ..gaussians.language.selection import Selection
-from ..tools.base import METRES, EditOp, Length
+from ..gaussians.language.query.selection import Selection
+from ..tools.operation import METRES, EditOp, Length
 from ..tools.ops.scale import Scale
 from .plan import Verdict
-from .stage import Id, Stage
+from .rooms.graph_scene import Id, Stage
 
 # What floor, walls and ceiling forbid.
 MAKES_PLACE = frozenset({"delete", "move", "rotate", "scale", "duplicate", "replace", "exchange", "arrange"})

@@ -15,7 +15,7 @@ from ..tools.alternatives import either, given
 from ..tools.registry import AnyOp
 
 if TYPE_CHECKING:
-    from .graph import SceneGraph
+    from .rooms.graph import SceneGraph
 
 MAX_OPS = 64
 

@@ -11,11 +11,11 @@ from collections.abc import Callable
 from typing import Any
 
 from ..gaussians.errors import UserError
-from ..gaussians.language.query import Query
+from ..gaussians.language.query.query import Query
 from ..tools import registry
 from .compose.brief import Brief
-from .graph import SceneGraph
 from .plan import EditPlan
+from .rooms.graph import SceneGraph
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _MAKERS: dict[str, Callable[[], dict[str, Any]]] = {

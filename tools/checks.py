@@ -9,13 +9,13 @@ import numpy as np
 import torch
 
 from ..gaussians.camera import Camera
-from ..gaussians.language.selection import mask_of
+from ..gaussians.language.query.selection import mask_of
 from ..gaussians.scene import Scene
-from .base import Affine, Outcome
-from .grid import hits, obstacle_points
 from .measure import reach, solid_points
+from .operation import Affine, Outcome
+from .placement.bodies import Array, centimetre, contact_box, neighbours, overlap
+from .placement.occupancy import hits, obstacle_points
 from .receipt import Check, at_most, report
-from .space import Array, centimetre, contact_box, neighbours, overlap
 
 # A body may pass through this share of its points' number of foreign points: floaters and touching surfaces.
 _TOUCHING = 0.01

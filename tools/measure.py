@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from ..gaussians.cloud import GaussianCloud
-from ..gaussians.language.measure import Sample
+from ..gaussians.language.field.measure import Sample
 
 OPAQUE = 0.3  # below this a Gaussian is haze rather than something one could touch
 

@@ -15,7 +15,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from ..gaussians.errors import UserError
 from . import ops as _package
-from .base import EditOp
+from .operation import EditOp
 
 
 def _scan() -> dict[str, type[EditOp]]:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from ..options import Debug, Force, Json
-from ..terminal import terminal
+from ..terminal.output import terminal
 
 
 def command(
@@ -29,9 +29,18 @@ def command(
 
     Times do not carry over to other machines; ratios and accuracies do.
     """
-    from ...benchmarks import harness
-    from ...gaussians.errors import FileError
-    from ..targets import refuse_existing
+    from ...gaussians.errors import FileError, UserError
+
+    try:
+        from ...benchmarks import harness
+    except ModuleNotFoundError as error:
+        if error.name != "scenewright.benchmarks":
+            raise
+        raise UserError(
+            "benchmarks are not part of an installed package: clone the repository, run "
+            '`pip install -e ".[bench]"` in it, and measure there'
+        ) from error
+    from ..output_files import refuse_existing
 
     if name in (None, "list"):
         terminal.result("\n".join(harness.names()), {"benchmarks": list(harness.names())})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..options import Budget, Debug, Encoder, Json, Log, Picture, Planner, Scale, SceneFile, Seed, Up, View
-from ..terminal import terminal
+from ..terminal.output import terminal
 
 
 def command(
@@ -21,8 +21,8 @@ def command(
     debug: Debug = False,
 ) -> None:
     """Talk to a scene: instructions in words, /help for the rest. With --json, one JSON object for each line said."""
-    from ..chat import Chat
-    from ..opening import Opening, open_session
+    from ..session.opening import Opening, open_session
+    from ..terminal.chat import Chat
 
     session, _ = open_session(
         Opening(

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from ..options import Debug, Json
-from ..terminal import terminal
+from ..terminal.output import terminal
 
 
 def command(
@@ -20,8 +20,8 @@ def command(
     debug: Debug = False,
 ) -> None:
     """Check anybody's scene graph: collisions, bounds, support, stated relations, reachability. Exit code 3 if not."""
-    from ...planners.checking import check, sentences
-    from ...planners.graph import SceneGraph
+    from ...planners.rooms.check import check, sentences
+    from ...planners.rooms.graph import SceneGraph
 
     report = check(SceneGraph.read(graph))
     told = sentences(report.violations) or [f"{graph}: nothing is wrong"]

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..options import Debug, Force, Json, Planner, Seed, Size, View
-from ..stopwatch import timed
-from ..terminal import terminal
+from ..session.stopwatch import timed
+from ..terminal.output import terminal
 
 if TYPE_CHECKING:
     from ...gaussians.scene import Scene
-    from ...planners.building import Built
-    from ...planners.graph import SceneGraph
+    from ...planners.rooms.build import Built
+    from ...planners.rooms.graph import SceneGraph
 
 _MOST_TOLD = 12  # complaints of the checker on stderr; more are counted
 
@@ -80,7 +80,7 @@ def command(
         _tell_check(graph)
     built = None
     if targets.scene is not None or targets.picture is not None:
-        from ...planners.building import construct
+        from ...planners.rooms.build import construct
 
         built = construct(graph, seed=seed, assets=assets, detail=detail)
         seconds |= built.seconds
@@ -99,7 +99,7 @@ def _refuse_early(targets: _Targets, assets: Path | None) -> None:
         UserError: a file would be overwritten, a picture is none, or there is no folder of assets.
     """
     from ...gaussians.errors import UserError
-    from ..targets import refuse_existing, require_png
+    from ..output_files import refuse_existing, require_png
 
     wanted = [path for path in (targets.graph, targets.scene, targets.picture) if path is not None]
     refuse_existing(wanted, targets.force)
@@ -116,11 +116,11 @@ def _refuse_early(targets: _Targets, assets: Path | None) -> None:
 
 def _graph(wish: str, seed: int, planner: str, best: bool) -> SceneGraph:
     """The graph that was given, or one composed of the words; what was left out and assumed is told."""
-    from ...planners.graph import SceneGraph
+    from ...planners.rooms.graph import SceneGraph
 
     if wish.lower().endswith(".json"):
         return SceneGraph.read(Path(wish))
-    from ...planners.composing import composed
+    from ...planners.compose.api import composed
 
     composition = composed(wish, seed=seed, planner=planner)
     for remark in composition.remarks:
@@ -157,7 +157,7 @@ def _refuse_conflict(conflicts: Any, graph: SceneGraph) -> None:
 
 def _tell_check(graph: SceneGraph) -> None:
     """The neutral checker's verdict."""
-    from ...planners.checking import check, sentences
+    from ...planners.rooms.check import check, sentences
 
     report = check(graph)
     told = sentences(report.violations)
@@ -187,7 +187,7 @@ def _write(graph: SceneGraph, built: Built | None, targets: _Targets) -> None:
     if built is None:
         return
     if targets.scene is not None:
-        from ...gaussians.language.store import save_field
+        from ...gaussians.language.field.store import save_field
 
         save(built.scene, targets.scene, targets.force)
         field = save_field(built.scene, targets.scene)
@@ -199,8 +199,8 @@ def _write(graph: SceneGraph, built: Built | None, targets: _Targets) -> None:
 def _draw(scene: Scene, path: Path, targets: _Targets) -> None:
     from ...gaussians.color import parse
     from ...gaussians.render import render
-    from ..pictures import save_png
-    from ..views import choose_view
+    from ..pictures.image_files import save_png
+    from ..pictures.named_cameras import choose_view
 
     camera = choose_view(scene, targets.view, targets.size)
     save_png(render(scene.cloud, camera, parse("#e9ecef")).to_uint8(), path, targets.force)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..options import Debug, Force, Json, SceneFile
-from ..terminal import terminal
+from ..terminal.output import terminal
 
 if TYPE_CHECKING:
     from ...gaussians.camera import Camera
@@ -53,7 +53,7 @@ def command(
     Niantic .spz (version 1 is read only), antimatter15 .splat (which holds no harmonics above the constant colour).
     """
     from ...gaussians.files import load_with_report, writer
-    from ..targets import refuse_existing
+    from ..output_files import refuse_existing
 
     refuse_existing([output], force)
     writer(output)  # refuses a name that no format has
@@ -160,7 +160,7 @@ def _cut(scene: Scene, box: list[float] | None, ball: list[float] | None) -> Sce
 
 def _views(scene: Scene, count: int) -> tuple[Camera, ...]:
     """Where the loss is measured: the scene's own cameras if it has any, evenly; else the views that see most."""
-    from ...gaussians.language.views import choose_views, fit_camera
+    from ...gaussians.viewpoints.coverage import choose_views, fit_camera
 
     own = scene.cameras
     if own:
@@ -170,8 +170,8 @@ def _views(scene: Scene, count: int) -> tuple[Camera, ...]:
 
 def _smaller(scene: Scene, degree: int | None, most: int | None, measured: tuple[Camera, ...]) -> Scene:
     """Fewer Gaussians as other views than the measured ones see them, and fewer harmonics."""
-    from ...gaussians.language.views import candidates, fit_camera
     from ...gaussians.reduce import most_visible
+    from ...gaussians.viewpoints.coverage import candidates, fit_camera
 
     if most is not None and most < len(scene.cloud):
         own = scene.cameras[:: -(-len(scene.cameras) // PRUNE_VIEWS) or 1]
@@ -185,8 +185,9 @@ def _smaller(scene: Scene, degree: int | None, most: int | None, measured: tuple
 
 
 def _save(scene: Scene, output: Path, force: bool, spz_version: int) -> None:
-    from ...gaussians.files import save, spz, writing
-    from ...gaussians.files.arrange import arranged
+    from ...gaussians.files import save, writing
+    from ...gaussians.files.formats import spz
+    from ...gaussians.files.formats.morton import arranged
 
     if output.suffix.lower() == ".spz" and spz_version != spz.LATEST:
         with writing(output, force) as file:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ..options import Debug, Encoder, Force, Json, Seed, Size
-from ..terminal import terminal
+from ..terminal.output import terminal
 
 
 def command(
@@ -26,8 +26,8 @@ def command(
 
     Leaves before and after pictures of each step, the room before and after (.ply), the session log, a contact sheet.
     """
-    from ..demo import Demo
-    from ..views import parse_size
+    from ..demo.run import Demo
+    from ..pictures.named_cameras import parse_size
 
     demo = Demo(
         output,

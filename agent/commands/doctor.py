@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..options import Debug, Json
-from ..terminal import terminal
+from ..terminal.output import terminal
 
 
 def command(as_json: Json = False, debug: Debug = False) -> None:

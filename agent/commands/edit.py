@@ -27,12 +27,12 @@ from ..options import (
     Up,
     View,
 )
-from ..stopwatch import timed
-from ..terminal import explain, terminal
+from ..session.stopwatch import timed
+from ..terminal.output import explain, terminal
 
 if TYPE_CHECKING:
-    from ..result import Result
-    from ..session import Session
+    from ..session.result import Result
+    from ..session.session import Session
 
 
 @dataclass(frozen=True)
@@ -77,8 +77,8 @@ def command(
     A language field saved beside SCENE (see `embed`) is used, and the edited scene gets one too.
     """
     from ...gaussians.errors import UserError
-    from ..asked import asked
-    from ..opening import Opening, open_session
+    from ..session.model_usage import asked
+    from ..session.opening import Opening, open_session
 
     if (text is None) == (replay is None):
         raise UserError('give either TEXT or --replay LOG: scenewright edit SCENE "make the sofa teal" -o out.ply')
@@ -111,7 +111,7 @@ def command(
 def _check_targets(output: Path | None, pictures: Path | None, force: bool) -> None:
     """Say at once, not after the work, that a file would be overwritten, cannot be there or has no format."""
     from ...gaussians.files import writer
-    from ..targets import make_folder, refuse_existing, require_folder
+    from ..output_files import make_folder, refuse_existing, require_folder
 
     if output is not None:
         writer(output)
@@ -126,8 +126,8 @@ def _check_targets(output: Path | None, pictures: Path | None, force: bool) -> N
 def _instruct(session: Session, text: str, dry_run: bool) -> Result:
     """Do what was said, or say why not, what it hesitated between, and what asking a model took all the same."""
     from ...gaussians.errors import ScenewrightError
-    from ..asked import asked
-    from ..resolved import candidate_json, refusal_json
+    from ..session.model_usage import asked
+    from ..session.resolved_plan import candidate_json, refusal_json
 
     try:
         return session.preview(text) if dry_run else session.do(text)
@@ -162,7 +162,7 @@ def _told(results: Sequence[Result], replayed: bool, dry_run: bool) -> tuple[lis
 
 def _lines(result: Result, dry_run: bool) -> list[str]:
     """What was done; in a dry run the plan, and what it would do."""
-    from ..resolved import plan_lines
+    from ..session.resolved_plan import plan_lines
 
     if not dry_run or result.plan is None:
         return list(result.sentences())
@@ -172,7 +172,7 @@ def _lines(result: Result, dry_run: bool) -> list[str]:
 
 def _write(session: Session, results: Sequence[Result], targets: _Targets, data: dict[str, Any]) -> None:
     """Write what was asked for, and note it in `data`."""
-    from ...gaussians.language.store import save_field
+    from ...gaussians.language.field.store import save_field
 
     if targets.output is not None:
         session.save(targets.output, force=targets.force)
@@ -185,8 +185,8 @@ def _write(session: Session, results: Sequence[Result], targets: _Targets, data:
 
 def _draw(session: Session, results: Sequence[Result], folder: Path, force: bool) -> list[str]:
     """before.png and after.png, as the viewer sees them."""
-    from ..look import after, picture
-    from ..pictures import save_png
+    from ..pictures.image_files import save_png
+    from ..pictures.scene_pictures import after, picture
 
     shots = {"before": picture(results[0].before, session.viewer), "after": after(results[-1], session.viewer)}
     for name, shot in shots.items():

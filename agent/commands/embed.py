@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 
 from ..options import Capture, Debug, Encoder, Force, Json, Masks, Scale, SceneFile, Up
-from ..terminal import terminal
+from ..terminal.output import terminal
 
 
 def command(
@@ -25,13 +25,13 @@ def command(
     --masks and --capture, and --up and --metres-per-unit, which are kept with the field.
     """
     from ...gaussians.files import load
-    from ...gaussians.files.capture import read_capture
+    from ...gaussians.files.captures.capture import read_capture
     from ...gaussians.language import encoders
     from ...gaussians.language import masks as maskers
-    from ...gaussians.language.embed import embed
-    from ...gaussians.language.store import load_field, misfit, save_field
-    from ..things import told
-    from ..views import with_frame
+    from ...gaussians.language.field.embed import embed
+    from ...gaussians.language.field.store import load_field, misfit, save_field
+    from ..pictures.named_cameras import with_frame
+    from ..terminal.thing_names import told
 
     started = time.perf_counter()
     loaded, chosen = load(scene), encoders.load(encoder)

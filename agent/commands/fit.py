@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from ..options import Debug, Force, Json, Seed
-from ..terminal import terminal
+from ..terminal.output import terminal
 
 if TYPE_CHECKING:
     from ...gaussians.fit import Fitted, Photos, Settings, Status
@@ -70,7 +70,7 @@ def command(
     """
     from ...gaussians.errors import FileError, UserError
     from ...gaussians.files import save
-    from ...gaussians.files.capture import photographs_alone
+    from ...gaussians.files.captures.capture import photographs_alone
     from ...gaussians.fit import Settings, fit, take_photos
     from ...gaussians.fit.checkpoint import drop
     from ...gaussians.fit.engine import device_of
@@ -115,7 +115,7 @@ def _check_targets(output: Path, report: Path | None, force: bool) -> None:
     """Say at once, not after the training, that a file would be overwritten, cannot be there or has no format."""
     from ...gaussians.errors import UserError
     from ...gaussians.files import writer
-    from ..targets import make_folder, refuse_existing, require_folder
+    from ..output_files import make_folder, refuse_existing, require_folder
 
     writer(output)
     require_folder(output)
@@ -127,7 +127,7 @@ def _check_targets(output: Path, report: Path | None, force: bool) -> None:
 
 
 def _told(photos: Photos) -> str:
-    from ...gaussians.fit.start import FEWEST
+    from ...gaussians.fit.initialize import FEWEST
 
     height, width = photos.shots[0].photo.shape[:2]
     many = len(photos.points.means)
@@ -198,7 +198,7 @@ def _write_report(done: Fitted, photos: Photos, data: dict[str, Any], folder: Pa
     """The figures, and of each held-out photograph a picture: as taken, as rendered, their difference fourfold."""
     from ...gaussians.files import writing
     from ...gaussians.fit.quality import beside
-    from ..pictures import save_png
+    from ..pictures.image_files import save_png
 
     with writing(folder / "report.json", force=force) as file:
         file.write((json.dumps(data, indent=2) + "\n").encode())

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from ..options import Debug, Json, SceneFile
-from ..terminal import terminal
+from ..terminal.output import terminal
 
 
 def command(
@@ -21,13 +21,13 @@ def command(
 ) -> None:
     """Tell what a scene file holds: format, Gaussians, frame, cameras, repairs, and its things if it was embedded."""
     from ...gaussians.files import load_with_report
-    from ...gaussians.language.store import load_field
-    from ..things import told
+    from ...gaussians.language.field.store import load_field
+    from ..terminal.thing_names import told
 
     loaded, report = load_with_report(scene)
     loaded = load_field(loaded, scene) or loaded
     if graph:
-        from ...planners.graph import SceneGraph
+        from ...planners.rooms.graph import SceneGraph
 
         nodes = SceneGraph.from_scene(loaded).model_dump(mode="json", exclude_none=True)
         terminal.result(json.dumps(nodes, indent=1, ensure_ascii=False), nodes)

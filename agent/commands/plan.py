@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..options import Batch, Budget, Debug, Encoder, Json, Picture, Planner, View
-from ..terminal import read_batch, terminal
+from ..terminal.output import read_batch, terminal
 
 if TYPE_CHECKING:
-    from ..opening import Opening
+    from ..session.opening import Opening
 
 Answer = Callable[[str, str | None], dict[str, Any]]  # instruction, the one before
 
@@ -49,7 +49,7 @@ def command(
     also tried on a copy, so that the answer is what `edit` would do.
     """
     from ...gaussians.errors import UserError
-    from ..opening import Opening
+    from ..session.opening import Opening
 
     given = arguments or []
     if len(given) > (1 if batch else 2) or (not given and batch is None):
@@ -79,7 +79,7 @@ def command(
 def _told(answer: Answer, row: dict[str, Any]) -> dict[str, Any]:
     """The answer to one line of a batch; a line that cannot be an instruction does not stop the others."""
     from ...gaussians.errors import UserError
-    from ..resolved import unread
+    from ..session.resolved_plan import unread
 
     try:
         return answer(row["text"], row.get("context"))
@@ -88,8 +88,8 @@ def _told(answer: Answer, row: dict[str, Any]) -> dict[str, Any]:
 
 
 def _in_scene(opening: Opening) -> Answer:
-    from ..opening import open_session
-    from ..resolved import resolved_plan
+    from ..session.opening import open_session
+    from ..session.resolved_plan import resolved_plan
 
     session, _ = open_session(opening)
     return lambda text, context: resolved_plan(session, text, context)
@@ -99,14 +99,14 @@ def _without_scene(graph: Path | None, planner: str, budget: str | None) -> Answ
     """On a graph, or in words alone."""
     from ...planners import load as load_planner
     from ...planners.budget import Budget, Ledger
-    from ..resolved import graph_plan, plan_json
+    from ..session.resolved_plan import graph_plan, plan_json
 
     ledger = Ledger(Budget.parse(budget) if budget is not None else None)
     reader = load_planner(planner, ledger=ledger, progress=terminal.progress)
     if graph is None:
         return lambda text, context: plan_json(reader.plan(text, previous=context))
-    from ...planners.graph import SceneGraph
-    from ...planners.stage import Stage
+    from ...planners.rooms.graph import SceneGraph
+    from ...planners.rooms.graph_scene import Stage
 
     stage = Stage.of(SceneGraph.read(graph))
     return lambda text, context: graph_plan(stage, reader, text, context)

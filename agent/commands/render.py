@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..options import Debug, Force, Json, SceneFile, Size, View
-from ..targets import refuse_existing
-from ..terminal import terminal
-from ..views import PICTURE, choose_view, parse_size
+from ..output_files import refuse_existing
+from ..pictures.named_cameras import PICTURE, choose_view, parse_size
+from ..terminal.output import terminal
 
 if TYPE_CHECKING:
     from ...gaussians.camera import Camera, Render
     from ...gaussians.scene import Scene
-    from ..shots import Shots
+    from ..pictures.shots import Shots
 
 Timing = tuple[float | None, float | None]
 
@@ -65,7 +65,7 @@ def command(
     from ...gaussians.color import parse
     from ...gaussians.files import load
     from ...gaussians.render import render
-    from ..film import is_film
+    from ..pictures.film import is_film
 
     film = is_film(output)
     wishes = {"--view": view != "auto", "--orbit": orbit is not None, "--cameras": cameras is not None}
@@ -120,7 +120,7 @@ def _refuse_kinds(alpha: bool, depth: bool, output: Path) -> None:
 
 
 def _still(draw: Callable[[Camera], Any], camera: Camera, output: Path, force: bool) -> None:
-    from ..pictures import save_png
+    from ..pictures.image_files import save_png
 
     started = time.perf_counter()
     picture = draw(camera)
@@ -134,7 +134,7 @@ def _shots(
     scene: Scene, orbit: int | None, cameras: Path | None, path: Path | None, timing: Timing, size: str | None, to: Path
 ) -> Shots:
     """The pictures of a film; `timing` holds its seconds and its pictures a second."""
-    from .. import shots
+    from ..pictures import shots
 
     asked = None if size is None else parse_size(size)
     usual = _GIF if to.suffix.lower() == ".gif" else PICTURE
@@ -147,7 +147,7 @@ def _shots(
 
 
 def _film(draw: Callable[[Camera], Any], shots: Shots, output: Path, force: bool) -> None:
-    from .. import film
+    from ..pictures import film
 
     sizes = {(camera.width, camera.height) for camera in shots.cameras}
     film.check(output, shots.names, sizes, shots.fps, force)

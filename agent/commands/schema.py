@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ..options import Debug, Json
-from ..terminal import terminal
+from ..terminal.output import terminal
 
 
 def command(

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..options import Batch, Debug, Encoder, Force, Json, Planner, SceneFile, View
-from ..terminal import read_batch, terminal
+from ..terminal.output import read_batch, terminal
 
 if TYPE_CHECKING:
-    from ...gaussians.language.query import Query
-    from ...gaussians.language.selection import Selection
-    from ..session import Session
+    from ...gaussians.language.query.query import Query
+    from ...gaussians.language.query.selection import Selection
+    from ..session.session import Session
 
 Ids = Annotated[
     Path | None,
@@ -51,8 +51,8 @@ def command(
 ) -> None:
     """Find what a phrase means: found, ambiguous (with the candidates) or absent (with the nearest)."""
     from ...gaussians.errors import UserError
-    from ..opening import Opening, open_session
-    from ..targets import make_folder
+    from ..output_files import make_folder
+    from ..session.opening import Opening, open_session
 
     if (text is None) == (batch is None):
         raise UserError('give either TEXT or --batch FILE: scenewright select SCENE "the red chair"')
@@ -85,7 +85,7 @@ class Asked:
 def _steps(grow: float | None, shrink: float | None, invert: bool) -> tuple[Query, ...]:
     """Growing, then shrinking, then inverting, as far as they were asked for."""
     from ...gaussians.errors import UserError
-    from ...gaussians.language.query import Query
+    from ...gaussians.language.query.query import Query
 
     for name, by in (("--grow", grow), ("--shrink", shrink)):
         if by is not None and not 0 < by <= 100:
@@ -115,7 +115,7 @@ def _target(ids: Path | None, row: Any, batch: bool) -> Path | None:
 def _check_targets(targets: list[Path], force: bool) -> None:
     """Say before the work that a file would be overwritten, or that two answers would go to one."""
     from ...gaussians.errors import UserError
-    from ..targets import refuse_existing
+    from ..output_files import refuse_existing
 
     twice = [t for t in targets if targets.count(t) > 1] if len(set(targets)) < len(targets) else []
     if twice:
@@ -140,7 +140,7 @@ def _one(session: Session, text: str, asked: Asked, target: Path | None, force: 
 def _answer(session: Session, text: str, asked: Asked) -> tuple[Selection | None, dict[str, Any]]:
     """The selection, None if the words were not understood, and the answer as data."""
     from ...gaussians.errors import UserError
-    from ..resolved import selection_json
+    from ..session.resolved_plan import selection_json
 
     started = time.perf_counter()
     try:

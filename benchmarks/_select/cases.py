@@ -13,15 +13,15 @@ from numpy.typing import NDArray
 from ...gaussians import assets
 from ...gaussians.assets import Room, TruthObject
 from ...gaussians.camera import Camera
-from ...gaussians.language.embed import embed
 from ...gaussians.language.encoders import Encoder
-from ...gaussians.language.query import Query
-from ...gaussians.language.resolve import resolve
-from ...gaussians.language.segment import ASK_VIEWS, Thing
-from ...gaussians.language.selection import Verdict
-from ...gaussians.language.table import with_table
-from ...gaussians.language.views import Views
+from ...gaussians.language.field.embed import embed
+from ...gaussians.language.field.group_table import with_table
+from ...gaussians.language.query.query import Query
+from ...gaussians.language.query.resolve import resolve
+from ...gaussians.language.query.selection import Verdict
+from ...gaussians.language.segmentation.segment import ASK_VIEWS, Thing
 from ...gaussians.scene import Scene
+from ...gaussians.viewpoints.coverage import Views
 from .._iou import Mask, iou
 from ..harness import Metric, Point
 

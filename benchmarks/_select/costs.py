@@ -14,10 +14,10 @@ from typing import Any
 import torch
 
 from ...gaussians.language.encoders import Encoder
-from ...gaussians.language.lifting import lift
-from ...gaussians.language.query import Query
-from ...gaussians.language.resolve import resolve
-from ...gaussians.language.store import save_field
+from ...gaussians.language.field.store import save_field
+from ...gaussians.language.masks.lifting import lift
+from ...gaussians.language.query.query import Query
+from ...gaussians.language.query.resolve import resolve
 from ..harness import Metric
 from . import pictures
 from .cases import Case, Part

@@ -12,7 +12,7 @@ from statistics import fmean
 import numpy as np
 
 from ...gaussians.language.encoders import Encoder
-from ...gaussians.language.segment import ASK_VIEWS
+from ...gaussians.language.segmentation.segment import ASK_VIEWS
 from .. import _clip, _data
 from ..harness import Metric, Point
 from . import lifted, pictures, vectors

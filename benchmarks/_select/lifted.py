@@ -15,17 +15,17 @@ from statistics import fmean
 import numpy as np
 
 from ...gaussians.camera import Camera
-from ...gaussians.language.association import HELD, associate
-from ...gaussians.language.embed import embed
 from ...gaussians.language.encoders import Encoder
-from ...gaussians.language.lifting import lift
+from ...gaussians.language.field.embed import embed
+from ...gaussians.language.field.group_table import with_table
 from ...gaussians.language.masks import ViewMasks
-from ...gaussians.language.masks.embedded import of_view
-from ...gaussians.language.segment import Thing
-from ...gaussians.language.table import with_table
-from ...gaussians.language.views import Views
+from ...gaussians.language.masks.association import HELD, associate
+from ...gaussians.language.masks.lifting import lift
+from ...gaussians.language.masks.sources.embedded import of_view
+from ...gaussians.language.segmentation.segment import Thing
 from ...gaussians.render import render
 from ...gaussians.scene import Scene
+from ...gaussians.viewpoints.coverage import Views
 from ..harness import Metric, Point
 from . import pictures
 from .cases import Case, Part

@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 
 from ...gaussians import assets
 from ...gaussians.assets import Asset, Parts
-from ...gaussians.assets.forge import Unlit
-from ...gaussians.assets.layout import Layout
-from ...gaussians.assets.surface import Samples
+from ...gaussians.assets.furnishing.layout import Layout
+from ...gaussians.assets.modeling.make import Unlit
+from ...gaussians.assets.modeling.sampling import Samples
 from ...gaussians.cloud import GaussianCloud
-from ...gaussians.language.calibration import probability
 from ...gaussians.language.encoders import Encoder
-from ...gaussians.language.train import strangers
+from ...gaussians.language.encoders.calibration import probability
+from ...training import foreign_meshes
 from .._iou import iou
 from ..harness import Metric
 from . import staged
@@ -62,7 +62,7 @@ class _AsRead(Unlit):
 
 def read(path: Path) -> Asset:
     """A mesh as an asset that can be placed; its kind is its file's name."""
-    cloud = strangers.read(path)
+    cloud = foreign_meshes.read(path)
     cloud = cloud.replace(scales=cloud.scales * torch.tensor([WIDER, WIDER, 1.0]))
     low, high = cloud.means.amin(dim=0), cloud.means.amax(dim=0)
     w, d, h = (float(v) for v in high - low)

@@ -12,7 +12,7 @@ import torch
 from ...gaussians import assets
 from ...gaussians.camera import Camera
 from ...gaussians.language.encoders import Encoder
-from ...gaussians.language.selection import Verdict
+from ...gaussians.language.query.selection import Verdict
 from ...gaussians.render import render
 from .._iou import Mask, border_iou, contour_iou, iou, trimap_iou
 from ..harness import Metric

@@ -13,10 +13,10 @@ import numpy as np
 
 from ...gaussians import assets
 from ...gaussians.assets import Asset
-from ...gaussians.assets.layout import Layout
+from ...gaussians.assets.furnishing.layout import Layout
 from ...gaussians.color import BASIC
 from ...gaussians.language.encoders import Encoder
-from ...gaussians.language.query import Query
+from ...gaussians.language.query.query import Query
 from ..harness import Metric
 from . import staged
 from .cases import Case, Part, ask

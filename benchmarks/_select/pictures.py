@@ -19,9 +19,9 @@ from ...gaussians.camera import Camera, Render
 from ...gaussians.language.encoders import Encoder
 from ...gaussians.language.encoders.framing import crop
 from ...gaussians.language.masks import NONE, ViewMasks
-from ...gaussians.language.views import candidates, fit_camera
 from ...gaussians.render import contributions, render
 from ...gaussians.scene import Scene
+from ...gaussians.viewpoints.coverage import candidates, fit_camera
 from .cases import Case
 
 I32 = NDArray[np.int32]

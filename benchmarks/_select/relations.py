@@ -15,10 +15,10 @@ from typing import Any, Literal
 import numpy as np
 
 from ...gaussians import assets
-from ...gaussians.assets.layout import Layout
+from ...gaussians.assets.furnishing.layout import Layout
 from ...gaussians.camera import Camera
 from ...gaussians.language.encoders import Encoder
-from ...gaussians.language.query import Query
+from ...gaussians.language.query.query import Query
 from ..harness import Metric
 from . import spatial, staged
 from .cases import Case, Part, ask

@@ -13,8 +13,8 @@ import torch
 from numpy.typing import NDArray
 
 from ...gaussians.assets import Asset
-from ...gaussians.assets.layout import Box, Layout
-from ...gaussians.assets.rooms import assemble
+from ...gaussians.assets.furnishing.furnish import assemble
+from ...gaussians.assets.furnishing.layout import Box, Layout
 from ...gaussians.color import BASIC, parse, rgb_to_lab
 from .cases import Case, case_of
 

@@ -16,10 +16,10 @@ from statistics import fmean
 import numpy as np
 from numpy.typing import NDArray
 
-from ...gaussians.language.association import associate
-from ...gaussians.language.calibration import probability
 from ...gaussians.language.encoders import Encoder
-from ...gaussians.language.lifting import Lifted, lift
+from ...gaussians.language.encoders.calibration import probability
+from ...gaussians.language.masks.association import associate
+from ...gaussians.language.masks.lifting import Lifted, lift
 from .._iou import Mask, iou
 from .cases import Case
 from .pictures import Seen

@@ -16,8 +16,8 @@ from typing import Literal
 import numpy as np
 
 from ..errors import UserError
-from .materials import Tone
-from .shapes import Piece
+from .modeling.materials import Tone
+from .modeling.shapes import Piece
 
 Builder = Callable[[np.random.Generator, Tone], list[Piece]]
 Support = Literal["floor", "surface", "wall", "ceiling"]

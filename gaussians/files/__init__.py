@@ -15,17 +15,19 @@ from typing import BinaryIO
 
 from ..errors import FileError, UserError
 from ..scene import Scene
-from .arrange import arranged
+from . import formats
 from .atomic import writing
 from .format import HEAD_BYTES, Format, Report
+from .formats.morton import arranged
 
-__all__ = ["Format", "Report", "formats", "load", "load_with_report", "save", "writer", "writing"]
+__all__ = ["Format", "Report", "known_formats", "load", "load_with_report", "save", "writer", "writing"]
 
 
 @functools.cache
-def formats() -> tuple[Format, ...]:
+def known_formats() -> tuple[Format, ...]:
     """Every known format, by name."""
-    modules = (importlib.import_module(f"{__name__}.{info.name}") for info in pkgutil.iter_modules(__path__))
+    names = (info.name for info in pkgutil.iter_modules(formats.__path__))
+    modules = (importlib.import_module(f"{formats.__name__}.{name}") for name in names)
     found = [module.FORMAT for module in modules if hasattr(module, "FORMAT")]
     return tuple(sorted(found, key=lambda f: f.name))
 
@@ -58,7 +60,7 @@ def _detect(path: Path) -> Format:
     if path.is_file():
         with open(path, "rb") as file:
             head = file.read(HEAD_BYTES)
-    for known in formats():
+    for known in known_formats():
         if known.recognises(path, head):
             return known
     if named := _by_suffix(path):
@@ -72,19 +74,19 @@ def _unknown(path: Path) -> str:
         inside = sorted(p.name for p in path.iterdir() if _promising(p))
         if inside:
             return f"{path} is a folder that holds scenes; name one of them: {', '.join(inside[:10])}"
-    listed = "; ".join(f"{f.name} ({', '.join(f.suffixes)})" for f in formats())
+    listed = "; ".join(f"{f.name} ({', '.join(f.suffixes)})" for f in known_formats())
     return f"{path}: unknown format. Known are: {listed}"
 
 
 def _promising(path: Path) -> bool:
     """Whether something in a folder looks like a scene."""
-    return any(f.recognises(path, b"") for f in formats()) if path.is_dir() else _by_suffix(path) is not None
+    return any(f.recognises(path, b"") for f in known_formats()) if path.is_dir() else _by_suffix(path) is not None
 
 
 def _by_suffix(path: Path) -> Format | None:
     """The format with the longest suffix that the name ends in."""
     name = path.name.lower()
-    matches = [(len(s), f) for f in formats() for s in f.suffixes if name.endswith(s)]
+    matches = [(len(s), f) for f in known_formats() for s in f.suffixes if name.endswith(s)]
     return max(matches, key=lambda m: m[0])[1] if matches else None
 
 
@@ -114,7 +116,7 @@ def writer(path: Path) -> Callable[[Scene, BinaryIO], None]:
     """
     known = _by_suffix(path)
     if known is None or known.write is None:
-        writable = ", ".join(s for f in formats() if f.write for s in f.suffixes)
+        writable = ", ".join(s for f in known_formats() if f.write for s in f.suffixes)
         raise UserError(f"cannot write {path.name}: scenes are written as {writable}")
     write, arranges = known.write, known.arranges
     return lambda scene, file: write(arranged(scene) if arranges and scene.language is None else scene, file)

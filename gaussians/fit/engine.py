@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..camera import Camera
 from ..render.cpu import gradient
-from .growth import Growth
+from .densify import Growth
 from .loss import photometric
 from .parameters import Parameters, chained
 

@@ -17,8 +17,8 @@ from torch import Tensor
 from ..camera import Camera, Vec3
 from ..cloud import SH_BANDS
 from .adam import BETAS, EPSILON, Adam
+from .densify import Growth
 from .engine import BLACK
-from .growth import Growth
 from .loss import reference
 from .parameters import HIGHER, Parameters, rates
 

@@ -17,14 +17,14 @@ import numpy as np
 
 from ..errors import FileError, UserError
 from ..scene import Scene
-from . import checkpoint, choosing
-from .choosing import Choice
+from . import checkpoint, held_out_choice
+from .densify import Budgeted, Classic, Growth
 from .engine import device_of, engine_on
-from .growth import Budgeted, Classic, Growth
+from .held_out_choice import Choice
+from .initialize import start
 from .parameters import Parameters
-from .photos import Photos
+from .photographs.photos import Photos
 from .quality import Quality, measure
-from .start import start
 from .train import SETTLED, Schedule, Trainer
 
 WATCHED = 6  # held-out photographs that are looked at on the way
@@ -53,7 +53,7 @@ class Settings:
     steps: int | None = None
     most: int = 200_000
     degree: int | Literal["auto"] = "auto"
-    gain: float | None = choosing.GAIN
+    gain: float | None = held_out_choice.GAIN
     growth: Literal["budgeted", "classic"] = "budgeted"
     coarse: float = 0.0
     seed: int = 0
@@ -127,7 +127,7 @@ def fit(
     engine = engine_on(device_of(settings.device))
     rng = np.random.default_rng(settings.seed)
     cloud = start(photos, settings.most, rng)
-    degree = choosing.HIGHEST if settings.degree == "auto" else settings.degree
+    degree = held_out_choice.HIGHEST if settings.degree == "auto" else settings.degree
     schedule = Schedule(settings.steps, settings.seconds, settings.coarse, degree)
     trainer = Trainer(
         photos.shots, Parameters.of(cloud), _growth(settings, photos.extent, rng), photos.extent, schedule, rng, engine
@@ -171,8 +171,8 @@ def _choose(trainer: Trainer, photos: Photos, settings: Settings, choices: list[
     if settings.gain is None or trainer.done < SETTLED or choices:
         return
     if settings.degree == "auto":
-        choices += choosing.fewer_bands(trainer, photos, settings.gain)
-    choices += choosing.fewer_gaussians(trainer, photos, settings.gain)
+        choices += held_out_choice.fewer_bands(trainer, photos, settings.gain)
+    choices += held_out_choice.fewer_gaussians(trainer, photos, settings.gain)
 
 
 class _Teller:

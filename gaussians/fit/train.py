@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..camera import Camera
+from .densify import Growth
 from .engine import CpuEngine, Maker
-from .growth import Growth
 from .parameters import Parameters
 
 F32 = NDArray[np.float32]

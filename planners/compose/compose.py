@@ -8,13 +8,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from ..checking import check
 from ..layout import solve
 from ..layout.problem import Conflict, Layout, Problem
 from ..plan import Usage
+from ..rooms.check import check
 from .brief import Brief, RefusedError
 from .problems import Posed, problem_of
-from .reading import read
+from .sentence.read import read
 
 if TYPE_CHECKING:
     from ..model.backend import ModelBackend

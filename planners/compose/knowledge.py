@@ -14,7 +14,7 @@ from typing import Annotated, Literal, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
 
-from ..grammar import nouns
+from ..grammar.vocabulary import nouns
 from ..layout.problem import WishName
 
 Name = Annotated[str, Field(min_length=1, max_length=60, pattern=r"^[a-z][a-z' ]*$")]

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..graph import Size
 from ..layout.problem import Item, Stand, Wall
+from ..rooms.graph import Size
 from . import knowledge
 from .brief import Brief
 

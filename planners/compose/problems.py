@@ -11,12 +11,13 @@ from itertools import count
 
 import numpy as np
 
-from ..graph import Size
 from ..layout.problem import Item, Keepout, Problem, Wish, WishName
-from . import knowledge, sizing, vocabulary
+from ..rooms.graph import Size
+from . import knowledge, sizing
 from .brief import Brief
 from .furnishing import Bond, Furnishing, Group, chained, furnish, pairs
 from .openings import beams, draped, openings
+from .sentence import vocabulary
 
 _PACKED = 0.5  # share of a top that small things may take by habit
 _OVERHEAD = 1.95  # metres under what hangs from the ceiling

@@ -16,10 +16,10 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from ... import prompts
 from ...gaussians.errors import BackendError
-from ..grammar.unsafe import unsafe_words
-from ..grammar.words import clean
+from ..grammar.tagging.words import clean
+from ..grammar.vocabulary.unsafe import unsafe_words
 from ..model.backend import Message, ModelBackend
-from ..model.strict import DECODER, TooDeepError, given_only
+from ..model.verify.strict_json import DECODER, TooDeepError, given_only
 from ..plan import Usage
 from . import knowledge
 from .brief import Brief, RefusedError, Relation, Thing

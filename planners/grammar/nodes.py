@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from lark import Token, Tree
 
-from .tags import Tag
+from .tagging.tags import Tag
 
 Node = Tree[Token]
 

@@ -15,10 +15,10 @@ from lark import Lark, Token
 from lark.exceptions import UnexpectedInput, UnexpectedToken
 from lark.lexer import Lexer
 
-from . import lexicon, nouns
 from .nodes import Node, Refusal
-from .reading import color_at
-from .tags import Clause, Tag
+from .tagging.lookahead import color_at
+from .tagging.tags import Clause, Tag
+from .vocabulary import lexicon, nouns
 
 
 class _Passed(Lexer):

@@ -13,22 +13,22 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ...gaussians.errors import UserError
-from ...gaussians.language.query import Query
-from ...tools.base import EditOp
+from ...gaussians.language.query.query import Query
+from ...tools.operation import EditOp
 from ...tools.registry import parse as parse_op
 from ..plan import MAX_OPS, EditPlan
-from . import lexicon
-from .commands import Commands
-from .idle import FORBIDDEN, STATEMENT, empty, is_chat, refuse_idle
-from .joining import merge_copies, release, sparing
+from .meaning.commands import Commands
+from .meaning.joining import merge_copies, release, sparing
 from .nodes import Refusal, trees
 from .parsing import first_words, parse
-from .reading import match
-from .spelling import respell
-from .tagger import Tagger
-from .tags import Clause, Tag, sentences
-from .unsafe import unsafe_words
-from .words import Word, clean, split
+from .tagging.lookahead import match
+from .tagging.non_edits import FORBIDDEN, STATEMENT, empty, is_chat, refuse_idle
+from .tagging.spelling import respell
+from .tagging.tagger import Tagger
+from .tagging.tags import Clause, Tag, sentences
+from .tagging.words import Word, clean, split
+from .vocabulary import lexicon
+from .vocabulary.unsafe import unsafe_words
 
 if TYPE_CHECKING:
     from ..plan import Sight

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from ..graph import SHELL
+from ..rooms.graph import SHELL
 from .problem import Item, Problem, Wall
 from .shapes import EPSILON, Spot, depth, shifted
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Literal, NamedTuple
 
-from ..graph import NodeId
+from ..rooms.graph import NodeId
 from .bodies import DOORS, FLAT, Prepared
 from .problem import Conflict, Item, Problem, Wish
 from .search import Search
+from .sentences import said_item, said_keepout, said_room, said_wish
 from .state import State
-from .telling import said_item, said_keepout, said_room, said_wish
 
 _SPECK = (0.01, 0.01, 0.01)  # what a thing shrinks to when its size is not stated
 _EFFORT = 0.5  # of the search on parts of a problem

@@ -5,8 +5,8 @@ Knows both. Refuses to place anything; what the checker rejects is taken out.
 
 from __future__ import annotations
 
-from ..checking import check
-from ..graph import Node, NodeId, RoomShape, SceneGraph
+from ..rooms.check import check
+from ..rooms.graph import Node, NodeId, RoomShape, SceneGraph
 from .bodies import Prepared
 from .problem import Wish
 from .state import State

@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from .bodies import FLAT, HEAD, Body, Member
-from .grounds import FLOOR, Ground, grounds
+from .candidate_surfaces import FLOOR, Ground, grounds
+from .costs import Place, crowding, habits, in_frame, moved, use, wished
 from .measures import VIEWED, measure, walls_gaps
-from .prices import Place, crowding, habits, in_frame, moved, use, wished
 from .shapes import EPSILON, Flags, Lattice, Spot, blocked, in_disc, shifted
 from .state import SOFT, State
 

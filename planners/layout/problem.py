@@ -11,7 +11,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from ..graph import SHELL, NodeId, Point, SceneGraph, Size, Support
+from ..rooms.graph import SHELL, NodeId, Point, SceneGraph, Size, Support
 
 Metres = Annotated[float, Field(ge=0, le=1000, allow_inf_nan=False)]
 WishName = Literal[

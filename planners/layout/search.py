@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..graph import SHELL
+from ..rooms.graph import SHELL
 from .bodies import FLAT, HEAD, Body, Member, Prepared
+from .costs import Place
 from .places import places
-from .prices import Place
 from .shapes import F64, Flags, Spot
 from .state import State
 

@@ -15,7 +15,7 @@ from .bodies import DOORS, FLAT, Body, Member, Prepared
 from .measures import behind_gap, measure, walls_gaps
 from .problem import Keepout, Stand
 from .shapes import EPSILON, Spot, depth, shifted, wrapped
-from .ways import floors
+from .walkable_grid import floors
 
 HARD, SOFT, USED, WALLED, OPEN, HUNG, LOST = (
     1000.0,

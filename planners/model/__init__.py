@@ -31,7 +31,7 @@ def load(spec: str) -> ModelBackend:
     kind, _, name = spec.partition(":")
     if kind not in (*_REMOTE, _LOCAL) or not name.strip():
         raise UserError(f"{spec!r} names no language model; it is one of {', '.join(FORMS)}")
-    module: Any = importlib.import_module(f"{__name__}.{'local' if kind == _LOCAL else 'remote'}")
+    module: Any = importlib.import_module(f"{__name__}.{'local' if kind == _LOCAL else 'remote'}.backend")
     loaded: ModelBackend = module.load(name if kind == _LOCAL else spec)
     return loaded
 

@@ -13,13 +13,13 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 
 from ...gaussians.errors import ScenewrightError, UserError
-from ...tools.base import EditOp
+from ...tools.operation import EditOp
 from ..plan import EditPlan, NoPlanError, Planner, Sight, Usage, Verdict
-from . import reply
 from .backend import Answer, Message, ModelBackend, UnreachableError
-from .guard import Fault, Guard
-from .labels import cleaned
-from .prompting import Request, messages, prompt_hash, repaired
+from .prompt.labels import cleaned
+from .prompt.messages import Request, messages, prompt_hash, repaired
+from .verify import reply
+from .verify.guard import Fault, Guard
 
 Progress = Callable[[str, float], None]  # stage in words, share done in [0, 1]
 

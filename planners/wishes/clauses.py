@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ..grammar import lexicon
-from ..grammar.words import clean, split
+from ..grammar.tagging.words import clean, split
+from ..grammar.vocabulary import lexicon
 
 _ENDS = frozenset(".;!:\n")
 _OPENERS = tuple(sorted((*lexicon.POLITE, *lexicon.FILLER), key=len, reverse=True))

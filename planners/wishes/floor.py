@@ -10,12 +10,12 @@ import math
 from collections.abc import Collection, Sequence
 
 from ...gaussians import assets
-from ...gaussians.language.query import Query
-from ...tools.base import Placement
+from ...gaussians.language.query.query import Query
+from ...tools.operation import Placement
 from ...tools.ops.insert import Insert
-from ..graph import Node
 from ..layout import Keepout
 from ..layout import Wish as LayoutWish
+from ..rooms.graph import Node
 from . import solving
 from .goals import Clear, ReadingCorner, See, Spread, Walls, Where
 from .room import SMALL, CannotError, Id, Room, copied, toward

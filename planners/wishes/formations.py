@@ -12,8 +12,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from ..graph import Node
 from ..layout import Wish as LayoutWish
+from ..rooms.graph import Node
 from . import solving
 from .floor import clear
 from .goals import Clear, Formation, Where

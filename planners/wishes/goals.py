@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from ...gaussians.language.query import Query
-from ...tools.base import EditOp
+from ...gaussians.language.query.query import Query
+from ...tools.operation import EditOp
 
 Relation = Literal["center", "next_to", "in_front_of"]
 

@@ -10,16 +10,16 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from ...gaussians.errors import ScenewrightError
-from ...tools.base import EditOp
-from ..graph import SceneGraph
+from ...tools.operation import EditOp
 from ..plan import MAX_OPS, EditPlan
+from ..rooms.graph import SceneGraph
 from .goals import Plain
 from .reading import Reader, Reading, Unread
 from .room import CannotError, Room, copied
 
 if TYPE_CHECKING:
-    from ..checking import Violation
     from ..plan import Sight
+    from ..rooms.check import Violation
 
 NAME = "wishes"
 
@@ -95,7 +95,7 @@ def _refuse_worse(before: SceneGraph, after: SceneGraph) -> None:
     Raises:
         CannotError: they would.
     """
-    from ..checking import check
+    from ..rooms.check import check
 
     known = {_key(v) for v in check(before.model_copy(update={"relations": ()})).violations}
     fresh = [v for v in check(after).violations if v.kind != "reach" and _key(v) not in known]

@@ -11,10 +11,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 
-from ...gaussians.language.query import Query
-from ...tools.base import EditOp
-from ..grammar import GrammarPlanner, nouns, quantities
-from ..grammar.words import split
+from ...gaussians.language.query.query import Query
+from ...tools.operation import EditOp
+from ..grammar import GrammarPlanner
+from ..grammar.tagging.words import split
+from ..grammar.vocabulary import nouns, quantities
 from .clauses import plain, sentences
 from .goals import (
     Become,

@@ -13,12 +13,12 @@ from typing import Literal
 
 from ...gaussians import assets
 from ...gaussians.errors import UserError
-from ...gaussians.language.query import Query
-from ...tools.base import EditOp
-from ...tools.space import overlap
-from ..grammar.words import bag
-from ..graph import Node, SceneGraph
-from ..stage import Stage
+from ...gaussians.language.query.query import Query
+from ...tools.operation import EditOp
+from ...tools.placement.bodies import overlap
+from ..grammar.tagging.words import bag
+from ..rooms.graph import Node, SceneGraph
+from ..rooms.graph_scene import Stage
 
 Id = int | str
 FLAT = 0.05  # metres; lower things on the floor are stood upon

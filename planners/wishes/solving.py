@@ -12,11 +12,11 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from ...tools.space import overlap
-from ..grammar.words import bag
-from ..graph import Node
+from ...tools.placement.bodies import overlap
+from ..grammar.tagging.words import bag
 from ..layout import Item, Keepout, Layout, Problem, Stand, solve
 from ..layout import Wish as LayoutWish
+from ..rooms.graph import Node
 from .room import SEATS, CannotError, Id, Room, copied, wrapped
 
 MARGIN = 0.05  # metres from the measured walls: a room's size is that of its shell

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from ...gaussians.language.query import Query
+from ...gaussians.language.query.query import Query
 from ...tools.ops.arrange import Arrange
-from ..graph import Node
+from ..rooms.graph import Node
 from .room import CannotError, Id, Room, wrapped
 
 _STILL = 0.02  # metres, and

@@ -12,11 +12,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ...tools.base import Placement
+from ...tools.operation import Placement
 from ...tools.ops.insert import Insert
 from ...tools.ops.move import Move
-from ..grammar.words import bag
-from ..graph import Node
+from ..grammar.tagging.words import bag
+from ..rooms.graph import Node
 from . import solving
 from .goals import Declutter, SetTable
 from .room import SEATS, SMALL, CannotError, Id, Room, is_flat, is_likely, wrapped

@@ -11,8 +11,8 @@ import os
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .agent.result import Result
-    from .agent.session import Session
+    from .agent.session.result import Result
+    from .agent.session.session import Session
     from .gaussians.assets import Asset, Room, furnish, kinds, make
     from .gaussians.camera import Camera, Render
     from .gaussians.cloud import GaussianCloud
@@ -27,16 +27,16 @@ if TYPE_CHECKING:
         UserError,
     )
     from .gaussians.files import load, save
-    from .gaussians.language.embed import embed
-    from .gaussians.language.field import LanguageField
-    from .gaussians.language.query import Query, Relation
-    from .gaussians.language.selection import Selection
+    from .gaussians.language.field.embed import embed
+    from .gaussians.language.field.language_field import LanguageField
+    from .gaussians.language.query.query import Query, Relation
+    from .gaussians.language.query.selection import Selection
     from .gaussians.render import render
     from .gaussians.scene import Frame, Scene
-    from .planners.composing import compose
-    from .planners.graph import SceneGraph
+    from .planners.compose.api import compose
     from .planners.plan import EditPlan
-    from .tools.base import EditOp
+    from .planners.rooms.graph import SceneGraph
+    from .tools.operation import EditOp
     from .tools.receipt import Receipt
 
 __version__ = "0.1.0"
@@ -46,12 +46,12 @@ __version__ = "0.1.0"
 os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 
 _HOME = {
-    "Session": ".agent.session",
-    "Result": ".agent.result",
+    "Session": ".agent.session.session",
+    "Result": ".agent.session.result",
     "load": ".gaussians.files",
     "save": ".gaussians.files",
     "render": ".gaussians.render",
-    "embed": ".gaussians.language.embed",
+    "embed": ".gaussians.language.field.embed",
     "kinds": ".gaussians.assets",
     "make": ".gaussians.assets",
     "furnish": ".gaussians.assets",
@@ -62,15 +62,15 @@ _HOME = {
     "GaussianCloud": ".gaussians.cloud",
     "Camera": ".gaussians.camera",
     "Render": ".gaussians.camera",
-    "LanguageField": ".gaussians.language.field",
-    "Query": ".gaussians.language.query",
-    "Relation": ".gaussians.language.query",
-    "Selection": ".gaussians.language.selection",
-    "EditOp": ".tools.base",
+    "LanguageField": ".gaussians.language.field.language_field",
+    "Query": ".gaussians.language.query.query",
+    "Relation": ".gaussians.language.query.query",
+    "Selection": ".gaussians.language.query.selection",
+    "EditOp": ".tools.operation",
     "Receipt": ".tools.receipt",
     "EditPlan": ".planners.plan",
-    "SceneGraph": ".planners.graph",
-    "compose": ".planners.composing",
+    "SceneGraph": ".planners.rooms.graph",
+    "compose": ".planners.compose.api",
     "ScenewrightError": ".gaussians.errors",
     "UserError": ".gaussians.errors",
     "InstructionError": ".gaussians.errors",

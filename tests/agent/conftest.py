@@ -14,8 +14,8 @@ from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.color import rgb_to_lab
 from scenewright.gaussians.files import save
 from scenewright.gaussians.language import encoders
-from scenewright.gaussians.language.field import Box, Group, LanguageField
-from scenewright.gaussians.language.store import save_field
+from scenewright.gaussians.language.field.language_field import Box, Group, LanguageField
+from scenewright.gaussians.language.field.store import save_field
 from scenewright.gaussians.scene import Frame, Scene
 
 _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from scenewright.benchmarks import _clip
-from scenewright.gaussians.language.calibration import of_clip, probability
-from scenewright.gaussians.language.encoders.vectors import wrap
+from scenewright.gaussians.language.encoders.backends.vectors import wrap
+from scenewright.gaussians.language.encoders.calibration import of_clip, probability
 
 
 def _made_up(noise: float) -> _clip.Pairs:

@@ -20,8 +20,8 @@ from scenewright.benchmarks.files import glossy
 from scenewright.gaussians import files
 from scenewright.gaussians.errors import FileError, UserError
 from scenewright.gaussians.fit import Photos, Settings
+from scenewright.gaussians.fit.densify import Classic
 from scenewright.gaussians.fit.engine import CpuEngine, Maker
-from scenewright.gaussians.fit.growth import Classic
 from scenewright.gaussians.fit.parameters import F32, Parameters
 from scenewright.gaussians.fit.train import Schedule, Trainer
 from scenewright.gaussians.scene import Scene

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from scenewright.agent.sight import StageSight
+from scenewright.agent.session.sight import StageSight
 from scenewright.benchmarks import _cascade, _scripted, _written
 from scenewright.gaussians.errors import BackendError
 from scenewright.planners.cascade import Cascade

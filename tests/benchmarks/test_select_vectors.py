@@ -14,9 +14,9 @@ from scenewright.benchmarks._select.pictures import Photos, Seen
 from scenewright.gaussians.assets import TruthObject
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
-from scenewright.gaussians.language.calibration import Calibration
 from scenewright.gaussians.language.encoders import Encoder
-from scenewright.gaussians.language.encoders.vectors import wrap
+from scenewright.gaussians.language.encoders.backends.vectors import wrap
+from scenewright.gaussians.language.encoders.calibration import Calibration
 from scenewright.gaussians.language.masks import ViewMasks
 from scenewright.gaussians.scene import Frame, Scene
 

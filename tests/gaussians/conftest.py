@@ -130,7 +130,7 @@ def saved_clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a random CLIP, as open_clip saves them."""
     if importlib.util.find_spec("open_clip") is None:
         pytest.skip("open_clip is not installed (pip install 'scenewright[models]')")
-    from scenewright.gaussians.vision_cure import import_torchvision
+    from scenewright.gaussians.torchvision_fix import import_torchvision
 
     import_torchvision()
     import open_clip
@@ -148,8 +148,8 @@ def saved_clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def exported_clip(saved_clip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The same model as ONNX."""
+    from scenewright.gaussians.language.encoders.backends.open_clip import load
     from scenewright.gaussians.language.encoders.export import export
-    from scenewright.gaussians.language.encoders.open_clip import load
 
     folder = tmp_path_factory.mktemp("exported")
     export(load(str(saved_clip)), folder)

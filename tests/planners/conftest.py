@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 import torch
 
-from scenewright.gaussians.vision_cure import import_torchvision
+from scenewright.gaussians.torchvision_fix import import_torchvision
 
 SENTENCES = (
     "make the armchair teal and remove the coffee table",

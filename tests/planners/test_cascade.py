@@ -203,7 +203,7 @@ def test_auto_takes_the_model_of_the_environment(monkeypatch: pytest.MonkeyPatch
 
 
 def test_auto_knows_wishes_for_the_whole_room() -> None:
-    from scenewright.agent.sight import StageSight
+    from scenewright.agent.session.sight import StageSight
 
     sight = StageSight(_written.stage("living_room"))
     plan = load("auto").plan("push the furniture to the walls and clear a dance floor in the middle", sight=sight)
@@ -246,7 +246,8 @@ def test_loading_auto_with_a_model_imports_no_model_library() -> None:
     code = (
         "import sys; from scenewright.planners import load; load('auto:openai:m@http://localhost:9/v1');"
         "load('auto:transformers:/x'); print([m for m in ('pydantic_ai', 'openai', 'transformers', 'llguidance',"
-        " 'scenewright.planners.model.remote', 'scenewright.planners.model.local') if m in sys.modules])"
+        " 'scenewright.planners.model.remote.backend',"
+        " 'scenewright.planners.model.local.backend') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

@@ -10,7 +10,6 @@ import pytest
 from scenewright.gaussians.assets import make
 from scenewright.gaussians.assets.registry import KINDS
 from scenewright.gaussians.errors import BackendError
-from scenewright.planners.checking import check
 from scenewright.planners.compose import Brief, RefusedError, compose, knowledge, problem_of, read, sample_brief
 from scenewright.planners.compose.brief import Thing
 from scenewright.planners.compose.furnishing import pairs
@@ -19,6 +18,7 @@ from scenewright.planners.layout import solve
 from scenewright.planners.model.backend import Answer
 from scenewright.planners.model.scripted import ScriptedModel
 from scenewright.planners.plan import Usage
+from scenewright.planners.rooms.check import check
 from scenewright.planners.schemas import schema
 
 OFFICE = "a minimalist home office"

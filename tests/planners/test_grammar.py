@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from scenewright.gaussians.errors import UserError
 from scenewright.planners import EditPlan, load
 from scenewright.planners.grammar import GrammarPlanner
-from scenewright.planners.grammar.words import MAX_CHARS
+from scenewright.planners.grammar.tagging.words import MAX_CHARS
 from scenewright.tools import registry
 
 CASES: list[dict[str, Any]] = [

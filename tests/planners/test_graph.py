@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import UserError
-from scenewright.gaussians.language.field import Box, Group, LanguageField
+from scenewright.gaussians.language.field.language_field import Box, Group, LanguageField
 from scenewright.gaussians.scene import Frame, Scene
-from scenewright.planners.graph import Node, RoomShape, SceneGraph
+from scenewright.planners.rooms.graph import Node, RoomShape, SceneGraph
 
 
 def cloud() -> GaussianCloud:

@@ -7,13 +7,13 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from scenewright.planners.checking import check
-from scenewright.planners.graph import Node, RoomShape, SceneGraph
 from scenewright.planners.layout.measures import measure
 from scenewright.planners.layout.shapes import Lattice, Spot, blocked, depth, in_disc, near
-from scenewright.planners.layout.ways import Ways
-from scenewright.planners.walking import WIDTH, unreached
-from scenewright.tools.space import overlap
+from scenewright.planners.layout.walkable_grid import Ways
+from scenewright.planners.rooms.check import check
+from scenewright.planners.rooms.graph import Node, RoomShape, SceneGraph
+from scenewright.planners.rooms.reachability import WIDTH, unreached
+from scenewright.tools.placement.bodies import overlap
 
 SIZE = (6.0, 5.0, 2.5)
 sides = st.floats(0.1, 2.0)

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scenewright.planners.checking import check
-from scenewright.planners.graph import Node, SceneGraph
 from scenewright.planners.plan import EditPlan
+from scenewright.planners.rooms.check import check
+from scenewright.planners.rooms.graph import Node, SceneGraph
 from scenewright.planners.wishes import WishPlanner
 from scenewright.planners.wishes import goals as kinds
 from scenewright.planners.wishes.reading import Reader, Unread
@@ -24,7 +24,7 @@ from scenewright.planners.wishes.steps import moves
 from scenewright.tools.ops.arrange import Arrange
 from scenewright.tools.ops.insert import Insert
 from scenewright.tools.ops.move import Move
-from scenewright.tools.space import overlap
+from scenewright.tools.placement.bodies import overlap
 
 HERE = Path(__file__).parent
 CASES: list[dict[str, Any]] = [

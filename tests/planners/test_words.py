@@ -9,13 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scenewright.benchmarks import _nouns
+from scenewright.gaussians.world.synonyms import narrower, same
 from scenewright.planners import load
-from scenewright.planners.grammar import lexicon
-from scenewright.planners.grammar.referring import head_noun, relations_named
-from scenewright.planners.grammar.spelling import respell, slips
-from scenewright.planners.grammar.unsafe import unsafe_words
-from scenewright.planners.grammar.words import split
-from scenewright.planners.synonyms import narrower, same
+from scenewright.planners.grammar.meaning.referring import head_noun, relations_named
+from scenewright.planners.grammar.tagging.spelling import respell, slips
+from scenewright.planners.grammar.tagging.words import split
+from scenewright.planners.grammar.vocabulary import lexicon
+from scenewright.planners.grammar.vocabulary.unsafe import unsafe_words
 
 PLANNER = load("grammar")
 

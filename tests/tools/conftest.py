@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from scenewright.gaussians import assets
 from scenewright.gaussians.camera import Camera, Vec3
 from scenewright.gaussians.cloud import GaussianCloud, concat
-from scenewright.gaussians.language.field import Group, LanguageField
-from scenewright.gaussians.language.measure import box_of, lab_of_cloud
-from scenewright.gaussians.language.query import Query
-from scenewright.gaussians.language.selection import Selection, nothing
+from scenewright.gaussians.language.field.language_field import Group, LanguageField
+from scenewright.gaussians.language.field.measure import box_of, lab_of_cloud
+from scenewright.gaussians.language.query.query import Query
+from scenewright.gaussians.language.query.selection import Selection, nothing
 from scenewright.gaussians.scene import Frame, Scene
-from scenewright.tools.base import Context
-from scenewright.tools.shape import axis_rotation, transformed
+from scenewright.tools.operation import Context
+from scenewright.tools.transform import axis_rotation, transformed
 
 FRAME = Frame((0.0, 0.0, 1.0), 0.0, 1.0, "given", "given")
 TABLE, CHAIR, RED_CHAIR, VASE, FLOOR = range(5)

@@ -10,11 +10,11 @@ import pytest
 from pydantic import ValidationError
 
 from scenewright.gaussians.errors import CheckFailedError, InstructionError, UserError
-from scenewright.gaussians.language.field import Box
+from scenewright.gaussians.language.field.language_field import Box
 from scenewright.gaussians.scene import Scene
-from scenewright.tools.base import Context, Placement
+from scenewright.tools.execute import carry_out
+from scenewright.tools.operation import Context, Placement
 from scenewright.tools.registry import parse
-from scenewright.tools.run import carry_out
 
 TABLE, CHAIR, ARMCHAIR, VASE = range(4)  # as the `corner` fixture numbers them
 

@@ -12,20 +12,20 @@ import torch
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.color import name_of
 from scenewright.gaussians.errors import AbsentError, AmbiguousError, CheckFailedError, InstructionError, UserError
-from scenewright.gaussians.language.field import Box, Group
-from scenewright.gaussians.language.measure import box_of, lab_of_cloud
-from scenewright.gaussians.language.query import Query
+from scenewright.gaussians.language.field.language_field import Box, Group
+from scenewright.gaussians.language.field.measure import box_of, lab_of_cloud
+from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.scene import Frame, Scene
-from scenewright.tools import run
-from scenewright.tools.base import Context
-from scenewright.tools.fronts import front_of
+from scenewright.tools import execute
+from scenewright.tools.carried_objects import riders_of, standing_on
+from scenewright.tools.execute import Done, carry_out, preview
 from scenewright.tools.measure import reach, solid_points
+from scenewright.tools.operation import Context
 from scenewright.tools.ops.opacity import Opacity
+from scenewright.tools.placement.bodies import bodies_of, contact_box, overlap
+from scenewright.tools.placement.facing import front_of
 from scenewright.tools.receipt import Receipt, at_most
 from scenewright.tools.registry import OPS, parse
-from scenewright.tools.riders import riders_of, standing_on
-from scenewright.tools.run import Done, carry_out, preview
-from scenewright.tools.space import bodies_of, contact_box, overlap
 
 from .conftest import Thing, build, by_name
 
@@ -276,7 +276,7 @@ def test_a_failed_check_is_told_and_nothing_changes(
 def test_an_operation_that_touches_its_surroundings_is_caught(
     corner: Scene, context: Context, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(run, "mask_of", run.mask_of)
+    monkeypatch.setattr(execute, "mask_of", execute.mask_of)
     monkeypatch.setattr(Opacity, "may_change", lambda _, scene, __: torch.zeros(len(scene.cloud), dtype=torch.bool))
     with pytest.raises(CheckFailedError, match="outside unchanged: measured"):
         do(corner, context, "opacity", target=a("chair"), value=0.5)

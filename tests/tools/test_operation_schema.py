@@ -11,7 +11,7 @@ import pytest
 from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.scene import Frame
 from scenewright.tools import ops
-from scenewright.tools.base import Length
+from scenewright.tools.operation import Length
 from scenewright.tools.registry import OPS, describe, parse, schema
 
 CHAIR = {"text": "chair"}

@@ -10,18 +10,18 @@ from pydantic import ConfigDict, Field, model_validator
 from torch import Tensor
 
 from ...gaussians.errors import InstructionError
-from ...gaussians.language.selection import Selection
+from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import either, nonzero
-from ..base import Affine, Context, Outcome, TargetedOp, Way
-from ..bookkeeping import carried
+from ..carried_objects import loaded, rows_along, went_along
 from ..checks import carried_as_asked, collision_free, counted, supported
+from ..cloud_diff import Draft
+from ..field_update import carried
+from ..operation import Affine, Context, Outcome, TargetedOp, Way
+from ..placement.bodies import Array, Body, bodies_of
+from ..placement.support import support_height
 from ..receipt import Check
-from ..riders import loaded, rows_along, went_along
-from ..rows import Draft
-from ..shape import axis_rotation, turn
-from ..space import Array, Body, bodies_of
-from ..support import support_height
+from ..transform import axis_rotation, turn
 
 
 class Arrange(TargetedOp):

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 from ...gaussians.errors import ScenewrightError
-from ...gaussians.language.selection import Selection, mask_of
+from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.scene import Scene
-from ..base import Context, Outcome, TargetedOp
-from ..bookkeeping import thinned
 from ..checks import counted, gone
+from ..field_update import thinned
+from ..operation import Context, Outcome, TargetedOp
 from ..receipt import Check, report
 
 

@@ -9,18 +9,18 @@ import torch
 from pydantic import ConfigDict, Field, model_validator
 from torch import Tensor
 
-from ...gaussians.language.selection import Selection
+from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
-from ..base import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
 from ..checks import bumps, carried_as_asked, collision_free, counted, supported
+from ..cloud_diff import Draft, selection_of
 from ..measure import solid_points
-from ..place import Placer
+from ..new_objects import Arrivals
+from ..operation import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
+from ..placement.bodies import Array, Body, bodies_of, centimetre, extent_along, heading, shifted_box
+from ..placement.place import Placer
 from ..receipt import Check
-from ..rows import Draft, selection_of
-from ..shape import shift
-from ..space import Array, Body, bodies_of, centimetre, extent_along, heading, shifted_box
-from ..stock import Arrivals
+from ..transform import shift
 
 
 class Duplicate(TargetedOp):

@@ -9,20 +9,20 @@ import torch
 from torch import Tensor
 
 from ...gaussians.errors import InstructionError
-from ...gaussians.language.selection import Selection
+from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
-from ..base import Affine, Context, Outcome, TargetedOp
-from ..bookkeeping import carried
+from ..carried_objects import loaded, riders_of, rows_along, went_along
 from ..checks import carried_as_asked, collision_free, counted, supported
-from ..fronts import angle_between, front_of
+from ..cloud_diff import Draft
+from ..field_update import carried
 from ..measure import solid_points
-from ..place import Placer
+from ..operation import Affine, Context, Outcome, TargetedOp
+from ..placement.bodies import Body, bodies_of, contact_box, groups_of, mask_of_bodies, turned_axes
+from ..placement.facing import angle_between, front_of
+from ..placement.place import Placer
+from ..placement.support import support_height
 from ..receipt import Check
-from ..riders import loaded, riders_of, rows_along, went_along
-from ..rows import Draft
-from ..shape import axis_rotation, turn
-from ..space import Body, bodies_of, contact_box, groups_of, mask_of_bodies, turned_axes
-from ..support import support_height
+from ..transform import axis_rotation, turn
 
 
 class Exchange(TargetedOp):

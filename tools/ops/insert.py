@@ -8,15 +8,15 @@ import torch
 from pydantic import Field
 from torch import Tensor
 
-from ...gaussians.language.query import Query
-from ...gaussians.language.selection import Selection
+from ...gaussians.language.query.query import Query
+from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
-from ..base import AssetName, ColorName, Context, EditOp, Length, Outcome, Placement
 from ..checks import collision_free, counted, supported, unseen
-from ..place import Placer
+from ..cloud_diff import rows_of
+from ..new_objects import Arrivals, Wish, as_moved, fetch, find_spot, gaze, metre, set_down, taken_by
+from ..operation import AssetName, ColorName, Context, EditOp, Length, Outcome, Placement
+from ..placement.place import Placer
 from ..receipt import Check, at_least
-from ..rows import rows_of
-from ..stock import Arrivals, Wish, as_moved, fetch, find_spot, gaze, metre, set_down, taken_by
 
 
 class Insert(EditOp):

@@ -6,11 +6,11 @@ from typing import Any, ClassVar, Literal
 
 from torch import Tensor
 
-from ...gaussians.language.selection import Selection, mask_of
+from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.scene import Scene
-from ..base import Context, Outcome, TargetedOp
-from ..bookkeeping import thinned
 from ..checks import counted, gone
+from ..field_update import thinned
+from ..operation import Context, Outcome, TargetedOp
 from ..receipt import Check
 
 

@@ -10,22 +10,32 @@ from pydantic import ConfigDict, model_validator
 from torch import Tensor
 
 from ...gaussians.errors import InstructionError
-from ...gaussians.language.query import Query
-from ...gaussians.language.selection import Selection
+from ...gaussians.language.query.query import Query
+from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
-from ..base import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
-from ..bookkeeping import carried
-from ..bounds import keep_inside
+from ..carried_objects import loaded, rows_along, went_along
 from ..checks import bumps, carried_as_asked, collision_free, counted, supported
+from ..cloud_diff import Draft
+from ..field_update import carried
 from ..measure import solid_points
-from ..overhead import hung_over
-from ..place import Placer
+from ..operation import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
+from ..placement.bodies import (
+    Array,
+    Body,
+    bodies_of,
+    centimetre,
+    contact_box,
+    extent_along,
+    groups_of,
+    heading,
+    mask_of_bodies,
+)
+from ..placement.overhead import hung_over
+from ..placement.place import Placer
+from ..placement.walls import keep_inside
 from ..receipt import Check, at_most
-from ..riders import loaded, rows_along, went_along
-from ..rows import Draft
-from ..shape import shift, turn
-from ..space import Array, Body, bodies_of, centimetre, contact_box, extent_along, groups_of, heading, mask_of_bodies
+from ..transform import shift, turn
 
 
 class Move(TargetedOp):

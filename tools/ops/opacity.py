@@ -7,13 +7,13 @@ from typing import Annotated, Any, ClassVar, Literal
 import torch
 from pydantic import Field
 
-from ...gaussians.language.selection import Selection
+from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
-from ..base import Context, Outcome, TargetedOp
-from ..bookkeeping import remeasured
 from ..checks import counted
+from ..cloud_diff import Draft, rows_of
+from ..field_update import remeasured
+from ..operation import Context, Outcome, TargetedOp
 from ..receipt import Check, at_most
-from ..rows import Draft, rows_of
 
 HIDDEN = 1e-6  # opacity lies in (0, 1); this is invisible on any display and survives a file's logit
 

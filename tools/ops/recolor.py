@@ -10,18 +10,18 @@ from pydantic import ConfigDict, Field, model_validator
 from torch import Tensor
 
 from ...gaussians.color import BASIC, parse, rgb_to_lab
-from ...gaussians.language.measure import Sample, lit_lab, sample
-from ...gaussians.language.selection import Selection
+from ...gaussians.language.field.measure import Sample, lit_lab, sample
+from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
-from ..base import ColorName, Context, Outcome, TargetedOp
-from ..bookkeeping import remeasured
 from ..checks import counted
+from ..cloud_diff import Draft, rows_of
+from ..color_map import NEAR, ColorMap, distance, saturation, toward_color, warmth
+from ..field_update import remeasured
 from ..measure import lightness_spread, mean_lab
-from ..paint import NEAR, ColorMap, distance, saturation, toward_color, warmth
+from ..operation import ColorName, Context, Outcome, TargetedOp
+from ..placement.bodies import bodies_of
 from ..receipt import Check, at_least, at_most, report
-from ..rows import Draft, rows_of
-from ..space import bodies_of
 
 Adjust = Literal["darker", "lighter", "more_saturated", "less_saturated", "warmer", "cooler", "toward"]
 ALIKE = 20.0  # Lab distance, lightness counted half, below which things share a coat of paint

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from ...gaussians.language.selection import Selection, mask_of
+from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.scene import Scene
-from ..base import AssetName, ColorName, Context, Outcome, TargetedOp
 from ..checks import collision_free, counted, gone, supported
-from ..place import Placer, Spot
+from ..cloud_diff import selection_of
+from ..new_objects import Arrivals, Piece, Wish, as_moved, fetch, metre, set_down, standing_axes, taken_by
+from ..operation import AssetName, ColorName, Context, Outcome, TargetedOp
+from ..placement.bodies import Body, bodies_of
+from ..placement.place import Placer, Spot
 from ..receipt import Check
-from ..rows import selection_of
-from ..space import Body, bodies_of
-from ..stock import Arrivals, Piece, Wish, as_moved, fetch, metre, set_down, standing_axes, taken_by
 
 
 class Replace(TargetedOp):

@@ -9,20 +9,20 @@ import torch
 from pydantic import ConfigDict, Field, model_validator
 from torch import Tensor
 
-from ...gaussians.language.query import Query
-from ...gaussians.language.selection import Selection
+from ...gaussians.language.query.query import Query
+from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
-from ..base import Affine, Context, Outcome, TargetedOp
-from ..bookkeeping import carried
+from ..carried_objects import loaded, rows_along, went_along
 from ..checks import bumps, carried_as_asked, counted
-from ..fronts import turn_to_face
+from ..cloud_diff import Draft
+from ..field_update import carried
 from ..measure import centroid, reach, solid_points
+from ..operation import Affine, Context, Outcome, TargetedOp
+from ..placement.bodies import Array, Body, bodies_of, groups_of, heading
+from ..placement.facing import turn_to_face
 from ..receipt import Check
-from ..riders import loaded, rows_along, went_along
-from ..rows import Draft
-from ..shape import axis_rotation, turn
-from ..space import Array, Body, bodies_of, groups_of, heading
+from ..transform import axis_rotation, turn
 
 
 class Rotate(TargetedOp):

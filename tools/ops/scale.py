@@ -8,17 +8,17 @@ import numpy as np
 from pydantic import ConfigDict, Field, model_validator
 
 from ...gaussians.errors import InstructionError
-from ...gaussians.language.selection import Selection
+from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, Given, Keywords, either, given
-from ..base import Affine, Context, Length, Outcome, TargetedOp
-from ..bookkeeping import carried
 from ..checks import bumps, carried_as_asked, counted, size_changed
+from ..cloud_diff import Draft
+from ..field_update import carried
 from ..measure import reach, solid_points
+from ..operation import Affine, Context, Length, Outcome, TargetedOp
+from ..placement.bodies import Array, Body, bodies_of, heading
 from ..receipt import Check, at_most
-from ..rows import Draft
-from ..shape import stretch, stretch_matrix
-from ..space import Array, Body, bodies_of, heading
+from ..transform import stretch, stretch_matrix
 
 Side = Literal["height", "width", "depth"]
 _SIDES: tuple[Side, ...] = ("height", "width", "depth")

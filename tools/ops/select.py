@@ -7,9 +7,9 @@ from typing import Any, ClassVar, Literal
 import torch
 from torch import Tensor
 
-from ...gaussians.language.selection import Selection
+from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
-from ..base import Context, Outcome, TargetedOp
+from ..operation import Context, Outcome, TargetedOp
 from ..receipt import Check, at_most
 
 

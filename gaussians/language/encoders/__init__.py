@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import BackendError
+from . import backends
 from .vocabulary import Vocabulary
 
 if TYPE_CHECKING:
-    from ..calibration import Calibration
+    from .calibration import Calibration
 
 # Modules of this package that are not back ends.
-_SHARED = ("cache", "export", "framing", "pixels", "sessions", "vector_files", "vocabulary", "words")
 
 
 @runtime_checkable
@@ -71,9 +71,9 @@ def looks_at_background(encoder: Encoder) -> bool:
     return bool(getattr(encoder, "on_background", False))
 
 
-def backends() -> tuple[str, ...]:
+def names() -> tuple[str, ...]:
     """Names of the back ends in this package, whether or not what they need is installed."""
-    return tuple(sorted(m.name for m in pkgutil.iter_modules(__path__) if m.name not in _SHARED))
+    return tuple(sorted(m.name for m in pkgutil.iter_modules(backends.__path__)))
 
 
 def load(spec: str = "auto") -> Encoder:
@@ -81,7 +81,7 @@ def load(spec: str = "auto") -> Encoder:
 
     Args:
         spec: "auto" or "embedded" for the one that ships with the package; "embedded:DIR" for another trained by
-            `python -m scenewright.gaussians.language.train`; "open_clip:MODEL/PRETRAINED" or "open_clip:DIR" for a
+            `python -m scenewright.training`; "open_clip:MODEL/PRETRAINED" or "open_clip:DIR" for a
             real CLIP; "onnx:FOLDER" for one as ONNX; "vectors:PATH" for text vectors made elsewhere.
 
     Raises:
@@ -89,12 +89,12 @@ def load(spec: str = "auto") -> Encoder:
     """
     name, _, argument = spec.partition(":")
     name = {"auto": "embedded", "": "embedded"}.get(name, name)
-    if name not in backends():
+    if name not in names():
         raise BackendError(
             f"unknown encoder {spec!r}; "
             "use auto, embedded:DIR, open_clip:MODEL/PRETRAINED, open_clip:DIR, onnx:FOLDER or vectors:PATH"
         )
-    module = importlib.import_module(f"{__name__}.{name}")
+    module = importlib.import_module(f"{backends.__name__}.{name}")
     encoder: Encoder = module.load(argument)
     return encoder
 

@@ -16,7 +16,7 @@ from typing import Any
 
 from ...errors import BackendError, ScenewrightError, UserError
 from . import load
-from .open_clip import OpenClip
+from .backends.open_clip import OpenClip
 
 _OPSET = 17
 _WORDS = r"'s|'t|'re|'ve|'m|'ll|'d|[\p{L}]+|[\p{N}]|[^\s\p{L}\p{N}]+"  # how CLIP parts text before byte pairs

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from ...errors import BackendError, FileError
 from ...files.foreign import read_archive, read_array, read_json
-from ..calibration import Calibration
+from .calibration import Calibration
 
 Name = tuple[str, ...]  # a name and its synonyms
 

@@ -12,7 +12,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Self
 
-from .words import normalise
+from ...world.words import normalise
 
 # Words after which a noun phrase only describes its head: "a table with drawers" is a table.
 _AFTER_HEAD = frozenset("with in on from for near at by without made having".split())  # noqa: SIM905

@@ -17,7 +17,7 @@ from .view import NONE, ViewMasks, packed
 __all__ = ["NONE", "Masker", "ViewMasks", "load", "packed", "sources"]
 
 Progress = Callable[[str, float], None]
-_MODULES = {"embedded": ".embedded", "folder": ".folder", "sam": ".sam"}
+_MODULES = {"embedded": ".sources.embedded", "folder": ".sources.folder", "sam": ".sources.sam"}
 
 
 @runtime_checkable
@@ -34,7 +34,7 @@ class Masker(Protocol):
         ...
 
 
-def sources() -> tuple[str, ...]:
+def names() -> tuple[str, ...]:
     """Names of the sources in this package, whether or not what they need is installed."""
     return tuple(_MODULES)
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ... import compiled
 from ...camera import Camera, Vec3
-from . import LIMITS, Bins, _counter, backward, canvas, drawn, unproject
+from . import LIMITS, Bins, _counter, blend_backward, canvas, drawn, project_backward
 
 Array = NDArray[Any]
 
@@ -53,15 +53,15 @@ def undraw(picture: Drawn, d_rgb: Array, d_alpha: Array) -> Gradients:
     """Carry the gradient of a picture, `[H, W, 3]` and `[H, W]`, back to the columns. Same input, same bytes."""
     columns, count = picture.columns, compiled.workers()
     out = *(np.zeros_like(column) for column in columns), np.zeros((len(columns[0]), 2), np.float32)
-    scratch = backward.make_scratch(count)
+    scratch = blend_backward.make_scratch(count)
     for top, bottom, bins in picture.strips:
         seen = picture.rgb[top:bottom], picture.alpha[top:bottom]
         gradient = d_rgb[top:bottom], d_alpha[top:bottom]
-        each = np.empty((len(bins.entries), backward.GRADIENT), np.float32)
+        each = np.empty((len(bins.entries), blend_backward.GRADIENT), np.float32)
         sorted_ = bins.first, bins.entries, bins.records, (d_alpha.shape[1], bottom - top), LIMITS
-        compiled.run(backward.unblend_tiles, count, *sorted_, seen, gradient, each, scratch, _counter())
-        total = np.zeros((len(columns[0]), backward.GRADIENT), np.float32)
-        compiled.run(backward.collect, count, bins.entries, each, total)
+        compiled.run(blend_backward.unblend_tiles, count, *sorted_, seen, gradient, each, scratch, _counter())
+        total = np.zeros((len(columns[0]), blend_backward.GRADIENT), np.float32)
+        compiled.run(blend_backward.collect, count, bins.entries, each, total)
         shaped = columns, bins.view, bins.records, total, out
-        compiled.run(unproject.unproject, count, *shaped, _counter())
+        compiled.run(project_backward.unproject, count, *shaped, _counter())
     return Gradients(*out)

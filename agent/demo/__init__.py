@@ -1,0 +1,1 @@
+"""The demonstration: a furnished room, ten instructions and what they should do."""

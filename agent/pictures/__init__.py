@@ -1,0 +1,1 @@
+"""Pictures and films of a scene: cameras by name, shots, contact sheets and files."""

@@ -1,0 +1,111 @@
+"""Cameras named in words: by number or name among those of the scene, or by eye and target; and the size of pictures.
+
+Knows how a view is written. Refuses to know how a good view is found (see gaussians.language.views).
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+from ...gaussians.errors import UserError
+
+if TYPE_CHECKING:
+    from ...gaussians.camera import Camera, Vec3
+    from ...gaussians.scene import Scene
+
+PICTURE = (960, 640)  # pixels, where nothing else is asked for
+_FOV_Y = 55.0  # degrees, of a view given by eye and target
+
+
+def choose_view(scene: Scene, view: str = "auto", size: str | None = None) -> Camera:
+    """The camera that `view` names, at `size` ("1280x720").
+
+    Raises:
+        UserError: there is no such camera, or the words cannot be read.
+    """
+    from ...gaussians.camera import Camera
+
+    if view == "auto":
+        camera = default_view(scene)
+    elif ":" in view and "," in view:
+        eye, target = (_point(part) for part in view.split(":", 1))
+        camera = Camera.look_at(eye, target, scene.frame.up, *PICTURE, fov_y=_FOV_Y, name="given")
+    else:
+        camera = _named(scene, view)
+    if size is None:
+        return camera
+    from ...gaussians.viewpoints.coverage import fit_camera
+
+    return fit_camera(camera, *parse_size(size))
+
+
+def default_view(scene: Scene) -> Camera:
+    """The scene's first camera, or a view from which much of it can be seen."""
+    from ...gaussians.viewpoints.coverage import default_viewer
+
+    return default_viewer(scene if scene.cameras else framed(scene), *PICTURE)
+
+
+def framed(scene: Scene) -> Scene:
+    """The scene with up and floor estimated, if nobody said which way is up."""
+    if scene.frame.up_source != "unknown":
+        return scene
+    from ...gaussians.language.segmentation.orient import estimate_frame
+    from ...gaussians.language.segmentation.surface import surface_of
+
+    return scene.replace(frame=estimate_frame(surface_of(scene.cloud), scene.cameras, scene.frame))
+
+
+def with_frame(scene: Scene, up: str | None, metres_per_unit: float | None) -> Scene:
+    """The scene with the up direction ("0,0,1") and scale that the user gives; None leaves each as it is.
+
+    Raises:
+        UserError: the direction is none, or the scale is not positive.
+    """
+    from dataclasses import replace
+
+    frame = scene.frame
+    if up is not None:
+        if not any(_point(up)):
+            raise UserError(f"--up {up} points nowhere; write for example --up 0,0,1")
+        frame = replace(frame, up=_point(up), up_source="given", floor=None)
+    if metres_per_unit is not None:
+        if not 0 < metres_per_unit < math.inf:
+            raise UserError(f"--metres-per-unit must be a number above zero, not {metres_per_unit:g}")
+        frame = replace(frame, metres_per_unit=metres_per_unit, scale_source="given")
+    return scene.replace(frame=frame)
+
+
+def parse_size(text: str) -> tuple[int, int]:
+    """ "1280x720" as `(1280, 720)`.
+
+    Raises:
+        UserError: it is no size, or beyond 8192 pixels a side.
+    """
+    match = re.fullmatch(r"(\d{1,5})\s*[xX×]\s*(\d{1,5})", text.strip())
+    size = (int(match[1]), int(match[2])) if match else (0, 0)
+    if not all(1 <= side <= 8192 for side in size):
+        raise UserError(f"{text!r} is no picture size; write for example 1280x720 (at most 8192 a side)")
+    return size
+
+
+def _named(scene: Scene, view: str) -> Camera:
+    for camera in scene.cameras:
+        if camera.name and camera.name.lower() == view.lower():
+            return camera
+    if view.isdigit() and int(view) < len(scene.cameras):
+        return scene.cameras[int(view)]
+    known = ", ".join(f"{i} {c.name}".strip() for i, c in enumerate(scene.cameras[:12])) or "none"
+    raise UserError(f"no camera {view!r} in this scene (cameras: {known}); or give 'x,y,z:x,y,z' as eye and target")
+
+
+def _point(text: str) -> Vec3:
+    try:
+        x, y, z = (float(c) for c in text.split(","))
+    except ValueError:
+        raise UserError(f"{text!r} is no point; write three numbers x,y,z") from None
+    if not all(map(math.isfinite, (x, y, z))):
+        raise UserError(f"{text!r} is no point; its numbers must be finite")
+    return (x, y, z)

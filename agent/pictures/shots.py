@@ -1,0 +1,157 @@
+"""Which pictures a film is made of: a ring around the scene, a capture's cameras, or a path, at a size and a rate.
+
+Knows how such wishes are written on the command line. Refuses to know pixels and how films are stored.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...gaussians.errors import UserError
+from .named_cameras import framed
+
+if TYPE_CHECKING:
+    from ...gaussians.camera import Camera
+    from ...gaussians.scene import Scene
+
+MOST = 10_000  # pictures
+RATE = 25.0  # pictures a second, where nothing else is asked for; GIF counts in hundredths, so 25 is exact
+_TURN = 6.0  # seconds a turn takes at least, where nothing else is asked for: a faster one is hard to look at
+RATES = (0.1, 240.0)
+
+Size = tuple[int, int]
+
+
+@dataclass(frozen=True, eq=False)
+class Shots:
+    """What is to be drawn, in order.
+
+    Attributes:
+        cameras: one a picture.
+        names: one a picture, different and fit for file names, without suffix.
+        fps: pictures a second.
+    """
+
+    cameras: tuple[Camera, ...]
+    names: tuple[str, ...]
+    fps: float
+
+    @property
+    def seconds(self) -> float:
+        return len(self.cameras) / self.fps
+
+
+def orbit(
+    scene: Scene, capture: Path | None, count: int, size: Size, seconds: float | None, fps: float | None
+) -> Shots:
+    """`count` pictures once around the scene, on the ring that the cameras of `capture`, or many own ones, stood on.
+
+    Raises:
+        UserError: the number of pictures or the rate is none.
+        FileError: the capture cannot be read.
+    """
+    from ...gaussians.viewpoints.orbit import FEWEST, choose_ring
+
+    if not 2 <= count <= MOST:
+        raise UserError(f"an orbit has 2 to {MOST} pictures, not {count}; write for example --orbit 75")
+    turn = seconds if seconds is not None or fps is not None else max(_TURN, count / RATE)
+    rate = _rate(count, turn, fps)
+    cameras = scene.cameras if len(scene.cameras) >= FEWEST else ()
+    if capture is not None:
+        cameras = cameras_of(capture)
+    ring = choose_ring(framed(scene.replace(cameras=cameras or scene.cameras)), cameras)
+    return _numbered(ring.cameras(count, *size), rate)
+
+
+def own(source: Path, size: Size | None, seconds: float | None, fps: float | None) -> Shots:
+    """A picture for every camera of a capture or scene, named as its photograph; of its own size if `size` is None.
+
+    Raises:
+        UserError: the rate is none, or there are no cameras or too many.
+        FileError: the source cannot be read.
+    """
+    from ...gaussians.viewpoints.coverage import fit_camera
+
+    cameras = cameras_of(source)
+    if not 1 <= len(cameras) <= MOST:
+        raise UserError(f"{source} has {len(cameras)} cameras; it must have 1 to {MOST}")
+    names = _file_names([camera.name for camera in cameras])
+    if size is not None:
+        cameras = tuple(fit_camera(camera, *size) for camera in cameras)
+    return Shots(cameras, names, _rate(len(cameras), seconds, fps))
+
+
+def along(scene: Scene, path: Path, size: Size | None, usual: Size, seconds: float | None, fps: float | None) -> Shots:
+    """Pictures along the camera path in a file, from its first keyframe to its last; `seconds` stretches it.
+
+    Raises:
+        UserError: the rate or the length is none, or there would be too many pictures.
+        FileError: the file is no camera path.
+    """
+    from ...gaussians.files.captures.camera_path import read_camera_path
+
+    way = read_camera_path(path, framed(scene).frame.up)
+    rate = _checked_rate(fps or way.fps or RATE)
+    length = way.seconds if seconds is None else _checked_seconds(seconds)
+    if length * rate > MOST - 1:
+        raise UserError(f"{length:g} seconds at {rate:g} pictures a second are too many; at most {MOST} are drawn")
+    count = round(length * rate) + 1
+    times = [way.seconds * i / max(count - 1, 1) for i in range(count)]
+    return _numbered(way.cameras(times, *(size or way.size or usual)), rate)
+
+
+def cameras_of(source: Path) -> tuple[Camera, ...]:
+    """The cameras of a capture (a transforms.json, its folder or a COLMAP folder) or of a scene."""
+    from ...gaussians.files import load
+    from ...gaussians.files.captures import colmap
+    from ...gaussians.files.captures.capture import TRANSFORMS, read_capture
+
+    folder = source.is_dir() and ((source / TRANSFORMS).exists() or colmap.find(source) is not None)
+    if folder or source.suffix.lower() == ".json":
+        return read_capture(source).cameras
+    return load(source).cameras
+
+
+def _rate(count: int, seconds: float | None, fps: float | None) -> float:
+    """Pictures a second of a film of `count` pictures."""
+    if seconds is not None and fps is not None:
+        raise UserError(
+            f"{count} pictures at --fps {fps:g} last {count / max(fps, 1e-9):g} s: leave out --seconds or --fps"
+        )
+    return _checked_rate(count / _checked_seconds(seconds) if seconds is not None else RATE if fps is None else fps)
+
+
+def _checked_rate(fps: float) -> float:
+    if not RATES[0] <= fps <= RATES[1]:
+        raise UserError(f"{fps:g} pictures a second cannot be had; {RATES[0]:g} to {RATES[1]:g} can")
+    return fps
+
+
+def _checked_seconds(seconds: float) -> float:
+    if not 0 < seconds < math.inf:
+        raise UserError(f"--seconds must be a number above zero, not {seconds:g}")
+    return seconds
+
+
+def _numbered(cameras: Sequence[Camera], fps: float) -> Shots:
+    digits = max(4, len(str(len(cameras) - 1)))
+    return Shots(tuple(cameras), tuple(f"{i:0{digits}d}" for i in range(len(cameras))), fps)
+
+
+def _file_names(names: Sequence[str]) -> tuple[str, ...]:
+    """Names fit for files of one folder: no separators, none hidden, none empty, no two alike in any case."""
+    found: list[str] = []
+    taken: set[str] = set()
+    for i, name in enumerate(names):
+        plain = re.sub(r"[^\w .-]", "_", name).strip(" .")[:100] or f"{i:04d}"
+        unique, more = plain, 2
+        while unique.lower() in taken:
+            unique, more = f"{plain}-{more}", more + 1
+        taken.add(unique.lower())
+        found.append(unique)
+    return tuple(found)

@@ -1,0 +1,171 @@
+"""Which of several things was meant: the question a plan raises in a scene, and the plan that an answer makes of it.
+
+Knows plans and queries as data. Refuses to know how a query is resolved, and never picks for the user.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel
+
+from ...gaussians.errors import UserError
+from ...gaussians.language.query.query import Query
+from ...gaussians.language.query.selection import Candidate, Selection
+
+if TYPE_CHECKING:
+    from ...planners.plan import EditPlan
+    from ...tools.operation import EditOp
+
+Path = tuple[str | int, ...]  # field names and positions that lead from an operation to one of its queries
+
+_NUMBER = re.compile(r"(?:the\s+|number\s+|no\.?\s*|#)*(\d+)(?:st|nd|rd|th)?(?:\s+one)?", re.IGNORECASE)
+_ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
+_SIDES = {"left": "leftmost", "right": "rightmost", "near": "nearest", "closest": "nearest", "close": "nearest",
+          "far": "farthest", "big": "largest", "bigger": "largest", "biggest": "largest", "larger": "largest",
+          "small": "smallest", "smaller": "smallest", "tall": "tallest", "taller": "tallest", "short": "shortest",
+          "shorter": "shortest", "upper": "highest", "top": "highest", "higher": "highest", "lower": "lowest",
+          "bottom": "lowest", "middle": "middle", "center": "middle", "centre": "middle", "front": "nearest",
+          "back": "farthest", "first": "", "last": ""}  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Question:
+    """A query of a plan that was not found as one thing.
+
+    Attributes:
+        plan: the plan that could not be carried out.
+        step: position of the operation in it.
+        path: where in the operation the query stands.
+        selection: its verdict ("ambiguous" or "absent"), reason and candidates.
+        resolve: what another query would find where this one was asked.
+    """
+
+    plan: EditPlan
+    step: int
+    path: Path
+    selection: Selection
+    resolve: Callable[[Query], Selection]
+
+    @property
+    def candidates(self) -> tuple[Candidate, ...]:
+        return self.selection.candidates
+
+
+def queries(node: Any, path: Path = ()) -> Iterator[tuple[Path, Query]]:
+    """Every query inside an operation, those inside another query before it."""
+    if isinstance(node, BaseModel):
+        for name in type(node).model_fields:
+            yield from queries(getattr(node, name), (*path, name))
+        if isinstance(node, Query):
+            yield path, node
+    elif isinstance(node, tuple):
+        for i, item in enumerate(node):
+            yield from queries(item, (*path, i))
+
+
+def exchange(node: Any, path: Path, query: Query) -> Any:
+    """`node` with the query at `path` exchanged; everything else is shared."""
+    if not path:
+        return query
+    key, rest = path[0], path[1:]
+    if isinstance(key, int):
+        return tuple(exchange(item, rest, query) if i == key else item for i, item in enumerate(node))
+    return node.model_copy(update={key: exchange(getattr(node, key), rest, query)})
+
+
+def find_question(plan: EditPlan, step: int, verdict: str, resolve: Callable[[Query], Selection]) -> Question | None:
+    """The innermost query of a step that resolves to `verdict`; None if there is none."""
+    for path, query in queries(plan.ops[step]):
+        # What is left out of a selection is left out in the plural: "all chairs but the green one".
+        plural = "exclude" in path and query.pick == "one"
+        found = resolve(query.model_copy(update={"pick": "all"}) if plural else query)
+        if found.verdict == verdict:
+            return Question(plan, step, path, found, resolve)
+    return None
+
+
+def answered(question: Question, answer: str, parse: Callable[[str], Query | None]) -> EditPlan:
+    """The plan with the user's answer in it: a number of the list, "all", or words ("the left one", "the red one").
+
+    Args:
+        parse: reads a noun phrase as a query, or None if it cannot.
+
+    Raises:
+        UserError: the answer is no choice; the message says what would be one.
+    """
+    query = question.selection.query
+    chosen = _choice(question.candidates, query, answer.strip().rstrip(".!").lower(), parse)
+    if chosen is None:
+        raise UserError(
+            f"{answer!r} does not say which; answer with a number from 1 to {len(question.candidates)}, "
+            "'all', or a description such as 'the left one'"
+        )
+    _require_choice(question, chosen, answer)
+    ops: list[EditOp] = list(question.plan.ops)
+    ops[question.step] = exchange(ops[question.step], question.path, chosen)
+    return question.plan.model_copy(update={"ops": tuple(ops)})
+
+
+def _require_choice(question: Question, chosen: Query, answer: str) -> None:
+    """An answer settles what was asked; words that fit something else are no answer to it.
+
+    Raises:
+        UserError: the query finds what is not among the candidates.
+    """
+    if question.selection.verdict != "ambiguous":
+        return
+    found = question.resolve(chosen)
+    if found.verdict == "absent" or not set(found.groups) <= {c.group for c in question.candidates}:
+        raise UserError(
+            f"{answer!r} is none of the {len(question.candidates)} that match; answer with a number from 1 to "
+            f"{len(question.candidates)}, 'all', or words that fit one of them"
+        )
+
+
+def _choice(
+    candidates: tuple[Candidate, ...], query: Query, answer: str, parse: Callable[[str], Query | None]
+) -> Query | None:
+    number = _NUMBER.fullmatch(answer)
+    if number and 1 <= int(number[1]) <= len(candidates):
+        return _picked(query, candidates[int(number[1]) - 1])
+    if answer in ("all", "all of them", "both", "every one", "each"):
+        return query.model_copy(update={"pick": "all"})
+    words = re.fullmatch(rf"(?:the\s+)?(\w+)(?:\s+(?:one|{re.escape(query.text or 'one')}))?", answer)
+    if words and words[1] in _SIDES and _SIDES[words[1]]:
+        return query.model_copy(update={"pick": _SIDES[words[1]]})
+    if words and words[1] in _ORDINALS[: len(candidates)]:
+        return _picked(query, candidates[_ORDINALS.index(words[1])])
+    said = parse(answer)
+    return merge(query, said) if said is not None else None
+
+
+def _picked(query: Query, candidate: Candidate) -> Query:
+    """The candidate itself; the words stay for messages only.
+
+    Raises:
+        UserError: it is a place or a part that the table of groups does not know, so it cannot be picked by number.
+    """
+    if candidate.group < 0:
+        raise UserError("that one has no number of its own; say where it is ('the left one'), or 'all'")
+    return Query(text=query.text, colors=query.colors, size=query.size, groups=(candidate.group,))
+
+
+def merge(query: Query, said: Query) -> Query:
+    """The query narrowed by what was said about it: "the chair", then "the red one next to the sofa"."""
+    generic = said.text in ("", "one", "ones", "thing")
+    return query.model_copy(
+        update={
+            "text": query.text if generic else said.text,
+            "colors": tuple(dict.fromkeys((*query.colors, *said.colors))),
+            "not_colors": tuple(dict.fromkeys((*query.not_colors, *said.not_colors))),
+            "size": said.size or query.size,
+            "relations": (*query.relations, *said.relations),
+            "pick": query.pick if said.pick == "one" else said.pick,
+            "ordinal": said.ordinal or query.ordinal,
+            "count": said.count or query.count,
+        }
+    )

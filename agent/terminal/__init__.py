@@ -1,0 +1,1 @@
+"""The terminal: chat, slash commands, completion, tables and output streams."""

@@ -1,0 +1,178 @@
+"""Where output goes: results on stdout, talk and progress on stderr, JSON when asked for.
+
+Knows streams. Refuses to know what a result means.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import signal
+import sys
+import threading
+import time
+import unicodedata
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any, NoReturn, TextIO
+
+import typer
+
+from ...gaussians.errors import AbsentError, ScenewrightError, UserError
+
+
+class Terminal:
+    """One command's output.
+
+    Attributes:
+        as_json: print the result as one JSON object instead of text.
+        debug: let errors through with their traceback.
+    """
+
+    def __init__(self, out: TextIO | None = None, err: TextIO | None = None) -> None:
+        self._out, self._err = out, err
+        self.as_json = False
+        self.debug = False
+        self._line_open = False
+        self._last_progress = 0.0
+        self._interrupted = False
+
+    @property
+    def out(self) -> TextIO:
+        return self._out or sys.stdout
+
+    @property
+    def err(self) -> TextIO:
+        return self._err or sys.stderr
+
+    def result(self, text: str, data: Mapping[str, Any]) -> None:
+        """The command's answer: `data` as JSON where asked for, else `text`."""
+        self.row(data) if self.as_json else self._write(self.out, text)
+
+    def row(self, data: Mapping[str, Any]) -> None:
+        """One JSON object on one line of stdout."""
+        self._write(self.out, json.dumps(data, ensure_ascii=False, default=str))
+
+    def line(self, text: str) -> None:
+        """A line of a result that grows."""
+        self._write(self.out, text)
+
+    def say(self, text: str) -> None:
+        """A remark for a person; what could steer a terminal, in names that others wrote, is left out."""
+        self._write(self.err, "".join(c for c in text if c in "\n\t" or unicodedata.category(c) != "Cc"))
+
+    def picture(self, drawn: str) -> None:
+        """A picture in text; left out where the output is for a program."""
+        if not self.as_json:
+            self._write(self.out, drawn)
+
+    def progress(self, stage: str, fraction: float) -> None:
+        """How far long work is, `fraction` in [0, 1]; drawn on a terminal only, at most ten times a second.
+
+        Raises:
+            KeyboardInterrupt: the user interrupted, and Python lost it (see `interruptible`).
+        """
+        if self._interrupted:
+            raise KeyboardInterrupt
+        if not self.err.isatty():
+            return
+        now = time.monotonic()
+        if fraction < 1 and now - self._last_progress < 0.1:
+            return
+        self._last_progress = now
+        filled = round(24 * min(max(fraction, 0.0), 1.0))
+        line = f"{'━' * filled}{'╌' * (24 - filled)} {stage}"
+        # A line that wraps could not be taken back.
+        self.err.write(f"\r\x1b[K{line[: shutil.get_terminal_size((80, 24)).columns - 1]}")
+        self._line_open = True
+        if fraction >= 1:
+            self.clear()
+        self.err.flush()
+
+    @contextmanager
+    def interruptible(self) -> Iterator[None]:
+        """Long work that one Ctrl-C ends.
+
+        Python drops an interrupt that arrives while a weak reference dies, which they do all the time while the
+        libraries of language models are imported; the next sign of progress then passes it on.
+        """
+        if threading.current_thread() is not threading.main_thread():
+            yield  # where no signals arrive
+            return
+
+        def note(number: int, frame: FrameType | None) -> None:
+            self._interrupted = True
+            raise KeyboardInterrupt
+
+        self._interrupted = False
+        before = signal.signal(signal.SIGINT, note)
+        try:
+            yield
+        finally:
+            signal.signal(signal.SIGINT, before or signal.SIG_DFL)
+            self._interrupted = False
+
+    def clear(self) -> None:
+        """Remove an unfinished progress line."""
+        if self._line_open:
+            self.err.write("\r\x1b[K")
+            self._line_open = False
+
+    def _write(self, stream: TextIO, text: str) -> None:
+        self.clear()
+        stream.write(text + "\n")
+        stream.flush()
+
+    def refuse(self, error: ScenewrightError, data: Mapping[str, Any], choices: Sequence[str] = ()) -> NoReturn:
+        """An instruction that was not carried out: the reason, what it hesitated between, and the error's exit code."""
+        if self.as_json:
+            self.row(data)
+        self.say(f"scenewright: {error}")
+        if isinstance(error, AbsentError) and choices:
+            self.say("the nearest things that are there:")
+        for number, choice in enumerate(choices, start=1):
+            self.say(f"  {number}. {choice}")
+        raise typer.Exit(error.exit_code)
+
+
+terminal = Terminal()  # the process has one standard output; options set its flags, commands write to it
+
+
+def explain(error: ScenewrightError) -> dict[str, Any]:
+    """An error as data: its verdict, what to do, the exit code, and what a model cost that was asked in vain."""
+    name = type(error).__name__.removesuffix("Error")
+    verdict = "".join(f"_{c.lower()}" if c.isupper() else c for c in name).lstrip("_")
+    told = {"verdict": verdict, "reason": str(error), "exit_code": error.exit_code}
+    usage = getattr(error, "usage", None)
+    return told if usage is None else {**told, "usage": usage.model_dump(mode="json")}
+
+
+def read_batch(path: str) -> list[dict[str, Any]]:
+    """The rows of a batch file: one JSON object a line with `id`, `text` and perhaps `context`; "-" is stdin.
+
+    Raises:
+        UserError: a line is not such an object; the message names it.
+    """
+    try:
+        if path == "-":
+            lines = sys.stdin.read().splitlines()
+        else:
+            with open(path, encoding="utf-8") as file:
+                lines = file.read().splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise UserError(f"cannot read the batch file {path}: {error}") from error
+    rows = []
+    for number, line in enumerate(lines, start=1):
+        if not line.strip():
+            continue
+        try:
+            row = json.loads(line)
+        except ValueError as error:
+            raise UserError(f"{path}, line {number}: not JSON ({error})") from error
+        if not isinstance(row, dict) or "id" not in row or not isinstance(row.get("text"), str):
+            raise UserError(f'{path}, line {number}: expected {{"id": …, "text": "…"}}')
+        if not isinstance(row.get("context", ""), str | None):
+            raise UserError(f"{path}, line {number}: context must be the instruction before, as text")
+        rows.append(row)
+    return rows

@@ -1,0 +1,1 @@
+"""Rooms furnished from a seed: layout, recipes, assembly and viewpoints."""

@@ -1,0 +1,1 @@
+"""How one asset is made: mesh pieces, materials, patterns, sampling and baked light."""

@@ -1,0 +1,202 @@
+"""Assets that others made: a mesh (.glb, .ply) or a splat (.ply), upright, fitted into a box, as our own are.
+
+Knows how a file becomes an `Asset`. Refuses to know what it is called and why it was chosen. Files are not trusted:
+whatever a reader makes of a broken one ends as a `FileError`, and large ones are bounded before they are opened.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from ...camera import Vec3
+from ...cloud import GaussianCloud
+from ...color import Rgb
+from ...errors import FileError, ScenewrightError
+from ...rotations import from_matrix, multiply, normalize, to_matrix
+from .make import Asset, Parts, Unlit, basic_name
+from .sampling import Samples
+
+Array = NDArray[np.float64]
+MOST_BYTES = 256 << 20
+MOST_FACES = 4_000_000
+MOST_SPLATS = 60_000  # of one thing: more is thinned evenly, as a room holds dozens of them
+SAMPLES = 10_000  # Gaussians a mesh
+WIDER = 1.35  # samples fall at random: wider cells close the holes between them
+# Rows: x, y, z of ours in a file whose y points up: its front +z becomes our -y.
+_FROM_Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+
+
+@dataclass(frozen=True, eq=False)
+class _AsRead(Unlit):
+    """A splat shows the light it was taken in."""
+
+    lit: GaussianCloud
+
+    def cloud(self, sun: Array) -> GaussianCloud:
+        return self.lit
+
+
+def read(path: Path, size: Vec3, kind: str, up: str = "", tint: Rgb | None = None) -> Asset:
+    """The thing in a file, stretched to `size`, standing on z = 0, centred in x and y, facing -y.
+
+    Args:
+        kind: what it is called.
+        up: the file's axis that points up, "y" or "z"; "" takes that of its format (glTF: y, others: z).
+        tint: colour of the whole thing; None leaves its own.
+
+    Raises:
+        FileError: it cannot be read, holds no surface, or is too large.
+    """
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            raise FileError(f"{path} is larger than {MOST_BYTES >> 20} MB; make it smaller")
+    except OSError as error:
+        raise FileError(f"cannot read {path}: {error.strerror or error}") from error
+    turn = _FROM_Y_UP if (up or ("y" if path.suffix.lower() == ".glb" else "z")) == "y" else np.eye(3)
+    if path.suffix.lower() == ".ply" and (cloud := _splats(path)) is not None:
+        return _splat_asset(cloud, turn, size, kind)
+    return _mesh_asset(path, turn, size, kind, tint)
+
+
+def _splats(path: Path) -> GaussianCloud | None:
+    """The Gaussians in a file; None if it holds none, as a mesh does not."""
+    from ...files import load
+
+    try:
+        cloud = load(path).cloud
+    except ScenewrightError:
+        return None
+    step = -(-len(cloud) // MOST_SPLATS)
+    return cloud[torch.arange(0, len(cloud), step)] if step > 1 else cloud
+
+
+def _gain(low: Array, high: Array, size: Vec3) -> tuple[Array, Array]:
+    """Factor of each side, and the point that comes to stand on the origin."""
+    span = high - low
+    if not np.isfinite(span).all() or span.max() <= 0:
+        raise FileError("it has no extent")
+    gain = np.array(size) / np.maximum(span, 1e-4 * span.max())
+    return gain, np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
+
+
+def _splat_asset(cloud: GaussianCloud, turn: Array, size: Vec3, kind: str) -> Asset:
+    """Splats turned and stretched; harmonics are cut to their constant, which needs no turning."""
+    means = cloud.means.numpy().astype(np.float64) @ turn.T
+    # Floaters around a captured thing must not make it small: the box is that of all but the outermost 1 %.
+    low, high = np.quantile(means, [0.005, 0.995], axis=0)
+    gain, foot = _gain(low, high, size)
+    spin = from_matrix(torch.from_numpy(turn)).to(torch.float32)
+    quats = normalize(multiply(spin, cloud.quats))
+    inside = (np.abs((means - foot) * gain - [0, 0, size[2] / 2]) <= np.array(size) / 2 + 0.01).all(axis=1)
+    # Each axis of a Gaussian grows by how long it becomes: its skew under an uneven stretch is left out.
+    axes = to_matrix(quats).numpy().astype(np.float64) * cloud.scales.numpy()[:, None, :]  # [N, 3, 3 axes]
+    scales = np.linalg.norm(axes * gain[:, None], axis=1)
+    keep = torch.from_numpy(inside)
+    fitted = GaussianCloud.create(
+        means=torch.from_numpy(((means - foot) * gain).astype(np.float32))[keep],
+        quats=quats[keep],
+        scales=torch.from_numpy(np.maximum(scales, 1e-6).astype(np.float32))[keep],
+        opacities=cloud.opacities[keep],
+        sh=cloud.sh[keep][:, :1].contiguous(),
+    )
+    nothing = Samples(np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0, np.int64))
+    unlit = _AsRead(nothing, np.zeros((0, 3)), np.zeros(0, dtype=bool), fitted)
+    return _asset(unlit, fitted, size, kind)
+
+
+def _mesh_asset(path: Path, turn: Array, size: Vec3, kind: str, tint: Rgb | None) -> Asset:
+    xyz, normal, rgb, area = _surface(path)
+    xyz, normal = xyz @ turn.T, normal @ turn.T
+    gain, foot = _gain(xyz.min(axis=0), xyz.max(axis=0), size)
+    xyz, normal = (xyz - foot) * gain, normal / gain
+    # A patch with unit normal n grows by det(A) |A^-T n| under the stretch A; samples are even over the old surface.
+    area *= float(np.prod(gain) * np.linalg.norm(normal, axis=1).mean())
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
+    side = np.full((len(xyz), 2), WIDER * np.sqrt(area / len(xyz)))
+    samples = Samples(xyz, frames(normal), side, np.zeros((len(xyz), 2)), np.zeros(len(xyz), dtype=np.int64))
+    albedo = rgb if tint is None else np.tile(np.array(tint), (len(rgb), 1))
+    unlit = Unlit(samples, albedo, np.ones(len(xyz), dtype=bool))
+    return _asset(unlit, unlit.cloud(np.array([-0.45, -0.6, 0.66])), size, kind)
+
+
+def _surface(path: Path) -> tuple[Array, Array, Array, float]:
+    """Even points on a mesh, their normals and display colours, and its area, in the file's frame and unit."""
+    try:
+        import trimesh
+
+        scene: Any = trimesh.load(path, force="scene", process=False)
+        meshes = [
+            scene.geometry[scene.graph[node][1]].copy().apply_transform(scene.graph[node][0])
+            for node in scene.graph.nodes_geometry
+        ]
+        meshes = [m for m in meshes if isinstance(m, trimesh.Trimesh) and len(m.faces)]
+        if not meshes or sum(len(m.faces) for m in meshes) > MOST_FACES:
+            raise FileError(f"{path.name} holds no mesh of 1 to {MOST_FACES:,} triangles")
+        total = sum(float(m.area) for m in meshes)
+        if not np.isfinite(total) or total <= 0:
+            raise FileError(f"the mesh in {path.name} has no surface")
+        parts = [
+            _sampled(m, max(20, round(SAMPLES * float(m.area) / total)), index) for index, m in enumerate(meshes[:512])
+        ]
+    except FileError:
+        raise
+    except Exception as error:  # readers of foreign formats raise anything at all on a broken file
+        raise FileError(f"{path.name} cannot be read as a mesh ({type(error).__name__}: {error})") from error
+    xyz, normal, rgb = (np.concatenate(column) for column in zip(*parts, strict=True))
+    good = np.isfinite(xyz).all(axis=1) & np.isfinite(normal).all(axis=1) & np.isfinite(rgb).all(axis=1)
+    if good.sum() < 10:
+        raise FileError(f"the mesh in {path.name} has no surface")
+    return xyz[good], normal[good], rgb[good], total
+
+
+def _sampled(mesh: Any, count: int, seed: int) -> tuple[Array, Array, Array]:
+    import trimesh
+
+    points, faces = trimesh.sample.sample_surface(mesh, count, seed=seed)
+    return np.asarray(points), np.asarray(mesh.face_normals)[faces], _colors(mesh, np.asarray(points), faces)
+
+
+def _colors(mesh: Any, points: Array, faces: NDArray[np.int64]) -> Array:
+    """Display colour of points on faces: the texture's, the vertices', or the material's one colour."""
+    import trimesh
+
+    visual = mesh.visual
+    material = getattr(visual, "material", None)
+    uv = getattr(visual, "uv", None)
+    image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
+    factor = getattr(material, "baseColorFactor", None)
+    linear = np.array([255, 255, 255] if factor is None else factor[:3], dtype=np.float64) / 255
+    plain = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)  # factors are linear
+    if image is not None and uv is not None:
+        weights = trimesh.triangles.points_to_barycentric(mesh.triangles[faces], points)  # type: ignore[no-untyped-call]
+        at = np.einsum("nk,nkc->nc", weights, np.asarray(uv)[mesh.faces[faces]])
+        shown = trimesh.visual.color.uv_to_interpolated_color(at, image)
+        return np.asarray(shown[:, :3], dtype=np.float64) / 255 * plain
+    if material is None and getattr(visual, "defined", False):
+        return np.asarray(visual.face_colors[faces][:, :3], dtype=np.float64) / 255
+    if factor is None:
+        plain = np.full(3, 0.6)
+    return np.tile(plain, (len(points), 1))
+
+
+def frames(normal: Array) -> Array:
+    """`[N, 3, 3]` orthonormal columns, the last being the normal."""
+    helper = np.where(np.abs(normal[:, 2:]) < 0.9, [[0.0, 0.0, 1.0]], [[1.0, 0.0, 0.0]])
+    first = np.cross(helper, normal)
+    first /= np.linalg.norm(first, axis=1, keepdims=True)
+    return np.stack([first, np.cross(normal, first), normal], axis=2)
+
+
+def _asset(unlit: Unlit, cloud: GaussianCloud, size: Vec3, kind: str) -> Asset:
+    if not len(cloud):
+        raise FileError("nothing of it is left")
+    rgb = (cloud.sh[:, 0].mean(dim=0) * 0.28209479177387814 + 0.5).clamp(0, 1).tolist()
+    parts = Parts(torch.zeros(len(cloud), dtype=torch.int32), ("whole",))
+    whole = torch.ones(len(cloud), dtype=torch.bool)
+    return Asset(cloud, kind, size, basic_name((rgb[0], rgb[1], rgb[2])), parts, whole, 0, unlit)

@@ -1,0 +1,227 @@
+"""`make`: one object of a kind, as Gaussians. Knows the order of the steps; the steps live in their own files.
+
+build pieces -> fit to size, stand on the ground -> cut into cells -> paint -> bake light -> flat Gaussians
+"""
+
+from __future__ import annotations
+
+import math
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+
+from ... import color as colors
+from ...camera import Vec3
+from ...cloud import GaussianCloud
+from ...color import Rgb
+from ...errors import UserError
+from .. import registry
+from . import light, sampling, shapes
+from .materials import Tone
+from .shapes import Piece
+
+Array = NDArray[np.float64]
+SH_C0 = 0.28209479177387814  # Y_0^0, Kerbl et al. 2023
+OPACITY = 0.97
+COVER = 0.6  # standard deviation over cell length: cells a closed surface without holes, edges still crisp
+MOST = 8500  # Gaussians of one object at detail 1, roughly
+THIN = 0.06  # thickness against the shorter tangent
+
+
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """Which part of the object each Gaussian belongs to.
+
+    Attributes:
+        labels: `[N]` int32 index into `names`.
+        names: part names.
+    """
+
+    labels: Tensor
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Unlit:
+    """An object before light: cells, their colours `[N, 3]`, and which of them are lit from both sides `[N]`."""
+
+    samples: sampling.Samples
+    albedo: Array
+    two_sided: NDArray[np.bool_]
+
+    def cloud(self, sun: Array) -> GaussianCloud:
+        """Gaussians under a lamp in the direction `sun`, object frame."""
+        s = self.samples
+        bright = light.bake(s.xyz, s.normal, light.occupancy(s.xyz), sun, self.two_sided)
+        return flat_gaussians(s, self.albedo * bright[:, None])
+
+
+@dataclass(frozen=True, eq=False)
+class Asset:
+    """One made thing, standing on z = 0, centred in x and y, its front facing -y, metres.
+
+    Attributes:
+        cloud: SH degree 0.
+        kind: canonical name.
+        size: (w, d, h) of its bounding box, metres.
+        color: basic name of its main colour ("red", "gray", ...).
+        parts: part labels a Gaussian.
+        main: `[N]` bool, the Gaussians that carry the main colour.
+        seed: the design.
+        unlit: what `relit` starts from.
+    """
+
+    cloud: GaussianCloud
+    kind: str
+    size: Vec3
+    color: str
+    parts: Parts
+    main: Tensor
+    seed: int
+    unlit: Unlit
+
+    def relit(self, sun: Vec3) -> GaussianCloud:
+        """The same object under another lamp; `sun` points towards it, object frame."""
+        return self.unlit.cloud(np.asarray(sun, dtype=np.float64))
+
+
+def kinds(shown: bool = False) -> tuple[str, ...]:
+    """Names of everything `make` can make, sorted; with `shown` only of what the embedded encoder was trained on."""
+    return tuple(sorted(name for name, known in registry.KINDS.items() if known.shown or not shown))
+
+
+def make(
+    kind: str,
+    seed: int = 0,
+    *,
+    color: str | None = None,
+    size: Vec3 | None = None,
+    detail: float = 1.0,
+) -> Asset:
+    """One object of a kind; the same arguments give the same bytes.
+
+    Args:
+        kind: a name from `kinds()` or a synonym.
+        seed: chooses design, proportions, colours and patterns.
+        color: main colour: a basic term in its typical shade, anything else as `color.parse` takes it; drawn from
+            the seed if None.
+        size: (w, d, h) in metres to stretch the design to; its own if None.
+        detail: factor on the number of Gaussians, 0.05 to 8.
+
+    Raises:
+        UserError: for an unknown kind or colour, or a size or detail out of range.
+    """
+    known = registry.find(kind)
+    if not 0.05 <= detail <= 8:
+        raise UserError(f"detail must be between 0.05 and 8, got {detail:g}")
+    if size is not None and not all(0.005 <= s <= 50 for s in size):
+        raise UserError(f"size must be three lengths (w, d, h) between 0.005 and 50 metres, got {size}")
+    pieces, tone = design(known, seed, shade_of(color) if color is not None else None)
+    wanted = size if size is not None else _typical(pieces, known)
+    return finished(fitted(pieces, wanted), known.name, tone.color, seed, detail)
+
+
+def finished(pieces: Sequence[Piece], kind: str, rgb: Rgb, seed: int = 0, detail: float = 1.0) -> Asset:
+    """Pieces that stand on z = 0, centred in x and y, as an asset whose main colour is `rgb`."""
+    samples = _sampled(pieces, detail)
+    sided = np.array([p.two_sided for p in pieces])[samples.piece]
+    unlit = Unlit(samples, sampling.albedo(pieces, samples), sided)
+    low, high = shapes.bounds(pieces)
+    names = tuple(dict.fromkeys(p.part for p in pieces))
+    labels = np.array([names.index(p.part) for p in pieces], dtype=np.int32)[samples.piece]
+    main = np.array([bool(p.material and p.material.main) for p in pieces])[samples.piece]
+    return Asset(
+        cloud=unlit.cloud(light.SUN),
+        kind=kind,
+        size=(float(high[0] - low[0]), float(high[1] - low[1]), float(high[2] - low[2])),
+        color=basic_name(rgb),
+        parts=Parts(torch.from_numpy(labels), names),
+        main=torch.from_numpy(main),
+        seed=seed,
+        unlit=unlit,
+    )
+
+
+def design(known: registry.Kind, seed: int, wanted: Rgb | None = None) -> tuple[list[Piece], Tone]:
+    """The pieces of one design as its builder made them, and the colours it used."""
+    rng = np.random.default_rng([zlib.crc32(known.name.encode()), seed & 0xFFFFFFFF])
+    tone = Tone(rng, known.palette, wanted)
+    return known.build(rng, tone), tone
+
+
+def shade_of(color: str) -> Rgb:
+    """RGB of a colour word: a basic term as furniture wears it (CSS "blue" is a glowing #0000ff), else as parsed."""
+    return colors.parse(colors.BASIC.get(color.strip().lower(), color))
+
+
+def _typical(pieces: Sequence[Piece], known: registry.Kind) -> Vec3:
+    """The design's own size, brought back into the kind's typical range."""
+    low, high = shapes.bounds(pieces)
+    w, d, h = np.clip(np.maximum(high - low, 1e-6), *np.array(known.sizes).T).tolist()
+    return (w, d, h)
+
+
+def fitted(pieces: Sequence[Piece], size: Vec3) -> list[Piece]:
+    """Stretched to `size`, standing on z = 0, centred in x and y."""
+    low, high = shapes.bounds(pieces)
+    middle = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
+    gain = np.array(size) / np.maximum(high - low, 1e-6)
+    return [p.transformed(np.diag(gain), -gain * middle) for p in pieces]
+
+
+def spacing(pieces: Sequence[Piece], detail: float) -> float:
+    """Cell length, metres, so that an object gets about 1,000 to 6,000 Gaussians by its area."""
+    total = sampling.area(pieces)
+    count = float(np.clip(1900 + 900 * math.sqrt(total), 900, 7000)) * detail
+    return math.sqrt(total / count)
+
+
+def _sampled(pieces: Sequence[Piece], detail: float) -> sampling.Samples:
+    """Cells of an object; one of many small parts, which each take a cell a side, is cut again more coarsely."""
+    step = spacing(pieces, detail)
+    samples = sampling.sample(pieces, step)
+    if (excess := len(samples.xyz) / (MOST * detail)) > 1:
+        samples = sampling.sample(pieces, step * excess**0.5 * 1.05)
+    return samples[~sampling.covered(samples)]
+
+
+def flat_gaussians(samples: sampling.Samples, rgb: Array, cover: float = COVER) -> GaussianCloud:
+    """One flat Gaussian a cell, of SH degree 0; `rgb [N, 3]` is what it shows, `cover` its deviation over the cell."""
+    tangent = samples.size * cover
+    tangent = np.maximum(tangent, 0.08 * tangent.max(axis=1, keepdims=True))  # no needles
+    scales = np.concatenate([tangent, np.maximum(THIN * tangent.min(axis=1, keepdims=True), 2e-4)], axis=1)
+    n = len(rgb)
+    return GaussianCloud.create(
+        means=torch.from_numpy(samples.xyz.astype(np.float32)),
+        quats=torch.from_numpy(quaternions(samples.frame).astype(np.float32)),
+        scales=torch.from_numpy(scales.astype(np.float32)),
+        opacities=torch.full((n,), OPACITY),
+        sh=torch.from_numpy(((np.clip(rgb, 0.004, 1.0) - 0.5) / SH_C0).astype(np.float32))[:, None],
+    )
+
+
+def quaternions(frames: Array) -> Array:
+    """Rotation matrices `[N, 3, 3]` to unit quaternions wxyz `[N, 4]` (the largest component is found first)."""
+    m = frames
+    t = np.einsum("nii->n", m)
+    squares = np.stack([1 + t, *(1 - t + 2 * m[:, i, i] for i in range(3))], axis=1)  # 4 q_i^2
+    pick = np.argmax(squares, axis=1)
+    a, b, c = m[:, 2, 1] - m[:, 1, 2], m[:, 0, 2] - m[:, 2, 0], m[:, 1, 0] - m[:, 0, 1]
+    d, e, f = m[:, 0, 1] + m[:, 1, 0], m[:, 0, 2] + m[:, 2, 0], m[:, 1, 2] + m[:, 2, 1]
+    s = squares
+    rows = np.stack(
+        [np.stack([s[:, 0], a, b, c], 1), np.stack([a, s[:, 1], d, e], 1),
+         np.stack([b, d, s[:, 2], f], 1), np.stack([c, e, f, s[:, 3]], 1)], axis=1,
+    )  # fmt: skip
+    q = rows[np.arange(len(m)), pick]
+    return np.asarray(q / np.linalg.norm(q, axis=1, keepdims=True))
+
+
+def basic_name(rgb: Rgb) -> str:
+    """Basic colour term of an RGB, without "dark" or "light"."""
+    return colors.name_of(colors.rgb_to_lab(torch.tensor(rgb))).split()[-1]

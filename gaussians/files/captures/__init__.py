@@ -1,0 +1,1 @@
+"""Photographs with poses: transforms.json, COLMAP models and camera paths."""

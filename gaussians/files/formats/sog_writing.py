@@ -1,0 +1,108 @@
+"""Writing SOG version 2, the other half of `sog`: one zip archive of meta.json and lossless WebP images.
+
+Knows the specification (developer.playcanvas.com/user-manual/gaussian-splatting/formats/sog). Refuses to know how
+codebooks and palettes come about.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import zipfile
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import FileError
+from ...scene import Scene
+from . import codebooks, values
+
+PALETTE_COLUMNS = 64
+PALETTE_LIMIT = 1 << 16  # labels have 16 bits
+_SHARE = 4  # Gaussians a set of coefficients, where there are enough of them
+_BOOK = 256
+_LOG_LIMIT = 20.0  # of log scales: 2e-9 to 5e8 units
+_YEAR = (1980, 1, 1, 0, 0, 0)  # zip's first date, so that equal scenes give equal bytes
+Bytes = NDArray[np.uint8]
+
+
+def write(scene: Scene, file: BinaryIO) -> None:
+    """Write the scene in row order, row by row of the images."""
+    cloud = values.columns(scene.cloud)
+    count = len(scene.cloud)
+    meta: dict[str, Any] = {"version": 2, "asset": {"generator": "scenewright"}, "count": count}
+    parts: dict[str, Bytes] = {}
+    meta["means"] = _means(cloud["means"], parts)
+    thirds, largest = values.without_largest(cloud["quats"])
+    parts["quats.webp"] = _square(values.codes(thirds / 2 + 0.5, 255), largest + 252)
+    meta["quats"] = {"files": ["quats.webp"]}
+    logs = np.clip(values.logs_from_scales(cloud["scales"]), -_LOG_LIMIT, _LOG_LIMIT).astype(np.float32)
+    for name, column, alpha in (
+        ("scales", logs, np.full(count, 255)),
+        ("sh0", cloud["sh"][:, 0], values.codes(cloud["opacities"], 255)),
+    ):
+        book = codebooks.codebook(column, _BOOK)
+        parts[f"{name}.webp"] = _square(codebooks.nearest(column, book), alpha)
+        meta[name] = {"codebook": _padded(book), "files": [f"{name}.webp"]}
+    if scene.cloud.degree:
+        meta["shN"] = _bands(cloud["sh"][:, 1:], scene.cloud.degree, parts)
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
+        archive.writestr(zipfile.ZipInfo("meta.json", _YEAR), json.dumps(meta, separators=(",", ":")))
+        for name, pixels in parts.items():
+            archive.writestr(zipfile.ZipInfo(name, _YEAR), _webp(pixels))
+
+
+def _means(means: values.Floats, parts: dict[str, Bytes]) -> dict[str, Any]:
+    """Positions as 16 bits of `sign(x) log(1 + |x|)` between its bounds; low bytes and high bytes apart."""
+    logs = np.sign(means) * np.log1p(np.abs(means.astype(np.float64)))
+    low, high = logs.min(axis=0), logs.max(axis=0)
+    span = np.where(high > low, high - low, 1.0)
+    codes = values.codes((logs - low) / span, 65535)
+    opaque = np.full(len(means), 255)
+    parts["means_l.webp"], parts["means_u.webp"] = _square(codes & 255, opaque), _square(codes >> 8, opaque)
+    return {"mins": low.tolist(), "maxs": high.tolist(), "files": ["means_l.webp", "means_u.webp"]}
+
+
+def _bands(rest: values.Floats, degree: int, parts: dict[str, Bytes]) -> dict[str, Any]:
+    """Bands above the constant one `[N, K - 1, 3]` as a palette of coefficient sets and a label a Gaussian."""
+    count, k, _ = rest.shape
+    size = min(PALETTE_LIMIT, max(count // _SHARE, min(count, 1024)))
+    centres, labels = codebooks.palette(rest.reshape(count, -1), size)
+    book = codebooks.codebook(centres, _BOOK)
+    rows = -(-len(centres) // PALETTE_COLUMNS)
+    picture = np.zeros((rows * PALETTE_COLUMNS, k, 4), np.uint8)
+    picture[..., 3] = 255
+    picture[: len(centres), :, :3] = codebooks.nearest(centres, book).reshape(-1, k, 3)
+    parts["shN_centroids.webp"] = picture.reshape(rows, PALETTE_COLUMNS * k, 4)
+    low, high = labels & 255, labels >> 8
+    parts["shN_labels.webp"] = _square(np.stack([low, high, np.zeros_like(low)], axis=1), np.full(count, 255))
+    files = ["shN_centroids.webp", "shN_labels.webp"]
+    return {"count": len(centres), "bands": degree, "codebook": _padded(book), "files": files}
+
+
+def _padded(book: values.Floats) -> list[float]:
+    """A codebook of exactly 256 entries, as readers expect; the last value fills the rest."""
+    return [float(v) for v in np.concatenate([book, np.repeat(book[-1:], _BOOK - len(book))])]
+
+
+def _square(rgb: NDArray[np.integer], alpha: NDArray[np.integer]) -> Bytes:
+    """`[height, width, 4]` picture, about square, of a pixel a Gaussian; width and height multiples of four."""
+    count = len(rgb)
+    width = 4 * math.ceil(math.sqrt(count) / 4)
+    height = 4 * math.ceil(count / width / 4)
+    picture = np.zeros((height * width, 4), np.uint8)
+    picture[:count, :3], picture[:count, 3] = rgb, alpha
+    return picture.reshape(height, width, 4)
+
+
+def _webp(pixels: Bytes) -> bytes:
+    """A lossless WebP that keeps colours under full transparency as well."""
+    from PIL import Image, features
+
+    if not features.check("webp"):
+        raise FileError("this Pillow cannot write WebP, which SOG needs; reinstall it: pip install -U pillow")
+    out = io.BytesIO()
+    Image.fromarray(pixels).save(out, "WEBP", lossless=True, exact=True, quality=75, method=3)
+    return out.getvalue()

@@ -1,0 +1,1 @@
+"""Photographs before training: reading, undistorting, pose checks and pose estimation."""

@@ -1,0 +1,1 @@
+"""One module an encoder back end, found by scanning this package."""

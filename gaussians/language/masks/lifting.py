@@ -1,0 +1,107 @@
+"""From masks of pictures to masks of Gaussians, without training: alpha times transmittance in the domain of labels.
+
+For every view one pass of the rasteriser says how much blending weight each Gaussian has inside each mask. Nothing of
+it depends on the width of any feature: vectors enter only when masks have been grouped, or when someone asks for one
+vector a Gaussian (`Lifted.features`). The uplift itself is that of training-free methods such as Occam's LGS (Cheng et
+al. 2024): a weighted mean over views, the weights those with which the picture was blended.
+
+Knows clouds, masks and blending weights. Refuses to know which masks belong together (`association`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_matrix, hstack
+
+from ...cloud import GaussianCloud
+from ...errors import UserError
+from ...render import split
+from . import ViewMasks
+
+F32 = NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class Lifted:
+    """M masks of V views over N Gaussians.
+
+    Attributes:
+        weights: `[N, M]` sparse float32, blending weight of each Gaussian summed over each mask's pixels.
+        seen: `[N, V]` sparse float32, the same over each view's pixels, in a mask or not.
+        view: `[M]` int32, ascending: the view a mask is of.
+        labels: M names, "" where none is known.
+        scores: `[M]` float32.
+        vectors: `[M, D]` float32, unit or zero rows; None if no view has any.
+    """
+
+    weights: csr_matrix
+    seen: csr_matrix
+    view: NDArray[np.int32]
+    labels: tuple[str, ...]
+    scores: F32
+    vectors: F32 | None
+
+    def features(self) -> F32:
+        """`[N, D]` unit mean vector of the masks each Gaussian was seen in, by weight; zero where it was in none.
+
+        This is the per-Gaussian field that groups replace; it is here to be compared with.
+
+        Raises:
+            UserError: the masks have no vectors.
+        """
+        if self.vectors is None:
+            raise UserError("these masks have no vectors to lift")
+        total = np.asarray(self.weights @ self.vectors, dtype=np.float32)
+        norms = np.linalg.norm(total, axis=1, keepdims=True)
+        units: F32 = (total / np.where(norms > 1e-12, norms, 1)).astype(np.float32)
+        return units
+
+
+def lift(cloud: GaussianCloud, views: Iterable[ViewMasks]) -> Lifted:
+    """Carry the masks of some views to the Gaussians; empty views (no mask) count as seen.
+
+    Raises:
+        UserError: the views' vectors have different widths, or only some views have any.
+    """
+    weights, seen, taken = [], [], []
+    for view in views:
+        masks, whole = _one(cloud, view)
+        weights.append(masks)
+        seen.append(whole)
+        taken.append(view)
+    count = len(cloud)
+    return Lifted(
+        weights=hstack(weights, format="csr") if weights else csr_matrix((count, 0), dtype=np.float32),
+        seen=hstack(seen, format="csr") if seen else csr_matrix((count, 0), dtype=np.float32),
+        view=np.repeat(np.arange(len(taken), dtype=np.int32), [len(v) for v in taken]),
+        labels=tuple(label for view in taken for label in view.labels),
+        scores=np.concatenate([np.zeros(0, np.float32), *(v.scores for v in taken)]),
+        vectors=_vectors(taken),
+    )
+
+
+def _one(cloud: GaussianCloud, view: ViewMasks) -> tuple[csr_matrix, csr_matrix]:
+    """Weights `[N, M]` and seen `[N, 1]` of one view."""
+    cell, inside = view.cells
+    shares = split(cloud, view.camera, cell)
+    by_cell = csr_matrix((shares.weights, (shares.rows, shares.labels)), shape=(len(cloud), len(inside)))
+    cells, layers = np.nonzero(inside >= 0)
+    pairs = np.unique(np.stack([cells, inside[cells, layers]], axis=1), axis=0)  # once, though in several layers
+    member = csr_matrix((np.ones(len(pairs), np.float32), (pairs[:, 0], pairs[:, 1])), shape=(len(inside), len(view)))
+    whole = csr_matrix(by_cell.sum(axis=1).astype(np.float32))
+    return csr_matrix(by_cell @ member, dtype=np.float32), whole
+
+
+def _vectors(views: list[ViewMasks]) -> F32 | None:
+    given = [v.vectors for v in views if v.vectors is not None]
+    if not given:
+        return None
+    if len({v.shape[1] for v in given}) > 1:
+        raise UserError(f"masks have vectors of different widths: {sorted({v.shape[1] for v in given})}")
+    if any(v.vectors is None and len(v) for v in views):
+        raise UserError("some views' masks have vectors and others' have none; give all or none")
+    return np.concatenate(given)

@@ -1,0 +1,97 @@
+"""Masks of rendered views without any model: patches whose depth, normals and colour go together.
+
+The greedy graph merge of Felzenszwalb & Huttenlocher (IJCV 2004) over the pixels of a rendered RGB-D picture. It finds
+patches, not objects: a chair is its seat, back and legs. Knows pictures with depth. Refuses to know Gaussians.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....camera import Camera, Render
+from ....color import rgb_to_lab
+from ....errors import UserError
+from ....render import render
+from ....scene import Scene
+from ....viewpoints.coverage import choose_views, fit_camera
+from ...segmentation.superpoints import COLOR_UNIT, LIGHTNESS, NORMAL_UNIT, merged
+from ..view import NONE, ViewMasks
+
+F32 = NDArray[np.float32]
+
+SIDE = 256  # pixels of the rendered views
+STEP = 0.02  # of the depth, beyond what the slope explains: a step between two pixels that counts as one edge unit
+FILLED = 0.5  # alpha below which a pixel shows nothing
+SCALE = 60.0  # of the merge, in edge units times pixels: larger gives larger patches
+LEAST = 60  # pixels of a patch
+SCORE = 0.5  # a patch is as likely a thing as not
+
+
+def load(argument: str = "", capture: Path | None = None) -> Embedded:
+    """See `masks.load`. It looks at rendered views, from the capture's cameras if the scene has them."""
+    del capture
+    if argument:
+        raise UserError(f"embedded masks take no argument, got {argument!r}")
+    return Embedded()
+
+
+@dataclass(frozen=True)
+class Embedded:
+    """The patches of views chosen to see all that can be seen."""
+
+    side: int = SIDE
+
+    def masks(
+        self, scene: Scene, progress: Callable[[str, float], None] = lambda stage, share: None
+    ) -> Iterator[ViewMasks]:
+        """See `Masker`."""
+        cameras = choose_views(scene).cameras
+        for i, camera in enumerate(cameras):
+            gain = self.side / max(camera.width, camera.height)
+            large = fit_camera(camera, max(1, round(camera.width * gain)), max(1, round(camera.height * gain)))
+            yield of_view(render(scene.cloud, large), large)
+            progress("masks", (i + 1) / len(cameras))
+
+
+def of_view(seen: Render, camera: Camera) -> ViewMasks:
+    """The patches of one rendered picture; what shows nothing is in none."""
+    depth = seen.depth.cpu().numpy().astype(np.float64)
+    filled = seen.alpha.cpu().numpy() >= FILLED
+    lab = rgb_to_lab(seen.rgb.cpu().clamp(0, 1)).numpy()
+    normals = _normals(depth, camera)
+    height, width = depth.shape
+    index = np.arange(height * width).reshape(height, width)
+    pairs, weights = [], []
+    for a, b in ((np.s_[:, :-1], np.s_[:, 1:]), (np.s_[:-1], np.s_[1:])):
+        both = filled[a] & filled[b]
+        difference = (lab[a] - lab[b]) * np.array([LIGHTNESS, 1, 1], np.float32)
+        turn = 1 - np.abs((normals[a] * normals[b]).sum(axis=-1))
+        step = np.abs(depth[a] - depth[b]) / np.maximum(np.minimum(depth[a], depth[b]), 1e-9)
+        weight = np.linalg.norm(difference, axis=-1) / COLOR_UNIT + turn / NORMAL_UNIT + step / STEP
+        pairs.append(np.stack([index[a][both], index[b][both]], axis=1))
+        weights.append(weight[both])
+    label = merged(height * width, np.concatenate(pairs), np.concatenate(weights), SCALE, LEAST)
+    label[~filled.ravel()] = NONE
+    names, ids, size = np.unique(label, return_inverse=True, return_counts=True)
+    good = (names >= 0) & (size >= LEAST)
+    place = np.where(good, np.cumsum(good) - 1, NONE).astype(np.int32)
+    count = int(good.sum())
+    return ViewMasks(camera, place[ids].reshape(height, width), ("",) * count, np.full(count, SCORE, np.float32))
+
+
+def _normals(depth: NDArray[np.float64], camera: Camera) -> F32:
+    """`[H, W, 3]` unit normals of the surface the depths lie on, in the camera's axes; zero at the picture's rim."""
+    y, x = np.mgrid[: camera.height, : camera.width] + 0.5
+    points = np.stack([(x - camera.cx) / camera.fx * depth, (y - camera.cy) / camera.fy * depth, depth], axis=-1)
+    normals = np.zeros_like(points)
+    if min(depth.shape) > 2:
+        along, down = points[1:-1, 2:] - points[1:-1, :-2], points[2:, 1:-1] - points[:-2, 1:-1]
+        normals[1:-1, 1:-1] = np.cross(along, down)
+    length = np.linalg.norm(normals, axis=-1, keepdims=True)
+    result: F32 = (normals / np.where(length > 0, length, 1)).astype(np.float32)
+    return result

@@ -1,0 +1,47 @@
+"""A selection after its query asked for more or less of it: grown, shrunk, turned inside out.
+
+Knows selections and the table of groups. Refuses to know what was asked for before that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import torch
+
+from ...scene import Scene
+from ..field.group_index import Members, difference
+from . import morphology
+from .query import Query
+from .selection import Selection, mask_of, nothing
+from .terms import alive
+
+
+def reshaped(scene: Scene, members: Members, found: Selection, query: Query) -> Selection:
+    """What was found, grown or shrunk by `query.grow` metres and then inverted if the query says so."""
+    ids, change = found.ids, ""
+    if query.grow:
+        by = abs(query.grow) / (scene.frame.metres_per_unit or 1.0)
+        ids = (morphology.grown if query.grow > 0 else morphology.shrunk)(scene.cloud, ids, by)
+        change = f"{len(ids) - len(found):+,} Gaussians by {'growing' if query.grow > 0 else 'shrinking'}"
+    if query.invert:
+        ids = difference(members.every_id, ids)
+    if not len(ids):
+        return nothing(query, f"nothing is left of {query.describe()}", found.candidates)
+    told = () if query.invert else found.candidates
+    reason = "; ".join(r for r in (found.reason, change) if r)
+    return replace(found, ids=ids, groups=_whole(scene, ids), candidates=told, reason=reason)
+
+
+def _whole(scene: Scene, ids: torch.Tensor) -> tuple[int, ...]:
+    """Groups of which every Gaussian is among some ids."""
+    field = scene.language
+    assert field is not None
+    column = scene.cloud.group[mask_of(scene.cloud, ids)].cpu().numpy()
+    held = np.bincount(column + 1, minlength=len(field.groups) + 1)[1:]
+    return tuple(
+        g.id
+        for g in alive(field, "all")
+        if g.parent < 0 and sum(int(held[leaf]) for leaf in field.leaves(g.id)) == g.count
+    )

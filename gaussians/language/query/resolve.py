@@ -1,0 +1,299 @@
+"""From a query to a selection: text, measured attributes and geometry as separate terms, and one verdict.
+
+Knows the order of things: set algebra, anchors, terms (`terms.py`), choice (`picking.py`). Refuses to guess: several
+matches are "ambiguous", none is "absent", and every candidate carries the score of each of its terms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import torch
+
+from ...camera import Camera
+from ...cloud import NO_GROUP
+from ...errors import BackendError
+from ...scene import Scene
+from ...world import relations
+from ...world.facing import Facing, facing_of
+from ..encoders.calibration import doubt
+from ..field.group_index import Members, difference, members_of, union
+from ..field.language_field import Group, LanguageField
+from ..field.measure import box_of
+from .color_fallback import PARTS, at_home, by_color, by_hue
+from .part_query import select_part
+from .picking import by_distance, pick
+from .query import Query, Relation
+from .reshape import reshaped
+from .selection import Candidate, Selection, nothing
+from .terms import ALL, FLOATERS, ORDERING, STRUCTURE, Anchor, Scored, alive, candidate_of, is_name, related, scored
+
+if TYPE_CHECKING:
+    from ..encoders import Encoder
+
+__all__ = ["STRUCTURE", "Resolver", "resolve"]  # who builds scenes from words needs to know which words are walls
+
+
+def resolve(
+    scene: Scene, query: Query, viewer: Camera, encoder: Encoder | None = None, last: Selection | None = None
+) -> Selection:
+    """What `query` means in `scene` for someone at `viewer`.
+
+    Args:
+        encoder: the encoder the scene was embedded with; needed only where the query names a kind of thing.
+        last: the selection that "it" refers to.
+
+    Raises:
+        BackendError: the scene has no language field, or it was made with another encoder.
+        UserError: a colour word is unknown.
+    """
+    return Resolver(scene, viewer, encoder, last).select(query)
+
+
+class Unresolved(Exception):  # no error: an anchor's verdict is the answer
+    """An anchor was not found as one thing; its selection is the answer to the whole query."""
+
+    def __init__(self, selection: Selection) -> None:
+        super().__init__(selection.reason)
+        self.selection = selection
+
+
+@dataclass(frozen=True)
+class Resolver:
+    """One scene, one viewer, one encoder: asks of any number of queries. See `resolve`."""
+
+    scene: Scene
+    viewer: Camera
+    encoder: Encoder | None = None
+    last: Selection | None = None
+
+    @cached_property
+    def field(self) -> LanguageField:
+        if self.scene.language is None:
+            raise BackendError("this scene has no language field yet; run `scenewright embed` or call embed() first")
+        return self.scene.language
+
+    @cached_property
+    def stand(self) -> relations.Stand:
+        return relations.viewer_stand(self.viewer, self.scene.frame.up_vector, self.field.typical_size)
+
+    @cached_property
+    def members(self) -> Members:
+        return members_of(self.scene.cloud)
+
+    # -- the line from query to selection ---------------------------------------------------------------------------
+
+    def select(self, query: Query) -> Selection:
+        """What a query means, set algebra, growing and all."""
+        found = self._combined(query)
+        if found.verdict != "found" or not (query.grow or query.invert):
+            return found
+        return reshaped(self.scene, self.members, found, query)
+
+    def _combined(self, query: Query) -> Selection:
+        """What a query means with its set algebra."""
+        outs = []
+        for other in query.exclude:
+            out = self.select(other.model_copy(update={"pick": "all"}) if other.pick == "one" else other)
+            if out.verdict != "found":
+                return replace(out, query=query, reason=f"cannot leave out what is not there: {out.reason}")
+            outs.append(out)
+        unmeant = frozenset(g for out in outs for g in out.groups) if query.pick == "one" and not query.also else None
+        own = self._own(query, unmeant or frozenset())
+        if own.verdict != "found":
+            return own
+        for other in query.also:
+            more = self.select(other)
+            if more.verdict != "found":
+                return replace(more, query=query)
+            own = _joined(own, more)
+        for out in outs:
+            own = _without(own, out)
+        if not len(own):
+            return nothing(query, f"nothing is left of {query.describe()}", own.candidates)
+        return own
+
+    def _own(self, query: Query, out: frozenset[int]) -> Selection:
+        """The query without its set algebra; groups in `out` cannot be the one that is meant."""
+        if query.last:
+            return self._again(query)
+        if query.groups:
+            return self._explicit(query)
+        if query.text in ALL and not query.colors:
+            groups = tuple(g for g in alive(self.field, "all") if g.parent < 0)
+            told = tuple(candidate_of(g) for g in groups)  # with what belongs to no group
+            return Selection(query, "found", self.members.every_id, tuple(g.id for g in groups), told)
+        if query.text in FLOATERS and not query.colors:
+            return self._floaters(query)
+        try:
+            found = self.described(query, out)
+            fronts = self._frames_told(query)
+        except Unresolved as anchor:
+            return replace(anchor.selection, query=query)
+        return replace(found, reason="; ".join(r for r in (found.reason, fronts) if r)) if fronts else found
+
+    def described(self, query: Query, out: frozenset[int] = frozenset()) -> Selection:
+        """A query that says what a thing is like."""
+        owner = next((r for r in query.relations if r.name == "part_of"), None)
+        if owner is not None and is_name(query.text):
+            return select_part(self, query, owner)
+        rank = self.scored(query).without(out)
+        matches = rank.matches()
+        if query.colors and query.text not in STRUCTURE and (query.text in PARTS or not matches):
+
+            def stands(rows: torch.Tensor) -> bool:
+                return not query.relations or self.stands(query, self._stand_in(rows))
+
+            found = by_hue(self.scene, self.field, query, stands, rank.named)
+            if found is None and self._goes_by_color(query):
+                found = by_color(self.scene, self.field, query, stands)
+            if found is not None:
+                return found
+        if not matches:
+            near = tuple(rank.candidate(i) for i in rank.nearest()[:3])
+            return nothing(query, self._why_absent(query, near), near)
+        order = next((r for r in query.relations if r.name in ORDERING), None)
+        if order is not None:
+            near_what = [a.group for a in self.anchors(order)]
+            choice = by_distance(query, rank, near_what, order.name == "nearest_to")
+        else:
+            choice = pick(query, rank, self.stand)
+        if choice.refusal is not None:
+            return choice.refusal
+        if query.pick == "rest":
+            return self._rest(query, rank, choice.chosen)
+        return self._take(query, tuple(rank.candidate(i) for i in choice.chosen))
+
+    def _again(self, query: Query) -> Selection:
+        """ "it": what was selected last, as far as it is still there."""
+        there = self.members.present(self.last.ids) if self.last is not None else torch.zeros(0)
+        if self.last is None or not len(there):
+            return nothing(query, "there is nothing that 'it' could mean (any more); name the object")
+        return replace(self.last, query=query, verdict="found", ids=there)
+
+    def _floaters(self, query: Query) -> Selection:
+        """What belongs to no group: haze and strays off every surface."""
+        ids = self.members.ids_of([NO_GROUP])
+        if not len(ids):
+            return nothing(query, "every Gaussian of this scene belongs to something; there are no floaters")
+        return Selection(query, "found", ids, (), (), f"{len(ids)} Gaussians that belong to no group")
+
+    def _explicit(self, query: Query) -> Selection:
+        known = {g.id: g for g in alive(self.field, "all")}
+        lost = [i for i in query.groups if i not in known]
+        if lost:
+            return nothing(query, f"group {lost[0]} is not in this scene (any more)")
+        return self._take(query, [candidate_of(known[i]) for i in query.groups])
+
+    # -- terms ------------------------------------------------------------------------------------------------------
+
+    def scored(self, query: Query) -> Scored:
+        """The candidates of a query and their terms, without its set algebra."""
+        placed = [(r, self.anchors(r)) for r in query.relations if r.name not in ORDERING]
+        return scored(query, self.field, self.encoder, self.scene.frame.metres_per_unit, placed)
+
+    def anchors(self, relation: Relation) -> list[Anchor]:
+        """What a relation relates to, each with the stand it is told from.
+
+        Raises:
+            Unresolved: one of them is absent or ambiguous.
+        """
+        groups: list[Group] = []
+        for query in relation.anchors:  # "on the wall" means on any wall
+            found = self.select(query.model_copy(update={"pick": "all"}) if query.text in STRUCTURE else query)
+            if found.verdict != "found":
+                raise Unresolved(found)
+            # Found by colour alone, it has no group.
+            own = [self.field.groups[i] for i in found.groups]
+            groups.extend(own or [self._stand_in(found.mask(self.scene.cloud))])
+        if relation.name == "between" and len(groups) < 2:
+            raise Unresolved(nothing(relation.anchors[0], "'between' needs two things"))
+        return [Anchor(g, self._stand_at(g, relation)) for g in groups]
+
+    def _stand_at(self, group: Group, relation: Relation) -> relations.Stand:
+        """The viewer's, or for a relation in the anchor's own frame the anchor's where it faces somewhere."""
+        front = self.facing(group).front if relation.frame == "object" else None
+        return self.stand if front is None else relations.object_stand(group, front, self.stand)
+
+    def facing(self, group: Group) -> Facing:
+        """Which way a group faces."""
+        if group.id < 0:
+            return Facing(None, "nothing")
+        walls = [g for g in alive(self.field, "structure") if g.label == "wall"]
+        rows = self.members.rows(self.field.leaves(group.id))
+        return facing_of(self.scene.cloud, rows, group, walls, self.field.typical_size)
+
+    def _frames_told(self, query: Query) -> str:
+        """How the front of each anchor was told where a relation is in its own frame; "" where none is."""
+        told = []
+        for relation in query.relations:
+            if relation.frame == "object" and relation.name in relations.SIDEWAYS:
+                for anchor in self.anchors(relation):
+                    by, name = self.facing(anchor.group).by, relation.anchors[0].describe()
+                    told.append({
+                        "shape": f"the front of {name} is told by its shape",
+                        "wall": f"the front of {name} is taken to be away from the wall it stands at",
+                        "nothing": f"which way {name} faces cannot be told, so the side is as you see it",
+                    }[by])  # fmt: skip
+        return "; ".join(dict.fromkeys(told))
+
+    # -- colour where words fail ------------------------------------------------------------------------------------
+
+    def _goes_by_color(self, query: Query) -> bool:
+        """Whether a colour may stand in for a name that nothing answers to.
+
+        It may where the encoder has no say: a word it never learnt, or a scene unlike what it was trained on. Where it
+        knows the scene's things and the word, what it does not find is not there.
+        """
+        if not is_name(query.text) or self.encoder is None or not at_home(self.field):
+            return True
+        return doubt(self.encoder, query.text) is not None
+
+    def stands(self, query: Query, thing: Group) -> bool:
+        """Whether something that is no row of the table stands in every asked relation."""
+        return all(
+            related(r, [thing], self.field, self.anchors(r))[0] >= relations.HOLDS
+            for r in query.relations
+            if r.name not in ORDERING
+        )
+
+    def _stand_in(self, rows: torch.Tensor) -> Group:
+        """Some Gaussians (mask or indices of rows) as something that relations can be asked of."""
+        part = self.scene.cloud[rows]
+        box = box_of(part, self.scene.frame)
+        return Group(-1, "part", -1, "", 0.0, box, (0.0, 0.0, 0.0), len(part), 0, 0.0)
+
+    # -- results ----------------------------------------------------------------------------------------------------
+
+    def _why_absent(self, query: Query, near: Sequence[Candidate]) -> str:
+        if is_name(query.text) and self.encoder is not None and (why := doubt(self.encoder, query.text)):
+            return f"{query.describe()}: {why}; describe it by colour or place, or load a larger encoder"
+        if not near:
+            return f"{query.describe()} is not in this scene, nor is anything that could be compared with it"
+        return f"{query.describe()} is not in this scene; the nearest match is {near[0].describe()}"
+
+    def _rest(self, query: Query, rank: Scored, chosen: Sequence[int]) -> Selection:
+        """Every Gaussian that does not belong to a match, floor and walls and unassigned ones included."""
+        matched = {rank.groups[i].id for i in chosen}
+        kept = self.members.ids_but(leaf for g in matched for leaf in self.field.leaves(g))
+        groups = tuple(g.id for g in alive(self.field, "all") if g.parent < 0 and g.id not in matched)
+        told = tuple(rank.candidate(i) for i in chosen)
+        return Selection(query, "found", kept, groups, told, f"everything but {len(matched)} thing(s)")
+
+    def _take(self, query: Query, chosen: Sequence[Candidate]) -> Selection:
+        groups = tuple(dict.fromkeys(c.group for c in chosen))
+        ids = self.members.ids_of(leaf for g in groups for leaf in self.field.leaves(g))
+        return Selection(query, "found", ids, groups, tuple(chosen))
+
+
+def _joined(a: Selection, b: Selection) -> Selection:
+    return replace(a, ids=union(a.ids, b.ids), groups=tuple(dict.fromkeys((*a.groups, *b.groups))),
+                   candidates=(*a.candidates, *b.candidates))  # fmt: skip
+
+
+def _without(a: Selection, b: Selection) -> Selection:
+    return replace(a, ids=difference(a.ids, b.ids), groups=tuple(g for g in a.groups if g not in b.groups),
+                   candidates=tuple(c for c in a.candidates if c.group not in b.groups))  # fmt: skip

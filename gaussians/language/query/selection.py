@@ -1,0 +1,104 @@
+"""What a query found: rows by stable id, the groups behind them, every term's score, and one verdict."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import torch
+from torch import Tensor
+
+from ...camera import Vec3
+from ...cloud import GaussianCloud
+from ...errors import AbsentError, AmbiguousError
+from .query import Query
+
+Verdict = Literal["found", "ambiguous", "absent"]
+_DENSE = 8  # ids spread over at most this many times the rows are looked up in a table
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One thing a query might mean.
+
+    Attributes:
+        group: id of its group; -1 for a place or a part that is no row of the table.
+        label: what the encoder calls it, e.g. "armchair".
+        color: nearest basic colour name of its measured colour.
+        center: `[3]` of its box, world frame, scene units.
+        size: `[3]` extents of its oriented box, scene units: two level sides, then height.
+        score: product of the terms, in [0, 1].
+        terms: each term's own score in [0, 1]: "text", "color", "size", one a relation.
+    """
+
+    group: int
+    label: str
+    color: str
+    center: Vec3
+    size: Vec3
+    score: float
+    terms: dict[str, float] = field(default_factory=dict)
+
+    def describe(self) -> str:
+        name = f"{self.color} {self.label}"
+        return name if self.group < 0 else f"{name} (group {self.group})"
+
+
+@dataclass(frozen=True, eq=False)
+class Selection:
+    """The answer to a query.
+
+    Attributes:
+        query: what was asked.
+        verdict: "found", "ambiguous" (see `candidates`) or "absent" (`candidates` holds the nearest).
+        ids: `[M]` int64 sorted stable ids of the selected Gaussians; empty unless found.
+        groups: ids of the selected groups.
+        candidates: best first; what was selected, what it hesitated between, or the nearest miss.
+        reason: one sentence for a person.
+    """
+
+    query: Query
+    verdict: Verdict
+    ids: Tensor
+    groups: tuple[int, ...] = ()
+    candidates: tuple[Candidate, ...] = ()
+    reason: str = ""
+
+    def __len__(self) -> int:
+        return int(self.ids.shape[0])
+
+    def mask(self, cloud: GaussianCloud) -> Tensor:
+        """`[N]` bool over the rows of `cloud`: which of its Gaussians are selected (ids gone since are ignored)."""
+        return mask_of(cloud, self.ids)
+
+    def require(self) -> Selection:
+        """Itself if found.
+
+        Raises:
+            AbsentError: nothing matches; the message names the nearest candidates.
+            AmbiguousError: several match; the message lists them.
+        """
+        if self.verdict == "absent":
+            raise AbsentError(self.reason or f"{self.query.describe()} is not in this scene")
+        if self.verdict == "ambiguous":
+            raise AmbiguousError(self.reason or f"{self.query.describe()}: several things match")
+        return self
+
+
+def nothing(query: Query, reason: str, candidates: tuple[Candidate, ...] = ()) -> Selection:
+    """An empty selection with the verdict absent."""
+    return Selection(query, "absent", torch.zeros(0, dtype=torch.int64), (), candidates, reason)
+
+
+def mask_of(cloud: GaussianCloud, ids: Tensor) -> Tensor:
+    """`[N]` bool: which rows of `cloud` have one of these ids."""
+    if not len(ids) or not len(cloud):
+        return torch.zeros(len(cloud), dtype=torch.bool, device=cloud.device)
+    ids = ids.to(cloud.device)
+    low, high = (int(v) for v in torch.aminmax(cloud.ids))
+    if high - low >= _DENSE * len(cloud):
+        return torch.isin(cloud.ids, ids, assume_unique=True)
+    # Ids are row numbers of a file, nearly always; a table of flags is then 15 times faster than sorting them.
+    flags = torch.zeros(high - low + 1, dtype=torch.bool, device=cloud.device)
+    flags[ids[(ids >= low) & (ids <= high)] - low] = True
+    return flags[cloud.ids - low]

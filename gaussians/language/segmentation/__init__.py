@@ -1,0 +1,1 @@
+"""From Gaussians to groups: surface points, superpoints, planes, the merge tree and its cut."""

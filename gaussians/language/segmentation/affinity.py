@@ -1,0 +1,140 @@
+"""How likely two regions are one thing: the features of a border, and the rule that judges them.
+
+Knows sums over regions and borders. Refuses to know how they were found and what becomes of them. The rule was fitted
+on furnished rooms with known objects (`train/affinity.py`).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .learned_rule import shipped
+
+if TYPE_CHECKING:
+    from .regions import Borders, Regions
+
+F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
+
+FEATURES = (
+    "color", "lightness", "border weight", "border contrast", "contrast over pattern", "smaller pattern",
+    "larger pattern", "shared border", "border length", "rests on", "resting footprint", "height overlap",
+    "plan overlap", "size ratio", "box growth", "smaller size", "larger size", "plan ratio", "contact height",
+    "contact at edge", "contact footprint", "contact level", "smaller flat", "larger flat", "smaller on floor",
+    "larger on floor", "smaller on wall", "larger on wall", "gap", "touching", "concentric", "feet apart", "tops apart",
+    "same facing", "smaller plane", "larger plane", "smaller line", "larger line", "off the plane",
+)  # fmt: skip
+
+
+def describe(regions: Regions, borders: Borders, first: I64, second: I64, rows: I64, scale: float) -> F64:
+    """Features `[P, len(FEATURES)]` of borders, the same whichever region comes first.
+
+    Args:
+        first, second: `[P]` the regions of each border, as the border's sides are ordered.
+        rows: `[P]` the borders.
+        scale: typical size of a region, scene units.
+    """
+    swap = regions.count[first] > regions.count[second]
+    one, two = np.where(swap, second, first), np.where(swap, first, second)  # the smaller and the larger region
+    b = borders
+    pairs, links = b.pairs[rows], b.touching[rows]
+    level = np.where(swap[:, None], b.level[rows, ::-1], b.level[rows]) / pairs[:, None]
+    small, large = _Shape(regions, one), _Shape(regions, two)
+    color = small.lab - large.lab
+    contact, contrast = b.height[rows] / pairs, b.contrast[rows] / pairs
+    rests = np.maximum(_rests(small, large, contact, level[:, 1]), _rests(large, small, contact, level[:, 0]))
+    overlap = np.minimum(small.high, large.high) - np.maximum(small.low, large.low)
+    share = np.clip(overlap / np.minimum(small.size, large.size), 0, 1)
+    plan = share[:, 0] * share[:, 1]
+    grown = np.maximum(small.high, large.high) - np.minimum(small.low, large.low)
+    growth = np.log(grown.prod(1) / (small.size.prod(1) + large.size.prod(1)) + 1e-3)
+    middle, reach = (b.low[rows] + b.high[rows]) / 2, b.high[rows] - b.low[rows]
+    aside = np.abs(middle - (large.low + large.high)[:, :2] / 2) / (large.size[:, :2] / 2 + 1e-6)
+    apart = np.abs(small.middle - large.middle)[:, :2].max(1) / large.size[:, :2].max(1)
+    offset = np.abs(((small.middle - large.middle) * large.normal).sum(1))
+    return np.stack(
+        [
+            np.minimum(np.linalg.norm(color[:, 1:], axis=1) / 20, 3),
+            np.minimum(np.abs(color[:, 0]) / 30, 2),
+            np.minimum(b.weight[rows] / pairs, 6),
+            np.minimum(contrast / 20, 3),
+            np.minimum(contrast / (small.pattern + large.pattern + 3), 6),
+            np.minimum(small.pattern / 10, 3),
+            np.minimum(large.pattern / 10, 3),
+            links / np.maximum(np.minimum(regions.leaving[one], regions.leaving[two]), 1),
+            np.log((links + 1) / np.sqrt(small.count)),
+            rests,
+            rests * plan,
+            share[:, 2],
+            plan,
+            np.log(large.count / small.count),
+            np.clip(growth, -1, 3),
+            np.log(small.size.max(1) / scale + 1e-3),
+            np.log(large.size.max(1) / scale + 1e-3),
+            np.log((large.size[:, :2] + 1e-3).prod(1) / (small.size[:, :2] + 1e-3).prod(1)),
+            np.clip((contact - large.low[:, 2]) / large.size[:, 2], -0.5, 1.5),
+            np.clip(aside.max(1), 0, 2),
+            np.clip((reach + 1e-3).prod(1) / (small.size[:, :2] + 1e-3).prod(1), 0, 1.5),
+            level[:, 0] - level[:, 1],
+            np.log(small.size[:, 2] / small.size[:, :2].max(1) + 1e-2),
+            np.log(large.size[:, 2] / large.size[:, :2].max(1) + 1e-2),
+            np.log1p(regions.floor[one] / np.sqrt(small.count)),
+            np.log1p(regions.floor[two] / np.sqrt(large.count)),
+            np.log1p(regions.wall[one] / np.sqrt(small.count)),
+            np.log1p(regions.wall[two] / np.sqrt(large.count)),
+            np.minimum(b.gap[rows] / scale, 3),
+            (links > 0).astype(np.float64),
+            np.minimum(apart, 2),
+            np.clip((small.low - large.low)[:, 2] / (grown[:, 2] + 1e-9), -1, 1),
+            np.clip((small.high - large.high)[:, 2] / (grown[:, 2] + 1e-9), -1, 1),
+            (small.facing * large.facing).sum((1, 2)),
+            small.thinness,
+            large.thinness,
+            small.slimness,
+            large.slimness,
+            np.minimum(offset / small.size.max(1), 2) * large.thinness,
+        ],
+        axis=1,
+    )
+
+
+class _Shape:
+    """What the sums of some regions `[P]` say about their form."""
+
+    def __init__(self, regions: Regions, rows: I64) -> None:
+        self.count = regions.count[rows]
+        per = 1 / self.count[:, None]
+        self.lab = regions.lab[rows] * per
+        self.pattern = np.sqrt(np.maximum(regions.lab_squared[rows] * per - self.lab**2, 0).sum(1))
+        self.low, self.high = regions.low[rows], regions.high[rows]
+        self.size = np.maximum(self.high - self.low, 1e-6)
+        self.middle = regions.place[rows] * per
+        scatter = _square(regions.spread[rows] * per) - self.middle[:, :, None] * self.middle[:, None, :]
+        values, axes = np.linalg.eigh(scatter)
+        root = np.sqrt(np.maximum(values, 0)) + 1e-9
+        self.normal = axes[:, :, 0]
+        self.thinness = 1 - root[:, 0] / root[:, 1]  # 1 for a plane
+        self.slimness = 1 - root[:, 1] / root[:, 2]  # 1 for a rod
+        facing = _square(regions.turn[rows] * per)
+        self.facing = facing / np.maximum(np.sqrt((facing**2).sum((1, 2), keepdims=True)), 1e-9)
+
+
+def _square(upper: F64) -> F64:
+    """Symmetric matrices `[P, 3, 3]` of their upper triangles `[P, 6]`."""
+    return upper[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(-1, 3, 3)
+
+
+def _rests(upper: _Shape, lower: _Shape, contact: F64, level: F64) -> F64:
+    """How much it looks as if `upper` stood on a level surface of `lower`: contact at its foot, body above."""
+    height = upper.size[:, 2]
+    foot = np.clip(1 - np.abs(contact - upper.low[:, 2]) / (0.15 * height + 1e-6), 0, 1)
+    result: F64 = foot * level * (upper.high[:, 2] - contact > 0.8 * height)
+    return result
+
+
+def probability(features: F64) -> F64:
+    """Probability `[...]` that the regions on both sides are one thing, of features `[..., F]`."""
+    return shipped("affinity", FEATURES).probability(features)

@@ -1,0 +1,158 @@
+"""Floor or ground, walls and ceiling: the large surfaces that things stand on, hang on and stand in front of.
+
+Knows which points of a plane are the plane itself, by the colour and breadth of the superpoints in it. A rug lies in
+the floor's plane and a painting in the wall's: they differ by their colour and their small extent, and stay objects.
+Refuses to know where the planes are (planes.py).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...scene import Frame
+from .coplanar import Pieces, painted
+from .planes import Level, Plane, ceiling_of, ground_of, level, walls_of
+from .superpoints import LIGHTNESS
+from .surface import Surface
+
+NONE, FLOOR, WALL, CEILING = 0, 1, 2, 3
+KINDS = 4
+NAMES = {FLOOR: "floor", WALL: "wall", CEILING: "ceiling"}
+
+FEWEST = 200  # points that have structure
+SAME_COLOR = 11.0  # Lab difference within which pieces of a plane are the same paint
+GRID = 40  # cells along each side of a plane
+LEVELS = 12  # broadest pieces whose level is tried as the plane's own
+TIGHT = 0.3  # of the spacing: how far from a clean plane a piece of it may lie
+SPREAD = 0.6  # a colour that spans this much of a plane both ways belongs to its pattern
+
+
+def structures(surface: Surface, labels: NDArray[np.int32], frame: Frame) -> NDArray[np.int8]:
+    """`[M]` code of each surface point: `kind_of` tells NONE, FLOOR, WALL or CEILING; each wall has a code of its own.
+
+    Whole superpoints where they mostly agree.
+    """
+    flat = level(surface, frame)
+    found = np.zeros(len(surface), np.int8)
+    if len(surface) < FEWEST:
+        return found
+    terrain, planes = planes_of(surface, flat)
+    found[terrain] = FLOOR
+    for number, (kind, plane) in enumerate(planes):
+        found[_painted(surface, labels, flat, plane, found == NONE)] = kind + KINDS * number * (kind == WALL)
+    return found
+
+
+def kind_of(codes: NDArray[np.int8]) -> NDArray[np.int8]:
+    """NONE, FLOOR, WALL or CEILING of each code."""
+    return codes % KINDS
+
+
+def planes_of(surface: Surface, flat: Level) -> tuple[NDArray[np.bool_], list[tuple[int, Plane]]]:
+    """Terrain `[M]` (none where the ground is a floor), and the planes of floor, walls and ceiling with their kinds."""
+    ground = ground_of(surface, flat)
+    planes: list[tuple[int, Plane]] = []
+    terrain = np.zeros(len(surface), bool)
+    if isinstance(ground, Plane):
+        planes.append((FLOOR, ground))
+    elif ground is not None:
+        terrain = ground
+    planes += [(WALL, p) for p in walls_of(surface, flat, ~terrain)]
+    top = ceiling_of(surface, flat, ~terrain)
+    return terrain, [*planes, (CEILING, top)] if top is not None else planes
+
+
+def pieces_of(surface: Surface, labels: NDArray[np.int32], flat: Level, plane: Plane) -> Pieces | None:
+    """The superpoints near a plane, with a first guess of those that carry its paint: the broadest superpoint's
+    colour, and colours spread all over it. None if there are none.
+
+    Walls are sampled more coarsely than what hangs on them, so breadth is counted in cells of the plane, not in points.
+    """
+    count = int(labels.max()) + 1
+    near = np.flatnonzero(plane.near)
+    own, along = labels[near], plane.along[near]
+    cell = _plane_cells(along)
+    off = plane.off[near] - _tilt(plane.off[near], along, cell)
+    total = np.maximum(np.bincount(labels, minlength=count), 1)
+    lab = np.stack([np.bincount(labels, weights=surface.lab[:, c], minlength=count) / total for c in range(3)], axis=1)
+    breadth = np.bincount(np.unique(own.astype(np.int64) * GRID**2 + cell) // GRID**2, minlength=count)
+    member = np.bincount(own, minlength=count) > 0.5 * total
+    if not member.any():
+        return None
+    middle = _medians(off, own, count)
+    main = _broadest_level(middle, np.where(member, breadth, 0), TIGHT * surface.spacing)
+    spread = float(np.median(np.abs(off[own == main] - middle[main])))
+    tight = TIGHT * surface.spacing
+    member &= np.abs(middle - middle[main]) < max(4 * spread, tight)
+    span = np.ptp(np.quantile(along, [0.02, 0.98], axis=0), axis=0)
+    kept = np.zeros(count, bool)
+    for piece in np.argsort(-np.where(member, breadth, -1), kind="stable"):
+        if not member[piece] or kept[piece]:
+            continue
+        alike = member & (np.linalg.norm((lab - lab[piece]) * [LIGHTNESS, 1, 1], axis=1) < SAME_COLOR)
+        reach = np.ptp(np.quantile(along[alike[own]], [0.02, 0.98], axis=0), axis=0)
+        if piece == main or (reach > SPREAD * span).all():
+            kept |= alike
+        elif breadth[piece] < 0.01 * breadth.sum():
+            break
+    band = abs(float(middle[main])) + max(6 * spread, 1.5 * tight)
+    facing = np.abs(flat.normals @ plane.normal)
+    return Pieces(near, labels, cell, off, along, facing, kept, band, abs(float(plane.normal[2])) < 0.5)
+
+
+def _painted(
+    surface: Surface, labels: NDArray[np.int32], flat: Level, plane: Plane, free: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Points of a plane that are the plane itself."""
+    within = np.zeros(len(surface), bool)
+    pieces = pieces_of(surface, labels, flat, plane)
+    if pieces is None:
+        return within
+    within[pieces.near[np.abs(pieces.off) < pieces.band]] = True
+    return painted(surface, pieces)[labels] & free & within
+
+
+def _plane_cells(along: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Cell `[M]` in 0..GRID² of each point's place in the plane."""
+    low, high = along.min(axis=0), along.max(axis=0)
+    index = ((along - low) / (high - low + 1e-9) * GRID).astype(np.int64).clip(0, GRID - 1)
+    cell: NDArray[np.int64] = index[:, 0] * GRID + index[:, 1]
+    return cell
+
+
+def _tilt(off: NDArray[np.float64], along: NDArray[np.float64], cell: NDArray[np.int64]) -> NDArray[np.float64]:
+    """The plane's true distance at each point: a trimmed linear fit to the cells' medians, so that dense things on a
+    sparse wall do not draw it towards them."""
+    order = np.lexsort((off, cell))
+    starts = np.flatnonzero(np.r_[True, np.diff(cell[order]) > 0])
+    middle = order[starts + np.diff(np.r_[starts, len(order)]) // 2]
+    design = np.column_stack([np.ones(len(middle)), along[middle]])
+    values, keep = off[middle], np.ones(len(middle), bool)
+    fit = np.array([float(np.median(values)), 0.0, 0.0])
+    for _ in range(6):
+        gap = np.abs(values - design @ fit)
+        keep = gap <= max(2.5 * float(np.median(gap[keep])), 1e-4)
+        if keep.sum() < 10:
+            break
+        fit = np.linalg.lstsq(design[keep], values[keep], rcond=None)[0]
+    tilt: NDArray[np.float64] = np.column_stack([np.ones(len(along)), along]) @ fit
+    return tilt
+
+
+def _medians(off: NDArray[np.float64], own: NDArray[np.int32], count: int) -> NDArray[np.float64]:
+    """Median distance from the plane `[S]` of each superpoint's points near it; infinite for those without any."""
+    order = np.lexsort((off, own))
+    middle = np.full(count, np.inf)
+    starts = np.flatnonzero(np.r_[True, np.diff(own[order]) > 0])
+    sizes = np.diff(np.r_[starts, len(order)])
+    middle[own[order][starts]] = off[order][starts + sizes // 2]
+    return middle
+
+
+def _broadest_level(middle: NDArray[np.float64], breadth: NDArray[np.int64], tight: float) -> int:
+    """The broadest piece of the level that holds most: one plank of a floor is narrower than the rug on it."""
+    candidates = [c for c in np.argsort(-breadth, kind="stable")[:LEVELS] if breadth[c] > 0]
+    support = [int(breadth[np.abs(middle - middle[c]) < tight].sum()) for c in candidates]
+    best = middle[candidates[int(np.argmax(support))]]
+    return int(np.argmax(np.where(np.abs(middle - best) < tight, breadth, -1)))

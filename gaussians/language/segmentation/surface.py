@@ -1,0 +1,161 @@
+"""The visible skin of a cloud as points with normals, colours and neighbours: what segmentation works on.
+
+Knows Gaussians and geometry. Refuses to know words, encoders and views.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ...cloud import GaussianCloud
+from ...color import rgb_to_lab
+from ...harmonics import SH_C0
+from ...rotations import to_matrix
+
+F32 = NDArray[np.float32]
+
+NEIGHBOURS = 10
+MIN_OPACITY = 0.08  # below this a Gaussian adds haze, not surface
+DENSE = 4.0  # spacings within which three neighbours make a surface of any splats
+OVERLAP = 2.0  # standard deviations within which they must lie elsewhere
+PRUNINGS = 3  # floaters keep each other company: without some, others stand alone
+MAX_POINTS = 220_000  # more points cost time and add nothing to objects seen at this scale
+
+
+@dataclass(frozen=True)
+class Surface:
+    """M points of the skin.
+
+    Attributes:
+        rows: `[M]` int64, row of the cloud each point came from.
+        points: `[M, 3]` world, scene units.
+        normals: `[M, 3]` unit, sign arbitrary, smoothed over the neighbours.
+        flatness: `[M]` in [0, 1], 1 where the neighbourhood is a plane.
+        lab: `[M, 3]` colour, smoothed over the neighbours.
+        raw_lab: `[M, 3]` colour as stored.
+        area: `[M]` footprint of the Gaussian, scene units squared, weighted by opacity.
+        neighbours: `[M, K]` int32, nearest points; a point with fewer repeats itself.
+        gaps: `[M, K]` distances to them, scene units.
+        spacing: median distance to the nearest neighbours, scene units.
+    """
+
+    rows: NDArray[np.int64]
+    points: F32
+    normals: F32
+    flatness: F32
+    lab: F32
+    raw_lab: F32
+    area: F32
+    neighbours: NDArray[np.int32]
+    gaps: F32
+    spacing: float
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+
+def base_lab(cloud: GaussianCloud) -> torch.Tensor:
+    """`[N, 3]` CIE Lab of the view-independent colour of each Gaussian."""
+    return rgb_to_lab((cloud.sh[:, 0] * SH_C0 + 0.5).clamp(0, 1))
+
+
+def surface_of(cloud: GaussianCloud, most: int = MAX_POINTS) -> Surface:
+    """The skin of a cloud: opaque enough, not gigantic, not isolated; at most `most` points, chosen evenly."""
+    rows = _solid_rows(cloud)
+    if len(rows) > most:
+        rows = rows[np.linspace(0, len(rows) - 1, most).astype(np.int64)]
+    points = cloud.means[rows].numpy()
+    k = min(NEIGHBOURS, max(len(rows) - 1, 1))
+    gaps, neighbours = _nearest(points, k)
+    spacing = float(np.median(gaps[:, : max(1, k // 2)])) if len(rows) else 0.0
+    for _ in range(PRUNINGS):
+        kept = _among_others(gaps, cloud.scales[rows].amax(dim=1).numpy(), spacing)
+        if kept.all():
+            break
+        rows, points = rows[kept], points[kept]  # drop floaters and ask for neighbours again among the rest
+        gaps, neighbours = _nearest(points, k)
+    part = cloud[torch.from_numpy(rows)]
+    raw_lab = base_lab(part).numpy()
+    normals, flatness = _smoothed_normals(part, neighbours)
+    return Surface(
+        rows, points, normals, flatness, _smoothed_lab(raw_lab, neighbours), raw_lab, _footprint(part),
+        neighbours, gaps, spacing,
+    )  # fmt: skip
+
+
+def _solid_rows(cloud: GaussianCloud) -> NDArray[np.int64]:
+    largest = cloud.scales.amax(dim=1)
+    if len(cloud) == 0:
+        return np.zeros(0, np.int64)
+    sample = largest[:: max(1, len(cloud) // 50_000)]
+    bound = 12 * float(torch.quantile(sample, 0.8))
+    solid = (cloud.opacities > MIN_OPACITY) & (largest < bound)
+    return solid.nonzero().squeeze(1).numpy()
+
+
+def _among_others(gaps: F32, reach: F32, spacing: float) -> NDArray[np.bool_]:
+    """`[M]` points that others lie close to: as on most surfaces, or, on a coarse one, close against their own size.
+
+    Splats of a surface overlap; floaters do not.
+
+    Args:
+        gaps: `[M, K]` distances to neighbours.
+        reach: `[M]` largest standard deviation.
+        spacing: typical distance of neighbours.
+    """
+    m, k = gaps.shape
+    if m <= 4 * k:
+        return np.ones(m, bool)
+    few = gaps[:, min(3, k - 1)]
+    return (few < 12 * max(spacing, 1e-12)) & ((few < DENSE * spacing) | (few < OVERLAP * reach))
+
+
+def _nearest(points: F32, k: int) -> tuple[F32, NDArray[np.int32]]:
+    """Distances and indices `[M, k]` of the nearest other points."""
+    if len(points) < 2:
+        return np.zeros((len(points), k), np.float32), np.zeros((len(points), k), np.int32)
+    gaps, index = cKDTree(points).query(points, k=k + 1, workers=-1)
+    return gaps[:, 1:].astype(np.float32), index[:, 1:].astype(np.int32)
+
+
+def _footprint(cloud: GaussianCloud) -> F32:
+    """Area of the two largest axes times opacity."""
+    ordered = cloud.scales.sort(dim=1, descending=True).values
+    area: F32 = (ordered[:, 0] * ordered[:, 1] * cloud.opacities * torch.pi).numpy()
+    return area
+
+
+def _smoothed_normals(cloud: GaussianCloud, neighbours: NDArray[np.int32]) -> tuple[F32, F32]:
+    """Normal and flatness by averaging `n n^T` of the thin axes over the neighbours with the points' own scatter.
+
+    A trained Gaussian's thin axis is noisy; neighbours' positions are noisy across the surface but not along it.
+    Their sum is right where either is.
+    """
+    axes = to_matrix(cloud.quats)  # [M, 3, 3], columns are the local axes in the world
+    thin = cloud.scales.argmin(dim=1)
+    normal = torch.gather(axes, 2, thin[:, None, None].expand(-1, 3, 1)).squeeze(2)  # [M, 3]
+    ordered = cloud.scales.sort(dim=1).values
+    weight = (1 - ordered[:, 0] / ordered[:, 1].clamp(min=1e-12)).clamp(0, 1)  # 0 for needles and balls
+    index = torch.from_numpy(neighbours.astype(np.int64))
+    outer = normal[:, :, None] * normal[:, None, :] * weight[:, None, None]  # [M, 3, 3]
+    tensor = outer[index].sum(dim=1) + outer
+    offsets = cloud.means[index] - cloud.means[:, None, :]  # [M, K, 3]
+    scatter = torch.einsum("mki,mkj->mij", offsets, offsets)
+    scatter = scatter / scatter.diagonal(dim1=1, dim2=2).sum(1).clamp(min=1e-20)[:, None, None]
+    values, vectors = torch.linalg.eigh(tensor / (1 + neighbours.shape[1]) - scatter)
+    flat = ((values[:, 2] - values[:, 1]) / (values[:, 2] - values[:, 0]).clamp(min=1e-9)).clamp(0, 1)
+    return vectors[:, :, 2].contiguous().numpy(), flat.numpy()
+
+
+def _smoothed_lab(lab: F32, neighbours: NDArray[np.int32]) -> F32:
+    """Each point's colour pulled to those neighbours that resemble it: noise goes, edges stay (a bilateral step)."""
+    near = lab[neighbours]  # [M, K, 3]
+    distance = ((near - lab[:, None]) ** 2).sum(2)
+    weight = np.exp(-distance / (2 * 12.0**2))
+    smooth: F32 = ((near * weight[..., None]).sum(1) + lab) / (weight.sum(1)[:, None] + 1)
+    return smooth

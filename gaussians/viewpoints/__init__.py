@@ -1,0 +1,1 @@
+"""Cameras computed from a scene: coverage views, orbits and keyframe paths."""

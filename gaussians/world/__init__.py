@@ -1,0 +1,1 @@
+"""The one description of the world: kinds of things, words, lengths, relations, boxes, support and people."""

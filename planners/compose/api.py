@@ -1,0 +1,80 @@
+"""`compose`: from a sentence to the graph of a room, in one call; and who is asked for it.
+
+Knows that wishes may conflict, and says so rather than give half of them unasked. Refuses to know how things are chosen
+(compose/) and placed (layout/), and Gaussians (`SceneGraph.build` makes them).
+"""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Literal
+
+from ...gaussians.errors import InstructionError, UserError
+from .. import MODEL_VARIABLE
+from ..rooms.graph import SceneGraph
+
+if TYPE_CHECKING:
+    from ..model.backend import ModelBackend
+    from .compose import Composition
+
+Mode = Literal["auto", "model"]
+
+
+def compose(text: str, *, seed: int = 0, planner: str = "auto", best: bool = False) -> SceneGraph:
+    """The graph of the room that `text` describes; the same arguments give the same graph.
+
+    Args:
+        text: "a minimalist home office", "a cozy coffee shop with a counter and four small tables".
+        seed: what varies between two rooms of one description.
+        planner: who chooses the things, see `composed`.
+        best: take what can be had where wishes conflict.
+
+    Raises:
+        UserError: the words describe no room, or no planner has this name.
+        InstructionError: not everything that is wished is possible together; the message names the smallest conflict.
+        BackendError: the model cannot be reached.
+    """
+    layout = composed(text, seed=seed, planner=planner).layout
+    if layout.conflicts and not best:
+        smallest = min(layout.conflicts, key=lambda conflict: len(conflict.statements))
+        raise InstructionError(f"not all of this is possible together: {'; '.join(smallest.statements)}")
+    return layout.graph
+
+
+def composed(text: str, *, seed: int = 0, planner: str = "auto") -> Composition:
+    """The room that `text` describes, with what was understood, left out and in conflict.
+
+    Args:
+        planner: "grammar" for the knowledge that ships with the package; "auto" asks the model that the environment
+            names (`SCENEWRIGHT_MODEL`), or the one named after "auto:", where that knowledge does not understand
+            everything; a model alone ("openai:...") is always asked.
+
+    Raises:
+        UserError: the words describe no room, or no planner has this name.
+        BackendError: the model cannot be reached.
+    """
+    from .compose import compose as proposed
+
+    backend, mode = _proposer(planner)
+    return proposed(text, seed=seed, planner=backend, mode=mode)
+
+
+def _proposer(spec: str) -> tuple[ModelBackend | None, Mode]:
+    """The model that a planner's name means, and when it is asked."""
+    from .. import model
+
+    kind, _, named = spec.partition(":")
+    if spec == "grammar":
+        return None, "auto"
+    if spec == "auto":
+        named = os.environ.get(MODEL_VARIABLE, "").strip()
+    if kind == "auto" and not named:
+        return None, "auto"
+    if kind == "auto" and model.is_model(named):
+        return model.load(named), "auto"
+    if model.is_model(spec):
+        return model.load(spec), "model"
+    raise UserError(
+        f"no planner of this name can compose; planners are auto, grammar, {', '.join(model.FORMS)}, and auto: before "
+        "one of these"
+    )

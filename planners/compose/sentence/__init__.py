@@ -1,0 +1,1 @@
+"""A room description in words, read into a brief."""

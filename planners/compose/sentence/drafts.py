@@ -1,0 +1,245 @@
+"""Things as they are being read: named, counted, related, and at the end a brief.
+
+Knows what was said so far and what pronouns and "the table" go back to. Refuses to know words (reading.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+from ...layout.problem import Wall, WishName
+from .. import knowledge
+from ..brief import Brief, RefusedError, Relation, RoomSize, Scale, Thing
+from .amounts import Side
+
+_BARE_PLURAL = 2  # "chairs" where the kind of room has no habit of them
+_MOST = 60  # of one thing
+
+
+@dataclass(frozen=True)
+class Said:
+    """What stands before a noun."""
+
+    count: int | None = None
+    determiner: Literal["", "a", "the", "each"] = ""
+    color: str = ""
+    material: str = ""
+    scale: Scale | None = None
+    sides: dict[Side, float] = field(default_factory=dict)
+    styles: tuple[str, ...] = ()
+    shape: str = ""
+
+    @property
+    def plain(self) -> bool:
+        """Whether nothing was said that would make it another thing than one spoken of before."""
+        return self.count is None and not (self.color or self.material or self.scale or self.sides)
+
+
+@dataclass
+class Draft:
+    """One thing being read; `each` is the draft that it comes to once for each of."""
+
+    name: str
+    said: Said
+    plural: bool
+    support: Literal["floor", "wall", "ceiling"] | None = None
+    each: Draft | None = None
+    placed: bool = False  # whether a relation was said of it
+
+    @property
+    def kind(self) -> knowledge.ThingKind | None:
+        return knowledge.thing(self.name)
+
+    @property
+    def several(self) -> bool:
+        return self.plural or (self.said.count or 1) > 1
+
+
+@dataclass(frozen=True)
+class Link:
+    """A relation between drafts."""
+
+    subject: Draft
+    name: WishName
+    objects: tuple[Draft, ...] = ()
+    wall: Wall | None = None
+    hard: bool = True
+
+
+class Book:
+    """Everything that was read of one description."""
+
+    def __init__(self) -> None:
+        self.drafts: list[Draft] = []
+        self.recent: list[Draft] = []  # by mention, the last one last
+        self.links: list[Link] = []
+
+    def add(self, draft: Draft) -> Draft:
+        self.drafts.append(draft)
+        return self.mention(draft)
+
+    def mention(self, draft: Draft) -> Draft:
+        self.recent = [d for d in self.recent if d is not draft] + [draft]
+        return draft
+
+    def known(self, name: str, head: str, without: Draft | None = None) -> Draft | None:
+        """The draft that "the NAME" goes back to: the same thing, or one whose name ends with the word said."""
+        others = [d for d in reversed(self.recent) if d is not without]
+        same = (d for d in others if d.name == name)
+        return next(same, None) or next((d for d in others if head in (d.name, d.name.rsplit(" ", 1)[-1])), None)
+
+    def before(self, subject: Draft | None) -> Draft | None:
+        """What "it" goes back to in what is said of `subject`."""
+        return next((d for d in reversed(self.recent) if d is not subject), None)
+
+    def pair(self, subject: Draft | None) -> tuple[Draft, ...]:
+        """What "them" goes back to: several of a kind, or the last two."""
+        others = [d for d in reversed(self.recent) if d is not subject]
+        if others and others[0].several:
+            return (others[0],)
+        return tuple(reversed(others[:2]))
+
+    def link(self, link: Link) -> None:
+        """Keep a relation, once."""
+        link.subject.placed = True
+        if link not in self.links:
+            self.links.append(link)
+
+    def seat(self) -> None:
+        """Chairs of which nothing was said gather around the table that was."""
+        tables = [d for d in self.drafts if d.kind and d.kind.top and d.kind.support == "floor" and _is_table(d.name)]
+        for chair in self.drafts:
+            if chair.placed or not tables or not chair.kind or chair.kind.seats != 1 or not _is_chair(chair.name):
+                continue
+            self.link(Link(chair, "around", (tables[-1],), hard=False))
+
+    def remarks(self) -> list[str]:
+        """What of the things cannot be had or shown as it was said, a sentence each."""
+        found = []
+        for draft in self.drafts:
+            if (draft.said.count or 0) > _MOST:
+                found.append(f"{draft.said.count} of “{draft.name}” were asked for; {_MOST} of a kind are the most")
+            if draft.kind is None:
+                found.append(f"nobody said how large a {draft.name} is; it is a plain box of half a metre")
+            if draft.said.shape and draft.said.shape not in draft.name:
+                found.append(f"the shape of the {draft.name} ({draft.said.shape}) is not shown")
+        return found
+
+    def counts(self, room: str) -> dict[int, int]:
+        """How many of each draft, by its identity."""
+        habits = {h.thing: h.count[1] for h in knowledge.room(room).habits}
+        found: dict[int, int] = {}
+
+        def count(draft: Draft, deep: int = 0) -> int:
+            own = draft.said.count
+            if own is None:
+                own = max(habits.get(draft.name, 0), _BARE_PLURAL) if draft.plural and not draft.each else 1
+            times = count(draft.each, deep + 1) if draft.each is not None and deep < 4 else 1
+            return max(1, min(own * times, _MOST))
+
+        for draft in self.drafts:
+            found[id(draft)] = count(draft)
+        return found
+
+
+def _is_chair(name: str) -> bool:
+    return name.rsplit(" ", 1)[-1] in ("chair", "stool")
+
+
+def _is_table(name: str) -> bool:
+    return name.rsplit(" ", 1)[-1] in ("table", "desk", "island") and name not in ("side table", "coffee table")
+
+
+def brief_of(book: Book, kind: str, seats: int | None, size: dict[Side, float], **rest: Any) -> Brief:
+    """A brief from everything that was read."""
+    book.seat()
+    counts = book.counts(kind)
+    drafts = _within(book.drafts, counts)
+    ids = _ids(drafts)
+    things = tuple(_thing(d, ids[id(d)], counts[id(d)]) for d in drafts)
+    relations = tuple(
+        Relation(
+            subject=ids[id(x.subject)],
+            name=x.name,
+            objects=tuple(ids[id(o)] for o in x.objects),
+            wall=x.wall,
+            hard=x.hard,
+        )
+        for x in book.links
+        if all(id(d) in ids for d in (x.subject, *x.objects))
+    )
+    return Brief(kind=kind, seats=seats, size=_room_size(size), things=things, relations=relations, **rest)
+
+
+def _within(drafts: Sequence[Draft], counts: dict[int, int]) -> list[Draft]:
+    """As many drafts as a brief may hold; counts are cut where they are too many."""
+    left, kept = 200, list[Draft]()
+    for draft in drafts[:64]:
+        if left <= 0:
+            break
+        counts[id(draft)] = min(counts[id(draft)], left)
+        left -= counts[id(draft)]
+        kept.append(draft)
+    return kept
+
+
+def _ids(drafts: Iterable[Draft]) -> dict[int, str]:
+    """Names, numbered from the second of the same name on."""
+    used: dict[str, int] = {}
+    found = {}
+    for draft in drafts:
+        used[draft.name] = used.get(draft.name, 0) + 1
+        found[id(draft)] = draft.name if used[draft.name] == 1 else f"{draft.name} {used[draft.name]}"
+    return found
+
+
+def _thing(draft: Draft, id: str, count: int) -> Thing:
+    said, sides = draft.said, draft.said.sides
+    long = sides.get("long", sides.get("any"))
+    return Thing(
+        id=id,
+        name=draft.name,
+        count=count,
+        color=said.color,
+        material=said.material,
+        scale=said.scale or "normal",
+        width=_side(sides.get("width", long)),
+        depth=_side(sides.get("depth", long if "width" in sides else None)),
+        height=_side(sides.get("height")),
+        support=draft.support,
+    )
+
+
+def _side(length: float | None) -> float | None:
+    """A stated length.
+
+    Raises:
+        RefusedError: no room and no thing is so long or so short.
+    """
+    if length is not None and not 0.005 <= length <= 100:
+        raise RefusedError(f"{length:g} m is no size that can be built; say one from 0.005 m to 100 m", "impossible")
+    return None if length is None else round(length, 3)
+
+
+def _room_size(sides: dict[Side, float]) -> RoomSize | None:
+    if not sides:
+        return None
+    depth = sides.get("depth", sides.get("long", sides.get("any")))  # "a 1 m closet" is one by one
+    width = sides.get("width", sides.get("any"))
+    area = sides.get("area")
+    return RoomSize(
+        width=_side(width), depth=_side(depth), height=_side(sides.get("height")), area=min(area, 1e4) if area else None
+    )
+
+
+def changed(draft: Draft, said: Said) -> None:
+    """Add what was said of a thing that was spoken of before."""
+    draft.said = replace(
+        draft.said,
+        color=said.color or draft.said.color,
+        material=said.material or draft.said.material,
+        scale=said.scale or draft.said.scale,
+        sides={**draft.said.sides, **said.sides},
+    )

@@ -1,0 +1,307 @@
+"""A description in words to a brief, in one pass from left to right, without a language model.
+
+Knows how descriptions of rooms are built: a kind of room, then things with what stands before and behind them. Refuses
+to guess: words that it does not know are named in the brief, and a text that describes no room is refused. Links
+between things are made in linking.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from ....gaussians.errors import UserError
+from ....gaussians.world import synonyms
+from ...grammar.tagging.lookahead import color_at, is_plain, match
+from ...grammar.tagging.words import clean
+from ...grammar.vocabulary import lexicon, nouns, quantities
+from ...grammar.vocabulary.unsafe import unsafe_words
+from .. import knowledge
+from ..brief import Brief, RefusedError
+from . import amounts, vocabulary
+from .amounts import Side
+from .drafts import Said, brief_of
+from .linking import Linker
+from .tokenize import refuse_others, words_of
+
+_MARKS = frozenset(".;!?\n:")
+
+
+def read(text: str) -> Brief:
+    """The brief that a description in words asks for.
+
+    Raises:
+        UserError: the text is too long to be a description.
+        RefusedError: it describes no room: a question, an edit, chat, or words that nobody knows.
+    """
+    cleaned = clean(text)
+    if phrase := unsafe_words(cleaned):
+        raise RefusedError("this is not about a room", "unsafe", (phrase[:60],))
+    if any(c in cleaned for c in "{}<>[]\\"):
+        raise RefusedError("this is code or data, not a description in words", "not_understood")
+    texts, slips = words_of(cleaned)
+    refuse_others(texts)
+    reader = _Reader(texts)
+    reader.remarks += slips
+    reader.run()
+    return reader.brief()
+
+
+class _Reader:
+    """The state of one reading."""
+
+    def __init__(self, texts: Sequence[str]) -> None:
+        self.texts = list(texts)
+        self.said = Said()
+        self.linker = Linker()
+        self.kind = ""
+        self.styles: list[str] = []
+        self.size: dict[Side, float] = {}
+        self.scale = "normal"
+        self.seats: int | None = None
+        self.habits = True
+        self.features: list[str] = []
+        self.remarks: list[str] = []
+        self.unknown: list[str] = []
+        self.about_room = True  # whether a size that comes next is the room's
+
+    def run(self) -> None:
+        i = 0
+        steps = (self._mark, self._size, self._negation, self._only, self._long_name, self._feature, self._place,
+                 self._people, self._count, self._color, self._name, self._attribute, self._filler)  # fmt: skip
+        while i < len(self.texts):
+            taken = next((n for step in steps if (n := step(i))), 0)
+            i += taken or self._unknown(i)
+
+    def brief(self) -> Brief:
+        """What was read.
+
+        Raises:
+            RefusedError: it names neither a room nor a thing.
+        """
+        book = self.linker.book
+        if not self.kind and not any(d.kind for d in book.drafts):
+            told = f": “{' '.join(self.unknown[:5])}” is not understood" if self.unknown else ""
+            raise RefusedError(
+                f"this describes no room{told}; say a kind of room or what is in it",
+                "not_understood" if self.unknown else "not_an_edit",
+                tuple(self.unknown[:64]),
+            )  # fmt: skip
+        self.remarks += book.remarks()
+        for name in dict.fromkeys(self.styles):
+            if unshown := knowledge.styles()[name].unshown:
+                self.remarks.append(f"{name} also means {unshown}, which boxes do not show")
+        rest: dict[str, Any] = {
+            "styles": tuple(dict.fromkeys(self.styles))[:8],
+            "scale": self.scale,
+            "without": tuple(dict.fromkeys(self.linker.without))[:32],
+            "habits": self.habits,
+            "features": tuple(dict.fromkeys(self.features))[:16],
+            "remarks": tuple(r[:300] for r in dict.fromkeys(self.remarks))[:64],
+            "unknown": tuple(w[:60] for w in dict.fromkeys(self.unknown))[:64],
+        }
+        try:
+            return brief_of(book, self.kind or "room", self.seats, self.size, **rest)
+        except ValueError as error:
+            raise UserError(f"this cannot be built as it is said: {error}") from error
+
+    # ---- what may stand at a position; each gives how many words it took, 0 if it is not there --------------------
+
+    def _mark(self, i: int) -> int:
+        text = self.texts[i]
+        if text == ",":
+            self.linker.comma()
+        elif text in _MARKS:
+            self.linker.stop()
+        elif text in ("but", "with") or (text == "and" and self.said == Said()):
+            self.linker.joined(text)
+        else:
+            return 0
+        if text in _MARKS or text == ",":
+            self.about_room = self.about_room or text in _MARKS
+            self.said = Said()
+        return 1
+
+    def _size(self, i: int) -> int:
+        found = amounts.read(self.texts[i:])
+        if not found:
+            return 0
+        behind = self.texts[i + found.taken : i + found.taken + 1]
+        last = self.linker.last
+        if behind and (behind[0] == "of" or behind[0] not in {",", *_MARKS, "where", *vocabulary.FILLER}):
+            self.said = replace(self.said, sides={**self.said.sides, **found.sides})
+        elif self.about_room or last is None or (not self.size and _before(self.texts, i) in (",", ";", ".", ":")):
+            self.size.update(found.sides)
+        else:
+            last.said = replace(last.said, sides={**last.said.sides, **found.sides})
+        return found.taken
+
+    def _negation(self, i: int) -> int:
+        found = match(vocabulary.NEGATIONS, self.texts, i)
+        if found and self.texts[i] == "not" and self.texts[i + 1 : i + 2] in (["too"], ["very"], ["so"]):
+            return 0
+        if found and tuple(self.texts[i : i + 2]) != ("no", "."):
+            self.linker.negate()
+            return found[1]
+        return 0
+
+    def _only(self, i: int) -> int:
+        found = match(vocabulary.ONLY, self.texts, i)
+        if found:
+            self.habits = False
+        return found[1] if found else 0
+
+    def _feature(self, i: int) -> int:
+        if match(vocabulary.BIG_WINDOWS, [nouns.singular(t) for t in self.texts], i):
+            return 0
+        if found := match(vocabulary.FEATURES, self.texts, i):
+            self.features.append(found[0])
+            self.said = Said()
+            if found[0] not in ("high ceiling", "low ceiling", "dance floor"):
+                self.remarks.append(f"{found[0]}: kept in the brief, but walls and ceilings are not drawn so")
+            return found[1]
+        looks = self.said.color or self.said.material
+        told = looks or (self.said.styles and self.said.styles[-1]) or (_before(self.texts, i) == "light" and "light")
+        if self.texts[i] in vocabulary.STRUCTURE and not self.linker.waiting and told:
+            self.features.append(f"{told} {self.texts[i]}")
+            self.remarks.append(f"{told} {self.texts[i]}: kept in the brief, but layouts do not paint")
+            self.said = Said()
+            return 1
+        return 0
+
+    def _place(self, i: int) -> int:
+        taken = self.linker.place(self.texts, i)
+        if taken:
+            self.said = Said()
+        return taken
+
+    def _people(self, i: int) -> int:
+        """ "for six people", "seats four", "six-seater", "for eight"."""
+        opener = self.texts[i] in ("for", "seats", "seating", "seat", "sleeps", "seated", "of")
+        at = i + 1 + (self.texts[i + 1 : i + 2] == ["for"]) if opener else i
+        number = quantities.read(self.texts[at:]) if at < len(self.texts) else None
+        if not number or number.kind != "NUMBER" or not 1 <= number.value <= 100:
+            return 0
+        end = at + number.taken
+        behind = self.texts[end] if end < len(self.texts) else ","
+        person = behind in vocabulary.PEOPLE
+        ends = self.texts[i] != "of" and (behind in (",", "and", "with", "in") or behind in _MARKS)
+        if not person and behind not in ("seater", "seat") and not (opener and ends):
+            return 0
+        last = self.linker.last
+        tables = last.said.count or 1 if last is not None and opener and last.kind and last.kind.top else 1
+        self.seats = min(int(number.value) * tables, 100)
+        return end - i + (person or behind in ("seater", "seat"))
+
+    def _count(self, i: int) -> int:
+        if found := match(vocabulary.COUNTS, self.texts, i):
+            self.said = replace(self.said, count=found[0])
+            return found[1]
+        number = quantities.read(self.texts[i:])
+        if number and number.kind == "NUMBER" and number.value == int(number.value) and 1 <= number.value <= 10**6:
+            self.said = replace(self.said, count=int(number.value))
+            return number.taken
+        return 0
+
+    def _color(self, i: int) -> int:
+        found = color_at(self.texts, i)
+        if not found or knowledge.lookup(knowledge.thing_words(), self.texts, i):
+            return 0
+        if self.texts[i] in vocabulary.MATERIALS and found[1] == 1:
+            return 0
+        self.said = replace(self.said, color=found[0][:40])
+        return found[1]
+
+    def _long_name(self, i: int) -> int:
+        return self._name(i, 2)
+
+    def _name(self, i: int, shortest: int = 1) -> int:
+        """A thing, a room or a style: the longest name that stands there."""
+        tables = (knowledge.thing_words(), knowledge.room_words(), knowledge.style_words())
+        hits = [(knowledge.lookup(t, self.texts, i), what) for t, what in zip(tables, range(3), strict=True)]
+        if self.texts[i] == "light" and self.texts[i + 1 : i + 2] and self.texts[i + 1] in vocabulary.STRUCTURE:
+            return 0
+        best = max(((h[1], -what, h[0]) for h, what in hits if h), default=None)
+        if not best or best[0] < shortest:
+            return 0
+        taken, what, name = best
+        if what == 0:
+            self._thing(name, self.texts[i + taken - 1], i)
+        elif what == -1:
+            self._room(name)
+        else:
+            self.styles.append(name) if not self.linker.book.drafts else None
+            self.said = replace(self.said, styles=(*self.said.styles, self.texts[i]))
+        return taken
+
+    def _thing(self, name: str, word: str, i: int) -> None:
+        said = self.said
+        if said.styles and self.kind and self.linker.book.drafts:
+            self.remarks.append(f"“{said.styles[-1]}” of the {name} is not shown")
+        self.linker.thing(name, nouns.singular(word), said, nouns.is_plural(word))
+        self.said, self.about_room = Said(), False
+
+    def _room(self, name: str) -> None:
+        said = self.said
+        self.said = Said()
+        if self.linker.in_room():
+            if name != "room" and not self.kind:
+                self.kind = name
+            self.size.update(said.sides)
+            self.scale = said.scale or self.scale
+            self.about_room = True
+            return
+        if not self.kind or self.kind == "room":
+            self.kind = name
+        elif name not in ("room", self.kind):
+            self.remarks.append(f"one room at a time is built: this is the {self.kind}, not the {name}")
+        self.size.update(said.sides)
+        self.scale = said.scale or self.scale
+        self.about_room = True
+
+    def _attribute(self, i: int) -> int:
+        text = self.texts[i]
+        if text in vocabulary.SIZES:
+            self.said = replace(self.said, scale=vocabulary.SIZES[text])
+        elif text in vocabulary.MATERIALS:
+            self.said = replace(self.said, material=text)
+        elif text in vocabulary.SHAPES:
+            self.said = replace(self.said, shape=text)
+        elif text in ("each", "every"):
+            self.said = replace(self.said, determiner="each")
+            self.linker.each()
+        elif text in ("the", "this", "that", "those", "these"):
+            self.said = replace(self.said, determiner="the")
+        elif text in ("a", "an"):
+            self.said = replace(self.said, determiner="a")
+        elif text in vocabulary.PRONOUNS and self.linker.waiting:
+            self.linker.pronoun(text)
+        else:
+            return 0
+        return 1
+
+    def _filler(self, i: int) -> int:
+        text = self.texts[i]
+        if text in vocabulary.ABSTRACT or text in vocabulary.PEOPLE:
+            self.linker.drop()
+            self.said = Said()
+            return 1
+        return int(text in vocabulary.FILLER or match(lexicon.FILLER, self.texts, i) is not None or text in "-&/'\"()")
+
+    def _unknown(self, i: int) -> int:
+        """A run of words that nobody knows: a thing without a usual size if it is an everyday one, else named."""
+        word = self.texts[i]
+        everyday = nouns.is_known(word) or nouns.singular(word) in synonyms.every_word()
+        behind = knowledge.lookup(knowledge.thing_words(), self.texts, i + 1)
+        if everyday and is_plain(word) and not behind and word not in vocabulary.STRUCTURE:
+            self._thing(nouns.singular(word)[:60], word, i)
+            return 1
+        self.unknown.append(word)
+        if not behind:
+            self.linker.drop()
+        return 1
+
+
+def _before(texts: Sequence[str], i: int) -> str:
+    return texts[i - 1] if i else ""

@@ -1,0 +1,65 @@
+"""The words of a description, and what is none.
+
+Knows typography, slips of the keyboard, questions and edits. Refuses to know what a room is (reading.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ...grammar.tagging import spelling
+from ...grammar.tagging.lookahead import match
+from ...grammar.tagging.words import split
+from ...grammar.vocabulary import lexicon, nouns
+from .. import knowledge
+from ..brief import RefusedError
+from . import vocabulary
+
+_GREETINGS = frozenset({"hi", "hello", "hey"})
+
+
+def words_of(cleaned: str) -> tuple[list[str], list[str]]:
+    """The words in lower case, possessives joined ("childrens room"), slips corrected; and a remark for each slip."""
+    joined: list[str] = []
+    for word in split(cleaned):
+        if word.text == "'s" and joined:
+            joined[-1] += "" if joined[-1].endswith("s") else "s"
+        elif word.text not in ('"', "'"):
+            joined.append(word.text)
+    told, fixed = [], []
+    for text in joined:
+        meant = "" if _is_known(text) else spelling.slips(text, knowledge.every_word())
+        if meant:
+            told.append(f"read “{text}” as {meant}")
+        fixed.append(meant or text)
+    return fixed, told
+
+
+def _is_known(text: str) -> bool:
+    known = knowledge.every_word() | vocabulary.FILLER | vocabulary.ABSTRACT | vocabulary.PEOPLE
+    return text in known or nouns.singular(text) in known
+
+
+def refuse_others(texts: Sequence[str]) -> None:
+    """Raise for questions and for edits of a scene that is there."""
+    words = [t for t in texts if t not in ("please", ",", *_GREETINGS)]
+    first = words[0] if words else ""
+    if not any(w[0].isalpha() for w in words if w) and set(texts) & _GREETINGS:
+        raise RefusedError("this is a greeting; describe a room, or say what is in it", "not_an_edit")
+    if not any(t[0].isalpha() for t in texts if t):
+        raise RefusedError("there are no words", "not_an_edit")
+    asks = texts[-1] == "?" or first in ("what", "where", "who", "why", "how", "which", "when")
+    if asks and not set(words) & (vocabulary.BUILD | {"room"}):
+        raise RefusedError("this is a question, not a description of a room", "not_an_edit", (first,))
+    verb = match(lexicon.VERB_PHRASES, words, 0)
+    if (
+        verb
+        and first not in vocabulary.BUILD
+        and verb[0][0] in vocabulary.EDITS
+        and not knowledge.lookup(knowledge.thing_words(), words, 0)
+    ):
+        raise RefusedError(
+            f"“{first}” changes a scene that is there; describe a room, or use `scenewright edit`",
+            "impossible",
+            (first,),
+        )

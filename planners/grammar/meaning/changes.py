@@ -1,0 +1,210 @@
+"""What something becomes: redder, twice as tall, half transparent.
+
+Knows how much "a bit" is. Refuses to know what it is said of: each function gives an operation without its target.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ..nodes import Node, Refusal, tokens, trees
+
+Fields = dict[str, Any]
+
+# Amounts of recolor.amount: unsaid, "a bit", "much".
+AMOUNT: dict[str, float] = {"": 0.5, "little": 0.25, "much": 0.8}
+# Factors of scale for bigger and smaller: unsaid, "a bit", "much".
+BIGGER: dict[str, float] = {"": 1.25, "little": 1.1, "much": 1.75}
+SMALLER: dict[str, float] = {"": 0.8, "little": 0.9, "much": 0.6}
+# What is left of the opacity after "more transparent": unsaid, "a bit", "much".
+CLEARER: dict[str, float] = {"": 0.5, "little": 0.75, "much": 0.25}
+TO_A_LENGTH = "say how large it should be, or by which share: 1.2 m tall, 20 % taller"
+MEASURED = {"tall": "height", "short": "height", "wide": "width", "narrow": "width", "deep": "depth"}
+SIZE_AXES = {"large": "all", "small": "all", "tall": "height", "wide": "width"}
+
+
+def share_of(node: Node) -> float | None:
+    """The percentage or fraction below a node, as a number."""
+    for inner in trees(node, "share"):
+        return float(tokens(inner, "PERCENT", "FRACTION")[0].value)
+    return None
+
+
+def degree_of(node: Node) -> str:
+    """ "", "little" or "much"."""
+    found = tokens(node, "DEGREE")
+    return str(found[0].value) if found else ""
+
+
+def hue_of(node: Node) -> str:
+    """The colour of a `hue` node."""
+    return str(tokens(node, "HUE")[0].value)
+
+
+def change(node: Node) -> Fields:
+    """The operation a `change` node asks for.
+
+    Raises:
+        Refusal: no operation does this.
+    """
+    return _CHANGES[str(node.data)](node)
+
+
+def _hue(node: Node) -> Fields:
+    return {"op": "recolor", "color": hue_of(trees(node, "hue")[0])}
+
+
+def _shade(node: Node) -> Fields:
+    """ "a darker blue" is dark blue."""
+    way, color = tokens(node, "LIGHT")[0], tokens(node, "HUE")[0].value
+    if way.value not in ("darker", "lighter"):
+        raise Refusal("say the colour it should become", way.text)
+    return {"op": "recolor", "color": f"{'dark' if way.value == 'darker' else 'light'} {color}"}
+
+
+def _toward(node: Node) -> Fields:
+    if tokens(node, "LESS"):
+        raise Refusal("a colour can be added, not taken away; name the colour it should become", "less")
+    color = tokens(node, "HUE", "TOWARDHUE")[0].value
+    return {"op": "recolor", "adjust": "toward", "color": color, "amount": AMOUNT[degree_of(node)]}
+
+
+def adjusted(kind: str, degree: str, share: float | None) -> Fields:
+    """A relative change of colour."""
+    amount = AMOUNT[degree] if share is None else share
+    if not 0 < amount <= 1:
+        raise Refusal("a colour changes by more than 0 and at most 100 %", f"{amount:.0%}", verdict="impossible")
+    return {"op": "recolor", "adjust": kind, "amount": amount}
+
+
+def _light(node: Node) -> Fields:
+    return adjusted(tokens(node, "LIGHT")[0].value, degree_of(node), share_of(node))
+
+
+def grown(axis: str, up: bool, share: float | None = None, times: float | None = None, degree: str = "") -> Fields:
+    """ "taller", "20 % smaller", "three times wider"."""
+    if times is not None:
+        factor = times if up else 1 / times if times else 0.0
+    elif share is not None:
+        factor = (1 + share if up else 1 - share) if share > 0 else 0.0
+    else:
+        factor = (BIGGER if up else SMALLER)[degree]
+    return scaled(factor, axis)
+
+
+def scaled(factor: float, axis: str = "all") -> Fields:
+    """A scale operation.
+
+    Raises:
+        Refusal: the factor is not from 0.01 to 100.
+    """
+    if not 0.01 <= factor <= 100:
+        raise Refusal("things are scaled by 0.01 to 100 times", f"{factor:g}", verdict="impossible")
+    return {"op": "scale", "factor": round(factor, 9), **({} if axis == "all" else {"axis": axis})}
+
+
+def _size(node: Node) -> Fields:
+    axis, up = tokens(node, "GROWN")[0].value
+    times = tokens(node, "TIMES")
+    return grown(axis, up, share_of(node), times[0].value if times else None, degree_of(node))
+
+
+def _relative(node: Node) -> Fields:
+    said = " ".join(t.text for t in tokens(node, "LENGTH", "GROWN"))
+    raise Refusal(TO_A_LENGTH, said, verdict="impossible")
+
+
+def measured(node: Node, stretched: bool = False) -> Fields:
+    """ "80 cm tall", "2 m in width": the size itself, in proportion unless it is to be stretched."""
+    (inner,) = trees(node, "measured")
+    said = tokens(inner, "SIZEWORD", "PROP")[0]
+    return sized(tokens(inner, "LENGTH")[0].value, MEASURED.get(said.value, said.value), said.text, stretched)
+
+
+def sized(value: tuple[float, str], side: str, said: str, stretched: bool = False) -> Fields:
+    """A scale operation to a length.
+
+    Raises:
+        Refusal: the word names no side, or the length is none.
+    """
+    if side not in ("height", "width", "depth"):
+        raise Refusal("say tall, wide or deep", said)
+    if not 0 < value[0] <= 10_000:
+        raise Refusal("that is no length for things in a room", f"{value[0]:g}", verdict="impossible")
+    length = {"value": value[0], "unit": value[1]}
+    return {"op": "scale", side: length, **({"axis": side} if stretched else {})}
+
+
+def _ratio(node: Node) -> Fields:
+    times = tokens(node, "TIMES")
+    share = share_of(node)
+    factor = float(times[0].value) if times else float(share or 0.0)
+    if prop := tokens(node, "PROP"):
+        return scaled(factor, prop[0].value)
+    word = tokens(node, "SIZEWORD")[0]
+    if word.value not in SIZE_AXES:
+        raise Refusal("say tall, wide or big", word.text)
+    if word.value == "small":
+        return scaled(1 / factor if factor else 0.0)
+    return scaled(factor, SIZE_AXES[word.value])
+
+
+def opacity(value: float) -> Fields:
+    """An opacity operation.
+
+    Raises:
+        Refusal: the value is not from 0 to 1.
+    """
+    if not 0 <= value <= 1:
+        raise Refusal("opacity goes from 0 to 100 %", f"{value:.0%}", verdict="impossible")
+    return {"op": "opacity", "value": round(value, 9)}
+
+
+def _clear(node: Node) -> Fields:
+    left = float(tokens(node, "CLEARLY")[0].value)
+    share = share_of(node)
+    if share is not None:
+        return opacity(1 - share)
+    if tokens(node, "MORE"):
+        return opacity(CLEARER[degree_of(node)])
+    return opacity(left if not degree_of(node) or left == 0 else CLEARER[degree_of(node)])
+
+
+def _opaque(node: Node) -> Fields:
+    share = share_of(node)
+    if share is None:
+        raise Refusal("what was made transparent comes back with undo", "opaque", verdict="impossible")
+    return opacity(share)
+
+
+def _less_clear(node: Node) -> Fields:
+    if tokens(node, "CLEARLY"):
+        raise Refusal("what was made transparent comes back with undo", "less transparent", verdict="impossible")
+    share = share_of(node)
+    return opacity(CLEARER[degree_of(node)] if share is None else 1 - share)
+
+
+def _more_opaque(_node: Node) -> Fields:
+    raise Refusal("what was made transparent comes back with undo", "more opaque", verdict="impossible")
+
+
+def _upside(_node: Node) -> Fields:
+    return {"op": "rotate", "degrees": 180.0, "axis": "forward"}
+
+
+_CHANGES: dict[str, Callable[[Node], Fields]] = {
+    "become_hue": _hue,
+    "toward_hue": _toward,
+    "become_shade": _shade,
+    "become_light": _light,
+    "become_size": _size,
+    "relative_size": _relative,
+    "absolute_size": measured,
+    "ratio_size": _ratio,
+    "become_clear": _clear,
+    "become_opaque": _opaque,
+    "become_less_clear": _less_clear,
+    "become_more_opaque": _more_opaque,
+    "become_upside": _upside,
+}

@@ -1,0 +1,262 @@
+"""Noun phrases of a clause's tree.
+
+Knows what a determiner, an attribute and a pronoun mean for a `Query`. Refuses to know verbs, and what the phrases
+behind a noun mean for it (described.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from lark import Token, Tree
+
+from ....gaussians.language.query.query import Query, Relation
+from ..nodes import Node, Refusal, tag_of, tokens, trees
+from ..tagging.tags import Tag
+from ..tagging.words import bag
+from ..vocabulary import nouns
+from .described import Article, Noun, Post, all_of, union, updated
+
+_SHAPES = bag("round square rectangular oval circular wooden metal plastic glass leather striped plain patterned")
+PARTS = frozenset({"part", "piece", "area", "region", "bit"})  # of things, found by their own colour
+
+_MIDDLES = frozenset({"middle", "centre", "center", "left side", "right side"})
+_SIDES = _MIDDLES | {"left", "right", "front", "back", "rear", "top", "bottom"}
+
+
+class Phrases:
+    """Builds nouns; remembers the last head noun for "the green one"."""
+
+    def __init__(self, antecedent: str = "", colors: tuple[str, ...] = ()) -> None:
+        self.antecedent = antecedent
+        self.sharing = False  # whether the noun of this phrase is said in the next one
+        self.colors = colors  # of the antecedent: "the other one" has them too
+
+    def targets(self, node: Node) -> list[Noun]:
+        """The nouns of a `targets` node; an exclusion is folded into each of them."""
+        groups = trees(node, "group")
+        found = self.group(groups[0])
+        return self.without(found, groups[1]) if len(groups) > 1 else found
+
+    def group(self, node: Node) -> list[Noun]:
+        """The nouns of a group; in "the biggest and the smallest planter" both are planters."""
+        parts = trees(node, "np")
+        found = []
+        for i, part in enumerate(parts):
+            if _is_headless(part) and (shared := next((t for p in parts[i + 1 :] if (t := self._named(p))), "")):
+                self.antecedent, self.colors, self.sharing = shared, (), True
+            found.append(self.noun(part))
+            self.sharing = False
+        return found
+
+    def _named(self, node: Node) -> str:
+        """The noun of a phrase, "" if it has none of its own."""
+        core = node.children[0]
+        tags = [tag_of(c) for c in core.children if isinstance(c, Token)] if isinstance(core, Tree) else []
+        return self._head(tags)[0] if tags and tags[-1].type == "NOUN" else ""
+
+    def without(self, found: list[Noun], excluded: Node) -> list[Noun]:
+        """`found` except the nouns of a group."""
+        out = union(self.group(excluded))
+        meant = [all_of(n.query, out) if n.said == "all" else n.query for n in found]
+        found = [replace(n, query=q) for n, q in zip(found, meant, strict=True)]
+        return [replace(n, query=updated(n.query, exclude=(*n.query.exclude, out))) for n in found]
+
+    def noun(self, node: Node) -> Noun:
+        """A noun phrase with what stands behind it."""
+        core, *rest = node.children
+        assert isinstance(core, Tree)
+        among = bool(rest) and isinstance(rest[0], Tree) and str(rest[0].data) == "part"
+        head = self.core(core, among)
+        if head.query.text:
+            self.antecedent, self.colors = _unshaped(head.query.text), head.query.colors
+        headless = not tokens(core, "NOUN", "ONE", "THING") and bool(tokens(core, "SUP", "ORDINAL"))
+        posts: list[Post] = []
+        joined = False
+        for child in rest:
+            if isinstance(child, Token):
+                joined = True
+                continue
+            posts.append(self.post(child, joined))
+            joined = False
+        if headless and posts and posts[0].kind == "part":
+            return self._chosen(head, posts)
+        return replace(head, posts=(*head.posts, *posts))
+
+    def _chosen(self, head: Noun, posts: list[Post]) -> Noun:
+        """ "the largest of the red chairs"."""
+        among = posts[0].anchors[0]
+        picked = {"pick": head.query.pick, "ordinal": head.query.ordinal, "count": None}
+        self.antecedent = among.query.text or self.antecedent
+        return replace(head, query=updated(among.query, **picked), posts=tuple(posts[1:]))
+
+    def post(self, node: Node, joined: bool = False) -> Post:
+        first = next((tag_of(c) for c in node.children if isinstance(c, Token)), None)
+        anchors = tuple(self.core(c) for c in trees(node, "core"))
+        kind, value, word = str(node.data), first.value if first else None, first.text if first else ""
+        if kind == "unrelated":
+            value = tokens(node, "PREP")[0].value
+        elif kind == "is_not_kind":
+            value = None
+        elif kind == "having":
+            value = next((t.value for t in tokens(node, "ONIT")), "below")
+            kind = "lacking" if tokens(node, "LACKING") else kind
+        elif kind == "between":
+            anchors = self._sided(node)
+        elif kind in ("is_hue", "is_not_hue"):
+            value = tokens(node, "HUE")[0].value
+        elif kind == "is_tall":
+            value = tokens(node, "TALLER")[0].value
+        return Post(kind, value, word, anchors, joined)
+
+    def _sided(self, node: Node) -> tuple[Noun, ...]:
+        """The nouns of "between", each narrowed by a side said behind it."""
+        found: list[Noun] = []
+        for child in node.children:
+            if isinstance(child, Tree):
+                found.append(self.core(child))
+            elif child.type == "SIDE":
+                found[-1] = replace(found[-1], query=updated(found[-1].query, pick=tag_of(child).value))
+        return tuple(found)
+
+    def core(self, node: Node, among: bool = False) -> Noun:
+        """A noun without what stands behind it; `among` if that says of which things it is ("the left of the two")."""
+        if not among:
+            self._require_thing(tag_of(node.children[-1]))  # type: ignore[arg-type]
+        if owner := trees(node, "core"):
+            return self._owned(node, self.core(owner[0]))
+        first = tag_of(node.children[0])  # type: ignore[arg-type]
+        if first.type == "PRON":
+            return Noun(Query(last=True, pick="any" if first.value == "any" else "one"), "pronoun")
+        if first.type == "EVERYTHING":
+            rest = (Query(last=True),) if first.value == "else" else ()
+            return Noun(Query(pick="all", exclude=rest), "all", True, said=first.text)
+        if first.type == "OTHERS":
+            return Noun(Query(text=self.antecedent, pick="all", exclude=(Query(last=True),)), "all", True)
+        return self._common(node)
+
+    def _require_thing(self, last: Tag) -> None:
+        """Raise if a phrase ends in a place of the room: "clear the middle", "move the left side".
+
+        A side may also be short for what is there, where something was spoken of: "delete the left chair", "and the
+        right". The middle is hardly ever.
+
+        Raises:
+            Refusal: it does.
+        """
+        if last.type == "SUP" and not self.sharing and last.text in (_MIDDLES if self.antecedent else _SIDES):
+            raise Refusal(f"the {last.text} is a place; say what is there, or which one", last.text)
+        if last.type == "NOUN" and nouns.singular(str(last.value).split()[-1]) in nouns.NOTHING:
+            raise Refusal("that is no kind of thing; name the things", last.text)
+
+    def _owned(self, node: Node, owner: Noun) -> Noun:
+        """ "the table's legs"."""
+        part = self._common(node)
+        relation = Relation(name="part_of", anchors=(owner.full(),))
+        return replace(part, article="def", query=updated(part.query, relations=(relation,)))
+
+    def _common(self, node: Node) -> Noun:
+        tags = [tag_of(c) for c in node.children if isinstance(c, Token)]
+        text, plural = self._head(tags)
+        article: Article = next((t.value for t in tags if t.type == "DET"), "bare")
+        if article == "both" and not plural:
+            article = "def"  # "both the vase and the candle"
+        number = self._number(tags)
+        if tags[0].type == "NUMBER" and any(t.type == "OF" for t in tags):
+            raise Refusal("say which of them: the largest, the left one, or all", *_quote(tags))
+        adjectives = tuple(t.text for t in tags if t.type == "ADJ")
+        height = next((t.value for t in tags if t.type == "TALL"), None)
+        sizes = [t.value for t in tags if t.type == "SIZE"]
+        if len(sizes) > 1:
+            raise Refusal("one size word at a time is understood", *(t.text for t in tags if t.type == "SIZE"))
+        fields: dict[str, Any] = {
+            "text": " ".join([*adjectives, text]).strip(),
+            "colors": tuple(t.value for t in tags if t.type == "COLOR"),
+            "not_colors": tuple(t.value for t in tags if t.type == "NONCOLOR"),
+            "size": sizes[0] if sizes else None,
+            **_pick(tags, article, plural, number),
+        }
+        if tags[-1].type == "ONE" and len(tags) == 1 and not plural:  # "all but one"
+            fields["pick"] = "any"
+        if any(t.type == "OTHER" for t in tags):
+            fields["exclude"] = (Query(last=True),)
+            if tags[-1].type == "ONE" and not fields["colors"]:
+                fields["colors"] = self.colors
+        if joined := next((t.value for t in tags if t.type == "COLORS"), ()):
+            fields = _each(joined, fields, plural)
+        words = tuple(t.text for t in tags if t.type == "SIZE")
+        said = tags[-1].text if tags[-1].type == "NOUN" else ""
+        return Noun(updated(Query(), **fields), article, plural, number, words, height, said=said)
+
+    def _head(self, tags: Sequence[Tag]) -> tuple[str, bool]:
+        """The noun's text, singular, and whether it was plural."""
+        last = tags[-1]
+        if last.type == "THING":
+            return ("part" if nouns.singular(last.text) in PARTS else ""), bool(last.value)
+        if last.type == "ONE":
+            return self.antecedent, bool(last.value)
+        if last.type != "NOUN":
+            if last.type in ("SUP", "ORDINAL") or self.sharing:
+                return self.antecedent, False
+            raise Refusal("a noun is missing", *_quote(tags))
+        words = str(last.value).split()
+        plural = nouns.is_plural(words[-1])
+        return " ".join([*words[:-1], nouns.singular(words[-1])]), plural
+
+    def _number(self, tags: Sequence[Tag]) -> int | None:
+        numbers = [t for t in tags if t.type == "NUMBER"]
+        if not numbers:
+            return None
+        value = numbers[0].value
+        if len(numbers) > 1 or value != int(value) or not 1 <= value <= 1000:
+            raise Refusal("that is no number of things", *(t.text for t in numbers))
+        return int(value)
+
+
+def _each(colors: Sequence[str], fields: dict[str, Any], plural: bool) -> dict[str, Any]:
+    """ "the red and blue mugs": those that are red, and those that are blue."""
+    if not plural or fields.get("pick") != "all" or fields.get("count"):
+        raise Refusal("say which of the colours it has", *colors)
+    first, *others = ({**fields, "colors": (c,)} for c in colors)
+    return {**first, "also": tuple(updated(Query(), **other) for other in others)}
+
+
+def _pick(tags: Sequence[Tag], article: Article, plural: bool, number: int | None) -> dict[str, Any]:
+    """`pick`, `ordinal` and `count` of a query."""
+    superlatives = [t for t in tags if t.type == "SUP"]
+    ordinals = [t for t in tags if t.type == "ORDINAL"]
+    several = plural or (number or 1) > 1 or article in ("all", "both")
+    if superlatives or ordinals:
+        if several or len(superlatives) + len(ordinals) > 1:
+            raise Refusal("a superlative or a rank picks one thing; say which one", *_quote(tags))
+        if ordinals:
+            return {"pick": "nth", "ordinal": int(ordinals[0].value)}
+        return {"pick": superlatives[0].value}
+    if article == "both":
+        return {"pick": "all", "count": 2}
+    if article == "all":
+        return {"pick": "all", "count": number}
+    if article == "any" or (article == "indef" and not plural) or number == 1:
+        return {"pick": "any"}
+    return {"pick": "all" if several else "one", "count": number}
+
+
+def _is_headless(node: Node) -> bool:
+    """Whether a phrase is a superlative, a rank or a colour without a noun: "the biggest"."""
+    core = node.children[0]
+    kinds = {c.type for c in core.children if isinstance(c, Token)} if isinstance(core, Tree) else set()
+    return bool(kinds & {"SUP", "ORDINAL", "COLOR"}) and not kinds & {"NOUN", "ONE", "THING"}
+
+
+def _unshaped(text: str) -> str:
+    """A noun without words of shape or material, which "the brown one" need not share ("square table": table)."""
+    words = text.split()
+    while len(words) > 1 and words[0] in _SHAPES:
+        words = words[1:]
+    return " ".join(words)
+
+
+def _quote(tags: Sequence[Tag]) -> tuple[str, ...]:
+    return (" ".join(t.text for t in tags),)

@@ -1,0 +1,1 @@
+"""From an instruction to tagged tokens: words, spelling, tags and context rules."""

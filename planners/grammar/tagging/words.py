@@ -1,0 +1,109 @@
+"""An instruction as plain lower-case words with marks of punctuation between them.
+
+Knows typography: quotes, contractions, fractions, hyphens, possessives, numbers glued to units. Refuses to know what
+any word means. Every word remembers how it was written, so that an abstention can quote it.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from dataclasses import dataclass
+
+from ....gaussians.errors import UserError
+
+MAX_CHARS = 1000
+MAX_WORDS = 200
+
+_QUOTES = str.maketrans(
+    {"‘": "'", "’": "'", "ʼ": "'", "`": "'", "´": "'", "“": '"', "”": '"', "„": '"', "…": ".", "−": "-"}
+)
+_VULGAR = {"½": 0.5, "¼": 0.25, "¾": 0.75, "⅓": 1 / 3, "⅔": 2 / 3, "⅛": 0.125}
+_VULGAR_FORM = re.compile(rf"([0-9]{{0,4}})\s?([{''.join(_VULGAR)}])")
+_CONTRACTIONS = {
+    "don't": "do not", "dont": "do not", "doesn't": "does not", "didn't": "did not", "can't": "can not",
+    "cannot": "can not", "won't": "will not", "wouldn't": "would not", "couldn't": "could not",
+    "shouldn't": "should not", "isn't": "is not", "aren't": "are not", "wasn't": "was not", "i'd": "i would",
+    "we'd": "we would", "you'd": "you would", "i'll": "i will", "we'll": "we will", "i'm": "i am", "i've": "i have",
+    "you're": "you are", "they're": "they are", "we're": "we are", "it's": "it is", "that's": "that is",
+    "what's": "what is", "where's": "where is", "who's": "who is", "how's": "how is", "there's": "there is",
+    "here's": "here is", "let's": "let us", "lets": "let us", "gimme": "give me", "lemme": "let me",
+    "wanna": "want to", "gonna": "going to", "pls": "please", "plz": "please", "thx": "thanks", "u": "you",
+    "teh": "the", "hte": "the", "adn": "and", "nad": "and",
+}  # fmt: skip
+_TOKEN = re.compile(
+    r"#[0-9a-f]{3}(?:[0-9a-f]{3})?(?![0-9a-z])"
+    r"|\d+(?:st|nd|rd|th)\b"
+    r"|(?<!\S)-(?=\d)\d+(?:\.\d+)?"
+    r"|\d+(?:[.,]\d+)*(?:\s*/\s*\d+)?"
+    r"|[^\W\d_]+(?:'[^\W\d_]+)*"
+    r"|[.;!?,:%°\"'\n]"
+    r"|\S",
+    re.IGNORECASE,
+)
+
+
+def bag(text: str) -> frozenset[str]:
+    """The words of a table written as running text."""
+    return frozenset(text.split())
+
+
+def phrases(text: str, mark: str = ",") -> frozenset[tuple[str, ...]]:
+    """The phrases of a table, separated by `mark`, as tuples of words."""
+    return frozenset(tuple(phrase.split()) for phrase in text.split(mark))
+
+
+@dataclass(frozen=True)
+class Word:
+    """One word or mark.
+
+    Attributes:
+        text: lower case, contractions and possessives taken apart ("'s" is a word of its own).
+        start: offset in the cleaned instruction, for quoting a clause.
+        end: offset behind it.
+    """
+
+    text: str
+    start: int
+    end: int
+
+
+def clean(text: str) -> str:
+    """`text` without control characters and with plain quotes, fractions and spaces; case is kept.
+
+    Raises:
+        UserError: it is longer than `MAX_CHARS`.
+    """
+    if len(text) > MAX_CHARS:
+        raise UserError(f"the instruction has {len(text)} characters, at most {MAX_CHARS} are read; say it in parts")
+    text = _VULGAR_FORM.sub(lambda m: f" {int(m.group(1) or 0) + _VULGAR[m.group(2)]:.12g} ", text)
+    text = unicodedata.normalize("NFKC", text).translate(_QUOTES)
+    return "".join(c if c == "\n" or c.isprintable() else " " for c in text).strip()
+
+
+def split(cleaned: str) -> tuple[Word, ...]:
+    """The words of a cleaned instruction.
+
+    Raises:
+        UserError: it has more than `MAX_WORDS` words.
+    """
+    words: list[Word] = []
+    for found in _TOKEN.finditer(cleaned):
+        words += _parts(found.group().lower(), found.start(), found.end(), words)
+    if len(words) > MAX_WORDS:
+        raise UserError(f"the instruction has {len(words)} words, at most {MAX_WORDS} are read; say it in parts")
+    return tuple(words)
+
+
+def _parts(text: str, start: int, end: int, before: list[Word]) -> list[Word]:
+    """One raw token as the words it stands for."""
+    if text in ("'", '"') and not (before and before[-1].end == start and before[-1].text[-1].isdigit()):
+        plural_owner = text == "'" and before and before[-1].end == start and before[-1].text.endswith("s")
+        return [Word("'s", start, end)] if plural_owner else []
+    if text == "-":
+        return []
+    if full := _CONTRACTIONS.get(text):
+        return [Word(part, start, end) for part in full.split()]
+    if text.endswith("'s"):
+        return [Word(text[:-2], start, end), Word("'s", start, end)]
+    return [Word(text.replace("'", "") if len(text) > 1 else text, start, end)]

@@ -1,0 +1,1 @@
+"""The words that the grammar knows: nouns, verbs, quantities and closed classes."""

@@ -1,0 +1,344 @@
+"""The closed vocabulary: every phrase that is not a noun, and the word class it stands for.
+
+Knows spellings and what each one means ("get rid of" is DELETE, "to the left of" is PREP left_of). Refuses to know
+grammar: how the classes combine is in grammar.lark, which class wins in context is in tagger.py.
+
+Tables map a phrase to a value; `PHRASES` joins them into one trie-like table keyed by tuples of words.
+"""
+
+from __future__ import annotations
+
+from ..tagging.words import bag, phrases
+from .verbs import UNSUPPORTED, VERBS, Entry, same
+
+# What the session answers, not a planner; and words that ask for nothing.
+COMMANDS = frozenset(
+    {
+        "undo",
+        "redo",
+        "save",
+        "help",
+        "quit",
+        "exit",
+        "load",
+        "history",
+        "render",
+        "screenshot",
+        "cancel",
+        "stop",
+        "revert",
+    }
+)
+CHAT = bag(
+    "hello hi hey hiya greetings thanks thank bye goodbye cheers yes no yep nope ok okay cool great nice wow sorry "
+    "morning evening good lol awesome perfect amazing excellent brilliant lovely fantastic sweet neat work job well "
+    "done super appreciate it that looks"
+)
+QUESTION = bag(
+    "what where who whom whose which why how when is are am was were does do did has have had can could will would "
+    "shall should may might"
+)
+# A sentence that begins so takes back the one before.
+RETRACTIONS = phrases(
+    "no, nope, nah, wait, no wait, actually no, actually not, scratch that, never mind, nevermind, forget it, forget "
+    "that, cancel that, cancel, sorry, i mean, i meant, oops, on second thought, rather not, hold on, stop, "
+    "just kidding"
+)
+STATEMENT = bag("i we you he she they there my our your")
+
+# Nouns too: verbs only if an object follows.
+NOUN_VERBS = bag(
+    "plant light paint set stand copy clone duplicate mark place park drop bin mount rest tip roll change show pick "
+    "color colour tint stain dye coat spray swap switch trade slide push dump scrap trash lock play fold lift double "
+    "clear dust label group face hang cool warm spin twist flip turn scale grow narrow lower split light position "
+    "center centre keep leave have sit edge wheel junk boot toss slap splash need want"
+)
+
+# ---- words inside a clause -----------------------------------------------------------------------------------------
+
+RELATIONS: dict[str, str] = {
+    **same("left_of", "to the left of, left of, on the left of, at the left of, to the left side of, "
+            "on the left side of, to the left hand side of, on the left hand side of"),
+    **same("right_of", "to the right of, right of, on the right of, at the right of, to the right side of, "
+            "on the right side of, to the right hand side of, on the right hand side of"),
+    **same("in_front_of", "in front of, to the front of, at the front of"),
+    **same("behind", "behind, in back of, at the back of, to the back of, in the back of"),
+    **same("on", "on, on top of, onto, on to, upon, atop, on the top of, to the top of"),
+    **same("under", "under, underneath, beneath"),
+    **same("below", "below, below the level of"),
+    **same("above", "above, over"),
+    **same("inside", "inside, in, into, within, inside of"),
+    **same("next_to", "next to, beside, by, near, near to, close to, alongside, adjacent to, at, at the side of, "
+            "to the side of, by the side of, right next to, right by, close by, right beside, surrounding, around by, "
+            "in the vicinity of, not far from, next"),
+    **same("against", "against, up against, along, flush against"),
+    **same("opposite", "opposite, opposite to, opposite of, across from, directly across from, across the room from"),
+}  # fmt: skip
+
+INSIDE: dict[str, Entry] = {
+    **{phrase: ("PREP", name) for phrase, name in RELATIONS.items()},
+    **{f"over {p}": ("PREP", n) for p, n in RELATIONS.items()},
+    **{f"directly {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside",)},
+    **{f"right {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside", "right_of", "left_of")},
+    **{f"just {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside",)},
+    **same(("BETWEEN", None), "between, in between"),
+    **same(("NEAR", "nearest_to"), "nearest, nearest to, closest to, closest, nearest from"),
+    **same(("NEAR", "farthest_from"), "farthest from, furthest from, farthest away from, furthest away from"),
+    **same(("FROM", None), "from, off, off of, out of"),
+    **same(("OF", None), "of"),
+    **same(("TO", None), "to, over to, up to"),
+    **same(("TOWARD", None), "toward, towards, closer to, nearer to, nearer, in the direction of"),
+    **same(("WITH", None), "with"),
+    **same(("FOR", None), "for"),
+    **same(("AS", None), "as"),
+    **same(("NOT", None), "not"),
+    **same(("LIKE", None), "like, similar to, same as, identical to, matching"),
+    **same(("GOES", None), "has to go, have to go, needs to go, need to go, must go, should go, can go, "
+            "has got to go, have got to go, gotta go, may go, ought to go, can be removed, can be deleted"),
+    **same(("AWAY", None), "away, out"),
+    **same(("AROUND", None), "around, round, the other way around, the other way"),
+    **same(("UPSIDE", None), "upside down, on its head"),
+    **same(("APART", None), "apart"),
+    **same(
+        ("BUT", None),
+        "but, but not, except, except for, excepting, excluding, other than, apart from, aside from, besides, "
+        "but leave, but keep, but do not touch, save for, bar, minus, and not, without touching, without removing, "
+        "without moving, without deleting, without changing, without affecting, without including, leaving, leaving "
+        "out, keeping, not counting, not including, other then, but never",
+    ),
+    **same(("AND", None), "and, &, and also, as well as, plus, along with, together with, and then"),
+    **same(("SPOT", "corner"), "in the corner, in the corner of the room, to the corner, in a corner, "
+            "into the corner, to the corner of the room, "
+            "into a corner, in one corner, into the corner of the room, to a corner"),
+    **same(("SPOT", "center"), "in the middle, in the middle of the room, in the center, in the centre, "
+            "to the center, to the centre, to the middle, "
+            "in the center of the room, in the centre of the room, at the center of the room, "
+            "at the centre of the room, at the middle of the room, "
+            "to the middle of the room, to the center of the room, to the centre of the room, into the middle, "
+            "into the middle of the room, into the center of the room, into the centre of the room"),
+    **same(("CENTER", None), "in the middle of, in the center of, in the centre of, to the middle of, "
+            "to the center of, to the centre of, at the center of, at the centre of"),
+    **same(("SIDE", "leftmost"), "on the left, on the left side, on the left hand side, at the left, on my left, "
+            "on the far left, to the far left, on the very left, farthest to the left, furthest to the left"),
+    **same(("SIDE", "rightmost"), "on the right, on the right side, on the right hand side, at the right, "
+            "on my right, on the far right, to the far right, on the very right, farthest to the right, "
+            "furthest to the right"),
+    **same(("SIDE", "nearest"), "in front, at the front, in the front, closest to me, nearest to me, nearest me, "
+            "closest to the camera, nearest to the camera, in the foreground, nearest to the viewer, nearest the "
+            "viewer, closest to the viewer, nearest the camera, closest to us, nearest to us, at the very front"),
+    **same(("SIDE", "farthest"), "at the back, in the back, farthest from me, furthest from me, farthest away, "
+            "furthest away, in the background, farthest from the viewer, furthest from the viewer, farthest from the "
+            "camera, furthest from the camera, farthest from us, furthest from us, at the very back"),
+    **same(("SIDE", "highest"), "at the top, on the top"),
+    **same(("SIDE", "lowest"), "at the bottom, on the bottom"),
+    **same(("SIDE", "leftmost"), "on the left of the room, on the left side of the room"),
+    **same(("SIDE", "rightmost"), "on the right of the room, on the right side of the room"),
+    **same(("SIDE", "nearest"), "at the front of the room, in the front of the room"),
+    **same(("SIDE", "farthest"), "at the back of the room, in the back of the room"),
+    **same(("NOWHERE", None), "to the back of the room, to the front of the room, to the left of the room, "
+            "to the right of the room, to the left side of the room, to the right side of the room, "
+            "to the opposite side of the room, "
+            "to the other side of the room, to the side, on its side, on its back, on their side, on their sides, "
+            "side by side, on either side of, on each side of, on both sides of, every other, every second, "
+            "in a line, in a circle, in a row, in rows"),
+    **same(("COUNTED", "right"), "from the right, counting from the right, from right to left, from right"),
+    **same(("COUNTED", "left"), "from the left, counting from the left, from left to right, from left"),
+    **same(("DIR", "left"), "to the left, left, leftward, leftwards, to my left, over to the left, further left, "
+            "to the left side, more to the left, further to the left, farther left, over left"),
+    **same(("DIR", "right"), "to the right, right, rightward, rightwards, to my right, over to the right, further "
+            "right, to the right side, more to the right, further to the right, farther right, over right"),
+    **same(("DIR", "forward"), "forward, forwards, away from me, away from the viewer, away from the camera, "
+            "further "
+            "away, farther away, to the back, back, further back, farther back, toward the back, towards the back"),
+    **same(("DIR", "backward"), "backward, backwards, toward me, towards me, closer to me, nearer to me, toward the "
+            "viewer, toward the camera, towards the camera, towards the viewer, to the front, closer, nearer, to me, "
+            "closer to the camera, closer to the viewer, toward the front, towards the front"),
+    **same(("DIR", "up"), "up, upward, upwards, higher up, further up"),
+    **same(("DIR", "down"), "down, downward, downwards, lower down, further down"),
+    **same(("CLOCK", -1), "clockwise"),
+    **same(("CLOCK", 1), "counterclockwise, counter clockwise, anticlockwise, anti clockwise"),
+    **same(("DEGREE", "little"), "a bit, a little, a little bit, slightly, somewhat, a touch, a tad, a smidge, "
+            "a tiny bit, a hair, ever so slightly, a wee bit"),
+    **same(("DEGREE", "much"), "much, a lot, way, far, considerably, significantly, a great deal, a good deal, "
+            "substantially, lots, so much, very much"),
+    **same(("MORE", None), "more, even more"),
+    **same(("LESS", None), "less, even less"),
+    **same(("LIGHT", "darker"), "darker"),
+    **same(("LIGHT", "lighter"), "lighter, brighter, paler"),
+    **same(("LIGHT", "warmer"), "warmer"),
+    **same(("LIGHT", "cooler"), "cooler, colder"),
+    **same(("LIGHT", "more_saturated"), "more vivid, more saturated, more colorful, more colourful, more vibrant, "
+            "more intense, richer"),
+    **same(("LIGHT", "less_saturated"), "less vivid, less saturated, less colorful, less colourful, less vibrant, "
+            "less intense, more muted, duller, more washed out"),
+    **same(("TOWARDHUE", "blue"), "bluer"), **same(("TOWARDHUE", "red"), "redder"),
+    **same(("TOWARDHUE", "green"), "greener"), **same(("TOWARDHUE", "yellow"), "yellower"),
+    **same(("TOWARDHUE", "pink"), "pinker"), **same(("TOWARDHUE", "brown"), "browner"),
+    **same(("TOWARDHUE", "white"), "whiter"), **same(("TOWARDHUE", "black"), "blacker"),
+    **same(("TOWARDHUE", "gray"), "greyer, grayer"),
+    **same(("GROWN", ("all", True)), "bigger, larger, huger"),
+    **same(("GROWN", ("all", False)), "smaller, tinier, littler"),
+    **same(("GROWN", ("height", True)), "taller"),
+    **same(("GROWN", ("height", False)), "shorter, flatter"),
+    **same(("GROWN", ("width", True)), "wider, broader, longer"),
+    **same(("GROWN", ("width", False)), "narrower, slimmer, thinner"),
+    **same(("GROWN", ("depth", True)), "deeper"),
+    **same(("PROP", "all"), "size, scale, in size, dimensions"),
+    **same(("PROP", "height"), "height, in height"),
+    **same(("PROP", "width"), "width, length, in width, in length"),
+    **same(("PROP", "depth"), "depth, in depth"),
+    **same(("COLORWORD", None), "colour, color, paint, hue, shade, colored, coloured, tint"),
+    **same(("ASHADE", None), "a shade of, a nice shade of, a coat of, a lick of, a dash of, a nice coat of, a fresh "
+            "coat of, a new coat of, some, a fresh lick of, a layer of, a splash of, a touch of"),
+    **same(("OPACITYWORD", True), "opacity, alpha"),
+    **same(("OPACITYWORD", False), "transparency"),
+    **same(("CLEARLY", 0.3), "transparent, see through, translucent"),
+    **same(("CLEARLY", 0.5), "semi transparent, half see through"),
+    **same(("CLEARLY", 0.0), "invisible, completely transparent, fully transparent, totally transparent, hidden"),
+    **same(("OPAQUE", None), "opaque, visible"),
+    **same(("GONE", None), "gone, disappear, vanish, go away, removed, deleted, thrown out, thrown away, taken away, "
+            "taken out, erased"),
+    **same(("TOBE", None), "to be, be, become, look, to look"),
+    **same(("SHOULD", None), "should be, needs to be, need to be, must be, has to be, have to be, ought to be, "
+            "should become, should look, should all be, must all be, should both be, need to all be, have to all be, "
+            "ought to all be, want to be, could be, would be better, would look better, would look nicer"),
+    **same(("COPIES", None), "copy of, copies of, duplicate of, duplicates of, clone of, clones of, more copies of, "
+            "another copy of, copies from, more of"),
+    **same(("REL", None), "that is, that are, which is, which are, who is, that was"),
+    **same(("DET", "def"), "the, my, our, your, this, that, these, those, the very, the whole, the entire"),
+    **same(("DET", "indef"), "a, an, another, some, one more, a new, some new"),
+    **same(("DET", "all"), "all, every, each, all the, all of the, every single, every one of the, each of the, "
+            "all these, all those, all of these, all of those, all my, all of my, any and all"),
+    **same(("DET", "both"), "both, both the, both of the"),
+    **same(("DET", "any"), "any, one of the, any of the, any one of the, either, either of the"),
+    **same(("OTHER", None), "other, remaining"),
+    **same(("PRON", "it"), "it, them, them all, them both, it all, this one, that one, these ones, those ones, "
+    "the same, the same one, "
+            "the same thing, the same object, the same ones, this thing, that thing, all of them, all of it, "
+            "both of them, each of them, the selection, the selected, the selected object, the selected objects, "
+            "the current selection, my selection, the copy, the copies, the duplicate, the clone, the new one, "
+            "the new ones, the selected one, the whole thing, him"),
+    **same(("LIKEIT", None), "like it, like this, like that, like this one, like that one, like these, like those, "
+            "like them, just like it"),
+    **same(("PRON", "any"), "one of them, any of them, either of them"),
+    **same(("EVERYTHING", None), "whatever is, what is, everything, all things, all objects, the whole scene, "
+            "the entire scene, anything, "
+            "every object, all the objects, the scene, the whole room, everything in the scene"),
+    **same(("EVERYTHING", "else"), "everything else, the rest, all the rest, all else, anything else, "
+            "the rest of the scene, the rest of the room, the rest of it"),
+    **same(("ONE", False), "one"),
+    **same(("ONE", True), "ones"),
+    **same(("OTHERS", None), "the others, all the others, all others, the other ones, all the other ones"),
+    **same(("THING", False), "thing, object, item, part, piece, area, region, element, bit"),
+    **same(("THING", True), "things, objects, items, parts, pieces, areas, regions, elements, bits, stuff"),
+}  # fmt: skip
+
+# What is said of the room is said of a garden too.
+_PLACES = ("garden", "patio", "yard", "terrace", "kitchen", "office", "bedroom", "living room", "cafe", "shop", "space")
+INSIDE |= {
+    phrase.replace("the room", f"the {place}"): entry
+    for phrase, entry in list(INSIDE.items())
+    if phrase.endswith("of the room")
+    for place in _PLACES
+}
+
+# Only before a noun ("the left chair"), or after a determiner where the noun is left out ("the largest").
+ATTRIBUTES: dict[str, Entry] = {
+    **same(("SUP", "largest"), "largest, biggest, greatest"),
+    **same(("SUP", "smallest"), "smallest, tiniest, littlest"),
+    **same(("SUP", "tallest"), "tallest"),
+    **same(("SUP", "shortest"), "shortest"),
+    **same(("SUP", "nearest"), "nearest, closest, front, foremost, frontmost, front most"),
+    **same(("SUP", "farthest"), "farthest, furthest, far, back, rear, rearmost, most distant, backmost, hindmost"),
+    **same(("SUP", "leftmost"), "leftmost, far left, furthest left, left most, left, left hand, left side"),
+    **same(("SUP", "rightmost"), "rightmost, far right, furthest right, right most, right, right hand, right side"),
+    **same(("SUP", "highest"), "highest, topmost, top, uppermost, upper"),
+    **same(("SUP", "lowest"), "lowest, bottom, bottommost, lower"),
+    **same(("SUP", "middle"), "middle, centre, center, central, middlemost"),
+    **same(("SIZE", "small"), "small, little, tiny, mini, smaller"),
+    **same(("SIZE", "large"), "big, large, huge, giant, enormous, massive, bigger, larger"),
+    **same(("SIZE", "tall"), "tall, high, taller"),
+    **same(("SIZE", "short"), "short, low, shorter"),
+    **same(("SIZE", "wide"), "wide, long, broad, wider, longer"),
+    **same(("SIZE", "narrow"), "narrow, thin, slim, skinny, narrower"),
+}  # fmt: skip
+
+# Dropped wherever they stand.
+FILLER = phrases(
+    "please, kindly, just, now, actually, for me, if you can, if possible, if you could, would you, will you, "
+    "thanks, thank you, thank you very much, ok, okay, well, so, hey, hi, hello, also, as well, right now, "
+    "straight away, go ahead and, from the scene, in the scene, from the room, in the room, from this scene, "
+    "in this scene, in here, from here, out of here, out of the room, out of the scene, in the picture, "
+    "in the image, in the view, from the picture, from the image, really, simply, instead, over there, "
+    "you see, you know, as it is now, as it is, as before, as now, than it is now, than before, than it is, "
+    "than now, than it was, as it was, as they are, as they are now, than they are, currently, too, if you "
+    "would, if you will, could you, can you, would you please, for now, from the view, this time, alone, "
+    "somewhere, mate, buddy, my friend, finally, lastly, afterwards, after that, entirely, altogether, "
+    "even, still, "
+    "current, shall we, shall you, anymore, any more, any longer, if you do not mind, if that is okay, if that is ok, "
+    "not that one, not this one, not that, or so, or thereabouts, hey scenewright, scenewright, "
+    "will ya, asap, quickly please, darling, dear, thank you so much, many thanks, cheers, this instant, "
+    "at once, immediately, already, for good"
+)
+
+# Dropped before a preposition ("the lamp standing on the desk").
+PARTICIPLES = bag(
+    "standing sitting located placed lying hanging situated positioned mounted leaning resting "
+    "hung propped found seated attached "
+    "tucked kept parked"
+)
+
+# Dropped before words that carry on ("no, darker").
+INTERJECTIONS = bag("no yes yeah yep hmm oh ok okay and so but well maybe perhaps")
+
+# Before a verb in -ing ("would you mind removing the mug").
+GERUND_OPENERS = phrases("would you mind, do you mind, how about, what about, what if we try, try, start by, consider")
+
+# Dropped where a clause begins, before its verb.
+POLITE = phrases(
+    "could you, can you, would you, will you, could we, can we, shall we, i would like you to, i would like to, "
+    "i want you to, i want to, i need you to, i need to, we need to, we want to, let us, let me, you should, "
+    "you can, we should, you could, go and, try to, help me to, help me, i would love you to, i would love to, "
+    "may i ask you to, i wish you to, i am going to, we are going to, you have to, i have to, you must, "
+    "could i ask you to, is it possible to, would it be possible to, is it possible for you to, could you possibly, "
+    "would you be able to, are you able to, would you be so kind as to, do you think you could, be so kind and, "
+    "could i, can i, could i please, may i, i was wondering if you could, i wonder if you could, be a dear and, be so "
+    "good as to, go ahead, third, thirdly, fourth, and third, while you are at it, one more thing, "
+    "why do not you, why do not we, you may, you might, how about you, feel free to, make sure to, be sure to, "
+    "i would rather you, i would prefer to, i would prefer you to, can i get you to, could i get you to, "
+    "could you please, can you please, would you please, will you please, would you kindly, could you kindly, "
+    "first, first of all, second, secondly, firstly, to start, "
+    "to begin with, next, then, finally, lastly, after that, afterwards, and, so, but, next up, proceed to, "
+    "i think you should, maybe, perhaps, oh, uh, um, hmm, alright, all right, right, good, great, "
+    "cool, perfect, nice, no, yes, yeah, yep, sure"
+)
+
+# Never part of a noun: words that carry structure or that would be dropped at a cost.
+STRUCTURE = bag(
+    "if unless until till while because since when whenever although though who whom whose which what where why how "
+    "that than then so last next previous former latter or nor yet no without "
+    "like about through across during via be is are was were am been being do does "
+    "did done have has had can could will would shall should may might must i me we us you he she they him her "
+    "very quite rather too almost nearly only even ever never always often once again here there facing around "
+    "opposite beyond past before after during per same such something someone somebody neither "
+    "much many few several enough whichever whatever "
+    "more less most least not none nothing nobody except but and to of from off with for as by in on at into onto "
+    "it its them their itself themselves myself another every each all both any some else maybe perhaps together apart"
+)
+ADVERB_NOUNS = bag(
+    "lily fly assembly jelly belly butterfly family dolly doily holly curly woolly ply july bully gully folly supply "
+    "wily oily bubbly cuddly friendly"
+)
+ASKING = bag("tell describe list count explain name ask say answer imagine remember guess")
+
+
+def table(*tables: dict[str, Entry]) -> dict[tuple[str, ...], Entry]:
+    """The tables joined and keyed by tuples of words."""
+    return {tuple(phrase.split()): entry for t in tables for phrase, entry in t.items()}
+
+
+VERB_PHRASES = table(VERBS)
+INSIDE_PHRASES = table(INSIDE)
+ATTRIBUTE_PHRASES = table(ATTRIBUTES)
+UNSUPPORTED_PHRASES = {tuple(p.split()): reason for p, reason in UNSUPPORTED.items()}
+LONGEST = max(map(len, (*VERB_PHRASES, *INSIDE_PHRASES, *ATTRIBUTE_PHRASES, *FILLER, *POLITE)))

@@ -1,0 +1,196 @@
+"""What a body may be put on, and the lattice of positions there.
+
+Knows rooms, walls and tops. Refuses to know what stands there already and what a position costs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..rooms.graph import SHELL
+from .bodies import TUCKED, Body
+from .shapes import EPSILON, F64, TURNS, Lattice, Spot
+from .state import State
+
+FLOOR = Spot(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)  # the frame of the floor
+EYE = 1.5  # metres from the floor to the middle of what hangs on a wall
+_CELLS = 80  # positions along the longer side of a room; the step is 5 cm or more
+_FINE, _ON_TOP = 0.05, 0.025  # metres between positions on the floor, and at most on a thing
+_HIGH = 1.5  # metres; nothing is put on top of what is higher, if it can stand within it
+_WIDER = 1.5  # times as wide as its carrier a thing may be
+_SMALL = 0.35  # metres; it does not matter how smaller things are turned
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """What a body is put on: the frame of its lattice, its extents there, the height, and whether at walls only."""
+
+    frame: Spot
+    low: float
+    lattices: tuple[Lattice, ...]
+
+
+def grounds(state: State, body: Body, walls_only: bool) -> Iterator[Ground]:
+    """What a body may be put on, with the lattices of positions there."""
+    prepared, item = state.prepared, state.prepared.items[body.first]
+    height = item.size[2]
+    width, deep, high = state.size
+    if height > high + EPSILON:
+        return
+    if item.support not in SHELL:
+        if walls_only:
+            yield from _on_thing(state, body)
+    elif item.support == "wall":
+        for low in _hanging_heights(state, body.first) if walls_only else ():
+            yield Ground(FLOOR, low, tuple(_along_walls(state, body)))
+    elif item.support == "ceiling":
+        if not walls_only:
+            yield Ground(FLOOR, high - height, tuple(_anywhere(state, body, width, deep)))
+    elif walls_only and prepared.wants_wall(body.first):
+        yield Ground(FLOOR, 0.0, tuple(_along_walls(state, body)))
+    elif not walls_only:
+        yield Ground(FLOOR, 0.0, tuple(_anywhere(state, body, width, deep)))
+
+
+def _hanging_heights(state: State, i: int) -> list[float]:
+    """Undersides to try for what hangs on a wall, the usual one first."""
+    item = state.prepared.items[i]
+    most = state.size[2] - item.size[2]
+    if item.height is not None:
+        return [item.height] if item.height <= most + EPSILON else []
+    usual = EYE - item.size[2] / 2
+    above = [
+        spot.high + 0.15
+        for row in state.prepared.wishes_of[i]
+        if state.prepared.problem.wishes[row].name == "above" and state.prepared.parties[row][0] == i
+        if (spot := state.seen(state.prepared.parties[row][1])) is not None
+    ]
+    heights = [*(max(a, usual) for a in above), usual, usual + 0.3, usual + 0.6, usual - 0.4]
+    return list(dict.fromkeys(round(min(max(h, 0.0), most), 4) for h in heights))
+
+
+def _on_thing(state: State, body: Body) -> Iterator[Ground]:
+    """On top of the thing that carries it, or within it where that is asked for or the top is out of reach."""
+    prepared, i = state.prepared, body.first
+    item, carrier = prepared.items[i], state.spots[prepared.carriers[i][0]]
+    if carrier is None:
+        return
+    inside = any(
+        prepared.problem.wishes[r].name == "inside" and prepared.parties[r] == (i, prepared.carriers[i][0])
+        for r in prepared.wishes_of[i]
+    )
+    tall = carrier.high - carrier.low
+    within = [carrier.low + f * tall for f in (0.5, 0.25, 0.75)]
+    lows = [carrier.high]
+    if inside:
+        lows = [carrier.low + min(0.02, 0.1 * tall)]
+    elif carrier.high > _HIGH and tall > 1.0:
+        lows = [*(low for low in within if low + item.size[2] <= carrier.high), carrier.high]
+    for low in lows:
+        if low + item.size[2] <= state.size[2] + EPSILON:
+            yield Ground(carrier, low, tuple(_anywhere(state, body, carrier.w, carrier.d, carrier)))
+
+
+def _anywhere(state: State, body: Body, width: float, deep: float, frame: Spot = FLOOR) -> Iterator[Lattice]:
+    """All positions within a rectangle, for every way to turn the body."""
+    carried = frame is not FLOOR
+    step = _ON_TOP if carried else max(_FINE, max(width, deep) / _CELLS)
+    size = state.prepared.items[body.first].size
+    was = state.prepared.items[body.first].was
+    turns = TURNS if carried or max(size[:2]) > _SMALL or len(body.members) > 1 else TURNS[:1]
+    for yaw in turns if was is None or carried else tuple(dict.fromkeys((*turns, was.yaw))):
+        x0, x1, y0, y1 = extents_of(state, body, yaw)
+        spans = []
+        for low, high, side in ((x0, x1, width), (y0, y1, deep)):
+            if high - low > side + EPSILON:
+                if not carried or high - low > _WIDER * side:
+                    break
+                spans.append(np.array([-(low + high) / 2]))
+            else:
+                spans.append(_steps(-side / 2 - low, side / 2 - high, step))
+        else:
+            more = _abreast(state, body, frame, (x0, x1, y0, y1)) if carried else _beside(state, body, (x0, x1, y0, y1))
+            xs, ys = (_joined(span, extra) for span, extra in zip(spans, more, strict=True))
+            yield Lattice(xs, ys, yaw)
+
+
+def _along_walls(state: State, body: Body) -> Iterator[Lattice]:
+    """Positions with the back of the first thing at a wall."""
+    width, deep, _ = state.size
+    item = state.prepared.items[body.first]
+    back = item.size[1] / 2 + (item.aisle if item.backed else 0.0)
+    for yaw in TURNS:
+        x0, x1, y0, y1 = extents_of(state, body, yaw)
+        low, high = np.array([-width / 2 - x0, -deep / 2 - y0]), np.array([width / 2 - x1, deep / 2 - y1])
+        if (high < low - EPSILON).any():
+            continue
+        across, along = _beside(state, body, (x0, x1, y0, y1))
+        step = max(_FINE, max(width, deep) / _CELLS)
+        if yaw in (0.0, 180.0):
+            y = deep / 2 - back if yaw == 0.0 else back - deep / 2
+            if low[1] - EPSILON <= y <= high[1] + EPSILON:
+                yield Lattice(_joined(_steps(low[0], high[0], step), across), np.array([y]), yaw)
+        else:
+            x = width / 2 - back if yaw == -90.0 else back - width / 2
+            if low[0] - EPSILON <= x <= high[0] + EPSILON:
+                yield Lattice(np.array([x]), _joined(_steps(low[1], high[1], step), along), yaw)
+
+
+def extents_of(state: State, body: Body, yaw: float) -> tuple[float, float, float, float]:
+    """How far a body reaches from its first thing's middle: left, right, front and back."""
+    boxes = [state.spot(m, 0.0, 0.0, yaw, 0.0) for m in body.members]
+    halves = [b.half for b in boxes]
+    return (
+        min(b.x - h[0] for b, h in zip(boxes, halves, strict=True)),
+        max(b.x + h[0] for b, h in zip(boxes, halves, strict=True)),
+        min(b.y - h[1] for b, h in zip(boxes, halves, strict=True)),
+        max(b.y + h[1] for b, h in zip(boxes, halves, strict=True)),
+    )
+
+
+def _steps(low: float, high: float, step: float) -> F64:
+    """From low to high about `step` apart, both ends included, and the middle between them."""
+    if high - low <= EPSILON:
+        return np.array([(low + high) / 2])
+    return np.linspace(low, high, 2 * max(int(np.ceil((high - low) / step / 2)), 1) + 1)
+
+
+def _joined(steps: F64, extra: Any) -> F64:
+    """The steps, and the further positions that lie between them."""
+    more = [e for e in extra if steps[0] <= e <= steps[-1]]
+    return np.unique(np.concatenate([steps, more])) if more and len(steps) > 1 else steps
+
+
+def _abreast(
+    state: State, body: Body, carrier: Spot, extents: tuple[float, float, float, float]
+) -> tuple[list[float], list[float]]:
+    """Coordinates on a thing at which a body touches what stands there already."""
+    xs, ys = list[float](), list[float]()
+    above = state.prepared.carriers[body.first][0]
+    for spot, chain in zip(state.spots, state.prepared.carriers, strict=True):
+        if spot is not None and chain[:1] == (above,):
+            u, v = carrier.local(spot.x, spot.y)
+            hx, hy = spot._replace(yaw=spot.yaw - carrier.yaw).half
+            xs += [u - hx - extents[1], u + hx - extents[0]]
+            ys += [v - hy - extents[3], v + hy - extents[2]]
+    return xs, ys
+
+
+def _beside(state: State, body: Body, extents: tuple[float, float, float, float]) -> tuple[list[float], list[float]]:
+    """Coordinates at which a body is in line with, or touches, what it has to do with; and where it stands now."""
+    xs, ys = list[float](), list[float]()
+    if (now := state.spots[body.first]) is not None:
+        xs, ys = [float(now.x)], [float(now.y)]
+    if (was := state.prepared.items[body.first].was) is not None:
+        xs, ys = [*xs, was.position[0]], [*ys, was.position[1]]
+    partners = {p for m in body.members for r in state.prepared.wishes_of[m.item] for p in state.prepared.parties[r]}
+    for p in sorted(partners - {m.item for m in body.members}):
+        if (spot := state.seen(p)) is not None:
+            hx, hy = spot.half
+            xs += [spot.x, spot.x - hx - extents[1] - TUCKED, spot.x + hx - extents[0] + TUCKED]
+            ys += [spot.y, spot.y - hy - extents[3] - TUCKED, spot.y + hy - extents[2] + TUCKED]
+    return xs, ys

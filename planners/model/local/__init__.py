@@ -1,0 +1,1 @@
+"""Language models of transformers on this machine, with constrained decoding."""

@@ -1,0 +1,194 @@
+"""A language model on this machine, through transformers, held to the schema: `transformers:FOLDER`.
+
+Decoding is greedy and the same every time. Tokens that the schema forces are not asked for but read together with the
+next one, and a prompt's beginning that the last prompt shared (instructions and examples, mostly) is not read again. It
+is kept in whole chunks: so a reused beginning went through the very same arithmetic, and the answer does not depend on
+what was asked before. Knows how to run a model. Refuses to know what the schema is about.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Sequence
+from inspect import signature
+from typing import Any
+
+from ...plan import Usage
+from ..backend import Answer, Heard, Message, UnreachableError
+from . import checkpoint
+from .constrained import Constrained, Vocabulary
+from .conversation import prompt_tokens
+
+_CHUNK = 256  # tokens of a prompt read at once; time is looked at in between
+_LEAST = 64  # tokens an answer needs; less of the window left is refused
+_LONGEST = 2048  # tokens of an answer: 64 operations as plans have them take about 1900
+# What running a model of somebody else's making raises; torch's own lack of memory is a RuntimeError.
+_FAILURES = (MemoryError, RuntimeError, ValueError, TypeError, IndexError, KeyError, AttributeError)
+
+
+def load(path: str) -> LocalModel:
+    """The model in a folder, or of a name on the hub (see `checkpoint.read`).
+
+    Raises:
+        BackendError: it cannot be loaded; the message says why and what to do.
+    """
+    return LocalModel(checkpoint.read(path), f"transformers:{path}")
+
+
+class LocalModel:
+    """A causal language model; see `ModelBackend`. Not for several threads at once.
+
+    Args:
+        parts: the model and its tokenizer.
+        name: for receipts.
+        longest: tokens of an answer; what is longer is cut.
+        temperature: 0 takes the likeliest token; above, tokens are drawn, the same for the same seed.
+        seed: of the draws.
+
+    Raises:
+        BackendError: the tokenizer cannot be constrained.
+    """
+
+    sees = False
+
+    def __init__(
+        self,
+        parts: checkpoint.Checkpoint,
+        name: str,
+        *,
+        longest: int = _LONGEST,
+        temperature: float = 0.0,
+        seed: int = 0,
+    ) -> None:
+        self.name, self.window = name, parts.window
+        self.longest, self.temperature, self.seed = longest, temperature, seed
+        self._model, self._tokenizer = parts.model, parts.tokenizer
+        self._vocabulary = Vocabulary(_serialized(parts.tokenizer), parts.rows, _ends(parts))
+        # Scores of the last token alone: those of a whole prompt would take more room than the model.
+        last_alone = "logits_to_keep" in signature(parts.model.forward).parameters
+        self._options = {"use_cache": True, **({"logits_to_keep": 1} if last_alone else {})}
+        self._read: list[int] = []  # tokens that the cache holds
+        self._cache: Any = None
+
+    def answer(
+        self, messages: Sequence[Message], schema: dict[str, Any], *, seconds: float, heard: Heard | None = None
+    ) -> Answer:
+        """See `ModelBackend.answer`. The text is valid by the schema, whatever the model wants; one that took too long
+        is brought to its end without the model, and its `end` says "closed".
+
+        Raises:
+            UnreachableError: the prompt does not fit the model's window, the schema cannot be followed, no token came
+                in time, or the memory did not suffice.
+        """
+        started = time.perf_counter()
+        prompt = prompt_tokens(self._tokenizer, messages)
+        room = min(self.longest, self.window - len(prompt))
+        if room < min(_LEAST, self.longest):
+            raise UnreachableError(
+                f"the prompt has {len(prompt)} tokens and the window of {self.name} is {self.window}; "
+                "use a model with a longer window, or a scene with fewer objects"
+            )
+        text = Constrained(self._vocabulary, schema)
+        try:
+            taken = self._write(prompt, text, room, started + seconds, heard or (lambda piece: None))
+        except _FAILURES as error:
+            raise self._failed(error) from error
+        spent = round(time.perf_counter() - started, 3)
+        usage = Usage(model=self.name[:200], requests=1, input_tokens=len(prompt), output_tokens=taken, seconds=spent)
+        return Answer(text.text, usage, "done" if taken == len(text.tokens) else "closed")
+
+    def _write(self, prompt: list[int], text: Constrained, room: int, until: float, heard: Heard) -> int:
+        """Write the answer to its end; how many of its tokens the model had a part in."""
+        import torch
+
+        draw = torch.Generator().manual_seed(self.seed)
+        fresh = text.take_forced()
+        scores = self._scores(prompt, fresh, until)
+        told = ""
+        while not text.done and len(text.tokens) < room and time.perf_counter() < until:
+            fresh = text.take(self._choice(scores, text, draw))
+            heard(text.text.removeprefix(told))
+            told = text.text
+            if not text.done and len(text.tokens) < room:
+                scores = self._forward(fresh)
+        if not told and not text.done and time.perf_counter() >= until:
+            raise UnreachableError(self._too_slow(len(prompt)))
+        taken = len(text.tokens)
+        if not text.done:
+            text.close()
+            heard(text.text.removeprefix(told))
+        return taken
+
+    def _scores(self, prompt: list[int], forced: list[int], until: float) -> Any:
+        """Scores `[V]` of the token after the prompt and what the schema forces first."""
+        self._keep(prompt)
+        scores = None
+        while len(self._read) < len(prompt):
+            if time.perf_counter() > until:
+                raise UnreachableError(self._too_slow(len(prompt)))
+            scores = self._forward(prompt[len(self._read) : len(self._read) + _CHUNK])
+        return self._forward(forced) if forced else scores
+
+    def _keep(self, prompt: list[int]) -> None:
+        """Keep of the cache the whole chunks that the prompt begins with, but for its last token."""
+        shared = 0
+        for mine, read in zip(prompt[:-1], self._read, strict=False):
+            if mine != read:
+                break
+            shared += 1
+        shared -= shared % _CHUNK
+        if shared and getattr(self._cache, "is_croppable", False):
+            self._cache.crop(shared - len(self._read))
+            del self._read[shared:]
+        else:
+            self._cache, self._read = None, []
+
+    def _forward(self, tokens: list[int]) -> Any:
+        """Read tokens; scores `[V]` of the next one."""
+        import torch
+
+        cache, self._cache = self._cache, None  # gone, should reading break off half way
+        with torch.inference_mode():
+            ids = torch.tensor([tokens], device=self._model.device)
+            said = self._model(input_ids=ids, past_key_values=cache, **self._options)
+        self._cache = said.past_key_values
+        self._read += tokens
+        return said.logits[0, -1].float().cpu()
+
+    def _choice(self, scores: Any, text: Constrained, draw: Any) -> int:
+        """The next token: of those that the schema allows."""
+        import torch
+
+        allowed = torch.from_numpy(text.allowed())[: len(scores)]
+        held = scores[: len(allowed)].masked_fill(~allowed, -torch.inf)
+        if self.temperature <= 0:
+            return int(held.argmax())
+        return int(torch.multinomial(torch.softmax(held / self.temperature, dim=0), 1, generator=draw))
+
+    def _too_slow(self, tokens: int) -> str:
+        return (
+            f"{self.name} only read its prompt of {tokens} tokens in the time it had; allow more seconds, or use a "
+            "smaller model"
+        )
+
+    def _failed(self, error: Exception) -> UnreachableError:
+        """What to say of an error while the model ran."""
+        told = str(error)
+        if isinstance(error, MemoryError) or "out of memory" in told.lower() or "allocate" in told:
+            advice = "use a smaller model, or a scene with fewer objects"
+            return UnreachableError(f"{self.name} ran out of memory; {advice}")
+        return UnreachableError(f"{self.name} failed: {told.splitlines()[0] if told else type(error).__name__}")
+
+
+def _serialized(tokenizer: Any) -> str:
+    """The tokenizer as JSON, without cutting and filling up."""
+    return json.dumps(json.loads(tokenizer.backend_tokenizer.to_str()) | {"truncation": None, "padding": None})
+
+
+def _ends(parts: checkpoint.Checkpoint) -> list[int]:
+    """Ids of the tokens that end an answer; llguidance wants one even where the schema tells the end."""
+    told = getattr(parts.model.generation_config, "eos_token_id", None)
+    told = parts.tokenizer.eos_token_id if told is None else told
+    ids = told if isinstance(told, list) else [told]
+    return [i for i in ids if isinstance(i, int)] or [parts.rows - 1]

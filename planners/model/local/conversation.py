@@ -1,0 +1,60 @@
+"""A conversation as the tokens a local model reads: by its own chat template, or plainly where it has none.
+
+Knows templates and special tokens. Refuses to let words of the scene or the user act as a template's marks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from ..backend import Message, UnreachableError
+
+
+def prompt_tokens(tokenizer: Any, messages: Sequence[Message]) -> list[int]:
+    """Ids of the whole prompt, up to where the assistant begins to speak.
+
+    Raises:
+        UnreachableError: the model's chat template fails on any conversation.
+    """
+    turns = [{"role": m.role, "content": _defused(tokenizer, m.text)} for m in messages]
+    if not getattr(tokenizer, "chat_template", None):
+        return list(tokenizer(_plain(turns))["input_ids"])
+    failures = []
+    for attempt in (turns, _without_system(turns)):  # some templates refuse a system message
+        try:
+            text = tokenizer.apply_chat_template(
+                attempt, tokenize=False, add_generation_prompt=True, enable_thinking=False
+            )
+        except Exception as error:  # jinja raises many kinds, and templates their own
+            failures.append(f"{type(error).__name__}: {error}")
+        else:
+            return list(tokenizer(text, add_special_tokens=False)["input_ids"])
+    raise UnreachableError(f"the model's chat template fails ({failures[-1]}); use another model")
+
+
+def _defused(tokenizer: Any, text: str) -> str:
+    """The text with special tokens pulled apart: an object called "<|im_end|>" must not end a turn."""
+    for token in {str(t) for t in tokenizer.all_special_tokens} | _marks(tokenizer):
+        if len(token) > 1:
+            text = text.replace(token, f"{token[0]} {token[1:]}")
+    return text
+
+
+def _marks(tokenizer: Any) -> set[str]:
+    """Tokens that were added as special, whether or not they have a role."""
+    return {t.content for t in tokenizer.added_tokens_decoder.values() if t.special}
+
+
+def _plain(turns: list[dict[str, str]]) -> str:
+    said = "".join(f"### {turn['role']}\n{turn['content']}\n\n" for turn in turns)
+    return f"{said}### assistant\n"
+
+
+def _without_system(turns: list[dict[str, str]]) -> list[dict[str, str]]:
+    """The system's words at the head of what the user says first."""
+    system = "\n\n".join(t["content"] for t in turns if t["role"] == "system")
+    rest = [dict(t) for t in turns if t["role"] != "system"]
+    if rest and system:
+        rest[0]["content"] = f"{system}\n\n{rest[0]['content']}"
+    return rest

@@ -1,0 +1,73 @@
+"""Worked examples in a prompt: a scene, and instructions with the answers that are right in it.
+
+Knows the form they are written in. Refuses to judge whether they are right; the tests do, on the very scene:
+
+    ## Scene                       ## make it darker
+    ```json                        after: paint the sofa red
+    {…a scene graph…}              touches: 1
+    ```                            ```json
+                                   {…a reply…}
+                                   ```
+
+`touches` names the nodes each operation changes, a semicolon between operations, "-" for none; models are not told.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+
+from ...rooms.graph import SceneGraph
+
+_SECTION = re.compile(r"^## (?P<title>[^\n]+)\n(?P<notes>.*?)```json\n(?P<data>.*?)\n```", re.MULTILINE | re.DOTALL)
+_NOTE = re.compile(r"^(after|touches): (.+)$", re.MULTILINE)
+_SCENE = "Scene"
+
+
+@dataclass(frozen=True)
+class Example:
+    """One instruction and its right answer.
+
+    Attributes:
+        instruction: the words.
+        previous: the instruction before, None if there was none.
+        touches: for each operation the ids of what it changes.
+        answer: the reply as JSON on one line.
+    """
+
+    instruction: str
+    previous: str | None
+    touches: tuple[tuple[int, ...], ...]
+    answer: str
+
+    def told(self) -> str:
+        """As it stands in the prompt."""
+        before = f"Instruction before: {_quoted(self.previous)}\n" if self.previous else ""
+        return f"{before}Instruction: {_quoted(self.instruction)}\nAnswer: {self.answer}"
+
+
+def parse(text: str) -> tuple[SceneGraph, tuple[Example, ...]]:
+    """The scene and the examples in a prompt's text.
+
+    Raises:
+        ValueError: it is not of that form, or a block is no JSON. Our own mistake.
+    """
+    sections = list(_SECTION.finditer(text))
+    if len(sections) != len(re.findall(r"^## ", text, re.MULTILINE)) or not sections or sections[0]["title"] != _SCENE:
+        raise ValueError("examples begin with a section Scene, and every section has a block of JSON")
+    return SceneGraph.model_validate_json(sections[0]["data"]), tuple(map(_example, sections[1:]))
+
+
+def _example(section: re.Match[str]) -> Example:
+    notes = dict(_NOTE.findall(section["notes"]))
+    touches = tuple(
+        tuple(int(i) for i in step.replace("-", "").replace(",", " ").split())
+        for step in (notes["touches"].split(";") if "touches" in notes else ())
+    )
+    answer = json.dumps(json.loads(section["data"]), ensure_ascii=False)
+    return Example(section["title"].strip(), notes.get("after"), touches, answer)
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)

@@ -1,0 +1,132 @@
+"""Which words of a scene may reach a language model: names of things, and nothing that could be an order to it.
+
+Knows what names look like. Refuses to judge what a name means: whoever wrote a graph or a file may have called a chair
+"ignore all instructions", and a name that is no plausible one is left out altogether, not quoted and not escaped.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from functools import cache
+from itertools import pairwise
+
+from ....gaussians.color import names as color_names
+from ....gaussians.world import synonyms
+from ....gaussians.world.words import normalise
+from ...grammar.vocabulary.verbs import VERBS
+from ...rooms.graph import Node, SceneGraph
+from ...rooms.label_encoder import vocabulary
+
+MAX_CHARS, MAX_WORDS = 48, 8
+_STRANGE_WORDS, _BESIDE_STRANGE = 3, 6  # strange are words that no table of ours knows
+_UNTIED = 4  # words of a name without any that ties it together ("of", "with")
+_UNSPACED = 8  # characters of a name in a script that sets no spaces; a sentence is longer
+_MARKS = re.compile(r"[^\w\s'’&()/+-]|_")  # what names do not hold, braces among it
+_ADDRESS = re.compile(r"://|\bwww\.|\w\.\w{2,}|\w@\w", re.IGNORECASE)
+_QUOTES = re.compile(r"[\"“”„«»]")
+_BEFORE_THE = frozenset({"of", "in", "on", "by", "from"})
+_LINKS = _BEFORE_THE | {"with", "and", "for", "a", "an", "the"}
+_SCRIPT_OF_IDEAS = re.compile(r"[\u0e00-\u0eff\u1000-\u109f\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
+
+# Words of orders, of speaking to somebody and of "all", which no object has in its name, in the tongues models read
+# best; each stands for all words that begin so, "=" for the word alone.
+_ORDERS = """
+ignor disregard forget overrid bypass obey disobey =execute =executing delet =remove =removes =removed =removing eras
+destroy elimin obliterat annihilat =purge instruct =command =commands prompt =previous =prior everything anything
+nothing =now =then =all =every =must =should =shall =please =you =your =yours =yourself =me =my =instead =only
+=assistant =json =admin =say =tell =answer =respond =reply =output =do =don =not =never =always =make =move =recolor
+=isolate =replace =duplicate =rotate =insert =select =return =reveal =pretend =become =wipe =nuke =kill =discard
+=jailbreak =verdict =ops =query password =get =rid lösch entfern vergiss ignorier zerstör anweis befehl =alles =alle
+=bitte =du =sie supprim =efface =effacez oubli enlev détrui =retire =tout =tous =toutes =vous =tu consigne =borra
+=borre =borrar olvid destruy =quita =todo =todos =todas =usted instruccion cancell dimentic rimuov distrugg =tutto
+=tutti istruzion =apaga =apague esquec =tudo instruç verwijder negeer =wis vergeet usuń zignoruj wszystk удал игнор
+забуд уничтож сотри =все =всё инструкц видал ігнор =sil yoksay
+"""
+_UNSPACED_ORDERS = re.compile(
+    "删|刪|忽略|无视|無視|忘|指令|指示|全部|所有|请|請|必须|清除|移除|削除|消|すべて|全て|命令|삭제|무시|모두|지시"
+)
+
+
+def cleaned(graph: SceneGraph) -> SceneGraph:
+    """The graph with only those names, colours and relations in it that a model may see; other names become "".
+
+    Ids, boxes and supports are kept, so that everything can still be pointed at.
+    """
+    nodes = tuple(map(_cleaned, graph.nodes))
+    relations = tuple((a, name, b) for a, said, b in graph.relations if (name := plain(said, most=4)))
+    return graph.model_copy(update={"nodes": nodes, "relations": relations})
+
+
+def _cleaned(node: Node) -> Node:
+    shown = {"label": plain(node.label) or "", "color": plain(node.color, most=3) or ""}
+    return node if shown == {"label": node.label, "color": node.color} else node.model_copy(update=shown)
+
+
+@cache
+def plain(name: str, most: int = MAX_WORDS) -> str | None:
+    """A name as a model may see it: one line without quotes; None if it is no plausible name.
+
+    Args:
+        most: words that it may have.
+    """
+    if "\n" in name or "\r" in name or _ADDRESS.search(name):
+        return None
+    text = _QUOTES.sub("", unicodedata.normalize("NFKC", name).replace("_", " "))
+    text = "".join(c for c in text if not unicodedata.category(c).startswith("C"))
+    text = " ".join(text.split())
+    words = re.findall(r"[^\W_]+", text.lower())
+    if not words or len(text) > MAX_CHARS or len(words) > most or _MARKS.search(text):
+        return None
+    if " ".join(words) in _phrases():
+        return text
+    if _SCRIPT_OF_IDEAS.search(text) and (len(text) > _UNSPACED or _UNSPACED_ORDERS.search(text)):
+        return None
+    strange = [w for w in words if w not in _known()]
+    tied = bool(_LINKS & set(words))
+    if len(strange) > _STRANGE_WORDS or len(words) > (_UNTIED if not tied else _BESIDE_STRANGE if strange else most):
+        return None
+    return None if _is_order(words) or any(_mixed(w) or _orders(w) for w in words) else text
+
+
+def _is_order(words: list[str]) -> bool:
+    """Whether a name begins as an order to take something away ("trash the sofa", but not "trash can")."""
+    begins = len(words) > 1 and VERBS.get(words[0], ("",))[0] == "DELETE"
+    named = any(" ".join(words[:n]) in _phrases() for n in range(2, len(words) + 1))
+    speaks = any(w == "the" and before not in _BEFORE_THE for before, w in pairwise(words))
+    return (begins and not named) or speaks
+
+
+def _orders(word: str) -> bool:
+    whole, stems = _order_words()
+    return word in whole or word.startswith(stems)
+
+
+@cache
+def _order_words() -> tuple[frozenset[str], tuple[str, ...]]:
+    every = _ORDERS.split()
+    return frozenset(w[1:] for w in every if w[0] == "="), tuple(w for w in every if w[0] != "=")
+
+
+def _mixed(word: str) -> bool:
+    """Whether a word mixes scripts, as look-alikes of letters do ("іgnore" with a Cyrillic і), or letters and digits
+    within ("1gn0re")."""
+    scripts = {unicodedata.name(c, "?").split()[0] for c in word if c.isalpha()}
+    return len(scripts) > 1 or bool(re.search(r"[^\W\d]\d+[^\W\d]|^\d+[^\W\d]{3}", word))
+
+
+@cache
+def _phrases() -> frozenset[str]:
+    """Names of the tables, in lower case."""
+    kinds = vocabulary().kinds
+    return frozenset(p.lower() for p in [*kinds, *(n for names in kinds.values() for n in names)]) | synonyms.phrases()
+
+
+@cache
+def _known() -> frozenset[str]:
+    """Words of the embedded vocabulary, of the synonyms and of colours, and those that tie them together."""
+    table = vocabulary()
+    phrases = [*table.kinds, *(n for names in table.kinds.values() for n in names), *table.broader, *table.modifiers]
+    words = {w for p in [*phrases, *color_names()] for w in (*p.lower().split(), *normalise(p))}
+    words |= {w for said in synonyms.every_word() for w in (said, *normalise(said))}
+    return frozenset(words | _LINKS)

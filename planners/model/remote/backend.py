@@ -1,0 +1,148 @@
+"""Language models behind a network address: OpenAI's wire format (Ollama, vLLM, llama.cpp too), Anthropic's, Google's.
+
+Knows how an answer is come by: asking with less where a server refuses, again where it is busy, until time is up.
+Refuses to know prompts and plans, and how a request looks on the wire.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from ....gaussians.errors import BackendError
+from ...plan import Usage
+from ..backend import Answer, Heard, Message, ModelBackend, UnreachableError
+from . import errors, http, wire
+from .address import Address, read
+from .errors import Extras
+from .wait import Emit, Failed, wait
+from .wire import Reply
+
+HOSTED_WINDOW = 128_000  # tokens that every model now sold by the three providers reads
+NEAR_WINDOW = 8_192  # Ollama and llama.cpp serve 4096 unless told otherwise, too few for any plan; the next usual step
+# Hosted models that take no pictures; all others do.
+_BLIND = ("gpt-3.5", "o1-mini", "o1-preview", "o3-mini", "claude-2", "claude-instant", "gemini-1.0", "text-")
+
+
+def load(spec: str) -> ModelBackend:
+    """The model that "openai:MODEL[@BASE_URL]", "anthropic:MODEL[@BASE_URL]" or "google:MODEL[@BASE_URL]" names.
+
+    Keys come from OPENAI_API_KEY, ANTHROPIC_API_KEY, GOOGLE_API_KEY or GEMINI_API_KEY; SCENEWRIGHT_API_KEY comes first.
+    A server of one's own in OpenAI's format needs none. Nothing is imported and nobody is asked yet.
+
+    Raises:
+        UserError: the specification is malformed.
+        BackendError: a key or a package is missing; says which, and how to get it.
+    """
+    return Remote(read(spec, os.environ))
+
+
+class Remote:
+    """A language model behind an address, a `ModelBackend`.
+
+    It remembers what its server refused (a schema, a temperature), so that a refusal costs one request, not each.
+    """
+
+    def __init__(self, address: Address) -> None:
+        self._address = address
+        self._extras = Extras()
+
+    @property
+    def name(self) -> str:
+        """As the user named it; holds no key."""
+        return self._address.name
+
+    @property
+    def sees(self) -> bool:
+        """Whether pictures may be sent: to hosted models known to see, and to any model of one's own server."""
+        model = self._address.model
+        return self._address.own or not (model.startswith(_BLIND) or model == "gpt-4")
+
+    @property
+    def window(self) -> int:
+        """Tokens for prompt and answer: what hosted models have at least, what servers nearby have usually."""
+        return NEAR_WINDOW if self._address.near else HOSTED_WINDOW
+
+    def answer(
+        self, messages: Sequence[Message], schema: dict[str, Any], *, seconds: float, heard: Heard | None = None
+    ) -> Answer:
+        """One answer, as `ModelBackend.answer`; may be called from a thread with or without an event loop.
+
+        The schema is enforced by the server where it can be; where it refuses, JSON is, or nothing. The libraries'
+        first import is not counted in `seconds`.
+
+        Raises:
+            UnreachableError: there was no answer; says why and what to do, and holds no key.
+            BackendError: the libraries are broken.
+        """
+        try:
+            wire.import_libraries(self._address.kind)
+        except ImportError as error:
+            raise BackendError(f"pydantic-ai cannot be used ({error}): pip install -U 'scenewright[llm]'") from None
+        begun = time.monotonic()
+        refusals: list[Exception] = []
+
+        async def work(emit: Emit) -> Reply:
+            return await self._insist(messages, schema, begun + seconds, emit if heard is not None else None, refusals)
+
+        reply = wait(work, seconds, heard)
+        waited = time.monotonic() - begun
+        if isinstance(reply, Failed):
+            late = (
+                isinstance(reply.error, TimeoutError) and refusals
+            )  # what used the time up tells more than that it is
+            raise UnreachableError(errors.say(late[-1] if late else reply.error, self._address, seconds))
+        usage = Usage(
+            model=self.name,
+            requests=1,
+            input_tokens=reply.input_tokens,
+            output_tokens=reply.output_tokens,
+            dollars=reply.dollars,
+            seconds=min(waited, 86_400.0),
+        )
+        return Answer(text=reply.text, usage=usage, end=reply.end)
+
+    async def _insist(
+        self,
+        messages: Sequence[Message],
+        schema: dict[str, Any],
+        deadline: float,
+        emit: Callable[[str], None] | None,
+        refusals: list[Exception],
+    ) -> Reply:
+        """Ask until there is an answer, with less where more is refused, again where that may help.
+
+        Args:
+            refusals: those after which it was asked again because the server is busy or broken are added here.
+        """
+        left = deadline - time.monotonic()
+        extras, tries, spoken = self._extras, 0, False
+
+        def pass_on(piece: str) -> None:
+            nonlocal spoken
+            spoken = True
+            if emit is not None:
+                emit(piece)
+
+        async with http.open_client(self._address, left) as client:
+            model = wire.build(self._address, client)
+            while True:
+                question = wire.Question(messages, schema, extras, left, pass_on if emit is not None else None)
+                try:
+                    reply = await wire.ask(model, self._address, question)
+                except Exception as error:
+                    less = errors.without(extras, error)
+                    pause = errors.pause(error, tries) if less is None else 0.0
+                    if spoken or pause is None or pause >= deadline - time.monotonic():
+                        raise
+                    if less is None:
+                        refusals.append(error)
+                        tries += 1
+                    extras = less or extras
+                    await asyncio.sleep(pause)
+                else:
+                    self._extras = extras
+                    return reply

@@ -1,0 +1,67 @@
+"""The HTTP client that remote models are asked with: bounded in size, followed nowhere else, direct to what is near.
+
+Knows connections and bytes. Refuses to know what they say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from typing import TYPE_CHECKING, Any
+
+from .address import Address
+from .errors import CompressedError, ProxyError, RedirectedError, TooLongError
+
+if TYPE_CHECKING:
+    import httpx2
+
+_MOST_BYTES = 32 << 20  # of one response: a streamed token costs about 300 bytes, so five times the longest answer
+_CONNECT = 10.0  # seconds for a connection; a server that is there needs less than one
+
+
+def open_client(address: Address, seconds: float) -> httpx2.AsyncClient:
+    """An HTTP client that reads at most `_MOST_BYTES` of a response and follows nobody elsewhere.
+
+    Raises:
+        ProxyError: the environment names a proxy that cannot be used.
+    """
+    import httpx2
+    from pydantic_ai.models import create_async_httpx2_client
+
+    try:
+        client = create_async_httpx2_client(
+            timeout=httpx2.Timeout(seconds, connect=min(_CONNECT, seconds)),
+            transport=httpx2.AsyncHTTPTransport() if address.near else None,  # a given transport passes proxies by
+        )
+    except (ImportError, ValueError):  # a kind of proxy that needs another package, or none at all
+        raise ProxyError from None
+    client.headers["Accept-Encoding"] = "identity"  # so that bytes counted are bytes held
+    client.headers["Connection"] = "close"  # a kept one may be closing as the next request goes out on it
+    client.event_hooks["response"].append(_bound)
+    return client
+
+
+async def _bound(response: httpx2.Response) -> None:
+    """Refuse what must not be read, and count what is."""
+    if response.is_redirect:
+        raise RedirectedError(response.headers.get("location", ""))
+    if response.headers.get("content-encoding", "identity") != "identity":
+        raise CompressedError
+    response.stream = _counted(response.stream)
+
+
+def _counted(stream: Any) -> httpx2.AsyncByteStream:
+    import httpx2
+
+    class Counted(httpx2.AsyncByteStream):
+        async def __aiter__(self) -> AsyncIterator[bytes]:
+            size = 0
+            async for chunk in stream:
+                size += len(chunk)
+                if size > _MOST_BYTES:
+                    raise TooLongError
+                yield chunk
+
+        async def aclose(self) -> None:
+            await stream.aclose()
+
+    return Counted()

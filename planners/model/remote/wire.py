@@ -1,0 +1,274 @@
+"""One request to a remote model and its answer, in the three wire formats, through pydantic-ai's direct interface.
+
+Knows how our messages, schema and pictures become pydantic-ai's and how its responses become answers. Refuses to know
+when to ask again, and imports pydantic-ai only when something is asked.
+"""
+
+from __future__ import annotations
+
+import json
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+from ..backend import Message
+from .address import Address, Kind
+from .errors import Extras, NothingError
+
+if TYPE_CHECKING:
+    import httpx2
+    from pydantic_ai.messages import ModelMessage, ModelResponse, ModelResponseStreamEvent
+    from pydantic_ai.models import Model, ModelRequestParameters
+    from pydantic_ai.settings import ModelSettings
+
+LONGEST_ANSWER = 16_384  # tokens, a reasoning model's thoughts included: the longest plan has 64 operations
+_SEED = 0
+_NAME = "answer"  # of the schema, and of the tool whose arguments are the answer
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is asked.
+
+    Attributes:
+        messages, schema: as in `ModelBackend.answer`.
+        extras: what is asked for beside them.
+        seconds: until the connection is given up.
+        emit: called with the pieces of the answer, with the whole where it is not streamed; None: nobody listens.
+    """
+
+    messages: Sequence[Message]
+    schema: dict[str, Any]
+    extras: Extras
+    seconds: float
+    emit: Callable[[str], None] | None = None
+
+
+@dataclass(frozen=True)
+class Reply:
+    """What came back.
+
+    Attributes:
+        text: the model's words.
+        end: as `Answer.end`.
+        input_tokens, output_tokens: as the server counted them, 0 where it did not.
+        dollars: by published prices, None where unknown.
+    """
+
+    text: str
+    end: Literal["done", "cut", "declined"]
+    input_tokens: int
+    output_tokens: int
+    dollars: float | None
+
+
+def import_libraries(kind: Kind) -> None:
+    """Import what a wire format needs, some seconds once, and quieten what the libraries warn of.
+
+    Raises:
+        ImportError: the packages are broken.
+    """
+    import importlib
+
+    for module in ("pydantic_ai.direct", f"pydantic_ai.models.{kind}", f"pydantic_ai.providers.{kind}"):
+        importlib.import_module(module)
+    # Not for users: that a model which thinks takes no temperature, and what a server garbles; both are dealt with.
+    for words in ("Sampling parameters", "Failed to extract usage", "Pydantic serializer", "Unexpected non-string"):
+        warnings.filterwarnings("ignore", message=words)
+
+
+def build(address: Address, client: httpx2.AsyncClient) -> Model[Any]:
+    """pydantic-ai's model for an address."""
+    # Whether a server takes a schema shows when it is asked; pydantic-ai only guesses it from the model's name.
+    takes: Any = {"supports_json_schema_output": True, "supports_json_object_output": True}
+    if address.kind == "anthropic":
+        from pydantic_ai.models.anthropic import AnthropicModel
+        from pydantic_ai.providers.anthropic import AnthropicProvider
+
+        anthropic = AnthropicProvider(api_key=address.key, base_url=address.url, http_client=client)
+        return AnthropicModel(address.model, provider=anthropic)
+    if address.kind == "google":
+        from pydantic_ai.models.google import GoogleModel
+        from pydantic_ai.providers.google import GoogleProvider
+
+        google = GoogleProvider(api_key=address.key, base_url=address.url, http_client=client)
+        return GoogleModel(address.model, provider=google, profile=takes)
+    from pydantic_ai.models.openai import OpenAIChatModel
+    from pydantic_ai.providers.openai import OpenAIProvider
+    from pydantic_ai.providers.openai_compatible import OpenAICompatibleProvider
+
+    if not address.own:
+        openai = OpenAIProvider(api_key=address.key, base_url=address.url, http_client=client)
+        return OpenAIChatModel(address.model, provider=openai, profile=takes)
+    takes["openai_chat_supports_max_completion_tokens"] = False  # servers of one's own know the older max_tokens
+    compatible = OpenAICompatibleProvider(
+        "openai-compatible", base_url=address.url, api_key=address.key, http_client=client
+    )
+    return OpenAIChatModel(address.model, provider=compatible, profile=takes)
+
+
+async def ask(model: Model[Any], address: Address, question: Question) -> Reply:
+    """Ask once.
+
+    Raises:
+        Exception: whatever pydantic-ai and the libraries below raise; `remote_errors.say` knows them.
+    """
+    from pydantic_ai.direct import model_request, model_request_stream
+
+    turns, settings = _turns(question.messages), _settings(question)
+    wanted = _wanted(address.kind, question.extras, question.schema)
+    emit = question.emit
+    if emit is None or not question.extras.stream:
+        response = await model_request(
+            model, turns, model_settings=settings, model_request_parameters=wanted, instrument=False
+        )
+        reply = _reply(response, address)
+        if emit is not None and reply.text:
+            emit(reply.text)
+        return reply
+    streamed = model_request_stream(
+        model, turns, model_settings=settings, model_request_parameters=wanted, instrument=False
+    )
+    async with streamed as stream:
+        async for event in stream:
+            if piece := _piece(event):
+                emit(address.without_keys(piece))
+        return _reply(stream.get(), address)
+
+
+def _settings(question: Question) -> ModelSettings:
+    extras = question.extras
+    settings: ModelSettings = {"timeout": question.seconds, "max_retries": 0}
+    if extras.temperature:
+        settings["temperature"] = 0.0
+    if extras.seed:
+        settings["seed"] = _SEED
+    if extras.length:
+        settings["max_tokens"] = LONGEST_ANSWER
+    return settings
+
+
+def _wanted(kind: Kind, extras: Extras, schema: dict[str, Any]) -> ModelRequestParameters:
+    """How the answer is bound to the schema.
+
+    OpenAI's strict mode wants every property required, Anthropic's takes no recursion, and a query may hold queries; so
+    OpenAI and its kin get the schema unstrictly, Anthropic as the arguments of a tool that must be called, and Google
+    in the subset that pydantic-ai knows it to take. The schema is not put into words: what a prompt says is not ours.
+    Sources: platform.openai.com/docs/guides/structured-outputs, platform.claude.com/docs structured outputs,
+    ai.google.dev/gemini-api/docs/structured-output.
+    """
+    from pydantic_ai.models import ModelRequestParameters
+    from pydantic_ai.output import OutputObjectDefinition
+    from pydantic_ai.tools import ToolDefinition
+
+    plain = loosened({key: value for key, value in schema.items() if key != "$schema"})
+    if extras.form == "words" or (kind == "anthropic" and extras.form == "json"):
+        return ModelRequestParameters()
+    if kind == "anthropic":
+        tool = ToolDefinition(
+            name=_NAME, parameters_json_schema=plain, description="Give the answer.", kind="output", strict=False
+        )
+        return ModelRequestParameters(output_mode="tool", output_tools=[tool], allow_text_output=False)
+    return ModelRequestParameters(
+        output_mode="native" if extras.form == "schema" else "prompted",
+        output_object=OutputObjectDefinition(plain, name=_NAME, strict=False),
+        prompted_output_template=False,
+    )
+
+
+def loosened(node: Any) -> Any:
+    """The schema without alternatives beside `properties`: it allows more, and every server takes it.
+
+    They say which fields go together. Anthropic refuses them at a tool's root, and llama.cpp's grammars follow the
+    alternatives alone and forget the properties.
+    """
+    if isinstance(node, list):
+        return [loosened(one) for one in node]
+    if not isinstance(node, dict):
+        return node
+    dropped = {"anyOf", "oneOf", "allOf"} if "properties" in node else set()
+    return {key: loosened(value) for key, value in node.items() if key not in dropped}
+
+
+def _turns(messages: Sequence[Message]) -> list[ModelMessage]:
+    from pydantic_ai import messages as parts
+
+    turns: list[ModelMessage] = []
+    for message in messages:
+        if message.role == "assistant":
+            turns.append(parts.ModelResponse([parts.TextPart(message.text or "(nothing)")]))
+        elif message.role == "system":
+            turns.append(parts.ModelRequest([parts.SystemPromptPart(message.text)]))
+        elif message.picture is None:
+            turns.append(parts.ModelRequest([parts.UserPromptPart(message.text)]))
+        else:
+            picture = parts.BinaryContent(message.picture, media_type="image/png")
+            turns.append(parts.ModelRequest([parts.UserPromptPart([picture, message.text])]))
+    return turns
+
+
+def _piece(event: ModelResponseStreamEvent) -> str:
+    """The words of the answer in an event; a model's thoughts are none of them."""
+    from pydantic_ai import messages as parts
+
+    if isinstance(event, parts.PartStartEvent):
+        return _said(event.part)
+    if isinstance(event, parts.PartDeltaEvent):
+        if isinstance(event.delta, parts.TextPartDelta):
+            return event.delta.content_delta
+        if isinstance(event.delta, parts.ToolCallPartDelta) and isinstance(event.delta.args_delta, str):
+            return event.delta.args_delta
+    return ""
+
+
+def _said(part: object) -> str:
+    from pydantic_ai import messages as parts
+
+    if isinstance(part, parts.TextPart):
+        return part.content
+    if isinstance(part, parts.ToolCallPart) and part.args:
+        return part.args if isinstance(part.args, str) else json.dumps(part.args, ensure_ascii=False)
+    return ""
+
+
+def _reply(response: ModelResponse, address: Address) -> Reply:
+    from pydantic_ai import messages as parts
+
+    if not response.parts and response.finish_reason is None:
+        raise NothingError
+    calls = [part for part in response.parts if isinstance(part, parts.ToolCallPart)]
+    text = _said(calls[0]) if calls else "".join(_said(part) for part in response.parts)
+    end: Literal["done", "cut", "declined"] = "done"
+    if response.finish_reason == "length":
+        end = "cut"
+    elif response.finish_reason == "content_filter":
+        end, text = "declined", _refusal(response, text)
+    usage = response.usage
+    return Reply(
+        text=address.without_keys(text),
+        end=end,
+        input_tokens=_count(usage.input_tokens),
+        output_tokens=_count(usage.output_tokens),
+        dollars=None if address.own else _dollars(response),
+    )
+
+
+def _refusal(response: ModelResponse, text: str) -> str:
+    details = response.provider_details or {}
+    said = details.get("refusal") or details.get("block_reason_message") or text
+    reason = details.get("block_reason") or details.get("finish_reason") or "content filter"
+    return str(said or f"the provider stopped the answer ({reason})")
+
+
+def _count(tokens: object) -> int:
+    """A count as a receipt takes it, whatever the server claims."""
+    return min(max(tokens, 0), 10**9) if isinstance(tokens, int) else 0
+
+
+def _dollars(response: ModelResponse) -> float | None:
+    try:
+        price = float(response.cost().total_price)
+    except (LookupError, ValueError, AssertionError):  # a model that the price list does not know, usage left out
+        return None
+    return price if 0 <= price <= 1e6 else None

@@ -1,0 +1,1 @@
+"""What a language model answers, validated and checked before it counts."""

@@ -1,0 +1,120 @@
+"""What chooses between things which the user's words leave open (ids, colours, "all"): found, and taken out.
+
+Knows which words of an instruction tell one thing from another of its kind. Refuses to choose itself: what was said
+stands, and whoever resolves it finds several and asks.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from functools import cache
+from typing import Any
+
+from ....gaussians.language.query.query import Query
+from ....tools.operation import EditOp
+from ...rooms.label_encoder import words
+from .rehearsal import Rehearsal, with_queries
+
+_LOOSE = ("all", "any", "rest")
+_WORD = re.compile(r"[^\W\d_]+")
+_OPEN_CHOICE = re.compile(r"\b(?:any|some|either|one of|random|whichever|whatever)\b")
+_SEVERAL = re.compile(r"\b(?:all|every\w*|each|both|any\w*|whole|entire|ones?|others?|rest|set|pair|group|\d+)\b")
+_THE = r"\b(?:the|this|that|my|our|your) "
+# Words that do not tell one thing from another of its kind: what to do, how far, and what ties a sentence together.
+_PLAIN_WORDS = """
+a an the this that it its please kindly can could would will you i we me us my our your to of and then now just let s
+want like need have get rid away out off up down go do be is are by for with in on at into onto from so as too also
+move shift push pull slide put place set bring take carry turn rotate spin flip tilt make paint color colour recolor
+recolour dye tint delete remove erase eliminate discard throw toss drop lose destroy kill clear hide show select pick
+choose find highlight isolate keep only replace swap exchange change substitute duplicate copy clone add insert another
+more less bit little much very slightly scale resize enlarge shrink grow raise lower lift darker lighter brighter bigger
+larger smaller taller shorter wider narrower twice half double degrees degree metre meter metres meters cm mm m inch
+inches foot feet ft clockwise counterclockwise transparent invisible opaque
+"""
+
+
+def without_guesses(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple[EditOp, ...]:
+    """The operations without ids where the words beside them fit more things, and nothing that was said tells these
+    apart: "delete the chair", and a model that says which of three.
+
+    Args:
+        ops: their ids must not all be there; those that are not are left as they are.
+        text: the instruction.
+    """
+    said = text.lower()
+    if _OPEN_CHOICE.search(said):
+        return tuple(ops)
+    used = {s for op in ops for value in _strings(op.model_dump(exclude_defaults=True)) for s in stems(value)}
+
+    def settled(query: Query) -> Query:
+        if not query.groups or scene.lost(query) or scene.misnamed(query):
+            return query
+        named = query if query.text else query.model_copy(update={"text": scene.label(query.groups[0])})
+        fits = scene.by_words(named) if named.text else ()
+        told = all(stems(word) <= _plain() | used | stems(named.text) for word in _WORD.findall(said))
+        if not set(query.groups) < set(fits) or not told:
+            return query
+        # One is asked for, however many ids there were: never all that the words fit.
+        return named.model_copy(update={"groups": (), "pick": "one" if named.pick in _LOOSE else named.pick})
+
+    return tuple(with_queries(op, settled) for op in ops)
+
+
+def without_inventions(ops: Sequence[EditOp], text: str, previous: str | None) -> tuple[EditOp, ...]:
+    """The operations without colours that nobody said, where every word of the instruction is accounted for without
+    them: "delete the chair", and a model that says the red one. A word that is not (another tongue's, "crimson", "my")
+    may be what the colour was read from.
+    """
+    said = stems(f"{text} {previous or ''}")
+    used = {s for op in ops for value in _strings(op.model_dump(exclude_defaults=True)) for s in stems(value)}
+    if not all(stems(word) <= _plain() | used for word in _WORD.findall(text.lower())):
+        return tuple(ops)
+
+    def settled(query: Query) -> Query:
+        if not query.text or query.last or query.groups:
+            return query
+        heard = tuple(c for c in query.colors if stems(c) & said)
+        return query.model_copy(update={"colors": heard}) if heard != query.colors else query
+
+    return tuple(with_queries(op, settled) for op in ops)
+
+
+def numbered(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple[EditOp, ...]:
+    """The operations with one thing meant where one was said: "delete the chair" is never all chairs, nor any.
+
+    Only where the words can be followed: the name is that of things here, and stands once in the instruction, in the
+    singular, after "the" or its like, without a word for several or for any.
+    """
+    said = text.lower()
+    heads = {w for node in scene.graph.nodes for w in words(node.label)[-1:]}
+
+    def settled(query: Query) -> Query:
+        noun = query.text.lower().split()[-1:]
+        if query.pick not in ("all", "any") or query.groups or not noun or not heads & set(words(noun[0])):
+            return query
+        here = [w for w in _WORD.findall(said) if set(words(w)) & set(words(noun[0]))]
+        one = here == noun and re.search(rf"{_THE}(?:[\w-]+ ){{0,3}}{re.escape(noun[0])}\b", said)
+        return query.model_copy(update={"pick": "one"}) if one else query
+
+    if _OPEN_CHOICE.search(said) or _SEVERAL.search(said):
+        return tuple(ops)
+    return tuple(with_queries(op, settled) for op in ops)
+
+
+def stems(text: str) -> set[str]:
+    """The words of a text, as they stand and as a thing of that name is called."""
+    return {s for w in _WORD.findall(text.lower()) for s in (w, *words(w))}
+
+
+@cache
+def _plain() -> frozenset[str]:
+    return frozenset(stems(_PLAIN_WORDS))
+
+
+def _strings(node: Any) -> Iterator[str]:
+    """Every text in a dumped operation."""
+    if isinstance(node, str):
+        yield node.replace("_", " ")
+    for item in node.values() if isinstance(node, dict) else node if isinstance(node, tuple | list) else ():
+        yield from _strings(item)

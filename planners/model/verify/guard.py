@@ -1,0 +1,263 @@
+"""What a valid plan may still have wrong: ids of nothing, colours that are none, edits that nobody asked for.
+
+Knows what was said, the operations, and the scene's graph where there is one. Refuses to mend a plan, except that ids
+and colours which choose where the words leave open are taken out, and "all" where they speak of one, so that the editor
+asks. Each fault is told to the model; what it comes to if the model insists is said with it (`Fault.verdict`).
+
+Absent and ambiguous phrases are no fault of a plan in the end: the graph holds only those names that the encoder is
+sure of, while the session resolves against the scene itself, and can show the user what it hesitates between. So the
+model hears of them once, because it may have meant something that is there; then the plan stands and the session has
+the last word.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+from ....gaussians.color import parse as parse_color
+from ....gaussians.errors import UserError
+from ....gaussians.language.query.query import Query
+from ....gaussians.language.query.terms import STRUCTURE
+from ....tools.operation import EditOp
+from ...grammar.vocabulary.verbs import VERBS
+from ...impossible import MAKES_PLACE
+from ...plan import Planner, Verdict
+from ...rooms.color_words import plain_color
+from ...rooms.graph import SceneGraph
+from ...rooms.graph_scene import Id
+from ...rooms.label_encoder import words
+from ...rooms.plan_on_graph import Resolved
+from ..prompt.pruning import Relevance
+from .choosing import numbered, stems, without_guesses, without_inventions
+from .rehearsal import Rehearsal, queries
+from .removal_words import Ground, said
+
+# What takes things away, and the words that ask for it. Another operation that does belongs here.
+_TAKES: dict[str, tuple[Ground, ...]] = {
+    "delete": ("removing", "exchanging"),
+    "replace": ("removing", "exchanging"),
+    "isolate": ("keeping", "removing"),
+    "opacity": ("hiding", "removing", "keeping"),
+}
+_HIDES = 0.15  # opacity from which a thing is as good as gone
+_MANY = 4  # things taken away that nobody named
+_FILLERS = re.compile(r"^(?:(?:and|now|then|next|ok|okay|please|so)\b[\s,]*)+")
+_TOO = re.compile(r"\b(?:too|also|as well|same|again|likewise|either|neither)\b")
+_EVERYTHING = frozenset({"", "everything", "anything", "thing", "object", "item", "stuff", "furniture"})
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Something wrong with a valid plan.
+
+    Attributes:
+        kind: what sort of thing; one sort is told to the model once.
+        told: to the model.
+        verdict: what the plan comes to if the model insists. "ok": it stands, and the session decides. None: it is
+            as bad as an invalid answer.
+        reason: to the user.
+    """
+
+    kind: str
+    told: str
+    verdict: Verdict | None = None
+    reason: str = ""
+
+
+class Guard:
+    """The checks of one instruction's plans.
+
+    Args:
+        text: the instruction.
+        previous: the instruction before, None if there was none.
+        graph: the scene with names that a model may see; None if nobody looked.
+        recall: a planner that reads the instruction before, to tell what "it" means.
+    """
+
+    def __init__(self, text: str, previous: str | None, graph: SceneGraph | None, recall: Planner) -> None:
+        self._text = text
+        self._previous = previous
+        self._scene = Rehearsal(graph, previous, recall) if graph is not None else None
+
+    def settled(self, ops: Sequence[EditOp]) -> tuple[EditOp, ...]:
+        """The operations without ids and colours that choose between things which the instruction leaves open, and
+        without "all" where it speaks of one."""
+        if self._scene is None:
+            return tuple(ops)
+        said = without_inventions(without_guesses(ops, self._text, self._scene), self._text, self._previous)
+        return numbered(said, self._text, self._scene)
+
+    def faults(self, ops: Sequence[EditOp]) -> list[Fault]:
+        """What is wrong with the operations, worst first; of each kind one."""
+        found = [f for check in (self._ids, self._colors, self._last) for f in check(ops)]
+        if any(f.verdict is None for f in found):
+            return _one_a_kind(found)  # what has no place in the scene cannot be played
+        played = self._scene.play(ops) if self._scene is not None and ops else None
+        found += [*self._groundless(ops), *self._sweeping(ops, played)]
+        found += self._shell(ops) if played is None else self._stopped(played)
+        return _one_a_kind(found)
+
+    # -- the words of a plan ----------------------------------------------------------------------------------------
+
+    def _ids(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
+        """Ids of nothing, and ids of something else than they are called."""
+        for query in queries(tuple(ops)):
+            if query.groups and self._scene is None:
+                yield Fault("ids", "no scene was shown, so groups must be left out: say in words what is meant")
+            elif query.groups and self._scene is not None:
+                yield from self._wrong_ids(self._scene, query)
+
+    def _wrong_ids(self, scene: Rehearsal, query: Query) -> Iterator[Fault]:
+        for lost in scene.lost(query):
+            near = scene.shown(n.id for n in scene.near(query, lost))
+            yield Fault("ids", f"groups: no thing has the id {lost}; near are\n{near}")
+            return
+        if (node := scene.misnamed(query)) is not None:
+            told = f'groups: {node.id} is a {node.label}, not "{query.text}"; correct the id or the text'
+            yield Fault("ids", told)
+
+    def _colors(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
+        """Words that are no colours; those which the graph itself writes are."""
+        written = {plain_color(n.color) for n in self._scene.graph.nodes} if self._scene is not None else set()
+        painted = [c for op in ops if isinstance(c := getattr(op, "color", None), str)]
+        sought = [c for q in queries(tuple(ops)) for c in (*q.colors, *q.not_colors) if plain_color(c) not in written]
+        for color in (*painted, *sought):
+            try:
+                parse_color(color)
+            except UserError as error:
+                yield Fault("color", str(error), "not_understood", str(error))
+
+    def _shell(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
+        """Floor, walls and ceiling stay where they are."""
+        for op in ops:
+            query = op.query()
+            name = STRUCTURE.get(query.text) if query is not None and not query.groups else None
+            if op.op in MAKES_PLACE and name:
+                reason = f"the {name} stays: {op.op} is for things in the room"
+                yield Fault(
+                    "shell", f'{reason}; if that was asked, answer with verdict "impossible"', "impossible", reason
+                )
+
+    def _last(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
+        """ "it" without anything before."""
+        if not self._previous and any(q.last for q in queries(tuple(ops[:1]))):
+            told = "last: there was no instruction before, so it means nothing; name the thing"
+            yield Fault("last", told, "not_understood", "nothing was done before that 'it' could mean; name the thing")
+
+    # -- what a plan takes away -------------------------------------------------------------------------------------
+
+    def _groundless(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
+        """Operations that take something away, where nobody asked for that."""
+        for op in _taking(ops):
+            asked = any(said(g, self._text, self._before) for g in _TAKES[op.op])
+            if not asked and not (op.op == "replace" and self._names(getattr(op, "asset", ""))):
+                what = f"{op.op} {op.subject()}"
+                told = (
+                    f"{op.op}: the instruction does not ask to take anything away. Do only what it says; if it cannot "
+                    'be done otherwise, answer with verdict "not_understood"'
+                )
+                yield Fault("groundless", told, "not_understood", f"{_REFUSED}: {what}. {_SAY}")
+
+    def _sweeping(self, ops: Sequence[EditOp], played: Resolved | None) -> Iterator[Fault]:
+        """Everything taken away, or much that nobody named, where nobody said "all"."""
+        if said("all", self._text, self._before):
+            return
+        sweeping = [op for op in _taking(ops) if op.op != "isolate" and _is_everything(op.query())]
+        unnamed = self._unnamed(played)
+        if sweeping or len(unnamed) >= max(_MANY, self._count / 2):
+            what = sweeping[0].subject() if sweeping else f"{len(unnamed)} things that it does not name"
+            told = f"the instruction does not say that {what} should go. Do only what it says"
+            yield Fault("sweeping", told, "not_understood", f"{_REFUSED}: remove {what}. {_SAY}")
+
+    @cached_property
+    def _before(self) -> str | None:
+        """The instruction before, where it is a ground too: this one has no command of its own, or says "too"."""
+        own = _FILLERS.sub("", self._text.casefold()).split(maxsplit=1)
+        commands = bool(own) and own[0] in _commands() and not _TOO.search(self._text.casefold())
+        return None if commands else self._previous
+
+    @property
+    def _count(self) -> int:
+        return len(self._scene.graph.nodes) if self._scene is not None else 0
+
+    def _unnamed(self, played: Resolved | None) -> set[Id]:
+        """What would be taken away and goes by no name or colour that was said; walls and floor are no nodes."""
+        if played is None or self._scene is None:
+            return set()
+        gone = {i for s in played.steps if _takes(s.op) and s.op.op != "isolate" for i in s.targets}
+        return {i for i in gone if i not in self._index or not self._relevance.named(self._index[i])}
+
+    @cached_property
+    def _relevance(self) -> Relevance:
+        assert self._scene is not None
+        return Relevance(self._scene.graph, [t for t in (self._text, self._previous) if t])
+
+    @cached_property
+    def _index(self) -> dict[Id, int]:
+        assert self._scene is not None
+        return {n.id: i for i, n in enumerate(self._scene.graph.nodes)}
+
+    def _names(self, asset: str) -> bool:
+        """Whether the instruction names a new thing ("make the chair a sofa")."""
+        heard = stems(self._text) | stems(self._previous or "")
+        return bool(set(words(asset)[-1:]) & heard)
+
+    # -- what the graph says ----------------------------------------------------------------------------------------
+
+    def _stopped(self, played: Resolved) -> Iterator[Fault]:
+        """What would stop the plan on the graph."""
+        if played.verdict == "ok" or self._scene is None:
+            return
+        shown = self._scene.shown(played.candidates)
+        if played.verdict in ("absent", "ambiguous"):
+            how = _IF_ABSENT if played.verdict == "absent" else _IF_AMBIGUOUS
+            yield Fault(played.verdict, f"{played.verdict}: {played.reason}\n{shown}\n{how}", "ok", played.reason)
+        else:
+            told = f"{played.verdict}: {played.reason}. Correct it, or answer with this verdict"
+            yield Fault(played.verdict, told, played.verdict, played.reason)
+
+
+_REFUSED = "the model wanted what the instruction does not ask for, and nothing was done"
+_IF_ABSENT = (
+    "If the instruction means something that is there, say what, as the scene calls it; if it does not, give the same "
+    "ops with this verdict"
+)
+_IF_AMBIGUOUS = (
+    "If the instruction says which one, say it as it does (colors, relations, pick, all); if it does not, give the "
+    "same ops with this verdict. Do not choose by id"
+)
+_SAY = "If you mean it, say so ('delete …', 'keep only …', 'delete everything')"
+
+
+@cache
+def _commands() -> frozenset[str]:
+    """First words of commands, but for those that begin "do the same"."""
+    alike = {phrase.split()[0] for phrase, (kind, _) in VERBS.items() if kind == "SAME"}
+    return frozenset(phrase.split()[0] for phrase in VERBS) - alike
+
+
+def _takes(op: EditOp) -> bool:
+    return op.op in _TAKES and (op.op != "opacity" or float(getattr(op, "value", 1.0)) <= _HIDES)
+
+
+def _taking(ops: Sequence[EditOp]) -> Iterator[EditOp]:
+    return (op for op in ops if _takes(op))
+
+
+def _is_everything(query: Query | None) -> bool:
+    """Whether a query takes whatever there is."""
+    if query is None or query.groups or query.last:
+        return query is not None and query.invert
+    open_ended = not (query.colors or query.not_colors or query.size or query.relations)
+    return query.invert or query.pick == "rest" or (query.pick == "all" and query.text in _EVERYTHING and open_ended)
+
+
+def _one_a_kind(faults: Sequence[Fault]) -> list[Fault]:
+    """The first fault of each kind, those that end as no plan before refusals, and what may stand last."""
+    first: dict[str, Fault] = {}
+    for fault in faults:
+        first.setdefault(fault.kind, fault)
+    return sorted(first.values(), key=lambda f: 0 if f.verdict is None else 2 if f.verdict == "ok" else 1)

@@ -1,0 +1,139 @@
+"""Operations played on the scene graph before anybody sees them: what each would touch, and what ids mean.
+
+Knows that a query names nodes by the graph's ids, and the stage that answers by rows. Refuses to say what follows from
+it (guard.py). The names of the graph are those that a model may see, so that whatever is told here may be told to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cached_property
+from typing import Any
+
+from pydantic import BaseModel
+
+from ....gaussians.errors import UserError
+from ....gaussians.language.query.query import Query
+from ....gaussians.language.query.selection import Selection
+from ....tools.operation import EditOp
+from ...plan import EditPlan, Planner
+from ...rooms.graph import Node, SceneGraph
+from ...rooms.graph_scene import Id, Stage
+from ...rooms.label_encoder import THRESHOLD, agreement
+from ...rooms.plan_on_graph import Resolved, recalled, resolve_plan
+from ..prompt.pruning import line
+
+_NEAR = 5  # nodes shown instead of one that is not there
+_SHOWN = 12  # candidates shown
+
+
+def queries(node: Any) -> Iterator[Query]:
+    """Every query in an operation, those within queries too."""
+    if isinstance(node, Query):
+        yield node
+    if isinstance(node, BaseModel):
+        node = tuple(getattr(node, name) for name in type(node).model_fields)
+    if isinstance(node, tuple):
+        for item in node:
+            yield from queries(item)
+
+
+def with_queries(node: Any, change: Callable[[Query], Query]) -> Any:
+    """An operation with every query changed, inner ones first; what does not change is shared."""
+    if isinstance(node, tuple):
+        return tuple(with_queries(item, change) for item in node)
+    if not isinstance(node, BaseModel):
+        return node
+    old = {name: getattr(node, name) for name in type(node).model_fields}
+    new = {name: made for name, value in old.items() if (made := with_queries(value, change)) != value}
+    node = node.model_copy(update=new) if new else node
+    return change(node) if isinstance(node, Query) else node
+
+
+class Rehearsal:
+    """One graph on its stage.
+
+    Args:
+        graph: with names that a model may see.
+        previous: the instruction before, None if there was none.
+        recall: reads it, to tell what "it" means.
+    """
+
+    def __init__(self, graph: SceneGraph, previous: str | None, recall: Planner) -> None:
+        self.graph = graph
+        self._previous = previous
+        self._recall = recall
+
+    @cached_property
+    def stage(self) -> Stage:
+        return Stage.of(self.graph)
+
+    @cached_property
+    def rows(self) -> dict[int, int]:
+        """The stage's row of each id that a query may name."""
+        return {node.id: row for row, node in enumerate(self.graph.nodes) if isinstance(node.id, int)}
+
+    @cached_property
+    def last(self) -> Selection | None:
+        """What "it" means, None if that cannot be told."""
+        if not self._previous:
+            return None
+        try:
+            return recalled(self.stage, self._recall.plan(self._previous))
+        except UserError:
+            return None
+
+    def play(self, ops: Sequence[EditOp]) -> Resolved | None:
+        """What the operations would touch; None if they are about an "it" that cannot be told.
+
+        All ids must be there.
+        """
+        if self.last is None and any(q.last for q in queries(tuple(ops[:1]))):
+            return None
+        staged = tuple(with_queries(op, self._staged) for op in ops)
+        return resolve_plan(self.stage, EditPlan(instruction="", ops=staged, planner=""), self.last)
+
+    def lost(self, query: Query) -> list[int]:
+        """Ids that the query names and the graph does not have."""
+        return [i for i in query.groups if i not in self.rows]
+
+    def near(self, query: Query, lost: int) -> list[Node]:
+        """What may be meant instead of an id that is not there: things of the query's name, else those with ids next
+        to it."""
+        nodes = [n for n in self.graph.nodes if isinstance(n.id, int)]
+        labels = sorted({n.label for n in nodes if n.label})
+        fits = {label for label, p in zip(labels, agreement(query.text, labels), strict=True) if p >= THRESHOLD}
+        named = [n for n in nodes if n.label in fits]
+        return (named or sorted(nodes, key=lambda n: (abs(int(n.id) - lost), n.id)))[:_NEAR]
+
+    def misnamed(self, query: Query) -> Node | None:
+        """A node that the query names by id and calls by what only other things here are called."""
+        labels = sorted({n.label for n in self.graph.nodes if n.label})
+        fits = {label for label, p in zip(labels, agreement(query.text, labels), strict=True) if p >= THRESHOLD}
+        named = (self.graph.nodes[self.rows[i]] for i in query.groups if i in self.rows)
+        return next((n for n in named if fits and n.label and n.label not in fits), None)
+
+    def label(self, id: int) -> str:
+        """What the thing with this id is called, "" if nobody could tell."""
+        return self.graph.nodes[self.rows[id]].label
+
+    def by_words(self, query: Query) -> tuple[Id, ...]:
+        """Ids of all that the words of a query fit, without its ids and its choice among several."""
+        words = query.model_copy(update={"groups": (), "also": (), "pick": "all", "count": None, "ordinal": None})
+        try:
+            found = self.stage.find(with_queries(words, self._staged), self.last)
+        except UserError:
+            return ()
+        return self.stage.names(found.groups) if found.verdict == "found" else ()
+
+    def shown(self, ids: Iterable[Id]) -> str:
+        """Lines for a model about some nodes."""
+        nodes = {n.id: n for n in self.graph.nodes}
+        lines = [line(nodes[i]) for i in ids if i in nodes]
+        more = [f"and {len(lines) - _SHOWN} more"] if len(lines) > _SHOWN else []
+        return "\n".join([*lines[:_SHOWN], *more])
+
+    def _staged(self, query: Query) -> Query:
+        if not query.groups:
+            return query
+        return query.model_copy(update={"groups": tuple(self.rows[i] for i in query.groups)})

@@ -1,0 +1,1 @@
+"""Rooms as scene graphs: checked, built as Gaussians, read from scenes and used to resolve words."""

@@ -1,0 +1,250 @@
+"""A neutral check of a scene graph: does it fit, does it stand, do its relations hold, can one walk about in it?
+
+Knows boxes and a person's width. Refuses to know who made the graph and for what; every complaint is a sentence with
+ids and measured numbers, and every tolerance is a constant with its reason. Boxes are solid: a chair pushed under a
+table meets it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from ...gaussians.language.field.language_field import Boxes
+from ...gaussians.world import relations
+from ...tools.placement.bodies import overlap
+from .graph import SHELL, Node, SceneGraph
+from .graph_scene import Stage
+from .reachability import unreached
+
+Kind = Literal["collision", "bounds", "support", "relation", "reach"]
+Id = int | str
+
+TOUCHING = 0.01  # metres that boxes may be in each other or in a wall: what a person rounds to when writing
+FLAT = 0.05  # metres; lower things on the floor (rugs) are stood upon, and a wheel or a hem may be this far from it
+GAP = 0.02  # metres of air under a thing that stands
+HUNG = 0.1  # metres between a wall or ceiling and what is fixed to it: brackets and frames
+
+# How relations are written, beside the names that queries use.
+_NAMES = {
+    "left": "left_of", "to_the_left_of": "left_of", "right": "right_of", "to_the_right_of": "right_of",
+    "front": "in_front_of", "near": "next_to", "beside": "next_to", "by": "next_to", "adjacent_to": "next_to",
+    "close_to": "next_to", "on_top_of": "on", "upon": "on", "in": "inside", "within": "inside", "over": "above",
+    "beneath": "under", "underneath": "under",
+}  # fmt: skip
+_KNOWN = ("left_of", "right_of", "in_front_of", "behind", "on", "under", "below", "above", "inside", "next_to")
+
+
+@dataclass(frozen=True)
+class Violation:
+    """One thing that is wrong.
+
+    Attributes:
+        kind: what was checked.
+        ids: the nodes it is about.
+        measured: how far it is off, in `unit`.
+        unit: "m", or "1" for a share.
+        sentence: for a person, with ids and numbers.
+    """
+
+    kind: Kind
+    ids: tuple[Id, ...]
+    measured: float
+    unit: str
+    sentence: str
+
+
+@dataclass(frozen=True)
+class Report:
+    """What a check found.
+
+    Attributes:
+        violations: in the order of the checks, then of the nodes.
+        checked: how many things each check looked at: pairs, nodes, stated relations.
+        unchecked: what was stated and cannot be checked, a sentence each.
+    """
+
+    violations: tuple[Violation, ...]
+    checked: dict[str, int]
+    unchecked: tuple[str, ...] = ()
+
+    @property
+    def ok(self) -> bool:
+        """Whether nothing is wrong."""
+        return not self.violations
+
+
+def check(graph: SceneGraph) -> Report:
+    """Everything that is wrong with a graph: collisions, bounds, support, stated relations, reachability."""
+    stated, unchecked = _relations(graph)
+    found = [*_collisions(graph), *_out_of_bounds(graph), *_unsupported(graph), *stated, *_out_of_reach(graph)]
+    count = len(graph.nodes)
+    checked = {
+        "collision": count * (count - 1) // 2,
+        "bounds": count,
+        "support": count,
+        "relation": len(graph.relations) - len(unchecked),
+        "reach": count,
+    }
+    return Report(tuple(found), checked, unchecked)
+
+
+def _called(node: Node) -> str:
+    return f"{node.label or 'thing'} ({node.id})"
+
+
+def _collisions(graph: SceneGraph) -> Iterator[Violation]:
+    """Pairs of boxes that are in each other, by the separating axes of their footprints and their heights."""
+    carried = {n.id: set(_carriers(graph, n)) for n in graph.nodes}
+    middles = np.array([n.position for n in graph.nodes]).reshape(-1, 3)
+    reach = np.array([np.linalg.norm(n.size) / 2 for n in graph.nodes])
+    for i, a in enumerate(graph.nodes):
+        near = np.linalg.norm(middles[i + 1 :] - middles[i], axis=1) < reach[i + 1 :] + reach[i]
+        for b in (graph.nodes[i + 1 + int(j)] for j in np.flatnonzero(near)):
+            if b.id in carried[a.id] or a.id in carried[b.id] or _is_flat(a) or _is_flat(b):
+                continue  # what stands on a shelf or a seat is within its box; rugs are stood upon
+            depth = overlap(a.box, b.box)
+            if depth > TOUCHING:
+                said = f"{_called(a)} and {_called(b)} are {depth:.2f} m in each other"
+                yield Violation("collision", (a.id, b.id), depth, "m", said)
+
+
+def _is_flat(node: Node) -> bool:
+    return node.support == "floor" and node.size[2] <= FLAT
+
+
+def _carriers(graph: SceneGraph, node: Node) -> Iterator[Id]:
+    """What a node stands on, and what that stands on, up to floor, wall or ceiling or a second visit."""
+    nodes, seen = {n.id: n for n in graph.nodes}, set[Id]()
+    at = node.support
+    while at in nodes and at not in seen:
+        seen.add(at)
+        yield at
+        at = nodes[at].support
+
+
+def _out_of_bounds(graph: SceneGraph) -> Iterator[Violation]:
+    """Boxes that reach out of the room; what is fixed to a wall may be let into it."""
+    width, depth, height = graph.room.size
+    for node in graph.nodes:
+        corners = node.box.corners()
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        inward = HUNG if node.support in ("wall", "ceiling") else TOUCHING
+        out = {
+            "left of the room": -width / 2 - low[0], "right of the room": high[0] - width / 2,
+            "in front of the room": -depth / 2 - low[1], "behind the room": high[1] - depth / 2,
+            "below the floor": -low[2], "above the ceiling": high[2] - height,
+        }  # fmt: skip
+        for side, far in out.items():
+            if far > inward:
+                said = f"{_called(node)} reaches {far:.2f} m {side}"
+                yield Violation("bounds", (node.id,), float(far), "m", said)
+
+
+def _unsupported(graph: SceneGraph) -> Iterator[Violation]:
+    """Nodes that do not stand, lie or hang on what they are said to."""
+    nodes = {n.id: n for n in graph.nodes}
+    ground = max((n.top for n in graph.nodes if _is_flat(n)), default=0.0)
+    for node in graph.nodes:
+        if node.support == "floor":
+            yield from _standing(node, ground)
+        elif node.support in SHELL:
+            yield from _hanging(node, graph)
+        elif node.id in set(_carriers(graph, node)):
+            yield Violation("support", (node.id, node.support), 0.0, "m", f"{_called(node)} ends up standing on itself")
+        else:
+            yield from _carried(node, nodes[node.support])
+
+
+def _standing(node: Node, ground: float) -> Iterator[Violation]:
+    """On the floor, or on a rug."""
+    if node.bottom > max(GAP, ground + GAP):
+        yield Violation(
+            "support", (node.id,), node.bottom, "m", f"{_called(node)} floats {node.bottom:.2f} m above the floor"
+        )
+
+
+def _hanging(node: Node, graph: SceneGraph) -> Iterator[Violation]:
+    """On a wall or the ceiling."""
+    width, depth, height = graph.room.size
+    corners = node.box.corners()
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    if node.support == "ceiling":
+        gap = height - node.top
+    else:
+        gap = float(min(low[0] + width / 2, width / 2 - high[0], low[1] + depth / 2, depth / 2 - high[1]))
+    if gap > HUNG:
+        said = f"{_called(node)} is {gap:.2f} m away from the {'nearest wall' if node.support == 'wall' else 'ceiling'}"
+        yield Violation("support", (node.id,), gap, "m", said)
+
+
+def _carried(node: Node, lower: Node) -> Iterator[Violation]:
+    """On top of another thing, or within its box: on a seat, on a shelf, in a box."""
+    local = lower.box.local(np.array([node.position]))[0]
+    aside = float(max(abs(local[0]) - lower.size[0] / 2, abs(local[1]) - lower.size[1] / 2))
+    if aside > 0:
+        said = f"the middle of {_called(node)} is {aside:.2f} m off {_called(lower)}, on which it is said to stand"
+        yield Violation("support", (node.id, lower.id), aside, "m", said)
+    gap = max(node.bottom - lower.top, lower.bottom - node.bottom)
+    if gap > GAP:
+        where = "above" if node.bottom > lower.top else "below the underside of"
+        said = f"{_called(node)} is {gap:.2f} m {where} {_called(lower)}, on which it is said to stand"
+        yield Violation("support", (node.id, lower.id), gap, "m", said)
+
+
+def _relations(graph: SceneGraph) -> tuple[list[Violation], tuple[str, ...]]:
+    """Stated relations that do not hold, and those that cannot be checked, as the resolver of queries sees them."""
+    nodes, found, unchecked = {n.id: n for n in graph.nodes}, list[Violation](), list[str]()
+    stage = Stage.of(graph)
+    for a, said, b in graph.relations:
+        name = said.strip().lower().replace(" ", "_")
+        name = _NAMES.get(name, name)
+        one, other = nodes[a], nodes[b]
+        if name in ("faces", "facing"):
+            off = _aside(one, other)
+            if off > 45:
+                sentence = f"{_called(one)} is said to face {_called(other)}, which is {off:.0f} degrees off its front"
+                found.append(Violation("relation", (a, b), off, "degrees", sentence))
+        elif name not in _KNOWN:
+            unchecked.append(f"{_called(one)} {said} {_called(other)}: this relation is not known")
+        elif (score := _score(stage, name, one, other)) < relations.HOLDS:
+            sentence = f"{_called(one)} is said to be {said} {_called(other)}; it scores {score:.2f}, 0.5 is needed"
+            found.append(Violation("relation", (a, b), score, "1", sentence))
+    return found, tuple(unchecked)
+
+
+def _score(stage: Stage, name: str, one: Node, other: Node) -> float:
+    """How well a relation holds; what the graph says stands on a thing is on it, as it is in its box at least."""
+    field = stage.scene.language
+    assert field is not None
+    if name == "on" and one.support == other.id and not any(_carried(one, other)):
+        return 1.0
+    stand = relations.viewer_stand(stage.viewer, stage.scene.frame.up_vector, field.typical_size)
+    anchor = stage.group(stage.ids.index(other.id))
+    return float(relations.scores(name, Boxes.of([one.box]), [anchor], stand)[0])
+
+
+def _aside(one: Node, other: Node) -> float:
+    """Degrees between a thing's front (its box's -y) and the way to another."""
+    way = np.array(other.position[:2]) - np.array(one.position[:2])
+    turn = math.radians(one.yaw)
+    front = np.array([math.sin(turn), -math.cos(turn)])
+    reach = float(np.linalg.norm(way))
+    return 0.0 if reach < 1e-9 else math.degrees(math.acos(max(-1.0, min(1.0, float(way @ front) / reach))))
+
+
+def _out_of_reach(graph: SceneGraph) -> Iterator[Violation]:
+    """Things that nobody can walk up to; what stands on another is reached with it, what hangs is not asked."""
+    for node, distance in unreached(graph):
+        told = f"{distance:.2f} m" if math.isfinite(distance) else "any distance"
+        said = f"{_called(node)} cannot be walked up to: the nearest place one can get to is {told} away"
+        yield Violation("reach", (node.id,), distance if math.isfinite(distance) else -1.0, "m", said)
+
+
+def sentences(violations: Sequence[Violation]) -> list[str]:
+    """The complaints as lines."""
+    return [f"{v.kind}: {v.sentence}" for v in violations]

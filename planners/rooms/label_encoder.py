@@ -1,0 +1,253 @@
+"""An encoder that compares words only: what a phrase and the labels of a scene graph have to do with each other.
+
+Knows labels as words: heads ("lamp" means a floor lamp), synonyms and words for families (the embedded vocabulary and
+synonyms.py). Refuses to know pictures. It meets the `Encoder` protocol, so that queries on a graph go through the very
+resolver that scenes use; a thing's vector is one-hot on its label, a phrase's vector holds how well it names each.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...gaussians.errors import BackendError
+from ...gaussians.language.encoders.calibration import Calibration
+from ...gaussians.language.encoders.vocabulary import Vocabulary
+from ...gaussians.world import synonyms
+from ...gaussians.world.synonyms import Phrase
+from ...gaussians.world.words import normalise
+
+# Probability that a phrase means a label, by how the two agree. Each step is less than the share of the best score at
+# which the resolver sees a rival (0.55), so that an exact name beats a synonym, and that a broader word.
+EXACT, ALIKE, LOOSE, BROADER, NOT = 0.98, 0.5, 0.4, 0.26, 1e-4
+THRESHOLD = 0.2
+_ABSENT = "nothing of all this"
+
+# "a table with drawers" is a table; "a stack of books" is a stack and books, "a picture of a dog" only a picture.
+_AFTER_HEAD = frozenset({"with", "in", "on", "from", "for", "near", "at", "by", "without"})
+_COLLECTIVE = frozenset({"stack", "pile", "pair", "bunch", "set", "row", "group", "bouquet", "collection"})
+
+
+@cache
+def vocabulary() -> Vocabulary:
+    """The vocabulary of the embedded encoder, without loading its weights."""
+    import json
+
+    from ...gaussians.language.encoders import weights_folder
+
+    return Vocabulary.from_json(json.loads((weights_folder() / "words.json").read_bytes())["vocabulary"])
+
+
+@dataclass(frozen=True)
+class _Labels(Vocabulary):
+    """What competes with a phrase: that it names nothing here, and no kinds; and which labels it names best.
+
+    Attributes:
+        labels: of the graph.
+    """
+
+    labels: tuple[str, ...] = ()
+
+    def covered(self, text: str, loose: bool = False) -> frozenset[str]:
+        """With `loose`, the labels that agree best with a phrase: an exact name leaves no room for a synonym."""
+        if not loose:
+            return frozenset()
+        found = agreement(text, self.labels)
+        best = max(found, default=NOT)
+        return frozenset(n for n, p in zip(self.labels, found, strict=True) if p == best >= THRESHOLD)
+
+
+@dataclass(frozen=True, eq=False)
+class WordEncoder:
+    """The labels of one graph as an encoder.
+
+    Attributes:
+        labels: what is there, as written; one axis each.
+    """
+
+    labels: tuple[str, ...]
+
+    @cached_property
+    def fingerprint(self) -> str:
+        return "words-" + hashlib.sha256("\n".join(self.labels).encode()).hexdigest()[:16]
+
+    @property
+    def dim(self) -> int:
+        return max(len(self.labels), 1)
+
+    @property
+    def image_size(self) -> int:
+        return 1
+
+    @cached_property
+    def vocabulary(self) -> Vocabulary:
+        return _Labels({}, {}, (_ABSENT,), labels=self.labels)
+
+    @property
+    def calibration(self) -> Calibration:
+        return Calibration(scale=1.0, threshold=THRESHOLD)
+
+    def encode_text(self, texts: list[str]) -> NDArray[np.float32]:
+        """`[T, D]`: for each label the log odds that the phrase means it. The rows are not unit vectors: against the
+        zero row of "nothing of all this", the rule of calibration.py turns them back into these probabilities."""
+        rows = np.zeros((len(texts), self.dim), dtype=np.float32)
+        for row, text in zip(rows, texts, strict=True):
+            if text != _ABSENT:
+                row[: len(self.labels)] = [math.log(p / (1 - p)) for p in agreement(text, self.labels)]
+        return rows
+
+    def encode_images(self, images: NDArray[np.uint8]) -> NDArray[np.float32]:
+        """Refused.
+
+        Raises:
+            BackendError: always; a graph has no pictures.
+        """
+        raise BackendError("the word encoder sees no pictures; embed a scene with another encoder")
+
+    def unknown_words(self, text: str) -> tuple[str, ...]:
+        return ()
+
+    def knows(self, text: str) -> bool:
+        return True
+
+    def meant(self, text: str) -> str:
+        """What a misspelt phrase was read as, "" if it was taken as it stands."""
+        asked = words(text)
+        plain = [_agrees(asked, words(label)) for label in self.labels]
+        if all(p < THRESHOLD for p in plain) and not any(_covers(asked, words(label)) for label in self.labels):
+            meant = respelt(asked, self.labels)
+            return " ".join(meant) if meant != asked else ""
+        return ""
+
+    def of(self, label: str) -> NDArray[np.float32]:
+        """`[D]`, a thing's vector."""
+        row = np.zeros(self.dim, dtype=np.float32)
+        if label in self.labels:
+            row[self.labels.index(label)] = 1.0
+        return row
+
+
+def agreement(text: str, labels: Sequence[str]) -> list[float]:
+    """How likely `text` means a thing with each of the labels; a looser word only where no label agrees better."""
+    asked = words(text)
+    found = [_agrees(asked, words(label)) for label in labels]
+    if max(found, default=NOT) > LOOSE:
+        found = [NOT if p == LOOSE else p for p in found]
+    if all(p < THRESHOLD for p in found):
+        found = [BROADER if _covers(asked, words(label)) else p for label, p in zip(labels, found, strict=True)]
+    if all(p < THRESHOLD for p in found) and (meant := respelt(asked, labels)) != asked:
+        found = [_agrees(meant, words(label)) for label in labels]
+    return found
+
+
+def respelt(asked: Phrase, labels: Sequence[str]) -> Phrase:
+    """A phrase with its unknown words exchanged for the one word of the labels that is a slip of the keyboard away."""
+    return _respelt(asked, frozenset(w for label in labels for w in words(label)))
+
+
+@cache
+def _respelt(asked: Phrase, there: frozenset[str]) -> Phrase:
+    from ..grammar.tagging.spelling import slips
+
+    return tuple(slips(w, there) or w for w in asked)
+
+
+@cache
+def words(text: str) -> Phrase:
+    """A phrase as singular words in lower case; a script without Latin letters counts as one word."""
+    return normalise(text) or tuple(text.casefold().split())
+
+
+@cache
+def _agrees(asked: Phrase, label: Phrase) -> float:
+    if not asked or not label:
+        return NOT
+    if asked == label:
+        return EXACT
+    if (how := _names(asked, label)) > NOT:
+        return how
+    plain = _plainer(asked)
+    # A "round table" may be a plain "table", but not a "square table".
+    same = plain != asked and not _other(asked) and set(label) - set(_plainer(label)) <= set(asked)
+    return _names(plain, label) if same else NOT
+
+
+def _names(asked: Phrase, label: Phrase) -> float:
+    """ALIKE: the label ends with what is asked, holds all of it with its head, or is a synonym of it as a whole. LOOSE:
+    it only ends with a synonym ("lamp": ceiling light)."""
+    alike = _alike(asked)
+    ends = alike - {asked[-1:]} if len(asked) > 1 else alike  # a square table ends like a round one
+    best = NOT
+    for form in _forms(label):
+        if form[-len(asked) :] == asked or form in alike or asked in _alike(form):
+            return ALIKE
+        if form[-1] == asked[-1] and set(asked) <= set(form):
+            return ALIKE
+        if any(form[i:] in ends for i in range(1, len(form))):
+            best = LOOSE
+    return best
+
+
+def _forms(label: Phrase) -> tuple[Phrase, ...]:
+    """The label without what stands behind its head; of a collection ("stack of books") also what it is made of."""
+    cut = next((i for i, w in enumerate(label) if i and w in _AFTER_HEAD), len(label))
+    head = label[:cut]
+    if "of" not in head[1:-1]:
+        return (head,)
+    at = head.index("of", 1)
+    return (head[:at], head[at + 1 :], head) if head[at - 1] in _COLLECTIVE else (head[:at], head)
+
+
+@cache
+def _kinds() -> tuple[frozenset[Phrase], ...]:
+    """The names of each kind of the embedded vocabulary."""
+    return tuple(frozenset(normalise(n) for n in (k, *names)) for k, names in vocabulary().kinds.items())
+
+
+@cache
+def _own_names() -> frozenset[Phrase]:
+    """The names that the embedded vocabulary calls its kinds by."""
+    return frozenset(normalise(kind) for kind in vocabulary().kinds)
+
+
+@cache
+def _wider() -> dict[Phrase, frozenset[Phrase]]:
+    """What the embedded vocabulary's words for families cover."""
+    return {normalise(t): frozenset(normalise(k) for k in kinds) for t, kinds in vocabulary().broader.items()}
+
+
+@cache
+def _alike(phrase: Phrase) -> frozenset[Phrase]:
+    """The phrase and its synonyms, also those of its head alone ("floor light": floor lamp)."""
+    kinds = frozenset().union(*(names for names in _kinds() if phrase in names))
+    # The vocabulary calls round and square tables by one name; here they are told apart.
+    found = synonyms.same(phrase) | {n for n in kinds if len(n) < 2 or len(phrase) < 2 or n[-1] != phrase[-1]}
+    if len(phrase) == 2:
+        found |= {(*phrase[:-1], *other) for other in synonyms.same(phrase[-1:]) if len(other) == 1}
+    return found
+
+
+def _plainer(asked: Phrase) -> Phrase:
+    """Without leading words that do not change what a thing is: "wooden dining table" to "table"."""
+    i = 0
+    while i < len(asked) - 1 and asked[i] in vocabulary().modifiers:
+        i += 1
+    return asked[i:]
+
+
+def _other(asked: Phrase) -> bool:
+    """Whether the whole phrase is a kind of its own ("office chair"), which a plain "chair" need not be."""
+    return asked in _own_names()
+
+
+@cache
+def _covers(asked: Phrase, label: Phrase) -> bool:
+    """Whether what is asked is a word for a family that the label belongs to."""
+    members = synonyms.narrower(asked) | _wider().get(asked, frozenset())
+    return any(_names(member, label) > NOT for member in members)

@@ -1,0 +1,174 @@
+"""A plan on a scene graph: for every step the nodes it would touch, or the verdict that stops it. Nothing is built.
+
+Knows plans and the stage that a graph becomes. Refuses to know how words are read, how queries are resolved, and what
+cannot be because of sizes (impossible.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from ...gaussians.errors import UserError
+from ...gaussians.language.query.query import Query
+from ...gaussians.language.query.selection import Selection
+from ...tools.operation import EditOp
+from ..impossible import Step, Stopped, metres, refuse_above, refuse_impossible
+from ..plan import EditPlan, Planner, Sight, Verdict
+from .graph_scene import Id, Stage
+
+_NEW = "new"  # ids of what a plan adds begin so
+
+
+@dataclass(frozen=True)
+class Resolved:
+    """A plan met with a graph.
+
+    Attributes:
+        verdict: "ok", or why nothing would be done.
+        steps: in order; those behind the one that stopped it have no targets.
+        candidates: ids: what an ambiguous phrase hesitates between, or what is nearest to an absent one.
+        reason: a sentence for a person; if ok, what was read otherwise than it was written.
+        plan: what was resolved.
+    """
+
+    verdict: Verdict
+    steps: tuple[Step, ...]
+    candidates: tuple[Id, ...]
+    reason: str
+    plan: EditPlan
+
+
+def resolve_text(
+    stage: Stage, planner: Planner, text: str, context: str | None = None, sight: Sight | None = None
+) -> Resolved:
+    """What an instruction would touch; "it" is what the instruction before (`context`) was about on the same graph.
+
+    Args:
+        sight: the graph as planners may look at it; its ids are the stage's rows.
+
+    Raises:
+        UserError: a text is too long to be an instruction.
+        BackendError: a language model cannot be reached.
+    """
+    last = recalled(stage, planner.plan(context, sight=sight)) if context else None
+    return resolve_plan(stage, planner.plan(text, previous=context, sight=sight), last)
+
+
+def resolve_plan(stage: Stage, plan: EditPlan, last: Selection | None = None) -> Resolved:
+    """What a plan would touch on a graph."""
+    if not plan.ops:
+        return Resolved(plan.verdict, (), (), plan.reason, plan)
+    play = _Play(stage, last)
+    steps: list[Step] = []
+    for number, op in enumerate(plan.ops, start=1):
+        try:
+            steps.append(play.step(op))
+        except (Stopped, UserError) as error:
+            where = f"step {number} of {len(plan.ops)} ({op.op}): " if len(plan.ops) > 1 else ""
+            verdict: Verdict = error.verdict if isinstance(error, Stopped) else "not_understood"
+            candidates = error.candidates if isinstance(error, Stopped) else ()
+            rest = tuple(Step(o) for o in plan.ops[len(steps) :])
+            return Resolved(verdict, (*steps, *rest), candidates, where + str(error), plan)
+    return Resolved("ok", tuple(steps), (), "; ".join([*filter(None, [plan.reason]), *_slips(stage, plan)]), plan)
+
+
+def recalled(stage: Stage, plan: EditPlan) -> Selection | None:
+    """What "it" means after a plan, None if that cannot be told."""
+    return _Play(stage).recall(plan)
+
+
+def _slips(stage: Stage, plan: EditPlan) -> list[str]:
+    """Remarks on nouns that were read as the one thing here that is spelt almost so."""
+    said = dict.fromkeys(text for op in plan.ops for text in _texts(op.model_dump()))
+    read = ((text, stage.encoder.meant(text)) for text in said)
+    return [f"read “{text}” as {meant}" for text, meant in read if meant]
+
+
+def _texts(node: Any) -> Iterator[str]:
+    """Every noun phrase of the queries in an operation's fields."""
+    if isinstance(node, dict):
+        if node.get("text"):
+            yield str(node["text"])
+        node = tuple(node.values())
+    if isinstance(node, tuple | list):
+        for item in node:
+            yield from _texts(item)
+
+
+@dataclass
+class _Play:
+    """The steps of one plan, played on the stage as far as words can tell: what is gone, what has a new colour.
+
+    Attributes:
+        stage: as it is after the steps so far.
+        last: what "it" means, None for nothing.
+        fresh: ids of what was added and "it" now means; empty while it means things of the graph.
+    """
+
+    stage: Stage
+    last: Selection | None = None
+    fresh: tuple[Id, ...] = ()
+    added: int = field(default=0)
+
+    def recall(self, plan: EditPlan) -> Selection | None:
+        """What "it" means after a plan, with the graph as it is; something that was to be added may be there by now."""
+        for op in plan.ops:
+            query = op.query() or Query(text=getattr(op, "asset", ""), pick="one")
+            try:
+                found = self.stage.find(query, self.last)
+            except UserError:
+                return None
+            self.last = found if found.verdict == "found" else None
+        return self.last
+
+    def step(self, op: EditOp) -> Step:
+        """The operation with what it would touch.
+
+        Raises:
+            Stopped: something is absent, ambiguous or cannot be.
+            UserError: a word is unknown.
+        """
+        query = op.query()
+        about_fresh = query is not None and query.last and bool(self.fresh)
+        chosen = None if query is None or about_fresh else self._found(query)
+        anchors = self._anchors(op)
+        targets = self.fresh if about_fresh else self.stage.names(chosen.groups) if chosen is not None else ()
+        step = Step(op, targets, self.stage.names(g for a in anchors for g in a.groups), metres(op))
+        refuse_above(self.stage, step, chosen)
+        if chosen is not None:
+            refuse_impossible(self.stage, step, chosen, anchors)
+        self._after(op, chosen)
+        return step
+
+    def _found(self, query: Query) -> Selection:
+        found = self.stage.find(query, self.last)
+        if found.verdict == "found":
+            return found
+        named = self.stage.names(c.group for c in found.candidates if c.group >= 0)
+        near = named if found.verdict == "ambiguous" else named[:3]
+        raise Stopped("ambiguous" if found.verdict == "ambiguous" else "absent", self.stage.told(found.reason), near)
+
+    def _anchors(self, op: EditOp) -> list[Selection]:
+        """What its place or direction refers to; things added by this plan have no place of their own yet."""
+        place, toward = getattr(op, "place", None), getattr(op, "toward", None)
+        queries = [*(place.anchors if place is not None else ()), *([toward] if toward is not None else [])]
+        return [self._found(q) for q in queries if not (q.last and self.fresh)]
+
+    def _after(self, op: EditOp, chosen: Selection | None) -> None:
+        """What "it" means next, and what the words of the next step meet."""
+        groups = chosen.groups if chosen is not None else ()
+        if op.op in ("insert", "replace", "duplicate"):
+            self.added += 1
+            self.last, self.fresh = None, (f"{_NEW} {self.added}",)
+        elif chosen is not None:
+            self.last, self.fresh = chosen, ()
+        if op.op in ("delete", "replace"):
+            self.stage = self.stage.without(groups)
+        elif op.op == "isolate" and chosen is not None:
+            field_ = self.stage.scene.language
+            assert field_ is not None
+            self.stage = self.stage.without(g.id for g in field_.groups if g.id not in groups)
+        elif op.op == "recolor" and getattr(op, "adjust", None) is None:
+            self.stage = self.stage.painted(groups, str(getattr(op, "color", "")))

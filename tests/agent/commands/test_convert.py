@@ -1,0 +1,137 @@
+"""`scenewright convert`: formats, fewer Gaussians, crops, and what it says of loss and failure."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from scenewright.agent import cli
+from scenewright.gaussians import files
+from scenewright.gaussians.files.formats import zstd
+from scenewright.gaussians.reduce import BEST_PSNR
+from scenewright.gaussians.scene import Scene
+
+SUFFIXES = (".ply", ".compressed.ply", ".splat", ".sog", *([".spz"] if zstd.available() else []))
+COUNT = 3 * 343 + 144  # Gaussians of the boxes
+
+
+@pytest.fixture
+def call(capsys: pytest.CaptureFixture[str]) -> Any:
+    """Runs the command line; exit code, stdout and stderr."""
+
+    def run(*arguments: object) -> tuple[int, str, str]:
+        with pytest.raises(SystemExit) as exit_:
+            cli.main([str(a) for a in arguments])
+        streams = capsys.readouterr()
+        return exit_.value.code or 0, streams.out, streams.err  # type: ignore[return-value]
+
+    return run
+
+
+@pytest.fixture
+def room(boxes: Scene, tmp_path: Path) -> Path:
+    files.save(boxes.replace(language=None), tmp_path / "room.ply")
+    return tmp_path / "room.ply"
+
+
+def told(answer: tuple[int, str, str]) -> dict[str, Any]:
+    assert answer[0] == 0, answer[2]
+    found: dict[str, Any] = json.loads(answer[1])
+    return found
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_every_format_and_back(call: Any, room: Path, tmp_path: Path, suffix: str) -> None:
+    there = told(call("convert", room, tmp_path / f"b{suffix}", "--json"))
+    assert there["gaussians"] == there["gaussians_before"] == COUNT
+    assert there["bytes_before"] == room.stat().st_size and there["bytes"] == (tmp_path / f"b{suffix}").stat().st_size
+    assert there["psnr"] >= there["psnr_least"] > 35 and there["views"] > 0
+    assert (there["psnr"] == BEST_PSNR) == (suffix == ".ply")
+    kept = suffix.endswith(".ply")  # of which both kinds have comments for frame and cameras
+    assert any("cameras" in note for note in there["notes"]) != kept
+    back = told(call("convert", tmp_path / f"b{suffix}", tmp_path / "c.ply", "--json"))
+    assert back["gaussians"] == COUNT
+
+
+def test_the_text_tells_size_loss_and_time(call: Any, room: Path, tmp_path: Path) -> None:
+    code, out, err = call("convert", room, tmp_path / "b.splat")
+    assert code == 0 and "bytes" in out and "dB PSNR" in out and "written" in out
+    assert "harmonics" not in err  # the boxes have none above the constant one
+
+
+def test_fewer_gaussians_and_harmonics(call: Any, room: Path, tmp_path: Path) -> None:
+    scene = files.load(room)
+    files.save(scene.replace(cloud=scene.cloud.with_degree(2)), tmp_path / "deep.ply")
+    found = told(call("convert", tmp_path / "deep.ply", tmp_path / "b.ply", "--max-gaussians", 900, "--sh-degree", 1,
+                      "--json"))  # fmt: skip
+    cloud = files.load(tmp_path / "b.ply").cloud
+    assert found["gaussians"] == len(cloud) == 900 and cloud.degree == 1 and found["gaussians_before"] == COUNT
+    found = told(call("convert", tmp_path / "deep.ply", tmp_path / "b.splat", "--views", 0, "--json"))
+    assert found["psnr"] is None and any("degree 2 were cut to 0" in note for note in found["notes"])
+
+
+def test_crops(call: Any, room: Path, tmp_path: Path) -> None:
+    found = told(call("convert", room, tmp_path / "b.ply", "--crop=-3,-1,0.05,-1,1,2", "--json"))
+    assert 0 < found["gaussians"] <= 343
+    found = told(call("convert", room, tmp_path / "c.ply", "--crop-sphere=2,0,0.5,0.9", "--json"))
+    assert 300 < found["gaussians"] < 400
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--crop", "0,0,0,1,1"), "--crop takes 6 numbers"),
+        (("--crop", "0,0,0,1,1,nan"), "--crop takes 6 numbers"),
+        (("--crop-sphere", "a,b"), "--crop-sphere takes 4 numbers"),
+        (("--crop", "1,1,1,0,0,0"), "lower corner first"),
+        (("--crop-sphere", "50,50,50,1"), "scene spans"),
+        (("--sh-degree", "4"), "--sh-degree"),
+        (("--max-gaussians", "0"), "--max-gaussians"),
+    ],
+)
+def test_what_cannot_be_meant_is_refused(
+    call: Any, room: Path, tmp_path: Path, arguments: tuple[str, str], message: str
+) -> None:
+    code, out, err = call("convert", room, tmp_path / "b.ply", *arguments)
+    assert code == 2 and message in err and not out and not (tmp_path / "b.ply").exists()
+
+
+def test_a_format_that_is_not_written_is_refused_before_the_work(call: Any, tmp_path: Path) -> None:
+    code, _, err = call("convert", tmp_path / "gone.ply", tmp_path / "b.glb")
+    assert code == 2 and "written as" in err
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_a_full_disk_leaves_the_old_file(
+    call: Any, room: Path, tmp_path: Path, suffix: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(_: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    target = tmp_path / f"b{suffix}"
+    target.write_text("precious")
+    monkeypatch.setattr(os, "fsync", full)
+    code, _, err = call("convert", room, target, "--force", "--views", 0)
+    assert code == 4 and "No space left" in err and target.read_text() == "precious"
+    assert sorted(p.name for p in tmp_path.iterdir()) == sorted([room.name, target.name])
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_a_cut_file_is_said_to_be_cut(call: Any, room: Path, tmp_path: Path, suffix: str) -> None:
+    told(call("convert", room, tmp_path / f"b{suffix}", "--views", 0, "--json"))
+    content = (tmp_path / f"b{suffix}").read_bytes()
+    (tmp_path / f"b{suffix}").write_bytes(content[: len(content) * 2 // 3 + 1])
+    code, _, err = call("convert", tmp_path / f"b{suffix}", tmp_path / "c.ply")
+    assert code == 4 and "cut off" in err and not (tmp_path / "c.ply").exists()
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_older_spz(call: Any, room: Path, tmp_path: Path, version: int) -> None:
+    found = told(call("convert", room, tmp_path / "b.spz", "--spz-version", version, "--json"))
+    assert found["psnr"] > 35
+    assert files.load_with_report(tmp_path / "b.spz")[1].format == f"Niantic SPZ {version}"

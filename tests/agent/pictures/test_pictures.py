@@ -1,0 +1,64 @@
+"""Pictures on disk and what is drawn into them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from PIL import Image
+
+from scenewright.agent.pictures.image_files import Tile, beside, contact_sheet, save_png
+from scenewright.agent.pictures.scene_pictures import numbered, picture, spotlight
+from scenewright.gaussians.errors import UserError
+from scenewright.gaussians.language.query.query import Query
+from scenewright.gaussians.language.query.selection import Candidate, Selection
+from scenewright.gaussians.scene import Scene
+
+
+def test_a_png_comes_back_bit_for_bit_and_is_not_overwritten(tmp_path: Path) -> None:
+    image = np.random.default_rng(0).integers(0, 256, (9, 7, 3), dtype=np.uint8)
+    save_png(image, tmp_path / "a.png")
+    assert np.array_equal(np.asarray(Image.open(tmp_path / "a.png")), image)
+    with pytest.raises(UserError, match="exists"):
+        save_png(image, tmp_path / "a.png")
+    save_png(image, tmp_path / "a.png", force=True)
+
+
+def test_a_contact_sheet_holds_every_tile() -> None:
+    image = np.full((60, 90, 3), 120, dtype=np.uint8)
+    tiles = [Tile(f"instruction {i} " * 12, "done", (image, image)) for i in range(3)] + [
+        Tile("x", "no", (image,), False)
+    ]
+    sheet = contact_sheet("heading", tiles, columns=2, tile_width=400)
+    assert sheet.shape[1] == 2 * 400 + 3 * 14
+    grey = (sheet == 120).all(axis=2).mean()
+    assert grey > 0.3  # the pictures are there and large
+
+
+def test_side_by_side() -> None:
+    image = np.zeros((4, 5, 3), dtype=np.uint8)
+    assert beside([image, image], gap=3).shape == (4, 13, 3)
+
+
+def test_the_spotlight_dims_all_but_the_selection(boxes: Scene) -> None:
+    camera = boxes.cameras[0].resized(480, 320)
+    ids = (boxes.cloud.group == 1).nonzero().squeeze(1)
+    plain = picture(boxes, camera)
+    lit = spotlight(boxes, camera, Selection(Query(text="x"), "found", ids, (1,)))
+    same = (plain == lit).all(axis=2)
+    green = (plain[..., 1].astype(int) - plain[..., 0]) > 90
+    assert same[green].mean() > 0.8 and same[~green].mean() < 0.3
+    assert torch.equal(boxes.cloud.group.unique(), torch.tensor([0, 1, 2, 3], dtype=torch.int32))
+
+
+def test_candidates_are_numbered_where_they_are(boxes: Scene) -> None:
+    camera = boxes.cameras[0].resized(480, 320)
+    one = Candidate(0, "box", "red", (-2.0, 0.0, 0.4), (0.8, 0.8, 0.8), 1.0)
+    behind = Candidate(1, "box", "red", (0.0, -50.0, 0.4), (0.8, 0.8, 0.8), 1.0)
+    changed = (numbered(boxes, camera, [one, behind]) != picture(boxes, camera)).any(axis=2)
+    (x, y), _ = (v[0] for v in camera.project(np.array([one.center])))
+    rows, columns = changed.nonzero()
+    # The mark is a disc of radius 11 around the projected centre; one pixel for the rim.
+    assert np.abs(rows - y).max() <= 12.5 and np.abs(columns - x).max() <= 12.5

@@ -1,0 +1,148 @@
+"""Floors, walls and ceilings of hand-made rooms, and the things that lie in their planes and stay things."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+from numpy.typing import NDArray
+
+from scenewright.gaussians.cloud import GaussianCloud
+from scenewright.gaussians.language.segmentation.structure import CEILING, FLOOR, NONE, WALL, kind_of, structures
+from scenewright.gaussians.language.segmentation.superpoints import links_of, superpoints
+from scenewright.gaussians.language.segmentation.surface import surface_of
+from scenewright.gaussians.scene import Frame
+
+BROWN, WHITE, PALE, RED, BLUE, GREEN = (
+    (0.45, 0.3, 0.16), (0.92, 0.9, 0.86), (0.97, 0.97, 0.97), (0.78, 0.13, 0.12), (0.16, 0.35, 0.78), (0.24, 0.6, 0.25),
+)  # fmt: skip
+MOST = 0.9  # of a piece's points: superpoints along edges where two pieces meet may go either way
+FEW = 0.05
+
+
+def kinds_of(made: Any, turn: NDArray[np.float64] | None = None) -> dict[str, dict[int, float]]:
+    """For each piece the share of its surface points that is called each kind of structure."""
+    frame = Frame() if turn is None else Frame(tuple(float(v) for v in turn @ [0, 0, 1]))  # type: ignore[arg-type]
+    surface = surface_of(made.cloud(turn))
+    names = sorted(made.rows)
+    piece = made.labels(names)[surface.rows]
+    found = kind_of(structures(surface, superpoints(surface, links_of(surface)), frame))
+    return {
+        name: {kind: float((found[piece == i] == kind).mean()) for kind in (NONE, FLOOR, WALL, CEILING)}
+        for i, name in enumerate(names)
+    }
+
+
+def room(world: type[Any], seed: int = 0, ceiling: bool = False) -> Any:
+    made = world(seed).sheet("floor", (-2, -1.5, 0), (4, 0, 0), (0, 3, 0), BROWN, 0.05)
+    made.sheet("wall", (-2, 1.5, 0), (4, 0, 0), (0, 0, 2.4), WHITE, 0.06)
+    made.sheet("side", (-2, -1.5, 0), (0, 3, 0), (0, 0, 2.4), WHITE, 0.06)
+    if ceiling:
+        made.sheet("ceiling", (-2, -1.5, 2.4), (4, 0, 0), (0, 3, 0), PALE, 0.06)
+    made.box("crate", (0.2, -0.4, 0.02), (0.9, 0.3, 0.6), RED)
+    made.box("cupboard", (-1.9, 0.2, 0.02), (-1.4, 1.2, 1.6), BLUE)
+    return made
+
+
+def test_a_room_has_a_floor_and_walls_and_its_things_are_neither(world: type[Any]) -> None:
+    share = kinds_of(room(world))
+    assert share["floor"][FLOOR] > MOST
+    assert share["wall"][WALL] > MOST and share["side"][WALL] > MOST
+    assert share["crate"][NONE] > MOST and share["cupboard"][NONE] > MOST
+    assert all(s[CEILING] == 0 for s in share.values())
+
+
+def test_a_ceiling_closes_a_room(world: type[Any]) -> None:
+    share = kinds_of(room(world, ceiling=True))
+    assert share["ceiling"][CEILING] > MOST
+    assert share["floor"][FLOOR] > MOST and share["crate"][NONE] > MOST
+
+
+@pytest.mark.parametrize("up", ["x", "-y", "askew"])
+def test_structure_does_not_depend_on_the_axis_that_is_up(world: type[Any], up: str) -> None:
+    turn = {
+        "x": np.array([[0.0, 0, 1], [1, 0, 0], [0, 1, 0]]),
+        "-y": np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]),
+        "askew": np.linalg.qr(np.array([[0.9, 0.1, 0.3], [0.2, 0.8, -0.4], [-0.3, 0.5, 0.8]]))[0],
+    }[up]
+    turn = turn * np.sign(np.linalg.det(turn))
+    share = kinds_of(room(world), turn)
+    assert share["floor"][FLOOR] > MOST and share["wall"][WALL] > MOST and share["side"][WALL] > MOST
+    assert share["crate"][NONE] > MOST and share["cupboard"][NONE] > MOST
+
+
+def test_a_rug_stays_an_object(world: type[Any]) -> None:
+    made = room(world).sheet("rug", (-0.9, -1.3, 0.012), (1.8, 0, 0), (0, 0.8, 0), GREEN, 0.03)
+    share = kinds_of(made)
+    assert share["rug"][NONE] > MOST and share["floor"][FLOOR] > 0.8  # some floor shows through at the rug's rim
+
+
+def test_a_rug_of_the_floors_colour_lies_before_it_by_a_finger(world: type[Any]) -> None:
+    made = room(world).sheet("rug", (-0.9, -1.3, 0.03), (1.8, 0, 0), (0, 0.8, 0), BROWN, 0.03)
+    assert kinds_of(made)["floor"][FLOOR] > 0.8
+
+
+def test_a_painting_stays_an_object(world: type[Any]) -> None:
+    made = room(world).sheet("painting", (0.2, 1.48, 1.1), (0.9, 0, 0), (0, 0, 0.7), GREEN, 0.03)
+    share = kinds_of(made)
+    assert share["painting"][NONE] > MOST and share["wall"][WALL] > 0.8
+
+
+def test_tiles_all_over_the_floor_belong_to_it(world: type[Any]) -> None:
+    made = world()
+    for i in range(8):
+        for j in range(6):
+            color = BROWN if (i + j) % 2 else PALE
+            made.sheet("floor", (-2 + 0.5 * i, -1.5 + 0.5 * j, 0), (0.5, 0, 0), (0, 0.5, 0), color, 0.05)
+    made.box("crate", (0.2, -0.4, 0.02), (0.9, 0.3, 0.6), RED)
+    share = kinds_of(made)
+    assert share["floor"][FLOOR] > MOST and share["crate"][NONE] > MOST
+
+
+def test_a_bumpy_terrain_is_floor(world: type[Any]) -> None:
+    def bumps(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
+        height: NDArray[np.float64] = 0.12 * np.sin(2.1 * x) * np.cos(1.7 * y) + 0.05 * np.sin(5 * x + 3 * y)
+        return height
+
+    made = world().sheet("ground", (-2, -2, 0), (4, 0, 0), (0, 4, 0), GREEN, 0.05, bumps)
+    made.box("hut", (0.2, 0.2, -0.05), (1.0, 1.0, 0.9), RED)
+    share = kinds_of(made)
+    assert share["ground"][FLOOR] > 0.8  # the hut hides some of it and its foot is in it
+    assert share["hut"][NONE] > 0.65  # its underside, a seventh of it, is buried, and so is its foot
+
+
+def test_a_thing_in_empty_space_has_neither_walls_nor_ceiling(world: type[Any]) -> None:
+    share = kinds_of(world().box("crate", (-0.5, -0.5, -0.5), (0.5, 0.5, 0.5), RED))
+    assert share["crate"][CEILING] + share["crate"][WALL] < FEW
+
+
+def test_the_same_room_gives_the_same_bytes(world: type[Any]) -> None:
+    def once() -> bytes:
+        surface = surface_of(room(world, seed=4).cloud())
+        return structures(surface, superpoints(surface, links_of(surface)), Frame()).tobytes()
+
+    assert once() == once()
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_noise_of_the_sampling_does_not_matter(world: type[Any], seed: int) -> None:
+    share = kinds_of(room(world, seed=seed))
+    assert share["floor"][FLOOR] > MOST and share["wall"][WALL] > MOST and share["crate"][NONE] > MOST
+
+
+def test_a_tall_thing_alone_stands_on_nothing() -> None:
+    """The lowest slice of a scanned statue is part of the statue, not ground."""
+    rng = np.random.default_rng(4)
+    points = rng.uniform([-0.4, -0.4, 0], [0.4, 0.4, 4.0], (6000, 3)).astype(np.float32)
+    n = len(points)
+    cloud = GaussianCloud.create(
+        torch.from_numpy(points),
+        torch.tensor([[1.0, 0, 0, 0]]).expand(n, 4).contiguous(),
+        torch.full((n, 3), 0.03),
+        torch.full((n,), 0.9),
+        torch.from_numpy(rng.normal(size=(n, 1, 3)).astype(np.float32) * 0.2),
+    )
+    surface = surface_of(cloud)
+    assert not structures(surface, superpoints(surface, links_of(surface)), Frame(up_source="given")).any()

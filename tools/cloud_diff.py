@@ -1,0 +1,149 @@
+"""Rows of a cloud: finding them by id, writing some of them, and proving that the others did not change.
+
+Knows columns and ids. Refuses to know why rows change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from ..gaussians.cloud import GaussianCloud
+from ..gaussians.language.query.selection import Selection, mask_of
+
+_CHUNK = 1 << 13  # rows changed at a time: intermediates stay in a core's cache, whatever the cloud's size
+_CACHE = 1 << 19  # bytes compared at a time: they stay in a core's cache
+
+
+def rows_of(cloud: GaussianCloud, ids: Tensor) -> Tensor:
+    """`[M]` int64 rows of `cloud` that have one of these ids, ascending."""
+    return mask_of(cloud, ids).nonzero().squeeze(1)
+
+
+def fresh_ids(cloud: GaussianCloud, count: int) -> Tensor:
+    """`[count]` int64 ids above every id of `cloud`."""
+    first = int(cloud.ids.max()) + 1 if len(cloud) else 0
+    return torch.arange(first, first + count, dtype=torch.int64, device=cloud.device)
+
+
+def selection_of(selection: Selection, ids: Tensor, groups: tuple[int, ...], reason: str) -> Selection:
+    """A found selection of other rows that keeps the query of `selection`."""
+    return Selection(selection.query, "found", ids.sort().values, groups, (), reason)
+
+
+def joined(cloud: GaussianCloud, without: Tensor | None, added: list[GaussianCloud]) -> GaussianCloud:
+    """The rows of a cloud but for the mask `without` `[N]`, then the added clouds; each column is written once.
+
+    The added clouds have the cloud's degree and ids above its own (see `fresh_ids`).
+    """
+    keep = None if without is None else (~without).nonzero().squeeze(1)
+    n = len(cloud) if keep is None else len(keep)
+    columns: dict[str, Tensor] = {}
+    for name, column in cloud.columns():
+        out = column.new_empty((n + sum(len(c) for c in added), *column.shape[1:]))
+        if keep is None:
+            out[:n] = column
+        else:
+            torch.index_select(column, 0, keep, out=out[:n])
+        torch.cat([getattr(c, name) for c in added], out=out[n:])
+        columns[name] = out
+    return GaussianCloud(**columns)
+
+
+class Draft:
+    """A cloud being edited: columns are copied the first time they are written and shared otherwise.
+
+    The cloud it was made from is never written to.
+    """
+
+    def __init__(self, cloud: GaussianCloud) -> None:
+        self._cloud = cloud
+        self._written: dict[str, Tensor] = {}
+
+    def read(self, name: str, rows: Tensor) -> Tensor:
+        """A copy of some rows of a column, as they are now."""
+        return self._column(name).index_select(0, rows)
+
+    def write(self, name: str, rows: Tensor, values: Tensor) -> None:
+        """Set rows `[M]` of a column to `[M, ...]`."""
+        if name not in self._written:
+            self._written[name] = getattr(self._cloud, name).clone()
+        self._written[name].index_copy_(0, rows, values.to(self._written[name].dtype))
+
+    def map(self, name: str, rows: Tensor, change: Callable[[Tensor], Tensor]) -> None:
+        """Replace rows of a column by `change` of them, a block at a time so that intermediates stay small."""
+        for block in torch.split(rows, _CHUNK):
+            self.write(name, block, change(self.read(name, block)))
+
+    def done(self) -> GaussianCloud:
+        """The edited cloud."""
+        return self._cloud.replace(**self._written) if self._written else self._cloud
+
+    def _column(self, name: str) -> Tensor:
+        column: Tensor = self._written.get(name, getattr(self._cloud, name))
+        return column
+
+
+@dataclass(frozen=True)
+class Difference:
+    """How a cloud differs from the one before, row by row.
+
+    Attributes:
+        outside: rows that were not allowed to change and did, in any bit of any column, or are gone.
+        columns: columns in which some surviving row changed.
+        strangers: added rows whose id is not above every earlier id, or is not unique.
+    """
+
+    outside: int
+    columns: tuple[str, ...]
+    strangers: int
+
+
+def difference(before: GaussianCloud, after: GaussianCloud, allowed: Tensor, removed: Tensor) -> Difference:
+    """Compare bit for bit. Rows that stay must keep their order; added rows must stand at the end.
+
+    Args:
+        allowed: `[N]` bool over `before`, rows that may change or go.
+        removed: ids that are gone.
+    """
+    gone = mask_of(before, removed)
+    kept = None if not bool(gone.any()) else (~gone).nonzero().squeeze(1)
+    n = len(before) if kept is None else len(kept)
+    if len(after) < n:
+        return Difference(int((~allowed).sum()), ("ids",), 0)
+    outside = ~allowed if kept is None else ~allowed[kept]
+    differs = torch.zeros(n, dtype=torch.bool, device=before.device)
+    columns = []
+    for name, column in before.columns():
+        other = getattr(after, name)
+        if column is not other and _mark(column, other, kept, differs):
+            columns.append(name)
+    lost = int((gone & ~allowed).sum())
+    added = after.ids[n:]
+    top = int(before.ids.max()) if len(before) else -1
+    strangers = int((added <= top).sum()) + len(added) - len(torch.unique(added))
+    return Difference(lost + int((differs & outside).sum()), tuple(columns), strangers)
+
+
+def _mark(column: Tensor, other: Tensor, kept: Tensor | None, differs: Tensor) -> bool:
+    """Set `differs` where rows of two columns are not the same bits; whether any is."""
+    if column.shape[1:] != other.shape[1:]:
+        differs.fill_(True)
+        return True
+    found, step = False, max(1, _CACHE // (column.element_size() * max(1, column[0].numel() if len(column) else 1)))
+    for start in range(0, len(differs), step):
+        end = min(start + step, len(differs))
+        a = column[start:end] if kept is None else column.index_select(0, kept[start:end])
+        a, b = _bits(a), _bits(other[start:end])
+        if not torch.equal(a, b):
+            differs[start:end] |= (a != b).reshape(end - start, -1).any(dim=1)
+            found = True
+    return found
+
+
+def _bits(values: Tensor) -> Tensor:
+    """Floats as integers, so that NaN equals itself and -0 differs from 0."""
+    return values.view(torch.int32) if values.dtype == torch.float32 else values

@@ -1,0 +1,179 @@
+"""Carry out one operation: resolve, apply, check, and either hand over the new scene or leave the old one standing.
+
+Knows the order of these stages and what a receipt holds. Refuses to know what any operation does. Scenes are values:
+nothing here undoes anything, a failed edit simply is not returned.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import NamedTuple
+
+import torch
+
+from ..gaussians.errors import AbsentError, CheckFailedError
+from ..gaussians.language.query.query import Query
+from ..gaussians.language.query.selection import Selection, mask_of
+from ..gaussians.scene import Scene
+from . import pixel_diff
+from .cloud_diff import Difference, difference
+from .operation import Context, EditOp, Outcome
+from .receipt import Check, Pixels, Receipt, SelectionSummary, at_most
+from .unsupported import left_hanging
+
+
+class Done(NamedTuple):
+    """A carried-out operation.
+
+    Attributes:
+        scene: the new scene (the old one itself if nothing changed).
+        receipt: what was done and measured.
+        selection: what "it" means next.
+    """
+
+    scene: Scene
+    receipt: Receipt
+    selection: Selection
+
+
+def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection | None = None) -> Done:
+    """Resolve the target, apply the operation and check it.
+
+    Args:
+        scene: never changed.
+        selection: what to apply it to, instead of resolving the operation's own query.
+
+    Raises:
+        AbsentError, AmbiguousError: the target (or an anchor) is not there or not unique.
+        InstructionError: it cannot be done as said.
+        CheckFailedError: it was done and failed a post-condition; the message names it and what was measured.
+        UserError: a word in it (colour, asset) is unknown.
+    """
+    seconds: dict[str, float] = {}
+    with _stage(seconds, "resolve"):
+        chosen = (_resolve(scene, op, context) if selection is None else selection).require()
+        if op.query() is not None:
+            chosen = _living(scene, chosen)
+    with _stage(seconds, "apply"):
+        outcome = op.apply(scene, chosen, context)
+        bereft = left_hanging(scene, outcome.scene, chosen.groups)
+        outcome = replace(outcome, notes=(*outcome.notes, *bereft))
+    with _stage(seconds, "check"):
+        changed = difference(scene.cloud, outcome.scene.cloud, op.may_change(scene, chosen), outcome.removed)
+        checks = [*_always(op, changed, chosen), *op.check(scene, outcome, chosen, context)]
+    compared: Pixels | None = None
+    if context.pixel_checks:
+        with _stage(seconds, "pixels"):
+            compared = _compare(scene, outcome, context)
+            checks.append(pixel_diff.check(compared))
+    receipt = _receipt(op, chosen, outcome, changed, tuple(checks), context)
+    receipt = receipt.model_copy(update={"pixels": compared, "seconds": seconds})
+    if not receipt.passed:
+        raise CheckFailedError(_why(receipt))
+    return Done(outcome.scene, receipt, chosen if outcome.focus is None else outcome.focus)
+
+
+def preview(scene: Scene, op: EditOp, context: Context, selection: Selection | None = None) -> Receipt:
+    """What `carry_out` would do, as a receipt marked `dry_run`; the edited scene is dropped.
+
+    Raises:
+        As `carry_out`.
+    """
+    return carry_out(scene, op, context, selection).receipt.model_copy(update={"dry_run": True})
+
+
+def _resolve(scene: Scene, op: EditOp, context: Context) -> Selection:
+    query = op.query()
+    if query is None:  # an operation that makes its own target
+        return Selection(Query(), "found", torch.zeros(0, dtype=torch.int64))
+    return context.resolve(scene, query)
+
+
+def _living(scene: Scene, selection: Selection) -> Selection:
+    """The selection without Gaussians that are gone since ("it" after a deletion).
+
+    Raises:
+        AbsentError: none is left.
+    """
+    there = mask_of(scene.cloud, selection.ids)
+    left = int(there.sum())
+    if left == 0:
+        raise AbsentError(f"nothing is left of {selection.query.describe()}: select something that is in the scene")
+    return selection if left == len(selection) else replace(selection, ids=scene.cloud.ids[there].sort().values)
+
+
+@contextmanager
+def _stage(seconds: dict[str, float], name: str) -> Iterator[None]:
+    start = time.perf_counter()
+    yield
+    seconds[name] = time.perf_counter() - start
+
+
+def _always(op: EditOp, changed: Difference, selection: Selection) -> list[Check]:
+    """The checks of every operation."""
+    checks = []
+    if op.query() is not None:
+        had = len(selection)
+        checks.append(
+            Check(
+                name="target present", passed=had > 0, value=had, bound=1, at_least=True, unit="Gaussians",
+                sentence=f"the target has {had:,} Gaussians",
+            )
+        )  # fmt: skip
+    said = f"{changed.outside} Gaussians outside the target changed in any bit"
+    checks.append(at_most("outside unchanged", changed.outside, 0, "Gaussians", said))
+    checks.append(at_most("new ids", changed.strangers, 0, "Gaussians", "added Gaussians have ids of their own"))
+    return checks
+
+
+def _compare(scene: Scene, outcome: Outcome, context: Context) -> Pixels:
+    touched = torch.cat([outcome.touched, outcome.removed])
+    before = pixel_diff.Stage(scene.cloud, mask_of(scene.cloud, touched))
+    cloud = outcome.scene.cloud
+    after = pixel_diff.Stage(cloud, mask_of(cloud, torch.cat([outcome.touched, outcome.added])))
+    return pixel_diff.compare(before, after, context.viewer, context.pixel_width, context.renderer)
+
+
+def _receipt(
+    op: EditOp, chosen: Selection, outcome: Outcome, changed: Difference, checks: tuple[Check, ...], context: Context
+) -> Receipt:
+    shown = chosen if op.query() is not None else (chosen if outcome.focus is None else outcome.focus)
+    backends = {"resolver": getattr(context.resolver, "__name__", "language")}
+    if context.encoder is not None:
+        backends["encoder"] = context.encoder.fingerprint
+    if context.pixel_checks:
+        backends["renderer"] = context.renderer
+    return Receipt(
+        op=op.model_dump(mode="json", exclude_defaults=True) | {"op": op.op},
+        selection=SelectionSummary(
+            asked=op.subject(),
+            verdict=shown.verdict,
+            gaussians=len(shown),
+            groups=shown.groups,
+            things=tuple(c.describe() for c in shown.candidates[:20]),
+            reason=shown.reason,
+        ),
+        changed=len(outcome.touched),
+        added=len(outcome.added),
+        removed=len(outcome.removed),
+        total=len(outcome.scene.cloud),
+        columns=changed.columns,
+        outside_changed=changed.outside,
+        checks=checks,
+        notes=outcome.notes,
+        backends=backends,
+    )
+
+
+def _why(receipt: Receipt) -> str:
+    failed = [c for c in receipt.checks if not c.passed]
+    told = "; ".join(
+        f"{c.name}: measured {c.value:.4g} {c.unit}, {'at least' if c.at_least else 'at most'} {c.bound:.4g} allowed"
+        f" ({c.sentence})"
+        for c in failed
+        if c.bound is not None
+    )
+    return f"{receipt.op['op']} {receipt.selection.asked} failed its own check and was taken back: {told}"

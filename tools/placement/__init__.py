@@ -1,0 +1,1 @@
+"""Where things can be put: occupancy, support surfaces, walls and candidate regions."""

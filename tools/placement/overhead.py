@@ -1,0 +1,123 @@
+"""Over something: on the wall behind it, or from the ceiling above it, for things that hang.
+
+Knows walls, the ceiling and what stands below. Refuses to hang what stands: a chair goes on something, not above it.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import Literal
+
+import numpy as np
+
+from ...gaussians import assets
+from ...gaussians.camera import Vec3
+from ...gaussians.errors import InstructionError, UserError
+from ...gaussians.scene import Scene
+from ..operation import Context, Placement
+from ..transform import axis_rotation
+from .bodies import Array, Body, as_vec, centimetre, extent_along
+from .facing import angle_between, front_of
+from .place import Placer, Spot
+from .regions import Region, Regions, far
+from .support import support_height
+
+Hung = Literal["wall", "ceiling"]
+GAP = 15.0  # centimetres between a thing and what hangs on the wall above it, at least
+EYE = 150.0  # centimetres above the floor of the middle of what hangs on a wall, where there is no reason against it
+_BEHIND = 100.0  # centimetres from a thing to the wall behind it, at most
+_NEAR = 0.9  # of the room's height: what hangs from the ceiling has its top above that
+
+
+def hung_over(placer: Placer, body: Body, place: Placement) -> tuple[Array, Spot]:
+    """How a body that hangs turns, `[3, 3]`, and where it goes, to hang above the anchor of a placement.
+
+    Raises:
+        InstructionError: it does not hang, no wall is there, or no room.
+        AbsentError, AmbiguousError: the anchor is not there or not unique.
+    """
+    (anchor, *_), scene = placer.anchors(place), placer.scene
+    hung = how_it_hangs(scene, body, placer.context)
+    if hung == "ceiling":
+        region, axes = over(placer, body.box.size, anchor, hung)
+        return np.eye(3), placer.hang(body.box.size, place, region, axes)
+    matrix, size = turned_to(scene, body, wall_axes(placer, anchor))
+    region, axes = over(placer, size, anchor, hung)
+    return matrix, placer.hang(size, place, region, axes)
+
+
+def how_it_hangs(scene: Scene, body: Body, context: Context) -> Hung:
+    """Whether a body hangs on a wall or from the ceiling, by what it is or by where it is.
+
+    Raises:
+        InstructionError: it does neither.
+    """
+    usual = ""
+    with suppress(UserError):  # nothing is known of such things
+        usual = assets.find(body.label).support if body.label else ""
+    if usual in ("wall", "ceiling"):
+        return "wall" if usual == "wall" else "ceiling"
+    if support_height(scene, body, context) is not None:
+        raise InstructionError(f"the {body.label or 'thing'} stands and does not hang: say on something, or next to it")
+    rooms = Regions(scene, context)
+    return "ceiling" if body.top(rooms.up) > rooms.floor + _NEAR * (rooms.ceiling - rooms.floor) else "wall"
+
+
+def over(regions: Regions, size: Vec3, anchor: Body, hung: Hung) -> tuple[Region, tuple[Vec3, Vec3, Vec3]]:
+    """Where a thing of `size` hangs above an anchor, and the axes of its box there, its back to the wall.
+
+    Raises:
+        InstructionError: no wall is behind the anchor, or there is no height left above it.
+    """
+    cm = centimetre(regions.frame, max(anchor.box.size))
+    bottom = anchor.top(regions.up) + GAP * cm
+    if hung == "ceiling":
+        axes = regions.room_axes
+        height = regions.ceiling - size[2]
+    else:
+        axes = wall_axes(regions, anchor)
+        height = min(max(bottom, regions.floor + EYE * cm - size[2] / 2), regions.ceiling - size[2])
+    if height < (anchor.top(regions.up) if hung == "ceiling" else bottom - GAP * cm / 2):
+        raise InstructionError(f"there is no room between the {anchor.label or 'thing'} and the ceiling")
+    plan = np.array(axes[:2])
+    middle = plan @ anchor.center
+    if hung == "ceiling":
+        reach = np.array([extent_along(anchor.box, a) for a in plan]) / 2
+        return Region(middle - reach, middle + reach, lambda p: far(p, middle), height, None), axes
+    low, high = regions.bounds_for(size, plan)
+    back = np.array(regions.room_axes[:2]) @ plan[1]  # the room's axis that points into the wall, with its sign
+    wanted = np.array([middle[0], float(np.where(back > 0, high, low) @ back)])
+    aside = np.array([extent_along(anchor.box, plan[0]) / 2, 2 * cm])
+    return Region(wanted - aside, wanted + aside, lambda p: far(p, wanted), height, None), axes
+
+
+def wall_axes(regions: Regions, anchor: Body) -> tuple[Vec3, Vec3, Vec3]:
+    """Axes of a thing on the wall that is nearest to the anchor's side, its second axis pointing into the wall.
+
+    Raises:
+        InstructionError: no wall is within a metre of it.
+    """
+    most = _BEHIND * centimetre(regions.frame, max(anchor.box.size))
+    plan = np.array(regions.room_axes[:2])
+    low, high = regions.bounds_for(anchor.box.size, np.array(anchor.box.axes[:2]))
+    at = plan @ anchor.center
+    gaps: list[tuple[float, Array]] = []
+    for i in range(2):
+        gaps += [(float(at[i] - low[i]), -plan[i]), (float(high[i] - at[i]), plan[i])]
+    gap, back = min(gaps, key=lambda g: g[0])
+    if gap > most:
+        raise InstructionError(f"no wall is behind the {anchor.label or 'thing'}: name something that stands at a wall")
+    return as_vec(np.cross(back, regions.up)), as_vec(back), as_vec(regions.up)
+
+
+def turned_to(scene: Scene, body: Body, axes: tuple[Vec3, Vec3, Vec3]) -> tuple[Array, Vec3]:
+    """`[3, 3]`, how a body turns so that its back is along the second of the axes, and its size along them then.
+
+    What faces nowhere hangs with its thin side to the wall.
+    """
+    up, front = scene.frame.up_vector, front_of(scene, body)
+    if front is None:
+        front = np.array(body.box.axes[int(np.argmin(body.box.size[:2]))])
+    matrix = axis_rotation(up, angle_between(front, -np.array(axes[1]), up))
+    width, depth = (extent_along(body.box, matrix.T @ np.array(a)) for a in axes[:2])
+    return matrix, (width, depth, body.box.size[2])

@@ -1,0 +1,187 @@
+"""How good the encoder is, on things it never saw, and the two numbers of its calibration.
+
+Everything goes through the encoder as shipped, not through torch. Knows crops and rates. Refuses to know training.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..gaussians.language.encoders import Encoder
+from ..gaussians.language.encoders.backends.embedded import Embedded
+from ..gaussians.language.encoders.calibration import Calibration, SizePrior, distribution, labels, wholeness
+from .augment import plain
+from .renders import DAMAGED, NONE, WHOLE, Crops
+
+Array = NDArray[np.float64]
+ROOM = 14  # things in a simulated room
+MERGES = 4  # pieces and heaps among them that segmentation got wrong
+ROOMS = 400
+WIDEN = 0.25  # added to the deviation of log sizes: people's things vary more than our assets
+
+
+def encode(encoder: Encoder, crops: Crops) -> NDArray[np.float32]:
+    """`[M, V, D]` vectors of all crops over the neutral background."""
+    import torch
+
+    count, views = crops.pixels.shape[:2]
+    rows = []
+    for part in np.array_split(crops.pixels.reshape(-1, *crops.pixels.shape[2:]), max(1, count * views // 512)):
+        pictures = (plain(torch.from_numpy(part), encoder.image_size) * 255 + 0.5).to(torch.uint8)
+        rows.append(encoder.encode_images(pictures.permute(0, 2, 3, 1).contiguous().numpy()))
+    return np.concatenate(rows).reshape(count, views, -1)
+
+
+def size_priors(crops: Crops) -> dict[str, SizePrior]:
+    """Mean and widened deviation of the log extents of each kind, from whole things."""
+    priors = {}
+    for kind in sorted(set(crops.labels[crops.states == WHOLE].tolist())):
+        sizes = crops.sizes[(crops.labels == kind) & (crops.states == WHOLE)].astype(np.float64)
+        level = np.sort(sizes[:, :2], axis=1)[:, ::-1]
+        logs = np.log(np.maximum(np.concatenate([level, sizes[:, 2:]], axis=1), 1e-3))
+        mean, std = logs.mean(axis=0), logs.std(axis=0) + WIDEN
+        priors[kind] = SizePrior((mean[0], mean[1], mean[2]), (std[0], std[1], std[2]))
+    return priors
+
+
+def calibrate(encoder: Embedded, crops: Crops, priors: dict[str, SizePrior], learnt_scale: float) -> Calibration:
+    """The scale that makes the label's probability most honest (least log loss), a weight for sizes, and the threshold
+    that serves simulated rooms best: answer when asked for what is there, refuse when asked for what is not."""
+    pooled = encode(encoder, crops).mean(axis=1)
+    best: tuple[float, Calibration] | None = None
+    for factor in (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0):
+        for weight in (0.0, 0.3, 0.6, 1.0):
+            rule = Calibration(learnt_scale * factor, 0.5, weight, priors)
+            loss = _log_loss(_with(encoder, rule), crops, pooled)
+            if best is None or loss < best[0]:
+                best = (loss, rule)
+    assert best is not None
+    rule = best[1]
+    table = _table(_with(encoder, rule), crops, pooled, sized=True)
+    grid = np.linspace(0.05, 0.95, 91)
+    found, refused = _rooms(_with(encoder, rule), crops, table, grid, seed=1)
+    return replace(rule, threshold=float(grid[int(np.argmax(found + refused))]))
+
+
+def figures(encoder: Embedded, crops: Crops) -> dict[str, float]:
+    """All rates on a set that served neither training nor calibration."""
+    vectors = encode(encoder, crops)
+    pooled = vectors.mean(axis=1)
+    objects = crops.states != NONE
+    result: dict[str, float] = {"things": float(len(crops)), "kinds": float(len(encoder.vocabulary.names))}
+    for state in (WHOLE, DAMAGED):
+        rows = crops.states == state
+        single = [label for label, _ in labels(encoder, vectors[rows].reshape(-1, encoder.dim))]
+        truth = np.repeat(crops.labels[rows], vectors.shape[1])
+        result[f"top1_crop_{state}"] = float(np.mean(np.array(single) == truth))
+        result[f"top1_mean_{state}"] = _top1(encoder, pooled[rows], crops.labels[rows])
+        result[f"top1_mean_size_{state}"] = _top1(encoder, pooled[rows], crops.labels[rows], crops.sizes[rows])
+    whole = wholeness(encoder, pooled)
+    result["wholeness_auc"] = _auc(whole[objects], whole[~objects])
+    result["whole_called_whole"] = float(np.mean(whole[objects] > 0.5))
+    result["not_object_called_whole"] = float(np.mean(whole[~objects] > 0.5))
+    for sized in (False, True):
+        table = _table(encoder, crops, pooled, sized)
+        grid = np.array([encoder.calibration.threshold])
+        found, refused = _rooms(encoder, crops, table, grid, seed=2)
+        suffix = "_with_sizes" if sized else ""
+        truth_table = crops.labels[:, None] == np.array(encoder.vocabulary.names)
+        over = table >= encoder.calibration.threshold
+        result[f"miss{suffix}"] = float(np.mean(~over[truth_table]))
+        result[f"false_alarm_per_thing{suffix}"] = float(np.mean(over[~truth_table]))
+        result[f"room_present_right{suffix}"] = float(found[0])
+        result[f"room_absent_refused{suffix}"] = float(refused[0])
+    return result
+
+
+def confusions(encoder: Encoder, crops: Crops) -> dict[str, dict[str, float]]:
+    """For each kind: top-1 of the mean vector over whole and damaged things, and its three most frequent mistakes."""
+    pooled = encode(encoder, crops).mean(axis=1)
+    guess = np.array([label for label, _ in labels(encoder, pooled)])
+    table = {}
+    for kind in encoder.vocabulary.names:
+        rows = crops.labels == kind
+        wrong = Counter(g for g in guess[rows].tolist() if g != kind).most_common(3)
+        table[kind] = {"right": round(float(np.mean(guess[rows] == kind)), 3)} | {
+            g: round(c / max(1, int(rows.sum())), 3) for g, c in wrong
+        }
+    return table
+
+
+def milliseconds(encoder: Encoder, count: int = 64) -> tuple[float, float]:
+    """For one picture in a batch of 16, and for one phrase; the best of several tries."""
+    pictures = (
+        np.random.default_rng(0).integers(0, 255, (16, encoder.image_size, encoder.image_size, 3)).astype(np.uint8)
+    )
+    image, text = [], []
+    for _ in range(count // 16 + 3):
+        start = time.perf_counter()
+        encoder.encode_images(pictures)
+        middle = time.perf_counter()
+        encoder.encode_text(["small red wooden chair"])
+        image.append((middle - start) / 16)
+        text.append(time.perf_counter() - middle)
+    return 1e3 * min(image), 1e3 * min(text)
+
+
+def _with(encoder: Embedded, rule: Calibration) -> Embedded:
+    """The same encoder under another rule, sharing its sessions."""
+    other = Embedded(encoder.folder)
+    vars(other).update({k: v for k, v in vars(encoder).items() if k != "calibration"})
+    vars(other)["calibration"] = rule
+    return other
+
+
+def _top1(
+    encoder: Encoder, pooled: NDArray[np.float32], truth: NDArray[np.str_], sizes: NDArray[np.float32] | None = None
+) -> float:
+    return float(np.mean(np.array([label for label, _ in labels(encoder, pooled, sizes)]) == truth))
+
+
+def _log_loss(encoder: Encoder, crops: Crops, pooled: NDArray[np.float32]) -> float:
+    """Mean negative log probability of the true name of whole and damaged things."""
+    rows = crops.states != NONE
+    table = _table(encoder, crops, pooled, sized=True)[rows]
+    column = [encoder.vocabulary.names.index(k) for k in crops.labels[rows].tolist()]
+    return float(-np.log(np.maximum(table[np.arange(len(table)), column], 1e-4)).mean())
+
+
+def _table(encoder: Encoder, crops: Crops, pooled: NDArray[np.float32], sized: bool) -> Array:
+    """`[M, K]` probability that each thing is each kind: what `probability` gives for canonical names, all at once."""
+    return distribution(encoder, pooled, crops.sizes if sized else None)[:, : len(encoder.vocabulary.names)]
+
+
+def _rooms(encoder: Encoder, crops: Crops, table: Array, grid: Array, seed: int) -> tuple[Array, Array]:
+    """Simulated rooms of things of different kinds and some wrong segments, at each threshold of `grid` `[T]`.
+
+    Returns:
+        Share of present kinds for which the best thing over the threshold is the right one, and share of absent kinds
+        for which nothing is over it; `[T]` each.
+    """
+    rng = np.random.default_rng(seed)
+    names = np.array(encoder.vocabulary.names)
+    objects, others = np.flatnonzero(crops.states != NONE), np.flatnonzero(crops.states == NONE)
+    found: list[NDArray[np.bool_]] = []
+    refused: list[NDArray[np.bool_]] = []
+    for _ in range(ROOMS):
+        kinds = rng.choice(len(names), size=min(ROOM, len(names) - 2), replace=False)
+        inside = [int(rng.choice(objects[crops.labels[objects] == names[k]])) for k in kinds]
+        scores = table[[*inside, *rng.choice(others, size=MERGES)]]  # [things, K]
+        best = scores.argmax(axis=0)
+        for place, k in enumerate(kinds):
+            found.append((best[k] == place) & (scores[best[k], k] >= grid))
+        absent = np.setdiff1d(np.arange(len(names)), kinds)
+        refused.extend(scores[:, k].max() < grid for k in rng.choice(absent, size=min(4, len(absent)), replace=False))
+    return np.mean(found, axis=0), np.mean(refused, axis=0)
+
+
+def _auc(positive: Array, negative: Array) -> float:
+    """Chance that a random positive scores above a random negative."""
+    order = np.concatenate([positive, negative]).argsort().argsort() + 1.0
+    rank = order[: len(positive)].sum() - len(positive) * (len(positive) + 1) / 2
+    return float(rank / (len(positive) * len(negative)))

@@ -1,0 +1,261 @@
+"""Pictures to learn from: procedural assets, whole and damaged, each alone from several sides, as cut-out crops.
+
+Knows assets, damage, cameras and the crop that embedding uses too. Refuses to know captions beyond the label of each
+thing, and encoders. A set is a function of its seeds and is kept in a cache folder outside the repository.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import json
+import math
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from ..gaussians import assets
+from ..gaussians.assets import registry
+from ..gaussians.camera import Camera
+from ..gaussians.cloud import GaussianCloud
+from ..gaussians.language.encoders.framing import square_rgba
+from ..gaussians.language.segmentation import group_renders
+from ..gaussians.render import render
+from . import damage
+from .captions import FLOOR, PART, SEVERAL, WALL
+
+CROP = 80  # px, side of the stored crops: a quarter more than the encoder's input, room for augmentation
+CANVAS = 112  # px, side of the renders they are cut from
+VIEWS = 4  # of each thing
+STRETCH = 0.15  # deviation of the logarithm of an axis' stretch
+VERSION = 3  # of this file's choices; part of the cache's name
+
+WHOLE, DAMAGED, NONE = "whole", "damaged", "not an object"
+# A cut-off piece of these still looks like one of them, so cuts of them say nothing about being incomplete.
+SELF_SIMILAR = frozenset(
+    {
+        *("rug", "painting", "mirror", "window", "curtain", "door", "plate", "bowl", "candle", "ball", "box"),
+        *("book", "books", "pillow", "cushion", "blanket"),
+    }
+)
+
+
+@dataclass(frozen=True)
+class Thing:
+    """Something to be looked at: a cloud, what it is called, the state it is in, and how it hangs or stands."""
+
+    cloud: GaussianCloud
+    label: str
+    state: str
+    seed: int
+    against_wall: bool = False
+    support: str = "floor"
+
+
+@dataclass(frozen=True, eq=False)
+class Crops:
+    """`M` things seen from `V` sides.
+
+    Attributes:
+        pixels: `[M, V, S, S, 4]` uint8, premultiplied RGB and alpha.
+        labels: `[M]` kind or non-object.
+        states: `[M]` whole, damaged or not an object.
+        seeds: `[M]` of the asset.
+        sizes: `[M, 3]` float32, extents w, d, h in metres.
+    """
+
+    pixels: NDArray[np.uint8]
+    labels: NDArray[np.str_]
+    states: NDArray[np.str_]
+    seeds: NDArray[np.int64]
+    sizes: NDArray[np.float32]
+
+    def __len__(self) -> int:
+        return len(self.labels)
+
+
+def cached(name: str, kinds: tuple[str, ...], seeds: range, cache: Path, report: Callable[[str], None]) -> Crops:
+    """The set of these kinds and seeds, from the cache or rendered and put there.
+
+    The cache is keyed by what the assets look like (a digest of one asset a kind), so changed assets render again.
+    """
+    key = hashlib.sha256(json.dumps([VERSION, CROP, VIEWS, list(kinds), list(seeds)]).encode())
+    for kind in kinds:
+        key.update(assets.make(kind, seeds[0]).cloud.digest().encode())
+    path = cache / f"crops-{name}-{key.hexdigest()[:16]}.npz"
+    if path.is_file():
+        with np.load(path) as file:
+            return Crops(**{k: file[k] for k in ("pixels", "labels", "states", "seeds", "sizes")})
+    crops = render_set(kinds, seeds, report)
+    cache.mkdir(parents=True, exist_ok=True)
+    partial = path.with_name(f".{path.name}.{os.getpid()}.npz")
+    np.savez(partial, **vars(crops))
+    partial.replace(path)
+    return crops
+
+
+def render_set(kinds: tuple[str, ...], seeds: range, report: Callable[[str], None] = lambda line: None) -> Crops:
+    """Make and render every kind for every seed, with its damaged forms and the non-objects cut from it."""
+    pixels: list[NDArray[np.uint8]] = []
+    things: list[Thing] = []
+    sizes: list[NDArray[np.float64]] = []
+    for done, seed in enumerate(seeds):
+        for thing in things_of_seed(kinds, seed):
+            seen = pictures(thing, np.random.default_rng([seed, len(things)]))
+            if seen is None:
+                continue
+            low, high = damage.extent(thing.cloud)
+            pixels.append(seen)
+            sizes.append(high - low)
+            things.append(Thing(GaussianCloud.empty(), thing.label, thing.state, seed))
+        report(f"rendered seed {done + 1} of {len(seeds)}: {len(things)} things")
+    return Crops(
+        np.stack(pixels),
+        np.array([t.label for t in things]),
+        np.array([t.state for t in things]),
+        np.array([t.seed for t in things], dtype=np.int64),
+        np.array(sizes, dtype=np.float32),
+    )
+
+
+def things_of_seed(kinds: tuple[str, ...], seed: int) -> Iterator[Thing]:
+    """One of each kind, whole and damaged; pieces and heaps of them; a piece of wall and of floor."""
+    rng = np.random.default_rng([seed, 7])
+    made = {kind: _made(kind, seed, rng) for kind in kinds}
+    for kind in kinds:
+        asset, entry = made[kind], registry.KINDS[kind]
+        hang = (entry.against_wall or entry.support == "wall", str(entry.support))
+        yield Thing(asset.cloud, kind, WHOLE, seed, *hang)
+        yield Thing(damaged(asset.cloud, made[kinds[rng.integers(len(kinds))]].cloud, rng), kind, DAMAGED, seed, *hang)
+        if rng.random() < 0.6 and (piece := fragment(asset, rng)) is not None:
+            yield Thing(piece, PART, NONE, seed)
+        if rng.random() < 0.5:
+            others = [made[kinds[i]].cloud for i in rng.integers(len(kinds), size=rng.choice([1, 1, 2]))]
+            yield Thing(damage.several([asset.cloud, *others], rng), SEVERAL, NONE, seed)
+    for upright in (True, True, False, False):
+        width, height = rng.uniform(0.3, 3.0, size=2)
+        patch = damage.slab(rng, width, height, upright)
+        yield Thing(patch, WALL if upright else FLOOR, NONE, seed, upright, "wall" if upright else "floor")
+
+
+def _made(kind: str, seed: int, rng: np.random.Generator) -> assets.Asset:
+    """One design, half of the time stretched along each axis beyond its own proportions: others build differently."""
+    detail = float(rng.choice([0.4, 0.7, 1.0]))
+    asset = assets.make(kind, seed, detail=detail)
+    stretch = np.exp(rng.normal(size=3) * STRETCH)
+    if rng.random() < 0.5:
+        return asset
+    w, d, h = (max(0.006, s * f) for s, f in zip(asset.size, stretch.tolist(), strict=True))
+    return assets.make(kind, seed, size=(w, d, h), detail=detail)
+
+
+def damaged(cloud: GaussianCloud, neighbour: GaussianCloud, rng: np.random.Generator) -> GaussianCloud:
+    """One to three mishaps that leave the thing recognisable."""
+    result = cloud
+    for mishap in rng.permutation(6)[: rng.choice([1, 2, 3], p=[0.4, 0.4, 0.2])]:
+        if mishap == 0:  # cut away by a plane, from any side
+            result = damage.cut(result, rng, rng.uniform(0.68, 0.92))
+        elif mishap == 1:  # the back was never seen: it faces +y
+            back = damage.direction(rng, level=True)
+            result = damage.cut(result, rng, rng.uniform(0.6, 0.9), np.array([back[0], abs(back[1]), 0.0]))
+        elif mishap == 2:  # the underside was taken for floor
+            result = damage.cut(result, rng, rng.uniform(0.75, 0.95), np.array([0.0, 0.0, -1.0]))
+        elif mishap == 3:
+            result = damage.thinned(result, rng, rng.uniform(0.0, 0.85))
+        elif mishap == 4:
+            result = damage.with_residue(result, rng)
+        else:
+            result = damage.with_fragment(result, neighbour, rng)
+    return result
+
+
+def fragment(asset: assets.Asset, rng: np.random.Generator) -> GaussianCloud | None:
+    """Clearly less than the thing: one of its smaller parts, or what two planes leave of it; None for simple things."""
+    cloud = asset.cloud
+    part = asset.parts.labels.numpy()
+    small = [p for p in np.unique(part) if 30 < (part == p).sum() < 0.35 * len(part)]
+    if small and rng.random() < 0.6:
+        return cloud[torch.from_numpy(part == small[rng.integers(len(small))])]
+    if asset.kind in SELF_SIMILAR:
+        return None
+    keep = rng.uniform(0.12, 0.35)
+    first = rng.uniform(keep, 1.0) if rng.random() < 0.5 else 1.0
+    piece = damage.cut(cloud, rng, first) if first < 1 else cloud
+    piece = damage.cut(piece, rng, keep / first)
+    return piece if len(piece) > 30 else None
+
+
+def pictures(thing: Thing, rng: np.random.Generator) -> NDArray[np.uint8] | None:
+    """`[V, S, S, 4]` uint8 crops from `VIEWS` cameras around the thing; None if one of them sees nothing."""
+    views = []
+    for camera in cameras(thing, rng):
+        seen = render(thing.cloud, camera)
+        rgba = square_rgba(seen.rgb, seen.alpha, CROP)
+        if rgba is None:
+            return None
+        views.append((rgba.movedim(0, -1) * 255 + 0.5).to(torch.uint8).numpy())
+    return np.stack(views)
+
+
+def cameras(thing: Thing, rng: np.random.Generator) -> list[Camera]:
+    """Cameras around the thing: for half of the things as embedding a scene places them, for the others more freely."""
+    low, high = damage.extent(thing.cloud)
+    middle, size = (low + high) / 2, high - low
+    radius = float(np.linalg.norm(size)) / 2
+    result = []
+    for azimuth, elevation, fov in _portrait(thing, rng) if rng.random() < 0.5 else _free(thing, rng, size):
+        distance = radius / math.sin(fov / 2) * rng.uniform(0.85, 1.3)
+        ground = math.cos(elevation)
+        eye = middle + distance * np.array(
+            [ground * math.sin(azimuth), -ground * math.cos(azimuth), math.sin(elevation)]
+        )
+        up = np.array([rng.normal() * 0.04, rng.normal() * 0.04, 1.0])
+        result.append(Camera.look_at(eye, middle, up, CANVAS, CANVAS, math.degrees(fov)))
+    return result
+
+
+def _portrait(thing: Thing, rng: np.random.Generator) -> list[tuple[float, float, float]]:
+    """Azimuth from the front (-y), elevation and field of view, radians, about as `portraits` looks at a
+    group: from the open side of the room, the front of what stands against a wall and any side of the rest."""
+    front = rng.normal() * 0.35 if thing.against_wall else rng.uniform(0, 2 * math.pi)
+    jitter = rng.normal(size=(VIEWS, 2)) * 0.12
+    return [
+        (front + math.radians(a) + da, math.radians(e) + de, math.radians(group_renders.FOV))
+        for (a, e), (da, de) in zip(itertools.islice(itertools.cycle(group_renders.ANGLES), VIEWS), jitter, strict=True)
+    ]
+
+
+def _free(thing: Thing, rng: np.random.Generator, size: NDArray[np.float64]) -> list[tuple[float, float, float]]:
+    """The same three numbers, from wherever there is room to stand."""
+    flat = bool(size[2] < 0.15 * max(size[0], size[1]))
+    start, step = rng.uniform(0, 2 * math.pi), math.radians(rng.uniform(25, 90))
+    result = []
+    for i in range(VIEWS):
+        azimuth = start + i * step + rng.normal() * 0.15
+        if thing.against_wall and rng.random() < 0.92:
+            azimuth = math.radians(rng.uniform(-75, 75))
+        elevation = math.radians(_elevation(rng, thing.support, flat))
+        result.append((azimuth, elevation, math.radians(rng.uniform(25, 60))))
+    return result
+
+
+def _elevation(rng: np.random.Generator, support: str, flat: bool) -> float:
+    """Degrees above the horizon from which such a thing is usually seen."""
+    if flat and support != "wall":
+        return float(rng.uniform(14, 70))
+    if support == "ceiling":
+        return float(rng.uniform(-45, 15))
+    if support == "wall":
+        return float(np.clip(rng.normal(3, 12), -25, 35))
+    return float(np.clip(rng.normal(20, 15), -10, 65))
+
+
+def cache_folder() -> Path:
+    """Where rendered sets are kept: `$XDG_CACHE_HOME/scenewright`, by default `~/.cache/scenewright`."""
+    base = os.environ.get("XDG_CACHE_HOME")
+    return (Path(base) if base else Path.home() / ".cache") / "scenewright" / "encoder"
