@@ -10,6 +10,7 @@ import time
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from ...gaussians.errors import UserError
@@ -54,8 +55,7 @@ class GrammarPlanner:
     name = NAME
 
     def __init__(self) -> None:
-        # Everything that is made once is made here, so that the first instruction is as quick as the others.
-        _understand("paint it red and add a small mug", None)
+        _make_tables()
 
     def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
         """The plan for an instruction; see `Planner.plan`. The scene (`sight`) is not looked at.
@@ -72,6 +72,12 @@ class GrammarPlanner:
         except Refusal as refusal:
             told = {"verdict": refusal.verdict, "reason": str(refusal), "unknown": _short(refusal.words)}
         return EditPlan(instruction=text, planner=NAME, seconds=time.perf_counter() - started, **told)
+
+
+@cache
+def _make_tables() -> None:
+    """Build the parser and the word tables, once a process, so that the first instruction is as fast as the others."""
+    _understand("paint it red and add a small mug", None)
 
 
 def _valid(fields: dict[str, Any]) -> EditOp:

@@ -39,7 +39,7 @@ class WishPlanner:
             UserError: the text is too long to be an instruction.
         """
         try:
-            return self._reader.read(text).wished
+            return self._reader.may_wish(text) and self._reader.read(text).wished
         except Unread:
             return False
 

@@ -94,6 +94,19 @@ class Reader:
             raise Unread("this is no wish for a room", *(text.split()[:1]))
         return Reading(tuple(goals), wished)
 
+    def may_wish(self, text: str) -> bool:
+        """Whether any part of an instruction between joints has the form of a wish; False settles that it is none.
+
+        Raises:
+            UserError: it is too long to be an instruction.
+        """
+        for words in sentences(text):
+            joints = [i for i, word in enumerate(words) if word in _JOINTS]
+            spans = ((a, b) for a in (0, *(i + 1 for i in joints)) for b in (*joints, len(words)) if a < b)
+            if any(p.fullmatch(" ".join(plain(words[a:b]))) for a, b in spans for _, p in COMPILED):
+                return True
+        return False
+
     def _clauses(self, words: tuple[str, ...]) -> list[tuple[Goal, bool]] | None:
         """A sentence as clauses, wishes rather than plain edits; None if that is not possible.
 

@@ -5,6 +5,7 @@ Knows the protocol and how to find a back end. Refuses to know any back end's li
 
 from __future__ import annotations
 
+import functools
 import importlib
 import pkgutil
 from pathlib import Path
@@ -80,7 +81,8 @@ def load(spec: str = "auto") -> Encoder:
     """An encoder by its specification.
 
     Args:
-        spec: "auto" or "embedded" for the one that ships with the package; "embedded:DIR" for another trained by
+        spec: "auto" or "embedded" for the one that ships with the package, which is loaded once a process and shared
+            (it holds no state, its vectors are deterministic); "embedded:DIR" for another trained by
             `python -m scenewright.training`; "open_clip:MODEL/PRETRAINED" or "open_clip:DIR" for a
             real CLIP; "onnx:FOLDER" for one as ONNX; "vectors:PATH" for text vectors made elsewhere.
 
@@ -89,13 +91,23 @@ def load(spec: str = "auto") -> Encoder:
     """
     name, _, argument = spec.partition(":")
     name = {"auto": "embedded", "": "embedded"}.get(name, name)
+    if name == "embedded" and not argument:
+        return _shipped()
     if name not in names():
         raise BackendError(
             f"unknown encoder {spec!r}; "
             "use auto, embedded:DIR, open_clip:MODEL/PRETRAINED, open_clip:DIR, onnx:FOLDER or vectors:PATH"
         )
-    module = importlib.import_module(f"{backends.__name__}.{name}")
-    encoder: Encoder = module.load(argument)
+    return _loaded(name, argument)
+
+
+@functools.cache
+def _shipped() -> Encoder:
+    return _loaded("embedded", "")
+
+
+def _loaded(name: str, argument: str) -> Encoder:
+    encoder: Encoder = importlib.import_module(f"{backends.__name__}.{name}").load(argument)
     return encoder
 
 

@@ -40,7 +40,7 @@ def _embedded(request: pytest.FixtureRequest) -> Case:
         _nudge(folder / "image.onnx")
         return f"embedded:{folder}"
 
-    return Case("embedded", other)
+    return Case(f"embedded:{encoders.weights_folder()}", other)  # "embedded" alone is loaded once and shared
 
 
 def _open_clip(request: pytest.FixtureRequest) -> Case:
