@@ -32,7 +32,7 @@ ALPHA = 0.01  # of every pair that is timed: a chunk of them leaves pixels open
 
 def measure(cloud: GaussianCloud, camera: Camera, key: str, raster: float) -> list[Metric]:
     """The floor of a case whose raster stage took `raster` seconds, and their ratio; measured here and now."""
-    pairs, each = reference.pairs(cloud, camera), pair_seconds()
+    pairs, each = reference.count_blends(cloud, camera), pair_seconds()
     floor = pairs * each / compiled.workers()
     return [
         Metric(f"{key}.pairs", pairs, "count"),

@@ -58,7 +58,7 @@ class CpuEngine:
         columns = self._parameters.columns()
         drawn = gradient.draw(columns, camera, BLACK)
         loss, slope = photometric(drawn.rgb, photo, self._similarity)
-        found = gradient.undraw(drawn, slope, np.zeros(slope.shape[:2], np.float32))
+        found = gradient.draw_backward(drawn, slope, np.zeros(slope.shape[:2], np.float32))
         gradients = chained(found, columns[2], columns[3])
         self._growth.regularise(gradients, columns[2], columns[3])
         self._parameters.step(gradients, rate)

@@ -1,8 +1,7 @@
-"""Pixels from Gaussians: one call, several back ends behind it.
+"""Render Gaussians: `render`, `contributions` and `split`, each dispatched to one of several back ends.
 
-Knows which back ends exist and checks what they are given. Refuses to know how any of them works: each is one module
-with `render(cloud, camera, background)`, `contributions(cloud, camera)` and `split(cloud, camera, labels)`, imported
-when first asked for.
+A back end is a module with `render(cloud, camera, background)`, `contributions(cloud, camera)` and
+`split(cloud, camera, labels)`. It is imported on first use. Arguments are validated here.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ _AUTO = "cpu"
 
 
 class Backend(Protocol):
-    """What a back end module offers. Equal input gives equal bytes; on a GPU, sums over pixels to their rounding."""
+    """Interface of a back end module. Equal input gives equal bytes; on a GPU, sums over pixels vary by rounding."""
 
     def render(self, cloud: GaussianCloud, camera: Camera, background: Vec3) -> Render: ...
 
@@ -42,20 +41,20 @@ def backends() -> tuple[str, ...]:
 
 
 def render(cloud: GaussianCloud, camera: Camera, background: Vec3 = (0.0, 0.0, 0.0), backend: str = "auto") -> Render:
-    """Draw a cloud as a camera sees it: colour, alpha, depth and group of every pixel in one pass.
+    """Render colour, alpha, depth and group of every pixel in one pass.
 
-    Gaussians with a number that is not finite are left out, as are those behind the eye; no pixel is ever NaN.
-    Drawing the same input twice gives the same bytes.
+    Gaussians with a non-finite value and Gaussians behind the camera are skipped; no pixel is ever NaN.
+    The same input gives the same bytes.
 
     Args:
-        cloud: the Gaussians; moved to the device that the back end draws on, and the picture back to theirs.
+        cloud: the Gaussians. They are copied to the back end's device; the image is returned on the cloud's device.
         camera: pose, intrinsics and image size.
-        background: display-space colour behind everything.
+        background: display-space RGB behind everything.
         backend: "auto" (the fast CPU renderer), or a name from `backends()`.
 
     Raises:
         UserError: `background` is not three finite numbers.
-        BackendError: no such back end, or its package or device is not there.
+        BackendError: unknown back end, or its package or device is missing.
     """
     if len(background) != 3 or not all(math.isfinite(channel) for channel in background):
         raise UserError(f"background must be three finite numbers, red green blue, got {background!r}")
@@ -63,18 +62,18 @@ def render(cloud: GaussianCloud, camera: Camera, background: Vec3 = (0.0, 0.0, 0
 
 
 def contributions(cloud: GaussianCloud, camera: Camera, backend: str = "auto") -> Tensor:
-    """How much of the picture each Gaussian is: `[N]` float32, its blending weight summed over all pixels.
+    """Blending weight of each Gaussian summed over all pixels, `[N]` float32.
 
-    The sum over Gaussians is the sum of alpha over pixels. Zero means not seen: outside the view or hidden.
+    The sum over Gaussians equals the sum of alpha over pixels. Zero means not visible: outside the view or occluded.
 
     Raises:
-        BackendError: no such back end, or its package or device is not there.
+        BackendError: unknown back end, or its package or device is missing.
     """
     return _load(backend).contributions(cloud, camera)
 
 
 def split(cloud: GaussianCloud, camera: Camera, labels: NDArray[np.integer], backend: str = "auto") -> Split:
-    """How much of each label's pixels each Gaussian is: `contributions`, shared out among the labels of a picture.
+    """Split `contributions` by the labels of a label image: the summed weight of each (Gaussian, label) pair.
 
     One pass whatever the number of labels. For every Gaussian the weights of all labels add up to its contribution.
 
@@ -82,8 +81,8 @@ def split(cloud: GaussianCloud, camera: Camera, labels: NDArray[np.integer], bac
         labels: `[H, W]` integers of the camera's size, any values within int32.
 
     Raises:
-        UserError: `labels` has another size than the camera, or holds no integers.
-        BackendError: no such back end, or its package or device is not there.
+        UserError: `labels` does not have the camera's size or an integer type.
+        BackendError: unknown back end, or its package or device is missing.
     """
     if labels.shape != (camera.height, camera.width) or not np.issubdtype(labels.dtype, np.integer):
         raise UserError(
@@ -97,7 +96,7 @@ def _load(name: str) -> Backend:
     """The module of a back end."""
     chosen = _AUTO if name == "auto" else name
     if chosen not in _MODULES:
-        raise BackendError(f"no renderer is called {name!r}; choose auto, {', '.join(_MODULES)}")
+        raise BackendError(f"unknown renderer {name!r}; choose auto, {', '.join(_MODULES)}")
     try:
         return cast(Backend, importlib.import_module(_MODULES[chosen], __package__))
     except ImportError as error:

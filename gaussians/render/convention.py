@@ -1,6 +1,4 @@
-"""What every renderer here agrees on: how a Gaussian becomes a footprint and how footprints blend.
-
-Knows the numbers of the splatting convention and where they come from. Refuses to know tensors and back ends.
+"""Constants of the splatting convention that all renderers here share: projection, footprint and blending.
 
 A Gaussian is projected by the first-order (EWA) approximation, its 2-D covariance is widened by `DILATION`, and at
 offset d from its centre it has `alpha = min(ALPHA_MAX, opacity * exp(-d' inv(cov) d / 2))`, nothing below `ALPHA_MIN`.
@@ -12,12 +10,12 @@ Sources: Zwicker et al. 2001 (EWA splatting); Kerbl et al. 2023 and its CUDA ras
 from __future__ import annotations
 
 NEAR = 0.01  # scene units; a centre nearer than this, or behind the eye, is not drawn
-FAR = 1e10  # scene units; beyond it float32 has no depth left to speak of
+FAR = 1e10  # scene units; beyond it float32 depth has too little precision
 DILATION = 0.3  # px^2 added to both variances: no footprint is narrower than about a pixel
-ALPHA_MIN = 1 / 255  # fainter than one step of an 8-bit picture is not drawn
+ALPHA_MIN = 1 / 255  # one step of an 8-bit image; lower alphas are not drawn
 ALPHA_MAX = 0.999  # keeps the transmittance positive behind an opaque Gaussian
 T_MIN = 1e-4  # transmittance at which a pixel counts as finished
-EDGE = (
-    0.15  # of the image size: tangents are clamped this far outside it in the Jacobian, which is wild at grazing angles
-)
-MAX_DETERMINANT = 1e37  # px^4: a covariance near float32's range (a footprint of billions of pixels) is not drawn
+# Share of the image size: in the Jacobian, tangents are clamped this far outside the image, because the first-order
+# approximation breaks down at grazing angles.
+EDGE = 0.15
+MAX_DETERMINANT = 1e37  # px^4; a covariance near float32's range (a footprint of billions of pixels) is not drawn

@@ -1,7 +1,4 @@
-"""The fast CPU renderer as a function that torch can differentiate.
-
-Knows torch's bookkeeping. Refuses to know kernels (`cpu.gradient`), losses and optimisers.
-"""
+"""The fast CPU renderer as a differentiable torch function; the kernels are behind `cpu.gradient`."""
 
 from __future__ import annotations
 
@@ -24,11 +21,11 @@ def draw(
     background: Vec3 = (0.0, 0.0, 0.0),
     centers: Tensor | None = None,
 ) -> tuple[Tensor, Tensor]:
-    """Draw Gaussians, `rgb [H, W, 3]` and `alpha [H, W]`, so that gradients flow back to all five columns.
+    """Render `rgb [H, W, 3]` and `alpha [H, W]`, differentiable by all five columns.
 
-    The picture is that of `render` with the same numbers, to the byte. What is not continuous has no gradient: order,
-    the ends of footprints, a colour below zero, an alpha at its maximum, a tangent beyond the image's margin (Kerbl et
-    al. 2023, whose rasteriser decides the same).
+    The image is bit-identical to that of `render` for the same values. Discontinuities have no gradient: the depth
+    order, the cut-off of footprints, colours clamped at zero, alphas clamped at their maximum, tangents clamped at the
+    image margin (as in the rasteriser of Kerbl et al. 2023).
 
     Args:
         means: `[N, 3]` world, scene units.
@@ -36,15 +33,15 @@ def draw(
         scales: `[N, 3]` > 0, scene units.
         opacities: `[N]` in (0, 1).
         sh: `[N, K, 3]`, K = (degree + 1)^2.
-        centers: `[N, 2]` zeros; their gradient is that of the footprints' centres, in 1/px, by which training decides
-            where Gaussians are missing.
+        centers: `[N, 2]` zeros; they receive the gradient of the footprint centres, in 1/px, which densification
+            uses (gsplat: `means2d`).
 
     Raises:
         UserError: the columns are not float32 on the CPU.
     """
     columns = (means, quats, scales, opacities, sh)
     if any(c.dtype != torch.float32 or c.device.type != "cpu" for c in columns):
-        raise UserError("the CPU renderer differentiates float32 columns on the CPU; move or convert them first")
+        raise UserError("the differentiable CPU renderer takes float32 columns on the CPU; convert or move them first")
     nowhere = means.new_zeros(len(means), 2) if centers is None else centers
     rgb, alpha = _Draw.apply(*columns, nowhere, camera, background)  # type: ignore[no-untyped-call]
     return rgb, alpha
@@ -58,7 +55,7 @@ class _Draw(torch.autograd.Function):
         *columns, _, camera, background = inputs
         drawn = gradient.draw(tuple(c.detach().contiguous().numpy() for c in columns), camera, background)
         ctx.drawn = drawn
-        ctx.save_for_backward(*columns)  # so that torch notices if they are changed in place before the way back
+        ctx.save_for_backward(*columns)  # torch then raises if they are changed in place before the backward pass
         return torch.from_numpy(drawn.rgb), torch.from_numpy(drawn.alpha)
 
     @staticmethod
@@ -67,5 +64,5 @@ class _Draw(torch.autograd.Function):
 
         _ = ctx.saved_tensors
         d_rgb, d_alpha = (g.contiguous().numpy() for g in outputs)
-        found = gradient.undraw(ctx.drawn, d_rgb, d_alpha)
+        found = gradient.draw_backward(ctx.drawn, d_rgb, d_alpha)
         return (*(torch.from_numpy(g) for g in vars(found).values()), None, None)

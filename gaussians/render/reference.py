@@ -1,7 +1,7 @@
-"""The readable renderer: plain torch on any device, one image tile after another.
+"""The reference renderer: plain torch on any device, one image tile after another, written to be read.
 
-Knows the convention and nothing of speed; the fast back ends are tested against it. Names used throughout:
-`xx, xy, yy` entries of a 2-D covariance (px^2), `T` transmittance, `w` blending weight.
+The fast back ends are tested against it. Names used throughout: `xx, xy, yy` entries of a 2-D covariance (px^2),
+`T` transmittance.
 """
 
 from __future__ import annotations
@@ -18,12 +18,11 @@ from .. import harmonics, rotations
 from ..camera import Camera, Render, Vec3
 from ..cloud import NO_GROUP, GaussianCloud
 from . import convention as c
-from .shares import Split, summed
+from .shares import Split, sum_pairs
 
 TILE = 16  # px, side of a tile
-CHUNK = (
-    128  # Gaussians blended at once in a tile: a finished tile stops early, and torch does not split such small work
-)
+# Gaussians blended at once in a tile. Small enough that a finished tile stops early and torch uses one thread.
+CHUNK = 128
 
 
 @dataclass(frozen=True)
@@ -60,8 +59,12 @@ def render(
     dtype: torch.dtype = torch.float32,
     centers: Tensor | None = None,
 ) -> Render:
-    """See `scenewright.gaussians.render.render`. With `dtype` float64 all arithmetic is, and the picture's channels.
-    `centers` are those of `render.differentiable.draw`: `[N, 2]` zeros for the gradient of the footprints' centres."""
+    """See `scenewright.gaussians.render.render`.
+
+    Args:
+        dtype: of all arithmetic and of the returned channels.
+        centers: `[N, 2]` zeros that receive the gradient of the footprint centres, as in `render.differentiable.draw`.
+    """
     splats = project(cloud, camera, dtype)
     if centers is not None:
         splats = replace(splats, center=splats.center + centers[splats.row])
@@ -99,7 +102,7 @@ def contributions(cloud: GaussianCloud, camera: Camera) -> Tensor:
         tile = splats.take(index)
         pixels = _pixel_centers((slice(y, min(y + TILE, h)), slice(x, min(x + TILE, w))), splats.center)
         for part, weights, _ in _blend(tile, pixels):
-            rows = tile.row[part]  # no row occurs twice in a tile, so this assignment loses nothing
+            rows = tile.row[part]  # no row occurs twice in a tile, so indexed assignment is safe
             total[rows] = total[rows] + weights.sum(dim=0, dtype=torch.float64)
     return total.float()
 
@@ -119,13 +122,13 @@ def split(cloud: GaussianCloud, camera: Camera, labels: NDArray[np.int32]) -> Sp
                     (rows, torch.full_like(rows, label), weights[here == label].sum(dim=0, dtype=torch.float64))
                 )
     if not parts:
-        return summed(len(cloud), np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0))
+        return sum_pairs(len(cloud), np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0))
     row, label, weight = (torch.cat(column).cpu().numpy() for column in zip(*parts, strict=True))
-    return summed(len(cloud), row, label, weight)
+    return sum_pairs(len(cloud), row, label, weight)
 
 
-def pairs(cloud: GaussianCloud, camera: Camera) -> int:
-    """How many times a Gaussian is blended into a pixel: the work that no renderer of this convention can avoid."""
+def count_blends(cloud: GaussianCloud, camera: Camera) -> int:
+    """Number of (Gaussian, pixel) pairs that are blended: the least work a renderer of this convention has to do."""
     splats, count = project(cloud, camera), 0
     for y, x, index in _tiles(splats, camera):
         box = (slice(y, min(y + TILE, camera.height)), slice(x, min(x + TILE, camera.width)))
@@ -135,9 +138,9 @@ def pairs(cloud: GaussianCloud, camera: Camera) -> int:
 
 
 def project(cloud: GaussianCloud, camera: Camera, dtype: torch.dtype = torch.float32) -> Splats:
-    """The Gaussians that can touch the image, sorted by depth. Rows that are not finite are dropped."""
+    """Project and cull: the Gaussians that can touch the image, sorted by depth. Non-finite rows are dropped."""
     rotation, eye = _pose(camera, cloud.device, dtype)
-    toward = cloud.means - eye  # [N, 3]: subtracting the eye first keeps precision far from the origin
+    toward = cloud.means - eye  # [N, 3]; subtracting the eye first keeps precision far from the origin
     local = toward @ rotation.T
     z = local[:, 2]
     keep = (z > c.NEAR) & (z < c.FAR) & (cloud.opacities > c.ALPHA_MIN) & _finite_rows(cloud)
@@ -174,7 +177,7 @@ def _pose(camera: Camera, device: torch.device, dtype: torch.dtype) -> tuple[Ten
 
 
 def _finite_rows(cloud: GaussianCloud) -> Tensor:
-    """`[N]` bool: every number of the Gaussian is finite."""
+    """`[N]` bool: whether all values of a Gaussian are finite."""
     columns = (cloud.means, cloud.quats, cloud.scales, cloud.opacities[:, None], cloud.sh)
     return torch.stack([torch.isfinite(x).flatten(1).all(dim=1) for x in columns]).all(dim=0)
 
@@ -184,7 +187,7 @@ def _footprint(
 ) -> tuple[Tensor, Tensor, Tensor, Tensor]:
     """2-D covariance `xx, xy, yy` and its determinant, `[M]` each: `J R S S' R' J' + DILATION I`.
 
-    The determinant is summed from squares (Cauchy-Binet), since `xx * yy - xy^2` cancels for long thin footprints.
+    The determinant is sum_pairs from squares (Cauchy-Binet), since `xx * yy - xy^2` cancels for long thin footprints.
     """
     z = local[:, 2]
     u = (local[:, 0] / z).clamp(*_tangent_range(camera.width, camera.fx, camera.cx))

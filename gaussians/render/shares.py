@@ -1,7 +1,4 @@
-"""Blending weight shared out among the masks of a picture: what is needed to carry masks from pixels to Gaussians.
-
-Knows rows, labels and weights. Refuses to know how a back end finds them, and what a label stands for.
-"""
+"""Blending weight per (Gaussian, label) pair of a label image: what lifts 2-D masks to Gaussians."""
 
 from __future__ import annotations
 
@@ -14,11 +11,11 @@ from scipy.sparse import csr_matrix
 
 @dataclass(frozen=True, eq=False)
 class Split:
-    """Summed blending weight of each (Gaussian, label) pair that has any, ordered by row, then by label.
+    """Summed blending weight of each (Gaussian, label) pair with weight above zero, ordered by row, then by label.
 
     Attributes:
         rows: `[E]` int64, row in the cloud.
-        labels: `[E]` int32, the pixels' label.
+        labels: `[E]` int32, label of the pixels.
         weights: `[E]` float32 > 0, blending weight of the row summed over the pixels of the label.
     """
 
@@ -27,8 +24,8 @@ class Split:
     weights: NDArray[np.float32]
 
 
-def summed(count: int, rows: NDArray[np.integer], labels: NDArray[np.int32], weights: NDArray[np.floating]) -> Split:
-    """Add up what pairs got in several places, in the order in which it is given; `count` is the cloud's length."""
+def sum_pairs(count: int, rows: NDArray[np.integer], labels: NDArray[np.int32], weights: NDArray[np.floating]) -> Split:
+    """Add up the weights of equal (row, label) pairs, in the order given; `count` is the number of Gaussians."""
     names, column = np.unique(labels, return_inverse=True)
     sizes = (count, max(len(names), 1))
     table = csr_matrix((weights.astype(np.float64), (rows, column)), shape=sizes)  # constructing it adds duplicates

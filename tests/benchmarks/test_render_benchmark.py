@@ -28,7 +28,7 @@ def layers(count: int, opacity: float) -> tuple[GaussianCloud, Camera]:
 # The pixel is finished before the layer that would leave it 1e-4: 0.5^13 is above that, 0.5^14 is not.
 @pytest.mark.parametrize(("count", "opacity", "each"), [(8, 0.5, 8), (30, 0.5, 13), (5, 0.9999, 1), (5, 1 / 300, 0)])
 def test_pairs_are_what_pixels_blend(count: int, opacity: float, each: int) -> None:
-    assert reference.pairs(*layers(count, opacity)) == 20 * 13 * each
+    assert reference.count_blends(*layers(count, opacity)) == 20 * 13 * each
 
 
 def test_the_bare_block_blends_every_pair_that_is_counted() -> None:

@@ -1,7 +1,7 @@
-"""The fast renderer: numba kernels with explicit SIMD on all cores of the CPU.
+"""The fast CPU renderer: numba kernels with explicit SIMD on all cores.
 
-Knows the order of the stages and the memory they share. Refuses to know their insides: `project` finds footprints,
-`order` sorts them by depth and into tiles, `blend` makes pixels. Same input, same bytes, whatever the number of cores.
+This module allocates the buffers and runs the stages: `project` computes footprints, `order` sorts them by depth and
+into tiles, `blend` computes pixels. The same input gives the same bytes on any number of cores.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from ... import compiled
 from ...camera import Camera, Render, Vec3
 from ...cloud import GaussianCloud
 from .. import convention
-from ..shares import Split, summed
+from ..shares import Split, sum_pairs
 from . import blend, order, project, shares
 
 Array = NDArray[Any]
 
 LIMITS = (np.float32(convention.ALPHA_MAX), np.float32(convention.T_MIN), np.float32(project.Q_MAX))
-MAX_ENTRIES = 1 << 26  # footprints times tiles held at once (256 MB); a picture with more is drawn in strips
+MAX_ENTRIES = 1 << 26  # (footprint, tile) pairs held at once (256 MB); an image with more is drawn in strips
 
 
 @dataclass(frozen=True)
 class Bins:
     """Footprints sorted into tiles: `entries[first[t]:first[t + 1]]` are the rows that touch tile t, nearest first.
 
-    `view` is what they were projected by.
+    `view` is the camera they were projected with.
     """
 
     view: project.View
@@ -43,14 +43,14 @@ class Bins:
 
 def render(cloud: GaussianCloud, camera: Camera, background: Vec3) -> Render:
     """See `scenewright.gaussians.render.render`."""
-    out = canvas(camera)
-    for _ in drawn(_columns(cloud), camera, background, out):
+    out = make_image(camera)
+    for _ in draw_strips(_columns(cloud), camera, background, out):
         pass
     return Render(*(torch.from_numpy(channel).to(cloud.device) for channel in out))
 
 
-def canvas(camera: Camera) -> tuple[Array, ...]:
-    """Room for a picture: rgb `[H, W, 3]`, alpha, depth `[H, W]` float32, group `[H, W]` int32."""
+def make_image(camera: Camera) -> tuple[Array, ...]:
+    """Allocate an image: rgb `[H, W, 3]`, alpha, depth `[H, W]` float32, group `[H, W]` int32."""
     h, w = camera.height, camera.width
     return (
         np.empty((h, w, 3), np.float32), np.empty((h, w), np.float32), np.empty((h, w), np.float32),
@@ -58,16 +58,20 @@ def canvas(camera: Camera) -> tuple[Array, ...]:
     )  # fmt: skip
 
 
-def drawn(
+def draw_strips(
     columns: tuple[Array, ...], camera: Camera, background: Vec3, out: tuple[Array, ...]
 ) -> Iterator[tuple[int, int, Bins]]:
-    """Draw into a canvas, strip after strip; each is given with its footprints, which need not be kept."""
-    behind, count = tuple(np.float32(channel) for channel in background), compiled.workers()
+    """Draw into `out`, one strip of image rows after another.
+
+    Yields:
+        first row and end row of the strip, and its sorted footprints (the backward pass needs them).
+    """
+    colors, count = tuple(np.float32(channel) for channel in background), compiled.workers()
     scratch = blend.make_scratch(count)
     for top, bottom, bins in _strips(columns, camera, count, 0, camera.height):
         strip = tuple(channel[top:bottom] for channel in out)
         sorted_ = bins.first, bins.entries, bins.records, (camera.width, bottom - top), LIMITS
-        compiled.run(blend.draw, count, *sorted_, behind, strip, scratch, _counter())
+        compiled.run(blend.draw, count, *sorted_, colors, strip, scratch, _counter())
         yield top, bottom, bins
 
 
@@ -78,8 +82,8 @@ def contributions(cloud: GaussianCloud, camera: Camera) -> Tensor:
     scratch = blend.make_scratch(count)
     for top, bottom, bins in _strips(columns, camera, count, 0, camera.height):
         share = np.zeros(len(bins.entries), np.float32)
-        drawn = bins.first, bins.entries, bins.records, (camera.width, bottom - top), LIMITS
-        compiled.run(blend.weigh, count, *drawn, share, scratch, _counter())
+        sorted_ = bins.first, bins.entries, bins.records, (camera.width, bottom - top), LIMITS
+        compiled.run(blend.weigh, count, *sorted_, share, scratch, _counter())
         compiled.run_alone(blend.collect, bins.entries, share, total)
     return torch.from_numpy(total.astype(np.float32)).to(cloud.device)
 
@@ -96,18 +100,18 @@ def split(cloud: GaussianCloud, camera: Camera, labels: Array) -> Split:
         needed = np.diff(bins.first) * many
         plan = local, many, np.cumsum(needed) - needed
         share = np.zeros(int(needed.sum()), np.float32)
-        drawn = bins.first, bins.entries, bins.records, (camera.width, bottom - top), LIMITS
-        compiled.run(shares.split, count, *drawn, plan, share, scratch, _counter())
+        sorted_ = bins.first, bins.entries, bins.records, (camera.width, bottom - top), LIMITS
+        compiled.run(shares.split, count, *sorted_, plan, share, scratch, _counter())
         found = int(np.count_nonzero(share))
         part = np.empty(found, np.int64), np.empty(found, np.int32), np.empty(found, np.float32)
         compiled.run_alone(shares.gather, bins.first, bins.entries, plan, names, share, *part)
         parts.append(part)
     rows, of, weights = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return summed(len(cloud), rows, of, weights)
+    return sum_pairs(len(cloud), rows, of, weights)
 
 
 def _columns(cloud: GaussianCloud) -> tuple[Array, ...]:
-    """The columns the kernels read, as arrays on the CPU (shared with the tensors where they lie there)."""
+    """The columns as arrays on the CPU; CPU tensors share their memory."""
     columns = (cloud.means, cloud.quats, cloud.scales, cloud.opacities, cloud.sh, cloud.group)
     return tuple(column.detach().cpu().contiguous().numpy() for column in columns)
 
@@ -115,7 +119,7 @@ def _columns(cloud: GaussianCloud) -> tuple[Array, ...]:
 def _strips(
     columns: tuple[Array, ...], camera: Camera, count: int, top: int, bottom: int
 ) -> Iterator[tuple[int, int, Bins]]:
-    """The image rows from `top` to `bottom` in as few strips as memory allows, each with its sorted footprints."""
+    """Divide the image rows from `top` to `bottom` into as few strips as memory allows; yields each with its bins."""
     bins = _bin(columns, camera, count, top, bottom)
     if bins is not None:
         yield top, bottom, bins
@@ -126,7 +130,8 @@ def _strips(
 
 
 def _bin(columns: tuple[Array, ...], camera: Camera, count: int, top: int, bottom: int) -> Bins | None:
-    """Project and sort for some image rows; None if that takes too much memory and the rows can be divided."""
+    """Project and sort for the image rows `top` to `bottom`; None if they need more than `MAX_ENTRIES` entries and can
+    be divided."""
     n, size = len(columns[0]), (camera.width, bottom - top)
     chunks = -(-n // project.CHUNK)
     records, corner, mask = np.empty((n, project.RECORD), np.float32), np.empty(n, np.uint32), np.empty(n, np.uint64)
@@ -151,5 +156,5 @@ def _bin(columns: tuple[Array, ...], camera: Camera, count: int, top: int, botto
 
 
 def _counter() -> Array:
-    """A fresh count of work handed out."""
+    """A shared work counter, starting at zero."""
     return np.zeros(1, np.int64)

@@ -1,10 +1,9 @@
-"""From sorted footprints to pixels, tile by tile.
+"""Blend sorted footprints into pixels, tile by tile.
 
-Knows tiles, chunks and the image. Refuses to know where records come from and what a block does with them (`simd.py`).
-
-A tile of 16x16 pixels is 16 blocks of 16 lanes. Its footprints are taken in chunks: each is copied next to its
-neighbours and marked with the blocks its ellipse really touches; then each block, with its whole state in registers,
-runs over those that touch it. Finished blocks cost nothing, and colour, depth and group share every exponential.
+A tile of 16x16 pixels is 16 blocks of 16 lanes. Its footprints are processed in chunks: each record is copied next to
+its neighbours and marked with the blocks that its ellipse touches; then each block, with its whole state in registers,
+loops over the records that touch it (`simd.py`). Finished blocks cost nothing, and colour, depth and group share every
+exponential.
 """
 
 from __future__ import annotations
@@ -15,16 +14,16 @@ from ...compiled import fetch_add, helper, kernel
 from .lanes import LANES, lane_sum
 from .project import RECORD, TILE, Array
 from .simd import REST, STATE, WINNER, blend_block, store_block, weigh_block
-from .touch import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, CHUNK, fetch, slots_touching, take
+from .touch import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, CHUNK, copy_record, prefetch, slots_touching
 
-AHEAD = 16  # records are fetched this many entries before they are needed
+PREFETCH = 16  # entries between the prefetch of a record and its use
 
 f4 = np.float32
 ZERO, ONE = f4(0), f4(1)
 
 
 def make_scratch(workers: int) -> tuple[Array, ...]:
-    """What each worker writes while it draws: chunk, touched, state, alive, weights, one row a worker."""
+    """Allocate each worker's scratch memory: chunk, touched, state, alive, weights, one row a worker."""
     return (
         np.empty((workers, CHUNK * RECORD), np.float32), np.empty((workers, CHUNK), np.uint16),
         np.empty((workers, BLOCKS * STATE), np.float32), np.empty((workers, BLOCKS), np.bool_),
@@ -57,7 +56,8 @@ def draw(worker, workers, first, entries, records, size, limits, background, out
 
 @helper
 def _begin(state, alive, stride, width, height):  # type: ignore[no-untyped-def]
-    """A fresh tile: transmittance 1, nothing drawn. Pixels beyond the image (`width`, `height` left) begin finished."""
+    """Initialise a tile: transmittance 1, nothing drawn. Pixels outside the image, of which `width` and `height` remain
+    from the tile's corner, start as finished."""
     bits = state.view(np.int32)
     whole = width >= TILE and height >= TILE
     for block in range(BLOCKS):
@@ -80,17 +80,17 @@ def _begin(state, alive, stride, width, height):  # type: ignore[no-untyped-def]
 
 @helper
 def _gather(entries, start, count, stop, records, chunk, touched, x, y):  # type: ignore[no-untyped-def]
-    """Copy `count` records into the chunk and note the blocks each touches."""
+    """Copy `count` records into the chunk and compute the blocks each touches."""
     for slot in range(count):
-        fetch(records, entries[min(start + slot + AHEAD, stop - 1)])
-        touched[slot] = take(records, entries[start + slot], chunk, slot, x, y)
+        prefetch(records, entries[min(start + slot + PREFETCH, stop - 1)])
+        touched[slot] = copy_record(records, entries[start + slot], chunk, slot, x, y)
     for slot in range(count, CHUNK):
         touched[slot] = 0
 
 
 @helper
 def _draw_chunk(chunk, touched, state, alive, limits):  # type: ignore[no-untyped-def]
-    """Blend a chunk into every open block; returns whether the tile is finished."""
+    """Blend a chunk into every unfinished block; returns whether the tile is finished."""
     finished = True
     for block in range(BLOCKS):
         if not alive[block]:
@@ -118,7 +118,7 @@ def _finish(state, x, y, size, background, out):  # type: ignore[no-untyped-def]
 
 @helper
 def _store_pixels(state, offset, left, top, size, background, out):  # type: ignore[no-untyped-def]
-    """As `store_block`, pixel by pixel, for a block that the image's border cuts."""
+    """As `store_block`, pixel by pixel, for a block that crosses the image border."""
     rgb, alpha, depth, group = out
     bits = state.view(np.int32)
     for y in range(top, min(top + BLOCK_HEIGHT, size[1])):
@@ -158,7 +158,7 @@ def weigh(worker, workers, first, entries, records, size, limits, share, scratch
 
 @helper
 def _weigh_chunk(chunk, touched, state, alive, weights, limits):  # type: ignore[no-untyped-def]
-    """Weigh a chunk in every open block; returns whether the tile is finished."""
+    """Sum the weights of a chunk over every unfinished block; returns whether the tile is finished."""
     finished = True
     for block in range(BLOCKS):
         if not alive[block]:

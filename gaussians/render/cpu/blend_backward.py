@@ -1,9 +1,8 @@
-"""From the gradient of a picture to that of every footprint.
+"""Backward pass of blending: from the gradient of an image to that of every footprint, tile by tile.
 
-Knows tiles, entries and the order in which they are added up. Refuses to know blocks of pixels (`simd_backward`) and
-the projection (`unproject`). Each entry's gradient is written at the entry's own place and added up row by row in the
-order of the entries, so nothing is written by two threads and the same input gives the same bytes on any number of
-them.
+`simd_backward` handles the blocks of pixels, `project_backward` continues from footprints to Gaussians. Each entry's
+gradient is written at the entry's own place and then summed per row in the order of the entries. No two threads write
+the same place, so the same input gives the same bytes on any number of threads.
 """
 
 from __future__ import annotations
@@ -15,17 +14,17 @@ from .blend import _gather
 from .lanes import LANES
 from .project import HALF, L1, L2, L3, ONE, RECORD, TILE, ZERO, Array, X, Y, f4
 from .simd_backward import (
-    ACROSS,
-    ACROSS_Y,
-    ALONG,
-    ALONG_X,
-    ALONG_Y,
-    BLUER,
-    GREENER,
-    REDDER,
-    SHIFTED,
     STATE,
-    unblend,
+    SUM_BLUE,
+    SUM_E,
+    SUM_EX,
+    SUM_EY,
+    SUM_F,
+    SUM_FY,
+    SUM_GREEN,
+    SUM_RED,
+    SUM_SHIFT,
+    blend_blocks_backward,
 )
 from .touch import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, CHUNK
 
@@ -35,7 +34,7 @@ D_X, D_Y, D_L1, D_L2, D_L3, D_SHIFT, D_RED, D_GREEN, D_BLUE = range(GRADIENT)
 
 
 def make_scratch(workers: int) -> tuple[Array, ...]:
-    """What each worker writes: chunk, touched, state, sums, one row a worker."""
+    """Allocate each worker's scratch memory: chunk, touched, state, sums, one row a worker."""
     return (
         np.empty((workers, CHUNK * RECORD), np.float32), np.empty((workers, CHUNK), np.uint16),
         np.empty((workers, BLOCKS * STATE), np.float32), np.empty((workers, LANES), np.float32),
@@ -43,10 +42,10 @@ def make_scratch(workers: int) -> tuple[Array, ...]:
 
 
 @kernel
-def unblend_tiles(worker, workers, first, entries, records, size, limits, picture, gradient, out, scratch, counter):  # type: ignore[no-untyped-def]
+def draw_backward(worker, workers, first, entries, records, size, limits, picture, gradient, out, scratch, counter):  # type: ignore[no-untyped-def]
     """Write the gradient of every entry to `out` `[entries, GRADIENT]`, all of which is written.
 
-    `picture` is (rgb, alpha) as drawn, `gradient` that of both, `[H, W, 3]` and `[H, W]`; the others as `blend.draw`.
+    `picture` is (rgb, alpha) as drawn, `gradient` that of both, `[H, W, 3]` and `[H, W]`; the rest as in `blend.draw`.
     """
     tiles_wide = (size[0] + TILE - 1) // TILE
     chunk, touched, state, sums = scratch[0][worker], scratch[1][worker], scratch[2][worker], scratch[3][worker]
@@ -64,7 +63,7 @@ def unblend_tiles(worker, workers, first, entries, records, size, limits, pictur
             for slot in range(count):
                 reached = touched[slot] & alive
                 if reached != 0:
-                    alive ^= reached & ~unblend(chunk, slot, reached, state, sums, limits)
+                    alive ^= reached & ~blend_blocks_backward(chunk, slot, reached, state, sums, limits)
                     _finish(records, entries[start + slot], sums, f4(x), f4(y), out, start + slot)
                 else:
                     for place in range(GRADIENT):
@@ -74,7 +73,7 @@ def unblend_tiles(worker, workers, first, entries, records, size, limits, pictur
 
 @helper
 def _begin(state, left, top, size, picture, gradient):  # type: ignore[no-untyped-def]
-    """The state of a tile before its first footprint; returns the bits of the blocks that lie in the image."""
+    """Initialise the state of a tile; returns the bits of the blocks that lie in the image."""
     rgb, alpha = picture
     d_rgb, d_alpha = gradient
     alive = 0
@@ -101,21 +100,21 @@ def _begin(state, left, top, size, picture, gradient):  # type: ignore[no-untype
 
 @helper
 def _finish(records, row, sums, left, top, out, entry):  # type: ignore[no-untyped-def]
-    """The gradient of one entry's footprint from what its pixels add up to."""
+    """Compute the gradient of one entry's footprint from the sums over its pixels."""
     x, y = records[row, X] - left, records[row, Y] - top
-    e, f = sums[ALONG], sums[ACROSS]
-    out[entry, D_L1] = sums[ALONG_X] - x * e
-    out[entry, D_L2] = sums[ALONG_Y] - y * e
-    out[entry, D_L3] = sums[ACROSS_Y] - y * f
+    e, f = sums[SUM_E], sums[SUM_F]
+    out[entry, D_L1] = sums[SUM_EX] - x * e
+    out[entry, D_L2] = sums[SUM_EY] - y * e
+    out[entry, D_L3] = sums[SUM_FY] - y * f
     out[entry, D_X] = -records[row, L1] * e
     out[entry, D_Y] = -records[row, L2] * e - records[row, L3] * f
-    out[entry, D_SHIFT] = sums[SHIFTED]
-    out[entry, D_RED], out[entry, D_GREEN], out[entry, D_BLUE] = sums[REDDER], sums[GREENER], sums[BLUER]
+    out[entry, D_SHIFT] = sums[SUM_SHIFT]
+    out[entry, D_RED], out[entry, D_GREEN], out[entry, D_BLUE] = sums[SUM_RED], sums[SUM_GREEN], sums[SUM_BLUE]
 
 
 @kernel
 def collect(worker, workers, entries, each, total):  # type: ignore[no-untyped-def]
-    """Add the gradients of entries to those of their rows, `total` `[N, GRADIENT]`; each worker has rows of its own."""
+    """Add the gradients of entries to those of their rows, `total` `[N, GRADIENT]`; workers own disjoint rows."""
     rows = total.shape[0]
     low, high = rows * worker // workers, rows * (worker + 1) // workers
     for k in range(entries.shape[0]):

@@ -1,7 +1,6 @@
-"""There and back: a picture with what it takes to carry its gradient back to the Gaussians.
+"""Forward and backward pass of the CPU renderer; runs the stages in `blend_backward` and `project_backward`.
 
-Knows the order of the stages of both ways. Refuses to know their insides (`backward`, `unproject`) and
-torch's bookkeeping (`..differentiable`).
+`..differentiable` wraps both for torch's autograd.
 """
 
 from __future__ import annotations
@@ -14,14 +13,15 @@ from numpy.typing import NDArray
 
 from ... import compiled
 from ...camera import Camera, Vec3
-from . import LIMITS, Bins, _counter, blend_backward, canvas, drawn, project_backward
+from . import LIMITS, Bins, _counter, blend_backward, draw_strips, make_image, project_backward
 
 Array = NDArray[Any]
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """A picture, `rgb [H, W, 3]` and `alpha [H, W]` float32, and the sorted footprints of each strip of its rows."""
+    """Result of a forward pass: `rgb [H, W, 3]` and `alpha [H, W]` float32, and the sorted footprints of each strip of
+    image rows, which the backward pass needs."""
 
     columns: tuple[Array, ...]
     rgb: Array
@@ -31,8 +31,8 @@ class Drawn:
 
 @dataclass(frozen=True)
 class Gradients:
-    """Of one number by the columns of a cloud, float32: `means [N, 3]`, `quats [N, 4]`, `scales [N, 3]`,
-    `opacities [N]`, `sh [N, K, 3]`; and by the footprints' centres in pixels, `centers [N, 2]`."""
+    """Gradients of a scalar by the columns of a cloud, float32: `means [N, 3]`, `quats [N, 4]`, `scales [N, 3]`,
+    `opacities [N]`, `sh [N, K, 3]`; and by the footprint centres in pixels, `centers [N, 2]`."""
 
     means: Array
     quats: Array
@@ -44,13 +44,13 @@ class Gradients:
 
 def draw(columns: tuple[Array, ...], camera: Camera, background: Vec3) -> Drawn:
     """Draw five columns of a cloud (means, quats, scales, opacities, sh; float32, contiguous)."""
-    out = canvas(camera)
-    strips = tuple(drawn((*columns, np.zeros(len(columns[0]), np.int32)), camera, background, out))
+    out = make_image(camera)
+    strips = tuple(draw_strips((*columns, np.zeros(len(columns[0]), np.int32)), camera, background, out))
     return Drawn(columns, out[0], out[1], strips)
 
 
-def undraw(picture: Drawn, d_rgb: Array, d_alpha: Array) -> Gradients:
-    """Carry the gradient of a picture, `[H, W, 3]` and `[H, W]`, back to the columns. Same input, same bytes."""
+def draw_backward(picture: Drawn, d_rgb: Array, d_alpha: Array) -> Gradients:
+    """Propagate the gradient of an image, `[H, W, 3]` and `[H, W]`, back to the columns. Same input, same bytes."""
     columns, count = picture.columns, compiled.workers()
     out = *(np.zeros_like(column) for column in columns), np.zeros((len(columns[0]), 2), np.float32)
     scratch = blend_backward.make_scratch(count)
@@ -59,9 +59,9 @@ def undraw(picture: Drawn, d_rgb: Array, d_alpha: Array) -> Gradients:
         gradient = d_rgb[top:bottom], d_alpha[top:bottom]
         each = np.empty((len(bins.entries), blend_backward.GRADIENT), np.float32)
         sorted_ = bins.first, bins.entries, bins.records, (d_alpha.shape[1], bottom - top), LIMITS
-        compiled.run(blend_backward.unblend_tiles, count, *sorted_, seen, gradient, each, scratch, _counter())
+        compiled.run(blend_backward.draw_backward, count, *sorted_, seen, gradient, each, scratch, _counter())
         total = np.zeros((len(columns[0]), blend_backward.GRADIENT), np.float32)
         compiled.run(blend_backward.collect, count, bins.entries, each, total)
-        shaped = columns, bins.view, bins.records, total, out
-        compiled.run(project_backward.unproject, count, *shaped, _counter())
+        projected = columns, bins.view, bins.records, total, out
+        compiled.run(project_backward.project_backward, count, *projected, _counter())
     return Gradients(*out)

@@ -1,7 +1,7 @@
-"""Explicit SIMD: vectors of numbers, as LLVM spells them.
+"""Emit LLVM vector instructions from numba intrinsics.
 
-Knows LLVM's vector instructions. Refuses to know what is computed with them. Compilers do not vectorise the renderer's
-loops by themselves, so they are written as LLVM vectors, which LLVM lowers to AVX-512, AVX2, SSE or NEON.
+Compilers do not vectorise the renderer's loops automatically, so they are written as LLVM vectors, which LLVM lowers to
+AVX-512, AVX2, SSE or NEON.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ VECTOR, INTEGERS = ir.VectorType(F32, LANES), ir.VectorType(I32, LANES)
 
 
 class Lanes:
-    """16 pixels (or another `count` of numbers) at once: a thin spelling of LLVM's vector instructions.
+    """Emitter of vector instructions on 16 pixels (or another `count` of numbers).
 
-    Sums and products may fuse and be reordered as the kernel allows that they are compiled into: numba marks them so.
+    Sums and products may be fused and reordered as far as the options of the enclosing kernel allow.
     """
 
     def __init__(self, builder: ir.IRBuilder, count: int = LANES) -> None:
@@ -37,13 +37,13 @@ class Lanes:
         return self.constant([value] * self.count)
 
     def spread(self, scalar: ir.Value) -> ir.Value:
-        """A scalar in every lane."""
+        """Broadcast a scalar to every lane."""
         nothing = ir.Constant(ir.VectorType(scalar.type, self.count), ir.Undefined)
         first = self.b.insert_element(nothing, scalar, ir.Constant(I32, 0))
         return self.b.shuffle_vector(first, nothing, ir.Constant(ir.VectorType(I32, self.count), [0] * self.count))
 
     def spread_all(self, numbers: ir.Value) -> list[ir.Value]:
-        """Each number of a tuple in every lane of its own vector."""
+        """Broadcast each number of a tuple to a vector of its own."""
         return [self.spread(number) for number in cgutils.unpack_tuple(self.b, numbers)]  # type: ignore[no-untyped-call]
 
     def at(self, base: ir.Value, offset: ir.Value, step: int = 0) -> ir.Value:
@@ -83,7 +83,7 @@ class Lanes:
         return self.b.call(function, [x])
 
     def pick(self, x: ir.Value, y: ir.Value, lanes: Iterable[int]) -> ir.Value:
-        """A vector of the named lanes of x (0 to 15, if it has 16) and y (from there on)."""
+        """Shuffle: the given lanes of x (0 to 15, if it has 16) and y (from there on)."""
         chosen = [ir.Constant(I32, lane) for lane in lanes]
         return self.b.shuffle_vector(x, y, ir.Constant(ir.VectorType(I32, len(chosen)), chosen))
 
@@ -100,9 +100,10 @@ def pointer_to(context: Any, builder: ir.IRBuilder, signature: Any, arguments: A
 
 @intrinsic
 def lane_sum(typing_context: Any, weights: Any, slot: Any) -> Any:
-    """Sum of row `slot` of `weights` `[CHUNK, LANES]`, always in the same order: halves, quarters and so on.
+    """Sum of row `slot` of `weights` `[CHUNK, LANES]`, always added in the same order: halves, quarters and so on.
 
-    A plain loop may be reordered, and LLVM keeps two versions of it and picks one by the addresses of its arrays.
+    A plain loop would not be deterministic: LLVM may reorder it, and compiles two versions between which it chooses by
+    the addresses of the arrays.
     """
 
     def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:

@@ -1,8 +1,6 @@
-"""Which footprint comes first, and which tiles it goes to.
+"""Sort footprints by depth, then into tiles: two stable counting sorts.
 
-Knows two counting sorts: rows by depth, then rows into tiles in that order. Refuses to know what a footprint looks
-like beyond the tiles it touches. Both sorts are stable, so equal depths keep row order and the result does not depend
-on the number of workers.
+Equal depths keep row order, and the result does not depend on the number of workers.
 """
 
 from __future__ import annotations
@@ -26,14 +24,14 @@ from .project import (
 )
 from .touch import lowest_bit
 
-DIGIT = 11  # bits sorted at once: 2048 counters stay in the first-level cache
+DIGIT = 11  # bits of a radix-sort digit: 2048 counters stay in the first-level cache
 BUCKETS = 1 << DIGIT
 DIGITS = 3  # 3 x 11 bits hold the 31 of a positive float
 
 
 @kernel
 def depth_order(depth, visible, found, chunk, keys, rows, tally):  # type: ignore[no-untyped-def]
-    """Sort rows by depth; returns which half of `rows` holds them and how many they are.
+    """Sort rows by depth (LSD radix sort); returns which half of `rows` holds the result and how many rows there are.
 
     `visible` `[N]` holds rows packed to the front of chunks of `chunk`, `found[c]` of them in chunk c. `keys` and
     `rows` are `[2, N]` int32, `tally` `[DIGITS, BUCKETS]` int64 holding zeros.
@@ -55,7 +53,7 @@ def depth_order(depth, visible, found, chunk, keys, rows, tally):  # type: ignor
 
 @helper
 def _scatter(tally, shift, count, keys, rows, source):  # type: ignore[no-untyped-def]
-    """One stable pass by the digit at `shift`; returns False, having moved nothing, if all keys share that digit."""
+    """One stable pass by the digit at `shift`; returns False and moves nothing if all keys share that digit."""
     total = 0
     for bucket in range(BUCKETS):
         size = tally[bucket]
@@ -120,7 +118,7 @@ def starts(tally, first):  # type: ignore[no-untyped-def]
 
 @kernel
 def fill_tiles(worker, workers, order, records, corner, mask, view, tiles_wide, places, entries):  # type: ignore[no-untyped-def]
-    """Write rows into `entries`, tile by tile and nearest first; walks exactly as `count_tiles` did."""
+    """Write rows into `entries`, tile by tile and nearest first; visits tiles in the same order as `count_tiles`."""
     mine = places[worker]
     for k in range(order.shape[0] * worker // workers, order.shape[0] * (worker + 1) // workers):
         n = order[k]

@@ -1,13 +1,13 @@
-"""From Gaussians in the world to footprints in the image: one compiled pass over the rows of a cloud.
+"""Project Gaussians to image footprints (EWA splatting): one compiled pass over the rows of a cloud.
 
-Knows the camera, the covariance algebra and which tiles an ellipse touches. Refuses to know harmonics (`shade`), order
-and blending. Output is written at the row's own index, so nothing depends on which thread did the work.
+Output is written at the row's own index, so the result does not depend on which thread processed a row.
 
-A footprint's exponent is kept as a sum of squares (Cholesky factor of the inverse covariance), scaled by 1/16:
+A footprint's exponent is stored as a sum of squares (Cholesky factor of the inverse covariance), scaled by 1/16:
 `q = (l1 dx + l2 dy)^2 + (l3 dy)^2 = d' inv(cov) d / 16`. It cannot go negative by rounding, costs as little as the
 quadratic form, and each row of an ellipse is an interval in closed form:
 `dx in slope * dy -+ sqrt(limit - (l3 dy)^2) / l1`, where limit is the q at which alpha falls to its minimum.
-Opacity goes into the exponent too: `alpha = exp(-8 (q + shift))`, so alpha's minimum is one constant, `Q_MAX`.
+Opacity is folded into the exponent: `alpha = exp(-8 (q + shift))`, so the cut-off at alpha's minimum is one constant,
+`Q_MAX`.
 Why 1/16: `simd.py` evaluates `exp(-8 q)` as the eighth power of a polynomial.
 """
 
@@ -31,7 +31,7 @@ RECORD = 16  # float32 in a footprint's record: one 64-byte cache line
 # Places in a record. GROUP holds the bits of an int32.
 X, Y, L1, L2, L3, SHIFT, LIMIT, REACH_Y, SLOPE, WIDTH, EXTREME, RED, GREEN, BLUE, DEPTH, GROUP = range(RECORD)
 MASK_SIDE = 8  # footprints of at most 8x8 tiles keep the tiles they touch as bits of a uint64, row by row
-SMALL = 6  # boxes of so few tiles are taken whole
+SMALL = 6  # bounding boxes of at most this many tiles are not tested tile by tile
 CHUNK = 2048  # rows a worker takes at a time
 
 Q_MAX = math.log(1 / convention.ALPHA_MIN) / 8  # exp(-8 Q_MAX) is the least alpha
@@ -41,7 +41,7 @@ f4 = np.float32
 ZERO, HALF, ONE, TWO, FOUR, SIXTEEN = (f4(v) for v in (0, 0.5, 1, 2, 4, 16))
 QUARTER, EIGHTH, PER_TILE = f4(0.25), f4(0.125), f4(1 / TILE)
 HUGE, TINY = f4(3e38), f4(1e-30)
-SLACK = f4(1.01)  # beyond what rounding can amount to
+SLACK = f4(1.01)  # safety factor, larger than any rounding error
 BIT = np.uint64(1)
 
 
@@ -79,7 +79,7 @@ class View(NamedTuple):
 
 
 class Ellipse(NamedTuple):
-    """Where a footprint reaches alpha's minimum, px: centre, half height, and the fields the docstring above names.
+    """Where a footprint reaches alpha's minimum, px: centre, half height, and the fields that the module names.
 
     `width` is 1 / l1; `extreme` is dy at the rightmost point.
     """
@@ -95,7 +95,7 @@ class Ellipse(NamedTuple):
 
 
 def make_view(camera: Camera, top: int, bottom: int) -> View:
-    """What the kernel needs to draw the image rows `top` to `bottom` of a camera."""
+    """The kernel's view of a camera for the image rows `top` to `bottom`."""
     margin_x, margin_y = convention.EDGE * camera.width, convention.EDGE * camera.height
     numbers = [
         *camera.world_to_camera[:3, :3].ravel(), *camera.position,
@@ -112,8 +112,8 @@ def project(worker, workers, means, quats, scales, opacities, sh, group, view, o
     """Project every row; all of `out` is written at the row's index.
 
     `out` is: records `[N, 16]` float32; corner `[N]` uint32, the first tile (x | y << 16); mask `[N]` uint64, the tiles
-    touched counted from the corner, 0 if they are too many; depth `[N]` int32, bits of the positive float; visible
-    `[N]` int32, the rows seen, packed to the front of each chunk; found `[chunks]` int32, how many.
+    touched counted from the corner, 0 if they are too many for a mask; depth `[N]` int32, bits of the positive float;
+    visible `[N]` int32, the visible rows, packed to the front of each chunk; found `[chunks]` int32, their number.
     `group` is `[N]` int32, `counter` `[1]` int64 holding 0.
     """
     records, corner, mask, depth, visible, found = out
@@ -134,7 +134,7 @@ def project(worker, workers, means, quats, scales, opacities, sh, group, view, o
             inverse = ONE / z
             u = (view.r00 * dx + view.r01 * dy + view.r02 * dz) * inverse
             v = (view.r10 * dx + view.r11 * dy + view.r12 * dz) * inverse
-            if _beside(u, v, inverse, scale, view):
+            if _outside_image(u, v, inverse, scale, view):
                 continue
             quat = (quats[n, 0], quats[n, 1], quats[n, 2], quats[n, 3])
             opacity = min(opacities[n], ONE)
@@ -157,14 +157,16 @@ def project(worker, workers, means, quats, scales, opacities, sh, group, view, o
 
 
 @helper
-def _beside(u, v, inverse, scale, view):  # type: ignore[no-untyped-def]
-    """Whether a Gaussian seen at the tangents (u, v) would miss the image even as an opaque ball of its largest scale:
-    most of what a camera in a room does not see is known by this at a tenth of the work. NaN tells nothing."""
+def _outside_image(u, v, inverse, scale, view):  # type: ignore[no-untyped-def]
+    """Whether a Gaussian at the tangents (u, v) misses the image even as an opaque ball of its largest scale.
+
+    This culls most invisible Gaussians of an indoor scene at a tenth of the cost of a footprint. NaN gives False.
+    """
     x, y = view.fx * u + view.cx, view.fy * v + view.cy
     cu, cv = min(max(u, view.u0), view.u1), min(max(v, view.v0), view.v1)
     largest = max(max(abs(scale[0]), abs(scale[1])), abs(scale[2])) * inverse
     j, k = view.fx * largest, view.fy * largest
-    stretch = SLACK * SIXTEEN * view.q_max  # variances from its centre to where an opaque ellipse ends, squared
+    stretch = SLACK * SIXTEEN * view.q_max  # squared Mahalanobis distance at which an opaque footprint ends
     reach_x = stretch * (j * j * (ONE + cu * cu) + view.dilation)
     reach_y = stretch * (k * k * (ONE + cv * cv) + view.dilation)
     aside, above = max(-x, x - view.width), max(-y, y - view.height)
@@ -173,7 +175,7 @@ def _beside(u, v, inverse, scale, view):  # type: ignore[no-untyped-def]
 
 @helper
 def _footprint(u, v, inverse, quat, scale, opacity, view):  # type: ignore[no-untyped-def]
-    """Ellipse of a Gaussian seen at the tangents (u, v), half its width (px), and whether it can be seen."""
+    """Ellipse of a Gaussian at the tangents (u, v), half its width (px), and whether it can be visible."""
     xx, xy, yy, determinant = _covariance(quat, scale, inverse, u, v, view)
     limit = math.log(opacity / view.alpha_min) * EIGHTH  # of q: alpha = opacity * exp(-8 q) >= alpha_min
     x, y = view.fx * u + view.cx, view.fy * v + view.cy
@@ -196,8 +198,8 @@ def _covariance(quat, scale, inverse, u, v, view):  # type: ignore[no-untyped-de
     n0, n1, n2 = k * (view.r10 - v * view.r20), k * (view.r11 - v * view.r21), k * (view.r12 - v * view.r22)
     w, x, y, z = quat
     norm = w * w + x * x + y * y + z * z
-    flat = norm <= TINY  # no direction at all: the identity, as in `rotations.normalize`
-    s = ZERO if flat else TWO / norm
+    zero = norm <= TINY  # a zero quaternion counts as the identity, as in `rotations.normalize`
+    s = ZERO if zero else TWO / norm
     a00, a10, a20 = ONE - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y)
     a01, a11, a21 = s * (x * y - w * z), ONE - s * (x * x + z * z), s * (y * z + w * x)
     a02, a12, a22 = s * (x * z + w * y), s * (y * z - w * x), ONE - s * (x * x + y * y)
@@ -219,8 +221,8 @@ def span(e, low, high):  # type: ignore[no-untyped-def]
     right = e.slope * at + math.sqrt(max(e.limit - (e.l3 * at) * (e.l3 * at), ZERO)) * e.width
     at = min(max(-e.extreme, d0), d1)
     left = e.slope * at - math.sqrt(max(e.limit - (e.l3 * at) * (e.l3 * at), ZERO)) * e.width
-    missed = not d0 <= d1
-    return HUGE if missed else e.x + left, -HUGE if missed else e.x + right
+    empty = not d0 <= d1
+    return HUGE if empty else e.x + left, -HUGE if empty else e.x + right
 
 
 @helper
@@ -243,8 +245,9 @@ def tile_span(e, row, width):  # type: ignore[no-untyped-def]
 
 @helper
 def _tiles(e, reach_x, view):  # type: ignore[no-untyped-def]
-    """First column and row of the tiles that ellipse `e` touches, the mask of tiles from there (0: more than a mask
-    holds), and whether there are any. A box of few tiles is taken whole: testing it costs more than it saves."""
+    """First column and row of the tiles that ellipse `e` touches, the mask of tiles from there (0: too many for a
+    mask), and whether there are any. A bounding box of at most `SMALL` tiles is taken whole: testing its tiles costs
+    more than it saves."""
     top, bottom = tile_rows(e, view.height)
     left = int(max(e.x - reach_x, ZERO) * PER_TILE)
     right = int(min(e.x + reach_x, view.width - HALF) * PER_TILE) + 1

@@ -1,9 +1,8 @@
-"""From the gradient of footprints to that of Gaussians: the chain rule of `project`, one compiled pass over the rows.
+"""Backward pass of `project`: from the gradient of footprints to that of Gaussians, one compiled pass over the rows.
 
-Knows the camera, the covariance algebra and the harmonics. Refuses to know pixels. What the way down worked out
-beyond a footprint's record is worked out anew: keeping it would cost more memory traffic than it saves. Names as
-in `project`: u, v are tangents, m and o the rows of the Jacobian in the world, p and q the principal axes seen along x
-and along y.
+Intermediate values of the forward pass beyond a footprint's record are recomputed: storing them would cost more memory
+traffic than it saves. Names as in `project`: u, v are tangents, m and o the rows of the Jacobian in the world, p and q
+the principal axes projected on x and on y.
 """
 
 from __future__ import annotations
@@ -20,11 +19,11 @@ SIX, EIGHT = f4(6), f4(8)
 
 
 @kernel
-def unproject(worker, workers, columns, view, records, footprints, out, counter):  # type: ignore[no-untyped-def]
-    """Add to `out`, the gradients of means, quats, scales, opacities, harmonics and centres, what the footprints say.
+def project_backward(worker, workers, columns, view, records, footprints, out, counter):  # type: ignore[no-untyped-def]
+    """Add the chain rule's result to `out`: gradients of means, quats, scales, opacities, harmonics and centres.
 
-    `columns` are the first five, `footprints` `[N, GRADIENT]`, zeros for what has no footprint. Rows are taken as
-    they lie in memory: in the order of depth, most of the time went into waiting for it.
+    `columns` are the first five of these, `footprints` `[N, GRADIENT]` the gradients of the footprints, zero for rows
+    without one. Rows are visited in memory order: in depth order, most of the time was spent waiting for memory.
     """
     means, quats, scales, opacities, sh = columns
     d_means, d_quats, d_scales, d_opacities, d_sh, d_centers = out
@@ -33,13 +32,13 @@ def unproject(worker, workers, columns, view, records, footprints, out, counter)
         if start >= means.shape[0]:
             break
         for n in range(start, min(start + ROWS, means.shape[0])):
-            if not _moves(n, footprints):
-                continue  # hidden behind finished pixels, as many are
+            if not _has_gradient(n, footprints):
+                continue  # many footprints are occluded in all their pixels
             toward = (means[n, 0] - view.ex, means[n, 1] - view.ey, means[n, 2] - view.ez)
-            moved = _shaped(n, toward, quats, scales, view, records, footprints, d_quats, d_scales)
-            turned = _shaded(n, toward, sh, records, footprints, d_sh)
+            by_shape = _footprint_backward(n, toward, quats, scales, view, records, footprints, d_quats, d_scales)
+            by_color = _shade_backward(n, toward, sh, records, footprints, d_sh)
             for axis in range(3):
-                d_means[n, axis] += moved[axis] + turned[axis]
+                d_means[n, axis] += by_shape[axis] + by_color[axis]
             d_centers[n, 0] += footprints[n, D_X]
             d_centers[n, 1] += footprints[n, D_Y]
             if opacities[n] < ONE:
@@ -47,8 +46,8 @@ def unproject(worker, workers, columns, view, records, footprints, out, counter)
 
 
 @helper
-def _moves(n, footprints):  # type: ignore[no-untyped-def]
-    """Whether anything of row `n`'s footprint has a gradient."""
+def _has_gradient(n, footprints):  # type: ignore[no-untyped-def]
+    """Whether any field of row `n`'s footprint has a non-zero gradient."""
     largest = ZERO
     for place in range(footprints.shape[1]):
         largest = max(largest, abs(footprints[n, place]))
@@ -56,8 +55,8 @@ def _moves(n, footprints):  # type: ignore[no-untyped-def]
 
 
 @helper
-def _shaped(n, toward, quats, scales, view, records, footprints, d_quats, d_scales):  # type: ignore[no-untyped-def]
-    """Gradient of the offset from the eye through centre and shape; those of quats and scales are added."""
+def _footprint_backward(n, toward, quats, scales, view, records, footprints, d_quats, d_scales):  # type: ignore[no-untyped-def]
+    """Gradient of the offset from the eye through centre and covariance; adds to those of quats and scales."""
     dx, dy, dz = toward
     x = view.r00 * dx + view.r01 * dy + view.r02 * dz
     y = view.r10 * dx + view.r11 * dy + view.r12 * dz
@@ -67,19 +66,19 @@ def _shaped(n, toward, quats, scales, view, records, footprints, d_quats, d_scal
     j, k = view.fx * inverse, view.fy * inverse
     m = (j * (view.r00 - cu * view.r20), j * (view.r01 - cu * view.r21), j * (view.r02 - cu * view.r22))
     o = (k * (view.r10 - cv * view.r20), k * (view.r11 - cv * view.r21), k * (view.r12 - cv * view.r22))
-    axes, half_norm = _axes(n, quats)
+    axes, two_over_norm = _axes(n, quats)
     s0, s1, s2 = scales[n, 0], scales[n, 1], scales[n, 2]
     mp = (_dot(m, axes[0]), _dot(m, axes[1]), _dot(m, axes[2]))
     oq = (_dot(o, axes[0]), _dot(o, axes[1]), _dot(o, axes[2]))
     p, q = (mp[0] * s0, mp[1] * s1, mp[2] * s2), (oq[0] * s0, oq[1] * s1, oq[2] * s2)
-    dp, dq = _unconic(n, p, q, view.dilation, records, footprints)
+    dp, dq = _conic_backward(n, p, q, view.dilation, records, footprints)
     d_scales[n, 0] += dp[0] * mp[0] + dq[0] * oq[0]
     d_scales[n, 1] += dp[1] * mp[1] + dq[1] * oq[1]
     d_scales[n, 2] += dp[2] * mp[2] + dq[2] * oq[2]
     dp, dq = (dp[0] * s0, dp[1] * s1, dp[2] * s2), (dq[0] * s0, dq[1] * s1, dq[2] * s2)
-    _unturn(n, quats, half_norm, m, o, dp, dq, d_quats)
-    dm = _along(axes, dp)
-    do = _along(axes, dq)
+    _rotation_backward(n, quats, two_over_norm, m, o, dp, dq, d_quats)
+    dm = _combine(axes, dp)
+    do = _combine(axes, dq)
     r2 = (view.r20, view.r21, view.r22)
     d_inverse = view.fx * _dot(dm, (view.r00 - cu * r2[0], view.r01 - cu * r2[1], view.r02 - cu * r2[2]))
     d_inverse += view.fy * _dot(do, (view.r10 - cv * r2[0], view.r11 - cv * r2[1], view.r12 - cv * r2[2]))
@@ -103,8 +102,8 @@ def _dot(a, b):  # type: ignore[no-untyped-def]
 
 
 @helper
-def _along(axes, amounts):  # type: ignore[no-untyped-def]
-    """The sum of three axes, so much of each."""
+def _combine(axes, amounts):  # type: ignore[no-untyped-def]
+    """Linear combination of three axes."""
     a, b, c = axes
     return (
         amounts[0] * a[0] + amounts[1] * b[0] + amounts[2] * c[0],
@@ -115,7 +114,7 @@ def _along(axes, amounts):  # type: ignore[no-untyped-def]
 
 @helper
 def _axes(n, quats):  # type: ignore[no-untyped-def]
-    """The three axes of row `n` (columns of its rotation), and 2 / |quat|^2, 0 if it has no direction."""
+    """The three axes of row `n` (columns of its rotation), and 2 / |quat|^2, 0 for a zero quaternion."""
     w, x, y, z = quats[n, 0], quats[n, 1], quats[n, 2], quats[n, 3]
     norm = w * w + x * x + y * y + z * z
     s = ZERO if norm <= TINY else TWO / norm
@@ -128,11 +127,11 @@ def _axes(n, quats):  # type: ignore[no-untyped-def]
 
 
 @helper
-def _unconic(n, p, q, dilation, records, footprints):  # type: ignore[no-untyped-def]
-    """Gradient of the axes seen along x (`p`) and y (`q`) from that of the exponent's fields.
+def _conic_backward(n, p, q, dilation, records, footprints):  # type: ignore[no-untyped-def]
+    """Gradient of the axes projected on x (`p`) and y (`q`) from that of the exponent's fields.
 
-    `l3 = 1 / (4 sqrt(yy))`, `l1 = sqrt(yy / det) / 4`, `l2 = -xy / yy l1`, so that the record holds all but the minors
-    of which det is the sum of squares, as going down.
+    `l3 = 1 / (4 sqrt(yy))`, `l1 = sqrt(yy / det) / 4`, `l2 = -xy / yy l1`, so the record holds everything but the
+    minors, whose squares sum to det as in the forward pass.
     """
     l1, l3, slope = records[n, L1], records[n, L3], records[n, SLOPE]
     per_yy = SIXTEEN * l3 * l3
@@ -159,9 +158,11 @@ def _unconic(n, p, q, dilation, records, footprints):  # type: ignore[no-untyped
 
 
 @helper
-def _unturn(n, quats, s, m, o, dp, dq, d_quats):  # type: ignore[no-untyped-def]
-    """Add the gradient of row `n`'s quaternion, of any length; that of entry (i, k) of its rotation is
-    `m_i dp_k + o_i dq_k`."""
+def _rotation_backward(n, quats, s, m, o, dp, dq, d_quats):  # type: ignore[no-untyped-def]
+    """Add the gradient of row `n`'s quaternion, of any length.
+
+    The gradient of entry (i, k) of its rotation matrix is `m_i dp_k + o_i dq_k`.
+    """
     w, x, y, z = quats[n, 0], quats[n, 1], quats[n, 2], quats[n, 3]
     r00, r10, r20 = m[0] * dp[0] + o[0] * dq[0], m[1] * dp[0] + o[1] * dq[0], m[2] * dp[0] + o[2] * dq[0]
     r01, r11, r21 = m[0] * dp[1] + o[0] * dq[1], m[1] * dp[1] + o[1] * dq[1], m[2] * dp[1] + o[2] * dq[1]
@@ -170,7 +171,7 @@ def _unturn(n, quats, s, m, o, dp, dq, d_quats):  # type: ignore[no-untyped-def]
     dx = y * (r10 + r01) + z * (r20 + r02) + w * (r21 - r12) - TWO * x * (r11 + r22)
     dy = x * (r10 + r01) + z * (r21 + r12) + w * (r02 - r20) - TWO * y * (r00 + r22)
     dz = x * (r20 + r02) + y * (r21 + r12) + w * (r10 - r01) - TWO * z * (r00 + r11)
-    radial = HALF * s * (w * dw + x * dx + y * dy + z * dz)  # turning does not depend on the quaternion's length
+    radial = HALF * s * (w * dw + x * dx + y * dy + z * dz)  # the rotation does not depend on the quaternion's length
     d_quats[n, 0] += s * (dw - radial * w)
     d_quats[n, 1] += s * (dx - radial * x)
     d_quats[n, 2] += s * (dy - radial * y)
@@ -178,36 +179,36 @@ def _unturn(n, quats, s, m, o, dp, dq, d_quats):  # type: ignore[no-untyped-def]
 
 
 @helper
-def _shaded(n, toward, sh, records, footprints, d_sh):  # type: ignore[no-untyped-def]
-    """Gradient of the offset from the eye through the colour; that of the harmonics is added."""
+def _shade_backward(n, toward, sh, records, footprints, d_sh):  # type: ignore[no-untyped-def]
+    """Gradient of the offset from the eye through the colour; adds to that of the harmonics."""
     gx, gy, gz = ZERO, ZERO, ZERO
-    if sh.shape[1] == 1:  # seen alike from everywhere
+    if sh.shape[1] == 1:  # the colour does not depend on the view direction
         for channel in range(3):
-            d_sh[n, 0, channel] += C0 * _lit(n, channel, records, footprints)
+            d_sh[n, 0, channel] += C0 * _clamp_backward(n, channel, records, footprints)
         return gx, gy, gz
     length = math.sqrt(_dot(toward, toward))
     x, y, z = toward[0] / length, toward[1] / length, toward[2] / length
     for channel in range(3):
-        g = _lit(n, channel, records, footprints)
+        g = _clamp_backward(n, channel, records, footprints)
         d_sh[n, 0, channel] += C0 * g
-        a, b, c = _first_bands(n, channel, sh, x, y, z, g, d_sh)
+        a, b, c = _bands_1_2_backward(n, channel, sh, x, y, z, g, d_sh)
         gx, gy, gz = gx + a, gy + b, gz + c
         if sh.shape[1] > 9:
-            a, b, c = _third_band(n, channel, sh, x, y, z, g, d_sh)
+            a, b, c = _band_3_backward(n, channel, sh, x, y, z, g, d_sh)
             gx, gy, gz = gx + a, gy + b, gz + c
     radial = gx * x + gy * y + gz * z
     return (gx - radial * x) / length, (gy - radial * y) / length, (gz - radial * z) / length
 
 
 @helper
-def _lit(n, channel, records, footprints):  # type: ignore[no-untyped-def]
-    """Gradient of a colour's channel before it is cut off at zero."""
+def _clamp_backward(n, channel, records, footprints):  # type: ignore[no-untyped-def]
+    """Gradient of a colour channel before it is clamped at zero."""
     return footprints[n, D_RED + channel] if records[n, RED + channel] > ZERO else ZERO
 
 
 @helper
-def _first_bands(n, c, sh, x, y, z, g, d_sh):  # type: ignore[no-untyped-def]
-    """Bands one and two of channel `c`: gradient of the direction; that of the coefficients is added."""
+def _bands_1_2_backward(n, c, sh, x, y, z, g, d_sh):  # type: ignore[no-untyped-def]
+    """SH bands 1 and 2 of channel `c`: gradient of the direction; adds to that of the coefficients."""
     d_sh[n, 1, c] -= C1 * y * g
     d_sh[n, 2, c] += C1 * z * g
     d_sh[n, 3, c] -= C1 * x * g
@@ -232,8 +233,8 @@ def _first_bands(n, c, sh, x, y, z, g, d_sh):  # type: ignore[no-untyped-def]
 
 
 @helper
-def _third_band(n, c, sh, x, y, z, g, d_sh):  # type: ignore[no-untyped-def]
-    """As `_first_bands` for band three."""
+def _band_3_backward(n, c, sh, x, y, z, g, d_sh):  # type: ignore[no-untyped-def]
+    """As `_bands_1_2_backward` for band 3."""
     xx, yy, zz = x * x, y * y, z * z
     d_sh[n, 9, c] -= C30 * y * (THREE * xx - yy) * g
     d_sh[n, 10, c] += C31 * x * y * z * g

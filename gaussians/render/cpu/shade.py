@@ -1,7 +1,4 @@
-"""The colour of a Gaussian as seen from the eye: `max(0, 0.5 + harmonics)`.
-
-Knows the real harmonics up to degree 3. Refuses to know cameras and footprints.
-"""
+"""Evaluate a Gaussian's colour in a view direction: `max(0, 0.5 + SH)`, real spherical harmonics up to degree 3."""
 
 from __future__ import annotations
 
@@ -24,7 +21,8 @@ C30, C31, C32, C33, C34 = (
 
 @helper
 def shade(n, sh, x, y, z, record):  # type: ignore[no-untyped-def]
-    """Write the colour of row `n` seen along (x, y, z) to `record` `[3]`; returns whether it is finite."""
+    """Write the colour of row `n` in view direction (x, y, z), any length, to `record` `[3]`; returns whether it is
+    finite."""
     inverse = ONE / math.sqrt(x * x + y * y + z * z)
     x, y, z = x * inverse, y * inverse, z * inverse
     finite = True

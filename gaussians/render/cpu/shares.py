@@ -1,7 +1,7 @@
-"""Sorted footprints to summed weights of each label of a labelled picture, tile by tile.
+"""Sum the blending weight of each footprint for each label of a label image, tile by tile.
 
-Knows tiles, chunks and labels. Refuses to know where records come from. A tile lists its own labels, at most one a
-pixel and mostly one or two, so the cost depends on the picture's borders, not on how many labels there are.
+Each tile lists the labels that occur in it: at most one a pixel, mostly one or two. The cost depends on the borders
+between labels, not on the number of labels.
 """
 
 from __future__ import annotations
@@ -15,22 +15,22 @@ from .project import BIT, TILE, Array
 from .simd import weigh_block
 from .touch import BLOCK_HEIGHT, BLOCK_WIDTH, BLOCKS, BLOCKS_WIDE, CHUNK, lowest_bit, slots_touching
 
-PIXELS = TILE * TILE  # of a tile, so the most labels it can have
+PIXELS = TILE * TILE  # of a tile, and therefore its maximum number of labels
 
 f4 = np.float32
 ZERO = f4(0)
 
 
 def make_plan(labels: Array) -> tuple[Array, Array, Array]:
-    """What `list_labels` fills for a picture `[H, W]` int32: local number of each pixel's label, how many labels each
-    tile has, and which, `PIXELS` places a tile."""
+    """Allocate what `list_labels` fills for a label image `[H, W]` int32: the tile-local number of each pixel's label,
+    the number of labels of each tile, and the labels themselves, `PIXELS` places a tile."""
     tiles = -(-labels.shape[0] // TILE) * -(-labels.shape[1] // TILE)
     return np.zeros(labels.shape, np.uint8), np.zeros(tiles, np.int64), np.zeros(tiles * PIXELS, np.int32)
 
 
 @kernel
 def list_labels(labels, local, count, names):  # type: ignore[no-untyped-def]
-    """Number the labels of each tile in the order in which its pixels name them."""
+    """Number the labels of each tile in the order of their first pixel."""
     height, width = labels.shape
     tiles_wide = (width + TILE - 1) // TILE
     for y in range(height):
@@ -83,15 +83,15 @@ def split(worker, workers, first, entries, records, size, limits, plan, share, s
                             weights[:] = ZERO
                             at = block * LANES
                             alive[block] = weigh_block(chunk, slots, state, at, weights, f4(left), f4(top), limits) != 0
-                            _share_out(weights, slots, local, x + left, y + top, labels, share, to)
+                            _add_by_label(weights, slots, local, x + left, y + top, labels, share, to)
                         finished = finished and not alive[block]
             to += taken * labels
             start += taken
 
 
 @helper
-def _share_out(weights, slots, local, left, top, labels, share, to):  # type: ignore[no-untyped-def]
-    """Add the weights of a block's pixels to the shares of their labels. Pixels beyond the image weigh nothing."""
+def _add_by_label(weights, slots, local, left, top, labels, share, to):  # type: ignore[no-untyped-def]
+    """Add the weights of a block's pixels to the shares of their labels. Pixels outside the image have weight zero."""
     height, width = local.shape
     while slots != 0:
         slot = lowest_bit(slots)
@@ -105,7 +105,7 @@ def _share_out(weights, slots, local, left, top, labels, share, to):  # type: ig
 
 @kernel
 def gather(first, entries, plan, names, share, rows, labels, weights):  # type: ignore[no-untyped-def]
-    """Write row, label and weight of every share above zero, tile after tile; returns how many."""
+    """Write row, label and weight of every share above zero, tile after tile; returns their number."""
     _, count, place = plan
     found = 0
     for tile in range(first.shape[0] - 1):

@@ -1,11 +1,9 @@
-"""Explicit SIMD: what one instruction sequence does to a block of 4x4 pixels.
+"""SIMD kernels that blend footprints into a block of 4x4 pixels.
 
-Knows records and the blending rule. Refuses to know tiles, lists and images as a whole.
-
-The only chain from one footprint to the next is one multiplication: the running transmittance simply goes on falling
-in a finished pixel, where comparing it with the least transmittance masks every weight; the last value above that is
-kept beside it. `exp(-8 q)` is the eighth power of a degree-5 polynomial in q: three squarings, no bit tricks, relative
-error below 1e-6.
+The loop-carried dependency from one footprint to the next is a single multiplication: the running transmittance keeps
+falling in a finished pixel, and a comparison with the least transmittance masks all weights there; the last value
+above that threshold is stored separately. `exp(-8 q)` is the eighth power of a degree-5 polynomial in q: three
+squarings, no bit tricks, relative error below 1e-6.
 """
 
 from __future__ import annotations
@@ -20,18 +18,19 @@ from .lanes import F32, I32, I64, INTEGERS, LANES, Lanes, pointer_to
 from .project import BLUE, DEPTH, GREEN, GROUP, L1, L2, L3, RECORD, RED, SHIFT, X, Y
 from .touch import BLOCK_HEIGHT, BLOCK_WIDTH
 
-# A block's state: running transmittance, red, green, blue, depth, kept transmittance, best weight, its group's bits.
+# A block's state: running transmittance, red, green, blue, depth, final transmittance, largest weight and the bits of
+# its group.
 CHANNELS = 8
 REST, WINNER = 5 * LANES, 7 * LANES
 STATE = CHANNELS * LANES
-DIMMEST = 1e-30  # the running transmittance stops here: denormal numbers are slow
+T_FLOOR = 1e-30  # lower bound of the running transmittance: denormal numbers are slow
 
-# exp(-q) on [0, 0.693] = [0, Q_MAX], least largest relative error (Lawson's iteration), ascending powers.
+# exp(-q) on [0, 0.693] = [0, Q_MAX], minimax in the relative error (Lawson's iteration), ascending powers.
 EXP_COEFFICIENTS = (0.99999994, -0.9999929, 0.49988723, -0.16599411, 0.039808128, -0.0058686733)
 
 
 def exp_minus_8(v: Lanes, q: ir.Value) -> ir.Value:
-    """`exp(-8 q)` for q in [0, Q_MAX]; finite or infinite nonsense beyond."""
+    """`exp(-8 q)` for q in [0, Q_MAX]; outside, a meaningless value that is not NaN."""
     e = v.same(EXP_COEFFICIENTS[-1])
     for coefficient in EXP_COEFFICIENTS[-2::-1]:
         e = v.add(v.mul(e, q), v.same(coefficient))
@@ -41,7 +40,11 @@ def exp_minus_8(v: Lanes, q: ir.Value) -> ir.Value:
 
 
 def footprint(v: Lanes, record: ir.Value, x: ir.Value, y: ir.Value, limits: list[ir.Value]) -> Any:
-    """One footprint in 16 pixels: alpha, the two squared terms of its exponent (not squared), reader of its fields."""
+    """Evaluate one footprint in 16 pixels.
+
+    Returns:
+        alpha, the two terms of its exponent before squaring, and a function that reads a field of the record.
+    """
 
     def field(place: int, kind: ir.Type = F32) -> ir.Value:
         return v.spread(v.load(v.b.gep(record, [ir.Constant(I64, place)]), kind))
@@ -54,17 +57,17 @@ def footprint(v: Lanes, record: ir.Value, x: ir.Value, y: ir.Value, limits: list
     return v.b.select(v.b.fcmp_ordered("<=", q, q_max), alpha, v.same(0)), along, across, field
 
 
-def behind_it(v: Lanes, t: ir.Value, alpha: ir.Value, t_min: ir.Value) -> tuple[ir.Value, ir.Value]:
-    """Transmittance behind a footprint, and the mask of pixels that are still open there."""
-    behind = v.max(v.mul(t, v.sub(v.same(1), alpha)), v.same(DIMMEST))
+def transmit(v: Lanes, t: ir.Value, alpha: ir.Value, t_min: ir.Value) -> tuple[ir.Value, ir.Value]:
+    """Transmittance behind a footprint, and the mask of pixels that are not finished there."""
+    behind = v.max(v.mul(t, v.sub(v.same(1), alpha)), v.same(T_FLOOR))
     return behind, v.less(t_min, behind)
 
 
 def _step(v: Lanes, record: ir.Value, x: ir.Value, y: ir.Value, t: ir.Value, limits: list[ir.Value]) -> Any:
-    """One footprint in 16 pixels: weight, new transmittance, mask of pixels still open, reader of its fields."""
+    """Evaluate one footprint in 16 pixels: weight, new transmittance, mask of unfinished pixels, reader of fields."""
     alpha, _, _, field = footprint(v, record, x, y, limits)
-    behind, still_open = behind_it(v, t, alpha, limits[1])
-    return v.b.select(still_open, v.mul(t, alpha), v.same(0)), behind, still_open, field
+    behind, unfinished = transmit(v, t, alpha, limits[1])
+    return v.b.select(unfinished, v.mul(t, alpha), v.same(0)), behind, unfinished, field
 
 
 @intrinsic
@@ -74,8 +77,8 @@ def blend_block(
     """Blend the records of `chunk` whose bits are set in `slots`, at least one, into the block whose state begins at
     `offset`.
 
-    (x, y) is the block's corner in the tile, `limits` a tuple of what `_step` takes. Returns whether any pixel is
-    still open.
+    (x, y) is the block's corner in the tile, `limits` the tuple that `_step` takes. Returns whether any pixel is
+    unfinished.
     """
     f = types.float32
     signature = types.int64(chunk, types.uint64, state, types.int64, f, f, limits)
@@ -91,13 +94,13 @@ def blend_block(
 
         def body(record: ir.Value, slot: ir.Value, values: list[ir.Value]) -> tuple[list[ir.Value], ir.Value]:
             t, *sums, rest, best, winner = values
-            weight, t, still_open, field = _step(v, record, x, y, t, limits)
-            rest = builder.select(still_open, t, rest)
+            weight, t, unfinished, field = _step(v, record, x, y, t, limits)
+            rest = builder.select(unfinished, t, rest)
             places = (RED, GREEN, BLUE, DEPTH)
             sums = [v.add(total, v.mul(weight, field(p))) for total, p in zip(sums, places, strict=True)]
             heavier = v.less(best, weight)
             winner = builder.select(heavier, field(GROUP, I32), winner)
-            return [t, *sums, rest, builder.select(heavier, weight, best), winner], still_open
+            return [t, *sums, rest, builder.select(heavier, weight, best), winner], unfinished
 
         after, alive = _loop(v, chunk, slots, before, body)
         for channel, value in enumerate(after):
@@ -123,10 +126,10 @@ def weigh_block(
         limits = v.spread_all(limits)
 
         def body(record: ir.Value, slot: ir.Value, values: list[ir.Value]) -> tuple[list[ir.Value], ir.Value]:
-            weight, t, still_open, _ = _step(v, record, x, y, values[0], limits)
+            weight, t, unfinished, _ = _step(v, record, x, y, values[0], limits)
             pointer = v.at(weights, builder.mul(slot, ir.Constant(I64, LANES)))
             v.store(v.add(v.load(pointer), weight), pointer)
-            return [t], still_open
+            return [t], unfinished
 
         after, alive = _loop(v, chunk, slots, [v.load(v.at(state, offset))], body)
         v.store(after[0], v.at(state, offset))
@@ -178,9 +181,10 @@ def store_block(
 
 
 def _loop(v: Lanes, chunk: Any, slots: Any, before: list[ir.Value], body: Any) -> Any:
-    """Run `body` over the records of `slots` until none is left or no pixel is open; the state stays in registers.
+    """Run `body` over the records of `slots` until none is left or all pixels are finished; the state stays in
+    registers.
 
-    Returns the state after the loop and whether a pixel is open (int64).
+    Returns the state after the loop and whether a pixel is unfinished (int64).
     """
     b = v.b
     entry, head, done = b.block, b.append_basic_block("each"), b.append_basic_block("done")
@@ -192,13 +196,13 @@ def _loop(v: Lanes, chunk: Any, slots: Any, before: list[ir.Value], body: Any) -
     state = [b.phi(value.type) for value in before]
     slot = b.cttz(left, ir.Constant(ir.IntType(1), 1))
     record = b.gep(chunk, [b.mul(slot, ir.Constant(I64, RECORD))])
-    after, still_open = body(record, slot, state)
+    after, unfinished = body(record, slot, state)
     rest = b.and_(left, b.sub(left, one))
     left.add_incoming(rest, head)
     for phi, first, later in zip(state, before, after, strict=True):
         phi.add_incoming(first, entry)
         phi.add_incoming(later, head)
-    alive = b.icmp_unsigned("!=", v.bits(still_open), zero)
+    alive = b.icmp_unsigned("!=", v.bits(unfinished), zero)
     b.cbranch(b.and_(alive, b.icmp_unsigned("!=", rest, zero)), head, done)
     b.position_at_end(done)
     return after, b.zext(alive, I64)

@@ -1,11 +1,9 @@
-"""Explicit SIMD of the way back: from the gradient of 16 pixels to that of a footprint.
+"""SIMD kernel of the backward pass of blending: from the gradient of 16 pixels to that of a footprint.
 
-Knows vectors of 16 floats and the derivative of the blending rule. Refuses to know tiles, lists and images.
-
-Footprints are walked front to back, as they were blended. What lies behind a footprint is what the pixel ended with
-minus what has been blended so far, so nothing but the finished picture has to be kept of the way forward. With g the
-gradient of a pixel's colour, w = alpha T a weight and S the part of `g . colour` from behind the footprint,
-`d alpha = T (g . c) - S / (1 - alpha)` (Kerbl et al. 2023, whose kernel walks back to front).
+Footprints are visited front to back, in the order of the forward pass. The colour behind a footprint is the final
+colour of the pixel minus what has been blended so far, so of the forward pass only the final image has to be stored.
+With g the gradient of a pixel's colour, w = alpha T a weight and S the part of `g . colour` from behind the footprint,
+`d alpha = T (g . c) - S / (1 - alpha)` (Kerbl et al. 2023, whose kernel goes back to front).
 """
 
 from __future__ import annotations
@@ -18,24 +16,26 @@ from numba import types
 from ...compiled import intrinsic
 from .lanes import I32, I64, LANES, Lanes, pointer_to
 from .project import BLUE, GREEN, RECORD, RED
-from .simd import behind_it, footprint
+from .simd import footprint, transmit
 
-# A block's state: transmittance, `g . colour` still to come from behind, gradient of red, green and blue, and x and y
+# A block's state: transmittance, the remaining `g . colour` from behind, gradient of red, green and blue, and x and y
 # of the pixels from the tile's corner.
 CHANNELS = 7
 STATE = CHANNELS * LANES
-# What a footprint's pixels add up to. With e and f the gradients of the two squared terms of its exponent, and x, y
-# from the tile's corner: e, e x, e y, f, f y, gradient of the shift, of red, green and blue.
+# Sums over a footprint's pixels. With e and f the gradients of the two squared terms of its exponent, and x, y from the
+# tile's corner: e, e x, e y, f, f y, gradient of the shift, of red, green and blue.
 SUMS = 9
-(ALONG, ALONG_X, ALONG_Y, ACROSS, ACROSS_Y, SHIFTED, REDDER, GREENER, BLUER) = range(SUMS)
+(SUM_E, SUM_EX, SUM_EY, SUM_F, SUM_FY, SUM_SHIFT, SUM_RED, SUM_GREEN, SUM_BLUE) = range(SUMS)
 
 
 @intrinsic
-def unblend(typing_context: Any, chunk: Any, slot: Any, blocks: Any, state: Any, sums: Any, limits: Any) -> Any:
-    """Walk through record `slot` of `chunk` in the blocks of a tile whose bits are set in `blocks`, at least one.
+def blend_blocks_backward(
+    typing_context: Any, chunk: Any, slot: Any, blocks: Any, state: Any, sums: Any, limits: Any
+) -> Any:
+    """Process record `slot` of `chunk` in the blocks of a tile whose bits are set in `blocks`, at least one.
 
-    Writes what its pixels add up to into `sums` `[LANES]`, moves each block's state behind it, and returns the bits
-    of those in which any pixel is still open.
+    Writes the sums over its pixels into `sums` `[LANES]`, advances each block's state behind it, and returns the bits
+    of the blocks in which any pixel is unfinished.
     """
     signature = types.int64(chunk, types.int64, types.int64, state, sums, limits)
 
@@ -48,15 +48,15 @@ def unblend(typing_context: Any, chunk: Any, slot: Any, blocks: Any, state: Any,
         zero, one = ir.Constant(I64, 0), ir.Constant(I64, 1)
         builder.branch(head)
         builder.position_at_end(head)
-        left, still_open = builder.phi(I64), builder.phi(I64)
+        left, unfinished = builder.phi(I64), builder.phi(I64)
         totals = [builder.phi(v.same(0).type) for _ in range(SUMS)]
         block = builder.cttz(left, ir.Constant(ir.IntType(1), 1))
         added, alive = _in_block(v, record, block, state, limits)
         after = [v.add(total, more) for total, more in zip(totals, added, strict=True)]
-        open_after = builder.or_(still_open, builder.shl(alive, block))
+        open_after = builder.or_(unfinished, builder.shl(alive, block))
         rest = builder.and_(left, builder.sub(left, one))
         for phi, first, later in [
-            (left, arguments[2], rest), (still_open, zero, open_after),
+            (left, arguments[2], rest), (unfinished, zero, open_after),
             *((phi, v.same(0), total) for phi, total in zip(totals, after, strict=True)),
         ]:  # fmt: skip
             phi.add_incoming(first, entry)
@@ -72,26 +72,26 @@ def unblend(typing_context: Any, chunk: Any, slot: Any, blocks: Any, state: Any,
 def _in_block(
     v: Lanes, record: ir.Value, block: ir.Value, state: ir.Value, limits: list[ir.Value]
 ) -> tuple[list[ir.Value], ir.Value]:
-    """What the 16 pixels of one block add, and whether (int64) any of them is still open; the state moves on."""
+    """The addends of the 16 pixels of one block, and whether (int64) any of them is unfinished; advances the state."""
     b = v.b
     offset = b.mul(block, ir.Constant(I64, STATE))
     t, to_come, *g, x, y = (v.load(v.at(state, offset, channel * LANES)) for channel in range(CHANNELS))
     alpha, along, across, field = footprint(v, record, x, y, limits)
-    behind, still_open = behind_it(v, t, alpha, limits[1])
-    alpha = b.select(still_open, alpha, v.same(0))
+    behind, unfinished = transmit(v, t, alpha, limits[1])
+    alpha = b.select(unfinished, alpha, v.same(0))
     weight = v.mul(t, alpha)
     lit = v.mul(g[0], field(RED))
     for channel, place in ((1, GREEN), (2, BLUE)):
         lit = v.add(lit, v.mul(g[channel], field(place)))
     to_come = v.sub(to_come, v.mul(weight, lit))
     d_alpha = v.sub(v.mul(t, lit), b.fdiv(to_come, v.sub(v.same(1), alpha)))
-    free = v.less(alpha, limits[0])  # at its largest, alpha does not answer to the exponent
+    free = v.less(alpha, limits[0])  # a clamped alpha has no gradient by the exponent
     d_q = b.select(free, v.mul(v.mul(v.same(-8), alpha), d_alpha), v.same(0))
     d_along, d_across = (v.mul(v.add(term, term), d_q) for term in (along, across))
     v.store(behind, v.at(state, offset))
     v.store(to_come, v.at(state, offset, LANES))
     added = [d_along, v.mul(d_along, x), v.mul(d_along, y), d_across, v.mul(d_across, y), d_q]
-    alive = b.zext(b.icmp_unsigned("!=", v.bits(still_open), ir.Constant(I64, 0)), I64)
+    alive = b.zext(b.icmp_unsigned("!=", v.bits(unfinished), ir.Constant(I64, 0)), I64)
     return [*added, *(v.mul(weight, channel) for channel in g)], alive
 
 

@@ -1,7 +1,4 @@
-"""Which blocks of a tile a footprint touches, and which footprints of a chunk touch a block.
-
-Knows ellipses, tiles and their blocks of 4x4 pixels. Refuses to know colours and blending (`simd`).
-"""
+"""Test footprints against the 4x4-pixel blocks of a tile: which blocks a footprint touches, and the reverse."""
 
 from __future__ import annotations
 
@@ -17,14 +14,14 @@ from ...compiled import intrinsic
 from .lanes import F32, I16, I32, I64, LANES, Lanes, pointer_to
 from .project import EXTREME, L1, L2, L3, LIMIT, REACH_Y, RECORD, SLOPE, TILE, WIDTH, X, Y
 
-BLOCK_WIDTH, BLOCK_HEIGHT = 4, 4  # square: of all shapes the one whose lanes an ellipse leaves idle least
+BLOCK_WIDTH, BLOCK_HEIGHT = 4, 4  # a square block leaves the fewest lanes idle under an ellipse
 BLOCKS_WIDE, BLOCKS_HIGH = TILE // BLOCK_WIDTH, TILE // BLOCK_HEIGHT
 BLOCKS = TILE * TILE // LANES
-CHUNK = 64  # footprints a tile takes at once: those that touch a block are the bits of one word
+CHUNK = 64  # footprints a tile processes at once: those that touch a block fit the bits of one word
 
 
 @intrinsic
-def take(typing_context: Any, records: Any, row: Any, chunk: Any, slot: Any, x: Any, y: Any) -> Any:
+def copy_record(typing_context: Any, records: Any, row: Any, chunk: Any, slot: Any, x: Any, y: Any) -> Any:
     """Copy record `row` into `chunk[slot]`; returns a bit for each block of the tile at (x, y) px that it touches.
 
     In the copy, X and Y hold `-(l1 cx + l2 cy)` and `-l3 cy` for the centre c relative to the tile, so that two
@@ -53,9 +50,9 @@ def take(typing_context: Any, records: Any, row: Any, chunk: Any, slot: Any, x: 
 
 
 def _touched(builder: ir.IRBuilder, x: ir.Value, y: ir.Value, field: Callable[[int], ir.Value]) -> ir.Value:
-    """Mask over a tile's blocks: does the ellipse at (x, y) come within the block's pixel centres? (`project.span`)
+    """Mask over a tile's blocks: whether the ellipse at (x, y) reaches the block's pixel centres (see `project.span`).
 
-    The right ends of its intervals, one for each row of blocks, and the left ends are found as one vector.
+    The right ends of its intervals, one for each row of blocks, and the left ends are computed as one vector.
     """
     v = Lanes(builder, 2 * BLOCKS_HIGH)
     top = [row * BLOCK_HEIGHT + 0.5 for row in range(BLOCKS_HIGH)] * 2
@@ -83,7 +80,7 @@ def _touched(builder: ir.IRBuilder, x: ir.Value, y: ir.Value, field: Callable[[i
 
 @intrinsic
 def slots_touching(typing_context: Any, touched: Any, block: Any) -> Any:
-    """A bit for each slot of a chunk whose bits in `touched` `[CHUNK]` uint16 have that of `block`."""
+    """A bit for each slot of a chunk that touches `block`: whose word in `touched` `[CHUNK]` uint16 has its bit set."""
 
     def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
         v = Lanes(builder, CHUNK)
@@ -97,7 +94,7 @@ def slots_touching(typing_context: Any, touched: Any, block: Any) -> Any:
 
 @intrinsic
 def lowest_bit(typing_context: Any, value: Any) -> Any:
-    """Index of the lowest set bit of a uint64 that is not 0."""
+    """Index of the lowest set bit of a non-zero uint64."""
 
     def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
         return builder.cttz(arguments[0], ir.Constant(ir.IntType(1), 1))
@@ -106,8 +103,8 @@ def lowest_bit(typing_context: Any, value: Any) -> Any:
 
 
 @intrinsic
-def fetch(typing_context: Any, records: Any, row: Any) -> Any:
-    """Ask for a record's cache line; harmless if it is never used."""
+def prefetch(typing_context: Any, records: Any, row: Any) -> Any:
+    """Prefetch a record's cache line."""
 
     def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
         v = Lanes(builder)

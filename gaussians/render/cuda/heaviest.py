@@ -1,7 +1,7 @@
-"""Which Gaussian weighs most in each pixel: what gsplat does not tell, from the footprints and tiles that it does.
+"""Find the Gaussian with the largest blending weight in each pixel, from the footprints and tile lists of gsplat.
 
-Knows blending and lists of tiles. Refuses to know Gaussians and groups. All tiles go through their lists in step, a few
-entries at a time, so that a device has enough to do; a tile whose pixels are finished drops out.
+gsplat does not return it. All tiles step through their lists together, a few entries at a time, which keeps the device
+busy; a tile whose pixels are all finished is skipped from then on.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from .. import convention as c
 from .splatting import Seen
 
 CHUNK = 8  # entries of a tile blended at once
-MOST = 1 << 24  # alphas worked on at once (64 MB a copy)
+MAX_ALPHAS = 1 << 24  # alphas computed at once (64 MB a copy)
 
 
 def heaviest_rows(seen: Seen, width: int, height: int) -> Tensor:
@@ -28,14 +28,14 @@ def heaviest_rows(seen: Seen, width: int, height: int) -> Tensor:
     open_ = (pixels < pixels.new_tensor([width, height])).all(dim=2)
     at = 0
     while len(tiles := ((first + at < last) & open_.any(dim=1)).nonzero().squeeze(1)):
-        for part in tiles.split(max(1, MOST // (CHUNK * T.shape[1]))):
+        for part in tiles.split(max(1, MAX_ALPHAS // (CHUNK * T.shape[1]))):
             entry = first[part, None] + at + torch.arange(CHUNK, device=T.device)  # [t, c]
             listed = entry < last[part, None]
             row = seen.info["flatten_ids"][torch.where(listed, entry, first[part, None])].long()
             alpha = torch.where(listed[:, None], _alpha(seen, row, pixels[part]), 0)  # [t, P, c]
             behind = T[part, :, None] * torch.cumprod(1 - alpha, dim=2)
             before = torch.cat([T[part, :, None], behind[:, :, :-1]], dim=2)
-            drawn = (behind > c.T_MIN) & open_[part, :, None]  # a prefix: what is behind only falls
+            drawn = (behind > c.T_MIN) & open_[part, :, None]  # a prefix, since transmittance never rises
             weight, which = torch.where(drawn, alpha * before, 0).max(dim=2)
             more = weight > best[part]
             winner[part] = torch.where(more, row.gather(1, which), winner[part])
@@ -48,7 +48,7 @@ def heaviest_rows(seen: Seen, width: int, height: int) -> Tensor:
 
 
 def _pixels(rows: int, columns: int, side: int, like: Tensor) -> Tensor:
-    """`[T, P, 2]` x, y of the pixel centres of every tile, row by row."""
+    """`[T, P, 2]` x, y of the pixel centres of every tile, in row-major order."""
     y = (torch.arange(rows * side, device=like.device) + 0.5).to(like.dtype).reshape(rows, 1, side, 1)
     x = (torch.arange(columns * side, device=like.device) + 0.5).to(like.dtype).reshape(1, columns, 1, side)
     shape = rows, columns, side, side
@@ -56,7 +56,7 @@ def _pixels(rows: int, columns: int, side: int, like: Tensor) -> Tensor:
 
 
 def _alpha(seen: Seen, row: Tensor, pixels: Tensor) -> Tensor:
-    """`[t, P, c]` opacity of the footprints `[t, c]` at the pixels `[t, P, 2]`, as gsplat has it."""
+    """`[t, P, c]` alpha of the footprints `[t, c]` at the pixels `[t, P, 2]`, computed as in gsplat."""
     dx, dy = (pixels[:, :, None] - seen.info["means2d"][0, row][:, None]).unbind(dim=3)
     xx, xy, yy = (entry[:, None] for entry in seen.info["conics"][0, row].unbind(dim=2))
     exponent = 0.5 * (xx * dx * dx + yy * dy * dy) + xy * dx * dy

@@ -1,7 +1,6 @@
-"""The one place that calls gsplat: our columns and cameras to its arguments, its answer to ours.
+"""Call gsplat's `rasterization` (version 1.5.3): convert columns and cameras to its arguments and its results back.
 
-Knows gsplat's `rasterization` (version 1.5.3) and what must be true before it is called. Refuses to know pictures and
-training. Nothing of gsplat is imported before it is needed; it compiles its kernels when they first run.
+No other module calls gsplat. It is imported on first use, and it compiles its kernels when they first run.
 """
 
 from __future__ import annotations
@@ -23,21 +22,21 @@ from ...errors import BackendError
 from .. import convention as c
 
 DEVICE = "cuda"
-WIDEST = 1e8  # px, standard deviation of a footprint, beyond which it is not drawn: squares stay within float32
+WIDEST = 1e8  # px, largest standard deviation of a footprint that is drawn: its square stays within float32
 
-_INSTALL = 'pip install "scenewright[cuda]" beside a CUDA build of torch'
+_INSTALL = 'pip install "scenewright[cuda]" together with a CUDA build of torch'
 _ELSE = "or use the CPU: --backend cpu, --device cpu"
 
 
 @dataclass(frozen=True)
 class Seen:
-    """What gsplat saw.
+    """Result of a rasterisation by gsplat.
 
     Attributes:
         colors: `[H, W, D]`, composited; with depth, the last channel is camera z averaged with the blending weights.
         alpha: `[H, W]`.
-        info: its intermediate results: `means2d [1, N, 2]` (px), `conics [1, N, 3]`, `opacities [1, N]`, and of its
-            tiles `tile_size`, `isect_offsets [1, rows, columns]` and `flatten_ids`, the rows of tile after tile,
+        info: gsplat's intermediate results: `means2d [1, N, 2]` (px), `conics [1, N, 3]`, `opacities [1, N]`, and the
+            tile lists `tile_size`, `isect_offsets [1, rows, columns]` and `flatten_ids`, the rows of tile after tile,
             nearest first.
     """
 
@@ -47,7 +46,7 @@ class Seen:
 
 
 def missing() -> str:
-    """What this machine lacks to render on a GPU and what to do about it, one sentence; "" if nothing."""
+    """What this machine lacks to render on a GPU and how to fix it, one sentence; "" if nothing is missing."""
     if importlib.util.find_spec("gsplat") is None:
         return f"gsplat is not installed; {_INSTALL}, {_ELSE}"
     if DEVICE == "cuda" and not torch.cuda.is_available():
@@ -64,8 +63,10 @@ def require() -> None:
 
 @cache
 def _kernels(device: str) -> str:
-    """Why gsplat's kernels do not run, found out by one Gaussian in one pixel; "" if they do. They are compiled on
-    first use, which fails in as many ways as compilers do, each with an error of its own."""
+    """Why gsplat's kernels do not run, tested with one Gaussian in one pixel; "" if they run.
+
+    The kernels are compiled on first use, which can fail with many kinds of error.
+    """
     view, pinhole = torch.eye(4, device=device)[None], torch.eye(3, device=device)[None]
     one = torch.tensor([[0.0, 0.0, 1.0]], device=device)
     try:
@@ -76,22 +77,22 @@ def _kernels(device: str) -> str:
             one, view, pinhole, 1, 1, packed=False,
         )  # fmt: skip
     except Exception as error:
-        told = (str(error).strip().splitlines() or ["no message"])[0]
-        cure = "gsplat compiles them on first use and needs nvcc of the CUDA version of torch"
+        reason = (str(error).strip().splitlines() or ["no message"])[0]
+        fix = "gsplat compiles them on first use and needs nvcc of the CUDA version of torch"
         return (
-            f"gsplat's kernels do not run ({type(error).__name__}: {told}); {cure}: install the CUDA toolkit, {_ELSE}"
+            f"gsplat's kernels do not run ({type(error).__name__}: {reason}); {fix}: install the CUDA toolkit, {_ELSE}"
         )
     return ""
 
 
 @contextmanager
 def within_memory() -> Iterator[None]:
-    """Tell of a GPU's full memory as what it is."""
+    """Turn torch's out-of-memory error into a BackendError."""
     try:
         yield
     except torch.cuda.OutOfMemoryError as error:
-        told = "the scene at this size does not fit the GPU's memory"
-        raise BackendError(f"{told}; ask for a smaller picture or fewer Gaussians, {_ELSE}") from error
+        reason = "the scene at this size does not fit the GPU's memory"
+        raise BackendError(f"{reason}; use a smaller image or fewer Gaussians, {_ELSE}") from error
 
 
 def rasterize(
@@ -105,23 +106,23 @@ def rasterize(
     *,
     depth: bool = False,
 ) -> Seen:
-    """Draw columns that lie on the device. Differentiable by all of them.
+    """Rasterise columns that lie on the device. Differentiable by all of them.
 
     Args:
         means: `[N, 3]` world, scene units; N > 0.
         quats: `[N, 4]` wxyz, of any length.
         scales: `[N, 3]` > 0, scene units.
         opacities: `[N]`.
-        colors: `[N, K, 3]` harmonics, or `[N, D]` features drawn as they are.
-        background: of harmonics; None: nothing.
-        depth: whether a channel of depth is wanted besides.
+        colors: `[N, K, 3]` spherical harmonics, or `[N, D]` features composited as they are.
+        background: RGB, only with harmonics; None: black.
+        depth: whether to append a depth channel.
     """
     import gsplat
 
     device = means.device
     rotation = torch.from_numpy(camera.world_to_camera[:3, :3].copy()).to(device, torch.float32)
     eye = torch.from_numpy(camera.position.copy()).to(device, torch.float32)
-    toward = means - eye  # before anything else: this keeps precision far from the origin
+    toward = means - eye  # subtracting the eye first keeps precision far from the origin
     view = torch.eye(4, device=device)
     view[:3, :3] = rotation
     pinhole = torch.tensor([[camera.fx, 0, camera.cx], [0, camera.fy, camera.cy], [0, 0, 1]], device=device)
@@ -131,7 +132,7 @@ def rasterize(
         means=toward,
         quats=turned,
         scales=scales,
-        opacities=torch.where(sound, opacities.clamp(max=1), 0),  # what lets nothing through is culled first of all
+        opacities=torch.where(sound, opacities.clamp(max=1), 0),  # gsplat culls opacity 0 before anything else
         colors=colors,
         viewmats=view[None],
         Ks=pinhole[None],
@@ -160,16 +161,18 @@ def draw(
     background: Vec3 = (0.0, 0.0, 0.0),
     centers: Tensor | None = None,
 ) -> tuple[Tensor, Tensor]:
-    """`render.differentiable.draw` for columns on the device: the same arguments, the same two answers, and by
-    `backward` the gradient of `centers` in 1/px."""
+    """`render.differentiable.draw` for columns on the device: the same arguments and results.
+
+    The backward pass also adds the gradient of the footprint centres, in 1/px, to `centers`.
+    """
     seen = rasterize(means, quats, scales, opacities, sh, camera, background)
     if centers is not None and seen.info["means2d"].requires_grad:
-        seen.info["means2d"].register_hook(partial(_note, centers))
+        seen.info["means2d"].register_hook(partial(_add_gradient, centers))
     return seen.colors, seen.alpha
 
 
-def _note(centers: Tensor, gradient: Tensor) -> None:
-    """Add the gradient of the footprints' centres, `[1, N, 2]`, to that of `centers`."""
+def _add_gradient(centers: Tensor, gradient: Tensor) -> None:
+    """Add the gradient of the footprint centres, `[1, N, 2]`, to `centers.grad`."""
     centers.grad = gradient[0].clone() if centers.grad is None else centers.grad + gradient[0]
 
 
@@ -177,7 +180,7 @@ def _note(centers: Tensor, gradient: Tensor) -> None:
 def _sound(
     toward: Tensor, quats: Tensor, scales: Tensor, opacities: Tensor, colors: Tensor, forward: Tensor, focal: float
 ) -> Tensor:
-    """`[N]` bool: every number is finite, and no footprint so wide that its square is not."""
+    """`[N]` bool: all values are finite, and the footprint is narrower than `WIDEST`."""
     columns = toward, quats, scales, opacities[:, None], colors
     finite = torch.stack([torch.isfinite(column).flatten(1).all(dim=1) for column in columns]).all(dim=0)
     depth = (toward * forward).sum(dim=1).clamp(min=c.NEAR)

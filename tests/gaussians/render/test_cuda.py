@@ -1,5 +1,5 @@
-"""The renderer for GPUs: all but gsplat's kernels against the CPU, through a stand-in (see conftest); and the whole
-against the CPU where there are gsplat and a device."""
+"""The GPU renderer against the CPU renderer: with a stand-in for gsplat's kernels (see conftest), and with gsplat on a
+device where both are available."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from scenewright.gaussians.render.cuda import heaviest, splatting
 
 @pytest.fixture
 def gpu() -> None:
-    """A device; found out in a test and not before, since gsplat compiles its kernels to answer."""
+    """Skip without a GPU. Checked inside the test, since the check compiles gsplat's kernels."""
     if cuda.missing():
         pytest.skip(cuda.missing())
 
@@ -73,7 +73,7 @@ def test_pictures_are_those_of_the_cpu(gsplat: ModuleType, seed: int, degree: in
     )
 
 
-def test_gsplat_is_asked_in_its_own_terms(gsplat: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_gsplat_gets_arguments_in_its_own_conventions(gsplat: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[dict[str, Any]] = []
     plain = gsplat.rasterization
 
@@ -99,7 +99,7 @@ def test_gsplat_is_asked_in_its_own_terms(gsplat: Any, monkeypatch: pytest.Monke
     assert all(told[name].dtype == torch.float32 for name in ("means", "viewmats", "Ks", "backgrounds"))
 
 
-def test_the_stand_in_refuses_what_gsplat_has_no_name_for(gsplat: Any) -> None:
+def test_the_stand_in_refuses_unknown_arguments(gsplat: Any) -> None:
     with pytest.raises(TypeError, match="unexpected keyword"):
         gsplat.rasterization(background=None)
 
@@ -117,7 +117,7 @@ def test_contributions_and_shares_are_those_of_the_cpu(gsplat: ModuleType) -> No
     assert len(ours.rows) > 300
 
 
-def test_one_group_needs_no_search(gsplat: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cloud_of_one_group_skips_the_search_for_groups(gsplat: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cuda, "heaviest_rows", None)
     cloud, camera = cloud_of(6, groups=0), camera_of(6)
     for group in (-1, 3):
@@ -126,7 +126,7 @@ def test_one_group_needs_no_search(gsplat: ModuleType, monkeypatch: pytest.Monke
 
 
 def test_layers_of_opaque_gaussians_finish_pixels(gsplat: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(heaviest, "MOST", 1 << 12)  # few tiles at a time
+    monkeypatch.setattr(heaviest, "MAX_ALPHAS", 1 << 12)  # few tiles at a time
     cloud = cloud_of(7, n=400)
     cloud = cloud.replace(opacities=torch.full((400,), 0.95), scales=cloud.scales * 0 + 0.4)
     theirs, ours = (render(cloud, camera_of(7), backend=backend) for backend in ("cuda", "cpu"))
@@ -134,7 +134,7 @@ def test_layers_of_opaque_gaussians_finish_pixels(gsplat: ModuleType, monkeypatc
     assert psnr(theirs.rgb, ours.rgb) >= 75  # whether the transmittance clears 1e-4 can flip by rounding
 
 
-def test_numbers_that_are_not_finite_and_monstrous_footprints_are_left_out(gsplat: ModuleType) -> None:
+def test_non_finite_values_and_huge_footprints_are_skipped(gsplat: ModuleType) -> None:
     """The stand-in refuses them, as the kernels cannot."""
     cloud, camera = cloud_of(8, n=60), camera_of(8)
     wild = [column.clone() for column in (cloud.means, cloud.quats, cloud.scales, cloud.opacities, cloud.sh)]
@@ -145,7 +145,7 @@ def test_numbers_that_are_not_finite_and_monstrous_footprints_are_left_out(gspla
     assert psnr(theirs.rgb, ours.rgb) >= 80 and float((theirs.group == ours.group).float().mean()) >= 0.999
 
 
-def test_far_from_the_origin_nothing_is_lost(gsplat: ModuleType) -> None:
+def test_precision_is_kept_far_from_the_origin(gsplat: ModuleType) -> None:
     cloud, camera = cloud_of(9), camera_of(9)
     shift = np.array([8192.0, -4096.0, 2048.0])
     far = cloud.replace(means=cloud.means + torch.tensor(shift, dtype=torch.float32))
@@ -155,7 +155,7 @@ def test_far_from_the_origin_nothing_is_lost(gsplat: ModuleType) -> None:
     assert psnr(render(far, there, backend="cuda").rgb, render(far, there).rgb) >= 75
 
 
-def test_nothing_to_draw(gsplat: ModuleType) -> None:
+def test_an_empty_cloud_is_rendered(gsplat: ModuleType) -> None:
     camera = camera_of(0)
     for cloud in (GaussianCloud.empty(2), cloud_of(0, n=3).replace(means=torch.full((3, 3), 1e4))):
         theirs, ours = (render(cloud, camera, (0.1, 0.2, 0.3), backend) for backend in ("cuda", "cpu"))
@@ -172,7 +172,7 @@ def test_columns_stay_on_the_device_while_the_cloud_lives(gsplat: ModuleType) ->
     assert torch.equal(cuda._on_device(other)[0], other.means)
     assert cuda._on_device(cloud) is not first
     del cloud
-    assert cuda._kept is None
+    assert cuda._cached is None
 
 
 def test_gradients_are_those_of_the_cpu(gsplat: ModuleType) -> None:
@@ -216,7 +216,7 @@ def test_without_a_device_the_error_says_so(gsplat: ModuleType, monkeypatch: pyt
         render(cloud_of(0, n=3), camera_of(0), backend="cuda")
 
 
-def test_kernels_that_do_not_compile_are_told_of(gsplat: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_kernels_that_do_not_compile_are_reported(gsplat: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*_: Any, **__: Any) -> None:
         raise AttributeError("'NoneType' object has no attribute 'CameraModelType'\nand more")
 
@@ -227,7 +227,7 @@ def test_kernels_that_do_not_compile_are_told_of(gsplat: Any, monkeypatch: pytes
         render(cloud_of(0, n=3), camera_of(0), backend="cuda")
 
 
-def test_a_full_device_is_told_of(gsplat: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_out_of_memory_on_the_device_is_reported(gsplat: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     cuda.require()
 
     def full(**_: Any) -> None:
@@ -235,7 +235,7 @@ def test_a_full_device_is_told_of(gsplat: Any, monkeypatch: pytest.MonkeyPatch) 
 
     monkeypatch.setattr(gsplat, "rasterization", full)
     for call in (render, contributions):
-        with pytest.raises(BackendError, match="does not fit the GPU's memory; ask for a smaller picture"):
+        with pytest.raises(BackendError, match="does not fit the GPU's memory; use a smaller image"):
             call(cloud_of(0, n=3), camera_of(0), backend="cuda")
 
 

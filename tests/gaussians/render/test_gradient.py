@@ -1,5 +1,5 @@
-"""The way back through the fast renderer: against autograd of the readable one in float64, against finite differences,
-and its laws."""
+"""The backward pass of the CPU renderer: against autograd of the reference renderer in float64, against finite
+differences, and its invariants."""
 
 from __future__ import annotations
 
@@ -76,14 +76,14 @@ def apart(a: Tensor, b: Tensor) -> float:
 
 @pytest.mark.parametrize("degree", [0, 1, 2, 3])
 @pytest.mark.parametrize(("count", "opaque", "size"), [(60, 0.8, 0.15), (400, 0.4, 0.3), (60, 0.89, 0.02)])
-def test_gradients_are_those_of_the_readable_renderer(degree: int, count: int, opaque: float, size: float) -> None:
+def test_gradients_equal_those_of_the_reference_renderer(degree: int, count: int, opaque: float, size: float) -> None:
     made, camera = columns(count, degree, seed=degree, opaque=opaque, size=size), view()
     found, wanted = fast(made, camera), slow(made, camera)
     for name in NAMES:
         assert apart(found[name], wanted[name]) < 1e-4, name  # the issue's bound; float32 gives about 2e-6
 
 
-def test_gradients_hold_where_the_eye_is_close_and_much_lies_beyond_the_border() -> None:
+def test_gradients_are_right_for_a_close_camera_with_much_outside_the_image() -> None:
     made = columns(200, 3, seed=8)
     camera = Camera.look_at([0.4, -1.1, 0.2], [0, 0, 0], [0, 0, 1], 61, 47, 75.0)
     found, wanted = fast(made, camera), slow(made, camera)
@@ -91,7 +91,7 @@ def test_gradients_hold_where_the_eye_is_close_and_much_lies_beyond_the_border()
         assert apart(found[name], wanted[name]) < 1e-4, name
 
 
-def test_gradients_are_slopes_of_the_readable_renderer_in_float64() -> None:
+def test_gradients_equal_finite_differences_of_the_reference_renderer() -> None:
     """Central differences over float64 pictures, along random directions: shares no derivative with anything."""
     made, camera = columns(25, 2, seed=3), view(40, 30)
     on_rgb, on_alpha = weights(camera)
@@ -112,7 +112,7 @@ def test_gradients_are_slopes_of_the_readable_renderer_in_float64() -> None:
         assert abs(slope - told) < 0.01 * float(found[name].norm() * way.norm()), name
 
 
-def test_the_picture_is_the_renderers_own() -> None:
+def test_the_differentiable_image_equals_the_renderers() -> None:
     made, camera = columns(300, 3, seed=1), view()
     made["quats"] = torch.nn.functional.normalize(made["quats"], dim=1)
     rgb, alpha = differentiable.draw(*made.values(), camera, BACKGROUND)
@@ -130,7 +130,7 @@ def test_gradients_are_finite_and_a_quaternions_length_has_none(seed: int, width
     assert (along.abs() <= 1e-4 * scale + 1e-5).all()  # four products of float32 that cancel
 
 
-def test_the_gradient_of_centres_is_that_of_the_readable_renderers_footprints(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_gradient_of_centres_equals_that_of_the_reference_renderer(monkeypatch: pytest.MonkeyPatch) -> None:
     made, camera = columns(200, 1, seed=9), view()
     centers = torch.zeros(200, 2, dtype=torch.float64, requires_grad=True)
     project = reference.project
@@ -168,7 +168,7 @@ def test_a_picture_drawn_in_strips_has_the_same_gradient(monkeypatch: pytest.Mon
         assert apart(parts[name], whole[name]) < 1e-5, name  # added up in another order
 
 
-def test_what_is_not_seen_has_no_gradient() -> None:
+def test_invisible_gaussians_have_no_gradient() -> None:
     made, camera = columns(50, 2, seed=7), view()
     made["means"][:10, 1] = -9.0  # behind the eye
     made["means"][10, 0] = math.nan
@@ -178,7 +178,7 @@ def test_what_is_not_seen_has_no_gradient() -> None:
         assert not found[name][:12].any() and found[name][12:].any(), name
 
 
-def test_an_opaque_gaussian_hides_the_gradient_of_what_lies_behind_it() -> None:
+def test_an_opaque_gaussian_blocks_the_gradient_of_gaussians_behind_it() -> None:
     made, camera = columns(2, 0, seed=2), Camera.look_at([0, -3, 0], [0, 0, 0], [0, 0, 1], 16, 16)
     made["means"] = torch.tensor([[0.0, -1.0, 0.0], [0.0, 1.0, 0.0]])
     made["scales"] = torch.tensor([[300.0, 300.0, 300.0], [0.2, 0.2, 0.2]])
@@ -189,7 +189,7 @@ def test_an_opaque_gaussian_hides_the_gradient_of_what_lies_behind_it() -> None:
     assert not found["opacities"][0]
 
 
-def test_nothing_to_draw_has_gradients_of_no_rows() -> None:
+def test_gradients_of_an_empty_cloud_are_empty() -> None:
     made = columns(0, 0, seed=0)
     found = fast(made, view())
     assert all(len(g) == 0 for g in found.values())

@@ -1,4 +1,4 @@
-"""What every renderer must get right, held against a slow float64 oracle and against laws.
+"""Every renderer against a slow float64 oracle and against invariants.
 
 The oracle shares nothing with the back ends: numpy, every Gaussian in every pixel, no tiles, no culling by reach,
 harmonics from Legendre functions.
@@ -239,7 +239,7 @@ def test_any_image_size(backend: str, width: int, height: int) -> None:
 
 
 @every_backend
-def test_inputs_are_left_alone(backend: str) -> None:
+def test_inputs_are_not_modified(backend: str) -> None:
     cloud, camera = random_cloud(16, degree=2), random_camera(16)
     before = cloud.digest()
     render(cloud, camera, backend=backend)
