@@ -26,10 +26,11 @@ from ..gaussians.language.encoders import Encoder
 from ..gaussians.language.encoders.backends.vectors import wrap
 from ..gaussians.language.encoders.calibration import labels, probability
 from ..gaussians.language.encoders.vocabulary import Vocabulary
-from ..gaussians.language.field.language_field import Box, Group, LanguageField
+from ..gaussians.language.field.language_field import Group, LanguageField
 from ..gaussians.language.query.query import Query
 from ..gaussians.language.query.resolve import resolve
 from ..gaussians.scene import Scene
+from ..gaussians.world.box import Box
 
 F64 = NDArray[np.float64]
 Rows = NDArray[np.int64]

@@ -21,8 +21,9 @@ from ..gaussians.camera import Camera
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.color import rgb_to_lab
 from ..gaussians.harmonics import color_to_dc
-from ..gaussians.language.field.language_field import Box, Group, LanguageField
+from ..gaussians.language.field.language_field import Group, LanguageField
 from ..gaussians.scene import Frame, Scene
+from ..gaussians.world.box import Box
 from ..tools.execute import Done, carry_out
 from ..tools.operation import Context
 from ..tools.registry import parse

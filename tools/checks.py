@@ -11,9 +11,10 @@ import torch
 from ..gaussians.camera import Camera
 from ..gaussians.language.query.selection import mask_of
 from ..gaussians.scene import Scene
+from ..gaussians.world.box import overlap
 from .measure import reach, solid_points
 from .operation import Affine, Outcome
-from .placement.bodies import Array, centimetre, contact_box, neighbours, overlap
+from .placement.bodies import Array, centimetre, contact_box, neighbours
 from .placement.occupancy import hits, obstacle_points
 from .receipt import Check, at_most, report
 

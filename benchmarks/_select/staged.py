@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from ...gaussians.assets import Asset
 from ...gaussians.assets.furnishing.furnish import assemble
-from ...gaussians.assets.furnishing.layout import Box, Layout
+from ...gaussians.assets.furnishing.layout import Layout
 from ...gaussians.color import BASIC, parse, rgb_to_lab
+from ...gaussians.world.box import YawBox
 from .cases import Case, case_of
 
 SIZE = (6.0, 5.4, 2.6)  # metres
@@ -58,15 +59,17 @@ def _within(layout: Layout, thing: Asset, anchor: int, above: float) -> int | No
             reach = max(w, d) / 2 + CLEARANCE  # it may be turned
             near = (np.abs(means[:, :2] - [right, back]) < reach).all(axis=1)
             if not (near & (means[:, 2] > above) & (means[:, 2] < above + h + CLEARANCE)).any():
-                x, y = base.at(float(right), float(back))
-                return layout.put(thing, Box(x, y, base.z + above, w, d, h, base.yaw), anchor if above else "floor")
+                x, y = base.world(float(right), float(back))
+                return layout.put(
+                    thing, YawBox(x, y, base.low + above, w, d, h, base.yaw), anchor if above else "floor"
+                )
     return None
 
 
 def over(layout: Layout, thing: Asset, x: float, y: float) -> int:
     """Hanging from the ceiling above a spot."""
     w, d, h = thing.size
-    return layout.put(thing, Box(x, y, layout.h - h, w, d, h), "ceiling")
+    return layout.put(thing, YawBox(x, y, layout.h - h, w, d, h), "ceiling")
 
 
 def built(layout: Layout, seed: int) -> Case:

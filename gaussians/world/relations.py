@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..camera import Camera
-from ..language.field.language_field import Boxes, Group
+from ..language.field.language_field import Group
+from .box import Boxes, distances, lattice
 
 HOLDS = 0.5
 F64 = NDArray[np.float64]
@@ -78,58 +79,7 @@ def scores(
     return _vertical(name, candidates, first, stand, anchors[0].label == "wall")
 
 
-def distance(a: Group, b: Group) -> float:
-    """Gap between two boxes of one scene, scene units; 0 where they touch or overlap."""
-    return float(distances(Boxes.of([a.box]), Boxes.of([b.box]))[0])
-
-
-def distances(candidates: Boxes, anchor: Boxes) -> F64:
-    """`[C]` gaps between each candidate and one anchor `[1]`, scene units; 0 where they touch or overlap.
-
-    Exact: all stand upright, so that the gap in plan and the gap in height do not depend on each other.
-    """
-    rise = np.abs((candidates.centers - anchor.centers) @ anchor.axes[0, 2])
-    over = np.maximum(0.0, rise - (candidates.sizes[:, 2] + anchor.sizes[:, 2]) / 2)
-    return np.hypot(_plan_gaps(candidates, anchor), over)
-
-
-def _plan_gaps(candidates: Boxes, anchor: Boxes) -> F64:
-    """`[C]` gaps between rectangles: where two are apart, a corner of one is at an end of the shortest way."""
-    apart, gaps = np.zeros(len(candidates), bool), []
-    for one, other in ((candidates, anchor), (anchor, candidates)):
-        corners = _local(other, _spread(one, CORNERS))[..., :2]  # [C, 4, 2]
-        half = other.sizes[:, None, :2] / 2
-        outside = (corners.min(axis=1) > half[:, 0]) | (corners.max(axis=1) < -half[:, 0])
-        apart = apart | outside.any(axis=1)
-        gaps.append(np.linalg.norm(np.maximum(np.abs(corners) - half, 0), axis=2).min(axis=1))
-    return np.where(apart, np.minimum(*gaps), 0.0)
-
-
-def _lattice(across: int, up: int) -> F64:
-    """`[across * across * up, 3]` points spread evenly through a box of size 1 around the origin; flat if `up` is 1."""
-    t, z = np.linspace(-0.5, 0.5, across), np.linspace(-0.5, 0.5, up) if up > 1 else np.zeros(1)
-    return np.stack(np.meshgrid(t, t, z, indexing="ij"), axis=-1).reshape(-1, 3)
-
-
-CORNERS, FOOTPRINT, VOLUME = _lattice(2, 1), _lattice(7, 1), _lattice(5, 5)
-
-
-def _spread(boxes: Boxes, lattice: F64) -> F64:
-    """`[B, P, 3]` world points of each box at the lattice's places."""
-    points: F64 = boxes.centers[:, None] + (lattice * boxes.sizes[:, None]) @ boxes.axes
-    return points
-
-
-def _local(boxes: Boxes, points: F64) -> F64:
-    """`[C, P, 3]` world points in each box's frame, origin at its centre; one box or one set of points serves all."""
-    local: F64 = (points - boxes.centers[:, None]) @ boxes.axes.transpose(0, 2, 1)
-    return local
-
-
-def _heights(boxes: Boxes, up: F64) -> tuple[F64, F64]:
-    """`[C]` bottoms and tops along up."""
-    middle = boxes.centers @ up
-    return middle - boxes.sizes[:, 2] / 2, middle + boxes.sizes[:, 2] / 2
+FOOTPRINT, VOLUME = lattice(7, 1), lattice(5, 5)
 
 
 def _beside(
@@ -158,7 +108,7 @@ def _beside(
 
 def _nearest(boxes: Boxes, points: F64) -> F64:
     """`[C, 3]` the point of each box that is nearest to each point; one box or one point serves all."""
-    local = _local(boxes, points[:, None])[:, 0]
+    local = boxes.local(points[:, None])[:, 0]
     inside = np.clip(local, -boxes.sizes / 2, boxes.sizes / 2)
     near: F64 = boxes.centers + (inside[:, None] @ boxes.axes)[:, 0]
     return near
@@ -166,14 +116,14 @@ def _nearest(boxes: Boxes, points: F64) -> F64:
 
 def _overlaps(of: Boxes, over: Boxes) -> F64:
     """`[C]` share of one footprint that lies over another; one box on either side serves all."""
-    local = np.abs(_local(over, _spread(of, FOOTPRINT)))[..., :2]
+    local = np.abs(over.local(of.spread(FOOTPRINT)))[..., :2]
     share: F64 = (local <= over.sizes[:, None, :2] / 2 + 1e-9).all(axis=2).mean(axis=1)
     return share
 
 
 def _vertical(name: str, candidates: Boxes, anchor: Boxes, stand: Stand, wall: bool) -> F64:
-    low, high = _heights(candidates, stand.up)
-    base, top = (float(v[0]) for v in _heights(anchor, stand.up))
+    low, high = candidates.heights(stand.up)
+    base, top = (float(v[0]) for v in anchor.heights(stand.up))
     over = _overlaps(candidates, anchor)
     slack = max(TOUCH * stand.scale, 0.1 * (top - base))
     if name == "on":
@@ -193,8 +143,8 @@ def _vertical(name: str, candidates: Boxes, anchor: Boxes, stand: Stand, wall: b
 def _inside(candidates: Boxes, anchor: Boxes, stand: Stand) -> F64:
     """Share of a candidate's volume within the anchor and a little around it; what stands on top is not inside."""
     half = anchor.sizes / 2
-    within = np.abs(_local(anchor, _spread(candidates, VOLUME))) <= half[:, None] + TOUCH * stand.scale
-    middle = np.abs(_local(anchor, candidates.centers[:, None])[:, 0, 2]) <= half[:, 2]
+    within = np.abs(anchor.local(candidates.spread(VOLUME))) <= half[:, None] + TOUCH * stand.scale
+    middle = np.abs(anchor.local(candidates.centers[:, None])[:, 0, 2]) <= half[:, 2]
     return np.where(middle, within.all(axis=2).mean(axis=1), 0.0)
 
 

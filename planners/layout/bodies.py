@@ -11,9 +11,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
+from ...gaussians.world.box import YawBox, plan_penetration, to_world
 from ..rooms.graph import SHELL
+from .lattice import EPSILON
 from .problem import Item, Problem, Wall
-from .shapes import EPSILON, Spot, depth, shifted
 
 DOORS = frozenset({"door", "doorway", "entrance", "gate", "exit", "front door", "entry"})
 FLAT = 0.05  # metres; lower things on the floor are stood upon
@@ -117,7 +118,7 @@ class Prepared:
                 pairs |= {p for o in others for p in ((one, o), (o, one))}
         return frozenset(pairs)
 
-    def may_enter(self, one: int, zone: Spot, other: int) -> bool:
+    def may_enter(self, one: int, zone: YawBox, other: int) -> bool:
         """Whether something may stand in a zone, given in its owner's axes, of what it has to do with."""
         before = zone.y < 0 and zone.x == 0
         return (one, other) in (self.joined if before else self.tied)
@@ -141,11 +142,11 @@ class Prepared:
         return {i: frozenset(walls) for i, walls in found.items()}
 
     @cached_property
-    def zones_of(self) -> tuple[tuple[Spot, ...], ...]:
+    def zones_of(self) -> tuple[tuple[YawBox, ...], ...]:
         """For each item the room that using it takes, in its own axes."""
         return tuple(tuple(self.zones(i)) for i in range(len(self.items)))
 
-    def zones(self, i: int) -> tuple[Spot, ...]:
+    def zones(self, i: int) -> tuple[YawBox, ...]:
         """The room that using an item takes, in its own axes; before a door its leaf swings."""
         item = self.items[i]
         width, deep, height = item.size
@@ -155,7 +156,7 @@ class Prepared:
         low = 0.0 if item.support == "floor" else (item.height or 0.0)
         high = min(HEAD, low + max(height, 0.3))
         return tuple(
-            Spot(x, y, 0.0, w, d, low + FLAT, high)
+            YawBox(x, y, low + FLAT, w, d, high - (low + FLAT))
             for reach, x, y, w, d in (
                 (before, 0.0, -(deep + before) / 2, width, before),
                 (behind, 0.0, (deep + behind) / 2, width, behind),
@@ -187,16 +188,16 @@ class Prepared:
         found += [Body((Member(i),)) for i in sorted(taken - seated)]
         return tuple(found)
 
-    def box(self, member: Member) -> Spot:
+    def box(self, member: Member) -> YawBox:
         """A member's box in the axes of its body, standing at height 0."""
         w, d, h = self.items[member.item].size
-        return Spot(member.x, member.y, member.yaw, w, d, 0.0, h)
+        return YawBox(member.x, member.y, 0.0, w, d, h, member.yaw)
 
     def _apart(self, members: tuple[Member, ...]) -> tuple[Member, ...]:
         """The members that do not meet one before them."""
         kept: list[Member] = []
         for member in members:
-            if not any(depth(self.box(member), self.box(other)) > EPSILON for other in kept):
+            if not any(plan_penetration(self.box(member), self.box(other)) > EPSILON for other in kept):
                 kept.append(member)
         return tuple(kept)
 
@@ -204,8 +205,8 @@ class Prepared:
         """Members with two of them in each other's seats, as close to the table; None if they do not fit."""
         a, b = members[i], members[j]
         deep_a, deep_b = self.items[a.item].size[1], self.items[b.item].size[1]
-        ax, ay = shifted(a.x, a.y, a.yaw, 0.0, (deep_b - deep_a) / 2)
-        bx, by = shifted(b.x, b.y, b.yaw, 0.0, (deep_a - deep_b) / 2)
+        ax, ay = to_world(a.x, a.y, a.yaw, 0.0, (deep_b - deep_a) / 2)
+        bx, by = to_world(b.x, b.y, b.yaw, 0.0, (deep_a - deep_b) / 2)
         trial = list(members)
         trial[i], trial[j] = Member(b.item, ax, ay, a.yaw), Member(a.item, bx, by, b.yaw)
         return tuple(trial) if len(self._apart(tuple(trial))) == len(members) else None
@@ -248,7 +249,7 @@ class Prepared:
         for k, i in enumerate(here):
             along = (k + 0.5) * pitch - length / 2
             away = half + TUCKED + self.items[i].size[1] / 2
-            x, y = shifted(0.0, 0.0, yaw, -along if side == "back" else along, away)
+            x, y = to_world(0.0, 0.0, yaw, -along if side == "back" else along, away)
             yield Member(i, x, y, yaw)
 
 

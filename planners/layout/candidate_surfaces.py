@@ -11,12 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from ...gaussians.world.box import YawBox
 from ..rooms.graph import SHELL
 from .bodies import TUCKED, Body
-from .shapes import EPSILON, F64, TURNS, Lattice, Spot
+from .lattice import EPSILON, F64, TURNS, Lattice
 from .state import State
 
-FLOOR = Spot(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)  # the frame of the floor
+FLOOR = YawBox(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)  # the frame of the floor
 EYE = 1.5  # metres from the floor to the middle of what hangs on a wall
 _CELLS = 80  # positions along the longer side of a room; the step is 5 cm or more
 _FINE, _ON_TOP = 0.05, 0.025  # metres between positions on the floor, and at most on a thing
@@ -29,7 +30,7 @@ _SMALL = 0.35  # metres; it does not matter how smaller things are turned
 class Ground:
     """What a body is put on: the frame of its lattice, its extents there, the height, and whether at walls only."""
 
-    frame: Spot
+    frame: YawBox
     low: float
     lattices: tuple[Lattice, ...]
 
@@ -83,7 +84,7 @@ def _on_thing(state: State, body: Body) -> Iterator[Ground]:
         prepared.problem.wishes[r].name == "inside" and prepared.parties[r] == (i, prepared.carriers[i][0])
         for r in prepared.wishes_of[i]
     )
-    tall = carrier.high - carrier.low
+    tall = carrier.h
     within = [carrier.low + f * tall for f in (0.5, 0.25, 0.75)]
     lows = [carrier.high]
     if inside:
@@ -95,7 +96,7 @@ def _on_thing(state: State, body: Body) -> Iterator[Ground]:
             yield Ground(carrier, low, tuple(_anywhere(state, body, carrier.w, carrier.d, carrier)))
 
 
-def _anywhere(state: State, body: Body, width: float, deep: float, frame: Spot = FLOOR) -> Iterator[Lattice]:
+def _anywhere(state: State, body: Body, width: float, deep: float, frame: YawBox = FLOOR) -> Iterator[Lattice]:
     """All positions within a rectangle, for every way to turn the body."""
     carried = frame is not FLOOR
     step = _ON_TOP if carried else max(_FINE, max(width, deep) / _CELLS)
@@ -166,7 +167,7 @@ def _joined(steps: F64, extra: Any) -> F64:
 
 
 def _abreast(
-    state: State, body: Body, carrier: Spot, extents: tuple[float, float, float, float]
+    state: State, body: Body, carrier: YawBox, extents: tuple[float, float, float, float]
 ) -> tuple[list[float], list[float]]:
     """Coordinates on a thing at which a body touches what stands there already."""
     xs, ys = list[float](), list[float]()

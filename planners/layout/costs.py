@@ -9,11 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...gaussians.world.box import YawBox, to_world
 from ..rooms.graph import SHELL
 from .bodies import FLAT, Body, Member
 from .candidate_surfaces import EYE, FLOOR, extents_of
+from .lattice import F64, Lattice, meetings
 from .measures import WALLS, behind_gap, measure, walls_gaps
-from .shapes import F64, Lattice, Spot, meetings, shifted
 from .state import BACKED, HARD, SOFT, USED, WALLED, State, placed
 
 _MOVED, _TURNED = 3.0, 1.0  # price of a metre away from where a thing was, and metres that a quarter turn is worth
@@ -32,35 +33,37 @@ class Place(NamedTuple):
     price: F64
 
 
-def moved(state: State, member: Member, place: Place) -> Spot:
-    x, y = shifted(place.x, place.y, place.yaw, member.x, member.y)
+def moved(state: State, member: Member, place: Place) -> YawBox:
+    x, y = to_world(place.x, place.y, place.yaw, member.x, member.y)
     w, d, h = state.prepared.items[member.item].size
-    return Spot(x, y, place.yaw + member.yaw, w, d, place.low, place.low + h)
+    return YawBox(x, y, place.low, w, d, h, place.yaw + member.yaw)
 
 
-def in_frame(spot: Spot, frame: Spot) -> Spot:
+def in_frame(spot: YawBox, frame: YawBox) -> YawBox:
     if frame is FLOOR:
         return spot
     u, v = frame.local(spot.x, spot.y)
     return spot._replace(x=u, y=v, yaw=spot.yaw - frame.yaw)
 
 
-def crowding(state: State, body: Body, lattice: Lattice, solids: list[tuple[int, Spot]], price: F64) -> None:
+def crowding(state: State, body: Body, lattice: Lattice, solids: list[tuple[int, YawBox]], price: F64) -> None:
     """Add the price of crowding what one has nothing to do with; rugs keep off rugs, and from under other things."""
     item, tied = state.prepared.items[body.first], state.prepared.tied
     if item.support not in SHELL:
         return
     x0, x1, y0, y1 = extents_of(state, body, lattice.yaw)
     others = [s for j, s in solids if not any((m.item, j) in tied for m in body.members)]
-    box = Spot((x0 + x1) / 2, (y0 + y1) / 2, 0.0, x1 - x0, y1 - y0, 0.06, item.size[2])
+    box = YawBox((x0 + x1) / 2, (y0 + y1) / 2, 0.06, x1 - x0, y1 - y0, item.size[2] - 0.06)
     if item.support == "wall":
         low = item.height if item.height is not None else EYE - item.size[2] / 2
-        levels = [(0.3, 1.0, others, box._replace(low=low, high=low + item.size[2]))]
+        levels = [(0.3, 1.0, others, box._replace(low=low, h=item.size[2]))]
     elif item.support == "ceiling":
-        levels = [(0.6, 1.0, others, box._replace(low=state.size[2] - item.size[2], high=state.size[2]))]
+        levels = [(0.6, 1.0, others, box._replace(low=state.size[2] - item.size[2], h=item.size[2]))]
     elif item.size[2] <= FLAT:
-        rugs = [s._replace(high=0.1) for j, s in enumerate(state.spots) if s and state.is_flat(j) and j != body.first]
-        levels = [(0.0, 5.0, [*others, *rugs], box._replace(low=0.0, high=0.2))]
+        rugs = [
+            s._replace(h=0.1 - s.low) for j, s in enumerate(state.spots) if s and state.is_flat(j) and j != body.first
+        ]
+        levels = [(0.0, 5.0, [*others, *rugs], box._replace(low=0.0, h=0.2))]
     elif state.prepared.wants_wall(body.first) or max(item.size[:2]) < _FREE:
         levels = [(0.3, 0.5, others, box)]
     else:
@@ -80,9 +83,9 @@ def use(
     state: State,
     lattice: Lattice,
     member: Member,
-    moving: Spot,
-    solids: list[tuple[int, Spot]],
-    frame: Spot,
+    moving: YawBox,
+    solids: list[tuple[int, YawBox]],
+    frame: YawBox,
 ) -> F64:
     """The price of standing in the room that another needs for its use, or of having too little oneself."""
     price = np.zeros((len(lattice.xs), len(lattice.ys)))
@@ -173,7 +176,7 @@ def habits(state: State, body: Body, place: Place) -> F64:
     return total
 
 
-def _upon(state: State, i: int, here: Spot) -> F64:
+def _upon(state: State, i: int, here: YawBox) -> F64:
     """On a thing: turned as it is turned, near its middle and rather to the back; where it is crowded, in a corner."""
     above = state.prepared.carriers[i][0]
     carrier = state.spots[above]

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from .shapes import Spot, near, share
+from ...gaussians.world.box import YawBox, plan_gap, plan_share, to_world
 
 Measured = tuple[Any, Any]  # whether it holds; how far it is from ideal, about 0 to 4
 VIEWED = ("left_of", "right_of", "in_front_of", "behind")
@@ -30,9 +30,9 @@ IN_LINE = 0.05  # metres between the middles of aligned things
 def measure(
     name: str,
     size: Sequence[float],
-    one: Spot,
-    others: Sequence[Spot],
-    windows: Sequence[Spot],
+    one: YawBox,
+    others: Sequence[YawBox],
+    windows: Sequence[YawBox],
     wall: str | None = None,
 ) -> Measured:
     """Whether "one name others" holds in a room of `size`, and a cost that grows with the distance from ideal.
@@ -63,12 +63,12 @@ def measure(
     if name == "at_window":
         if not windows:
             return np.zeros(np.shape(one.x), bool), 0.0
-        gap = np.min([near(one, w) for w in windows], axis=0)
+        gap = np.min([plan_gap(one, w) for w in windows], axis=0)
         return gap <= IN_REACH, gap
     raise ValueError(f"unknown wish {name}")
 
 
-def _beside(aim: tuple[float, float], one: Spot, other: Spot) -> Measured:
+def _beside(aim: tuple[float, float], one: YawBox, other: YawBox) -> Measured:
     """As the viewer sees it, who looks along +y: a cone of 60 degrees to each side."""
     dx, dy = one.x - other.x, one.y - other.y
     reach = np.hypot(dx, dy)
@@ -76,40 +76,40 @@ def _beside(aim: tuple[float, float], one: Spot, other: Spot) -> Measured:
     return cosine >= _CONE, 1.0 - cosine + 0.12 * reach
 
 
-def _before(one: Spot, other: Spot) -> Any:
+def _before(one: YawBox, other: YawBox) -> Any:
     """How far one is from being before the other's own front too: best is what both viewer and thing call in front."""
     dx, dy = one.x - other.x, one.y - other.y
     fx, fy = other.front
     return 1.0 - (dx * fx + dy * fy) / np.maximum(np.hypot(dx, dy), 1e-9)
 
 
-def _next_to(one: Spot, other: Spot) -> Measured:
-    sizes = [max(s.w, s.d, s.high - s.low) for s in (one, other)]
-    gap = np.hypot(near(one, other), max(one.low - other.high, other.low - one.high, 0.0))
+def _next_to(one: YawBox, other: YawBox) -> Measured:
+    sizes = [max(s.w, s.d, s.h) for s in (one, other)]
+    gap = np.hypot(plan_gap(one, other), max(one.low - other.high, other.low - one.high, 0.0))
     return gap <= 0.29 * sum(sizes), 2.0 * gap
 
 
-def _around(one: Spot, other: Spot) -> Measured:
+def _around(one: YawBox, other: YawBox) -> Measured:
     """At a free side, close, turned to it, and square before that side."""
     u, v = other.local(one.x, one.y)
     beyond_u, beyond_v = np.abs(u) - other.w / 2, np.abs(v) - other.d / 2
     su, sv = np.where(beyond_u >= beyond_v, np.sign(u), 0.0), np.where(beyond_u >= beyond_v, 0.0, np.sign(v))
     fx, fy = one.front
-    wx, wy = (Spot(0, 0, -other.yaw, 0, 0, 0, 0)).local(-su, -sv)
+    wx, wy = to_world(0.0, 0.0, other.yaw, -su, -sv)
     turned = fx * wx + fy * wy
-    gap = near(one, other)
+    gap = plan_gap(one, other)
     aside = np.maximum(np.where(beyond_u >= beyond_v, np.abs(v) - other.d / 2, np.abs(u) - other.w / 2), -0.1) + 0.1
     return (gap <= AT_TABLE) & (turned > 0.85) & (aside <= 0.2), 3.0 * gap + 2.0 * (1.0 - turned) + aside
 
 
-def is_turned(one: Spot, other: Spot, degrees: float) -> Any:
+def is_turned(one: YawBox, other: YawBox, degrees: float) -> Any:
     """Whether the front of one looks at the middle of another, within some degrees."""
     dx, dy = other.x - one.x, other.y - one.y
     fx, fy = one.front
     return dx * fx + dy * fy >= np.cos(np.radians(degrees)) * np.hypot(dx, dy) - 1e-9
 
 
-def _facing(one: Spot, other: Spot) -> Measured:
+def _facing(one: YawBox, other: YawBox) -> Measured:
     """The middle within 45 degrees of the front; best straight ahead, looked back at, and not across a hall."""
     dx, dy = other.x - one.x, other.y - one.y
     fx, fy = one.front
@@ -121,18 +121,18 @@ def _facing(one: Spot, other: Spot) -> Measured:
     return is_turned(one, other, 43.0), 3.0 * (1.0 - cosine) + 1.0 * (1.0 - back) + far
 
 
-def _over(upper: Spot, lower: Spot) -> Measured:
-    held = (share(upper, lower) >= _OVER) & (upper.low >= lower.high - 0.01)
-    return held, 1.0 - share(upper, lower) + 0.5 * np.hypot(upper.x - lower.x, upper.y - lower.y)
+def _over(upper: YawBox, lower: YawBox) -> Measured:
+    held = (plan_share(upper, lower) >= _OVER) & (upper.low >= lower.high - 0.01)
+    return held, 1.0 - plan_share(upper, lower) + 0.5 * np.hypot(upper.x - lower.x, upper.y - lower.y)
 
 
-def _under(one: Spot, other: Spot) -> Measured:
+def _under(one: YawBox, other: YawBox) -> Measured:
     lower = (one.low + one.high < other.low + other.high) & (one.low < other.high - 0.1)
     away = np.hypot(one.x - other.x, one.y - other.y)
-    return (share(one, other) >= _OVER) & lower, 1.0 - share(one, other) + 0.5 * away
+    return (plan_share(one, other) >= _OVER) & lower, 1.0 - plan_share(one, other) + 0.5 * away
 
 
-def _aligned(one: Spot, other: Spot) -> Measured:
+def _aligned(one: YawBox, other: YawBox) -> Measured:
     """In one line, along either of the other's axes, and turned the same way."""
     u, v = other.local(one.x, one.y)
     off = np.minimum(np.abs(u), np.abs(v))
@@ -140,7 +140,7 @@ def _aligned(one: Spot, other: Spot) -> Measured:
     return (off <= IN_LINE) & same, np.minimum(2.0 * off, 2.0) + (0.0 if same else 1.0)
 
 
-def _between(one: Spot, a: Spot, b: Spot) -> Measured:
+def _between(one: YawBox, a: YawBox, b: YawBox) -> Measured:
     """In the middle part of the way from one to the other, not far off it; heights count as the checker's do not."""
     sx, sy = b.x - a.x, b.y - a.y
     length = np.maximum(np.hypot(sx, sy), 1e-9)
@@ -149,7 +149,7 @@ def _between(one: Spot, a: Spot, b: Spot) -> Measured:
     return (t > 0.15) & (t < 0.85) & (aside < 0.35), 2.0 * np.abs(t - 0.5) + 2.0 * aside
 
 
-def walls_gaps(one: Spot, size: Sequence[float]) -> tuple[Any, Any, Any, Any]:
+def walls_gaps(one: YawBox, size: Sequence[float]) -> tuple[Any, Any, Any, Any]:
     """Metres from a footprint to the walls at left, right, front and back of the room."""
     hx, hy = one.half
     return (
@@ -160,12 +160,12 @@ def walls_gaps(one: Spot, size: Sequence[float]) -> tuple[Any, Any, Any, Any]:
     )
 
 
-def _wall_of(one: Spot, size: Sequence[float]) -> int:
+def _wall_of(one: YawBox, size: Sequence[float]) -> int:
     """The wall nearest to a thing, as a row of `WALLS`."""
     return int(np.argmin([float(g) for g in walls_gaps(one, size)]))
 
 
-def behind_gap(one: Spot, size: Sequence[float]) -> Any:
+def behind_gap(one: YawBox, size: Sequence[float]) -> Any:
     """Metres from a thing's back to the wall behind it; infinite where no wall is square behind."""
     fx, fy = one.front
     left, right, front, back = walls_gaps(one, size)
@@ -175,24 +175,24 @@ def behind_gap(one: Spot, size: Sequence[float]) -> Any:
     return np.inf
 
 
-def _against_wall(one: Spot, size: Sequence[float]) -> Measured:
+def _against_wall(one: YawBox, size: Sequence[float]) -> Measured:
     gap = np.min(walls_gaps(one, size), axis=0)
     return gap <= NEAR_WALL, gap + 0.5 * np.minimum(behind_gap(one, size), 1.0)
 
 
-def _in_corner(one: Spot, size: Sequence[float]) -> Measured:
+def _in_corner(one: YawBox, size: Sequence[float]) -> Measured:
     left, right, front, back = walls_gaps(one, size)
     aside, away = np.minimum(left, right), np.minimum(front, back)
     return (aside <= CORNER) & (away <= CORNER), aside + away
 
 
-def _in_center(one: Spot, size: Sequence[float]) -> Measured:
+def _in_center(one: YawBox, size: Sequence[float]) -> Measured:
     """Within a sixth of the room's width and depth of its middle."""
     off = np.hypot(one.x, one.y)
     return (np.abs(one.x) <= size[0] / 6) & (np.abs(one.y) <= size[1] / 6), 1.5 * off
 
 
-_PAIRS: dict[str, Callable[[Spot, Spot], Measured]] = {
+_PAIRS: dict[str, Callable[[YawBox, YawBox], Measured]] = {
     "next_to": _next_to,
     "around": _around,
     "facing": _facing,
@@ -200,10 +200,10 @@ _PAIRS: dict[str, Callable[[Spot, Spot], Measured]] = {
     "on": _over,
     "under": _under,
     "below": _under,
-    "inside": lambda one, other: (share(one, other) >= 0.98, 1.0 - share(one, other)),
+    "inside": lambda one, other: (plan_share(one, other) >= 0.98, 1.0 - plan_share(one, other)),
     "aligned_with": _aligned,
 }
-_ROOM: dict[str, Callable[[Spot, Sequence[float]], Measured]] = {
+_ROOM: dict[str, Callable[[YawBox, Sequence[float]], Measured]] = {
     "against_wall": _against_wall,
     "in_corner": _in_corner,
     "in_center": _in_center,

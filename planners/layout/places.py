@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...gaussians.world.box import YawBox, to_world
 from .bodies import FLAT, HEAD, Body, Member
 from .candidate_surfaces import FLOOR, Ground, grounds
 from .costs import Place, crowding, habits, in_frame, moved, use, wished
+from .lattice import EPSILON, Flags, Lattice, blocked, in_disc
 from .measures import VIEWED, measure, walls_gaps
-from .shapes import EPSILON, Flags, Lattice, Spot, blocked, in_disc, shifted
 from .state import SOFT, State
 
 
@@ -50,7 +51,7 @@ def _priced(state: State, body: Body, ground: Ground, lattice: Lattice) -> Place
             return None
         price += use(state, lattice, member, moving, solids, frame)
     free = np.argwhere(~taken)
-    x, y = shifted(frame.x, frame.y, frame.yaw, lattice.xs[free[:, 0]], lattice.ys[free[:, 1]])
+    x, y = to_world(frame.x, frame.y, frame.yaw, lattice.xs[free[:, 0]], lattice.ys[free[:, 1]])
     place = Place(body, x, y, lattice.yaw + frame.yaw, ground.low, price[free[:, 0], free[:, 1]])
     place = _within_room(state, body, place) if frame is not FLOOR else place
     if not len(place.price):
@@ -86,7 +87,7 @@ def _held(state: State, members: tuple[Member, ...], rows: list[int], yaw: float
     )
 
 
-def _split(spots: list[Spot]) -> tuple[Spot, list[Spot]]:
+def _split(spots: list[YawBox]) -> tuple[YawBox, list[YawBox]]:
     return spots[0], spots[1:]
 
 
@@ -99,7 +100,7 @@ def _within_room(state: State, body: Body, place: Place) -> Place:
     return place._replace(x=place.x[kept], y=place.y[kept], price=place.price[kept])
 
 
-def _out_of_discs(state: State, lattice: Lattice, moving: Spot, frame: Spot, taken: Flags) -> None:
+def _out_of_discs(state: State, lattice: Lattice, moving: YawBox, frame: YawBox, taken: Flags) -> None:
     if moving.low >= HEAD or moving.high <= FLAT:
         return
     for disc in state.discs:

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...gaussians.world.box import YawBox
 from ..rooms.graph import SHELL
 from .bodies import FLAT, HEAD, Body, Member, Prepared
 from .costs import Place
+from .lattice import F64, Flags
 from .places import places
-from .shapes import F64, Flags, Spot
 from .state import State
 
 _TRIES = 6  # places that are looked at for a way to everything, before the best of them is taken
@@ -242,7 +243,7 @@ class Search:
         return sum(self.prepared.problem.wishes[r].hard for r in self.prepared.wishes_of[i])
 
 
-def _meets_disc(xs: F64, ys: F64, spot: Spot, radius: float) -> Flags:
+def _meets_disc(xs: F64, ys: F64, spot: YawBox, radius: float) -> Flags:
     """`[X, Y]` middles at which a disc would reach into a box."""
     u, v = spot.local(xs[:, None], ys[None, :])
     meets: Flags = np.hypot(np.maximum(np.abs(u) - spot.w / 2, 0), np.maximum(np.abs(v) - spot.d / 2, 0)) < radius

@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from ...gaussians.world.box import YawBox, plan_penetration, shared_height, to_world, wrapped
 from .bodies import DOORS, FLAT, Body, Member, Prepared
+from .lattice import EPSILON
 from .measures import behind_gap, measure, walls_gaps
 from .problem import Keepout, Stand
-from .shapes import EPSILON, Spot, depth, shifted, wrapped
 from .walkable_grid import floors
 
 HARD, SOFT, USED, WALLED, OPEN, HUNG, LOST = (
@@ -44,8 +45,8 @@ class State:
         self.prepared = prepared
         problem = prepared.problem
         self.size = problem.size
-        self.spots: list[Spot | None] = [None] * len(prepared.items)
-        self.zones: list[tuple[Spot, ...]] = [()] * len(prepared.items)
+        self.spots: list[YawBox | None] = [None] * len(prepared.items)
+        self.zones: list[tuple[YawBox, ...]] = [()] * len(prepared.items)
         self.ways = floors((self.size[0], self.size[1]), (problem.walkway, 0.0))
         self.windows = [
             self._fixed(i) for i, item in enumerate(prepared.items) if item.stand and "window" in item.label.lower()
@@ -55,19 +56,19 @@ class State:
                 self.put(i, self._fixed(i))
         self.discs: list[tuple[float, float, float] | None] = [_disc(k) for k in problem.free]
 
-    def _fixed(self, i: int) -> Spot:
+    def _fixed(self, i: int) -> YawBox:
         item = self.prepared.items[i]
         assert item.stand is not None
         (x, y, z), yaw = item.stand.position, item.stand.yaw
-        return Spot(x, y, yaw, item.size[0], item.size[1], z - item.size[2] / 2, z + item.size[2] / 2)
+        return YawBox(x, y, z - item.size[2] / 2, *item.size, yaw)
 
-    def spot(self, member: Member, x: float, y: float, yaw: float, low: float) -> Spot:
+    def spot(self, member: Member, x: float, y: float, yaw: float, low: float) -> YawBox:
         """Where a member of a body stands when the body's first thing stands so."""
-        mx, my = shifted(x, y, yaw, member.x, member.y)
+        mx, my = to_world(x, y, yaw, member.x, member.y)
         w, d, h = self.prepared.items[member.item].size
-        return Spot(mx, my, yaw + member.yaw, w, d, low, low + h)
+        return YawBox(mx, my, low, w, d, h, yaw + member.yaw)
 
-    def put(self, i: int, spot: Spot) -> None:
+    def put(self, i: int, spot: YawBox) -> None:
         """Place one item."""
         item = self.prepared.items[i]
         self.spots[i] = spot
@@ -98,7 +99,7 @@ class State:
         item = self.prepared.items[i]
         return item.support == "floor" and item.size[2] <= FLAT
 
-    def solids(self, but: set[int]) -> Iterator[tuple[int, Spot]]:
+    def solids(self, but: set[int]) -> Iterator[tuple[int, YawBox]]:
         """What is placed and meets others, apart from some items."""
         for i, spot in enumerate(self.spots):
             if spot is not None and i not in but and not self.is_flat(i):
@@ -112,7 +113,7 @@ class State:
         slim = self.ways[-1].unreached() if len(self.ways) > 1 else wide
         return _TIGHT * len(wide) + LOST * len(slim)
 
-    def seen(self, i: int) -> Spot | None:
+    def seen(self, i: int) -> YawBox | None:
         """Where an item is, or where the thing is that will carry it."""
         for k in (i, *self.prepared.carriers[i]):
             if (spot := self.spots[k]) is not None:
@@ -164,7 +165,7 @@ class State:
         """Price of an item at a wall that the room is looked at through: what hangs there hangs in the air."""
         return HUNG if self.prepared.items[i].support == "wall" else OPEN
 
-    def hides(self, i: int, spot: Spot) -> Any:
+    def hides(self, i: int, spot: YawBox) -> Any:
         """Whether an item would hide the room from who looks in, at one place or at many."""
         item, hidden = self.prepared.items[i], np.zeros(np.shape(spot.x), bool)
         if item.support not in ("floor", "wall") or (item.support == "floor" and item.size[2] < _LOW):
@@ -198,9 +199,9 @@ class State:
                     j != i
                     and not self.prepared.may_enter(i, local, j)
                     and i not in chains[j]
-                    and min(zone.high, s.high) - max(zone.low, s.low) > EPSILON
+                    and shared_height(zone, s) > EPSILON
                     and math.hypot(zone.x - s.x, zone.y - s.y) < math.hypot(zone.w, zone.d) + math.hypot(s.w, s.d)
-                    and depth(zone, s) > EPSILON
+                    and plan_penetration(zone, s) > EPSILON
                     for j, s in solids
                 ):
                     found.append(i)
@@ -213,15 +214,15 @@ class State:
             return None
         if (given := self.prepared.items[i].stand) is not None:
             return given
-        middle = (float(spot.x), float(spot.y), float(spot.low + spot.high) / 2)
+        middle = (float(spot.x), float(spot.y), spot.low + spot.h / 2)
         x, y, z = (float(np.round(c, 4)) + 0.0 for c in middle)
         return Stand(position=(x, y, z), yaw=wrapped(round(spot.yaw, 4)))
 
-    def copy(self) -> tuple[list[Spot | None], list[tuple[float, float, float] | None]]:
+    def copy(self) -> tuple[list[YawBox | None], list[tuple[float, float, float] | None]]:
         """What is needed to come back here."""
         return list(self.spots), list(self.discs)
 
-    def restore(self, kept: tuple[list[Spot | None], list[tuple[float, float, float] | None]]) -> None:
+    def restore(self, kept: tuple[list[YawBox | None], list[tuple[float, float, float] | None]]) -> None:
         """Come back to a copy."""
         spots, self.discs = list(kept[0]), list(kept[1])
         for i, spot in enumerate(spots):
@@ -231,10 +232,10 @@ class State:
                     self.put(i, spot)
 
 
-def placed(zone: Spot, spot: Spot) -> Spot:
+def placed(zone: YawBox, spot: YawBox) -> YawBox:
     """A box given in the axes of another, in the world."""
-    x, y = shifted(spot.x, spot.y, spot.yaw, zone.x, zone.y)
-    return zone._replace(x=x, y=y, yaw=spot.yaw + zone.yaw, low=zone.low, high=zone.high)
+    x, y = to_world(spot.x, spot.y, spot.yaw, zone.x, zone.y)
+    return zone._replace(x=x, y=y, yaw=spot.yaw + zone.yaw)
 
 
 def _disc(keepout: Keepout) -> tuple[float, float, float] | None:

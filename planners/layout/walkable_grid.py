@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from ...gaussians.world.box import YawBox
 from ..rooms.reachability import ARM, CELL, WIDTH
-from .shapes import EPSILON, Spot
+from .lattice import EPSILON
 
 _STEP, _HEAD = 0.05, 1.9  # metres; what is lower is stepped upon, what is higher up is walked under
 _MOST = 400  # cells along a side; the cells of larger halls grow
@@ -48,7 +49,7 @@ class Ways:
         self.doors: set[Hashable] = set()
         self.width = width
 
-    def put(self, name: Hashable, spot: Spot, asked: bool, door: bool = False) -> None:
+    def put(self, name: Hashable, spot: YawBox, asked: bool, door: bool = False) -> None:
         """Add a thing; `asked`: it is to be reached, `door`: one comes in by it."""
         stamp = self._stamp(spot, WIDTH + ARM if door else self.width / 2 + ARM)
         self.stamps[name] = stamp
@@ -93,7 +94,7 @@ class Ways:
         here[:1] = 0
         return [int(a) for a in np.argsort(-here, kind="stable") if here[a]]
 
-    def _stamp(self, spot: Spot, arm: float) -> _Stamp:
+    def _stamp(self, spot: YawBox, arm: float) -> _Stamp:
         reach = float(np.hypot(spot.w, spot.d)) / 2 + max(arm, self.half)
         x, y = (
             slice(*np.searchsorted(cells, (middle - reach, middle + reach)).tolist())

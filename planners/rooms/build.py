@@ -22,16 +22,16 @@ import torch
 from torch import Tensor
 
 from ...gaussians.assets.furnishing.assemble import Look, Raised, raised
-from ...gaussians.assets.furnishing.layout import Box as Stood
 from ...gaussians.assets.furnishing.layout import Layout
 from ...gaussians.assets.furnishing.viewpoints import eye_views, overview
 from ...gaussians.assets.modeling.make import Asset
 from ...gaussians.camera import Camera, Vec3
 from ...gaussians.errors import UserError
-from ...gaussians.language.field.language_field import Box, Group, LanguageField, Level
+from ...gaussians.language.field.language_field import Group, LanguageField, Level
 from ...gaussians.language.field.measure import lab_of_cloud
 from ...gaussians.language.query.terms import STRUCTURE
 from ...gaussians.scene import Frame, Scene
+from ...gaussians.world.box import Box
 from ...tools.field_update import Newcomer, enter
 from .asset_folder import Shelf
 from .designs import Workshop
@@ -126,7 +126,8 @@ def construct(
     notes = tuple(dict.fromkeys(note for one in made.values() for note in one.notes))
     with _timed(seconds, "table"):
         rows = _rows(drawn)
-        boxes = {n.id: _box(t.box) for n, t in zip(drawn, layout.things, strict=True)}
+        # Where things stand: measured on their Gaussians, the sides would be blurred by their extents.
+        boxes = {n.id: t.box.box for n, t in zip(drawn, layout.things, strict=True)}
         scene = _with_table(graph, drawn, room, rows, boxes, encoder, notes)
         cameras = (*_given(graph), overview(layout, closed), *eye_views(layout))
     blocks = tuple(key for key, one in made.items() if one.block)
@@ -224,13 +225,6 @@ def _with_table(
         groups.append(_face(graph, face, top + k, room, shell == k))
     cloud = room.cloud.replace(group=filed.to(torch.int32))
     return Scene(cloud, frame, language=replace(table, groups=tuple(groups), embeddings=vectors))
-
-
-def _box(stood: Stood) -> Box:
-    """Where a thing stands, as its box: measured on its Gaussians, its sides would be blurred by their extents."""
-    right, back = stood.axes
-    axes = ((float(right[0]), float(right[1]), 0.0), (float(back[0]), float(back[1]), 0.0), (0.0, 0.0, 1.0))
-    return Box((stood.x, stood.y, stood.z + stood.h / 2), axes, (stood.w, stood.d, stood.h))
 
 
 def _nothing(index: int) -> Group:

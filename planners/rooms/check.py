@@ -14,9 +14,8 @@ from typing import Literal
 
 import numpy as np
 
-from ...gaussians.language.field.language_field import Boxes
 from ...gaussians.world import relations
-from ...tools.placement.bodies import overlap
+from ...gaussians.world.box import Boxes, overlap
 from .graph import SHELL, Node, SceneGraph
 from .graph_scene import Stage
 from .reachability import unreached

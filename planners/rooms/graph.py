@@ -20,7 +20,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from ...gaussians.color import name_of
 from ...gaussians.errors import FileError, UserError
-from ...gaussians.language.field.language_field import Box
+from ...gaussians.world.box import Box
 from .orienting import Orienter
 
 if TYPE_CHECKING:

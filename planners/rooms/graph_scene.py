@@ -18,13 +18,13 @@ import torch
 from ...gaussians.camera import Camera, Vec3
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.color import BASIC
-from ...gaussians.language.field.language_field import Box, Group, LanguageField
+from ...gaussians.language.field.language_field import Group, LanguageField
 from ...gaussians.language.query.query import Query, Relation
 from ...gaussians.language.query.resolve import resolve
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.language.query.terms import STRUCTURE
 from ...gaussians.scene import Frame, Scene
-from ...gaussians.world.relations import distance
+from ...gaussians.world.box import Box, distance
 from .color_words import NO_COLOR, color_of, hex_of, plain_color
 from .graph import SHELL, Node, SceneGraph
 from .label_encoder import WordEncoder
@@ -105,7 +105,7 @@ class Stage:
         anchor = resolve(self.scene, beside[0].anchors[0], self.viewer, encoder=self.encoder, last=last)
         if found.verdict != "found" or not anchor.groups or len(found.groups) != 1:
             return None
-        gap = min(distance(self.group(found.groups[0]), self.group(a)) for a in anchor.groups)
+        gap = min(distance(self.group(found.groups[0]).box, self.group(a).box) for a in anchor.groups)
         return found if gap <= _REACH else None
 
     @cached_property

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...gaussians.assets.furnishing.layout import HANG, Box
+from ...gaussians.assets.furnishing.layout import HANG
 from ...gaussians.assets.modeling.make import Asset
+from ...gaussians.world.box import YawBox
 from .graph import SHELL, Node, SceneGraph
 
 Array = NDArray[np.float64]
@@ -89,10 +90,10 @@ def _cells(asset: Asset) -> tuple[Array, NDArray[np.bool_]]:
     return means, np.ones(len(means), dtype=bool)
 
 
-def settled(graph: SceneGraph, assets: Mapping[int | str, Asset]) -> dict[int | str, Box]:
+def settled(graph: SceneGraph, assets: Mapping[int | str, Asset]) -> dict[int | str, YawBox]:
     """Where each node that has an asset comes to stand, by id."""
     nodes = {n.id: n for n in graph.nodes}
-    boxes: dict[int | str, Box] = {}
+    boxes: dict[int | str, YawBox] = {}
     for node in _carriers_first(graph.nodes, nodes):
         if node.id in assets:
             boxes[node.id] = _box(node, assets[node.id], graph, nodes, boxes, assets)
@@ -118,25 +119,25 @@ def _box(
     asset: Asset,
     graph: SceneGraph,
     nodes: Mapping[int | str, Node],
-    boxes: Mapping[int | str, Box],
+    boxes: Mapping[int | str, YawBox],
     assets: Mapping[int | str, Asset],
-) -> Box:
+) -> YawBox:
     w, d, h = asset.size
-    box = Box(node.position[0], node.position[1], node.bottom, w, d, h, node.yaw)
+    box = YawBox(node.position[0], node.position[1], node.bottom, w, d, h, node.yaw)
     if node.support == "floor":
-        return replace(box, z=0.0) if node.bottom < NEAR_FLOOR else box
+        return box._replace(low=0.0) if node.bottom < NEAR_FLOOR else box
     if node.support == "ceiling":
-        return replace(box, z=max(graph.room.size[2] - h, 0.0))
+        return box._replace(low=max(graph.room.size[2] - h, 0.0))
     if node.support == "wall":
         return _at_wall(box, graph, node.label.lower().split()[-1:] in [[word] for word in _LET_IN])
     if node.support in SHELL or node.support not in boxes:
         return box
     lower = boxes[node.support]
     level = face_under(assets[node.support], _load(node, nodes[node.support]))
-    return box if level is None else replace(box, z=lower.z + level)
+    return box if level is None else box._replace(low=lower.low + level)
 
 
-def _at_wall(box: Box, graph: SceneGraph, let_in: bool) -> Box:
+def _at_wall(box: YawBox, graph: SceneGraph, let_in: bool) -> YawBox:
     """Its back just before the wall that it is turned away from, if one is near; doors reach down to the floor."""
     width, depth, _ = graph.room.size
     back = box.axes[1]
@@ -146,5 +147,5 @@ def _at_wall(box: Box, graph: SceneGraph, let_in: bool) -> Box:
         gap = half / 2 - (float(np.array([box.x, box.y]) @ np.array(normal)) + box.d / 2)
         if -box.d - AT_WALL < gap < AT_WALL:
             shift = gap - (FLUSH if let_in else HANG)
-            box = replace(box, x=box.x + shift * normal[0], y=box.y + shift * normal[1])
-    return replace(box, z=0.0) if let_in and box.z < NEAR_FLOOR else box
+            box = box._replace(x=box.x + shift * normal[0], y=box.y + shift * normal[1])
+    return box._replace(low=0.0) if let_in and box.low < NEAR_FLOOR else box

@@ -14,8 +14,8 @@ from typing import Literal
 from ...gaussians import assets
 from ...gaussians.errors import UserError
 from ...gaussians.language.query.query import Query
+from ...gaussians.world.box import overlap
 from ...tools.operation import EditOp
-from ...tools.placement.bodies import overlap
 from ..grammar.tagging.words import bag
 from ..rooms.graph import Node, SceneGraph
 from ..rooms.graph_scene import Stage

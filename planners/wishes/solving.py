@@ -12,7 +12,7 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from ...tools.placement.bodies import overlap
+from ...gaussians.world.box import overlap
 from ..grammar.tagging.words import bag
 from ..layout import Item, Keepout, Layout, Problem, Stand, solve
 from ..layout import Wish as LayoutWish

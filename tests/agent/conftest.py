@@ -14,9 +14,10 @@ from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.color import rgb_to_lab
 from scenewright.gaussians.files import save
 from scenewright.gaussians.language import encoders
-from scenewright.gaussians.language.field.language_field import Box, Group, LanguageField
+from scenewright.gaussians.language.field.language_field import Group, LanguageField
 from scenewright.gaussians.language.field.store import save_field
 from scenewright.gaussians.scene import Frame, Scene
+from scenewright.gaussians.world.box import Box
 
 _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _BOXES = (  # colour in display space, centre, side, label

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
+from scenewright.gaussians.world.box import overlap
 from scenewright.planners.rooms.check import Report, check
 from scenewright.planners.rooms.graph import Node, RoomShape, SceneGraph, Viewpoint
 from scenewright.planners.rooms.reachability import ARM, WIDTH
-from scenewright.tools.placement.bodies import overlap
 
 WRITTEN = Path(__file__).parent / "written"
 ROOMS = sorted(p.stem for p in WRITTEN.glob("*.json"))

@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import UserError
-from scenewright.gaussians.language.field.language_field import Box, Group, LanguageField
+from scenewright.gaussians.language.field.language_field import Group, LanguageField
 from scenewright.gaussians.scene import Frame, Scene
+from scenewright.gaussians.world.box import Box
 from scenewright.planners.rooms.graph import Node, RoomShape, SceneGraph
 
 

@@ -7,13 +7,13 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from scenewright.gaussians.world.box import YawBox, overlap, plan_gap, plan_penetration
+from scenewright.planners.layout.lattice import Lattice, blocked, in_disc
 from scenewright.planners.layout.measures import measure
-from scenewright.planners.layout.shapes import Lattice, Spot, blocked, depth, in_disc, near
 from scenewright.planners.layout.walkable_grid import Ways
 from scenewright.planners.rooms.check import check
 from scenewright.planners.rooms.graph import Node, RoomShape, SceneGraph
 from scenewright.planners.rooms.reachability import WIDTH, unreached
-from scenewright.tools.placement.bodies import overlap
 
 SIZE = (6.0, 5.0, 2.5)
 sides = st.floats(0.1, 2.0)
@@ -22,15 +22,15 @@ ulp = 1e-5  # metres; two ways to compute one distance
 
 
 @st.composite
-def spots(draw: st.DrawFn, turns: st.SearchStrategy[float] = yaws, on_floor: bool = False) -> Spot:
+def spots(draw: st.DrawFn, turns: st.SearchStrategy[float] = yaws, on_floor: bool = False) -> YawBox:
     low = 0.0 if on_floor else draw(st.sampled_from([0.0, 0.4, 1.2]))
     x, y = draw(st.floats(-2.0, 2.0)), draw(st.floats(-1.5, 1.5))
-    return Spot(x, y, draw(turns), draw(sides), draw(sides), low, low + draw(sides))
+    return YawBox(x, y, low, w=draw(sides), d=draw(sides), h=draw(sides), yaw=draw(turns))
 
 
-def node(id: str, spot: Spot, support: str = "floor") -> Node:
-    size = (spot.w, spot.d, spot.high - spot.low)
-    middle = (spot.x, spot.y, (spot.low + spot.high) / 2)
+def node(id: str, spot: YawBox, support: str = "floor") -> Node:
+    size = (spot.w, spot.d, spot.h)
+    middle = (spot.x, spot.y, spot.low + spot.h / 2)
     return Node(id=id, label=id, size=size, position=middle, yaw=spot.yaw, support=support)  # type: ignore[arg-type]
 
 
@@ -41,7 +41,7 @@ def graph(*nodes: Node, relations: tuple[tuple[str, str, str], ...] = ()) -> Sce
 @settings(max_examples=60, deadline=None)
 @given(spots(), st.lists(spots(), min_size=1, max_size=3), yaws)
 def test_forbidden_middles_are_those_at_which_boxes_are_in_each_other(
-    one: Spot, others: list[Spot], frame: float
+    one: YawBox, others: list[YawBox], frame: float
 ) -> None:
     lattice = Lattice(np.linspace(-2.5, 2.5, 9), np.linspace(-2.0, 2.0, 7), one.yaw)
     taken = np.zeros((9, 7), bool)
@@ -56,7 +56,7 @@ def test_forbidden_middles_are_those_at_which_boxes_are_in_each_other(
 
 @settings(max_examples=60, deadline=None)
 @given(spots(), st.floats(0.1, 2.0))
-def test_a_disc_is_reached_into_where_a_point_of_the_box_is_in_it(one: Spot, radius: float) -> None:
+def test_a_disc_is_reached_into_where_a_point_of_the_box_is_in_it(one: YawBox, radius: float) -> None:
     lattice = Lattice(np.linspace(-3, 3, 7), np.linspace(-3, 3, 7), one.yaw)
     found = in_disc(lattice, one._replace(x=0.0, y=0.0), 0.3, -0.2, radius)
     for i, x in enumerate(lattice.xs):
@@ -68,15 +68,15 @@ def test_a_disc_is_reached_into_where_a_point_of_the_box_is_in_it(one: Spot, rad
 
 @settings(max_examples=80, deadline=None)
 @given(spots(), spots())
-def test_gaps_are_symmetric_and_tell_overlaps(one: Spot, other: Spot) -> None:
-    assert float(near(one, other)) == pytest.approx(float(near(other, one)), abs=ulp)
-    if float(near(one, other)) > ulp:
-        assert float(depth(one, other)) <= ulp
+def test_gaps_are_symmetric_and_tell_overlaps(one: YawBox, other: YawBox) -> None:
+    assert float(plan_gap(one, other)) == pytest.approx(float(plan_gap(other, one)), abs=ulp)
+    if float(plan_gap(one, other)) > ulp:
+        assert float(plan_penetration(one, other)) <= ulp
 
 
 @settings(max_examples=60, deadline=None)
 @given(st.lists(spots(on_floor=True), min_size=1, max_size=5))
-def test_ways_find_what_the_checker_finds(things: list[Spot]) -> None:
+def test_ways_find_what_the_checker_finds(things: list[YawBox]) -> None:
     ways = Ways((SIZE[0], SIZE[1]), WIDTH)
     for k, spot in enumerate(things):
         ways.put(f"t{k}", spot, asked=spot.high > 0.05)
@@ -87,7 +87,7 @@ def test_ways_find_what_the_checker_finds(things: list[Spot]) -> None:
 def test_what_is_taken_away_leaves_no_trace() -> None:
     ways = Ways((SIZE[0], SIZE[1]), WIDTH)
     before = ways.taken.copy()
-    ways.put("a", Spot(0.5, 0.5, 30.0, 1.0, 2.0, 0.0, 1.0), asked=True)
+    ways.put("a", YawBox(0.5, 0.5, 0.0, 1.0, 2.0, 1.0, 30.0), asked=True)
     assert (ways.taken != before).any()
     ways.take("a")
     assert (ways.taken == before).all() and not ways.unreached()
@@ -99,7 +99,7 @@ def test_what_is_taken_away_leaves_no_trace() -> None:
     spots(st.sampled_from([0.0, 90.0, 180.0, -90.0])),
     st.sampled_from(["left_of", "right_of", "in_front_of", "behind", "next_to", "facing", "above"]),
 )
-def test_what_is_measured_as_kept_is_kept_by_the_checkers_word(one: Spot, other: Spot, name: str) -> None:
+def test_what_is_measured_as_kept_is_kept_by_the_checkers_word(one: YawBox, other: YawBox, name: str) -> None:
     kept, _ = measure(name, SIZE, one, [other], [])
     assume(bool(kept))
     report = check(graph(node("a", one), node("b", other), relations=(("a", name, "b"),)))
@@ -109,7 +109,7 @@ def test_what_is_measured_as_kept_is_kept_by_the_checkers_word(one: Spot, other:
 @given(
     st.sampled_from(["left_of", "behind", "next_to", "facing", "around", "aligned_with", "far_from"]), spots(), spots()
 )
-def test_many_places_at_once_are_measured_as_each_alone(name: str, one: Spot, other: Spot) -> None:
+def test_many_places_at_once_are_measured_as_each_alone(name: str, one: YawBox, other: YawBox) -> None:
     xs, ys = np.linspace(-2, 2, 5), np.linspace(-1.5, 1.5, 5)
     kept, cost = measure(name, SIZE, one._replace(x=xs, y=ys), [other], [])
     for k in range(5):
@@ -119,7 +119,7 @@ def test_many_places_at_once_are_measured_as_each_alone(name: str, one: Spot, ot
 
 
 def test_wishes_of_the_room() -> None:
-    box = Spot(0.0, 0.0, 0.0, 1.0, 0.5, 0.0, 1.0)
+    box = YawBox(0.0, 0.0, 0.0, 1.0, 0.5, 0.0, 1.0)
     at = {
         "against_wall": (box._replace(y=SIZE[1] / 2 - 0.25), box),
         "in_corner": (box._replace(x=SIZE[0] / 2 - 0.5, y=SIZE[1] / 2 - 0.25), box._replace(y=SIZE[1] / 2 - 0.25)),
@@ -127,7 +127,7 @@ def test_wishes_of_the_room() -> None:
     }
     for name, (good, bad) in at.items():
         assert measure(name, SIZE, good, [], [])[0] and not measure(name, SIZE, bad, [], [])[0], name
-    window = Spot(0.0, 2.45, 0.0, 1.0, 0.1, 1.0, 2.0)
+    window = YawBox(0.0, 2.45, 0.0, 1.0, 0.1, 1.0, 2.0)
     assert measure("at_window", SIZE, box._replace(y=2.0), [], [window])[0]
     assert not measure("at_window", SIZE, box, [], [window])[0] and not measure("at_window", SIZE, box, [], [])[0]
     a, b = box._replace(x=-2.0), box._replace(x=2.0)

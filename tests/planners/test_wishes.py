@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from scenewright.gaussians.world.box import overlap
 from scenewright.planners.plan import EditPlan
 from scenewright.planners.rooms.check import check
 from scenewright.planners.rooms.graph import Node, SceneGraph
@@ -24,7 +25,6 @@ from scenewright.planners.wishes.steps import moves
 from scenewright.tools.ops.arrange import Arrange
 from scenewright.tools.ops.insert import Insert
 from scenewright.tools.ops.move import Move
-from scenewright.tools.placement.bodies import overlap
 
 HERE = Path(__file__).parent
 CASES: list[dict[str, Any]] = [

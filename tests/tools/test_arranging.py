@@ -10,8 +10,8 @@ import pytest
 from pydantic import ValidationError
 
 from scenewright.gaussians.errors import CheckFailedError, InstructionError, UserError
-from scenewright.gaussians.language.field.language_field import Box
 from scenewright.gaussians.scene import Scene
+from scenewright.gaussians.world.box import Box
 from scenewright.tools.execute import carry_out
 from scenewright.tools.operation import Context, Placement
 from scenewright.tools.registry import parse

@@ -12,17 +12,18 @@ import torch
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.color import name_of
 from scenewright.gaussians.errors import AbsentError, AmbiguousError, CheckFailedError, InstructionError, UserError
-from scenewright.gaussians.language.field.language_field import Box, Group
+from scenewright.gaussians.language.field.language_field import Group
 from scenewright.gaussians.language.field.measure import box_of, lab_of_cloud
 from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.scene import Frame, Scene
+from scenewright.gaussians.world.box import Box, overlap
 from scenewright.tools import execute
 from scenewright.tools.carried_objects import riders_of, standing_on
 from scenewright.tools.execute import Done, carry_out, preview
 from scenewright.tools.measure import reach, solid_points
 from scenewright.tools.operation import Context
 from scenewright.tools.ops.opacity import Opacity
-from scenewright.tools.placement.bodies import bodies_of, contact_box, overlap
+from scenewright.tools.placement.bodies import bodies_of, contact_box
 from scenewright.tools.placement.facing import front_of
 from scenewright.tools.receipt import Receipt, at_most
 from scenewright.tools.registry import OPS, parse

@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 
 from scenewright.gaussians.cloud import GaussianCloud, concat
 from scenewright.gaussians.errors import InstructionError
-from scenewright.gaussians.language.field.language_field import Box, Group
+from scenewright.gaussians.language.field.language_field import Group
 from scenewright.gaussians.language.field.measure import box_of, lab_of_cloud
 from scenewright.gaussians.scene import Scene
+from scenewright.gaussians.world.box import Box
 from scenewright.tools.execute import Done, carry_out
 from scenewright.tools.operation import Context
 from scenewright.tools.placement.walls import free_way

@@ -17,7 +17,7 @@ from ..cloud_diff import Draft, selection_of
 from ..measure import solid_points
 from ..new_objects import Arrivals
 from ..operation import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
-from ..placement.bodies import Array, Body, bodies_of, centimetre, extent_along, heading, shifted_box
+from ..placement.bodies import Array, Body, bodies_of, centimetre, heading
 from ..placement.place import Placer
 from ..receipt import Check
 from ..transform import shift
@@ -89,7 +89,7 @@ class Duplicate(TargetedOp):
             else:
                 spot = placer.beside(body)
             offset = spot.foot - body.foot(up)
-            placer.take(solid_points(scene.cloud, body.rows) + offset, shifted_box(body.box, offset))
+            placer.take(solid_points(scene.cloud, body.rows) + offset, body.box.shifted(offset))
             found.append((body, offset, spot.support))
         return [(body, offset, support) for body, offset, support in found]
 
@@ -98,7 +98,7 @@ class Duplicate(TargetedOp):
         if self.distance is not None:
             return self.distance.in_units(scene.frame)
         corners = np.concatenate([b.box.corners() for b in bodies]) @ way
-        largest = max(extent_along(b.box, way) for b in bodies)
+        largest = max(b.box.extent(way) for b in bodies)
         return float(np.ptp(corners)) + 8 * centimetre(scene.frame, largest)
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:

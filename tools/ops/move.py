@@ -26,7 +26,6 @@ from ..placement.bodies import (
     bodies_of,
     centimetre,
     contact_box,
-    extent_along,
     groups_of,
     heading,
     mask_of_bodies,
@@ -107,7 +106,7 @@ class Move(TargetedOp):
         if self.distance is not None:
             step = self.distance.in_units(scene.frame)
         else:
-            step = max(extent_along(b.box, way) for b in bodies)
+            step = max(b.box.extent(way) for b in bodies)
             said = (f"no distance was given: moved by its own extent, {step:.3g} units",)
         return [self._asked(b, way * step) for b in bodies], said
 
@@ -124,7 +123,7 @@ class Move(TargetedOp):
         if self.distance is not None:
             return np.asarray(way * self.distance.in_units(scene.frame))
         gap = 3 * centimetre(scene.frame, max(body.box.size))
-        room = length - (extent_along(body.box, way) + extent_along(goals[nearest].box, way)) / 2 - gap
+        room = length - (body.box.extent(way) + goals[nearest].box.extent(way)) / 2 - gap
         if room <= 0:
             raise InstructionError("it already stands beside it: give a distance to move it anyway")
         return np.asarray(way * room)

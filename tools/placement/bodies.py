@@ -6,7 +6,7 @@ Knows geometry of a scene and its groups. Refuses to know where things ought to 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import torch
@@ -15,10 +15,10 @@ from torch import Tensor
 
 from ...gaussians.camera import Camera, Vec3
 from ...gaussians.errors import InstructionError
-from ...gaussians.language.field.language_field import Box
 from ...gaussians.language.field.measure import Axes, as_axes, box_along, level_axes
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Frame, Scene
+from ...gaussians.world.box import Box
 from ...gaussians.world.relations import viewer_stand
 from ..cloud_diff import rows_of
 from ..measure import reach, solid_points
@@ -49,14 +49,6 @@ class Body:
     @property
     def center(self) -> Array:
         return np.array(self.box.center)
-
-    def bottom(self, up: Array) -> float:
-        """Height of its underside along up."""
-        return float(self.center @ up) - self.box.size[2] / 2
-
-    def top(self, up: Array) -> float:
-        """Height of its top along up."""
-        return float(self.center @ up) + self.box.size[2] / 2
 
     def foot(self, up: Array) -> Array:
         """`[3]`, centre of the underside of its box."""
@@ -146,23 +138,6 @@ def heading(viewer: Camera, frame: Frame, direction: Direction) -> Array:
     return -table[opposite[direction]] if direction in opposite else table[direction]
 
 
-def extent_along(box: Box, direction: Array) -> float:
-    """Full extent of a box along a unit vector."""
-    return float(np.abs(np.array(box.axes) @ direction) @ np.array(box.size))
-
-
-def overlap(a: Box, b: Box) -> float:
-    """How deep two upright boxes are in each other, scene units: the shortest way apart, 0 if they do not overlap."""
-    gap_up = _penetration(a, b, np.array(a.axes[2]))
-    axes = [np.array(v) for v in (*a.axes[:2], *b.axes[:2])]
-    return max(0.0, min(gap_up, *(_penetration(a, b, axis) for axis in axes)))
-
-
-def _penetration(a: Box, b: Box, axis: Array) -> float:
-    distance = abs(float((np.array(a.center) - np.array(b.center)) @ axis))
-    return (extent_along(a, axis) + extent_along(b, axis)) / 2 - distance
-
-
 def turned_axes(axes: Axes, matrix: Array, frame: Frame) -> Axes:
     """Axes of an upright box after `x -> matrix @ x`: its first level axis, or the second if that now stands up."""
     first, second, up = *(np.array(axes)[:2] @ matrix.T), frame.up_vector
@@ -171,11 +146,6 @@ def turned_axes(axes: Axes, matrix: Array, frame: Frame) -> Axes:
         level = second - up * (second @ up)
     level = level / np.linalg.norm(level)
     return as_axes(np.stack([level, np.cross(up, level), up]))
-
-
-def shifted_box(box: Box, offset: Array) -> Box:
-    """The same box elsewhere."""
-    return replace(box, center=as_vec(np.array(box.center) + offset))
 
 
 def neighbours(scene: Scene, but: set[int]) -> list[tuple[str, Box]]:

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
-from ...gaussians.language.field.language_field import Box
 from ...gaussians.rotations import to_matrix
+from ...gaussians.world.box import Box
 from ..measure import OPAQUE
 
 Array = NDArray[np.float64]

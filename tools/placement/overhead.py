@@ -16,7 +16,7 @@ from ...gaussians.errors import InstructionError, UserError
 from ...gaussians.scene import Scene
 from ..operation import Context, Placement
 from ..transform import axis_rotation
-from .bodies import Array, Body, as_vec, centimetre, extent_along
+from .bodies import Array, Body, as_vec, centimetre
 from .facing import angle_between, front_of
 from .place import Placer, Spot
 from .regions import Region, Regions, far
@@ -60,7 +60,7 @@ def how_it_hangs(scene: Scene, body: Body, context: Context) -> Hung:
     if support_height(scene, body, context) is not None:
         raise InstructionError(f"the {body.label or 'thing'} stands and does not hang: say on something, or next to it")
     rooms = Regions(scene, context)
-    return "ceiling" if body.top(rooms.up) > rooms.floor + _NEAR * (rooms.ceiling - rooms.floor) else "wall"
+    return "ceiling" if body.box.top(rooms.up) > rooms.floor + _NEAR * (rooms.ceiling - rooms.floor) else "wall"
 
 
 def over(regions: Regions, size: Vec3, anchor: Body, hung: Hung) -> tuple[Region, tuple[Vec3, Vec3, Vec3]]:
@@ -70,24 +70,24 @@ def over(regions: Regions, size: Vec3, anchor: Body, hung: Hung) -> tuple[Region
         InstructionError: no wall is behind the anchor, or there is no height left above it.
     """
     cm = centimetre(regions.frame, max(anchor.box.size))
-    bottom = anchor.top(regions.up) + GAP * cm
+    bottom = anchor.box.top(regions.up) + GAP * cm
     if hung == "ceiling":
         axes = regions.room_axes
         height = regions.ceiling - size[2]
     else:
         axes = wall_axes(regions, anchor)
         height = min(max(bottom, regions.floor + EYE * cm - size[2] / 2), regions.ceiling - size[2])
-    if height < (anchor.top(regions.up) if hung == "ceiling" else bottom - GAP * cm / 2):
+    if height < (anchor.box.top(regions.up) if hung == "ceiling" else bottom - GAP * cm / 2):
         raise InstructionError(f"there is no room between the {anchor.label or 'thing'} and the ceiling")
     plan = np.array(axes[:2])
     middle = plan @ anchor.center
     if hung == "ceiling":
-        reach = np.array([extent_along(anchor.box, a) for a in plan]) / 2
+        reach = np.array([anchor.box.extent(a) for a in plan]) / 2
         return Region(middle - reach, middle + reach, lambda p: far(p, middle), height, None), axes
     low, high = regions.bounds_for(size, plan)
     back = np.array(regions.room_axes[:2]) @ plan[1]  # the room's axis that points into the wall, with its sign
     wanted = np.array([middle[0], float(np.where(back > 0, high, low) @ back)])
-    aside = np.array([extent_along(anchor.box, plan[0]) / 2, 2 * cm])
+    aside = np.array([anchor.box.extent(plan[0]) / 2, 2 * cm])
     return Region(wanted - aside, wanted + aside, lambda p: far(p, wanted), height, None), axes
 
 
@@ -119,5 +119,5 @@ def turned_to(scene: Scene, body: Body, axes: tuple[Vec3, Vec3, Vec3]) -> tuple[
     if front is None:
         front = np.array(body.box.axes[int(np.argmin(body.box.size[:2]))])
     matrix = axis_rotation(up, angle_between(front, -np.array(axes[1]), up))
-    width, depth = (extent_along(body.box, matrix.T @ np.array(a)) for a in axes[:2])
+    width, depth = (body.box.extent(matrix.T @ np.array(a)) for a in axes[:2])
     return matrix, (width, depth, body.box.size[2])

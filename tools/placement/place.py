@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ...gaussians.camera import Vec3
 from ...gaussians.errors import InstructionError
 from ..operation import Placement
-from .bodies import Array, Body, bodies_of, centimetre, extent_along, neighbours
+from .bodies import Array, Body, bodies_of, centimetre, neighbours
 from .occupancy import Bool, grown, histogram, window_sum
 from .regions import Region, Regions, far
 from .surroundings import FLOOR_WORDS
@@ -113,7 +113,7 @@ class Placer(Regions):
         height, surface = self._base(body, plan)
         if surface is not None:  # what it covered carries, too, though nothing of it was ever seen
             under = np.stack(np.meshgrid(*[np.linspace(-0.5, 0.5, 15)] * 2), axis=-1).reshape(-1, 2)
-            extents = np.array([extent_along(body.box, a) for a in plan])
+            extents = np.array([body.box.extent(a) for a in plan])
             covered = np.column_stack([middle + under * extents, np.full(len(under), height)])
             surface = np.concatenate([surface, covered])
         region = Region(middle - reach, middle + reach, lambda p: far(p, middle), height, surface)
@@ -194,7 +194,7 @@ class Placer(Regions):
             middle = float(np.array(box.center) @ basis[2])
             if middle - box.size[2] / 2 > height + size[2] or middle + box.size[2] / 2 < height + clear:
                 continue
-            reach = np.array([extent_along(box, a) for a in basis[:2]]) / 2 + np.array(size[:2]) / 2
+            reach = np.array([box.extent(a) for a in basis[:2]]) / 2 + np.array(size[:2]) / 2
             within = (np.abs(centers - basis[:2] @ np.array(box.center)) < 0.98 * reach).all(axis=-1)
             total += np.where(within, 1e3, 0.0)
         return total

@@ -14,7 +14,7 @@ import numpy as np
 from ...gaussians.camera import Vec3
 from ...gaussians.errors import InstructionError
 from ..operation import Direction, Placement
-from .bodies import Array, Body, centimetre, extent_along, heading
+from .bodies import Array, Body, centimetre, heading
 from .facing import front_of
 from .occupancy import levels
 from .surroundings import Surroundings
@@ -130,12 +130,14 @@ class Regions(Surroundings):
         tolerance = self._tolerance(anchor)
         counts, edges = np.histogram(heights, bins=max(8, int(np.ptp(heights) / max(2 * tolerance, 1e-9))))
         order = [
-            i for i in np.argsort(-counts, kind="stable")[:12] if edges[i] + size[2] < anchor.top(self.up) + tolerance
+            i
+            for i in np.argsort(-counts, kind="stable")[:12]
+            if edges[i] + size[2] < anchor.box.top(self.up) + tolerance
         ]
         regions = []
         for i in order or [int(np.argmax(counts))]:
             near = (heights >= edges[i]) & (heights <= edges[i + 1])
-            level = float(np.quantile(heights[near], 0.9)) if near.any() else anchor.bottom(self.up)
+            level = float(np.quantile(heights[near], 0.9)) if near.any() else anchor.box.bottom(self.up)
             surface = np.column_stack([local[near], np.full(int(near.sum()), level)])
             cost = self._within(anchor, plan, lambda p: far(p, middle))
             regions.append(Region(low, high, cost, level, surface))
@@ -162,13 +164,13 @@ class Regions(Surroundings):
     def _between_region(self, size: Vec3, plan: Array, first: Body, second: Body) -> Region:
         a, b = plan @ first.center, plan @ second.center
         middle, reach = (a + b) / 2, max(float(np.linalg.norm(b - a)) / 2, max(size[:2]))
-        lower = min(first, second, key=lambda body: body.bottom(self.up))
+        lower = min(first, second, key=lambda body: body.box.bottom(self.up))
         height, surface = self._base(lower, plan)
         return Region(middle - reach, middle + reach, lambda p: far(p, middle), height, surface)
 
     def _beside_region(self, size: Vec3, plan: Array, anchor: Body, relation: str, start: Array | None) -> Region:
         center = plan @ anchor.center
-        anchor_half = np.array([extent_along(anchor.box, a) for a in plan]) / 2
+        anchor_half = np.array([anchor.box.extent(a) for a in plan]) / 2
         half = np.array(size[:2]) / 2
         gap = _GAPS.get(relation, 3.0) * centimetre(self.frame, max(anchor.box.size))
         reach = anchor_half + half + gap + 0.75 * max(*anchor.box.size[:2], *size[:2])

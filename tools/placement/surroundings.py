@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from ...gaussians.camera import Vec3
-from ...gaussians.language.field.language_field import Box
 from ...gaussians.scene import Frame, Scene
+from ...gaussians.world.box import Box
 from ..measure import OPAQUE
 from ..operation import Context
 from .bodies import Array, Body, as_vec, centimetre
@@ -130,7 +130,7 @@ class Surroundings:
 
     def _base(self, anchor: Body, plan: Array) -> tuple[float, Array | None]:
         """What a thing stands on: the floor, or the surface just under it with its points."""
-        bottom = anchor.bottom(self.up)
+        bottom = anchor.box.bottom(self.up)
         tolerance = max(self._tolerance(anchor), 5 * centimetre(self.frame, max(anchor.box.size)))
         if abs(bottom - self.floor) <= tolerance and self.frame.floor is not None:
             return self.floor, None

@@ -11,8 +11,8 @@ import torch
 from numpy.typing import NDArray
 
 from ...gaussians.errors import InstructionError
-from ...gaussians.language.field.language_field import Box
 from ...gaussians.scene import Scene
+from ...gaussians.world.box import Box
 from .bodies import Array, Body, centimetre
 from .occupancy import obstacle_points
 

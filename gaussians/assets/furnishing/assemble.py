@@ -94,7 +94,7 @@ def _stand(thing: Placed, sun: Array) -> GaussianCloud:
     local = (float(c * sun[0] + s * sun[1]), float(-s * sun[0] + c * sun[1]), float(sun[2]))
     cloud = a.relit(local)
     turn = torch.tensor([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], dtype=torch.float32)
-    means = cloud.means @ turn.T + torch.tensor([b.x, b.y, b.z])
+    means = cloud.means @ turn.T + torch.tensor([b.x, b.y, b.low])
     half = math.radians(b.yaw) / 2
     qw, qz = math.cos(half), math.sin(half)
     w, x, y, z = cloud.quats.unbind(1)
@@ -175,8 +175,8 @@ def _cut_openings(samples: sampling.Samples, layout: Layout) -> sampling.Samples
     keep = np.ones(len(samples.xyz), dtype=bool)
     for t in layout.things:
         if t.asset.kind in ("window", "door"):
-            low = t.box.z if t.asset.kind == "door" else t.box.z + 0.06
+            low = t.box.low if t.asset.kind == "door" else t.box.low + 0.06
             local = (samples.xyz[:, :2] - np.array([t.box.x, t.box.y])) @ t.box.axes.T
             inside = (np.abs(local[:, 0]) < t.box.w / 2 - 0.06) & (np.abs(local[:, 1]) < t.box.d / 2 + 0.03)
-            keep &= ~(inside & (samples.xyz[:, 2] > low) & (samples.xyz[:, 2] < t.box.z + t.box.h - 0.03))
+            keep &= ~(inside & (samples.xyz[:, 2] > low) & (samples.xyz[:, 2] < t.box.high - 0.03))
     return samples[keep]

@@ -168,7 +168,7 @@ def _describe(index: int, thing: Placed) -> TruthObject:
         kind=thing.asset.kind,
         color=thing.asset.color,
         size=(b.w, b.d, b.h),
-        position=(b.x, b.y, b.z + b.h / 2),
+        position=(b.x, b.y, b.low + b.h / 2),
         yaw=(b.yaw + 180) % 360 - 180,
         support=thing.support,
         parts=thing.asset.parts.names,

@@ -6,62 +6,18 @@ Knows footprints, heights, walls and clearances. Refuses to know which furniture
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
-from typing import Self
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...world.box import YawBox, meet
 from ..modeling.make import Asset
 
 Array = NDArray[np.float64]
 GAP = 0.035  # between neighbours, and between a back and a wall (skirting boards)
+TOUCHING = 1e-4  # metres that two boxes may be in each other
 HANG = 0.015  # between a picture's back and the wall
-
-
-@dataclass(frozen=True)
-class Box:
-    """An upright box: centre of its bottom (x, y, z), size (w, d, h), yaw in degrees counter-clockwise."""
-
-    x: float
-    y: float
-    z: float
-    w: float
-    d: float
-    h: float
-    yaw: float = 0.0
-
-    @property
-    def axes(self) -> Array:
-        """`[2, 2]` rows: its own right and back directions in the floor plane."""
-        a = math.radians(self.yaw)
-        return np.array([[math.cos(a), math.sin(a)], [-math.sin(a), math.cos(a)]])
-
-    def corners(self) -> Array:
-        """`[4, 2]` of its footprint."""
-        half = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.array([self.w, self.d]) / 2
-        return np.asarray(half @ self.axes + np.array([self.x, self.y]))
-
-    def at(self, right: float, back: float) -> tuple[float, float]:
-        """Floor position at an offset along its own axes from its centre."""
-        p = np.array([right, back]) @ self.axes
-        return self.x + float(p[0]), self.y + float(p[1])
-
-    def grown(self, by: float) -> Self:
-        """Wider and deeper by `by` on each side."""
-        return replace(self, w=self.w + 2 * by, d=self.d + 2 * by)
-
-
-def overlap(a: Box, b: Box, slack: float = 1e-4) -> bool:
-    """Whether two upright boxes interpenetrate by more than `slack` metres (separating axes)."""
-    if a.z + a.h <= b.z + slack or b.z + b.h <= a.z + slack:
-        return False
-    ca, cb = a.corners(), b.corners()
-    for axis in (*a.axes, *b.axes):
-        pa, pb = ca @ axis, cb @ axis
-        if pa.max() <= pb.min() + slack or pb.max() <= pa.min() + slack:
-            return False
-    return True
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +25,7 @@ class Placed:
     """An asset in the room. `support` is the index of what carries it, or "floor", "wall", "ceiling"."""
 
     asset: Asset
-    box: Box
+    box: YawBox
     support: int | str
 
 
@@ -91,22 +47,18 @@ class Layout:
     walls: tuple[str, ...]
     rng: np.random.Generator
     things: list[Placed] = field(default_factory=list)
-    kept_free: list[Box] = field(default_factory=list)
+    kept_free: list[YawBox] = field(default_factory=list)
 
-    def free(self, box: Box, on_wall: bool = False, ignore: tuple[int, ...] = ()) -> bool:
+    def free(self, box: YawBox, on_wall: bool = False, ignore: tuple[int, ...] = ()) -> bool:
         """Whether a box lies inside the room and touches nothing."""
         c = box.corners()
-        if (
-            np.abs(c[:, 0]).max() > self.w / 2 + 1e-6
-            or np.abs(c[:, 1]).max() > self.d / 2 + 1e-6
-            or box.z + box.h > self.h
-        ):
+        if np.abs(c[:, 0]).max() > self.w / 2 + 1e-6 or np.abs(c[:, 1]).max() > self.d / 2 + 1e-6 or box.high > self.h:
             return False
-        if any(overlap(box, t.box) for i, t in enumerate(self.things) if i not in ignore):
+        if any(meet(box, t.box, TOUCHING) for i, t in enumerate(self.things) if i not in ignore):
             return False
-        return on_wall or not any(overlap(box, k) for k in self.kept_free)
+        return on_wall or not any(meet(box, k, TOUCHING) for k in self.kept_free)
 
-    def put(self, asset: Asset, box: Box, support: int | str) -> int:
+    def put(self, asset: Asset, box: YawBox, support: int | str) -> int:
         """Add a thing without asking; its index."""
         self.things.append(Placed(asset, box, support))
         return len(self.things) - 1
@@ -114,17 +66,17 @@ class Layout:
     def try_put(self, asset: Asset, x: float, y: float, yaw: float, margin: float = 0.0) -> int | None:
         """Stand it on the floor, or on a rug that lies wholly under it, if that place is free."""
         w, d, h = asset.size
-        box = Box(x, y, 0.0, w, d, h, yaw)
+        box = YawBox(x, y, 0.0, w, d, h, yaw)
         support: int | str = "floor"
         for i, t in enumerate(self.things):
-            if t.asset.kind != "rug" or not overlap(replace(box, h=0.01), t.box, 0.0):
+            if t.asset.kind != "rug" or not meet(box._replace(h=0.01), t.box, 0.0):
                 continue
             local = (box.corners() - np.array([t.box.x, t.box.y])) @ t.box.axes.T
             reach = np.array([t.box.w, t.box.d]) / 2
             inside = (np.abs(local) <= reach).all() and ((local / reach) ** 2).sum(axis=1).max() <= 1.9
             if not inside:
                 return None
-            box, support = replace(box, z=t.box.h), i
+            box, support = box._replace(low=t.box.h), i
         ignore = (support,) if isinstance(support, int) else ()
         return self.put(asset, box, support) if self.free(box.grown(margin), ignore=ignore) else None
 
@@ -147,7 +99,7 @@ class Layout:
                 t = room * (1 if self.rng.random() < 0.5 else -1)
             t = float(np.clip(t, -room, room))
             x, y, yaw = self.spot(wall, t, d / 2 + GAP)
-            keep = Box(*self.spot(wall, t, d + GAP + front / 2)[:2], 0.02, w * 0.9, front, 0.3, yaw)
+            keep = YawBox(*self.spot(wall, t, d + GAP + front / 2)[:2], 0.02, w * 0.9, front, 0.3, yaw)
             if front > 0 and not self.free(keep, on_wall=True, ignore=tuple(self.rugs())):
                 continue
             if (index := self.try_put(asset, x, y, yaw)) is not None:
@@ -175,7 +127,7 @@ class Layout:
         if reach < 0 or abs(along) > reach or low + h > self.h - 0.03:
             return None
         x, y, yaw = self.spot(wall, along, d / 2 + (0.002 if flush else HANG))
-        box = Box(x, y, low, w, d, h, yaw)
+        box = YawBox(x, y, low, w, d, h, yaw)
         return self.put(asset, box, "wall") if self.free(box, on_wall=True) else None
 
     def near(
@@ -183,7 +135,7 @@ class Layout:
     ) -> int | None:
         """Stand it at an offset along the anchor's own axes, turned by `turn` against it."""
         box = self.things[anchor].box
-        x, y = box.at(right, back)
+        x, y = box.world(right, back)
         return self.try_put(asset, x, y, box.yaw + turn, margin)
 
     def anywhere(self, asset: Asset, margin: float = 0.3, edge: bool = True) -> int | None:
@@ -230,8 +182,8 @@ class Layout:
             level = rest_height(self.things[anchor].asset, r, b, rw, rd)
             if level is None:
                 continue
-            x, y = base.at(r, b)
-            box = Box(x, y, base.z + level, w, d, h, base.yaw + turn)
+            x, y = base.world(r, b)
+            box = YawBox(x, y, base.low + level, w, d, h, base.yaw + turn)
             if self.free(box.grown(0.008), on_wall=True, ignore=(anchor,)):
                 return self.put(asset, box, anchor)
         return None

@@ -6,10 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ...world.box import YawBox
 from ..modeling.make import Asset, make
 from ..modeling.parts import chance
 from ..registry import KINDS
-from .layout import GAP, Box, Layout
+from .layout import GAP, Layout
 
 Rng = np.random.Generator
 SMALL = {
@@ -84,7 +85,7 @@ def openings(room: Layout, get: Supplier) -> None:
     along = float(rng.choice([-1, 1])) * (length / 2 - door.size[0] / 2 - 0.15)
     if room.hang(door, wall, along, 0.0, flush=True) is not None:
         x, y, yaw = room.spot(wall, along, 0.5)
-        room.kept_free.append(Box(x, y, 0.0, 0.9, 0.95, 2.0, yaw))
+        room.kept_free.append(YawBox(x, y, 0.0, 0.9, 0.95, 2.0, yaw))
     for wall in walls[: int(rng.integers(1, 3))]:
         length = room.w if wall in ("north", "south") else room.d
         pane = get("window")

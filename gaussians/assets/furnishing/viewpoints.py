@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...camera import Camera, Vec3
-from .layout import Box, Layout
+from ...world.box import YawBox
+from .layout import Layout
 
 Array = NDArray[np.float64]
 _REACH = np.concatenate([[0.1], 0.2 * np.ones(15)]).cumsum()  # metres along a ray: where it is looked for things
@@ -88,12 +89,12 @@ def _clear(layout: Layout, eye: Vec3) -> float:
     return float(sum(_REACH[first])) / len(fan)
 
 
-def _inside(boxes: Sequence[Box], points: Array) -> NDArray[np.bool_]:
+def _inside(boxes: Sequence[YawBox], points: Array) -> NDArray[np.bool_]:
     """`[M]` whether each point `[M, 3]` is in one of the boxes."""
     centres = np.array([(b.x, b.y) for b in boxes])  # [B, 2]
     axes = np.array([b.axes for b in boxes])  # [B, 2, 2]
     half = np.array([(b.w / 2, b.d / 2) for b in boxes])
-    low, high = np.array([b.z for b in boxes]), np.array([b.z + b.h for b in boxes])
+    low, high = np.array([b.low for b in boxes]), np.array([b.high for b in boxes])
     local = np.einsum("bij,bmj->bmi", axes, points[None, :, :2] - centres[:, None])
     level = (low[:, None] < points[:, 2]) & (points[:, 2] < high[:, None])
     return np.asarray(((np.abs(local) < half[:, None]).all(axis=2) & level).any(axis=0))

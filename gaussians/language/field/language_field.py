@@ -6,7 +6,6 @@ union of its parts (an object of one part is its own leaf). "structure" is floor
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal, Self
@@ -16,62 +15,9 @@ from numpy.typing import NDArray
 
 from ...camera import Vec3
 from ...errors import BackendError
+from ...world.box import Box, Boxes
 
 Level = Literal["object", "part", "structure"]
-
-
-@dataclass(frozen=True)
-class Box:
-    """An upright oriented box.
-
-    Attributes:
-        center: world, scene units.
-        axes: two level unit vectors (x', y') and the scene's up, right-handed, as rows.
-        size: full extents along those axes.
-    """
-
-    center: Vec3
-    axes: tuple[Vec3, Vec3, Vec3]
-    size: Vec3
-
-    def local(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
-        """World points `[M, 3]` in the box's frame, origin at its centre."""
-        local: NDArray[np.float64] = (np.asarray(points, dtype=np.float64) - np.array(self.center)) @ np.array(
-            self.axes
-        ).T
-        return local
-
-    def corners(self) -> NDArray[np.float64]:
-        """`[8, 3]` world corners; the first four are the lower ones."""
-        signs = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], dtype=np.float64)
-        corners: NDArray[np.float64] = np.array(self.center) + (signs * np.array(self.size) / 2) @ np.array(self.axes)
-        return corners
-
-
-@dataclass(frozen=True, eq=False)
-class Boxes:
-    """C boxes as arrays: centers `[C, 3]`, axes `[C, 3, 3]` (rows), sizes `[C, 3]`, as in `Box`."""
-
-    centers: NDArray[np.float64]
-    axes: NDArray[np.float64]
-    sizes: NDArray[np.float64]
-
-    @classmethod
-    def of(cls, boxes: Sequence[Box]) -> Self:
-        """The boxes one after another."""
-        return cls(
-            np.array([b.center for b in boxes], dtype=np.float64).reshape(-1, 3),
-            np.array([b.axes for b in boxes], dtype=np.float64).reshape(-1, 3, 3),
-            np.array([b.size for b in boxes], dtype=np.float64).reshape(-1, 3),
-        )
-
-    def __len__(self) -> int:
-        return len(self.centers)
-
-    def at(self, rows: Sequence[int] | NDArray[np.intp]) -> Self:
-        """Some of them."""
-        rows = np.asarray(rows, dtype=np.intp)
-        return type(self)(self.centers[rows], self.axes[rows], self.sizes[rows])
 
 
 @dataclass(frozen=True)

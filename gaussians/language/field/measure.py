@@ -20,7 +20,7 @@ from ...color import rgb_to_lab
 from ...harmonics import dc_to_color
 from ...rotations import to_matrix
 from ...scene import Frame
-from .language_field import Box
+from ...world.box import Box
 
 F64 = NDArray[np.float64]
 Axes = tuple[Vec3, Vec3, Vec3]

@@ -21,7 +21,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..field.language_field import Box
+from ...world.box import Box
 
 F64 = NDArray[np.float64]
 Flags = NDArray[np.bool_]

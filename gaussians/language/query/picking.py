@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...world import relations
-from ..field.language_field import Boxes, Group
+from ...world.box import Boxes, distances
+from ..field.language_field import Group
 from . import attributes
 from .query import Query
 from .selection import Candidate, Selection, Verdict, nothing
@@ -63,7 +64,7 @@ def by_distance(query: Query, scored: Scored, anchors: Sequence[Group], nearest:
     if not matches:
         return Choice([], nothing(query, f"{query.describe()}: there is nothing but what it is compared with"))
     boxes = Boxes.of([scored.groups[i].box for i in matches])
-    gaps = np.min([relations.distances(boxes, Boxes.of([a.box])) for a in anchors], axis=0)
+    gaps = np.min([distances(boxes, Boxes.of([a.box])) for a in anchors], axis=0)
     return Choice([matches[int(np.argmin(gaps) if nearest else len(gaps) - 1 - np.argmax(gaps[::-1]))]])
 
 

@@ -22,9 +22,10 @@ from ...camera import Vec3
 from ...color import name_of
 from ...errors import BackendError
 from ...world import relations
+from ...world.box import Boxes
 from ...world.words import normalise
 from ..encoders.calibration import probability
-from ..field.language_field import Boxes, Group, LanguageField
+from ..field.language_field import Group, LanguageField
 from . import attributes
 from .color_fallback import PARTS
 from .query import Query, Relation

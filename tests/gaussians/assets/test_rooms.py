@@ -12,8 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scenewright.gaussians import assets
-from scenewright.gaussians.assets.furnishing.layout import Box, overlap
+from scenewright.gaussians.assets.furnishing.layout import TOUCHING
 from scenewright.gaussians.errors import UserError
+from scenewright.gaussians.world.box import YawBox, meet
 
 SEEDS = tuple(range(8))
 
@@ -23,9 +24,9 @@ def furnished(seed: int) -> assets.Room:
     return assets.furnish(seed, detail=0.3)
 
 
-def box_of(o: assets.TruthObject) -> Box:
+def box_of(o: assets.TruthObject) -> YawBox:
     x, y, z = o.position
-    return Box(x, y, z - o.size[2] / 2, *o.size, o.yaw)
+    return YawBox(x, y, z - o.size[2] / 2, *o.size, o.yaw)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -37,9 +38,9 @@ def test_nothing_interpenetrates_and_all_is_inside(seed: int) -> None:
         corners = b.corners()
         # windows and doors are set 2 mm before the wall's plane
         assert np.abs(corners[:, 0]).max() <= w / 2 + 1e-3 and np.abs(corners[:, 1]).max() <= d / 2 + 1e-3, o
-        assert b.z >= -1e-6 and b.z + b.h <= h + 1e-6, o
+        assert b.low >= -1e-6 and b.high <= h + 1e-6, o
     for a, b in combinations(room.truth.objects, 2):
-        assert not overlap(box_of(a), box_of(b), slack=1e-3), (a, b)
+        assert not meet(box_of(a), box_of(b), 1e-3), (a, b)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -49,9 +50,9 @@ def test_everything_is_supported(seed: int) -> None:
     for o in room.truth.objects:
         b = box_of(o)
         if o.support == "floor":
-            assert abs(b.z) < 1e-6
+            assert abs(b.low) < 1e-6
         elif o.support == "wall":
-            backs = [np.array(b.at(s * b.w / 2, b.d / 2)) for s in (-1, 1)]
+            backs = [np.array(b.world(s * b.w / 2, b.d / 2)) for s in (-1, 1)]
             # its back hangs at most 2 cm from one wall, all along
             off = [np.array([w / 2 - abs(p[0]), d / 2 - abs(p[1])]) for p in backs]
             assert np.max(off, axis=0).min() < 0.02, o
@@ -61,10 +62,10 @@ def test_everything_is_supported(seed: int) -> None:
             base = box_of(under)
             local = (b.corners() - np.array([base.x, base.y])) @ base.axes.T
             assert (np.abs(local) <= np.array([base.w, base.d]) / 2 + 1e-3).all(), (o, under)
-            assert base.z < b.z <= base.z + base.h + 1e-6
+            assert base.low < b.low <= base.high + 1e-6
             below = room.scene.cloud.means[room.truth.ids == o.support].numpy()
             near = (np.abs(below[:, :2] - [b.x, b.y]) < 0.5 * max(b.w, b.d) + 0.1).all(axis=1)
-            assert np.abs(below[near, 2] - b.z).min() < 0.01, (o, under)
+            assert np.abs(below[near, 2] - b.low).min() < 0.01, (o, under)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -80,7 +81,7 @@ def test_truth_lines_up_with_the_cloud(seed: int) -> None:
         b = box_of(o)
         local = (means[:, :2] - np.array([b.x, b.y])) @ b.axes.T
         assert (np.abs(local) <= np.array([b.w, b.d]) / 2 + 1e-3).all(), o
-        assert means[:, 2].min() >= b.z - 1e-3 and means[:, 2].max() <= b.z + b.h + 1e-3
+        assert means[:, 2].min() >= b.low - 1e-3 and means[:, 2].max() <= b.high + 1e-3
         assert assets.KINDS[o.kind].shown and o.color
     assert len(torch.unique(cloud.ids)) == len(cloud)
 
@@ -96,7 +97,7 @@ def test_one_can_walk_in(seed: int) -> None:
     free = np.ones(xs.shape, dtype=bool)
     for o in room.truth.objects:
         b = box_of(o)
-        if b.z > 0.5 or o.kind == "rug":
+        if b.low > 0.5 or o.kind == "rug":
             continue
         local = (np.stack([xs, ys], -1) - np.array([b.x, b.y])) @ b.axes.T
         free &= ~((np.abs(local[..., 0]) < b.w / 2) & (np.abs(local[..., 1]) < b.d / 2))
@@ -150,18 +151,18 @@ def test_wrong_requests_say_the_fix() -> None:
 
 
 boxes = st.builds(
-    Box, *(st.floats(-2, 2),) * 2, st.floats(0, 1), *(st.floats(0.1, 2),) * 3, st.floats(-180, 180, allow_nan=False)
+    YawBox, *(st.floats(-2, 2),) * 2, st.floats(0, 1), *(st.floats(0.1, 2),) * 3, st.floats(-180, 180, allow_nan=False)
 )
 
 
 @given(boxes, boxes)
-def test_overlap_is_symmetric_and_agrees_with_points(a: Box, b: Box) -> None:
-    assert overlap(a, b) == overlap(b, a)
+def test_overlap_is_symmetric_and_agrees_with_points(a: YawBox, b: YawBox) -> None:
+    assert meet(a, b, TOUCHING) == meet(b, a, TOUCHING)
     # a grid of points of `a` inside `b` proves an overlap (points well inside, so the slack does not matter)
     t = np.linspace(-0.45, 0.45, 7)
     grid = np.stack(np.meshgrid(t * a.w, t * a.d, indexing="ij"), -1).reshape(-1, 2) @ a.axes + [a.x, a.y]
     local = (grid - [b.x, b.y]) @ b.axes.T
     inside = (np.abs(local) < np.array([b.w, b.d]) / 2 - 0.01).all(axis=1).any()
-    level = a.z + 0.01 < b.z + b.h and b.z + 0.01 < a.z + a.h
+    level = a.low + 0.01 < b.high and b.low + 0.01 < a.high
     if inside and level:
-        assert overlap(a, b)
+        assert meet(a, b, TOUCHING)

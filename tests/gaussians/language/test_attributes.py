@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from scenewright.gaussians.color import BASIC, parse, rgb_to_lab
 from scenewright.gaussians.errors import UserError
-from scenewright.gaussians.language.field.language_field import Box, Group, LanguageField, Level
+from scenewright.gaussians.language.field.language_field import Group, LanguageField, Level
 from scenewright.gaussians.language.query.attributes import (
     COLOR_HOLDS,
     PART_SHARE,
@@ -21,6 +21,7 @@ from scenewright.gaussians.language.query.attributes import (
     group_color_scores,
     size_scores,
 )
+from scenewright.gaussians.world.box import Box
 
 AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 HUED = tuple(n for n in BASIC if n not in ("black", "gray", "white", "beige", "orange"))

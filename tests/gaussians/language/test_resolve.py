@@ -20,11 +20,12 @@ from scenewright.gaussians.harmonics import SH_C0
 from scenewright.gaussians.language.encoders import Encoder
 from scenewright.gaussians.language.encoders.calibration import Calibration
 from scenewright.gaussians.language.encoders.vocabulary import Vocabulary
-from scenewright.gaussians.language.field.language_field import Box, Group, LanguageField, Level
+from scenewright.gaussians.language.field.language_field import Group, LanguageField, Level
 from scenewright.gaussians.language.query.query import Picks, Query, Relation, Relations
 from scenewright.gaussians.language.query.resolve import resolve
 from scenewright.gaussians.language.query.selection import Selection
 from scenewright.gaussians.scene import Frame, Scene
+from scenewright.gaussians.world.box import Box
 from scenewright.gaussians.world.words import normalise
 
 AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))

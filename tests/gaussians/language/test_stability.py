@@ -14,11 +14,12 @@ from hypothesis import strategies as st
 from scenewright.gaussians import assets
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import NO_GROUP
-from scenewright.gaussians.language.field.language_field import Box, Group, LanguageField
+from scenewright.gaussians.language.field.language_field import Group, LanguageField
 from scenewright.gaussians.language.field.measure import box_of, lab_of_cloud
 from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.language.query.resolve import resolve
 from scenewright.gaussians.scene import Scene
+from scenewright.gaussians.world.box import Box
 
 SWAPPED = {"left_of": "right_of", "right_of": "left_of", "leftmost": "rightmost", "rightmost": "leftmost"}
 SIDES = ("left_of", "right_of", "in_front_of", "behind")

@@ -21,9 +21,10 @@ from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import FileError
 from scenewright.gaussians.files import atomic
 from scenewright.gaussians.language.field import store
-from scenewright.gaussians.language.field.language_field import Box, Group, LanguageField
+from scenewright.gaussians.language.field.language_field import Group, LanguageField
 from scenewright.gaussians.language.field.store import beside, cached, fingerprint, load_field, misfit, save_field
 from scenewright.gaussians.scene import Frame, Scene
+from scenewright.gaussians.world.box import Box
 
 numbers = st.floats(-1e6, 1e6)
 vectors = st.tuples(numbers, numbers, numbers)

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from scenewright.gaussians import assets
 from scenewright.gaussians.cloud import GaussianCloud
-from scenewright.gaussians.language.field.language_field import Box, Group
+from scenewright.gaussians.language.field.language_field import Group
 from scenewright.gaussians.language.field.measure import as_axes, box_of
 from scenewright.gaussians.scene import Frame
+from scenewright.gaussians.world.box import Box
 from scenewright.gaussians.world.facing import facing_of
 
 F64 = NDArray[np.float64]

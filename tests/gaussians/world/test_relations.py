@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from scenewright.gaussians.camera import Camera, Vec3
-from scenewright.gaussians.language.field.language_field import Box, Group
-from scenewright.gaussians.world.relations import HOLDS, distance, object_stand, score, viewer_stand
+from scenewright.gaussians.language.field.language_field import Group
+from scenewright.gaussians.world.box import Box, distance
+from scenewright.gaussians.world.relations import HOLDS, object_stand, score, viewer_stand
 
 F64 = NDArray[np.float64]
 UP = np.array([0.0, 0.0, 1.0])
@@ -134,7 +135,7 @@ def test_turning_world_and_viewer_together_changes_nothing(
 
 @given(things, things)
 def test_distance_is_the_gap_either_way_round(a: Group, b: Group) -> None:
-    assert distance(a, b) == pytest.approx(distance(b, a), abs=CLOSE)
+    assert distance(a.box, b.box) == pytest.approx(distance(b.box, a.box), abs=CLOSE)
 
 
 @given(things, things)
@@ -146,8 +147,8 @@ def test_distance_against_a_dense_search(a: Group, b: Group) -> None:
     outside = np.maximum(np.abs(b.box.local(points)) - np.array(b.box.size) / 2, 0)
     reference = float(np.linalg.norm(outside, axis=1).min())
     step = float(np.linalg.norm(a.box.size)) / 14  # no point of the box is farther than this from the grid
-    assert reference - step <= distance(a, b) + CLOSE
-    assert distance(a, b) <= reference + CLOSE
+    assert reference - step <= distance(a.box, b.box) + CLOSE
+    assert distance(a.box, b.box) <= reference + CLOSE
 
 
 # -- frames ----------------------------------------------------------------------------------------------------------
@@ -286,13 +287,13 @@ def test_next_to_is_a_matter_of_the_gap() -> None:
 
 def test_small_things_beside_long_ones_touch_them_either_way_round() -> None:
     wall, clock = at((0, 4, 1.25), (8, 0.1, 2.5)), at((1.0, 3.9, 1.7), (0.3, 0.1, 0.3))
-    assert distance(wall, clock) == pytest.approx(0, abs=CLOSE)
+    assert distance(wall.box, clock.box) == pytest.approx(0, abs=CLOSE)
     assert holds("next_to", clock, wall) and holds("next_to", wall, clock)
 
 
 def test_crossing_boxes_have_no_gap_though_no_corner_is_inside() -> None:
     long, wide = at((0.3, 0.2, 0), (4, 0.2, 0.2)), at((0, 0, 0), (0.2, 4, 0.2), 10.0)
-    assert distance(long, wide) == 0
+    assert distance(long.box, wide.box) == 0
 
 
 def test_between() -> None:

@@ -1,0 +1,68 @@
+"""Lattices of positions for the middle of a box, and at which of them the box keeps clear of others."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...gaussians.world.box import YawBox, is_square, plan_penetration, shared_height
+
+F64 = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+EPSILON = 1e-6  # metres; boxes that share no more than this touch
+TURNS = (0.0, 90.0, 180.0, -90.0)
+
+
+class Lattice(NamedTuple):
+    """Positions `xs[i], ys[j]`, both ascending, for the middle of something that stands turned by `yaw`."""
+
+    xs: F64
+    ys: F64
+    yaw: float
+
+
+def blocked(lattice: Lattice, moving: YawBox, fixed: Sequence[YawBox], into: Flags) -> None:
+    """Mark in `into` `[X, Y]` where `moving`, whose x and y are offsets to the lattice, would be in any of `fixed`.
+
+    A box along the axes forbids exactly a rectangle of middles (its Minkowski sum with the moving one).
+    """
+    for window, meets in meetings(lattice, moving, fixed):
+        into[window] |= meets
+
+
+def meetings(lattice: Lattice, moving: YawBox, fixed: Sequence[YawBox]) -> list[tuple[tuple[slice, slice], Any]]:
+    """For each of `fixed` that is in reach: the window of the lattice, and where in it the two are in each other."""
+    others = [f for f in fixed if shared_height(f, moving) > EPSILON]
+    if not others:
+        return []
+    mw, md = moving.half
+    middles = np.array([(f.x, f.y) for f in others]) - (moving.x, moving.y)
+    reach = np.maximum(np.array([f.half for f in others]) + np.array([mw, md]) - EPSILON, 0.0)
+    x0 = np.searchsorted(lattice.xs, middles[:, 0] - reach[:, 0], side="right")
+    x1 = np.searchsorted(lattice.xs, middles[:, 0] + reach[:, 0], side="left")
+    y0 = np.searchsorted(lattice.ys, middles[:, 1] - reach[:, 1], side="right")
+    y1 = np.searchsorted(lattice.ys, middles[:, 1] + reach[:, 1], side="left")
+    found: list[tuple[tuple[slice, slice], Any]] = []
+    level = is_square(moving.yaw)
+    for k in np.flatnonzero((x1 > x0) & (y1 > y0)):
+        window = slice(int(x0[k]), int(x1[k])), slice(int(y0[k]), int(y1[k]))
+        if level and is_square(others[k].yaw):
+            found.append((window, True))
+        else:
+            here = moving._replace(
+                x=lattice.xs[window[0]][:, None] + moving.x, y=lattice.ys[window[1]][None, :] + moving.y
+            )
+            found.append((window, plan_penetration(here, others[k]) > EPSILON))
+    return found
+
+
+def in_disc(lattice: Lattice, moving: YawBox, x: float, y: float, radius: float) -> Flags:
+    """`[X, Y]` where `moving`, whose x and y are offsets to the lattice, would reach into a disc."""
+    here = moving._replace(x=lattice.xs[:, None] + moving.x, y=lattice.ys[None, :] + moving.y)
+    u, v = here.local(x, y)
+    gap = np.hypot(np.maximum(np.abs(u) - moving.w / 2, 0.0), np.maximum(np.abs(v) - moving.d / 2, 0.0))
+    inside: Flags = gap < radius - EPSILON
+    return inside
