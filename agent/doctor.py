@@ -1,12 +1,11 @@
-"""Which back ends are usable on this machine, and what to install for the rest.
+"""Finds which back ends are usable on this machine, and what to install for the rest.
 
-Knows names of distributions and how each is known to break. Looks at metadata; imports a package only where nothing
-else tells (torchvision beside a CPU torch). Changes nothing and fetches nothing.
+It reads the metadata of installed distributions, and imports a package only where nothing else tells whether it works
+(torchvision beside a CPU build of torch, in a process of its own). It changes nothing and fetches nothing.
 """
 
 from __future__ import annotations
 
-import ctypes.util
 import importlib.metadata
 import os
 import platform
@@ -60,6 +59,7 @@ NEEDED = {
     "rich": "tables",
     "prompt_toolkit": "the chat",
     "safetensors": "saved language fields",
+    "zstandard": "reading and writing .spz of version 4",
 }
 
 
@@ -69,7 +69,7 @@ def examine() -> list[Finding]:
     return [
         *needed,
         *(check() for check in (_cuda, _gsplat, _encoder, _torchvision, _open_clip, _onnx, _vectors)),
-        *(check() for check in (_masks_of_files, _masks_of_sam, _transformers, _poses, _zstd, _webp, _charts, _ffmpeg)),
+        *(check() for check in (_masks_of_files, _masks_of_sam, _transformers, _poses, _webp, _charts, _ffmpeg)),
         *(_planner(kind) for kind in PLANNERS),
         *(check() for check in (_planner_here, _planner_of_auto)),
     ]
@@ -166,23 +166,35 @@ def _torchvision() -> Finding:
         return Finding("torchvision", serves, False, False, "", "not installed", _MODELS)
     if torch.endswith("+cpu") == version.endswith("+cpu"):
         return Finding("torchvision", serves, True, False, version, f"matches torch {torch}", "")
-    if not _problem("import torchvision"):
-        return Finding("torchvision", serves, True, False, version, f"imports beside torch {torch}", "")
-    problem = _problem("from scenewright.gaussians.torchvision_fix import import_torchvision as cured; cured()")
+    said, problem = _interpreter(_IMPORT_TORCHVISION)
     if not problem:
-        detail = f"a CUDA build beside torch {torch}: Scenewright cures its import"
-        return Finding("torchvision", serves, True, False, version, detail, "")
+        cured, imports = (
+            f"a CUDA build beside torch {torch}: Scenewright cures its import",
+            f"imports beside torch {torch}",
+        )
+        return Finding("torchvision", serves, True, False, version, cured if said == "cured" else imports, "")
     fix = f"pip install torchvision=={version.split('+')[0]}+cpu --index-url https://download.pytorch.org/whl/cpu"
     return Finding("torchvision", serves, False, False, version, problem, fix)
 
 
-def _problem(code: str) -> str:
-    """The last line of what a fresh interpreter says to `code`; "" if it is content."""
+_IMPORT_TORCHVISION = """
+try:
+    import torchvision
+except Exception:
+    from scenewright.gaussians.torchvision_fix import import_torchvision
+    import_torchvision()
+    print("cured")
+"""
+
+
+def _interpreter(code: str) -> tuple[str, str]:
+    """Runs `code` in a fresh interpreter: what it prints, and the last line of its error ("" if it succeeds)."""
     try:
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
     except subprocess.TimeoutExpired:
-        return "its import takes longer than two minutes"
-    return "" if done.returncode == 0 else (done.stderr.strip().splitlines() or ["import failed"])[-1]
+        return "", "its import takes longer than two minutes"
+    error = "" if done.returncode == 0 else (done.stderr.strip().splitlines() or ["import failed"])[-1]
+    return done.stdout.strip(), error
 
 
 def _open_clip() -> Finding:
@@ -219,13 +231,6 @@ def _transformers() -> Finding:
 def _poses() -> Finding:
     serves = "poses of photographs that come without (fit)"
     return _distribution("pycolmap", serves, needed=False, fix='pip install "scenewright[sfm]"')
-
-
-def _zstd() -> Finding:
-    """The system's library; the file format's own module is not asked, for it imports torch."""
-    path, serves = ctypes.util.find_library("zstd"), "reading .spz of version 4 (written larger without)"
-    fix = "" if path else "Debian: apt-get install libzstd1; macOS: brew install zstd"
-    return Finding("zstd", serves, bool(path), False, "", path or "not found", fix)
 
 
 def _webp() -> Finding:

@@ -20,7 +20,7 @@ import torch
 from ..gaussians import files, harmonics
 from ..gaussians.camera import Camera
 from ..gaussians.cloud import GaussianCloud
-from ..gaussians.files.formats import spz, zstd
+from ..gaussians.files.formats import spz
 from ..gaussians.files.formats.morton import arranged
 from ..gaussians.reduce import most_visible, psnr
 from ..gaussians.scene import Scene
@@ -89,8 +89,7 @@ def _formats() -> dict[str, tuple[str, Write]]:
     """Suffix and writer of each format by name."""
     found = {suffix[1:]: (suffix, files.writer(Path(f"a{suffix}")))
              for suffix in (".ply", ".compressed.ply", ".splat", ".sog")}  # fmt: skip
-    versions = [v for v in spz.WRITABLE if v < spz.LATEST or zstd.available()]
-    return found | {f"spz {v}": (".spz", lambda s, f, v=v: spz.write(arranged(s), f, v)) for v in versions}
+    return found | {f"spz {v}": (".spz", lambda s, f, v=v: spz.write(arranged(s), f, v)) for v in spz.WRITABLE}
 
 
 def _settings() -> dict[str, Callable[[Case], Scene]]:

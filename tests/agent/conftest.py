@@ -9,6 +9,7 @@ import pytest
 import torch
 from numpy.typing import NDArray
 
+from scenewright.agent import doctor
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.color import rgb_to_lab
@@ -71,6 +72,19 @@ def boxes() -> Scene:
     camera = Camera.look_at([0, -8, 2.5], [0, 0, 0.4], [0, 0, 1], 96, 64, 50, "door")
     frame = Frame((0, 0, 1), 0.0, 1.0, "given", "given")
     return Scene(cloud, frame, (camera,), field)
+
+
+@pytest.fixture(scope="session")
+def findings() -> tuple[doctor.Finding, ...]:
+    """What the doctor finds on this machine. It imports torchvision in another process, which takes seconds."""
+    return tuple(doctor.examine())
+
+
+@pytest.fixture
+def torchvision_examined(findings: tuple[doctor.Finding, ...], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Lets further examinations take what was found of torchvision from the first one."""
+    found = next(finding for finding in findings if finding.name == "torchvision")
+    monkeypatch.setattr(doctor, "_torchvision", lambda: found)
 
 
 @pytest.fixture

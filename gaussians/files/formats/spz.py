@@ -68,7 +68,6 @@ def read(path: Path) -> tuple[Scene, Report]:
     Raises:
         FileError: cut off, damaged, of an unknown version or axes, without Gaussians, or unpacking to far more than
             its size justifies.
-        BackendError: version 4, and the library zstd is not installed.
     """
     data = path.read_bytes()
     header, streams = _unzip(path, data) if data[:2] == _GZIP else _unframe(path, data)
@@ -176,7 +175,6 @@ def write(scene: Scene, file: BinaryIO, version: int = LATEST) -> None:
 
     Raises:
         UserError: a position lies farther out than 24 bits reach, or `version` cannot be written.
-        BackendError: version 4, and the library zstd is not installed.
     """
     if version not in WRITABLE:
         raise UserError(f"SPZ is written in version {', '.join(map(str, WRITABLE))}, not {version}")

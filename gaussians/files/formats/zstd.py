@@ -1,77 +1,28 @@
-"""Zstandard frames (RFC 8878), packed and unpacked by the system's libzstd, or stored without packing by ourselves.
+"""Packs and unpacks Zstandard frames (RFC 8878) of a known size, and stores bytes in a frame without packing them.
 
-Knows the C functions `ZSTD_compress` and `ZSTD_decompress` (zstd.h, stable since 1.0). Refuses to allocate more than
-the caller says a frame holds. Python has Zstandard of its own only from 3.14.
+`zstandard` does the packing. This module adds what it does not check: the size that a frame declares, before that much
+memory is allocated, and bytes after the frame.
 """
 
 from __future__ import annotations
 
-import ctypes
-import ctypes.util
-import functools
 import struct
 
-from ...errors import BackendError
+import zstandard
 
 _LEVEL = 12
 _MAGIC = 0xFD2FB528
 _BLOCK = 1 << 17  # the largest that RFC 8878 allows
-_NEEDED = (
-    "SPZ version 4 needs the library zstd; install it (Debian: apt install libzstd1, macOS: brew install zstd), "
-    "or use version 3"
-)
+_WINDOW = 8 << 20  # RFC 8878, 3.1.1.1.2: the window that every decoder is recommended to support
 
 
 class BrokenFrameError(Exception):
-    """The bytes are no sound frame of the size that was said."""
-
-
-@functools.cache
-def _library() -> ctypes.CDLL:
-    """libzstd with typed functions.
-
-    Raises:
-        BackendError: it is not installed.
-    """
-    name = ctypes.util.find_library("zstd")
-    try:
-        library = ctypes.CDLL(name or "libzstd.so.1")
-    except OSError as error:
-        raise BackendError(_NEEDED) from error
-    size, pointer = ctypes.c_size_t, ctypes.c_void_p
-    for function, result, arguments in (
-        ("ZSTD_compressBound", size, [size]),
-        ("ZSTD_compress", size, [pointer, size, ctypes.c_char_p, size, ctypes.c_int]),
-        ("ZSTD_decompress", size, [pointer, size, ctypes.c_char_p, size]),
-        ("ZSTD_isError", ctypes.c_uint, [size]),
-    ):
-        getattr(library, function).restype = result
-        getattr(library, function).argtypes = arguments
-    return library
-
-
-def available() -> bool:
-    """Whether frames can be packed and unpacked here."""
-    try:
-        _library()
-    except BackendError:
-        return False
-    return True
+    """The bytes are no sound frame of the expected size."""
 
 
 def compress(data: bytes) -> bytes:
-    """One frame that holds `data`.
-
-    Raises:
-        BackendError: libzstd is not installed.
-    """
-    library = _library()
-    room = library.ZSTD_compressBound(len(data))
-    packed = ctypes.create_string_buffer(room)
-    size = library.ZSTD_compress(packed, room, data, len(data), _LEVEL)
-    if library.ZSTD_isError(size):
-        raise BackendError(f"libzstd could not pack {len(data):,} bytes; its memory may be exhausted")
-    return packed.raw[:size]
+    """One frame that holds `data`."""
+    return zstandard.ZstdCompressor(level=_LEVEL).compress(data)
 
 
 def store(data: bytes) -> bytes:
@@ -86,15 +37,18 @@ def store(data: bytes) -> bytes:
 
 
 def decompress(frame: bytes, size: int) -> bytes:
-    """The `size` bytes in a frame; nothing larger than that is allocated, whatever the frame says.
+    """The `size` bytes in `frame`. No larger output is allocated, whatever size the frame declares.
 
     Raises:
-        BackendError: libzstd is not installed.
-        BrokenFrameError: it is no sound frame, or holds another number of bytes.
+        BrokenFrameError: it is not exactly one sound frame, or it holds another number of bytes.
     """
-    library = _library()
-    data = ctypes.create_string_buffer(max(size, 1))
-    got = library.ZSTD_decompress(data, size, frame, len(frame))
-    if library.ZSTD_isError(got) or got != size:
+    try:
+        if zstandard.frame_content_size(frame) not in (size, -1):  # -1: the frame declares none
+            raise BrokenFrameError
+        unpacker = zstandard.ZstdDecompressor(max_window_size=max(size, _WINDOW))
+        data = unpacker.decompress(frame, max_output_size=size, allow_extra_data=False)
+    except zstandard.ZstdError as error:
+        raise BrokenFrameError from error
+    if len(data) != size:
         raise BrokenFrameError
-    return data.raw[:size]
+    return data

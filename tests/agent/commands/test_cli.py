@@ -318,7 +318,8 @@ def test_a_given_frame_is_used_and_a_field_for_another_is_not(
         assert call("embed", room, *wrong).code == 2
 
 
-def test_doctor(call: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.usefixtures("torchvision_examined")
+def test_doctor(call: Any) -> None:
     answer = call("doctor", "--json")
     assert answer.code == 0 and answer.data["machine"]["python"]
 

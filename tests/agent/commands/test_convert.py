@@ -12,11 +12,10 @@ import pytest
 
 from scenewright.agent import cli
 from scenewright.gaussians import files
-from scenewright.gaussians.files.formats import zstd
 from scenewright.gaussians.reduce import BEST_PSNR
 from scenewright.gaussians.scene import Scene
 
-SUFFIXES = (".ply", ".compressed.ply", ".splat", ".sog", *([".spz"] if zstd.available() else []))
+SUFFIXES = (".ply", ".compressed.ply", ".splat", ".sog", ".spz")
 COUNT = 3 * 343 + 144  # Gaussians of the boxes
 
 

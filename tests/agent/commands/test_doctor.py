@@ -10,15 +10,14 @@ from scenewright.agent import doctor
 from scenewright.gaussians.language import encoders, masks
 
 
-def test_every_finding_is_usable_or_says_what_to_do() -> None:
-    findings = doctor.examine()
+def test_every_finding_is_usable_or_says_what_to_do(findings: tuple[doctor.Finding, ...]) -> None:
     assert {"torch", "cuda", "embedded encoder", "torchvision", "ffmpeg"} <= {f.name for f in findings}
     assert all(f.usable != bool(f.fix) for f in findings)
     assert len({f.name for f in findings}) == len(findings)
 
 
-def test_every_encoder_and_source_of_masks_is_told_of() -> None:
-    told = " ".join(f"{f.name} {f.serves}" for f in doctor.examine())
+def test_every_encoder_and_source_of_masks_is_told_of(findings: tuple[doctor.Finding, ...]) -> None:
+    told = " ".join(f"{f.name} {f.serves}" for f in findings)
     assert all(name in told for name in encoders.names())
     assert all(name in told for name in masks.names())
 
@@ -54,26 +53,28 @@ def test_a_cpu_torch_is_not_asked_for_cuda(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 @pytest.mark.parametrize(
-    ("problems", "usable", "told"),
-    [(["", ""], True, "imports beside"), (["nms", ""], True, "cures"), (["nms", "broken"], False, "broken")],
+    ("outcome", "usable", "told"),
+    [(("", ""), True, "imports beside"), (("cured", ""), True, "cures"), (("", "broken"), False, "broken")],
 )
-def test_the_torchvision_trap(monkeypatch: pytest.MonkeyPatch, problems: list[str], usable: bool, told: str) -> None:
-    answers = iter(problems)
+def test_the_torchvision_trap(
+    monkeypatch: pytest.MonkeyPatch, outcome: tuple[str, str], usable: bool, told: str
+) -> None:
     monkeypatch.setattr(doctor, "_version", lambda name: {"torch": "2.13.0+cpu"}.get(name, "0.28.0"))
-    monkeypatch.setattr(doctor, "_problem", lambda code: next(answers))
+    monkeypatch.setattr(doctor, "_interpreter", lambda code: outcome)
     finding = doctor._torchvision()
     assert finding.usable is usable and told in finding.detail
 
 
 def test_a_failing_import_is_quoted() -> None:
-    assert doctor._problem("import sys") == ""
-    assert "No module named 'no_such_module'" in doctor._problem("import no_such_module")
+    assert doctor._interpreter("import sys; print('good')") == ("good", "")
+    assert "No module named 'no_such_module'" in doctor._interpreter("import no_such_module")[1]
 
 
 def test_the_machine() -> None:
     assert doctor.machine()["executable"] == sys.executable
 
 
+@pytest.mark.usefixtures("torchvision_examined")
 def test_every_planner_is_told_of_and_no_key_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in (doctor.ANY_KEY, *(key for _, _, keys in doctor.PLANNERS.values() for key in keys)):
         monkeypatch.delenv(name, raising=False)
@@ -88,7 +89,7 @@ def test_every_planner_is_told_of_and_no_key_is_shown(monkeypatch: pytest.Monkey
     assert "secret" not in told and "hunter2" not in told
 
 
-def test_the_doctors_table_of_planners_is_that_of_the_planners() -> None:
+def test_the_doctors_table_of_planners_is_that_of_the_planners(findings: tuple[doctor.Finding, ...]) -> None:
     from scenewright.planners.model import FORMS
     from scenewright.planners.model.remote.address import OVERRIDE, SERVICES
 
@@ -96,17 +97,23 @@ def test_the_doctors_table_of_planners_is_that_of_the_planners() -> None:
     assert {kind: (s.label, s.keys) for kind, s in SERVICES.items()} == {
         kind: (label, keys) for kind, (label, _, keys) in doctor.PLANNERS.items()
     }
-    named = {f.name.partition(":")[0] for f in doctor.examine() if f.serves.startswith("plans by")}
+    named = {f.name.partition(":")[0] for f in findings if f.serves.startswith("plans by")}
     assert named == {form.partition(":")[0] for form in FORMS}
 
 
-@pytest.mark.parametrize(("name", "asked"), [("zstd", "ctypes.util.find_library"), ("webp", "PIL.features.check")])
-def test_libraries_of_file_formats_are_told_of(monkeypatch: pytest.MonkeyPatch, name: str, asked: str) -> None:
+@pytest.mark.usefixtures("torchvision_examined")
+@pytest.mark.parametrize(
+    ("name", "asked", "needed"),
+    [("zstandard", "scenewright.agent.doctor._version", True), ("webp", "PIL.features.check", False)],
+)
+def test_libraries_of_file_formats_are_told_of(
+    monkeypatch: pytest.MonkeyPatch, name: str, asked: str, needed: bool
+) -> None:
     def found() -> doctor.Finding:
         return next(finding for finding in doctor.examine() if finding.name == name)
 
     before = found()
     monkeypatch.setattr(asked, lambda library: None)
     without = found()
-    assert not before.needed and before.usable == (before.fix == "")
+    assert before.needed == needed and before.usable == (before.fix == "")
     assert not without.usable and without.fix

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 from scenewright.gaussians import files
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import FileError
-from scenewright.gaussians.files.formats import spz, zstd
+from scenewright.gaussians.files.formats import splat, spz
 from scenewright.gaussians.scene import Scene
 
 SUFFIXES = (".ply", ".compressed.ply", ".splat", ".spz", ".2.spz", ".sog")
@@ -28,7 +28,6 @@ COUNT = 2000
 # of a few megabytes is allowed to ask for whatever the file's size (a picture of `sog._SPARE_PIXELS` RGBA pixels).
 SPARE = 2 << 20
 fuzz = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=120)
-pytestmark = pytest.mark.skipif(not zstd.available(), reason="libzstd is not installed; SPZ 4 cannot be tested")
 
 
 @cache
@@ -165,7 +164,7 @@ def test_splat_files_of_broken_rows(tmp_path: Path, size: int) -> None:
 
 
 def test_splat_rows_that_are_faulty_are_left_out(tmp_path: Path) -> None:
-    row = np.zeros(4, files.splat._ROW)
+    row = np.zeros(4, splat._ROW)
     row["scale"], row["quat"], row["rgba"] = 0.1, (255, 128, 128, 128), 200
     row["mean"][1, 2], row["scale"][2, 0], row["scale"][3, 1] = np.nan, -0.1, 0.0
     (tmp_path / "a.splat").write_bytes(row.tobytes())

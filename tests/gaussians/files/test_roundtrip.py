@@ -19,7 +19,7 @@ from scenewright.gaussians import files
 from scenewright.gaussians.camera import Camera, Vec3
 from scenewright.gaussians.cloud import GaussianCloud, concat
 from scenewright.gaussians.errors import UserError
-from scenewright.gaussians.files.formats import spz, zstd
+from scenewright.gaussians.files.formats import spz
 from scenewright.gaussians.files.formats.morton import arranged
 from scenewright.gaussians.reduce import psnr
 from scenewright.gaussians.scene import Scene
@@ -28,8 +28,6 @@ C0 = 0.28209479177387814
 ROUNDING = 1e-5  # relative: float32 arithmetic of a few steps, float32 logarithms
 LOSSY = (".compressed.ply", ".splat", ".spz", ".sog")
 every = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=60)
-needs_zstd = pytest.mark.skipif(not zstd.available(), reason="libzstd is not installed; SPZ 4 cannot be tested")
-pytestmark = needs_zstd
 
 
 def random_cloud(count: int, degree: int, seed: int, spread: float = 3.0, extreme: bool = False) -> GaussianCloud:

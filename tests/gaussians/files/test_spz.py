@@ -12,14 +12,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+import zstandard
 from hypothesis import given
 from hypothesis import strategies as st
 
 from scenewright.gaussians import files, harmonics
-from scenewright.gaussians.errors import BackendError, FileError
+from scenewright.gaussians.errors import FileError
 from scenewright.gaussians.files.formats import spz, spz_codes, zstd
 
-pytestmark = pytest.mark.skipif(not zstd.available(), reason="libzstd is not installed; SPZ 4 cannot be tested")
 DIMS = (0, 3, 8, 15, 24)
 
 
@@ -232,19 +232,36 @@ def test_bombs_are_refused_before_they_go_off(tmp_path: Path, bomb: object) -> N
         tracemalloc.stop()
 
 
-def test_without_zstd_the_message_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def nowhere(name: str) -> None:
-        raise OSError("no such library")
+FRAME = zstd.compress(bytes(range(250)) * 4)
+HOSTILE_FRAMES: dict[str, bytes] = {
+    "empty": b"",
+    "cut": FRAME[:-1],
+    "cut header": FRAME[:5],
+    "cut stored": zstd.store(bytes(1000))[:-1],
+    "bytes after it": FRAME + b"\0",
+    "two frames": zstd.store(bytes(500)) * 2,
+    "another size": zstd.compress(bytes(999)),
+    "a terabyte declared": zstd.store(b"")[:5] + struct.pack("<Q", 1 << 40) + zstd.store(b"")[13:],
+    "less than declared": zstd.store(b"")[:5] + struct.pack("<Q", 1000) + zstd.store(bytes(10))[13:],
+    "no size declared, too much": zstandard.ZstdCompressor(write_content_size=False).compress(bytes(100_000_000)),
+    "no size declared, a window of 2 GiB": zstd.store(b"")[:4] + b"\0\xa8" + zstd.store(bytes(1000))[13:],
+}
 
-    zstd._library.cache_clear()
-    monkeypatch.setattr(zstd.ctypes, "CDLL", nowhere)
+
+@pytest.mark.parametrize("case", sorted(HOSTILE_FRAMES))
+def test_hostile_frames_are_refused_within_the_memory_of_the_expected_size(case: str) -> None:
+    tracemalloc.start()
     try:
-        assert not zstd.available()
-        with pytest.raises(BackendError, match=r"install.*or use version 3"):
-            files.load(put(tmp_path, GOOD4))
-        assert len(files.load(put(tmp_path, GOOD3)).cloud) == 20
+        with pytest.raises(zstd.BrokenFrameError):
+            zstd.decompress(HOSTILE_FRAMES[case], 1000)
+        assert tracemalloc.get_traced_memory()[1] < 20_000
     finally:
-        zstd._library.cache_clear()
+        tracemalloc.stop()
+
+
+def test_a_frame_that_declares_no_size_is_read() -> None:
+    frame = zstandard.ZstdCompressor(write_content_size=False).compress(bytes(1000))
+    assert zstd.decompress(frame, 1000) == bytes(1000)
 
 
 @given(st.binary(max_size=300))
