@@ -1,12 +1,11 @@
-"""What tests of language models share: a model of random weights with a tokenizer of its own, built on the spot since
-none can be fetched here, and `loopback`, importable by that name from every test of this folder."""
+"""Fixtures for tests of language models: a model of random weights with its own tokenizer, built on the spot because
+none can be fetched here."""
 
 from __future__ import annotations
 
 import importlib.util
 import json
 import shutil
-import sys
 from pathlib import Path
 
 import pytest
@@ -25,13 +24,6 @@ TEMPLATE = (
     "{% if add_generation_prompt %}<|assistant|>\n{% endif %}"
 )
 WINDOW = 4096
-
-
-# Tests are collected without packages (--import-mode=importlib), so a module that they share is loaded by its path.
-_spec = importlib.util.spec_from_file_location("loopback", Path(__file__).with_name("loopback.py"))
-assert _spec is not None and _spec.loader is not None
-sys.modules["loopback"] = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(sys.modules["loopback"])
 
 
 @pytest.fixture(scope="session")

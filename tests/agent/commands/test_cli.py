@@ -18,33 +18,6 @@ from scenewright.gaussians.language.field.store import beside
 from scenewright.gaussians.scene import Scene
 
 
-class Answer:
-    """What one call of the command line left."""
-
-    def __init__(self, code: int, out: str, err: str) -> None:
-        self.code, self.out, self.err = code, out, err
-
-    @property
-    def data(self) -> Any:
-        return json.loads(self.out)
-
-    @property
-    def rows(self) -> list[Any]:
-        return [json.loads(line) for line in self.out.splitlines()]
-
-
-@pytest.fixture
-def call(capsys: pytest.CaptureFixture[str]) -> Any:
-    def run(*arguments: object) -> Answer:
-        with pytest.raises(SystemExit) as exit_:
-            cli.main([str(a) for a in arguments])
-        streams = capsys.readouterr()
-        code = exit_.value.code
-        return Answer(code if isinstance(code, int) else 1, streams.out, streams.err)
-
-    return run
-
-
 def test_help_lists_every_verb(call: Any) -> None:
     answer = call("--help")
     assert answer.code == 0, answer.err

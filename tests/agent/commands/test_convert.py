@@ -10,26 +10,12 @@ from typing import Any
 
 import pytest
 
-from scenewright.agent import cli
 from scenewright.gaussians import files
 from scenewright.gaussians.reduce import BEST_PSNR
 from scenewright.gaussians.scene import Scene
 
 SUFFIXES = (".ply", ".compressed.ply", ".splat", ".sog", ".spz")
 COUNT = 3 * 343 + 144  # Gaussians of the boxes
-
-
-@pytest.fixture
-def call(capsys: pytest.CaptureFixture[str]) -> Any:
-    """Runs the command line; exit code, stdout and stderr."""
-
-    def run(*arguments: object) -> tuple[int, str, str]:
-        with pytest.raises(SystemExit) as exit_:
-            cli.main([str(a) for a in arguments])
-        streams = capsys.readouterr()
-        return exit_.value.code or 0, streams.out, streams.err  # type: ignore[return-value]
-
-    return run
 
 
 @pytest.fixture

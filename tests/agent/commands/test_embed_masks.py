@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scenewright.agent import cli
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.files import save
 from scenewright.gaussians.files.captures.capture import read_capture
@@ -17,17 +16,6 @@ from scenewright.gaussians.render import render
 from scenewright.gaussians.scene import Scene
 
 NAMES = ("stool", "bin", "crate")
-
-
-@pytest.fixture
-def call(capsys: pytest.CaptureFixture[str]) -> Any:
-    def run(*arguments: object) -> tuple[int, str, str]:
-        with pytest.raises(SystemExit) as exit_:
-            cli.main([str(a) for a in arguments])
-        streams = capsys.readouterr()
-        return int(exit_.value.code or 0), streams.out, streams.err
-
-    return run
 
 
 @pytest.fixture

@@ -323,42 +323,42 @@ def test_progress_is_drawn_on_a_terminal_and_removed(boxes: Scene, encoder: Any,
     assert f"asking {SPEC}" in screen.getvalue() and screen.getvalue().endswith("\r\x1b[K")
 
 
-def _call(capsys: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str, str]:
-    from scenewright.agent import cli
+@pytest.fixture
+def command(call: Any) -> Any:
+    """Runs the command line and sees that the key is never printed."""
 
-    with pytest.raises(SystemExit) as exit_:
-        cli.main([str(a) for a in arguments])
-    streams = capsys.readouterr()
-    assert KEY not in streams.out + streams.err
-    return int(exit_.value.code or 0), streams.out, streams.err
+    def run(*arguments: object) -> Any:
+        answer = call(*arguments)
+        assert KEY not in answer.out + answer.err
+        return answer
+
+    return run
 
 
-def test_edit_and_plan_tell_of_the_model(
-    room: Path, fake: list[Fake], capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+def test_edit_and_plan_tell_of_the_model(room: Path, fake: list[Fake], command: Any, tmp_path: Path) -> None:
     spec = ("--planner", f"auto:{SPEC}", "--budget", "9s,1usd", "--picture")
-    code, out, err = _call(capsys, "edit", room, HARD, "-o", tmp_path / "out.ply", *spec)
+    code, out, err = command("edit", room, HARD, "-o", tmp_path / "out.ply", *spec)
     assert code == 0 and out.startswith("note: frobnicate read as paint\n")
     assert f"planned by {SPEC} in 1.2 s, 2 requests, 1,830 tokens, $0.0040" in err and "planned by" not in out
     assert fake[0].pictures and fake[0].seconds == 9
-    code, out, err = _call(capsys, "edit", room, HARD, "--dry-run", "--json", *spec)
+    code, out, err = command("edit", room, HARD, "--dry-run", "--json", *spec)
     assert code == 0 and json.loads(out)["plan"]["usage"]["dollars"] == 0.004 and "planned by" not in err
-    code, out, err = _call(capsys, "plan", room, HARD, "--json", *spec)
+    code, out, err = command("plan", room, HARD, "--json", *spec)
     told = json.loads(out)
     assert code == 0 and told["planner"] == SPEC and told["usage"]["input_tokens"] == 1800
     assert told["reason"] == "frobnicate read as paint" and told["steps"][0]["targets"] == [1]
-    code, out, err = _call(capsys, "plan", room, "delete the green thing", "--json", *spec)
+    code, out, err = command("plan", room, "delete the green thing", "--json", *spec)
     assert json.loads(out)["usage"] is None and json.loads(out)["planner"] == "grammar"
 
 
 def test_a_refused_edit_tells_of_the_model_too(
-    room: Path, fake: list[Fake], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    room: Path, fake: list[Fake], command: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(Fake, "plan", lambda self, text, previous=None, sight=None: EditPlan(
         instruction=text, planner=SPEC, verdict="absent", reason="there is no widget",
         usage=Usage(model=SPEC, requests=1, seconds=2.0),
     ))  # fmt: skip
-    code, out, err = _call(capsys, "edit", room, HARD, "--dry-run", "--json", "--planner", f"auto:{SPEC}")
+    code, out, err = command("edit", room, HARD, "--dry-run", "--json", "--planner", f"auto:{SPEC}")
     told = json.loads(out)
     assert (code, told["verdict"], told["usage"]["seconds"]) == (3, "absent", 2.0)
     assert f"planned by {SPEC} in 2.0 s\n" in err and "there is no widget" in err
@@ -366,13 +366,13 @@ def test_a_refused_edit_tells_of_the_model_too(
 
 @pytest.mark.parametrize(("verdict", "code"), [("not_understood", 2), ("not_an_edit", 2), ("impossible", 3)])
 def test_whatever_is_refused_has_its_cost_in_the_answer(
-    room: Path, boxes: Scene, encoder: Any, fake: list[Fake], capsys: pytest.CaptureFixture[str],
+    room: Path, boxes: Scene, encoder: Any, fake: list[Fake], command: Any,
     monkeypatch: pytest.MonkeyPatch, verdict: str, code: int,
 ) -> None:  # fmt: skip
     monkeypatch.setattr(Fake, "plan", lambda self, text, previous=None, sight=None: EditPlan(
         instruction=text, planner=SPEC, verdict=verdict, reason="as said", usage=Usage(model=SPEC, requests=3),
     ))  # fmt: skip
-    left, out, err = _call(capsys, "edit", room, HARD, "--dry-run", "--json", "--planner", f"auto:{SPEC}")
+    left, out, err = command("edit", room, HARD, "--dry-run", "--json", "--planner", f"auto:{SPEC}")
     told = json.loads(out)
     assert left == told["exit_code"] == code and told["verdict"] == verdict and told["usage"]["requests"] == 3
     assert "as said" in told["reason"] and "as said" in err
@@ -385,7 +385,7 @@ def test_whatever_is_refused_has_its_cost_in_the_answer(
 
 @pytest.mark.parametrize("verb", ["edit", "plan"])
 def test_a_model_that_is_lost_has_cost_what_it_answered_before(
-    room: Path, capsys: pytest.CaptureFixture[str], verb: str, monkeypatch: pytest.MonkeyPatch
+    room: Path, command: Any, verb: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def load_planner(spec: str, **_: Any) -> Fake:
         planner = Fake()
@@ -394,14 +394,12 @@ def test_a_model_that_is_lost_has_cost_what_it_answered_before(
 
     monkeypatch.setattr(models, "load_planner", load_planner)
     words = [HARD, "--dry-run"] if verb == "edit" else [HARD]
-    code, out, _ = _call(capsys, verb, room, *words, "--json", "--planner", SPEC)
+    code, out, _ = command(verb, room, *words, "--json", "--planner", SPEC)
     assert code == json.loads(out)["exit_code"] == 4 and json.loads(out)["usage"]["requests"] == 2
 
 
 @pytest.mark.parametrize("verb", ["edit", "plan", "chat"])
-def test_a_budget_that_is_none_is_refused(
-    room: Path, capsys: pytest.CaptureFixture[str], verb: str, fake: list[Fake]
-) -> None:
+def test_a_budget_that_is_none_is_refused(room: Path, command: Any, verb: str, fake: list[Fake]) -> None:
     words = {"edit": ["delete the green thing", "--dry-run"], "plan": ["delete the green thing"], "chat": []}[verb]
-    code, _, err = _call(capsys, verb, room, *words, "--budget", "a lot")
+    code, _, err = command(verb, room, *words, "--budget", "a lot")
     assert code == 2 and "is no budget" in err

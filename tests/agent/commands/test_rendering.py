@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from scenewright.agent import cli
 from scenewright.agent.pictures.shots import _file_names
 from scenewright.gaussians.files import save
 from scenewright.gaussians.scene import Scene
@@ -23,14 +22,12 @@ def room(boxes: Scene, tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def render(capsys: pytest.CaptureFixture[str], room: Path) -> Any:
+def render(call: Any, room: Path) -> Any:
     """Renders the room; the exit code, what was printed as JSON, and what was said."""
 
     def run(*arguments: object) -> tuple[int, Any, str]:
-        with pytest.raises(SystemExit) as exit_:
-            cli.main(["render", str(room), *(str(a) for a in arguments), "--json"])
-        streams = capsys.readouterr()
-        return int(exit_.value.code or 0), json.loads(streams.out), streams.err
+        answer = call("render", room, *arguments, "--json")
+        return answer.code, answer.data, answer.err
 
     return run
 

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scenewright.agent import cli
 from scenewright.agent.session.log import read_log
 from scenewright.agent.session.session import Session
 from scenewright.agent.terminal.chat import Chat
@@ -101,33 +100,26 @@ def test_an_explanation_names_every_term_and_threshold(boxes: Scene, encoder: An
     assert json.loads(json.dumps(explained.to_json()))["candidates"][0]["terms"][0]["threshold"] > 0
 
 
-def _call(capsys: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str, str]:
-    with pytest.raises(SystemExit) as exit_:
-        cli.main([str(a) for a in arguments])
-    streams = capsys.readouterr()
-    return int(exit_.value.code or 0), streams.out, streams.err
-
-
-def test_on_the_command_line(room: Path, boxes: Scene, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_on_the_command_line(room: Path, boxes: Scene, call: Any, tmp_path: Path) -> None:
     def rows(*options: object) -> set[int]:
         target = tmp_path / "rows.npy"
-        code, _, err = _call(capsys, "select", room, "the green thing", "--ids", target, "--force", *options)
+        code, _, err = call("select", room, "the green thing", "--ids", target, "--force", *options)
         assert code == 0, err
         return set(np.load(target).tolist())
 
     plain, wide = rows(), rows("--grow", 0.5)
     assert plain < wide and rows("--invert") == set(range(len(boxes.cloud))) - plain
     assert plain <= rows("--grow", 0.5, "--shrink", 0.5) <= wide
-    code, out, _ = _call(capsys, "select", room, "the green thing", "--grow", "0.5", "--json", "--explain")
+    code, out, _ = call("select", room, "the green thing", "--grow", "0.5", "--json", "--explain")
     data = json.loads(out)
     assert code == 0 and data["asked"] == "the green thing grown by 0.5 m" and data["gaussians"] == len(wide)
     assert data["explained"]["candidates"][0]["outcome"] == "selected"
-    code, _, err = _call(capsys, "select", room, "the green thing", "--grow", "-1")
+    code, _, err = call("select", room, "the green thing", "--grow", "-1")
     assert code == 2 and "--grow" in err
 
 
 def test_a_field_made_for_another_version_of_the_file_is_told_and_not_used(
-    room: Path, boxes: Scene, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    room: Path, boxes: Scene, call: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from scenewright.gaussians.language.field import embed as embedding
 
@@ -138,13 +130,13 @@ def test_a_field_made_for_another_version_of_the_file_is_told_and_not_used(
         return boxes.replace(cloud=scene.cloud.replace(group=boxes.cloud.group[: len(scene.cloud)]))
 
     monkeypatch.setattr(embedding, "embed", embed)
-    code, _, err = _call(capsys, "select", room, "the green thing")
+    code, _, err = call("select", room, "the green thing")
     assert code == 0 and "another version" not in err and not embedded
     save(boxes.replace(cloud=boxes.cloud[: len(boxes.cloud) - 1], language=None), room, force=True)
-    code, _, err = _call(capsys, "select", room, "the green thing")
+    code, _, err = call("select", room, "the green thing")
     assert code == 0 and len(embedded) == 1
     assert "was made for another version of this file: embedding again" in err and f"scenewright embed {room}" in err
-    code, _, err = _call(capsys, "embed", room)
+    code, _, err = call("embed", room)
     assert code == 0 and "another version" in err and len(embedded) == 2
-    code, _, err = _call(capsys, "select", room, "the green thing")
+    code, _, err = call("select", room, "the green thing")
     assert code == 0 and "another version" not in err and len(embedded) == 2

@@ -17,6 +17,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import loopback as wires
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -30,7 +31,6 @@ from scenewright.planners.schemas import schema
 
 pytest.importorskip("pydantic_ai", reason="needs the extra llm")
 
-wires: Any = importlib.import_module("loopback")  # see conftest.py
 Wire = Any
 WIRES = [wires.OpenAI, wires.Anthropic, wires.Google]
 each_wire = pytest.mark.parametrize("wire", WIRES, ids=[wire.kind for wire in WIRES])

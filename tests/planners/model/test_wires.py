@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 from pathlib import Path
 from typing import Any
 
+import loopback as wires
 import pytest
 
 from scenewright.planners import model
@@ -17,7 +17,6 @@ from scenewright.planners.rooms.graph import SceneGraph
 
 pytest.importorskip("pydantic_ai", reason="needs the extra llm")
 
-wires: Any = importlib.import_module("loopback")  # see conftest.py
 Wire = Any
 WIRES = [wires.OpenAI, wires.Anthropic, wires.Google]
 each_wire = pytest.mark.parametrize("wire", WIRES, ids=[wire.kind for wire in WIRES])

@@ -1,6 +1,6 @@
 """Servers on this machine that speak the wire formats of OpenAI, Anthropic and Google, and answer by a script.
 
-Tests load this file by its path (pytest imports test modules one by one here). A script is a list of turns, one a
+A script is a list of turns, one a
 request, the last of them repeated; a turn is a `Turn`, or a function from the request to one.
 """
 
