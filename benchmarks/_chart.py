@@ -20,7 +20,13 @@ LETTER = (4.4, 9.0)  # width and height of a letter of a label, points
 
 
 def draw(result: Result, path: Path) -> Path:
-    """See `Result.chart`."""
+    """Draw time (logarithmic) against accuracy with the Pareto front, the default marked; PNG, SVG or PDF by name.
+
+    Raises:
+        BackendError: matplotlib is not installed.
+        UserError: the result has no points, or the file's ending is none of these.
+        FileError: the file cannot be written.
+    """
     kind = path.suffix.lstrip(".").lower()
     if kind not in FORMATS:
         raise UserError(f"a chart is written as .{', .'.join(FORMATS)}, not {path.name!r}")

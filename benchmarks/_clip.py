@@ -24,7 +24,7 @@ from ..gaussians.cloud import GaussianCloud
 from ..gaussians.language import encoders
 from ..gaussians.language.encoders import Encoder
 from ..gaussians.language.encoders.backends.vectors import wrap
-from ..gaussians.language.encoders.calibration import labels, probability
+from ..gaussians.language.encoders.probability import labels, probability
 from ..gaussians.language.encoders.vocabulary import Vocabulary
 from ..gaussians.language.field.language_field import Group, LanguageField
 from ..gaussians.language.query.query import Query

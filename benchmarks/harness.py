@@ -200,18 +200,6 @@ class Result:
         facts += [f"measured in {self.seconds:.0f} s{', quick: rougher than the full run' if self.quick else ''}"]
         return [f"- {fact}" for fact in facts if fact]
 
-    def chart(self, path: Path | str) -> Path:
-        """Draw time (logarithmic) against accuracy with the Pareto front, the default marked; PNG, SVG or PDF by name.
-
-        Raises:
-            BackendError: matplotlib is not installed.
-            UserError: the result has no points, or the file's ending is none of these.
-            FileError: the file cannot be written.
-        """
-        from . import _chart
-
-        return _chart.draw(self, Path(path))
-
 
 def names() -> tuple[str, ...]:
     """The benchmarks there are."""

@@ -65,7 +65,7 @@ def walk(known: Known, rule: Rule | None, rng: np.random.Generator) -> Met:
     def meet(pairs: list[tuple[int, int]]) -> None:
         if not pairs:
             return
-        found = graph.features(pairs)
+        found = affinity.features(graph, pairs)
         order = rng.random(len(pairs)) if rule is None else -rule.probability(found)
         features.append(found)
         for (i, j), p in zip(pairs, order.tolist(), strict=True):

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ..gaussians.assets.modeling import light, make, sampling
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.language import encoders
-from ..gaussians.language.encoders.calibration import labels, probability
+from ..gaussians.language.encoders.probability import labels, probability
 from . import damage
 from .augment import plain
 from .renders import WHOLE, Thing, pictures

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..gaussians import assets
 from ..gaussians.language.encoders import Encoder
-from ..gaussians.language.encoders.calibration import labels, probability
+from ..gaussians.language.encoders.probability import labels, probability
 from ..gaussians.language.segmentation.group_renders import mean_vectors
 
 ABSENT = 6  # names of things that are not there, asked of each room

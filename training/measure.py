@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from ..gaussians.language.encoders import Encoder
 from ..gaussians.language.encoders.backends.embedded import Embedded
-from ..gaussians.language.encoders.calibration import Calibration, SizePrior, distribution, labels, wholeness
+from ..gaussians.language.encoders.calibration import Calibration, SizePrior
+from ..gaussians.language.encoders.probability import distribution, labels, wholeness
 from .augment import plain
 from .renders import DAMAGED, NONE, WHOLE, Crops
 

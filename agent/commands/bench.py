@@ -32,7 +32,7 @@ def command(
     from ...gaussians.errors import FileError, UserError
 
     try:
-        from ...benchmarks import harness
+        from ...benchmarks import _chart, harness
     except ModuleNotFoundError as error:
         if error.name != "scenewright.benchmarks":
             raise
@@ -52,7 +52,7 @@ def command(
         raise FileError(f"cannot read {against}: {error.strerror}") from error
     result = harness.run(name, quick)
     if chart is not None:
-        terminal.say(f"chart: {result.chart(chart)}")
+        terminal.say(f"chart: {_chart.draw(result, chart)}")
     terminal.result(result.to_markdown(), json.loads(result.to_json()))
     worse = result.regressions(earlier) if earlier is not None else ()
     for sentence in worse:

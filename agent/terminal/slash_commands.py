@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from ...gaussians.errors import UserError
 from ..session.model_usage import asked, took
@@ -16,7 +16,9 @@ from ..session.resolved_plan import plan_lines, selection_json
 from .tables import table
 
 if TYPE_CHECKING:
-    from .chat import Chat
+    from ...planners.plan import EditPlan
+    from ..session.result import Result
+    from ..session.session import Session
 
 STEP = 0.05  # metres by which a selection grows or shrinks if nothing is said
 _EXAMPLES = (
@@ -26,14 +28,27 @@ _EXAMPLES = (
 )
 
 
+class Conversation(Protocol):
+    """What a command may use of the chat that it is given in; see `chat.Chat`."""
+
+    session: Session
+    planned: EditPlan | None
+    saved: bool
+    over: bool
+
+    def tell(self, text: str, data: dict[str, Any], style: str = "default") -> None: ...
+    def show_result(self, result: Result) -> None: ...
+    def show_picture(self) -> None: ...
+
+
 class Slash(NamedTuple):
     """A command: what `/help` says of it, and what it does with the rest of its line."""
 
     says: str
-    do: Callable[[Chat, str], None]
+    do: Callable[[Conversation, str], None]
 
 
-def carry_out(chat: Chat, line: str) -> None:
+def carry_out(chat: Conversation, line: str) -> None:
     """Do what a line that begins with a slash asks.
 
     Raises:
@@ -46,7 +61,7 @@ def carry_out(chat: Chat, line: str) -> None:
     slash.do(chat, rest.strip())
 
 
-def _help(chat: Chat, _: str) -> None:
+def _help(chat: Conversation, _: str) -> None:
     from ...tools.registry import describe
 
     says = {name: slash.says for name, slash in SLASHES.items()}
@@ -56,15 +71,15 @@ def _help(chat: Chat, _: str) -> None:
     chat.tell(f"{said}\n\n{operations}\n\n{commands}", {"commands": says})
 
 
-def _undo(chat: Chat, _: str) -> None:
+def _undo(chat: Conversation, _: str) -> None:
     chat.show_result(chat.session.undo())
 
 
-def _redo(chat: Chat, _: str) -> None:
+def _redo(chat: Conversation, _: str) -> None:
     chat.show_result(chat.session.redo())
 
 
-def _plan(chat: Chat, text: str) -> None:
+def _plan(chat: Conversation, text: str) -> None:
     if text:
         result = chat.session.preview(text)
         planned = plan_lines(result.plan) if result.plan is not None else []
@@ -76,7 +91,7 @@ def _plan(chat: Chat, text: str) -> None:
     chat.tell("\n".join(plan_lines(chat.planned)), chat.planned.model_dump(mode="json"))
 
 
-def _select(chat: Chat, text: str) -> None:
+def _select(chat: Conversation, text: str) -> None:
     if not text:
         raise UserError("say what to select: /select the red chair")
     found = chat.session.select(text)
@@ -88,18 +103,18 @@ def _select(chat: Chat, text: str) -> None:
     chat.tell("\n".join(lines), selection_json(found))
 
 
-def _why(chat: Chat, text: str) -> None:
+def _why(chat: Conversation, text: str) -> None:
     if not text:
         raise UserError("say what to explain: /why the red chair")
     explained = chat.session.explain(text)
     chat.tell("\n".join(explained.lines()), explained.to_json())
 
 
-def _grow(chat: Chat, text: str) -> None:
+def _grow(chat: Conversation, text: str) -> None:
     chat.show_result(chat.session.adjust(grow=_metres(text)))
 
 
-def _shrink(chat: Chat, text: str) -> None:
+def _shrink(chat: Conversation, text: str) -> None:
     chat.show_result(chat.session.adjust(grow=-_metres(text)))
 
 
@@ -118,11 +133,11 @@ def _metres(text: str) -> float:
     return by
 
 
-def _invert(chat: Chat, _: str) -> None:
+def _invert(chat: Conversation, _: str) -> None:
     chat.show_result(chat.session.adjust(invert=True))
 
 
-def _show(chat: Chat, view: str) -> None:
+def _show(chat: Conversation, view: str) -> None:
     from ..pictures.named_cameras import choose_view
 
     if view:
@@ -130,7 +145,7 @@ def _show(chat: Chat, view: str) -> None:
     chat.show_picture()
 
 
-def _things(chat: Chat, _: str) -> None:
+def _things(chat: Conversation, _: str) -> None:
     from ...gaussians.color import name_of
     from .thing_names import name_of_thing
 
@@ -142,7 +157,7 @@ def _things(chat: Chat, _: str) -> None:
     chat.tell(table(("group", "thing", "Gaussians"), shown), data)
 
 
-def _planner(chat: Chat, spec: str) -> None:
+def _planner(chat: Conversation, spec: str) -> None:
     if spec:
         chat.session.planner = spec
     budget, spent = chat.session.budget, chat.session.spent
@@ -160,12 +175,12 @@ def _planner(chat: Chat, spec: str) -> None:
     chat.tell("\n".join(lines), data)
 
 
-def _history(chat: Chat, _: str) -> None:
+def _history(chat: Conversation, _: str) -> None:
     done = chat.session.done
     chat.tell("\n".join(f"  {i}. {t}" for i, t in enumerate(done, 1)) or "nothing was done yet", {"done": list(done)})
 
 
-def _save(chat: Chat, arguments: str) -> None:
+def _save(chat: Conversation, arguments: str) -> None:
     try:
         words = shlex.split(arguments)
     except ValueError as error:
@@ -178,7 +193,7 @@ def _save(chat: Chat, arguments: str) -> None:
     chat.tell(f"wrote {names[0]}", {"verdict": "ok", "path": names[0]})
 
 
-def _quit(chat: Chat, _: str) -> None:
+def _quit(chat: Conversation, _: str) -> None:
     chat.over = True
 
 

@@ -22,7 +22,7 @@ from ...gaussians.assets.modeling.make import Unlit
 from ...gaussians.assets.modeling.sampling import Samples
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.language.encoders import Encoder
-from ...gaussians.language.encoders.calibration import probability
+from ...gaussians.language.encoders.probability import probability
 from ...training import foreign_meshes
 from .._iou import iou
 from ..harness import Metric

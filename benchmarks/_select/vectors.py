@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...gaussians.language.encoders import Encoder
-from ...gaussians.language.encoders.calibration import probability
+from ...gaussians.language.encoders.probability import probability
 from ...gaussians.language.masks.association import associate
 from ...gaussians.language.masks.lifting import Lifted, lift
 from .._iou import Mask, iou

@@ -16,11 +16,10 @@ from numpy.typing import NDArray
 from ..camera import Camera
 from ..render.cpu import gradient
 from .densify import Growth
-from .loss import photometric
+from .loss import BLACK, photometric
 from .parameters import Parameters, chained
 
 F32 = NDArray[np.float32]
-BLACK = (0.0, 0.0, 0.0)
 
 
 class Engine(Protocol):

@@ -18,8 +18,7 @@ from ..camera import Camera, Vec3
 from ..cloud import SH_BANDS
 from .adam import BETAS, EPSILON, Adam
 from .densify import Growth
-from .engine import BLACK
-from .loss import reference
+from .loss import BLACK, reference
 from .parameters import HIGHER, Parameters, rates
 
 F32 = NDArray[np.float32]

@@ -21,6 +21,7 @@ from ..compiled import exact, inlined
 F32 = NDArray[np.float32]
 Array = NDArray[Any]
 
+BLACK = (0.0, 0.0, 0.0)  # background of the pictures that are compared with photographs
 REACH = 5  # px on each side of a window
 SIGMA = 1.5  # px
 C1, C2 = 0.01**2, 0.03**2  # for values in [0, 1]

@@ -9,7 +9,8 @@ import pytest
 
 from scenewright.benchmarks import _clip
 from scenewright.gaussians.language.encoders.backends.vectors import wrap
-from scenewright.gaussians.language.encoders.calibration import of_clip, probability
+from scenewright.gaussians.language.encoders.calibration import of_clip
+from scenewright.gaussians.language.encoders.probability import probability
 
 
 def _made_up(noise: float) -> _clip.Pairs:

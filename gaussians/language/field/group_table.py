@@ -16,7 +16,7 @@ from ...cloud import NO_GROUP
 from ...scene import Scene
 from ...viewpoints.coverage import Views
 from ..encoders import Encoder
-from ..encoders.calibration import labels as name_things
+from ..encoders.probability import labels as name_things
 from ..segmentation.group_renders import mean_vectors
 from ..segmentation.segment import Thing
 from .group_index import members_of

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
 import torch
 
 from ...camera import Camera
@@ -19,12 +20,13 @@ from ...errors import BackendError
 from ...scene import Scene
 from ...world import relations
 from ...world.facing import Facing, facing_of
-from ..encoders.calibration import doubt
+from ..encoders.probability import doubt
 from ..field.group_index import Members, difference, members_of, union
 from ..field.language_field import Group, LanguageField
 from ..field.measure import box_of
+from .attributes import COLOR_HOLDS, color_scores
 from .color_fallback import PARTS, at_home, by_color, by_hue
-from .part_query import select_part
+from .part_query import Piece, pieces_of
 from .picking import by_distance, pick
 from .query import Query, Relation
 from .reshape import reshaped
@@ -139,7 +141,7 @@ class Resolver:
         """A query that says what a thing is like."""
         owner = next((r for r in query.relations if r.name == "part_of"), None)
         if owner is not None and is_name(query.text):
-            return select_part(self, query, owner)
+            return self._part(query, owner)
         rank = self.scored(query).without(out)
         matches = rank.matches()
         if query.colors and query.text not in STRUCTURE and (query.text in PARTS or not matches):
@@ -239,6 +241,49 @@ class Resolver:
                         "nothing": f"which way {name} faces cannot be told, so the side is as you see it",
                     }[by])  # fmt: skip
         return "; ".join(dict.fromkeys(told))
+
+    # -- parts of things ------------------------------------------------------------------------------------------------
+
+    def _part(self, query: Query, owner: Relation) -> Selection:
+        """What a query with a "part of" relation and a noun of its own means: pieces told by their shape; where that
+        cannot be done, things of that name that lie on the owner."""
+        made: list[Piece] = []
+        refusals: list[str] = []
+        for anchor in self.anchors(owner):
+            group = anchor.group
+            rows = self.members.rows(self.field.leaves(group.id)) if group.id >= 0 else np.zeros(0, np.int64)
+            found, refusal = pieces_of(self.scene, rows, group, self.facing(group).front, query.text)
+            made += found
+            refusals += [refusal] if refusal else []
+        if not made:
+            why = refusals[0] if refusals else "its shape is not known"
+            return self._lying_on(query, owner) or nothing(query, f"{query.describe()}: {why}")
+        kept = [piece for piece in made if self._fits(query, piece.group)]
+        if not kept:
+            return nothing(query, f"{query.describe()} is not there; the {query.text} is otherwise")
+        rank = Scored(tuple(p.group for p in kept), {}, {}, np.ones(len(kept), bool))
+        choice = pick(query, rank, self.stand)
+        if choice.refusal is not None:
+            return choice.refusal
+        rows = np.unique(np.concatenate([kept[i].rows for i in choice.chosen]))
+        told = tuple(rank.candidate(i) for i in choice.chosen)
+        return Selection(query, "found", self.members.ids_at(rows), (), told, "told by its shape")
+
+    def _fits(self, query: Query, piece: Group) -> bool:
+        """Whether a piece has the asked colours and stands in every other relation."""
+        lab = np.array(piece.lab)
+        painted = all(float(color_scores(w, lab)) >= COLOR_HOLDS for w in query.colors)
+        barred = any(float(color_scores(w, lab)) > COLOR_HOLDS for w in query.not_colors)
+        others = tuple(r for r in query.relations if r.name != "part_of")
+        return painted and not barred and self.stands(query.model_copy(update={"relations": others}), piece)
+
+    def _lying_on(self, query: Query, owner: Relation) -> Selection | None:
+        """Things of the part's name that stand or lie on the owner; None if the encoder knows none or none is there."""
+        if self.encoder is None or doubt(self.encoder, query.text) is not None:
+            return None
+        on = tuple(r.model_copy(update={"name": "on"}) if r is owner else r for r in query.relations)
+        found = self.described(query.model_copy(update={"relations": on}))
+        return replace(found, query=query) if found.verdict != "absent" else None
 
     # -- colour where words fail ------------------------------------------------------------------------------------
 

@@ -24,7 +24,7 @@ from ...errors import BackendError
 from ...world import relations
 from ...world.box import Boxes
 from ...world.words import normalise
-from ..encoders.calibration import probability
+from ..encoders.probability import probability
 from ..field.language_field import Group, LanguageField
 from . import attributes
 from .color_fallback import PARTS

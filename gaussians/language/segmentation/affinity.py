@@ -1,4 +1,4 @@
-"""How likely two regions are one thing: the features of a border, and the rule that judges them.
+"""How likely two regions are one thing: the features of a border, the rule that judges them, and the merge tree.
 
 Knows sums over regions and borders. Refuses to know how they were found and what becomes of them. The rule was fitted
 on furnished rooms with known objects (`train/affinity.py`).
@@ -6,18 +6,12 @@ on furnished rooms with known objects (`train/affinity.py`).
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import heapq
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .learned_rule import shipped
-
-if TYPE_CHECKING:
-    from .regions import Borders, Regions
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
+from .regions import F64, I64, Borders, Graph, Node, Regions
 
 FEATURES = (
     "color", "lightness", "border weight", "border contrast", "contrast over pattern", "smaller pattern",
@@ -27,6 +21,13 @@ FEATURES = (
     "larger on floor", "smaller on wall", "larger on wall", "gap", "touching", "concentric", "feet apart", "tops apart",
     "same facing", "smaller plane", "larger plane", "smaller line", "larger line", "off the plane",
 )  # fmt: skip
+
+
+def features(graph: Graph, pairs: list[tuple[int, int]]) -> F64:
+    """`[len(pairs), len(FEATURES)]` of bordering regions."""
+    rows = np.array([graph.around[i][j] for i, j in pairs], np.int64)
+    first, second = np.array(pairs, np.int64).reshape(-1, 2).T
+    return describe(graph.regions, graph.borders, first, second, rows, graph.scale)
 
 
 def describe(regions: Regions, borders: Borders, first: I64, second: I64, rows: I64, scale: float) -> F64:
@@ -135,6 +136,28 @@ def _rests(upper: _Shape, lower: _Shape, contact: F64, level: F64) -> F64:
     return result
 
 
-def probability(features: F64) -> F64:
+def probability(described: F64) -> F64:
     """Probability `[...]` that the regions on both sides are one thing, of features `[..., F]`."""
-    return shipped("affinity", FEATURES).probability(features)
+    return shipped("affinity", FEATURES).probability(described)
+
+
+def merge_tree(graph: Graph) -> list[Node]:
+    """Merge the likeliest border first until none is left; nodes in order, children before parents."""
+    nodes = [Node(members, (), 1.0) for _, members in sorted(graph.members.items())]
+    heap: list[tuple[float, int, int]] = []
+
+    def offer(pairs: list[tuple[int, int]]) -> None:
+        if pairs:
+            likely = probability(features(graph, pairs))
+            for (i, j), p in zip(pairs, likely.tolist(), strict=True):
+                heapq.heappush(heap, (-p, i, j))
+
+    offer(graph.pairs())
+    while heap:
+        negative, i, j = heapq.heappop(heap)
+        if i not in graph.members or j not in graph.members:
+            continue
+        new = graph.merge(i, j)
+        nodes.append(Node(graph.members[new], (i, j), -negative))
+        offer([(other, new) for other in graph.around[new]])
+    return nodes

@@ -6,13 +6,10 @@ All statistics live in arrays with a row a region or a border, so that many bord
 
 from __future__ import annotations
 
-import heapq
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-
-from . import affinity
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -110,12 +107,6 @@ class Graph:
         """Every two regions with a border, the smaller number first."""
         return [(i, j) for i, near in self.around.items() for j in near if i < j]
 
-    def features(self, pairs: list[tuple[int, int]]) -> F64:
-        """`[len(pairs), len(affinity.FEATURES)]` of bordering regions."""
-        rows = np.array([self.around[i][j] for i, j in pairs], np.int64)
-        first, second = np.array(pairs, np.int64).reshape(-1, 2).T
-        return affinity.describe(self.regions, self.borders, first, second, rows, self.scale)
-
     def merge(self, i: int, j: int) -> int:
         """Replace regions i and j by one; its number."""
         new, self.next = self.next, self.next + 1
@@ -156,25 +147,3 @@ def _with_room(rows: F64, count: int) -> F64:
     grown = np.zeros((count, *rows.shape[1:]))
     grown[: len(rows)] = rows
     return grown
-
-
-def merge_tree(graph: Graph) -> list[Node]:
-    """Merge the likeliest border first until none is left; nodes in order, children before parents."""
-    nodes = [Node(members, (), 1.0) for _, members in sorted(graph.members.items())]
-    heap: list[tuple[float, int, int]] = []
-
-    def offer(pairs: list[tuple[int, int]]) -> None:
-        if pairs:
-            likely = affinity.probability(graph.features(pairs))
-            for (i, j), p in zip(pairs, likely.tolist(), strict=True):
-                heapq.heappush(heap, (-p, i, j))
-
-    offer(graph.pairs())
-    while heap:
-        negative, i, j = heapq.heappop(heap)
-        if i not in graph.members or j not in graph.members:
-            continue
-        new = graph.merge(i, j)
-        nodes.append(Node(graph.members[new], (i, j), -negative))
-        offer([(other, new) for other in graph.around[new]])
-    return nodes

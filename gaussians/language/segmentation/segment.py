@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 
 from ...scene import Frame, Scene
 from ..encoders import Encoder
-from ..encoders.calibration import wholeness
+from ..encoders.probability import wholeness
 from ..field.language_field import Level
 from . import grouping, planes, structure
 from .adjacency import build_graph
+from .affinity import merge_tree
 from .borders import redrawn
 from .group_renders import mean_vectors
-from .regions import Graph, Node, merge_tree
+from .regions import Graph, Node
 from .superpoints import Links, links_of, superpoints, touching
 from .surface import Surface
 

@@ -7,10 +7,11 @@ import pytest
 
 from scenewright.gaussians.language.segmentation import affinity
 from scenewright.gaussians.language.segmentation.adjacency import build_graph
+from scenewright.gaussians.language.segmentation.affinity import features, merge_tree
 from scenewright.gaussians.language.segmentation.borders import FEATURES as BORDER_FEATURES
 from scenewright.gaussians.language.segmentation.coplanar import FEATURES as PAINT_FEATURES
 from scenewright.gaussians.language.segmentation.learned_rule import rule_of
-from scenewright.gaussians.language.segmentation.regions import Graph, merge_tree
+from scenewright.gaussians.language.segmentation.regions import Graph
 from scenewright.gaussians.language.segmentation.superpoints import Links
 
 STEP = 0.1
@@ -47,14 +48,14 @@ def test_merging_adds_what_is_summed_and_joins_borders() -> None:
 @pytest.mark.parametrize("order", [(3, 2, 1, 0), (1, 0, 3, 2)])
 def test_a_border_is_the_same_whichever_side_is_numbered_first(order: tuple[int, ...]) -> None:
     # The ends of the strip differ in nothing but what they are beside: sorting the features compares the same borders.
-    one, two = (g.features(g.pairs()) for g in (strip(), strip(order)))
+    one, two = (features(g, g.pairs()) for g in (strip(), strip(order)))
     assert np.allclose(np.sort(one, axis=0), np.sort(two, axis=0), atol=1e-9)
 
 
 def test_the_order_of_merging_does_not_change_the_sums() -> None:
     one, two = strip(), strip()
     a, b = one.merge(one.merge(0, 1), 2), two.merge(0, two.merge(1, 2))
-    assert np.allclose(one.features([(3, a)]), two.features([(3, b)]))
+    assert np.allclose(features(one, [(3, a)]), features(two, [(3, b)]))
 
 
 def test_what_touches_nothing_is_tied_to_what_is_near() -> None:

@@ -13,14 +13,8 @@ from numpy.typing import NDArray
 
 from scenewright.gaussians.errors import BackendError
 from scenewright.gaussians.language.encoders import framing
-from scenewright.gaussians.language.encoders.calibration import (
-    Calibration,
-    SizePrior,
-    distribution,
-    labels,
-    of_clip,
-    probability,
-)
+from scenewright.gaussians.language.encoders.calibration import Calibration, SizePrior, of_clip
+from scenewright.gaussians.language.encoders.probability import distribution, labels, probability
 from scenewright.gaussians.language.encoders.vocabulary import Vocabulary
 from scenewright.gaussians.world.words import normalise
 

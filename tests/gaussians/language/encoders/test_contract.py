@@ -16,7 +16,7 @@ from safetensors.numpy import load_file, save_file
 from scenewright.gaussians.errors import BackendError
 from scenewright.gaussians.language import encoders
 from scenewright.gaussians.language.encoders import Encoder
-from scenewright.gaussians.language.encoders.calibration import labels, probability
+from scenewright.gaussians.language.encoders.probability import labels, probability
 
 _PHRASES = ["chair", "red sofa", "potted plant", "two small tables"]
 

@@ -11,7 +11,7 @@ import pytest
 
 from scenewright.gaussians.errors import BackendError
 from scenewright.gaussians.language import encoders
-from scenewright.gaussians.language.encoders.calibration import doubt, labels, probability, wholeness
+from scenewright.gaussians.language.encoders.probability import doubt, labels, probability, wholeness
 from scenewright.training import renders
 
 FRESH_SEED = 31_000  # beyond the seeds of training (0...), calibration (10,000...) and measurement (20,000...)

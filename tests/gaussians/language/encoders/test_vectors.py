@@ -13,7 +13,8 @@ from safetensors.numpy import save_file
 
 from scenewright.gaussians.errors import BackendError
 from scenewright.gaussians.language import encoders
-from scenewright.gaussians.language.encoders.calibration import Calibration, doubt, labels, probability
+from scenewright.gaussians.language.encoders.calibration import Calibration
+from scenewright.gaussians.language.encoders.probability import doubt, labels, probability
 
 _NAMES = ["bicycle", "potted_plant", "couch", "cat"]
 _ROWS = np.random.default_rng(5).normal(0, 3, (4, 8)).astype(np.float16)  # as published: half precision, not unit
