@@ -6,9 +6,6 @@ nothing here undoes anything, a failed edit simply is not returned.
 
 from __future__ import annotations
 
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -18,6 +15,7 @@ from ..gaussians.errors import AbsentError, CheckFailedError
 from ..gaussians.language.query.query import Query
 from ..gaussians.language.query.selection import Selection, mask_of
 from ..gaussians.scene import Scene
+from ..gaussians.timing import timed
 from . import pixel_diff
 from .cloud_diff import Difference, difference
 from .operation import Context, EditOp, Outcome
@@ -53,20 +51,20 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
         UserError: a word in it (colour, asset) is unknown.
     """
     seconds: dict[str, float] = {}
-    with _stage(seconds, "resolve"):
+    with timed(seconds, "resolve"):
         chosen = (_resolve(scene, op, context) if selection is None else selection).require()
         if op.query() is not None:
             chosen = _living(scene, chosen)
-    with _stage(seconds, "apply"):
+    with timed(seconds, "apply"):
         outcome = op.apply(scene, chosen, context)
         bereft = left_hanging(scene, outcome.scene, chosen.groups)
         outcome = replace(outcome, notes=(*outcome.notes, *bereft))
-    with _stage(seconds, "check"):
+    with timed(seconds, "check"):
         changed = difference(scene.cloud, outcome.scene.cloud, op.may_change(scene, chosen), outcome.removed)
         checks = [*_always(op, changed, chosen), *op.check(scene, outcome, chosen, context)]
     compared: Pixels | None = None
     if context.pixel_checks:
-        with _stage(seconds, "pixels"):
+        with timed(seconds, "pixels"):
             compared = _compare(scene, outcome, context)
             checks.append(pixel_diff.check(compared))
     receipt = _receipt(op, chosen, outcome, changed, tuple(checks), context)
@@ -103,13 +101,6 @@ def _living(scene: Scene, selection: Selection) -> Selection:
     if left == 0:
         raise AbsentError(f"nothing is left of {selection.query.describe()}: select something that is in the scene")
     return selection if left == len(selection) else replace(selection, ids=scene.cloud.ids[there].sort().values)
-
-
-@contextmanager
-def _stage(seconds: dict[str, float], name: str) -> Iterator[None]:
-    start = time.perf_counter()
-    yield
-    seconds[name] = time.perf_counter() - start
 
 
 def _always(op: EditOp, changed: Difference, selection: Selection) -> list[Check]:

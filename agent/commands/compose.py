@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ...gaussians.timing import timed
 from ..options import Debug, Force, Json, Planner, Seed, Size, View
-from ..session.stopwatch import timed
 from ..terminal.output import terminal
 
 if TYPE_CHECKING:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ...gaussians.timing import timed
 from ..options import (
     Budget,
     Debug,
@@ -27,7 +28,6 @@ from ..options import (
     Up,
     View,
 )
-from ..session.stopwatch import timed
 from ..terminal.output import explain, terminal
 
 if TYPE_CHECKING:

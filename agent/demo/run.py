@@ -19,12 +19,12 @@ import numpy as np
 from ...gaussians.camera import Camera
 from ...gaussians.errors import AmbiguousError, InstructionError, UserError
 from ...gaussians.scene import Scene
+from ...gaussians.timing import timed
 from ..output_files import make_folder
 from ..pictures.image_files import Tile, contact_sheet, save_png
 from ..pictures.scene_pictures import Picture, after, numbered, picture
 from ..session.result import Result
 from ..session.session import Session
-from ..session.stopwatch import timed
 from ..terminal.thing_names import told
 from .demo_targets import Ids, agreement, cast_of, tried
 from .script import SCRIPT, Cast, Role, Turn

@@ -1,72 +1,23 @@
-"""What a session writes into its log: the fields of each kind of record (see `log.py`).
+"""What a session writes into its log: one function for each kind of record, which gives its fields (see `log.py`).
 
-Knows scenes, plans and results as plain data. Refuses to know files, and works nothing out where there is no log:
-digests of large clouds take their time.
+A session without a log calls none of them, as digests of large clouds take time.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...gaussians.errors import ScenewrightError
 from .history import State
-from .log import SessionLog
 from .result import Result
 
 if TYPE_CHECKING:
     from ...planners.plan import EditPlan
 
 
-class Journal:
-    """The records of one session, each on the disk when its method returns.
-
-    Args:
-        path: of the log to append to; None writes nothing.
-
-    Raises:
-        FileError: the log cannot be opened; of its methods, it cannot be written.
-    """
-
-    def __init__(self, path: str | Path | None) -> None:
-        self._log = SessionLog(path) if path is not None else None
-
-    def opened(self, state: State) -> None:
-        """`open`: a session begins."""
-        self._write("open", lambda: _opening(state))
-
-    def embedded(self, before: State, after: State) -> None:
-        """`embed`: language was laid over the scene."""
-        self._write("embed", lambda: _embedding(before, after))
-
-    def done(self, result: Result, before: State, after: State) -> None:
-        """`do`: an instruction was carried out."""
-        self._write("do", lambda: _deed(result, before, after))
-
-    def refused(self, text: str, plan: EditPlan | None, error: ScenewrightError, state: State) -> None:
-        """`failed`: an instruction was refused."""
-        self._write("failed", lambda: _refusal(text, plan, error, state))
-
-    def moved(self, kind: str, text: str, before: State, after: State) -> None:
-        """`undo` or `redo`."""
-        self._write(kind, lambda: {"text": text, "before": before.digest, "after": after.digest})
-
-    def saved(self, path: str | Path, state: State) -> None:
-        """`save`: the scene was written to a file."""
-        self._write("save", lambda: {"path": str(path), "digest": state.digest})
-
-    def close(self) -> None:
-        """Close the log; closing twice is harmless."""
-        if self._log is not None:
-            self._log.close()
-
-    def _write(self, kind: str, fields: Callable[[], dict[str, Any]]) -> None:
-        if self._log is not None:
-            self._log.append(kind, fields())
-
-
-def _opening(state: State) -> dict[str, Any]:
+def opened(state: State) -> dict[str, Any]:
+    """`open`: a session begins."""
     from ... import __version__
 
     scene = state.scene
@@ -78,15 +29,16 @@ def _opening(state: State) -> dict[str, Any]:
     }
 
 
-def _embedding(before: State, after: State) -> dict[str, Any]:
+def embedded(before: State, after: State) -> dict[str, Any]:
+    """`embed`: the scene got a language field."""
     language = after.scene.language
     assert language is not None
     things = len(language.objects())
     return {"encoder": language.encoder, "things": things, "before": before.digest, "after": after.digest}
 
 
-def _deed(result: Result, before: State, after: State) -> dict[str, Any]:
-    """The plan in it tells who planned it, by which prompt, and what that cost."""
+def done(result: Result, before: State, after: State) -> dict[str, Any]:
+    """`do`: an instruction was carried out. The plan tells who planned it, by which prompt, and what that cost."""
     return {
         "text": result.text,
         "plan": result.plan.model_dump(mode="json") if result.plan is not None else None,
@@ -97,7 +49,8 @@ def _deed(result: Result, before: State, after: State) -> dict[str, Any]:
     }
 
 
-def _refusal(text: str, plan: EditPlan | None, error: ScenewrightError, state: State) -> dict[str, Any]:
+def refused(text: str, plan: EditPlan | None, error: ScenewrightError, state: State) -> dict[str, Any]:
+    """`failed`: an instruction was refused."""
     return {
         "text": text,
         "plan": plan.model_dump(mode="json") if plan else None,
@@ -105,3 +58,13 @@ def _refusal(text: str, plan: EditPlan | None, error: ScenewrightError, state: S
         "message": str(error),
         "before": state.digest,
     }
+
+
+def moved(text: str, before: State, after: State) -> dict[str, Any]:
+    """`undo` or `redo` of an instruction."""
+    return {"text": text, "before": before.digest, "after": after.digest}
+
+
+def saved(path: str | Path, state: State) -> dict[str, Any]:
+    """`save`: the scene was written to a file."""
+    return {"path": str(path), "digest": state.digest}

@@ -1,43 +1,48 @@
-"""A session: instructions about one scene in a straight line, answers to questions, and replay.
+"""A session: instructions about one scene, answers to questions, undo and redo, replay, and the log.
 
     do(text) -> planner.plan -> EditPlan -> for each operation: resolve, apply, check -> Receipt -> log -> Result
 
-Knows the order of things. Refuses to know grammar, pixels and tensors, and leaves the scene and its past to the
-workspace that it is. An instruction is carried out whole or not at all, and its record is on the disk before the
-session moves on.
+An instruction is carried out whole or not at all, and its record is on the disk before the session moves on.
 """
 
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ParamSpec
 
 from ...gaussians.camera import Camera
 from ...gaussians.errors import ScenewrightError, UserError
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
-from .clarify import answered
-from .history import State
+from ...gaussians.timing import timed
+from . import log_records
+from .clarify import Question, answered
+from .history import History, State
+from .log import SessionLog
 from .plan_runner import Stopped, carry_out, names_things
 from .planner_client import Reader, step_meant
 from .refusal import refusal, retold
 from .replay import Replayed, deeds
 from .result import Result
-from .sight import SessionSight
-from .stopwatch import timed
-from .workspace import Progress, Workspace
+from .sight import graph_of, picture_of
 
 if TYPE_CHECKING:
     from ...gaussians.language.encoders import Encoder
     from ...gaussians.language.query.explain import Explanation
     from ...planners.budget import Budget
     from ...planners.plan import EditPlan, Planner, Usage
+    from ...planners.rooms.graph import SceneGraph
+    from ...tools.operation import Context
+
+P = ParamSpec("P")
+Progress = Callable[[str, float], None]  # stage in words, share done in [0, 1]
 
 
-class Session(Workspace):
+class Session:
     """A conversation about one scene.
 
     Args:
@@ -54,6 +59,11 @@ class Session(Workspace):
         budget: what language models may cost: "20s" for each instruction, "0.05usd" for the whole session, or both,
             "20s,0.05usd". Used up, "auto" leaves them out, and says so.
         pictures: let models see the viewer's picture, where they can.
+
+    Attributes:
+        question: which of several things is meant, or what is nearest to one that is not there; None if nothing is
+            open.
+        pixel_checks: also compare the viewer's picture before and after each operation.
 
     Raises:
         UserError: no such planner, or the budget is none.
@@ -75,10 +85,88 @@ class Session(Workspace):
         budget: str | Budget | None = None,
         pictures: bool = False,
     ) -> None:
-        progress = progress or (lambda stage, fraction: None)
+        self._progress = progress or (lambda stage, fraction: None)
         # The planner first: a name that is none leaves no log behind.
-        self._reader = Reader(planner, SessionSight(self), budget, pictures, progress)
-        super().__init__(scene, encoder, log, viewer, progress=progress, seed=seed, pixel_checks=pixel_checks)
+        self._reader = Reader(planner, self, budget, pictures, self._progress)
+        self._encoder = encoder
+        self._viewer = viewer
+        self._seed = seed
+        self.pixel_checks = pixel_checks
+        self.question: Question | None = None
+        self._history = History(State(scene))
+        self._log = SessionLog(log) if log is not None else None
+        self._record("open", log_records.opened, self._history.present)
+
+    # -- what it is now ---------------------------------------------------------------------------------------------
+
+    @property
+    def scene(self) -> Scene:
+        """The scene as it stands."""
+        return self._history.present.scene
+
+    @property
+    def last(self) -> Selection | None:
+        """What "it" means."""
+        return self._history.present.last
+
+    @property
+    def done(self) -> tuple[str, ...]:
+        """The instructions that led to the present scene, oldest first."""
+        states = [*self._history.past, self._history.present]
+        return tuple(s.text for s in states if s.text)
+
+    @property
+    def viewer(self) -> Camera:
+        """Whose left and right are meant."""
+        if self._viewer is None:
+            from ..pictures.named_cameras import default_view
+
+            self._viewer = default_view(self.scene)
+        return self._viewer
+
+    @viewer.setter
+    def viewer(self, camera: Camera) -> None:
+        self._viewer = camera
+
+    @property
+    def encoder(self) -> Encoder:
+        """The encoder, loaded when first needed."""
+        if isinstance(self._encoder, str):
+            from ...gaussians.language import encoders
+
+            self._encoder = encoders.load(self._encoder)
+        return self._encoder
+
+    def embed(self) -> Scene:
+        """The scene with its language field, made now if it has none."""
+        if self.scene.language is None:
+            from ...gaussians.language.field.embed import embed
+
+            present = self._history.present
+            state = replace(present, scene=embed(present.scene, self.encoder, progress=self._progress))
+            self._record("embed", log_records.embedded, present, state)
+            self._history.amend(state)
+        return self.scene
+
+    def graph(self) -> SceneGraph:
+        """What stands where, and where the viewer stands; ids are groups. Embeds the scene, as a query would.
+
+        Raises:
+            ScenewrightError: the scene could not be embedded.
+            UserError: it is larger than a graph may be.
+        """
+        return graph_of(self.embed(), self.viewer)
+
+    def picture(self) -> bytes:
+        """The viewer's view as PNG, as planners see it."""
+        return picture_of(self.scene, self.viewer)
+
+    def _context(self, last: Selection | None) -> Context:
+        """What an operation is given besides the scene, where "it" means `last`."""
+        from ...tools.operation import Context
+
+        encoder = self.encoder if self.scene.language is not None else None
+        return Context(viewer=self.viewer, last=last, encoder=encoder, seed=self._seed, pixel_checks=self.pixel_checks)
 
     # -- who reads --------------------------------------------------------------------------------------------------
 
@@ -126,7 +214,7 @@ class Session(Workspace):
         try:
             plan = self.plan(text)
         except ScenewrightError as error:
-            self._journal.refused(text, None, error, self._history.present)
+            self._record("failed", log_records.refused, text, None, error, self._history.present)
             raise
         return self.apply(plan, planned_in=time.perf_counter() - started)
 
@@ -152,10 +240,10 @@ class Session(Workspace):
         try:
             result, state = self._carry_out(plan, seconds, dry_run=False)
         except ScenewrightError as error:
-            self._journal.refused(plan.instruction, plan, error, self._history.present)
+            self._record("failed", log_records.refused, plan.instruction, plan, error, self._history.present)
             raise
         with timed(seconds, "log"):
-            self._journal.done(result, self._history.present, state)
+            self._record("do", log_records.done, result, self._history.present, state)
         self._history.advance(state)
         return result
 
@@ -257,7 +345,57 @@ class Session(Workspace):
                 outcome.append(Replayed(deed.text, None, error))
         return outcome
 
+    # -- back and forth ---------------------------------------------------------------------------------------------
+
+    def undo(self) -> Result:
+        """Take the last instruction back: the scene is again the very value it was.
+
+        Raises:
+            UserError: there is nothing to undo.
+        """
+        return self._step("undo", self._history.behind(), self._history.present.text, self._history.back)
+
+    def redo(self) -> Result:
+        """Do again what was taken back.
+
+        Raises:
+            UserError: there is nothing to redo.
+        """
+        ahead = self._history.ahead()
+        return self._step("redo", ahead, ahead.text, self._history.forth)
+
+    def _step(self, kind: str, to: State, text: str, move: Callable[[], State]) -> Result:
+        before = self._history.present
+        self._record(kind, log_records.moved, text, before, to)
+        move()
+        self.question = None
+        return Result(f"{kind}: {text}", None, (), before.scene, to.scene, self.viewer, to.last)
+
+    # -- files ------------------------------------------------------------------------------------------------------
+
+    def save(self, path: str | Path, force: bool = False) -> None:
+        """Write the scene to a file; an existing one only with `force`.
+
+        Raises:
+            UserError: the file exists, or no format is written under its name.
+            FileError: it cannot be written.
+        """
+        from ...gaussians.files import save
+
+        save(self.scene, path, force=force)
+        self._record("save", log_records.saved, path, self._history.present)
+
+    def close(self) -> None:
+        """Close the log; closing twice is harmless."""
+        if self._log is not None:
+            self._log.close()
+
     # -- inside -----------------------------------------------------------------------------------------------------
+
+    def _record(self, kind: str, fields: Callable[P, dict[str, Any]], *said: P.args, **named: P.kwargs) -> None:
+        """Write a record into the log if there is one; `fields` of it are worked out only then."""
+        if self._log is not None:
+            self._log.append(kind, fields(*said, **named))
 
     def _carry_out(self, plan: EditPlan, seconds: dict[str, float], *, dry_run: bool) -> tuple[Result, State]:
         self.question = None

@@ -1,7 +1,4 @@
-"""What planners may look at: the session's scene, or a written graph, each part made only when somebody looks.
-
-Knows how a scene becomes a graph and a picture. Refuses to know who looks, and what for.
-"""
+"""What planners may look at: the graph and the picture of a scene, and a written graph as a `Sight` of its own."""
 
 from __future__ import annotations
 
@@ -11,53 +8,46 @@ from typing import TYPE_CHECKING
 from ...gaussians.errors import UserError
 
 if TYPE_CHECKING:
+    from ...gaussians.camera import Camera
+    from ...gaussians.scene import Scene
     from ...planners.rooms.graph import SceneGraph
     from ...planners.rooms.graph_scene import Stage
-    from .session import Session
 
 WIDTH = 768  # pixels of the picture that a model sees: vision models scale down what is much larger
 
 
-class SessionSight:
-    """The scene of a session as it stands. Looking at the graph embeds the scene, as a query would."""
+def graph_of(scene: Scene, viewer: Camera) -> SceneGraph:
+    """What stands where in an embedded scene, and where the viewer stands; ids are groups, as `Query.groups` has them.
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
+    Raises:
+        UserError: the scene is larger than a graph may be.
+    """
+    from pydantic import ValidationError
 
-    def graph(self) -> SceneGraph:
-        """What stands where, and where the viewer stands; ids are groups, as `Query.groups` names them.
+    from ...planners.rooms.graph import SceneGraph
 
-        Raises:
-            ScenewrightError: the scene could not be embedded.
-            UserError: it is larger than a graph may be.
-        """
-        from pydantic import ValidationError
+    try:
+        return SceneGraph.from_scene(scene, viewer)
+    except ValidationError as error:
+        raise UserError(
+            "planners cannot look at this scene: it is larger than any graph (100 km); give its scale with "
+            "--metres-per-unit"
+        ) from error
 
-        from ...planners.rooms.graph import SceneGraph
 
-        scene = self._session.embed()
-        try:
-            return SceneGraph.from_scene(scene, self._session.viewer)
-        except ValidationError as error:
-            raise UserError(
-                "planners cannot look at this scene: it is larger than any graph (100 km); give its scale with "
-                "--metres-per-unit"
-            ) from error
+def picture_of(scene: Scene, camera: Camera) -> bytes:
+    """A camera's view as PNG, at most `WIDTH` pixels wide."""
+    import numpy as np
+    from PIL import Image
 
-    def picture(self) -> bytes:
-        """The viewer's view as PNG, at most `WIDTH` pixels wide."""
-        import numpy as np
-        from PIL import Image
+    from ...gaussians.viewpoints.coverage import fit_camera
+    from ..pictures.scene_pictures import picture
 
-        from ...gaussians.viewpoints.coverage import fit_camera
-        from ..pictures.scene_pictures import picture
-
-        camera = self._session.viewer
-        if camera.width > WIDTH:
-            camera = fit_camera(camera, WIDTH, max(round(camera.height * WIDTH / camera.width), 1))
-        drawn = io.BytesIO()
-        Image.fromarray(np.ascontiguousarray(picture(self._session.scene, camera))).save(drawn, format="PNG")
-        return drawn.getvalue()
+    if camera.width > WIDTH:
+        camera = fit_camera(camera, WIDTH, max(round(camera.height * WIDTH / camera.width), 1))
+    drawn = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(picture(scene, camera))).save(drawn, format="PNG")
+    return drawn.getvalue()
 
 
 class StageSight:

@@ -242,7 +242,7 @@ class Resolver:
                     }[by])  # fmt: skip
         return "; ".join(dict.fromkeys(told))
 
-    # -- parts of things ------------------------------------------------------------------------------------------------
+    # -- parts of things --------------------------------------------------------------------------------------------
 
     def _part(self, query: Query, owner: Relation) -> Selection:
         """What a query with a "part of" relation and a noun of its own means: pieces told by their shape; where that
@@ -252,7 +252,8 @@ class Resolver:
         for anchor in self.anchors(owner):
             group = anchor.group
             rows = self.members.rows(self.field.leaves(group.id)) if group.id >= 0 else np.zeros(0, np.int64)
-            found, refusal = pieces_of(self.scene, rows, group, self.facing(group).front, query.text)
+            front = self.facing(group).front if len(rows) else None
+            found, refusal = pieces_of(self.scene, rows, group, front, query.text)
             made += found
             refusals += [refusal] if refusal else []
         if not made:

@@ -152,27 +152,24 @@ def test_a_planner_may_be_given_itself(boxes: Scene, encoder: Any) -> None:
 
 
 def test_a_session_shows_its_present_scene_from_its_viewer(boxes: Scene, encoder: Any) -> None:
-    from scenewright.agent.session.sight import SessionSight
-
     session = Session(boxes, "grammar", encoder, viewer=boxes.cameras[0])
-    sight = SessionSight(session)
-    graph = sight.graph()
+    graph = session.graph()
     assert {n.id: n.color for n in graph.nodes} == {0: "red", 1: "green", 2: "red"}
     assert graph.viewer is not None and graph.viewer.position == pytest.approx((0, -8, 2.5))
     toward = np.subtract(graph.viewer.target, graph.viewer.position)
     assert toward == pytest.approx(np.array([0, 8, -2.1]) / np.hypot(8, 2.1))
     session.do("delete the green thing")
-    assert {n.id for n in sight.graph().nodes} == {0, 2}
-    picture = Image.open(io.BytesIO(sight.picture()))
+    assert {n.id for n in session.graph().nodes} == {0, 2}
+    picture = Image.open(io.BytesIO(session.picture()))
     assert picture.format == "PNG" and picture.size == (96, 64)
 
 
 def test_a_large_view_is_drawn_smaller_for_a_model(boxes: Scene, encoder: Any) -> None:
-    from scenewright.agent.session.sight import WIDTH, SessionSight
+    from scenewright.agent.session.sight import WIDTH
     from scenewright.gaussians.viewpoints.coverage import fit_camera
 
     session = Session(boxes, "grammar", encoder, viewer=fit_camera(boxes.cameras[0], 1536, 1024))
-    assert Image.open(io.BytesIO(SessionSight(session).picture())).size == (WIDTH, 512)
+    assert Image.open(io.BytesIO(session.picture())).size == (WIDTH, 512)
 
 
 def test_a_scene_is_embedded_only_when_a_planner_looks(

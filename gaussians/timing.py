@@ -1,4 +1,4 @@
-"""How long each stage took. Knows names and seconds; nothing else."""
+"""How long each stage of a piece of work took."""
 
 from __future__ import annotations
 
