@@ -38,21 +38,25 @@ def load(
         UserError: no planner has this name.
         BackendError: a model that was named alone lacks something.
     """
+    if spec == "grammar":
+        return _grammar()
+    kind, colon, rest = spec.partition(":")
+    named = rest if colon else os.environ.get(MODEL_VARIABLE, "").strip()
+    if kind == "auto" and not colon and not named:
+        from .cascade import Cascade
+
+        return Cascade(_grammar(), _wishes)
     from . import model
 
     settings: dict[str, Any] = {"ledger": ledger or Ledger(), "pictures": pictures, "progress": progress}
-    kind, colon, rest = spec.partition(":")
-    if spec == "grammar":
-        return _grammar()
     if model.is_model(spec):
         planner = _metered(spec, **settings)
         planner.require()  # what is missing is said now, not at the first instruction
         return planner
-    named = rest if colon else os.environ.get(MODEL_VARIABLE, "").strip()
-    if kind == "auto" and (model.is_model(named) or not (colon or named)):
+    if kind == "auto" and model.is_model(named):
         from .cascade import Cascade
 
-        return Cascade(_grammar(), _wishes, _metered(named, **settings) if named else None)
+        return Cascade(_grammar(), _wishes, _metered(named, **settings))
     known = f"planners are auto, grammar, {', '.join(model.FORMS)}, and auto: before one of these"
     if spec == "auto":
         raise UserError(f"{MODEL_VARIABLE} names no language model ({_public(named)!r}); {known}")

@@ -58,6 +58,15 @@ def remeasured(scene: Scene, ids: Tensor, axes: Mapping[int, Axes] | None = None
     return _with(field, changed)
 
 
+def recolored(scene: Scene, ids: Tensor) -> LanguageField | None:
+    """The table after Gaussians `ids` changed their colour and nothing else: boxes stay, colours are measured."""
+    field = scene.language
+    if field is None:
+        return None
+    held = _holders(field, scene.cloud, ids)
+    return _with(field, {g.id: replace(g, lab=lab_of_cloud(scene.cloud, rows)) for g, rows in held if len(rows)})
+
+
 def carried(before: Scene, cloud: GaussianCloud, moved: Sequence[Affine]) -> LanguageField | None:
     """The table after bodies moved: boxes of groups that moved as a whole turn along; all that moved are measured."""
     field = before.language

@@ -16,6 +16,8 @@ def left_hanging(before: Scene, after: Scene, groups: tuple[int, ...]) -> tuple[
     if before.language is None or after.language is None:
         return ()
     old, new = before.language, after.language
+    if all(a.box == b.box and a.count == b.count for a, b in zip(old.groups, new.groups, strict=False)):
+        return ()  # nothing moved or went
     targets = [old.groups[g] for g in groups if old.groups[g].level == "object"]
     stood = {g.id: (g, t) for t in targets for g in standing_on(old, before.frame, t) if g.id not in groups}
     hanging = [g for g, t in stood.values() if new.groups[g.id].count and not _still(after, g, t)]

@@ -29,7 +29,7 @@ class _Passed(Lexer):
 
     def lex(self, data: Sequence[Tag]) -> Iterator[Token]:  # type: ignore[override]
         for i, tag in enumerate(data):
-            token = Token(tag.type, tag, start_pos=i)
+            token = Token(tag.type, "", start_pos=i)
             token.value = tag
             yield token
 

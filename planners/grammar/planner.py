@@ -165,16 +165,15 @@ def _carry(
 ) -> list[dict[str, Any]]:
     """One clause's operations; refusals quote it."""
     refuse_idle(clause, sentence, mark)
-    said = _quote(clause, cleaned)
-    if clause.unsupported:
-        raise Refusal(f"“{said}”: {clause.unsupported}", clause.tags[0].text, verdict="impossible")
     try:
+        if clause.unsupported:
+            raise Refusal(clause.unsupported, clause.tags[0].text, verdict="impossible")
         tree = parse(clause)
         if not follows and any(t.data in ("it_becomes", "it_moves") for t in trees(tree)):
             raise Refusal("it does not say what to do, or to what", *first_words(clause))
         return commands.read(tree)
     except Refusal as refusal:
-        raise Refusal(f"“{said}”: {refusal}", *refusal.words, verdict=refusal.verdict) from None
+        raise Refusal(f"“{_quote(clause, cleaned)}”: {refusal}", *refusal.words, verdict=refusal.verdict) from None
 
 
 def _quote(clause: Clause, cleaned: str) -> str:

@@ -17,7 +17,7 @@ from ..alternatives import NOT_GIVEN, either, given
 from ..checks import counted
 from ..cloud_diff import Draft, rows_of
 from ..color_map import NEAR, ColorMap, distance, saturation, toward_color, warmth
-from ..field_update import remeasured
+from ..field_update import recolored
 from ..measure import lightness_spread, mean_lab
 from ..operation import ColorName, Context, Outcome, TargetedOp
 from ..placement.bodies import bodies_of
@@ -70,7 +70,7 @@ class Recolor(TargetedOp):
             change = self._map(sample(scene.cloud, rows), asked)
             draft.map("sh", rows, change.on_harmonics)
         after = scene.replace(cloud=draft.done())
-        return Outcome(after.replace(language=remeasured(after, selection.ids)), touched=selection.ids)
+        return Outcome(after.replace(language=recolored(after, selection.ids)), touched=selection.ids)
 
     def _asked(self) -> Tensor | None:
         """Lab of the named colour; a basic colour word means what people picture, not the corner of the RGB cube.

@@ -26,9 +26,6 @@ class Tag:
     def text(self) -> str:
         return " ".join(w.text for w in self.words)
 
-    def __str__(self) -> str:
-        return self.text
-
 
 @dataclass
 class Clause:
