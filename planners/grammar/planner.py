@@ -18,14 +18,15 @@ from ...gaussians.language.query.query import Query
 from ...tools.operation import EditOp
 from ...tools.registry import parse as parse_op
 from ..plan import MAX_OPS, EditPlan
-from .meaning.commands import Commands
+from .meaning.commands import read
 from .meaning.joining import merge_copies, release, sparing
+from .meaning.phrases import Phrases
 from .nodes import Refusal, trees
 from .parsing import first_words, parse
 from .tagging.lookahead import match
 from .tagging.non_edits import FORBIDDEN, STATEMENT, empty, is_chat, refuse_idle
 from .tagging.spelling import respell
-from .tagging.tagger import Tagger
+from .tagging.tagger import clauses
 from .tagging.tags import Clause, Tag, sentences
 from .tagging.words import Word, clean, split
 from .vocabulary import lexicon
@@ -102,7 +103,7 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
     words, remarks = respell(split(cleaned))
     before = _before(previous)
-    commands = Commands(before.antecedent, before.again, before.colors)
+    said = Phrases(before.antecedent, before.again, before.colors)
     ops: list[dict[str, Any]] = []
     idle: Refusal | None = None
     topic: Query | None = None
@@ -110,10 +111,10 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     for sentence, mark in sentences(words):
         if ops and match(lexicon.RETRACTIONS, [w.text for w in sentence if w.text != ","], 0):
             raise Refusal("it takes back what it said before; say only what to do", sentence[0].text)
-        for clause in Tagger(sentence).clauses():
+        for clause in clauses(sentence):
             follows = bool(ops) or previous is not None or topic is not None
             try:
-                ops += _carry(clause, sentence, mark, commands, follows, cleaned)
+                ops += _carry(clause, sentence, mark, said, follows, cleaned)
             except Refusal as refusal:
                 if refusal.verdict != "not_an_edit" or (idle and not is_chat(refusal)):
                     raise
@@ -132,8 +133,7 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
         raise Refusal(f"this part is not an edit, so nothing was planned: {idle}", *idle.words)
     if len(ops) > MAX_OPS:
         raise Refusal(f"that is more than {MAX_OPS} steps; say it in parts")
-    spoken = commands.phrases
-    return _Outcome(tuple(merge_copies(ops)), spoken.antecedent, tuple(commands.before), remarks, spoken.colors)
+    return _Outcome(tuple(merge_copies(ops)), said.antecedent, tuple(said.before), remarks, said.colors)
 
 
 def _topic(clause: Clause, idle: Refusal) -> Query | None:
@@ -146,7 +146,7 @@ def _topic(clause: Clause, idle: Refusal) -> Query | None:
     for end in range(len(clause.tags), first + 1, -1):
         about = clause.tags[first:end]
         with suppress(Refusal):
-            (op,) = Commands().read(parse(Clause([Tag("SELECT", None, about[0].words), *about], "SELECT")))
+            (op,) = read(Phrases(), parse(Clause([Tag("SELECT", None, about[0].words), *about], "SELECT")))
             query: Query = op["target"]
             return query.model_copy(update={"pick": "one"}) if query.pick == "any" else query
     return None
@@ -161,7 +161,7 @@ def _before(previous: str | None) -> _Outcome:
 
 
 def _carry(
-    clause: Clause, sentence: Sequence[Word], mark: str, commands: Commands, follows: bool, cleaned: str
+    clause: Clause, sentence: Sequence[Word], mark: str, said: Phrases, follows: bool, cleaned: str
 ) -> list[dict[str, Any]]:
     """One clause's operations; refusals quote it."""
     refuse_idle(clause, sentence, mark)
@@ -171,7 +171,7 @@ def _carry(
         tree = parse(clause)
         if not follows and any(t.data in ("it_becomes", "it_moves") for t in trees(tree)):
             raise Refusal("it does not say what to do, or to what", *first_words(clause))
-        return commands.read(tree)
+        return read(said, tree)
     except Refusal as refusal:
         raise Refusal(f"“{_quote(clause, cleaned)}”: {refusal}", *refusal.words, verdict=refusal.verdict) from None
 

@@ -97,6 +97,13 @@ def union(found: Sequence[Noun]) -> Query:
     return updated(first, also=(*first.also, *rest)) if rest else first
 
 
+def known(found: Sequence[Noun]) -> Query:
+    """The query for things that are there already; "some chairs" does not say which."""
+    if any(n.article == "indef" and n.plural and n.number is None for n in found):
+        raise Refusal("say which, or how many", "some")
+    return union(found)
+
+
 def all_of(target: Query, out: Query) -> Query:
     """What "all" means before "but the largest box": boxes; before "but the box" it is everything."""
     ranked = out.pick not in ("one", "all", "any", "rest") and bool(out.text)

@@ -11,50 +11,52 @@ from ....gaussians.language.query.query import Query
 from ..nodes import Node, Refusal, tokens, trees
 from . import changes, places
 from .changes import Fields
-from .described import Noun
-from .rules import MOTIONS, Rules, known
+from .described import Noun, known
+from .phrases import Phrases
+from .places import MOTIONS
 
 
-class Moving(Rules):
-    """One method for each rule that is a motion."""
+def it_moves(said: Phrases, node: Node) -> list[Fields]:
+    motion = places.read(trees(node), said)
+    if not motion.aims:
+        raise Refusal("say which way, or what to change")
+    return [{"op": "move", "target": Query(last=True), **motion.fields()}]
 
-    def _it_moves(self, node: Node) -> list[Fields]:
-        motion = places.read(trees(node), self.phrases)
-        if not motion.aims:
-            raise Refusal("say which way, or what to change")
-        return [{"op": "move", "target": Query(last=True), **motion.fields()}]
 
-    def _move(self, node: Node) -> list[Fields]:
-        return self._moved(self._nouns(node), node, "MOVE")
+def move(said: Phrases, node: Node) -> list[Fields]:
+    return moved(said, said.things(node), node, "MOVE")
 
-    def _centering(self, node: Node) -> list[Fields]:
-        found = self._nouns(node)
-        if any(n.posts for n in found):
-            raise Refusal("say put it there; centring is in the middle of the room", found[-1].posts[0].word)
-        return [{"op": "move", "target": known(found), "place": {"relation": "center"}}]
 
-    def _moved(self, found: list[Noun], node: Node, verb: str) -> list[Fields]:
-        first, second = _split_at_and(node)
-        motion = places.read(first, self.phrases, found[0])
-        if not motion.aims:
-            found[-1], motion.place = places.destination(found[-1], verb)
-            if motion.place is None:
-                raise Refusal("say where to: left, 30 cm up, onto the desk, next to the sofa")
-            if motion.distance is not None:
-                raise Refusal("a distance needs a direction")
-        ops = [{"op": "move", "target": known(found), **motion.fields()}]
-        if second:
-            more = places.read(second, self.phrases, found[0])
-            ops.append({"op": "move", "target": Query(last=True), **more.fields()})
-        return ops
+def centering(said: Phrases, node: Node) -> list[Fields]:
+    found = said.things(node)
+    if any(n.posts for n in found):
+        raise Refusal("say put it there; centring is in the middle of the room", found[-1].posts[0].word)
+    return [{"op": "move", "target": known(found), "place": {"relation": "center"}}]
 
-    def _raise(self, node: Node) -> list[Fields]:
-        lengths, degree = tokens(node, "LENGTH"), changes.degree_of(node)
-        distance = places.length(lengths[0].value) if lengths else None
-        if degree:
-            distance = places.LITTLE if degree == "little" else places.MUCH
-        fields = {"direction": tokens(node, "RAISE")[0].value, **({"distance": distance} if distance else {})}
-        return self._targeted(node, "move", **fields)
+
+def moved(said: Phrases, found: list[Noun], node: Node, verb: str) -> list[Fields]:
+    first, second = _split_at_and(node)
+    motion = places.read(first, said, found[0])
+    if not motion.aims:
+        found[-1], motion.place = places.destination(found[-1], verb)
+        if motion.place is None:
+            raise Refusal("say where to: left, 30 cm up, onto the desk, next to the sofa")
+        if motion.distance is not None:
+            raise Refusal("a distance needs a direction")
+    ops = [{"op": "move", "target": known(found), **motion.fields()}]
+    if second:
+        more = places.read(second, said, found[0])
+        ops.append({"op": "move", "target": Query(last=True), **more.fields()})
+    return ops
+
+
+def raise_(said: Phrases, node: Node) -> list[Fields]:
+    lengths, degree = tokens(node, "LENGTH"), changes.degree_of(node)
+    distance = places.length(lengths[0].value) if lengths else None
+    if degree:
+        distance = places.LITTLE if degree == "little" else places.MUCH
+    fields = {"direction": tokens(node, "RAISE")[0].value, **({"distance": distance} if distance else {})}
+    return said.targeted(node, "move", **fields)
 
 
 def _split_at_and(node: Node) -> tuple[list[Node], list[Node]]:
@@ -62,3 +64,6 @@ def _split_at_and(node: Node) -> tuple[list[Node], list[Node]]:
     at = next((i for i, c in enumerate(node.children) if isinstance(c, Token) and c.type == "AND"), len(node.children))
     before, behind = Tree("motions", node.children[:at]), Tree("motions", node.children[at:])
     return trees(before, *MOTIONS), trees(behind, *MOTIONS)
+
+
+RULES = (it_moves, move, centering, raise_)

@@ -17,22 +17,51 @@ from ..nodes import Node, Refusal, tag_of, tokens, trees
 from ..tagging.tags import Tag
 from ..tagging.words import bag
 from ..vocabulary import nouns
-from .described import Article, Noun, Post, all_of, union, updated
+from .changes import Fields
+from .described import Article, Noun, Post, all_of, known, union, updated
 
 _SHAPES = bag("round square rectangular oval circular wooden metal plastic glass leather striped plain patterned")
 PARTS = frozenset({"part", "piece", "area", "region", "bit"})  # of things, found by their own colour
 
 _MIDDLES = frozenset({"middle", "centre", "center", "left side", "right side"})
 _SIDES = _MIDDLES | {"left", "right", "front", "back", "rear", "top", "bottom"}
+_SIDE_OF = {"left": "leftmost", "right": "rightmost", "forward": "farthest", "backward": "nearest", "up": "highest",
+            "down": "lowest"}  # fmt: skip
 
 
 class Phrases:
-    """Builds nouns; remembers the last head noun for "the green one"."""
+    """The noun phrases of one instruction: builds nouns, and remembers what later words refer to.
 
-    def __init__(self, antecedent: str = "", colors: tuple[str, ...] = ()) -> None:
+    Attributes:
+        antecedent: the last head noun, for "the green one".
+        before: operations of the clause before, for "do the same to the lamp".
+        colors: of the antecedent: "the other one" has them too.
+        sharing: whether the noun of the present phrase is said in the next one.
+    """
+
+    def __init__(self, antecedent: str = "", before: Sequence[Fields] = (), colors: tuple[str, ...] = ()) -> None:
         self.antecedent = antecedent
-        self.sharing = False  # whether the noun of this phrase is said in the next one
-        self.colors = colors  # of the antecedent: "the other one" has them too
+        self.before = list(before)
+        self.colors = colors
+        self.sharing = False
+
+    def targeted(self, node: Node, op: str, **fields: Any) -> list[Fields]:
+        """An operation on the things that a clause names."""
+        return [{"op": op, "target": self.query(node), **fields}]
+
+    def query(self, node: Node, index: int = 0) -> Query:
+        """The things that a clause names, which are there already."""
+        return known(self.things(node, index))
+
+    def things(self, node: Node, index: int = 0) -> list[Noun]:
+        """The nouns of a clause; a direction behind them ("the chair to the left") is a side of the last one."""
+        found = self.targets(trees(node, "targets")[index])
+        if (side := tokens(node, "DIR")) and str(node.data) in ("delete", "select", "isolate", "hide"):
+            query = found[-1].query
+            if query.pick not in ("one", "any"):
+                raise Refusal("a side picks one thing; say which one", side[0].text)
+            found[-1] = replace(found[-1], query=query.model_copy(update={"pick": _SIDE_OF[side[0].value]}))
+        return found
 
     def targets(self, node: Node) -> list[Noun]:
         """The nouns of a `targets` node; an exclusion is folded into each of them."""

@@ -24,6 +24,7 @@ from .phrases import Phrases
 Fields = dict[str, Any]
 LITTLE: Fields = {"value": 20, "unit": "cm"}
 MUCH: Fields = {"value": 1, "unit": "m"}
+MOTIONS = ("direction", "distance", "nudge", "toward", "to", "spot", "times")  # the rules that `read` takes
 _BESIDE = ("next_to", "left_of", "right_of", "in_front_of", "behind")
 
 

@@ -11,118 +11,126 @@ from typing import Any
 from ..nodes import Node, Refusal, tokens, trees
 from . import changes, places
 from .changes import Fields
-from .rules import Rules
+from .phrases import Phrases
+
+# ---- turning -------------------------------------------------------------------------------------------------
 
 
-class Shaping(Rules):
-    """One method for each rule that turns or scales."""
+def rotate(said: Phrases, node: Node) -> list[Fields]:
+    turns = trees(node, "turning")
+    angle, clock, direction = (_only(turns, *kind) for kind in (("ANGLE", "NUMBER"), ("CLOCK",), ("DIR",)))
+    if angle is None and (share := _only(turns, "FRACTION")) is not None:
+        angle = 360 * share
+    if any(tokens(t, "UPSIDE") for t in turns):
+        if len(turns) > 1:
+            raise Refusal("turning upside down is half a turn; leave the rest out")
+        return said.targeted(node, "rotate", degrees=180.0, axis="forward")
+    if direction is not None and direction not in ("left", "right"):
+        raise Refusal("things turn to the left or right, clockwise or counterclockwise")
+    if clock is not None and direction is not None:
+        raise Refusal("say either clockwise or a side")
+    around = any(tokens(t, "AROUND") for t in turns) or bool(tokens(node, "TURNROUND"))
+    sign = clock or {"left": 1, "right": -1}.get(direction or "", 1)
+    if angle is None and not around and clock is None and direction is None:
+        raise Refusal("say by how many degrees, or to the left, or around")
+    if _only(turns, "DEGREE") is not None and angle is None:
+        angle = _slight(turns)
+    # A quarter turn is what "turn it to the left" means without a number; "around" is half a turn.
+    degrees = float(angle) if angle is not None else 180.0 if around else 90.0
+    return said.targeted(node, "rotate", degrees=sign * degrees)
 
-    # ---- turning -------------------------------------------------------------------------------------------------
 
-    def _rotate(self, node: Node) -> list[Fields]:
-        turns = trees(node, "turning")
-        angle, clock, direction = (_only(turns, *kind) for kind in (("ANGLE", "NUMBER"), ("CLOCK",), ("DIR",)))
-        if angle is None and (share := _only(turns, "FRACTION")) is not None:
-            angle = 360 * share
-        if any(tokens(t, "UPSIDE") for t in turns):
-            if len(turns) > 1:
-                raise Refusal("turning upside down is half a turn; leave the rest out")
-            return self._targeted(node, "rotate", degrees=180.0, axis="forward")
-        if direction is not None and direction not in ("left", "right"):
-            raise Refusal("things turn to the left or right, clockwise or counterclockwise")
-        if clock is not None and direction is not None:
-            raise Refusal("say either clockwise or a side")
-        around = any(tokens(t, "AROUND") for t in turns) or bool(tokens(node, "TURNROUND"))
-        sign = clock or {"left": 1, "right": -1}.get(direction or "", 1)
-        if angle is None and not around and clock is None and direction is None:
-            raise Refusal("say by how many degrees, or to the left, or around")
-        if _only(turns, "DEGREE") is not None and angle is None:
-            angle = _slight(turns)
-        # A quarter turn is what "turn it to the left" means without a number; "around" is half a turn.
-        degrees = float(angle) if angle is not None else 180.0 if around else 90.0
-        return self._targeted(node, "rotate", degrees=sign * degrees)
+def flip(said: Phrases, node: Node) -> list[Fields]:
+    if tokens(node, "AROUND"):
+        return said.targeted(node, "rotate", degrees=180.0)
+    return said.targeted(node, "rotate", degrees=180.0, axis="forward")
 
-    def _flip(self, node: Node) -> list[Fields]:
-        if tokens(node, "AROUND"):
-            return self._targeted(node, "rotate", degrees=180.0)
-        return self._targeted(node, "rotate", degrees=180.0, axis="forward")
 
-    def _tilt(self, node: Node) -> list[Fields]:
-        turns = trees(node, "turning")
-        angle, clock, direction = (_only(turns, *kind) for kind in (("ANGLE",), ("CLOCK",), ("DIR",)))
-        if angle is None or (clock is None) == (direction is None):
-            raise Refusal("say by how many degrees and which way: tilt it 10 degrees to the left")
-        # Clockwise as the viewer sees it is counter-clockwise from the tip of "forward", which points away.
-        signs = {"left": ("forward", -1), "right": ("forward", 1), "forward": ("right", -1), "backward": ("right", 1)}
-        axis, sign = ("forward", -clock) if clock is not None else signs.get(direction or "", ("", 0))
-        if not sign:
-            raise Refusal("things tilt left, right, forward or backward")
-        return self._targeted(node, "rotate", degrees=sign * float(angle), axis=axis)
+def tilt(said: Phrases, node: Node) -> list[Fields]:
+    turns = trees(node, "turning")
+    angle, clock, direction = (_only(turns, *kind) for kind in (("ANGLE",), ("CLOCK",), ("DIR",)))
+    if angle is None or (clock is None) == (direction is None):
+        raise Refusal("say by how many degrees and which way: tilt it 10 degrees to the left")
+    # Clockwise as the viewer sees it is counter-clockwise from the tip of "forward", which points away.
+    signs = {"left": ("forward", -1), "right": ("forward", 1), "forward": ("right", -1), "backward": ("right", 1)}
+    axis, sign = ("forward", -clock) if clock is not None else signs.get(direction or "", ("", 0))
+    if not sign:
+        raise Refusal("things tilt left, right, forward or backward")
+    return said.targeted(node, "rotate", degrees=sign * float(angle), axis=axis)
 
-    def _turn_to(self, node: Node) -> list[Fields]:
-        """ "turn the armchair toward the window", "make the chairs face away from the table"."""
-        goal = places.anchor_only(self.phrases, trees(node, "np")[0]).full()
-        away = {"degrees": 180.0} if tokens(node, "FACEAWAY") else {}
-        return self._targeted(node, "rotate", toward=goal, **away)
 
-    # ---- sizing --------------------------------------------------------------------------------------------------
+def turn_to(said: Phrases, node: Node) -> list[Fields]:
+    """ "turn the armchair toward the window", "make the chairs face away from the table"."""
+    goal = places.anchor_only(said, trees(node, "np")[0]).full()
+    away = {"degrees": 180.0} if tokens(node, "FACEAWAY") else {}
+    return said.targeted(node, "rotate", toward=goal, **away)
 
-    def _factor(self, node: Node) -> tuple[float | None, float | None, bool, str]:
-        """Share, times, whether "to" was said, and degree of a clause's `factor`."""
-        for inner in trees(node, "factor", "degree_factor"):
-            times = tokens(inner, "TIMES", "NUMBER")
-            value = float(times[0].value) if times else None
-            return changes.share_of(inner), value, bool(tokens(inner, "TO")), changes.degree_of(inner)
-        return None, None, False, ""
 
-    def _scale(self, node: Node) -> list[Fields]:
-        share, times, to, degree = self._factor(node)
-        way = [t.value for t in tokens(node, "DIR")]
-        if way and way[0] in ("up", "down"):
-            return self._sized(node, "all", way[0] == "up", (share, times, to, degree))
-        if way or (share is None and times is None):
-            raise Refusal("say by how much: by 1.5, to 50 %, up by 20 %")
-        return self._targeted(node, **changes.scaled(times if times is not None else share or 0.0))
+# ---- sizing --------------------------------------------------------------------------------------------------
 
-    def _sized(
-        self, node: Node, axis: str, up: bool, factor: tuple[float | None, float | None, bool, str]
-    ) -> list[Fields]:
-        share, times, to, degree = factor
-        if to and (share is not None or times is not None):
-            return self._targeted(node, **changes.scaled(share if share is not None else times or 0.0, axis))
-        return self._targeted(node, **changes.grown(axis, up, share, times, degree))
 
-    def _grow(self, node: Node) -> list[Fields]:
-        axis, up = tokens(node, "GROW")[0].value
-        if axis == "prop" and trees(node, "factor"):
-            axis = "all"
-        if axis == "prop":
-            raise Refusal("say what of it: its size, its height, its width", tokens(node, "GROW")[0].text)
-        return self._sized(node, axis, up, self._factor(node))
+def _factor(node: Node) -> tuple[float | None, float | None, bool, str]:
+    """Share, times, whether "to" was said, and degree of a clause's `factor`."""
+    for inner in trees(node, "factor", "degree_factor"):
+        times = tokens(inner, "TIMES", "NUMBER")
+        value = float(times[0].value) if times else None
+        return changes.share_of(inner), value, bool(tokens(inner, "TO")), changes.degree_of(inner)
+    return None, None, False, ""
 
-    def _grow_prop(self, node: Node) -> list[Fields]:
-        _, up = tokens(node, "GROW")[0].value
-        return self._sized(node, tokens(node, "PROP")[0].value, up, self._factor(node))
 
-    def _measure(self, node: Node) -> list[Fields]:
-        return self._targeted(node, **changes.measured(node))
+def scale(said: Phrases, node: Node) -> list[Fields]:
+    share, times, to, degree = _factor(node)
+    way = [t.value for t in tokens(node, "DIR")]
+    if way and way[0] in ("up", "down"):
+        return _sized(said, node, "all", way[0] == "up", (share, times, to, degree))
+    if way or (share is None and times is None):
+        raise Refusal("say by how much: by 1.5, to 50 %, up by 20 %")
+    return said.targeted(node, **changes.scaled(times if times is not None else share or 0.0))
 
-    def _measure_prop(self, node: Node) -> list[Fields]:
-        side = tokens(node, "PROP")[0]
-        return self._targeted(node, **changes.sized(tokens(node, "LENGTH")[0].value, side.value, side.text))
 
-    def _stretch(self, node: Node) -> list[Fields]:
-        """ "stretch the table to 2 m wide", "stretch it by 20 %": one side only, the width if none is said."""
-        if trees(node, "measured"):
-            return self._targeted(node, **changes.measured(node, stretched=True))
-        share, times, to, degree = self._factor(node)
-        return self._sized(node, "width", True, (share, times, to, degree))
+def _sized(
+    said: Phrases, node: Node, axis: str, up: bool, factor: tuple[float | None, float | None, bool, str]
+) -> list[Fields]:
+    share, times, to, degree = factor
+    if to and (share is not None or times is not None):
+        return said.targeted(node, **changes.scaled(share if share is not None else times or 0.0, axis))
+    return said.targeted(node, **changes.grown(axis, up, share, times, degree))
 
-    def _multiply(self, node: Node) -> list[Fields]:
-        prop = tokens(node, "PROP")
-        return self._targeted(
-            node, **changes.scaled(tokens(node, "MULTIPLY")[0].value, prop[0].value if prop else "all")
-        )
+
+def grow(said: Phrases, node: Node) -> list[Fields]:
+    axis, up = tokens(node, "GROW")[0].value
+    if axis == "prop" and trees(node, "factor"):
+        axis = "all"
+    if axis == "prop":
+        raise Refusal("say what of it: its size, its height, its width", tokens(node, "GROW")[0].text)
+    return _sized(said, node, axis, up, _factor(node))
+
+
+def grow_prop(said: Phrases, node: Node) -> list[Fields]:
+    _, up = tokens(node, "GROW")[0].value
+    return _sized(said, node, tokens(node, "PROP")[0].value, up, _factor(node))
+
+
+def measure(said: Phrases, node: Node) -> list[Fields]:
+    return said.targeted(node, **changes.measured(node))
+
+
+def measure_prop(said: Phrases, node: Node) -> list[Fields]:
+    side = tokens(node, "PROP")[0]
+    return said.targeted(node, **changes.sized(tokens(node, "LENGTH")[0].value, side.value, side.text))
+
+
+def stretch(said: Phrases, node: Node) -> list[Fields]:
+    """ "stretch the table to 2 m wide", "stretch it by 20 %": one side only, the width if none is said."""
+    if trees(node, "measured"):
+        return said.targeted(node, **changes.measured(node, stretched=True))
+    share, times, to, degree = _factor(node)
+    return _sized(said, node, "width", True, (share, times, to, degree))
+
+
+def multiply(said: Phrases, node: Node) -> list[Fields]:
+    prop = tokens(node, "PROP")
+    return said.targeted(node, **changes.scaled(tokens(node, "MULTIPLY")[0].value, prop[0].value if prop else "all"))
 
 
 def _only(nodes: Sequence[Node], *types: str) -> Any:
@@ -138,3 +146,6 @@ def _slight(turns: Sequence[Node]) -> float:
     if _only(turns, "DEGREE") != "little":
         raise Refusal("say by how many degrees", "much")
     return 15.0
+
+
+RULES = (rotate, flip, tilt, turn_to, scale, grow, grow_prop, measure, measure_prop, stretch, multiply)
