@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from ..planners.layout.bodies import FLAT
-from ..planners.rooms.graph import Node, SceneGraph
+from ..gaussians.world.person import STEP
+from ..planners.rooms.graph import SceneGraph
+from ..planners.rooms.node import Node
 
 _COLORS = {"floor": "#d9c8a9", "wall": "#8fb0c9", "ceiling": "none", "carried": "#a9c99b"}
 
@@ -32,12 +33,12 @@ def draw(layouts: Sequence[tuple[str, SceneGraph]], path: Path, columns: int = 4
 def _plan(axes: Any, graph: SceneGraph) -> None:
     width, depth, _ = graph.room.size
     axes.plot(*(np.array([[-1, 1, 1, -1, -1], [-1, -1, 1, 1, -1]]) * [[width / 2], [depth / 2]]), color="black")
-    for node in sorted(graph.nodes, key=lambda n: n.bottom + (n.size[2] > FLAT)):
+    for node in sorted(graph.nodes, key=lambda n: n.bottom + (n.size[2] > STEP)):
         corners = node.box.corners()
         around = _outline(node)
         kind = node.support if node.support in _COLORS else "carried"
         axes.fill(*around.T, facecolor=_COLORS[str(kind)], edgecolor="0.3", linewidth=0.7, alpha=0.8)
-        if node.size[2] > FLAT and kind in ("floor", "wall"):
+        if node.size[2] > STEP and kind in ("floor", "wall"):
             axes.plot(*around[:2].T, color="#b03a2e", linewidth=2)
         axes.text(*corners.mean(axis=0)[:2], node.label, fontsize=5, ha="center", va="center")
     axes.set_aspect("equal")

@@ -8,29 +8,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-import numpy as np
 import torch
 from torch import Tensor
 
-from ..gaussians.language.field.language_field import Group, LanguageField
 from ..gaussians.language.query.selection import Selection, mask_of
-from ..gaussians.scene import Frame, Scene
-from ..gaussians.world.relations import HOLDS, Stand, score
+from ..gaussians.scene import Scene
+from ..gaussians.world.support import standing_on
 from .field_update import rows_in
 from .placement.bodies import Body
 
-_FLAT = 20.0  # a thing longer than so many times its height is a rug, which slides away from under a chair
 TOLD = 4  # names in a note; more are counted
-
-
-def standing_on(field: LanguageField, frame: Frame, support: Group) -> tuple[Group, ...]:
-    """Objects that stand directly on an object, or in it as on a shelf; none on a rug."""
-    if support.level != "object" or max(support.box.size[:2]) > _FLAT * support.box.size[2]:
-        return ()
-    east, north, up = frame.basis()
-    stand = Stand(east, north, up, np.zeros(3), field.typical_size)
-    others = (g for g in field.objects() if g.count and g.id != support.id)
-    return tuple(g for g in others if score("on", g, [support], stand) >= HOLDS)
 
 
 def riders_of(scene: Scene, groups: Iterable[int]) -> tuple[int, ...]:

@@ -17,6 +17,7 @@ from ..gaussians.camera import Vec3
 from ..gaussians.cloud import NO_GROUP, GaussianCloud
 from ..gaussians.errors import InstructionError, UserError
 from ..gaussians.scene import Scene
+from ..gaussians.world.person import HUNG_AT
 from . import field_update
 from .cloud_diff import fresh_ids, joined
 from .field_update import Newcomer
@@ -29,7 +30,6 @@ from .placement.place import Placer, Spot
 from .transform import transformed
 
 _ROOM = 4.5  # metres across, taken for a scene that gives no other hint of its scale
-_HANGING = 1.5  # metres above the floor of the centre of what hangs on a wall
 _STANDING = 1.6  # metres: taller wall things (doors, curtains, wardrobes) reach down to the floor
 
 
@@ -149,7 +149,7 @@ def find_spot(placer: Placer, piece: Piece, place: Placement | None, start: Arra
     if place is None and piece.support == "wall":
         place = Placement(relation="against")
         metre_units = metre(placer.scene).units
-        placer.lift = max(0.0, _HANGING * metre_units - unit / 2) if unit < _STANDING * metre_units else 0.0
+        placer.lift = max(0.0, HUNG_AT * metre_units - unit / 2) if unit < _STANDING * metre_units else 0.0
     if place is None and piece.support == "ceiling":
         heights = placer.thin @ placer.up.astype(np.float32)
         placer.lift = max(0.0, float(np.quantile(heights, 0.995)) - placer.floor - unit) if len(heights) else 0.0

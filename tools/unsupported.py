@@ -1,14 +1,15 @@
 """What an edit leaves hanging in the air: things that stood on what was turned over, resized or taken away.
 
 Knows the table of groups before and after. It tells and does not act: whoever asked for the table to go did not say
-what should become of the vase on it. What goes along when the table is moved is in riders.py.
+what should become of the vase on it. What goes along when the table is moved is in carried_objects.py.
 """
 
 from __future__ import annotations
 
 from ..gaussians.language.field.language_field import Group
 from ..gaussians.scene import Scene
-from .carried_objects import TOLD, standing_on
+from ..gaussians.world.support import standing_on
+from .carried_objects import TOLD
 
 
 def left_hanging(before: Scene, after: Scene, groups: tuple[int, ...]) -> tuple[str, ...]:

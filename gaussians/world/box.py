@@ -225,6 +225,11 @@ class YawBox(NamedTuple):
         """Points of its own axes in the world; the inverse of `local`."""
         return to_world(self.x, self.y, self.yaw, right, back)
 
+    def distance_to(self, x: Any, y: Any) -> Any:
+        """Metres in plan from its footprint to points, 0 within it."""
+        u, v = self.local(x, y)
+        return np.hypot(np.maximum(np.abs(u) - self.w / 2, 0.0), np.maximum(np.abs(v) - self.d / 2, 0.0))
+
     def corners(self) -> F64:
         """`[4, 2]` of its footprint; its position must be numbers."""
         half = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.array([self.w, self.d]) / 2

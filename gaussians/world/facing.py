@@ -18,7 +18,7 @@ import torch
 from numpy.typing import NDArray
 
 from ..cloud import GaussianCloud
-from ..language.field.language_field import Group
+from ..language.field.language_field import Group, LanguageField
 
 F64 = NDArray[np.float64]
 
@@ -38,20 +38,18 @@ class Facing:
     by: Literal["shape", "wall", "nothing"]
 
 
-def facing_of(
-    cloud: GaussianCloud, rows: NDArray[np.int64], group: Group, walls: Sequence[Group], typical: float
-) -> Facing:
+def facing_of(cloud: GaussianCloud, rows: NDArray[np.int64], group: Group, field: LanguageField) -> Facing:
     """Which way a group faces.
 
     Args:
         rows: `[M]` its rows in `cloud`.
-        walls: groups that are walls.
-        typical: size of a typical object, scene units.
+        field: the table that the group is in; its walls and the size of its typical object count.
     """
     by_shape = _away_from_its_back(cloud, rows, group)
     if by_shape is not None:
         return Facing(by_shape, "shape")
-    by_wall = _away_from_the_wall(group, walls, AGAINST * typical)
+    walls = [g for g in field.groups if g.level == "structure" and g.label == "wall" and g.count]
+    by_wall = _away_from_the_wall(group, walls, AGAINST * field.typical_size)
     return Facing(by_wall, "nothing" if by_wall is None else "wall")
 
 

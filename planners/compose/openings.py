@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..layout.problem import Item, Stand, Wall
-from ..rooms.graph import Size
+from ..rooms.node import Size
 from . import knowledge
 from .brief import Brief
 

@@ -11,8 +11,9 @@ from itertools import count
 
 import numpy as np
 
+from ...gaussians.world.person import HEADROOM, HUNG_AT
 from ..layout.problem import Item, Keepout, Problem, Wish, WishName
-from ..rooms.graph import Size
+from ..rooms.node import Size
 from . import knowledge, sizing
 from .brief import Brief
 from .furnishing import Bond, Furnishing, Group, chained, furnish, pairs
@@ -20,9 +21,8 @@ from .openings import beams, draped, openings
 from .sentence import vocabulary
 
 _PACKED = 0.5  # share of a top that small things may take by habit
-_OVERHEAD = 1.95  # metres under what hangs from the ceiling
+_OVERHEAD = HEADROOM + 0.05  # metres under what hangs from the ceiling
 _FLUSH = ("against_wall", "in_corner", "at_window")  # said of a counter, nobody works behind it
-_EYE = 1.5  # metres, the middle of what hangs on a wall
 
 
 @dataclass(frozen=True)
@@ -208,7 +208,7 @@ class _Pose:
         top = self.room[2] - 0.05
         if group.kind.name == "curtain":
             return round(max(0.02, top - size[2]), 3)
-        return round(max(min(_EYE - size[2] / 2, top - size[2]), min(0.02, top)), 3) if size[2] < top else None
+        return round(max(min(HUNG_AT - size[2] / 2, top - size[2]), min(0.02, top)), 3) if size[2] < top else None
 
     # ---- wishes ----------------------------------------------------------------------------------------------------
 

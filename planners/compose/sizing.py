@@ -10,7 +10,7 @@ from math import ceil, pi, sqrt
 
 import numpy as np
 
-from ..rooms.graph import Size
+from ..rooms.node import Size
 from . import knowledge
 from .brief import Brief, Scale
 from .furnishing import Furnishing, Group

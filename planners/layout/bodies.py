@@ -12,16 +12,15 @@ from functools import cached_property
 from typing import NamedTuple
 
 from ...gaussians.world.box import YawBox, plan_penetration, to_world
-from ..rooms.graph import SHELL
+from ...gaussians.world.person import HEADROOM, STEP
+from ...gaussians.world.support import SHELL
 from .lattice import EPSILON
 from .problem import Item, Problem, Wall
 
 DOORS = frozenset({"door", "doorway", "entrance", "gate", "exit", "front door", "entry"})
-FLAT = 0.05  # metres; lower things on the floor are stood upon
 TUCKED = 0.03  # metres between a table and what stands around it
 _ELBOW = 0.08  # metres between neighbours at a table
 _SWING = 0.9  # metres before a door that its leaf takes at most
-HEAD = 1.9  # metres; using a thing takes no more height
 _BEFORE = ("around", "in_front_of", "between", "under", "on", "inside", "above", "below")
 _BESIDE_WALL = ("against_wall", "in_corner", "at_window")
 
@@ -154,9 +153,9 @@ class Prepared:
         if item.label.lower().strip() in DOORS and not any(item.clear):
             before = behind = min(width, _SWING)
         low = 0.0 if item.support == "floor" else (item.height or 0.0)
-        high = min(HEAD, low + max(height, 0.3))
+        high = min(HEADROOM, low + max(height, 0.3))
         return tuple(
-            YawBox(x, y, low + FLAT, w, d, high - (low + FLAT))
+            YawBox(x, y, low + STEP, w, d, high - (low + STEP))
             for reach, x, y, w, d in (
                 (before, 0.0, -(deep + before) / 2, width, before),
                 (behind, 0.0, (deep + behind) / 2, width, behind),
@@ -261,7 +260,7 @@ def _supported(problem: Problem) -> Iterator[Item]:
     onto = {w.subject: w.objects[0] for w in reversed(problem.wishes) if w.hard and w.name in ("on", "inside")}
     items: dict[int | str, Item] = {}
     for item in problem.items:
-        moved = item.id in onto and item.support == "floor" and item.stand is None and item.size[2] > FLAT
+        moved = item.id in onto and item.support == "floor" and item.stand is None and item.size[2] > STEP
         items[item.id] = item.model_copy(update={"support": onto[item.id]}) if moved else item
     for item in list(items.values()):
         seen = {item.id}

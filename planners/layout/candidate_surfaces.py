@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from ...gaussians.world.box import YawBox
-from ..rooms.graph import SHELL
+from ...gaussians.world.person import HUNG_AT
+from ...gaussians.world.support import SHELL
 from .bodies import TUCKED, Body
 from .lattice import EPSILON, F64, TURNS, Lattice
 from .state import State
 
 FLOOR = YawBox(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)  # the frame of the floor
-EYE = 1.5  # metres from the floor to the middle of what hangs on a wall
 _CELLS = 80  # positions along the longer side of a room; the step is 5 cm or more
 _FINE, _ON_TOP = 0.05, 0.025  # metres between positions on the floor, and at most on a thing
 _HIGH = 1.5  # metres; nothing is put on top of what is higher, if it can stand within it
@@ -63,7 +63,7 @@ def _hanging_heights(state: State, i: int) -> list[float]:
     most = state.size[2] - item.size[2]
     if item.height is not None:
         return [item.height] if item.height <= most + EPSILON else []
-    usual = EYE - item.size[2] / 2
+    usual = HUNG_AT - item.size[2] / 2
     above = [
         spot.high + 0.15
         for row in state.prepared.wishes_of[i]

@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Literal, NamedTuple
 
-from ..rooms.graph import NodeId
-from .bodies import DOORS, FLAT, Prepared
+from ...gaussians.world.person import STEP
+from ..rooms.node import NodeId
+from .bodies import DOORS, Prepared
 from .problem import Conflict, Item, Problem, Wish
 from .search import Search
 from .sentences import said_item, said_keepout, said_room, said_wish
@@ -114,7 +115,7 @@ class _Explainer:
         """Things whose footprints are together more than the floor, as few as are found; none if there is room."""
         solid = [
             i for i in self.prepared.items
-            if i.support == "floor" and i.size[2] > FLAT and not i.optional and i.stand is None and i.id not in gone
+            if i.support == "floor" and i.size[2] > STEP and not i.optional and i.stand is None and i.id not in gone
         ]  # fmt: skip
         area, those = 0.0, [Statement("room")]
         for item in sorted(solid, key=lambda i: -i.size[0] * i.size[1]):

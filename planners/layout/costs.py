@@ -10,9 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ...gaussians.world.box import YawBox, to_world
-from ..rooms.graph import SHELL
-from .bodies import FLAT, Body, Member
-from .candidate_surfaces import EYE, FLOOR, extents_of
+from ...gaussians.world.person import HUNG_AT, STEP
+from ...gaussians.world.support import SHELL
+from .bodies import Body, Member
+from .candidate_surfaces import FLOOR, extents_of
 from .lattice import F64, Lattice, meetings
 from .measures import WALLS, behind_gap, measure, walls_gaps
 from .state import BACKED, HARD, SOFT, USED, WALLED, State, placed
@@ -55,11 +56,11 @@ def crowding(state: State, body: Body, lattice: Lattice, solids: list[tuple[int,
     others = [s for j, s in solids if not any((m.item, j) in tied for m in body.members)]
     box = YawBox((x0 + x1) / 2, (y0 + y1) / 2, 0.06, x1 - x0, y1 - y0, item.size[2] - 0.06)
     if item.support == "wall":
-        low = item.height if item.height is not None else EYE - item.size[2] / 2
+        low = item.height if item.height is not None else HUNG_AT - item.size[2] / 2
         levels = [(0.3, 1.0, others, box._replace(low=low, h=item.size[2]))]
     elif item.support == "ceiling":
         levels = [(0.6, 1.0, others, box._replace(low=state.size[2] - item.size[2], h=item.size[2]))]
-    elif item.size[2] <= FLAT:
+    elif item.size[2] <= STEP:
         rugs = [
             s._replace(h=0.1 - s.low) for j, s in enumerate(state.spots) if s and state.is_flat(j) and j != body.first
         ]
@@ -152,7 +153,7 @@ def habits(state: State, body: Body, place: Place) -> F64:
         away = np.hypot(place.x - item.was.position[0], place.y - item.was.position[1])
         total += _MOVED * (away + _TURNED * turned)
     if item.support == "wall":
-        usual = item.height if item.height is not None else max(EYE - item.size[2] / 2, 0.0)
+        usual = item.height if item.height is not None else max(HUNG_AT - item.size[2] / 2, 0.0)
         aside = np.minimum(np.abs(here.x), np.abs(here.y))
         return total + 3.0 * abs(place.low - usual) + 0.3 * aside
     if item.support != "floor":
@@ -168,7 +169,7 @@ def habits(state: State, body: Body, place: Place) -> F64:
     if prepared.wants_wall(body.first):
         gap = np.abs(np.minimum(behind_gap(here, state.size), 3.0) - item.aisle)
         total += np.where(gap > BACKED, WALLED + 4.0 * gap, 0.0)
-    elif item.size[2] <= FLAT:
+    elif item.size[2] <= STEP:
         total += 0.3 * np.hypot(here.x, here.y)
     elif len(body.members) == 1 and not prepared.wishes_of[body.first] and item.was is None:
         gaps = zip(WALLS, walls_gaps(here, state.size), strict=True)

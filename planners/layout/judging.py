@@ -6,7 +6,8 @@ Knows both. Refuses to place anything; what the checker rejects is taken out.
 from __future__ import annotations
 
 from ..rooms.check import check
-from ..rooms.graph import Node, NodeId, RoomShape, SceneGraph
+from ..rooms.graph import SceneGraph
+from ..rooms.node import Node, NodeId, RoomShape
 from .bodies import Prepared
 from .problem import Wish
 from .state import State

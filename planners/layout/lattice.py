@@ -62,7 +62,5 @@ def meetings(lattice: Lattice, moving: YawBox, fixed: Sequence[YawBox]) -> list[
 def in_disc(lattice: Lattice, moving: YawBox, x: float, y: float, radius: float) -> Flags:
     """`[X, Y]` where `moving`, whose x and y are offsets to the lattice, would reach into a disc."""
     here = moving._replace(x=lattice.xs[:, None] + moving.x, y=lattice.ys[None, :] + moving.y)
-    u, v = here.local(x, y)
-    gap = np.hypot(np.maximum(np.abs(u) - moving.w / 2, 0.0), np.maximum(np.abs(v) - moving.d / 2, 0.0))
-    inside: Flags = gap < radius - EPSILON
+    inside: Flags = here.distance_to(x, y) < radius - EPSILON
     return inside

@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...gaussians.world.box import YawBox, to_world
-from .bodies import FLAT, HEAD, Body, Member
+from ...gaussians.world.person import HEADROOM, STEP
+from .bodies import Body, Member
 from .candidate_surfaces import FLOOR, Ground, grounds
 from .costs import Place, crowding, habits, in_frame, moved, use, wished
 from .lattice import EPSILON, Flags, Lattice, blocked, in_disc
@@ -101,7 +102,7 @@ def _within_room(state: State, body: Body, place: Place) -> Place:
 
 
 def _out_of_discs(state: State, lattice: Lattice, moving: YawBox, frame: YawBox, taken: Flags) -> None:
-    if moving.low >= HEAD or moving.high <= FLAT:
+    if moving.low >= HEADROOM or moving.high <= STEP:
         return
     for disc in state.discs:
         if disc is not None:

@@ -11,7 +11,10 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from ..rooms.graph import SHELL, NodeId, Point, SceneGraph, Size, Support
+from ...gaussians.world.person import WALKWAY
+from ...gaussians.world.support import SHELL
+from ..rooms.graph import SceneGraph
+from ..rooms.node import NodeId, Point, Size, Support
 
 Metres = Annotated[float, Field(ge=0, le=1000, allow_inf_nan=False)]
 WishName = Literal[
@@ -117,7 +120,7 @@ class Problem(BaseModel):
     items: Annotated[tuple[Item, ...], Field(max_length=512)]
     wishes: Annotated[tuple[Wish, ...], Field(max_length=4096)] = ()
     free: Annotated[tuple[Keepout, ...], Field(max_length=16)] = ()
-    walkway: Metres = 0.6
+    walkway: Metres = WALKWAY
     open: Annotated[tuple[Wall, ...], Field(max_length=4)] = ()
 
     @model_validator(mode="after")

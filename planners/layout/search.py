@@ -10,8 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from ...gaussians.world.box import YawBox
-from ..rooms.graph import SHELL
-from .bodies import FLAT, HEAD, Body, Member, Prepared
+from ...gaussians.world.person import HEADROOM, STEP
+from ...gaussians.world.support import SHELL
+from .bodies import Body, Member, Prepared
 from .costs import Place
 from .lattice import F64, Flags
 from .places import places
@@ -105,7 +106,7 @@ class Search:
             late = 0.0
         if item.support == "wall" and self._faced(body.first):
             late = -1.0
-        if item.support == "floor" and item.size[2] <= FLAT:
+        if item.support == "floor" and item.size[2] <= STEP:
             late = 1.5
         area = sum(self.prepared.area(m.item) for m in body.members)
         bound = self._bound(body.first)
@@ -197,7 +198,7 @@ class Search:
             xs, ys = np.linspace(r - width / 2, width / 2 - r, 41), np.linspace(r - deep / 2, deep / 2 - r, 41)
             away = np.hypot(xs[:, None], ys[None, :]) + self.rng.normal(0.0, 1e-6, (41, 41))
             for _, spot in state.solids(set()):
-                if spot.low < HEAD:
+                if spot.low < HEADROOM:
                     away[_meets_disc(xs, ys, spot, r)] = np.inf
             best = int(away.argmin())
             if np.isfinite(away.flat[best]):
@@ -245,6 +246,5 @@ class Search:
 
 def _meets_disc(xs: F64, ys: F64, spot: YawBox, radius: float) -> Flags:
     """`[X, Y]` middles at which a disc would reach into a box."""
-    u, v = spot.local(xs[:, None], ys[None, :])
-    meets: Flags = np.hypot(np.maximum(np.abs(u) - spot.w / 2, 0), np.maximum(np.abs(v) - spot.d / 2, 0)) < radius
+    meets: Flags = spot.distance_to(xs[:, None], ys[None, :]) < radius
     return meets

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from ..rooms.graph import NodeId
+from ..rooms.node import NodeId
 from .problem import Item, Keepout, Wish
 
 _WORDS = {

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from ...gaussians.world.box import YawBox, plan_penetration, shared_height, to_world, wrapped
-from .bodies import DOORS, FLAT, Body, Member, Prepared
+from ...gaussians.world.person import STEP
+from .bodies import DOORS, Body, Member, Prepared
 from .lattice import EPSILON
 from .measures import behind_gap, measure, walls_gaps
 from .problem import Keepout, Stand
@@ -74,7 +75,7 @@ class State:
         self.spots[i] = spot
         self.zones[i] = tuple(placed(z, spot) for z in self.prepared.zones_of[i])
         for floor in self.ways:
-            solid = item.support == "floor" and item.size[2] > FLAT
+            solid = item.support == "floor" and item.size[2] > STEP
             floor.put(i, spot, asked=solid, door=item.label.lower().strip() in DOORS)
 
     def take(self, i: int) -> None:
@@ -97,7 +98,7 @@ class State:
     def is_flat(self, i: int) -> bool:
         """Whether an item is stood upon: it meets nothing."""
         item = self.prepared.items[i]
-        return item.support == "floor" and item.size[2] <= FLAT
+        return item.support == "floor" and item.size[2] <= STEP
 
     def solids(self, but: set[int]) -> Iterator[tuple[int, YawBox]]:
         """What is placed and meets others, apart from some items."""

@@ -7,17 +7,17 @@ Knows a grid of the floor and a person's width. Refuses to know what is placed a
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
 from ...gaussians.world.box import YawBox
-from ..rooms.reachability import ARM, CELL, WIDTH
+from ...gaussians.world.person import ARM, HEADROOM, SHOULDERS, STEP
+from ..rooms.reachability import CELL
 from .lattice import EPSILON
 
-_STEP, _HEAD = 0.05, 1.9  # metres; what is lower is stepped upon, what is higher up is walked under
 _MOST = 400  # cells along a side; the cells of larger halls grow
 _ALL_AROUND = np.ones((3, 3))
 
@@ -51,7 +51,7 @@ class Ways:
 
     def put(self, name: Hashable, spot: YawBox, asked: bool, door: bool = False) -> None:
         """Add a thing; `asked`: it is to be reached, `door`: one comes in by it."""
-        stamp = self._stamp(spot, WIDTH + ARM if door else self.width / 2 + ARM)
+        stamp = self._stamp(spot, SHOULDERS + ARM if door else self.width / 2 + ARM)
         self.stamps[name] = stamp
         if stamp.taken is not None:
             self.taken[stamp.window] += stamp.taken
@@ -100,12 +100,11 @@ class Ways:
             slice(*np.searchsorted(cells, (middle - reach, middle + reach)).tolist())
             for cells, middle in ((self.xs, spot.x), (self.ys, spot.y))
         )
-        u, v = spot.local(self.xs[x][:, None], self.ys[y][None, :])
-        gap: Any = np.hypot(np.maximum(np.abs(u) - spot.w / 2, 0.0), np.maximum(np.abs(v) - spot.d / 2, 0.0))
-        solid = spot.high > _STEP and spot.low < _HEAD
+        gap = spot.distance_to(self.xs[x][:, None], self.ys[y][None, :])
+        solid = spot.high > STEP and spot.low < HEADROOM
         return _Stamp((x, y), (gap < self.half).astype(np.int16) if solid else None, gap <= arm - EPSILON)
 
 
 def floors(size: tuple[float, float], widths: Iterable[float]) -> tuple[Ways, ...]:
     """The floor for people of several widths, the widest first; none is narrower than the checker's."""
-    return tuple(Ways(size, width) for width in sorted({max(w, WIDTH) for w in widths}, reverse=True))
+    return tuple(Ways(size, width) for width in sorted({max(w, SHOULDERS) for w in widths}, reverse=True))

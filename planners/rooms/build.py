@@ -35,7 +35,7 @@ from ...gaussians.world.box import Box
 from ...tools.field_update import Newcomer, enter
 from .asset_folder import Shelf
 from .designs import Workshop
-from .graph import Node, NodeId, SceneGraph
+from .node import Drawn, Node, NodeId
 from .rest_heights import loads, settled
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ class Built:
 
 
 def build(
-    graph: SceneGraph,
+    graph: Drawn,
     *,
     seed: int = 0,
     assets: Path | None = None,
@@ -86,7 +86,7 @@ def build(
 
 
 def construct(
-    graph: SceneGraph,
+    graph: Drawn,
     *,
     seed: int = 0,
     assets: Path | None = None,
@@ -134,7 +134,7 @@ def construct(
     return Built(scene.replace(cameras=cameras), rows, blocks, notes, seconds)
 
 
-def _refuse(graph: SceneGraph, detail: float) -> None:
+def _refuse(graph: Drawn, detail: float) -> None:
     """Say what cannot be built before anything is.
 
     Raises:
@@ -156,7 +156,7 @@ def _timed(seconds: dict[str, float], stage: str) -> Iterator[None]:
     seconds[stage] = time.perf_counter() - start
 
 
-def _layout(graph: SceneGraph, drawn: Sequence[Node], things: Mapping[NodeId, Asset], seed: int) -> Layout:
+def _layout(graph: Drawn, drawn: Sequence[Node], things: Mapping[NodeId, Asset], seed: int) -> Layout:
     """The things where they come to rest, in the order of `drawn`."""
     width, depth, height = graph.room.size
     names = zlib.crc32(" ".join(n.label for n in drawn).encode())  # two rooms of one seed need not share their paint
@@ -169,7 +169,7 @@ def _layout(graph: SceneGraph, drawn: Sequence[Node], things: Mapping[NodeId, As
     return layout
 
 
-def _given(graph: SceneGraph) -> tuple[Camera, ...]:
+def _given(graph: Drawn) -> tuple[Camera, ...]:
     """The graph's own viewer, who then comes first."""
     if graph.viewer is None or math.dist(graph.viewer.position, graph.viewer.target) < 1e-6:
         return ()
@@ -190,7 +190,7 @@ def _rows(drawn: Sequence[Node]) -> dict[NodeId, int]:
 
 
 def _with_table(
-    graph: SceneGraph,
+    graph: Drawn,
     drawn: Sequence[Node],
     room: Raised,
     rows: Mapping[NodeId, int],
@@ -233,7 +233,7 @@ def _nothing(index: int) -> Group:
     return Group(index, "object", -1, "", 0.0, Box(zero, _LEVEL, zero), zero, 0, 0, 0.0)
 
 
-def _face(graph: SceneGraph, face: str, index: int, room: Raised, mine: Tensor) -> Group:
+def _face(graph: Drawn, face: str, index: int, room: Raised, mine: Tensor) -> Group:
     """Floor, ceiling or one wall: its measures are the room's."""
     w, d, h = graph.room.size
     box = {

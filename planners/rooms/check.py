@@ -14,19 +14,18 @@ from typing import Literal
 
 import numpy as np
 
-from ...gaussians.world import relations
+from ...gaussians.world import relations, support
 from ...gaussians.world.box import Boxes, overlap
-from .graph import SHELL, Node, SceneGraph
+from ...gaussians.world.support import SHELL
+from .graph import SceneGraph
 from .graph_scene import Stage
+from .node import Node
 from .reachability import unreached
 
 Kind = Literal["collision", "bounds", "support", "relation", "reach"]
 Id = int | str
 
 TOUCHING = 0.01  # metres that boxes may be in each other or in a wall: what a person rounds to when writing
-FLAT = 0.05  # metres; lower things on the floor (rugs) are stood upon, and a wheel or a hem may be this far from it
-GAP = 0.02  # metres of air under a thing that stands
-HUNG = 0.1  # metres between a wall or ceiling and what is fixed to it: brackets and frames
 
 # How relations are written, beside the names that queries use.
 _NAMES = {
@@ -104,16 +103,12 @@ def _collisions(graph: SceneGraph) -> Iterator[Violation]:
     for i, a in enumerate(graph.nodes):
         near = np.linalg.norm(middles[i + 1 :] - middles[i], axis=1) < reach[i + 1 :] + reach[i]
         for b in (graph.nodes[i + 1 + int(j)] for j in np.flatnonzero(near)):
-            if b.id in carried[a.id] or a.id in carried[b.id] or _is_flat(a) or _is_flat(b):
+            if b.id in carried[a.id] or a.id in carried[b.id] or a.is_stepped_on or b.is_stepped_on:
                 continue  # what stands on a shelf or a seat is within its box; rugs are stood upon
             depth = overlap(a.box, b.box)
             if depth > TOUCHING:
                 said = f"{_called(a)} and {_called(b)} are {depth:.2f} m in each other"
                 yield Violation("collision", (a.id, b.id), depth, "m", said)
-
-
-def _is_flat(node: Node) -> bool:
-    return node.support == "floor" and node.size[2] <= FLAT
 
 
 def _carriers(graph: SceneGraph, node: Node) -> Iterator[Id]:
@@ -132,7 +127,7 @@ def _out_of_bounds(graph: SceneGraph) -> Iterator[Violation]:
     for node in graph.nodes:
         corners = node.box.corners()
         low, high = corners.min(axis=0), corners.max(axis=0)
-        inward = HUNG if node.support in ("wall", "ceiling") else TOUCHING
+        inward = support.FIXED if node.support in ("wall", "ceiling") else TOUCHING
         out = {
             "left of the room": -width / 2 - low[0], "right of the room": high[0] - width / 2,
             "in front of the room": -depth / 2 - low[1], "behind the room": high[1] - depth / 2,
@@ -147,7 +142,7 @@ def _out_of_bounds(graph: SceneGraph) -> Iterator[Violation]:
 def _unsupported(graph: SceneGraph) -> Iterator[Violation]:
     """Nodes that do not stand, lie or hang on what they are said to."""
     nodes = {n.id: n for n in graph.nodes}
-    ground = max((n.top for n in graph.nodes if _is_flat(n)), default=0.0)
+    ground = max((n.top for n in graph.nodes if n.is_stepped_on), default=0.0)
     for node in graph.nodes:
         if node.support == "floor":
             yield from _standing(node, ground)
@@ -161,7 +156,7 @@ def _unsupported(graph: SceneGraph) -> Iterator[Violation]:
 
 def _standing(node: Node, ground: float) -> Iterator[Violation]:
     """On the floor, or on a rug."""
-    if node.bottom > max(GAP, ground + GAP):
+    if node.bottom > max(ground, 0.0) + support.AIR:
         yield Violation(
             "support", (node.id,), node.bottom, "m", f"{_called(node)} floats {node.bottom:.2f} m above the floor"
         )
@@ -169,27 +164,21 @@ def _standing(node: Node, ground: float) -> Iterator[Violation]:
 
 def _hanging(node: Node, graph: SceneGraph) -> Iterator[Violation]:
     """On a wall or the ceiling."""
-    width, depth, height = graph.room.size
-    corners = node.box.corners()
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    if node.support == "ceiling":
-        gap = height - node.top
-    else:
-        gap = float(min(low[0] + width / 2, width / 2 - high[0], low[1] + depth / 2, depth / 2 - high[1]))
-    if gap > HUNG:
-        said = f"{_called(node)} is {gap:.2f} m away from the {'nearest wall' if node.support == 'wall' else 'ceiling'}"
+    wall = node.support == "wall"
+    gap = support.wall_gap(node.yaw_box, graph.room.size) if wall else graph.room.size[2] - node.top
+    if gap > support.FIXED:
+        said = f"{_called(node)} is {gap:.2f} m away from the {'nearest wall' if wall else 'ceiling'}"
         yield Violation("support", (node.id,), gap, "m", said)
 
 
 def _carried(node: Node, lower: Node) -> Iterator[Violation]:
     """On top of another thing, or within its box: on a seat, on a shelf, in a box."""
-    local = lower.box.local(np.array([node.position]))[0]
-    aside = float(max(abs(local[0]) - lower.size[0] / 2, abs(local[1]) - lower.size[1] / 2))
+    aside = support.aside(node.yaw_box, lower.yaw_box)
     if aside > 0:
         said = f"the middle of {_called(node)} is {aside:.2f} m off {_called(lower)}, on which it is said to stand"
         yield Violation("support", (node.id, lower.id), aside, "m", said)
-    gap = max(node.bottom - lower.top, lower.bottom - node.bottom)
-    if gap > GAP:
+    gap = support.air(node.yaw_box, lower.yaw_box)
+    if gap > support.AIR:
         where = "above" if node.bottom > lower.top else "below the underside of"
         said = f"{_called(node)} is {gap:.2f} m {where} {_called(lower)}, on which it is said to stand"
         yield Violation("support", (node.id, lower.id), gap, "m", said)

@@ -26,7 +26,7 @@ from ...gaussians.world import synonyms
 from ...gaussians.world.words import normalise
 from .asset_folder import Shelf
 from .color_words import NO_COLOR, color_of, hex_of, plain_color
-from .graph import Node
+from .node import Node
 from .rest_heights import Load, level_error
 
 Array = NDArray[np.float64]

@@ -25,9 +25,12 @@ from ...gaussians.language.query.selection import Selection
 from ...gaussians.language.query.terms import STRUCTURE
 from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.box import Box, distance
+from ...gaussians.world.person import EYE_HEIGHT
+from ...gaussians.world.support import SHELL
 from .color_words import NO_COLOR, color_of, hex_of, plain_color
-from .graph import SHELL, Node, SceneGraph
+from .graph import SceneGraph
 from .label_encoder import WordEncoder
+from .node import Node
 
 Id = int | str
 _UP: Vec3 = (0.0, 0.0, 1.0)
@@ -254,5 +257,5 @@ def _viewer(graph: SceneGraph) -> Camera:
     if graph.viewer is not None:
         return Camera.look_at(graph.viewer.position, graph.viewer.target, _UP)
     width, depth, _ = graph.room.size
-    eye = 1.6
-    return Camera.look_at((0.0, -depth / 2 - max(width, depth, 1.0), eye), (0.0, 0.0, eye), _UP)
+    back = depth / 2 + max(width, depth, 1.0)
+    return Camera.look_at((0.0, -back, EYE_HEIGHT), (0.0, 0.0, EYE_HEIGHT), _UP)

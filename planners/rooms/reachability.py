@@ -13,16 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from .graph import Node, SceneGraph
+from ...gaussians.world.person import ARM, HEADROOM, SHOULDERS, STEP
+from .graph import SceneGraph
+from .node import Node
 
 F64 = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-WIDTH = 0.5  # metres, a person's, shoulder to shoulder
-ARM = 0.6  # metres that a person reaches from the edge of the body
 CELL = 0.05  # metres, side of a cell; a way is found or missed by this much
-_STEP = 0.05  # metres; what is lower is stepped upon
-_HEAD = 1.9  # metres; what is higher up is walked under
 _MOST = 1200  # cells along a side, for halls that would need more the cells grow
 _DOORS = frozenset({"door", "doorway", "entrance", "gate", "exit", "front door", "entry"})
 
@@ -37,15 +35,15 @@ def unreached(graph: SceneGraph) -> Iterator[tuple[Node, float]]:
     entered = set[int]()
     for door in (n for n in graph.nodes if n.label.lower().strip() in _DOORS):
         area, distance = _nearest(areas > 0, areas, door, xs, ys)
-        if distance > WIDTH + ARM:
+        if distance > SHOULDERS + ARM:
             yield door, distance
         else:
             entered.add(area)
     walkable = np.isin(areas, sorted(entered or _largest(areas)))
     for node in graph.nodes:
-        if node.support == "floor" and node.size[2] > _STEP and node.label.lower().strip() not in _DOORS:
+        if node.support == "floor" and node.size[2] > STEP and node.label.lower().strip() not in _DOORS:
             _, distance = _nearest(walkable, areas, node, xs, ys)
-            if distance > WIDTH / 2 + ARM:
+            if distance > SHOULDERS / 2 + ARM:
                 yield node, distance
 
 
@@ -68,13 +66,13 @@ def _largest(areas: NDArray[np.int32]) -> set[int]:
 def _nearest(among: Flags, areas: NDArray[np.int32], node: Node, xs: F64, ys: F64) -> tuple[int, float]:
     """The area of the place nearest to a node's footprint, and its distance; 0 and infinity if there is no place."""
     everywhere = (slice(0, len(xs)), slice(0, len(ys)))
-    for window in (_window(node, xs, ys, WIDTH + ARM), everywhere):
+    for window in (_window(node, xs, ys, SHOULDERS + ARM), everywhere):
         places = np.argwhere(among[window])
         if not len(places):
             continue
-        distance = _distances(node, np.stack([xs[window[0]][places[:, 0]], ys[window[1]][places[:, 1]]], axis=1))
+        distance = node.yaw_box.distance_to(xs[window[0]][places[:, 0]], ys[window[1]][places[:, 1]])
         best = int(distance.argmin())
-        if distance[best] <= WIDTH + ARM or window is everywhere:
+        if distance[best] <= SHOULDERS + ARM or window is everywhere:
             return int(areas[window][tuple(places[best])]), float(distance[best])
     return 0, math.inf
 
@@ -92,22 +90,10 @@ def _window(node: Node, xs: F64, ys: F64, margin: float) -> tuple[slice, slice]:
 def _free(graph: SceneGraph, xs: F64, ys: F64) -> Flags:
     """`[X, Y]` cells where a person can stand without touching a wall or a thing."""
     width, depth, _ = graph.room.size
-    half = WIDTH / 2 - 1e-9
+    half = SHOULDERS / 2 - 1e-9
     free: Flags = (np.abs(xs) <= width / 2 - half)[:, None] & (np.abs(ys) <= depth / 2 - half)[None, :]
     for node in graph.nodes:
-        if node.top > _STEP and node.bottom < _HEAD:
+        if node.top > STEP and node.bottom < HEADROOM:
             x, y = _window(node, xs, ys, half)
-            cells = np.stack(np.meshgrid(xs[x], ys[y], indexing="ij"), axis=-1)
-            near = _distances(node, cells.reshape(-1, 2)).reshape(cells.shape[:2])
-            free[x, y] &= near >= half
+            free[x, y] &= node.yaw_box.distance_to(xs[x][:, None], ys[y][None, :]) >= half
     return free
-
-
-def _distances(node: Node, points: F64) -> F64:
-    """`[M]` metres from points `[M, 2]` of the floor to a footprint, 0 within it."""
-    turn = math.radians(node.yaw)
-    offset = points - np.array(node.position[:2])
-    along = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
-    beyond = np.maximum(np.abs(offset @ along) - np.array(node.size[:2]) / 2, 0.0)
-    distance: F64 = np.hypot(beyond[:, 0], beyond[:, 1])
-    return distance

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from ...gaussians.assets.furnishing.layout import HANG
 from ...gaussians.assets.modeling.make import Asset
 from ...gaussians.world.box import YawBox
-from .graph import SHELL, Node, SceneGraph
+from ...gaussians.world.support import SHELL
+from .node import Drawn, Node
 
 Array = NDArray[np.float64]
 NEAR_FLOOR = 0.1  # metres: what is said to stand on the floor and is lower than this does; higher things were meant so
@@ -41,7 +42,7 @@ class Load:
     height: float
 
 
-def loads(graph: SceneGraph) -> dict[int | str, list[Load]]:
+def loads(graph: Drawn) -> dict[int | str, list[Load]]:
     """What each node carries, by its id."""
     nodes = {n.id: n for n in graph.nodes}
     found: dict[int | str, list[Load]] = {}
@@ -52,9 +53,7 @@ def loads(graph: SceneGraph) -> dict[int | str, list[Load]]:
 
 
 def _load(node: Node, lower: Node) -> Load:
-    turn = math.radians(lower.yaw)
-    dx, dy = node.position[0] - lower.position[0], node.position[1] - lower.position[1]
-    x, y = dx * math.cos(turn) + dy * math.sin(turn), dy * math.cos(turn) - dx * math.sin(turn)
+    x, y = lower.yaw_box.local(*node.position[:2])
     return Load(x, y, node.size[0], node.size[1], node.yaw - lower.yaw, node.bottom - lower.bottom)
 
 
@@ -90,7 +89,7 @@ def _cells(asset: Asset) -> tuple[Array, NDArray[np.bool_]]:
     return means, np.ones(len(means), dtype=bool)
 
 
-def settled(graph: SceneGraph, assets: Mapping[int | str, Asset]) -> dict[int | str, YawBox]:
+def settled(graph: Drawn, assets: Mapping[int | str, Asset]) -> dict[int | str, YawBox]:
     """Where each node that has an asset comes to stand, by id."""
     nodes = {n.id: n for n in graph.nodes}
     boxes: dict[int | str, YawBox] = {}
@@ -117,7 +116,7 @@ def _carriers_first(nodes: Sequence[Node], by_id: Mapping[int | str, Node]) -> l
 def _box(
     node: Node,
     asset: Asset,
-    graph: SceneGraph,
+    graph: Drawn,
     nodes: Mapping[int | str, Node],
     boxes: Mapping[int | str, YawBox],
     assets: Mapping[int | str, Asset],
@@ -137,7 +136,7 @@ def _box(
     return box if level is None else box._replace(low=lower.low + level)
 
 
-def _at_wall(box: YawBox, graph: SceneGraph, let_in: bool) -> YawBox:
+def _at_wall(box: YawBox, graph: Drawn, let_in: bool) -> YawBox:
     """Its back just before the wall that it is turned away from, if one is near; doors reach down to the floor."""
     width, depth, _ = graph.room.size
     back = box.axes[1]

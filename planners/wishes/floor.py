@@ -11,11 +11,12 @@ from collections.abc import Collection, Sequence
 
 from ...gaussians import assets
 from ...gaussians.language.query.query import Query
+from ...gaussians.world.person import HEADROOM, STEP
 from ...tools.operation import Placement
 from ...tools.ops.insert import Insert
 from ..layout import Keepout
 from ..layout import Wish as LayoutWish
-from ..rooms.graph import Node
+from ..rooms.node import Node
 from . import solving
 from .goals import Clear, ReadingCorner, See, Spread, Walls, Where
 from .room import SMALL, CannotError, Id, Room, copied, toward
@@ -70,7 +71,7 @@ def _place(where: Where) -> str:
 
 def _in_the_way(room: Room, node: Node) -> bool:
     """Whether a thing that stays takes floor."""
-    return node.bottom < 1.9 and node.size[2] > 0.05 and node.support == "floor" and not room.moves(node)
+    return node.bottom < HEADROOM and node.size[2] > STEP and node.support == "floor" and not room.moves(node)
 
 
 def _radius(room: Room, goal: Clear) -> float:

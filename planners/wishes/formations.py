@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ..layout import Wish as LayoutWish
-from ..rooms.graph import Node
+from ..rooms.node import Node
 from . import solving
 from .floor import clear
 from .goals import Clear, Formation, Where

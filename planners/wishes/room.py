@@ -17,11 +17,11 @@ from ...gaussians.language.query.query import Query
 from ...gaussians.world.box import overlap
 from ...tools.operation import EditOp
 from ..grammar.tagging.words import bag
-from ..rooms.graph import Node, SceneGraph
+from ..rooms.graph import SceneGraph
 from ..rooms.graph_scene import Stage
+from ..rooms.node import Node
 
 Id = int | str
-FLAT = 0.05  # metres; lower things on the floor are stood upon
 SMALL = 0.4  # metres; what is smaller in every direction is a thing and no furniture
 TOUCHING = 0.01  # metres that boxes may be in each other
 _BUILT_IN = bag(
@@ -111,7 +111,7 @@ class Room:
         """Whether a person would push a thing about: it stands on the floor, is no part of the house, and is what it
         is called."""
         words = node.label.lower().split()
-        if node.support != "floor" or node.size[2] <= FLAT or not words:
+        if node.support != "floor" or node.is_stepped_on or not words:
             return False
         return not (_BUILT_IN & {words[-1], "_".join(words)}) and is_likely(node)
 
@@ -138,7 +138,7 @@ class Room:
             for n in self.nodes.values()
             if math.hypot(n.position[0] - x, n.position[1] - y) < (reach + math.hypot(*n.size[:2])) / 2
             and n.id not in own
-            and not is_flat(n)
+            and not n.is_stepped_on
         )
         return [n for n in around if n.support != box.id and n.id != box.support and overlap(n.box, box.box) > TOUCHING]
 
@@ -152,11 +152,6 @@ class Room:
         node = self.nodes[id]
         there = node.model_copy(update={"position": (x, y, node.position[2]), "yaw": yaw})
         return self.inside(there) and not self.taken(there, (*but, *self.riders(id)))
-
-
-def is_flat(node: Node) -> bool:
-    """Whether a thing is stood upon, as rugs are."""
-    return node.support == "floor" and node.size[2] <= FLAT
 
 
 def is_likely(node: Node) -> bool:

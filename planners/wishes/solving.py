@@ -16,7 +16,7 @@ from ...gaussians.world.box import overlap
 from ..grammar.tagging.words import bag
 from ..layout import Item, Keepout, Layout, Problem, Stand, solve
 from ..layout import Wish as LayoutWish
-from ..rooms.graph import Node
+from ..rooms.node import Node
 from .room import SEATS, CannotError, Id, Room, copied, wrapped
 
 MARGIN = 0.05  # metres from the measured walls: a room's size is that of its shell

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 from ...gaussians.language.query.query import Query
 from ...tools.ops.arrange import Arrange
-from ..rooms.graph import Node
+from ..rooms.node import Node
 from .room import CannotError, Id, Room, wrapped
 
 _STILL = 0.02  # metres, and

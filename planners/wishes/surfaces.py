@@ -16,10 +16,10 @@ from ...tools.operation import Placement
 from ...tools.ops.insert import Insert
 from ...tools.ops.move import Move
 from ..grammar.tagging.words import bag
-from ..rooms.graph import Node
+from ..rooms.node import Node
 from . import solving
 from .goals import Declutter, SetTable
-from .room import SEATS, SMALL, CannotError, Id, Room, is_flat, is_likely, wrapped
+from .room import SEATS, SMALL, CannotError, Id, Room, is_likely, wrapped
 from .steps import target
 
 _CARRIES = bag("table desk shelf bookshelf bookcase dresser nightstand cabinet sideboard counter stand chest")
@@ -74,7 +74,7 @@ def _flush(at: float, most: float) -> float:
 def _is_loose(room: Room, node: Node) -> bool:
     """Whether a small thing lies on the floor that belongs on furniture."""
     words = set(node.label.split())
-    small = node.support == "floor" and max(node.size) < SMALL and not is_flat(node)
+    small = node.support == "floor" and max(node.size) < SMALL and not node.is_stepped_on
     return small and bool(words) and not words & _ON_FLOOR and is_likely(node)
 
 

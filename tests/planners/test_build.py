@@ -22,7 +22,8 @@ from scenewright.gaussians.language.field.store import load_field, save_field
 from scenewright.planners.rooms.asset_folder import Shelf
 from scenewright.planners.rooms.build import Built, build, construct
 from scenewright.planners.rooms.designs import kind_of
-from scenewright.planners.rooms.graph import Node, SceneGraph
+from scenewright.planners.rooms.graph import SceneGraph
+from scenewright.planners.rooms.node import Node
 from scenewright.planners.rooms.rest_heights import face_under, loads
 
 DRAFT = 0.2  # detail: laws do not depend on it

@@ -11,9 +11,10 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from scenewright.gaussians.world.box import overlap
+from scenewright.gaussians.world.person import ARM, SHOULDERS
 from scenewright.planners.rooms.check import Report, check
-from scenewright.planners.rooms.graph import Node, RoomShape, SceneGraph, Viewpoint
-from scenewright.planners.rooms.reachability import ARM, WIDTH
+from scenewright.planners.rooms.graph import SceneGraph
+from scenewright.planners.rooms.node import Node, RoomShape, Viewpoint
 
 WRITTEN = Path(__file__).parent / "written"
 ROOMS = sorted(p.stem for p in WRITTEN.glob("*.json"))
@@ -111,7 +112,7 @@ def test_what_is_walled_in_cannot_be_walked_up_to() -> None:
     lamp = node(2, "lamp", (0.3, 0.3, 1.5), 2.3, 0.0)
     found = check(room(shelf, lamp)).violations
     assert [(v.kind, v.ids) for v in found] == [("reach", (2,))]
-    assert found[0].measured > WIDTH / 2 + ARM
+    assert found[0].measured > SHOULDERS / 2 + ARM
     gap = shelf.model_copy(update={"size": (0.4, 3.4, 2.0), "position": (0.5, -0.3, 1.0)})
     assert check(room(gap, lamp)).ok  # 0.6 m are left to pass
 

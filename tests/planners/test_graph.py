@@ -15,7 +15,8 @@ from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.language.field.language_field import Group, LanguageField
 from scenewright.gaussians.scene import Frame, Scene
 from scenewright.gaussians.world.box import Box
-from scenewright.planners.rooms.graph import Node, RoomShape, SceneGraph
+from scenewright.planners.rooms.graph import SceneGraph
+from scenewright.planners.rooms.node import Node, RoomShape
 
 
 def cloud() -> GaussianCloud:

@@ -16,9 +16,10 @@ from scenewright.gaussians.errors import BackendError, FileError
 from scenewright.gaussians.language.query.attributes import COLOR_HOLDS, color_scores
 from scenewright.gaussians.language.query.query import Query, Relation
 from scenewright.planners.rooms.color_words import color_of
-from scenewright.planners.rooms.graph import Node, RoomShape, SceneGraph, Viewpoint
+from scenewright.planners.rooms.graph import SceneGraph
 from scenewright.planners.rooms.graph_scene import Stage
 from scenewright.planners.rooms.label_encoder import ALIKE, BROADER, EXACT, NOT, WordEncoder, agreement
+from scenewright.planners.rooms.node import Node, RoomShape, Viewpoint
 
 LIVING = Stage.of(SceneGraph.read(Path(__file__).parent / "written" / "living_room.json"))
 

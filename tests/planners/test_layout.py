@@ -8,10 +8,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from scenewright.gaussians.world.support import SHELL
 from scenewright.planners.layout import Conflict, Item, Keepout, Layout, Problem, Stand, Wish, solve
 from scenewright.planners.layout.judging import STATED
 from scenewright.planners.rooms.check import check
-from scenewright.planners.rooms.graph import SHELL
 
 UNSOUND = {"collision", "bounds", "support"}
 NAMES = ("left_of", "right_of", "in_front_of", "behind", "next_to", "facing", "around", "aligned_with", "far_from")

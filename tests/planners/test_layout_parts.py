@@ -8,12 +8,14 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from scenewright.gaussians.world.box import YawBox, overlap, plan_gap, plan_penetration
+from scenewright.gaussians.world.person import SHOULDERS
 from scenewright.planners.layout.lattice import Lattice, blocked, in_disc
 from scenewright.planners.layout.measures import measure
 from scenewright.planners.layout.walkable_grid import Ways
 from scenewright.planners.rooms.check import check
-from scenewright.planners.rooms.graph import Node, RoomShape, SceneGraph
-from scenewright.planners.rooms.reachability import WIDTH, unreached
+from scenewright.planners.rooms.graph import SceneGraph
+from scenewright.planners.rooms.node import Node, RoomShape
+from scenewright.planners.rooms.reachability import unreached
 
 SIZE = (6.0, 5.0, 2.5)
 sides = st.floats(0.1, 2.0)
@@ -77,7 +79,7 @@ def test_gaps_are_symmetric_and_tell_overlaps(one: YawBox, other: YawBox) -> Non
 @settings(max_examples=60, deadline=None)
 @given(st.lists(spots(on_floor=True), min_size=1, max_size=5))
 def test_ways_find_what_the_checker_finds(things: list[YawBox]) -> None:
-    ways = Ways((SIZE[0], SIZE[1]), WIDTH)
+    ways = Ways((SIZE[0], SIZE[1]), SHOULDERS)
     for k, spot in enumerate(things):
         ways.put(f"t{k}", spot, asked=spot.high > 0.05)
     scene = graph(*(node(f"t{k}", spot) for k, spot in enumerate(things)))
@@ -85,7 +87,7 @@ def test_ways_find_what_the_checker_finds(things: list[YawBox]) -> None:
 
 
 def test_what_is_taken_away_leaves_no_trace() -> None:
-    ways = Ways((SIZE[0], SIZE[1]), WIDTH)
+    ways = Ways((SIZE[0], SIZE[1]), SHOULDERS)
     before = ways.taken.copy()
     ways.put("a", YawBox(0.5, 0.5, 0.0, 1.0, 2.0, 1.0, 30.0), asked=True)
     assert (ways.taken != before).any()

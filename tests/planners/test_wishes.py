@@ -15,7 +15,8 @@ import pytest
 from scenewright.gaussians.world.box import overlap
 from scenewright.planners.plan import EditPlan
 from scenewright.planners.rooms.check import check
-from scenewright.planners.rooms.graph import Node, SceneGraph
+from scenewright.planners.rooms.graph import SceneGraph
+from scenewright.planners.rooms.node import Node
 from scenewright.planners.wishes import WishPlanner
 from scenewright.planners.wishes import goals as kinds
 from scenewright.planners.wishes.reading import Reader, Unread

@@ -17,8 +17,9 @@ from scenewright.gaussians.language.field.measure import box_of, lab_of_cloud
 from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.scene import Frame, Scene
 from scenewright.gaussians.world.box import Box, overlap
+from scenewright.gaussians.world.support import standing_on
 from scenewright.tools import execute
-from scenewright.tools.carried_objects import riders_of, standing_on
+from scenewright.tools.carried_objects import riders_of
 from scenewright.tools.execute import Done, carry_out, preview
 from scenewright.tools.measure import reach, solid_points
 from scenewright.tools.operation import Context

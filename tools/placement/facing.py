@@ -21,12 +21,11 @@ def front_of(scene: Scene, body: Body) -> Array | None:
     field = scene.language
     if field is None or body.group < 0:
         return None
-    walls = [g for g in field.groups if g.level == "structure" and g.label == "wall" and g.count]
     rows = body.rows.cpu().numpy()
     if body.riders:  # what stands on it says nothing about its back
         riders = [leaf for g in body.riders for leaf in field.leaves(g)]
         rows = rows[~np.isin(scene.cloud.group.cpu().numpy()[rows], riders)]
-    return facing_of(scene.cloud, rows, field.groups[body.group], walls, field.typical_size).front
+    return facing_of(scene.cloud, rows, field.groups[body.group], field).front
 
 
 def turn_to_face(scene: Scene, body: Body, goal: Array) -> tuple[float, tuple[str, ...]]:

@@ -14,6 +14,7 @@ from ...gaussians import assets
 from ...gaussians.camera import Vec3
 from ...gaussians.errors import InstructionError, UserError
 from ...gaussians.scene import Scene
+from ...gaussians.world.person import HUNG_AT
 from ..operation import Context, Placement
 from ..transform import axis_rotation
 from .bodies import Array, Body, as_vec, centimetre
@@ -24,7 +25,6 @@ from .support import support_height
 
 Hung = Literal["wall", "ceiling"]
 GAP = 15.0  # centimetres between a thing and what hangs on the wall above it, at least
-EYE = 150.0  # centimetres above the floor of the middle of what hangs on a wall, where there is no reason against it
 _BEHIND = 100.0  # centimetres from a thing to the wall behind it, at most
 _NEAR = 0.9  # of the room's height: what hangs from the ceiling has its top above that
 
@@ -76,7 +76,7 @@ def over(regions: Regions, size: Vec3, anchor: Body, hung: Hung) -> tuple[Region
         height = regions.ceiling - size[2]
     else:
         axes = wall_axes(regions, anchor)
-        height = min(max(bottom, regions.floor + EYE * cm - size[2] / 2), regions.ceiling - size[2])
+        height = min(max(bottom, regions.floor + 100 * HUNG_AT * cm - size[2] / 2), regions.ceiling - size[2])
     if height < (anchor.box.top(regions.up) if hung == "ceiling" else bottom - GAP * cm / 2):
         raise InstructionError(f"there is no room between the {anchor.label or 'thing'} and the ceiling")
     plan = np.array(axes[:2])

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ...world.box import YawBox
+from ...world.person import EYE_HEIGHT
 from ..modeling.make import Asset, make
 from ..modeling.parts import chance
 from ..registry import KINDS
@@ -100,8 +101,8 @@ def pictures(room: Layout, get: Supplier, count: int) -> None:
     """Paintings, mirrors and clocks at eye height, where the wall is free."""
     for _ in range(count):
         thing = get(str(room.rng.choice(["painting", "painting", "painting", "mirror", "clock"])))
-        low = {"clock": 1.65, "mirror": max(0.55, 1.55 - thing.size[2] / 2)}.get(
-            thing.kind, max(0.95, 1.55 - thing.size[2] / 2)
+        low = {"clock": 1.65, "mirror": max(0.55, EYE_HEIGHT - thing.size[2] / 2)}.get(
+            thing.kind, max(0.95, EYE_HEIGHT - thing.size[2] / 2)
         )
         for _ in range(8):
             wall = str(room.rng.choice(room.walls))

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ...camera import Camera, Vec3
 from ...world.box import YawBox
+from ...world.person import EYE_HEIGHT
 from .layout import Layout
 
 Array = NDArray[np.float64]
@@ -57,7 +58,7 @@ def eye_views(layout: Layout) -> tuple[Camera, ...]:
     spots = []
     for cx, cy in ring:
         reach = min(0.5 * w / max(abs(cx), 1e-6), 0.5 * d / max(abs(cy), 1e-6)) - 0.35
-        eye = (cx * reach, cy * reach, 1.55)
+        eye = (cx * reach, cy * reach, EYE_HEIGHT)
         spots.append((_clear(layout, eye), eye))
     spots.sort(key=lambda s: -s[0])
     eyes = [spots[0][1]]

@@ -224,9 +224,8 @@ class Resolver:
         """Which way a group faces."""
         if group.id < 0:
             return Facing(None, "nothing")
-        walls = [g for g in alive(self.field, "structure") if g.label == "wall"]
         rows = self.members.rows(self.field.leaves(group.id))
-        return facing_of(self.scene.cloud, rows, group, walls, self.field.typical_size)
+        return facing_of(self.scene.cloud, rows, group, self.field)
 
     def _frames_told(self, query: Query) -> str:
         """How the front of each anchor was told where a relation is in its own frame; "" where none is."""

@@ -15,8 +15,9 @@ from ....gaussians.color import names as color_names
 from ....gaussians.world import synonyms
 from ....gaussians.world.words import normalise
 from ...grammar.vocabulary.verbs import VERBS
-from ...rooms.graph import Node, SceneGraph
+from ...rooms.graph import SceneGraph
 from ...rooms.label_encoder import vocabulary
+from ...rooms.node import Node
 
 MAX_CHARS, MAX_WORDS = 48, 8
 _STRANGE_WORDS, _BESIDE_STRANGE = 3, 6  # strange are words that no table of ours knows

@@ -17,9 +17,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ....gaussians.world.support import SHELL
 from ...rooms.color_words import plain_color
-from ...rooms.graph import SHELL, Node, SceneGraph
+from ...rooms.graph import SceneGraph
 from ...rooms.label_encoder import THRESHOLD, agreement, words
+from ...rooms.node import Node
 
 MOST_TOKENS = 8000  # of a scene, however long the model's window is: about 200 things; more costs much and tells little
 _COLORED = 0.3  # a node whose colour alone was said, beside what agreement gives labels

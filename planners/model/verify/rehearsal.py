@@ -17,9 +17,10 @@ from ....gaussians.language.query.query import Query
 from ....gaussians.language.query.selection import Selection
 from ....tools.operation import EditOp
 from ...plan import EditPlan, Planner
-from ...rooms.graph import Node, SceneGraph
+from ...rooms.graph import SceneGraph
 from ...rooms.graph_scene import Id, Stage
 from ...rooms.label_encoder import THRESHOLD, agreement
+from ...rooms.node import Node
 from ...rooms.plan_on_graph import Resolved, recalled, resolve_plan
 from ..prompt.pruning import line
 

@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from scenewright.gaussians.color import names as color_names
 from scenewright.gaussians.world import synonyms
 from scenewright.planners.model.prompt.labels import MAX_CHARS, MAX_WORDS, cleaned, plain
-from scenewright.planners.rooms.graph import Node, RoomShape, SceneGraph
+from scenewright.planners.rooms.graph import SceneGraph
 from scenewright.planners.rooms.label_encoder import vocabulary
+from scenewright.planners.rooms.node import Node, RoomShape
 
 ROOMS = sorted((Path(__file__).parents[1] / "written").glob("*.json"))
 

@@ -14,7 +14,8 @@ from scenewright.gaussians.errors import BackendError
 from scenewright.planners.model.prompt import operations
 from scenewright.planners.model.prompt.messages import ECHO_CHARS, Request, messages, prompt_hash, repaired, system
 from scenewright.planners.model.prompt.pruning import MOST_TOKENS, Relevance, described, line, tokens
-from scenewright.planners.rooms.graph import Node, RoomShape, SceneGraph, Viewpoint
+from scenewright.planners.rooms.graph import SceneGraph
+from scenewright.planners.rooms.node import Node, RoomShape, Viewpoint
 from scenewright.tools import registry
 from scenewright.tools.operation import TargetedOp
 

@@ -1,0 +1,103 @@
+"""What rests on what in a room, told from upright boxes: each other, the floor, a wall, the ceiling; and by how much.
+
+A room has its origin at the centre of the floor; lengths are metres. How well "on" holds between the groups of a scene
+of any scale is a score (see `relations`); what carries and moves along with a thing is decided from it here.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+
+from ..camera import Vec3
+from ..language.field.language_field import Group, LanguageField
+from ..scene import Frame
+from .box import YawBox
+from .person import STEP
+from .relations import HOLDS, Stand, score
+
+SHELL = ("floor", "wall", "ceiling")
+CONTACT = 0.12  # of the smaller height: measured boxes are that blurred where a thing's underside meets another's top
+_THIN = 0.05  # metres: what both heights count as at least there, or nothing would ever lie on a rug
+FIXED = 0.1  # metres between a wall or the ceiling and what is fixed to it: brackets and frames
+AIR = 0.02  # metres of air under a thing that still stands
+_GROUNDED = (0.05, 0.1)  # of the room's height, and of its own: an underside lower than either is on the floor
+_TOPMOST = 0.97  # of the room's height: what reaches higher, and stands on nothing, hangs from the ceiling
+SHEET = 20.0  # a thing longer than so many times its height is a rug, which slides away from under a chair
+
+
+def is_stepped_on(support: int | str, height: float) -> bool:
+    """Whether a thing lies on the floor so low that people and furniture stand on it, as on a rug."""
+    return support == "floor" and height <= STEP
+
+
+def is_sheet(size: Vec3) -> bool:
+    """Whether a thing is so thin for its length that it does not take along what stands on it; at any scale."""
+    return max(size[:2]) > SHEET * size[2]
+
+
+def wall_gap(box: YawBox, room: Vec3) -> float:
+    """Metres from a box to the nearest wall of a room of that size; negative where it reaches into the wall."""
+    (hx, hy), (width, depth, _) = box.half, room
+    return min(width / 2 - abs(box.x) - hx, depth / 2 - abs(box.y) - hy)
+
+
+def aside(upper: YawBox, lower: YawBox) -> float:
+    """Metres by which the middle of `upper` is off the footprint of `lower`; zero or less where it is over it."""
+    x, y = lower.local(upper.x, upper.y)
+    return float(max(abs(x) - lower.w / 2, abs(y) - lower.d / 2))
+
+
+def air(upper: YawBox, lower: YawBox) -> float:
+    """Metres of height between the underside of `upper` and the box of `lower`, in which it may stand, as on a seat."""
+    return max(upper.low - lower.high, lower.low - upper.low)
+
+
+def touches_top(upper: YawBox, lower: YawBox) -> bool:
+    """Whether the underside of `upper` meets the top of `lower` below its middle, as far as measured boxes tell."""
+    if lower.low + lower.h / 2 >= upper.low + upper.h / 2 or aside(upper, lower) > 0:
+        return False
+    return abs(upper.low - lower.high) <= CONTACT * max(min(lower.h, upper.h), _THIN)
+
+
+def support_of(
+    index: int, boxes: Sequence[YawBox], room: Vec3, fixture: bool
+) -> int | Literal["floor", "wall", "ceiling"]:
+    """What a thing rests on: another one's index in `boxes`, or the room's shell.
+
+    The highest box whose top touches its underside; else the wall that a fixture is at; else the floor; else the
+    smallest box that its underside is in (a seat, a shelf); else ceiling or wall.
+
+    Args:
+        index: row of the thing.
+        fixture: whether such things hang on walls.
+    """
+    box = boxes[index]
+    others = [i for i in range(len(boxes)) if i != index]
+    below = [i for i in others if touches_top(box, boxes[i])]
+    if below:
+        return max(below, key=lambda i: (boxes[i].high, i))
+    at_wall = wall_gap(box, room) < FIXED
+    if fixture and at_wall:
+        return "wall"
+    if box.low <= max(_GROUNDED[0] * room[2], _GROUNDED[1] * box.h):
+        return "floor"
+    if box.high >= _TOPMOST * room[2] and not fixture:
+        return "ceiling"
+    around = [i for i in others if boxes[i].low < box.low < boxes[i].high and aside(box, boxes[i]) <= 0]
+    if around and not fixture:
+        return min(around, key=lambda i: (math.prod(boxes[i][3:6]), i))
+    return "wall" if fixture or at_wall else "floor"
+
+
+def standing_on(field: LanguageField, frame: Frame, support: Group) -> tuple[Group, ...]:
+    """Objects of a scene that stand directly on an object, or in it as on a shelf; none on a rug."""
+    if support.level != "object" or is_sheet(support.box.size):
+        return ()
+    east, north, up = frame.basis()
+    stand = Stand(east, north, up, np.zeros(3), field.typical_size)
+    others = (g for g in field.objects() if g.count and g.id != support.id)
+    return tuple(g for g in others if score("on", g, [support], stand) >= HOLDS)
