@@ -13,6 +13,7 @@ import numpy as np
 
 from ...gaussians.world.box import YawBox, plan_penetration, shared_height, to_world, wrapped
 from ...gaussians.world.person import STEP
+from ...gaussians.world.support import is_stepped_on
 from .bodies import DOORS, Body, Member, Prepared
 from .lattice import EPSILON
 from .measures import behind_gap, measure, walls_gaps
@@ -98,7 +99,7 @@ class State:
     def is_flat(self, i: int) -> bool:
         """Whether an item is stood upon: it meets nothing."""
         item = self.prepared.items[i]
-        return item.support == "floor" and item.size[2] <= STEP
+        return is_stepped_on(item.support, item.size[2])
 
     def solids(self, but: set[int]) -> Iterator[tuple[int, YawBox]]:
         """What is placed and meets others, apart from some items."""
