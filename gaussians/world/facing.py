@@ -38,18 +38,26 @@ class Facing:
     by: Literal["shape", "wall", "nothing"]
 
 
-def facing_of(cloud: GaussianCloud, rows: NDArray[np.int64], group: Group, field: LanguageField) -> Facing:
+def facing_in(field: LanguageField, cloud: GaussianCloud, rows: NDArray[np.int64], group: Group) -> Facing:
+    """Which way a group of a scene's field faces; `rows` `[M]` are its rows in `cloud`."""
+    walls = [g for g in field.groups if g.level == "structure" and g.label == "wall" and g.count]
+    return facing_of(cloud, rows, group, walls, field.typical_size)
+
+
+def facing_of(
+    cloud: GaussianCloud, rows: NDArray[np.int64], group: Group, walls: Sequence[Group], typical: float
+) -> Facing:
     """Which way a group faces.
 
     Args:
         rows: `[M]` its rows in `cloud`.
-        field: the table that the group is in; its walls and the size of its typical object count.
+        walls: groups that are walls.
+        typical: size of a typical object, scene units.
     """
     by_shape = _away_from_its_back(cloud, rows, group)
     if by_shape is not None:
         return Facing(by_shape, "shape")
-    walls = [g for g in field.groups if g.level == "structure" and g.label == "wall" and g.count]
-    by_wall = _away_from_the_wall(group, walls, AGAINST * field.typical_size)
+    by_wall = _away_from_the_wall(group, walls, AGAINST * typical)
     return Facing(by_wall, "nothing" if by_wall is None else "wall")
 
 

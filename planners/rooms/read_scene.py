@@ -13,7 +13,7 @@ from ...gaussians.errors import UserError
 from ...gaussians.language.field.group_index import members_of
 from ...gaussians.language.field.language_field import Group
 from ...gaussians.scene import Scene
-from ...gaussians.world.facing import facing_of
+from ...gaussians.world.facing import facing_in
 from ...gaussians.world.support import support_of
 from .node import Node, Point, Size, Support, Viewpoint
 
@@ -90,7 +90,7 @@ class RoomFrame:
         first, second, up = (np.array(a) for a in group.box.axes)
         across, along, _ = group.box.size
         rows = self.members.rows(self.field.leaves(group.id))
-        front = facing_of(self.cloud, rows, group, self.field).front
+        front = facing_in(self.field, self.cloud, rows, group).front
         if front is None:
             return first, across, along
         width = np.cross(up, front)

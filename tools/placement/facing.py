@@ -12,7 +12,7 @@ import numpy as np
 
 from ...gaussians.errors import InstructionError
 from ...gaussians.scene import Scene
-from ...gaussians.world.facing import facing_of
+from ...gaussians.world.facing import facing_in
 from .bodies import Array, Body
 
 
@@ -25,7 +25,7 @@ def front_of(scene: Scene, body: Body) -> Array | None:
     if body.riders:  # what stands on it says nothing about its back
         riders = [leaf for g in body.riders for leaf in field.leaves(g)]
         rows = rows[~np.isin(scene.cloud.group.cpu().numpy()[rows], riders)]
-    return facing_of(scene.cloud, rows, field.groups[body.group], field).front
+    return facing_in(field, scene.cloud, rows, field.groups[body.group]).front
 
 
 def turn_to_face(scene: Scene, body: Body, goal: Array) -> tuple[float, tuple[str, ...]]:

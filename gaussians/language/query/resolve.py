@@ -19,7 +19,7 @@ from ...cloud import NO_GROUP
 from ...errors import BackendError
 from ...scene import Scene
 from ...world import relations
-from ...world.facing import Facing, facing_of
+from ...world.facing import Facing, facing_in
 from ..encoders.probability import doubt
 from ..field.group_index import Members, difference, members_of, union
 from ..field.language_field import Group, LanguageField
@@ -225,7 +225,7 @@ class Resolver:
         if group.id < 0:
             return Facing(None, "nothing")
         rows = self.members.rows(self.field.leaves(group.id))
-        return facing_of(self.scene.cloud, rows, group, self.field)
+        return facing_in(self.field, self.scene.cloud, rows, group)
 
     def _frames_told(self, query: Query) -> str:
         """How the front of each anchor was told where a relation is in its own frame; "" where none is."""
