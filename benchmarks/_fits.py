@@ -31,9 +31,9 @@ from ..gaussians.cloud import GaussianCloud
 from ..gaussians.errors import FileError, UserError
 from ..gaussians.files import writing
 from ..gaussians.files.captures.colmap import Points
-from ..gaussians.fit import Photos, Settings, checkpoint, fit, take_photos
-from ..gaussians.fit.checkpoint import drop
-from ..gaussians.fit.fitting import LOOKS, WATCHED
+from ..gaussians.fit import Photos, Settings, checkpoint, fit, load_photos
+from ..gaussians.fit.checkpoint import delete
+from ..gaussians.fit.fitting import EVAL_PHOTOS, EVALUATIONS
 from ..gaussians.fit.held_out_choice import Choice
 from ..gaussians.fit.quality import measure
 from ..gaussians.fit.train import Shot
@@ -124,7 +124,7 @@ def photos(quick: bool) -> Photos:
         return small_photos()
     if capture is None:
         raise FileError(missing(CAPTURE))
-    return take_photos(capture, SCALE)
+    return load_photos(capture, SCALE)
 
 
 def all_made(runs: Sequence[Run], place: Path, make: Make) -> dict[str, Made]:
@@ -189,7 +189,7 @@ def _end_with_parent() -> None:
 
 
 def _make_from(capture: Path, run: Run, place: Path) -> None:
-    make_of(take_photos(capture, SCALE))(run, place)
+    make_of(load_photos(capture, SCALE))(run, place)
 
 
 def make_of(photos: Photos) -> Make:
@@ -198,8 +198,8 @@ def make_of(photos: Photos) -> Make:
 
     def make(run: Run, place: Path) -> None:
         cloud, curve, choices, steps, seconds = (_plainly if run.plain else _fitted)(photos, run, place)
-        quality = measure(cloud, photos.held)
-        watched = statistics.fmean(quality.each[shot.camera.name][0] for shot in photos.held[:WATCHED])
+        quality = measure(cloud, photos.held_out)
+        watched = statistics.fmean(quality.each[shot.camera.name][0] for shot in photos.held_out[:EVAL_PHOTOS])
         curve = (*(look for look in curve if look[0] < seconds), (seconds, watched))
         path = scene_of(run.name, place)
         files.save(Scene(cloud), path, force=True)
@@ -209,8 +209,8 @@ def make_of(photos: Photos) -> Make:
         )  # fmt: skip
         with writing(place / f"{run.name}.json", force=True) as file:
             file.write(json.dumps(asdict(made)).encode())
-        checkpoint.drop(_checkpoint(run, place))
-        drop(place / f"{run.name}.checkpoint")
+        checkpoint.delete(_checkpoint(run, place))
+        delete(place / f"{run.name}.checkpoint")
 
     return make
 
@@ -219,7 +219,7 @@ Outcome = tuple[GaussianCloud, Curve, tuple[Choice, ...], int, float]  # the las
 
 
 def _fitted(photos: Photos, run: Run, place: Path) -> Outcome:
-    done = fit(photos, run.settings, kept=_checkpoint(run, place))
+    done = fit(photos, run.settings, checkpoint_path=_checkpoint(run, place))
     return done.scene.cloud, done.curve, done.choices, done.steps, done.seconds
 
 
@@ -231,10 +231,10 @@ def _plainly(photos: Photos, run: Run, place: Path) -> Outcome:
     """Not to be gone on with: it is never long."""
     trainer = _plain.trainer(photos, run.settings)
     curve: list[tuple[float, float]] = []
-    while trainer.done < 1:
+    while trainer.progress < 1:
         trainer.step()
-        if trainer.done * LOOKS >= len(curve) + 1:
-            curve.append((trainer.seconds, measure(trainer.parameters.cloud(), photos.held[:WATCHED]).psnr))
+        if trainer.progress * EVALUATIONS >= len(curve) + 1:
+            curve.append((trainer.seconds, measure(trainer.parameters.cloud(), photos.held_out[:EVAL_PHOTOS]).psnr))
     return trainer.parameters.cloud(), tuple(curve), (), trainer.steps, trainer.seconds
 
 

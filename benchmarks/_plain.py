@@ -16,9 +16,9 @@ from torch import Tensor
 from ..gaussians.camera import Camera, Vec3
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.fit import Photos, Settings
-from ..gaussians.fit.densify import Classic, Growth
+from ..gaussians.fit.densify import DefaultStrategy, Strategy
 from ..gaussians.fit.engine_torch import TorchEngine
-from ..gaussians.fit.initialize import start
+from ..gaussians.fit.initialize import initial_cloud
 from ..gaussians.fit.parameters import F32, Parameters
 from ..gaussians.fit.train import Schedule, Trainer
 from ..gaussians.render import reference
@@ -31,27 +31,27 @@ class PlainEngine(TorchEngine):
     """An `Engine` of torch and the readable renderer. Bands come by steps, as published, not by the schedule, and learn
     at the published rate."""
 
-    higher = 2.5e-3 / 20
+    shn_lr = 2.5e-3 / 20
 
-    def __init__(self, parameters: Parameters, growth: Growth, similarity: float) -> None:
-        super().__init__(parameters, growth, similarity, device="cpu", draw=_draw)
+    def __init__(self, parameters: Parameters, strategy: Strategy, ssim_lambda: float) -> None:
+        super().__init__(parameters, strategy, ssim_lambda, device="cpu", draw=_draw)
         self._taken = 0
 
-    def learn(self, camera: Camera, photo: F32, rate: float) -> float:
+    def train_step(self, camera: Camera, photo: F32, means_lr: float) -> float:
         """See `Engine`."""
         degree = min(HIGHEST, self._taken // BAND_EVERY)
         if degree > self.degree:
-            self.fetch().widen(degree)
+            self.fetch().raise_degree(degree)
         self._taken += 1
-        return super().learn(camera, photo, rate)
+        return super().train_step(camera, photo, means_lr)
 
 
 def trainer(photos: Photos, settings: Settings) -> Trainer:
     """A training from the same start as `fit` makes, to the same end, without a budget and without coarse pictures."""
     rng = np.random.default_rng(settings.seed)
-    parameters = Parameters.of(start(photos, settings.most, rng))
-    growth, schedule = Classic(photos.extent, rng), Schedule(settings.steps, settings.seconds)
-    return Trainer(photos.shots, parameters, growth, photos.extent, schedule, rng, PlainEngine)
+    parameters = Parameters.of(initial_cloud(photos, settings.max_gaussians, rng))
+    strategy, schedule = DefaultStrategy(photos.extent, rng), Schedule(settings.steps, settings.seconds)
+    return Trainer(photos.shots, parameters, strategy, photos.extent, schedule, rng, PlainEngine)
 
 
 def _draw(

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from ..gaussians.fit import Settings
-from ..gaussians.fit.fitting import WATCHED
+from ..gaussians.fit.fitting import EVAL_PHOTOS
 from . import _fits
 from ._data import missing
 from ._fits import Made, Run
@@ -24,10 +24,10 @@ MEMORY = 3e9  # B
 COMPARED = {("default-5", "plain-5"): 0.0, ("default-5", "classic-5"): None, ("default-15", "classic-15"): None}  # dB
 NOISE = 0.02  # of a PSNR: half a decibel, as other seeds give
 TITLE = "seconds of training against likeness to photographs that were held out"
-ACCURACY = f"PSNR on {WATCHED} held-out photographs, dB"
+ACCURACY = f"PSNR on {EVAL_PHOTOS} held-out photographs, dB"
 NOTES = (
     "time: of training only; looking at held-out photographs, checkpoints and the reading of the capture do not count",
-    f"points: on the first {WATCHED} held-out photographs; figures: on all of them, at the end",
+    f"points: on the first {EVAL_PHOTOS} held-out photographs; figures: on all of them, at the end",
     "memory: the most that the process of a training held at once, photographs and all",
     "plain: the recipe as published (Kerbl et al. 2023), gradients by torch through the readable renderer; the same "
     "photographs, start, rates, optimiser and growth as classic, which goes through the compiled path",
@@ -54,7 +54,7 @@ def run(quick: bool) -> Result:
 def _runs(quick: bool) -> tuple[Run, ...]:
     """What is compared, the default first."""
     if quick:
-        base = Settings(steps=QUICK_STEPS, most=2 * _fits.SMALL)
+        base = Settings(steps=QUICK_STEPS, max_gaussians=2 * _fits.SMALL)
         plain = Settings(steps=QUICK_PLAIN)
         return (
             Run("default-5", "default", base),
@@ -68,8 +68,8 @@ def _runs(quick: bool) -> tuple[Run, ...]:
         Run("default-5", "default, 5 min", short),
         Run("classic-5", "classic growth, 5 min", replace(short, growth="classic")),
         Run("coarse-5", "coarse to fine, 5 min", replace(short, coarse=0.4)),
-        Run("60k-5", "60,000 Gaussians, 5 min", replace(short, most=60_000)),
-        Run("300k-5", "300,000 Gaussians, 5 min", replace(short, most=300_000)),
+        Run("60k-5", "60,000 Gaussians, 5 min", replace(short, max_gaussians=60_000)),
+        Run("300k-5", "300,000 Gaussians, 5 min", replace(short, max_gaussians=300_000)),
         Run("plain-5", "plain recipe, 5 min", short, plain=True),
     )
 

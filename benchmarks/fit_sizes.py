@@ -85,7 +85,7 @@ def run(quick: bool) -> Result:
     runs = [Run(f"sh{k}", f"SH {k}", _settings(quick, k)) for k in range(4)]
     with _fits.kept() as place:
         found = _fits.all_made(runs, place, make)
-        held = _fits.photos(quick).held
+        held = _fits.photos(quick).held_out
         stored = [one for name, made in found.items() for one in _stored(name, made, place, held)]
     metrics = [m for name, made in found.items() for m in _trained(name, made)]
     metrics += [m for one in stored for m in one.metrics()]
@@ -96,8 +96,8 @@ def run(quick: bool) -> Result:
 
 def _settings(quick: bool, degree: int) -> Settings:
     if quick:
-        return Settings(steps=QUICK_STEPS, most=2 * _fits.SMALL, degree=degree, gain=None)
-    return Settings(seconds=SECONDS, most=MOST, degree=degree, gain=None)
+        return Settings(steps=QUICK_STEPS, max_gaussians=2 * _fits.SMALL, degree=degree, gain=None)
+    return Settings(seconds=SECONDS, max_gaussians=MOST, degree=degree, gain=None)
 
 
 def _trained(name: str, made: Made) -> Iterator[Metric]:

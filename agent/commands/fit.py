@@ -71,13 +71,13 @@ def command(
     from ...gaussians.errors import FileError, UserError
     from ...gaussians.files import save
     from ...gaussians.files.captures.capture import photographs_alone
-    from ...gaussians.fit import Settings, fit, take_photos
-    from ...gaussians.fit.checkpoint import drop
-    from ...gaussians.fit.engine import device_of
+    from ...gaussians.fit import Settings, fit, load_photos
+    from ...gaussians.fit.checkpoint import delete
+    from ...gaussians.fit.engine import resolve_device
 
     if minutes is not None and steps is not None:
         raise UserError("give --minutes or --steps, not both")
-    where = device_of(device)
+    where = resolve_device(device)
     _check_targets(output, report, force)
     seconds = None if steps is not None else 60 * (5.0 if minutes is None else minutes)
     settings = Settings(
@@ -86,13 +86,13 @@ def command(
     poses = output.with_name(output.name + ".poses")
     if photographs_alone(capture) and not poses.exists():
         terminal.say(f"the photographs have no poses: estimating them first, on the CPU, to be kept in {poses}")
-    photos = take_photos(capture, scale, terminal.progress, poses)
+    photos = load_photos(capture, scale, terminal.progress, poses)
     terminal.say(_told(photos) + (", on the GPU" if where == "cuda" else ""))
     kept = output.with_name(output.name + ".checkpoint")
     if kept.exists():
         terminal.say(f"going on from {kept}")
     try:
-        done = fit(photos, settings, kept=kept, told=_tell)
+        done = fit(photos, settings, checkpoint_path=kept, on_status=_tell)
     except KeyboardInterrupt:
         terminal.say(_left(kept))
         raise
@@ -100,7 +100,7 @@ def command(
         save(done.scene, output, force=force)
     except FileError as error:
         raise FileError(f"{error}; {_left(kept)}") from error
-    drop(kept)
+    delete(kept)
     data = _data(done, photos, settings, output)
     if report is not None:
         _write_report(done, photos, data, report, force)
@@ -127,25 +127,27 @@ def _check_targets(output: Path, report: Path | None, force: bool) -> None:
 
 
 def _told(photos: Photos) -> str:
-    from ...gaussians.fit.initialize import FEWEST
+    from ...gaussians.fit.initialize import MIN_POINTS
 
     height, width = photos.shots[0].photo.shape[:2]
     many = len(photos.points.means)
     points = f"{many:,} surveyed points" if many else "no surveyed points, so poses cannot be checked"
-    few = "; too few to begin from, so Gaussians begin anywhere" if many < FEWEST else ""
-    told = f"{len(photos.shots)} photographs at {width}x{height}, {len(photos.held)} held out, {points}{few}"
-    if photos.surveyed is not None:
-        told += f", poses estimated: {photos.surveyed} is a capture too"
+    few = "; too few to begin from, so Gaussians begin anywhere" if many < MIN_POINTS else ""
+    told = f"{len(photos.shots)} photographs at {width}x{height}, {len(photos.held_out)} held out, {points}{few}"
+    if photos.poses_folder is not None:
+        told += f", poses estimated: {photos.poses_folder} is a capture too"
     if photos.unplaced:
         named = ", ".join(photos.unplaced[:NAMED]) + (", ..." if len(photos.unplaced) > NAMED else "")
-        every = len(photos.shots) + len(photos.held) + len(photos.unplaced)
+        every = len(photos.shots) + len(photos.held_out) + len(photos.unplaced)
         told += f"\nwarning: {len(photos.unplaced)} of {every} photographs left out, no place was found: {named}"
-    return told if photos.odd is None else f"{told}\nwarning: {photos.odd}"
+    return told if photos.warning is None else f"{told}\nwarning: {photos.warning}"
 
 
 def _tell(status: Status) -> None:
     seen = "" if status.psnr != status.psnr else f", {status.psnr:.2f} dB held out"
-    left = f"{status.left / 60:.1f} min left" if status.left >= 60 else f"{status.left:.0f} s left"
+    left = (
+        f"{status.seconds_left / 60:.1f} min left" if status.seconds_left >= 60 else f"{status.seconds_left:.0f} s left"
+    )
     terminal.progress(
         f"step {status.steps}, loss {status.loss:.4f}{seen}, {status.gaussians:,} Gaussians, {left}", status.share
     )
@@ -197,10 +199,10 @@ def _data(done: Fitted, photos: Photos, settings: Settings, output: Path) -> dic
 def _write_report(done: Fitted, photos: Photos, data: dict[str, Any], folder: Path, force: bool) -> None:
     """The figures, and of each held-out photograph a picture: as taken, as rendered, their difference fourfold."""
     from ...gaussians.files import writing
-    from ...gaussians.fit.quality import beside
+    from ...gaussians.fit.quality import comparison
     from ..pictures.image_files import save_png
 
     with writing(folder / "report.json", force=force) as file:
         file.write((json.dumps(data, indent=2) + "\n").encode())
-    for shot in photos.held:
-        save_png(beside(done.scene.cloud, shot), folder / f"{shot.camera.name}.png", force=force)
+    for shot in photos.held_out:
+        save_png(comparison(done.scene.cloud, shot), folder / f"{shot.camera.name}.png", force=force)

@@ -1,6 +1,6 @@
-"""From photographs with poses to a trained scene, on the CPU or a GPU: `take_photos`, then `fit`."""
+"""Train a scene on photographs, on the CPU or a GPU: `load_photos`, then `fit`."""
 
 from .fitting import Fitted, Settings, Status, fit
-from .photographs.photos import Photos, take_photos
+from .photographs.photos import Photos, load_photos
 
-__all__ = ["Fitted", "Photos", "Settings", "Status", "fit", "take_photos"]
+__all__ = ["Fitted", "Photos", "Settings", "Status", "fit", "load_photos"]

@@ -1,7 +1,4 @@
-"""Adam (Kingma & Ba 2015) over plain arrays, one compiled pass over each.
-
-Knows arrays and learning rates. Refuses to know what they mean.
-"""
+"""The Adam optimiser (Kingma & Ba 2015) over numpy arrays, one compiled pass over each."""
 
 from __future__ import annotations
 
@@ -15,17 +12,17 @@ from ..compiled import exact, inlined
 
 F32 = NDArray[np.float32]
 BETAS = (0.9, 0.999)
-EPSILON = 1e-15  # Kerbl et al. 2023: gradients of single Gaussians are far below Adam's usual 1e-8
+EPSILON = 1e-15  # Kerbl et al. 2023; gradients of single Gaussians are far below Adam's usual 1e-8
 f4 = np.float32
 
 
 @dataclass
 class Adam:
-    """The optimiser of one array `[N, ...]` of rows.
+    """Optimiser state of one array `[N, ...]`.
 
     Attributes:
-        first, second: running means of the gradient and of its square, of the array's shape.
-        steps: how many were made.
+        first, second: first and second moment (running means of the gradient and of its square), of the array's shape.
+        steps: number of steps taken.
     """
 
     first: F32
@@ -34,21 +31,21 @@ class Adam:
 
     @classmethod
     def of(cls, values: F32) -> Adam:
-        """For an array that was never stepped."""
+        """Fresh state for an array."""
         return cls(np.zeros_like(values), np.zeros_like(values))
 
-    def step(self, values: F32, gradient: F32, rate: float, beyond: float | None = None) -> None:
-        """Move `values` in place against their gradient; with `beyond`, the rate of all but the first `[:, 0]`."""
+    def step(self, values: F32, gradient: F32, rate: float, rest_rate: float | None = None) -> None:
+        """Update `values` in place. With `rest_rate`, all but the first entry `[:, 0]` have that learning rate."""
         self.steps += 1
         bias = [1 - beta**self.steps for beta in BETAS]
         numbers = f4(1 / np.sqrt(bias[1])), f4(EPSILON), f4(BETAS[0]), f4(BETAS[1])
         arrays = values, gradient, self.first, self.second
-        if beyond is None or values.shape[1] == 1:
+        if rest_rate is None or values.shape[1] == 1:
             flat = (a.reshape(-1) for a in arrays)
             compiled.run(_step, compiled.workers(), *flat, f4(rate / bias[0]), numbers)
         else:
             rows = (a.reshape(len(a), -1) for a in arrays)
-            rates = f4(rate / bias[0]), f4(beyond / bias[0])
+            rates = f4(rate / bias[0]), f4(rest_rate / bias[0])
             compiled.run(_step_rows, compiled.workers(), *rows, values.shape[2], rates, numbers)
 
     def take(self, rows: NDArray[np.int64]) -> None:
@@ -56,12 +53,12 @@ class Adam:
         self.first, self.second = (np.ascontiguousarray(a[rows]) for a in (self.first, self.second))
 
     def extend(self, count: int) -> None:
-        """Add rows that were never stepped."""
-        nothing = np.zeros((count, *self.first.shape[1:]), np.float32)
-        self.first, self.second = (np.concatenate([a, nothing]) for a in (self.first, self.second))
+        """Append rows with zero state."""
+        zeros = np.zeros((count, *self.first.shape[1:]), np.float32)
+        self.first, self.second = (np.concatenate([a, zeros]) for a in (self.first, self.second))
 
-    def forget(self, rows: NDArray[np.int64]) -> None:
-        """Let some rows begin anew."""
+    def reset(self, rows: NDArray[np.int64]) -> None:
+        """Zero the state of some rows."""
         self.first[rows] = self.second[rows] = 0
 
 
@@ -84,7 +81,7 @@ def _step(worker, workers, values, gradient, first, second, rate, numbers):  # t
 
 @exact
 def _step_rows(worker, workers, values, gradient, first, second, head, rates, numbers):  # type: ignore[no-untyped-def]
-    """Arrays `[N, C]`, of which the first `head` columns go at one rate and the others at another."""
+    """As `_step` for arrays `[N, C]` whose first `head` columns have one learning rate and the others another."""
     count, width = values.shape
     for n in range(count * worker // workers, count * (worker + 1) // workers):
         for i in range(head):

@@ -1,7 +1,6 @@
-"""A training on the disk, so that it goes on where a crash ended it: one safetensors file, replaced whole.
+"""Checkpoints of a training: one safetensors file, replaced atomically, from which a training resumes after a crash.
 
-Knows the file. Refuses to know what the numbers mean. Nothing in it is code; a file in which a single bit is not as it
-was written is refused.
+The file contains no code. A file whose checksum does not match is refused.
 """
 
 from __future__ import annotations
@@ -19,25 +18,25 @@ import numpy as np
 from ..errors import FileError
 from ..files import writing
 
-VERSION = "2"
+VERSION = "3"
 
 
-def keep(path: Path, arrays: Mapping[str, Any], state: Mapping[str, Any]) -> None:
-    """Write arrays and a JSON state; an older checkpoint is replaced only by a whole one.
+def save(path: Path, arrays: Mapping[str, Any], state: Mapping[str, Any]) -> None:
+    """Write arrays and a JSON state; an older checkpoint is replaced only by a complete one.
 
     Raises:
-        FileError: it cannot be written (a full disk); the message says how to go on.
+        FileError: it cannot be written (for example a full disk); the message says how to resume.
     """
-    from safetensors.numpy import save
+    from safetensors import numpy
 
-    told = json.dumps(state)
+    text = json.dumps(state)
     tensors = {name: np.asarray(value, order="C") for name, value in arrays.items()}
-    whole = save(tensors, {"version": VERSION, "state": told, "sha256": _digest(tensors, told)})
+    data = numpy.save(tensors, {"version": VERSION, "state": text, "sha256": _digest(tensors, text)})
     try:
         with writing(path, force=True) as file:
-            file.write(whole)
+            file.write(data)
     except FileError as error:
-        raise FileError(f"{error}; make room and give the same command again") from error
+        raise FileError(f"{error}; free some disk space and run the same command again") from error
 
 
 def _digest(arrays: Mapping[str, Any], state: str) -> str:
@@ -48,18 +47,18 @@ def _digest(arrays: Mapping[str, Any], state: str) -> str:
     return found.hexdigest()
 
 
-def drop(path: Path) -> None:
-    """Take a checkpoint away, and what a crash in the middle of writing one left behind."""
+def delete(path: Path) -> None:
+    """Delete a checkpoint, and partial files that a crash during writing left behind."""
     for part in (path, *path.parent.glob(f".{escape(path.name)}.*.part")):
         with contextlib.suppress(OSError):
             part.unlink(missing_ok=True)
 
 
-def resume(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
-    """Arrays and state of a checkpoint; None if there is none.
+def load(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
+    """Arrays and state of a checkpoint; None if the file does not exist.
 
     Raises:
-        FileError: it is there but cannot be used; the message says to take it away.
+        FileError: the file cannot be used; the message says to delete it.
     """
     from safetensors import SafetensorError, safe_open
 
@@ -67,12 +66,12 @@ def resume(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
         return None
     try:
         with safe_open(path, "numpy") as file:
-            told = file.metadata() or {}
+            metadata = file.metadata() or {}
             arrays = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
-        if told.get("version") != VERSION:
-            raise ValueError(f"its version is {told.get('version')!r}, not {VERSION}")
-        if told["sha256"] != _digest(arrays, told["state"]):
+        if metadata.get("version") != VERSION:
+            raise ValueError(f"its version is {metadata.get('version')!r}, not {VERSION}")
+        if metadata["sha256"] != _digest(arrays, metadata["state"]):
             raise ValueError("it has changed since it was written")
-        return arrays, json.loads(told["state"])
+        return arrays, json.loads(metadata["state"])
     except (OSError, SafetensorError, ValueError, KeyError) as error:
-        raise FileError(f"{path} is no checkpoint to go on from ({error}); delete it to begin anew") from error
+        raise FileError(f"cannot resume from {path} ({error}); delete it to start over") from error

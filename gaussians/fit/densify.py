@@ -1,12 +1,11 @@
-"""When Gaussians come and go while a scene is trained: two strategies behind one protocol.
+"""Densification and pruning during training: two strategies behind one protocol. Names follow gsplat's strategies.
 
-`Budgeted` keeps to a number: Gaussians that have become transparent move onto others, new ones are copies, and a group
-of copies is made so that together it looks like the one it came from; a little noise lets faint ones wander (Kheradmand
-et al. 2024, "3D Gaussian Splatting as Markov Chain Monte Carlo"). Copied are not the most opaque alone, as published,
-but those that are also pulled about most, since there the picture is wrong. `Classic` splits and clones where
-footprints are pulled about, prunes what is faint, and now and then makes everything faint (Kerbl et al. 2023).
-
-Knows parameters and gradients. Refuses to know pictures and time.
+`MCMCStrategy` keeps to a maximum number: it relocates transparent Gaussians onto others and adds copies, where a group
+of copies is rescaled to look like the original, and it adds noise to the positions of faint Gaussians (Kheradmand et
+al. 2024, "3D Gaussian Splatting as Markov Chain Monte Carlo"). Unlike the published method, Gaussians to copy are drawn
+not by opacity alone but by opacity times accumulated 2-D centre gradient, since that is large where the image is wrong.
+`DefaultStrategy` splits and clones by the 2-D centre gradient, prunes faint Gaussians, and periodically resets all
+opacities (Kerbl et al. 2023).
 """
 
 from __future__ import annotations
@@ -30,218 +29,232 @@ I64 = NDArray[np.int64]
 Numbers = TypeVar("Numbers", F32, Tensor)  # on the host, or on a device
 f4 = np.float32
 
-WANDERING = math.log(0.07 / 0.93)  # logit of an opacity from which there is no noise to speak of: 1/700 of the most
-FARTHEST = 3.0  # of its own widths that a faint Gaussian wanders in a step
-FAINT = 0.005  # opacity below which a Gaussian is as good as gone
+# Logit of opacity 0.07, above which no noise is added: the published noise is 1/700 of its maximum there.
+NOISE_MAX_LOGIT = math.log(0.07 / 0.93)
+MAX_NOISE = 3.0  # standard deviation of the noise of one step, in the Gaussian's own standard deviations
+PRUNE_OPA = 0.005  # Gaussians of lower opacity are relocated or pruned
 
 
-class Growth(Protocol):
-    """A strategy. It changes parameters in place."""
+class Strategy(Protocol):
+    """Densifies and prunes. Changes parameters in place."""
 
     def regularise(self, gradients: dict[str, Numbers], scales: Numbers, opacities: Numbers) -> None:
-        """Add to the gradients what the strategy wants besides a good picture."""
+        """Add the gradients of the strategy's regularisation terms."""
         ...
 
-    def stepped(self, parameters: Parameters, centers: F32, size: tuple[int, int], rate: float) -> None:
-        """After each step: note gradients of the footprints' centres `[N, 2]` (1/px, of a picture of `size`)."""
+    def after_step(self, parameters: Parameters, centers: F32, size: tuple[int, int], means_lr: float) -> None:
+        """After each step: accumulate the gradients of the footprint centres `[N, 2]` (1/px, image of `size`)."""
         ...
 
-    def stepped_there(self, values: Mapping[str, Tensor], centers: Tensor, size: tuple[int, int], rate: float) -> None:
-        """`stepped`, where the arrays of the parameters and the gradients are tensors on a device."""
+    def after_step_torch(
+        self, values: Mapping[str, Tensor], centers: Tensor, size: tuple[int, int], means_lr: float
+    ) -> None:
+        """`after_step` with the arrays of the parameters and the gradients as tensors on a device."""
         ...
 
-    def change(self, parameters: Parameters, step: int) -> None:
-        """Every so many steps: let Gaussians come and go. What was noted before is forgotten."""
+    def refine(self, parameters: Parameters, step: int) -> None:
+        """Densify and prune, and clear the accumulated gradients."""
         ...
 
 
 @dataclass
-class _Pulls:
-    """How much the photographs have pulled at the centre of each Gaussian since the number last changed.
+class _Grad2d:
+    """Accumulated gradients of the footprint centres since the last refinement.
 
     Attributes:
-        sum: `[N]` lengths of the centres' gradients, in 1/(half the picture), added up.
-        times: `[N]` photographs in which there was one.
+        grad2d: `[N]` summed lengths of the centre gradients, in 1/(half the image).
+        count: `[N]` number of photographs with a non-zero gradient.
     """
 
-    sum: F32 = field(default_factory=lambda: np.zeros(0, np.float32))
-    times: F32 = field(default_factory=lambda: np.zeros(0, np.float32))
+    grad2d: F32 = field(default_factory=lambda: np.zeros(0, np.float32))
+    count: F32 = field(default_factory=lambda: np.zeros(0, np.float32))
 
-    def note(self, centers: F32, size: tuple[int, int]) -> None:
-        """Add the gradients `[N, 2]` (1/px) of a picture of `size`."""
-        if len(self.sum) != len(centers):
-            self.sum, self.times = np.zeros((2, len(centers)), np.float32)
+    def add(self, centers: F32, size: tuple[int, int]) -> None:
+        """Add the gradients `[N, 2]` (1/px) of an image of `size`."""
+        if len(self.grad2d) != len(centers):
+            self.grad2d, self.count = np.zeros((2, len(centers)), np.float32)
         half = f4(size[0] / 2), f4(size[1] / 2)
-        compiled.run(_add_lengths, compiled.workers(), centers, half, self.sum, self.times)
+        compiled.run(_add_lengths, compiled.workers(), centers, half, self.grad2d, self.count)
 
 
 @dataclass
-class Budgeted:
-    """Growth by error under a budget.
+class MCMCStrategy:
+    """Relocate, add copies and add noise, up to a maximum number of Gaussians.
 
     Attributes:
-        most: Gaussians.
-        rng: what copies are drawn by.
-        share: how many are added at a time, of those there are. Published is 0.05, for trainings several times as long;
-            so is `noise`, 5e5 (measured in docs/fit.md).
-        opacity, scale: weights of the mean opacity and the mean scale in the loss: what a picture does not need fades.
-        noise: of faint Gaussians, times the rate of means and their own covariance.
+        cap_max: maximum number of Gaussians.
+        rng: draws copies and noise.
+        grow_share: Gaussians added per refinement, as a share of the current number. Published is 0.05, for trainings
+            several times as long; so is `noise_lr`, 5e5 (measured in docs/fit.md).
+        opacity_reg, scale_reg: weights of the mean opacity and the mean scale in the loss; Gaussians that no photograph
+            needs fade.
+        noise_lr: noise on the means of faint Gaussians, times the learning rate of means and their own covariance.
     """
 
-    most: int
+    cap_max: int
     rng: np.random.Generator
-    share: float = 0.15
-    opacity: float = 0.01
-    scale: float = 0.01
-    noise: float = 5e4
-    _pulls: _Pulls = field(default_factory=_Pulls, repr=False)
+    grow_share: float = 0.15
+    opacity_reg: float = 0.01
+    scale_reg: float = 0.01
+    noise_lr: float = 5e4
+    _grads: _Grad2d = field(default_factory=_Grad2d, repr=False)
 
     def regularise(self, gradients: dict[str, Numbers], scales: Numbers, opacities: Numbers) -> None:
-        """See `Growth`."""
+        """See `Strategy`."""
         count = np.float32(max(len(opacities), 1))
-        by_opacity, by_scale = np.float32(self.opacity) / count, np.float32(self.scale) / (3 * count)
-        gradients["logits"] += float(by_opacity) * opacities * (1 - opacities)
-        gradients["logs"] += float(by_scale) * scales
+        by_opacity, by_scale = np.float32(self.opacity_reg) / count, np.float32(self.scale_reg) / (3 * count)
+        gradients["logit_opacities"] += float(by_opacity) * opacities * (1 - opacities)
+        gradients["log_scales"] += float(by_scale) * scales
 
-    def stepped(self, parameters: Parameters, centers: F32, size: tuple[int, int], rate: float) -> None:
-        """See `Growth`."""
-        self._pulls.note(centers, size)
-        rows = np.flatnonzero(parameters.logits < WANDERING)
+    def after_step(self, parameters: Parameters, centers: F32, size: tuple[int, int], means_lr: float) -> None:
+        """See `Strategy`."""
+        self._grads.add(centers, size)
+        rows = np.flatnonzero(parameters.logit_opacities < NOISE_MAX_LOGIT)
         if not len(rows):
             return
-        noise = self._noise(parameters.logits[rows], parameters.logs[rows], rate)
-        columns = parameters.means, parameters.quats, parameters.logs
-        compiled.run(_along_axes, compiled.workers(), rows, *columns, noise)
+        noise = self._noise(parameters.logit_opacities[rows], parameters.log_scales[rows], means_lr)
+        columns = parameters.means, parameters.quats, parameters.log_scales
+        compiled.run(_add_noise, compiled.workers(), rows, *columns, noise)
 
-    def stepped_there(self, values: Mapping[str, Tensor], centers: Tensor, size: tuple[int, int], rate: float) -> None:
-        """See `Growth`. Chance is drawn on the host, so that one generator tells the whole training."""
-        self._pulls.note(centers.cpu().numpy(), size)
-        rows = (values["logits"] < WANDERING).nonzero().squeeze(1)
+    def after_step_torch(
+        self, values: Mapping[str, Tensor], centers: Tensor, size: tuple[int, int], means_lr: float
+    ) -> None:
+        """See `Strategy`. Noise is drawn on the host, so that one generator covers the whole training."""
+        self._grads.add(centers.cpu().numpy(), size)
+        rows = (values["logit_opacities"] < NOISE_MAX_LOGIT).nonzero().squeeze(1)
         if not len(rows):
             return
-        logits, logs = values["logits"][rows].cpu().numpy(), values["logs"][rows]
-        noise = torch.from_numpy(self._noise(logits, logs.cpu().numpy(), rate)).to(logs.device)
+        logits, log_scales = values["logit_opacities"][rows].cpu().numpy(), values["log_scales"][rows]
+        noise = torch.from_numpy(self._noise(logits, log_scales.cpu().numpy(), means_lr)).to(log_scales.device)
         axes = rotations.to_matrix(rotations.normalize(values["quats"][rows]))
-        values["means"][rows] += (axes * (noise * logs.exp())[:, None, :]).sum(dim=2)
+        values["means"][rows] += (axes * (noise * log_scales.exp())[:, None, :]).sum(dim=2)
 
-    def _noise(self, logits: F32, logs: F32, rate: float) -> F32:
-        """How far faint Gaussians `[M]` wander in one step, in their own widths `[M, 3]`."""
+    def _noise(self, logits: F32, log_scales: F32, means_lr: float) -> F32:
+        """Noise of one step for faint Gaussians, `[M, 3]` along their axes, in their own standard deviations."""
         with np.errstate(over="ignore"):
             opacities = f4(1) / (f4(1) + np.exp(-logits))
-            amount = rate * self.noise / (1 + np.exp(100 * (opacities - FAINT)))
-        # Published is the covariance times noise, which throws wide ones out of the scene.
-        share = np.minimum(amount[:, None] * np.exp(logs), FARTHEST)
+            amount = means_lr * self.noise_lr / (1 + np.exp(100 * (opacities - PRUNE_OPA)))
+        # Published is the covariance times noise without a bound, which throws wide Gaussians out of the scene.
+        share = np.minimum(amount[:, None] * np.exp(log_scales), MAX_NOISE)
         return share.astype(np.float32) * self.rng.standard_normal((len(logits), 3), dtype=np.float32)
 
-    def change(self, parameters: Parameters, step: int) -> None:
-        """See `Growth`."""
+    def refine(self, parameters: Parameters, step: int) -> None:
+        """See `Strategy`."""
         opacities = parameters.opacities
         count = len(parameters)
-        dead, alive = np.flatnonzero(opacities <= FAINT), np.flatnonzero(opacities > FAINT)
-        added = max(0, min(self.most, int((1 + self.share) * count)) - count)
-        pulled, self._pulls = self._pulls.sum, _Pulls()
+        dead, alive = np.flatnonzero(opacities <= PRUNE_OPA), np.flatnonzero(opacities > PRUNE_OPA)
+        added = max(0, min(self.cap_max, int((1 + self.grow_share) * count)) - count)
+        grad2d, self._grads = self._grads.grad2d, _Grad2d()
         if not len(alive) or not len(dead) + added:
             return
         weights = opacities[alive].astype(np.float64)
-        if len(pulled) == count and pulled[alive].any():
-            weights *= pulled[alive]
+        if len(grad2d) == count and grad2d[alive].any():
+            weights *= grad2d[alive]
         source = alive[self.rng.choice(len(alive), len(dead) + added, p=weights / weights.sum())]
         copied = np.unique(source)
-        times = np.bincount(source, minlength=count)[copied] + 1
-        opacity, scale = shared(opacities[copied], np.exp(parameters.logs[copied]), times)
-        opacity = np.clip(opacity, FAINT, 1 - 1e-6)
-        parameters.logits[copied] = np.log(opacity / (1 - opacity))
-        parameters.logs[copied] = np.log(scale)
-        parameters.forget(copied)
-        parameters.put(dead, source[: len(dead)])
+        ratios = np.bincount(source, minlength=count)[copied] + 1
+        opacity, scale = compute_relocation(opacities[copied], np.exp(parameters.log_scales[copied]), ratios)
+        opacity = np.clip(opacity, PRUNE_OPA, 1 - 1e-6)
+        parameters.logit_opacities[copied] = np.log(opacity / (1 - opacity))
+        parameters.log_scales[copied] = np.log(scale)
+        parameters.reset_optimisers(copied)
+        parameters.overwrite(dead, source[: len(dead)])
         parameters.append(source[len(dead) :])
 
 
-MOST_SHARED = 50  # copies of one Gaussian that are told apart: the sums alternate and lose digits beyond
+MAX_RATIO = 50  # larger numbers of copies count as this: the sum alternates and loses precision beyond
 
 
-def shared(opacities: F32, scales: F32, times: I64) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Opacity `[M]` and scales `[M, 3]` of each of `times` copies in one place that together look like one Gaussian.
+def compute_relocation(opacities: F32, scales: F32, ratios: I64) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Opacity `[M]` and scales `[M, 3]` of each of `ratios` `[M]` coincident copies that together look like one.
 
-    Kheradmand et al. 2024, equation 9: the same transmittance at the centre, the same light in all.
+    Kheradmand et al. 2024, equation 9: equal transmittance at the centre, equal integrated alpha.
     """
-    times = np.minimum(times, MOST_SHARED)
-    whole = opacities.astype(np.float64)
-    each = 1 - (1 - whole) ** (1 / times)
-    light = np.zeros(len(whole))
-    for i in range(1, int(times.max(initial=1)) + 1):
-        rows = times >= i
+    ratios = np.minimum(ratios, MAX_RATIO)
+    original = opacities.astype(np.float64)
+    each = 1 - (1 - original) ** (1 / ratios)
+    denominator = np.zeros(len(original))
+    for i in range(1, int(ratios.max(initial=1)) + 1):
+        rows = ratios >= i
         for k in range(i):
-            light[rows] += math.comb(i - 1, k) * (-1) ** k / math.sqrt(k + 1) * each[rows] ** (k + 1)
-    return each, scales * (whole / light)[:, None]
+            denominator[rows] += math.comb(i - 1, k) * (-1) ** k / math.sqrt(k + 1) * each[rows] ** (k + 1)
+    return each, scales * (original / denominator)[:, None]
 
 
 @dataclass
-class Classic:
-    """Split, clone, prune and reset, as published.
+class DefaultStrategy:
+    """Split, clone, prune and reset (Kerbl et al. 2023).
 
     Attributes:
-        extent: of the scene, scene units: what is large or small is said in shares of it.
-        rng: what splits are drawn by.
-        most: Gaussians, beyond which none are added; None: as many as come.
-        pull: mean length of a centre's gradient, in 1/(half the picture), from which a Gaussian is not enough.
+        extent: of the scene, scene units.
+        rng: draws the positions of splits.
+        cap_max: number of Gaussians beyond which none are added; None: no limit.
+        grow_grad2d: mean length of the centre gradient, in 1/(half the image), from which a Gaussian is split or
+            cloned.
+        grow_scale3d: larger Gaussians are split, smaller ones cloned; share of the extent.
+        prune_scale3d: larger Gaussians are pruned after the first reset; share of the extent.
         reset_every: steps between two resets of the opacities.
     """
 
     extent: float
     rng: np.random.Generator
-    most: int | None = None
-    pull: float = 2e-4
+    cap_max: int | None = None
+    grow_grad2d: float = 2e-4
+    grow_scale3d: float = 0.01
+    prune_scale3d: float = 0.1
     reset_every: int = 3000
-    _pulls: _Pulls = field(default_factory=_Pulls, repr=False)
+    _grads: _Grad2d = field(default_factory=_Grad2d, repr=False)
 
     def regularise(self, gradients: dict[str, Numbers], scales: Numbers, opacities: Numbers) -> None:
-        """See `Growth`: nothing."""
+        """See `Strategy`; no regularisation."""
 
-    def stepped(self, parameters: Parameters, centers: F32, size: tuple[int, int], rate: float) -> None:
-        """See `Growth`."""
-        self._pulls.note(centers, size)
+    def after_step(self, parameters: Parameters, centers: F32, size: tuple[int, int], means_lr: float) -> None:
+        """See `Strategy`."""
+        self._grads.add(centers, size)
 
-    def stepped_there(self, values: Mapping[str, Tensor], centers: Tensor, size: tuple[int, int], rate: float) -> None:
-        """See `Growth`."""
-        self._pulls.note(centers.cpu().numpy(), size)
+    def after_step_torch(
+        self, values: Mapping[str, Tensor], centers: Tensor, size: tuple[int, int], means_lr: float
+    ) -> None:
+        """See `Strategy`."""
+        self._grads.add(centers.cpu().numpy(), size)
 
-    def change(self, parameters: Parameters, step: int) -> None:
-        """See `Growth`."""
-        pulled = self._pulls.sum / np.maximum(self._pulls.times, 1) >= self.pull
-        pulled = pulled if len(pulled) == len(parameters) else np.zeros(len(parameters), bool)
-        if self.most is not None and len(parameters) + pulled.sum() > self.most:
-            pulled[:] = False
-        large = np.exp(parameters.logs).max(axis=1) > 0.01 * self.extent
-        self._split(parameters, np.flatnonzero(pulled & large))
-        parameters.append(np.flatnonzero(pulled & ~large))
-        gone = np.zeros(len(parameters), bool)
-        gone[np.flatnonzero(pulled & large)] = True  # two smaller ones stand in its place
-        gone |= parameters.opacities < FAINT
+    def refine(self, parameters: Parameters, step: int) -> None:
+        """See `Strategy`."""
+        grow = self._grads.grad2d / np.maximum(self._grads.count, 1) >= self.grow_grad2d
+        grow = grow if len(grow) == len(parameters) else np.zeros(len(parameters), bool)
+        if self.cap_max is not None and len(parameters) + grow.sum() > self.cap_max:
+            grow[:] = False
+        large = np.exp(parameters.log_scales).max(axis=1) > self.grow_scale3d * self.extent
+        self._split(parameters, np.flatnonzero(grow & large))
+        parameters.append(np.flatnonzero(grow & ~large))
+        prune = np.zeros(len(parameters), bool)
+        prune[np.flatnonzero(grow & large)] = True  # replaced by the two of the split
+        prune |= parameters.opacities < PRUNE_OPA
         if step > self.reset_every:
-            gone |= np.exp(parameters.logs).max(axis=1) > 0.1 * self.extent
-        if not gone.all():
-            parameters.take(np.flatnonzero(~gone))
+            prune |= np.exp(parameters.log_scales).max(axis=1) > self.prune_scale3d * self.extent
+        if not prune.all():
+            parameters.take(np.flatnonzero(~prune))
         if step % self.reset_every == 0:
-            faint = 2 * FAINT
-            parameters.logits[:] = np.minimum(parameters.logits, np.float32(math.log(faint / (1 - faint))))
-            parameters.memory["logits"].forget(np.arange(len(parameters)))
-        self._pulls = _Pulls()
+            opacity = 2 * PRUNE_OPA
+            logits = parameters.logit_opacities
+            logits[:] = np.minimum(logits, np.float32(math.log(opacity / (1 - opacity))))
+            parameters.optimisers["logit_opacities"].reset(np.arange(len(parameters)))
+        self._grads = _Grad2d()
 
     def _split(self, parameters: Parameters, rows: I64) -> None:
-        """Add two smaller ones for each, drawn from it."""
+        """Append two smaller Gaussians for each row, at positions drawn from it."""
         for _ in range(2):
             first = len(parameters)
             parameters.append(rows)
             axes = _axes(parameters, rows)
-            drawn = np.einsum("nij,nj->ni", axes, self.rng.standard_normal((len(rows), 3)))
-            parameters.means[first:] += drawn.astype(np.float32)
-            parameters.logs[first:] -= np.float32(math.log(1.6))
+            offsets = np.einsum("nij,nj->ni", axes, self.rng.standard_normal((len(rows), 3)))
+            parameters.means[first:] += offsets.astype(np.float32)
+            parameters.log_scales[first:] -= np.float32(math.log(1.6))
 
 
 @exact
 def _add_lengths(worker, workers, vectors, half, sums, times):  # type: ignore[no-untyped-def]
-    """Add the lengths of vectors `[N, 2]`, each coordinate times its `half`, to sums; count those that have one."""
+    """Add the lengths of vectors `[N, 2]`, each coordinate times its `half`, to sums; count the non-zero ones."""
     count = vectors.shape[0]
     for n in range(count * worker // workers, count * (worker + 1) // workers):
         x, y = vectors[n, 0] * half[0], vectors[n, 1] * half[1]
@@ -251,8 +264,8 @@ def _add_lengths(worker, workers, vectors, half, sums, times):  # type: ignore[n
 
 
 @exact
-def _along_axes(worker, workers, rows, means, quats, logs, amounts):  # type: ignore[no-untyped-def]
-    """Move each of some rows along its three axes by so many standard deviations `[M, 3]`."""
+def _add_noise(worker, workers, rows, means, quats, logs, amounts):  # type: ignore[no-untyped-def]
+    """Move the means of some rows along their three axes by `amounts` `[M, 3]` standard deviations."""
     for k in range(rows.shape[0] * worker // workers, rows.shape[0] * (worker + 1) // workers):
         n = rows[k]
         w, x, y, z = quats[n, 0], quats[n, 1], quats[n, 2], quats[n, 3]
@@ -266,7 +279,7 @@ def _along_axes(worker, workers, rows, means, quats, logs, amounts):  # type: ig
 
 
 def _axes(parameters: Parameters, rows: I64) -> NDArray[np.float32]:
-    """`[M, 3, 3]`: the axes of some Gaussians as columns, each as long as its standard deviation."""
+    """`[M, 3, 3]`: the axes of some Gaussians as columns, scaled by their standard deviations."""
     quats = torch.nn.functional.normalize(torch.from_numpy(parameters.quats[rows]), dim=1)
-    axes: NDArray[np.float32] = rotations.to_matrix(quats).numpy() * np.exp(parameters.logs[rows])[:, None, :]
+    axes: NDArray[np.float32] = rotations.to_matrix(quats).numpy() * np.exp(parameters.log_scales[rows])[:, None, :]
     return axes

@@ -1,7 +1,6 @@
-"""Where a step of training happens: what holds the parameters and moves them against the gradient of a photograph.
+"""Engines execute training steps: render, loss, backward pass, regularisation, optimiser step, strategy hook.
 
-Knows the order within a step: draw, compare, carry back, regularise, step, wander. Refuses to know schedules, files,
-and when Gaussians come and go, which happens on the host whatever the engine. `engine_torch` is the one for GPUs.
+`CpuEngine` runs here, `engine_torch` on GPUs. Refinement (densify and prune) runs on the host with either engine.
 """
 
 from __future__ import annotations
@@ -15,53 +14,57 @@ from numpy.typing import NDArray
 
 from ..camera import Camera
 from ..render.cpu import gradient
-from .densify import Growth
+from .densify import Strategy
 from .loss import BLACK, photometric
-from .parameters import Parameters, chained
+from .parameters import Parameters, parameter_gradients
 
 F32 = NDArray[np.float32]
 
 
 class Engine(Protocol):
-    """Parameters under training, wherever they lie."""
+    """Holds the parameters, on the host or on a device, and trains them."""
 
-    def learn(self, camera: Camera, photo: F32, rate: float) -> float:
-        """One step towards a photograph `[H, W, 3]` in [0, 1]; `rate` is that of means. Returns the loss before it."""
+    def train_step(self, camera: Camera, photo: F32, means_lr: float) -> float:
+        """Train on one photograph `[H, W, 3]` in [0, 1]. Returns the loss before the step.
+
+        Args:
+            means_lr: learning rate of means, scene units.
+        """
         ...
 
     def fetch(self) -> Parameters:
-        """The parameters on the host as they are now. What is changed about them until the next step, holds."""
+        """The current parameters on the host. Changes made to them before the next step take effect."""
         ...
 
     def send(self, parameters: Parameters) -> None:
-        """Go on with these."""
+        """Replace the parameters."""
         ...
 
     @property
     def degree(self) -> int:
-        """Of the harmonics as they are now."""
+        """Current SH degree."""
         ...
 
 
-Maker = Callable[[Parameters, Growth, float], Engine]  # the last is the share of SSIM in the loss
+EngineFactory = Callable[[Parameters, Strategy, float], Engine]  # the last is the weight of D-SSIM in the loss
 
 
 class CpuEngine:
-    """Numba on the host. Same input, same bytes."""
+    """Trains with numba kernels on the host. Same input, same bytes."""
 
-    def __init__(self, parameters: Parameters, growth: Growth, similarity: float) -> None:
-        self._parameters, self._growth, self._similarity = parameters, growth, similarity
+    def __init__(self, parameters: Parameters, strategy: Strategy, ssim_lambda: float) -> None:
+        self._parameters, self._strategy, self._ssim_lambda = parameters, strategy, ssim_lambda
 
-    def learn(self, camera: Camera, photo: F32, rate: float) -> float:
+    def train_step(self, camera: Camera, photo: F32, means_lr: float) -> float:
         """See `Engine`."""
         columns = self._parameters.columns()
         drawn = gradient.draw(columns, camera, BLACK)
-        loss, slope = photometric(drawn.rgb, photo, self._similarity)
-        found = gradient.draw_backward(drawn, slope, np.zeros(slope.shape[:2], np.float32))
-        gradients = chained(found, columns[2], columns[3])
-        self._growth.regularise(gradients, columns[2], columns[3])
-        self._parameters.step(gradients, rate)
-        self._growth.stepped(self._parameters, found.centers, (camera.width, camera.height), rate)
+        loss, d_rgb = photometric(drawn.rgb, photo, self._ssim_lambda)
+        found = gradient.draw_backward(drawn, d_rgb, np.zeros(d_rgb.shape[:2], np.float32))
+        gradients = parameter_gradients(found, columns[2], columns[3])
+        self._strategy.regularise(gradients, columns[2], columns[3])
+        self._parameters.step(gradients, means_lr)
+        self._strategy.after_step(self._parameters, found.centers, (camera.width, camera.height), means_lr)
         return loss
 
     def fetch(self) -> Parameters:
@@ -78,21 +81,21 @@ class CpuEngine:
         return self._parameters.degree
 
 
-def device_of(wish: Literal["auto", "cpu", "cuda"]) -> Literal["cpu", "cuda"]:
-    """What a wish comes to on this machine; "auto" is the GPU where gsplat and a device are there.
+def resolve_device(device: Literal["auto", "cpu", "cuda"]) -> Literal["cpu", "cuda"]:
+    """Resolve "auto": the GPU if gsplat and a device are available, else the CPU.
 
     Raises:
-        BackendError: "cuda", and something is missing; the message says what.
+        BackendError: "cuda" was given and something is missing; the message says what.
     """
     from ..render import cuda
 
-    if wish == "cuda":
+    if device == "cuda":
         cuda.require()
-    return "cpu" if wish == "cpu" or cuda.missing() else "cuda"
+    return "cpu" if device == "cpu" or cuda.missing() else "cuda"
 
 
-def engine_on(device: Literal["cpu", "cuda"]) -> Maker:
-    """What makes an engine for a device."""
+def engine_for(device: Literal["cpu", "cuda"]) -> EngineFactory:
+    """The factory of engines for a device."""
     if device == "cpu":
         return CpuEngine
     from ..render import cuda

@@ -1,7 +1,7 @@
-"""No more than a scene needs: bands of harmonics and Gaussians stay where held-out photographs gain by them.
+"""Drop SH bands and Gaussians that gain too little on the held-out photographs.
 
-Knows how to find what is not missed. Refuses to know when it is asked. Bands are trained first and left out then: what
-they gain in a short trial is lost in the noise of steps, what they are worth when trained is not.
+Bands are trained first and dropped afterwards: the gain in a short trial is below the noise of training steps, the loss
+from dropping a trained band is not.
 """
 
 from __future__ import annotations
@@ -19,21 +19,21 @@ from .photographs.photos import Photos
 from .quality import measure
 from .train import Trainer
 
-GAIN = 0.05  # dB, below which a band, or a tenth of the Gaussians, is not worth its numbers
-HIGHEST = 3  # degree of harmonics that is tried
-TENTH = 0.9  # of the Gaussians stay when the least of them are left out
-VIEWS = 48  # photographs by which a Gaussian is judged
+MIN_GAIN = 0.05  # dB; a band or a tenth of the Gaussians that gains less is dropped
+MAX_DEGREE = 3  # SH degree that is trained before bands are dropped
+KEEP_SHARE = 0.9  # of the Gaussians kept when the least visible ones are dropped
+MAX_VIEWS = 48  # cameras that visibility is measured with
 
 
 @dataclass(frozen=True)
 class Choice:
-    """Something that was tried without.
+    """One tried reduction.
 
     Attributes:
         what: "degree" of the harmonics, or number of "gaussians".
-        before, after: degrees, or numbers.
-        psnr: dB on the held-out photographs, of before and of after.
-        taken: whether training went on with what came after.
+        before, after: SH degrees, or numbers of Gaussians.
+        psnr: dB on the held-out photographs, before and after.
+        taken: whether training continued with the reduced scene.
     """
 
     what: Literal["degree", "gaussians"]
@@ -43,56 +43,55 @@ class Choice:
     taken: bool
 
 
-def fewer_bands(trainer: Trainer, photos: Photos, gain: float) -> list[Choice]:
-    """Leave out the highest band, and again, while that costs the held-out photographs less than `gain` dB. What is
-    left can be trained on."""
+def drop_sh_bands(trainer: Trainer, photos: Photos, gain: float) -> list[Choice]:
+    """Drop the highest SH band repeatedly while that costs less than `gain` dB on the held-out photographs."""
     cloud = trainer.parameters.cloud()
-    ways = ((degree, cloud.with_degree(degree)) for degree in range(cloud.degree, -1, -1))
-    choices = _while_not_missed("degree", ways, photos, gain)
+    smaller = ((degree, cloud.with_degree(degree)) for degree in range(cloud.degree, -1, -1))
+    choices = _reduce("degree", smaller, photos, gain)
     for choice in choices:
         if choice.taken:
-            trainer.parameters.narrow(choice.after)
+            trainer.parameters.lower_degree(choice.after)
     return choices
 
 
-def fewer_gaussians(trainer: Trainer, photos: Photos, gain: float) -> list[Choice]:
-    """Leave out the least visible tenth of the Gaussians, and again, while that costs the held-out photographs less
-    than `gain` dB. What is left can be trained on.
+def drop_gaussians(trainer: Trainer, photos: Photos, gain: float) -> list[Choice]:
+    """Drop the least visible tenth of the Gaussians repeatedly while that costs less than `gain` dB on the held-out
+    photographs.
 
-    Visible is what `reduce.ranked` calls so, to cameras of photographs that were learnt from.
+    Visibility is measured by `reduce.ranked` with cameras of training photographs.
     """
     cloud = trainer.parameters.cloud()
-    views = [photos.shots[i].camera for i in _spread(len(photos.shots), VIEWS)]
+    views = [photos.shots[i].camera for i in _evenly_spaced(len(photos.shots), MAX_VIEWS)]
     order = ranked(cloud, views)
-    ways = ((most, cloud[torch.from_numpy(np.sort(order[:most]))]) for most in _tenths(len(order)))
-    choices = _while_not_missed("gaussians", ways, photos, gain)
+    smaller = ((count, cloud[torch.from_numpy(np.sort(order[:count]))]) for count in _counts(len(order)))
+    choices = _reduce("gaussians", smaller, photos, gain)
     kept = min((choice.after for choice in choices if choice.taken), default=len(order))
     trainer.parameters.take(np.sort(order[:kept]))
     return choices
 
 
-def _while_not_missed(
-    what: Literal["degree", "gaussians"], ways: Iterator[tuple[int, GaussianCloud]], photos: Photos, gain: float
+def _reduce(
+    what: Literal["degree", "gaussians"], clouds: Iterator[tuple[int, GaussianCloud]], photos: Photos, gain: float
 ) -> list[Choice]:
-    """Go from the first of ever smaller clouds to the next while that costs less than `gain`."""
-    before, cloud = next(ways)
-    psnr, choices = measure(cloud, photos.held).psnr, list[Choice]()
-    for after, cloud in ways:
-        less = measure(cloud, photos.held).psnr
-        choices.append(Choice(what, before, after, (psnr, less), psnr - less < gain))
+    """Compare each cloud with the next smaller one, until a step costs `gain` dB or more."""
+    before, cloud = next(clouds)
+    psnr, choices = measure(cloud, photos.held_out).psnr, list[Choice]()
+    for after, cloud in clouds:
+        reduced = measure(cloud, photos.held_out).psnr
+        choices.append(Choice(what, before, after, (psnr, reduced), psnr - reduced < gain))
         if not choices[-1].taken:
             break
-        before, psnr = after, less
+        before, psnr = after, reduced
     return choices
 
 
-def _tenths(count: int) -> Iterator[int]:
-    """A number, and again and again what is left of it without a tenth."""
+def _counts(count: int) -> Iterator[int]:
+    """`count`, then repeatedly `KEEP_SHARE` of the previous number, down to 1."""
     while count > 0:
         yield count
-        count = int(TENTH * count)
+        count = int(KEEP_SHARE * count)
 
 
-def _spread(count: int, most: int) -> Sequence[int]:
-    """At most so many of `count` places, evenly spread."""
-    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int)).tolist()
+def _evenly_spaced(count: int, limit: int) -> Sequence[int]:
+    """At most `limit` evenly spaced indices below `count`."""
+    return np.unique(np.linspace(0, count - 1, min(count, limit)).round().astype(int)).tolist()

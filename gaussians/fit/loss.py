@@ -1,8 +1,8 @@
-"""How far a picture is from its photograph, and which way to change it: L1 and structural similarity in one pass.
+"""The photometric training loss, L1 and D-SSIM, with its gradient by the image.
 
-`(1 - s) |x - y| + s (1 - SSIM(x, y))`, means over pixels and channels, as Kerbl et al. 2023 (section 5.1) train with;
-SSIM of Wang et al. 2004 in windows of 11x11 with a Gaussian of 1.5 px, zeros beyond the border. Knows pictures. Refuses
-to know what they are of. `reference` is the same in torch, to be read and compared with.
+`(1 - s) |x - y| + s (1 - SSIM(x, y))`, means over pixels and channels, as in Kerbl et al. 2023 (section 5.1); SSIM of
+Wang et al. 2004 in windows of 11x11 with a Gaussian of 1.5 px, zero-padded. `photometric` is compiled, `reference` is
+the same in torch.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from ..compiled import exact, inlined
 F32 = NDArray[np.float32]
 Array = NDArray[Any]
 
-BLACK = (0.0, 0.0, 0.0)  # background of the pictures that are compared with photographs
-REACH = 5  # px on each side of a window
+BLACK = (0.0, 0.0, 0.0)  # background of the renders that are compared with photographs
+RADIUS = 5  # px on each side of a window's centre
 SIGMA = 1.5  # px
 C1, C2 = 0.01**2, 0.03**2  # for values in [0, 1]
 
@@ -30,12 +30,12 @@ f4 = np.float32
 ONE, TWO, FIRST, SECOND = f4(1), f4(2), f4(C1), f4(C2)
 
 
-def photometric(picture: F32, photo: F32, share: float = 0.2) -> tuple[float, F32]:
-    """The loss and its gradient by the picture, `[H, W, 3]`.
+def photometric(picture: F32, photo: F32, ssim_lambda: float = 0.2) -> tuple[float, F32]:
+    """The loss and its gradient by the rendered image, `[H, W, 3]`.
 
     Args:
         picture, photo: `[H, W, 3]` float32, contiguous.
-        share: of structural similarity in the loss, in [0, 1].
+        ssim_lambda: weight of D-SSIM in the loss, in [0, 1].
     """
     height, _, channels = picture.shape
     x, y = picture.reshape(height, -1), photo.reshape(height, -1)
@@ -45,29 +45,29 @@ def photometric(picture: F32, photo: F32, share: float = 0.2) -> tuple[float, F3
     slopes = np.empty((3, *x.shape), np.float32)
     taps, step = _taps(), channels
     line = np.empty((count, 5, x.shape[1]), np.float32)
-    if share > 0:
-        compiled.run(_blur_along, count, x, y, taps, step, maps, line)
-        compiled.run(_compare, count, maps, taps, slopes, rows, line)
-        compiled.run(_blur_across, count, slopes, taps, maps)
-    weights = f4((1 - share) / x.size), f4(-share / x.size)
-    compiled.run(_combine, count, x, y, maps, taps, step, weights, line, rows, gradient)
-    similar, off = rows.sum(axis=0) / x.size
-    return float((1 - share) * off + share * (1 - similar)), gradient.reshape(picture.shape)
+    if ssim_lambda > 0:
+        compiled.run(_blur_rows, count, x, y, taps, step, maps, line)
+        compiled.run(_ssim_backward, count, maps, taps, slopes, rows, line)
+        compiled.run(_blur_columns, count, slopes, taps, maps)
+    weights = f4((1 - ssim_lambda) / x.size), f4(-ssim_lambda / x.size)
+    compiled.run(_loss_backward, count, x, y, maps, taps, step, weights, line, rows, gradient)
+    similarity, l1 = rows.sum(axis=0) / x.size
+    return float((1 - ssim_lambda) * l1 + ssim_lambda * (1 - similarity)), gradient.reshape(picture.shape)
 
 
-def reference(picture: Tensor, photo: Tensor, share: float = 0.2) -> Tensor:
+def reference(picture: Tensor, photo: Tensor, ssim_lambda: float = 0.2) -> Tensor:
     """The loss of `photometric` as a differentiable scalar of any float type."""
-    return (1 - share) * (picture - photo).abs().mean() + share * (1 - similarity(picture, photo))
+    return (1 - ssim_lambda) * (picture - photo).abs().mean() + ssim_lambda * (1 - ssim(picture, photo))
 
 
-def similarity(picture: Tensor, photo: Tensor) -> Tensor:
-    """Mean SSIM of two pictures `[H, W, 3]` with values in [0, 1]."""
+def ssim(picture: Tensor, photo: Tensor) -> Tensor:
+    """Mean SSIM of two images `[H, W, 3]` with values in [0, 1]."""
     x, y = (p.permute(2, 0, 1)[:, None] for p in (picture, photo))
     taps = torch.from_numpy(_taps()).to(picture)
 
     def blur(image: Tensor) -> Tensor:
-        along = torch.nn.functional.conv2d(image, taps.view(1, 1, 1, -1), padding=(0, REACH))
-        return torch.nn.functional.conv2d(along, taps.view(1, 1, -1, 1), padding=(REACH, 0))
+        along = torch.nn.functional.conv2d(image, taps.view(1, 1, 1, -1), padding=(0, RADIUS))
+        return torch.nn.functional.conv2d(along, taps.view(1, 1, -1, 1), padding=(RADIUS, 0))
 
     mx, my, xx, yy, xy = (blur(image) for image in (x, y, x * x, y * y, x * y))
     alike = (2 * mx * my + C1) * (2 * (xy - mx * my) + C2)
@@ -76,21 +76,21 @@ def similarity(picture: Tensor, photo: Tensor) -> Tensor:
 
 @cache
 def _taps() -> F32:
-    """`[11]` weights of a window's row or column."""
-    weights = np.exp(-0.5 * (np.arange(-REACH, REACH + 1) / SIGMA) ** 2)
+    """`[11]` weights of the Gaussian window along one axis."""
+    weights = np.exp(-0.5 * (np.arange(-RADIUS, RADIUS + 1) / SIGMA) ** 2)
     return (weights / weights.sum()).astype(np.float32)
 
 
 @inlined
 def _add(target, source, weight):  # type: ignore[no-untyped-def]
-    """`target += weight * source`, two lines of equal length: a loop that compilers turn into SIMD."""
+    """`target += weight * source`, two lines of equal length; compilers vectorise this loop."""
     for i in range(target.shape[0]):
         target[i] += weight * source[i]
 
 
 @exact
-def _blur_along(worker, workers, x, y, taps, step, maps, scratch):  # type: ignore[no-untyped-def]
-    """Blur x, y, xx, yy and xy `[H, W * step]` along their rows into `maps` `[5, H, W * step]`."""
+def _blur_rows(worker, workers, x, y, taps, step, maps, scratch):  # type: ignore[no-untyped-def]
+    """Blur x, y, xx, yy and xy `[H, W * step]` horizontally into `maps` `[5, H, W * step]`."""
     height, width = x.shape
     line = scratch[worker]
     for row in range(height * worker // workers, height * (worker + 1) // workers):
@@ -101,7 +101,7 @@ def _blur_along(worker, workers, x, y, taps, step, maps, scratch):  # type: igno
         for k in range(5):
             maps[k, row] = f4(0)
         for tap in range(taps.shape[0]):
-            offset = (tap - REACH) * step
+            offset = (tap - RADIUS) * step
             low, high = max(0, -offset), min(width, width - offset)
             if low < high:
                 _add(maps[0, row, low:high], a[low + offset : high + offset], taps[tap])
@@ -112,8 +112,11 @@ def _blur_along(worker, workers, x, y, taps, step, maps, scratch):  # type: igno
 
 
 @exact
-def _compare(worker, workers, maps, taps, slopes, rows, scratch):  # type: ignore[no-untyped-def]
-    """Blur across rows; `rows[:, 0]` gets each row's sum of SSIM, `slopes` its slope by the blurred x, xx and xy."""
+def _ssim_backward(worker, workers, maps, taps, slopes, rows, scratch):  # type: ignore[no-untyped-def]
+    """Blur vertically and compute SSIM with its gradient.
+
+    `rows[:, 0]` gets each row's sum of SSIM, `slopes` its derivatives by the blurred x, xx and xy.
+    """
     _, height, width = maps.shape
     mean_x, mean_y, square_x = scratch[worker, 0], scratch[worker, 1], scratch[worker, 2]
     square_y, product = scratch[worker, 3], scratch[worker, 4]
@@ -121,7 +124,7 @@ def _compare(worker, workers, maps, taps, slopes, rows, scratch):  # type: ignor
     for row in range(height * worker // workers, height * (worker + 1) // workers):
         scratch[worker] = f4(0)
         for tap in range(taps.shape[0]):
-            other = row + tap - REACH
+            other = row + tap - RADIUS
             if 0 <= other < height:
                 for k in range(5):
                     _add(scratch[worker, k], maps[k, other], taps[tap])
@@ -149,21 +152,21 @@ def _total(line):  # type: ignore[no-untyped-def]
 
 
 @exact
-def _blur_across(worker, workers, slopes, taps, maps):  # type: ignore[no-untyped-def]
-    """Blur three maps across rows, into the first three of `maps`."""
+def _blur_columns(worker, workers, slopes, taps, maps):  # type: ignore[no-untyped-def]
+    """Blur three maps vertically, into the first three of `maps`."""
     _, height, _ = slopes.shape
     for row in range(height * worker // workers, height * (worker + 1) // workers):
         for k in range(3):
             maps[k, row] = f4(0)
             for tap in range(taps.shape[0]):
-                other = row + tap - REACH
+                other = row + tap - RADIUS
                 if 0 <= other < height:
                     _add(maps[k, row], slopes[k, other], taps[tap])
 
 
 @exact
-def _combine(worker, workers, x, y, maps, taps, step, weights, scratch, rows, gradient):  # type: ignore[no-untyped-def]
-    """Blur the first three maps along their rows and make the gradient; `rows[:, 1]` gets each row's sum of |x - y|."""
+def _loss_backward(worker, workers, x, y, maps, taps, step, weights, scratch, rows, gradient):  # type: ignore[no-untyped-def]
+    """Blur the first three maps horizontally and compute the gradient; `rows[:, 1]` gets each row's sum of |x - y|."""
     height, width = x.shape
     plain, similar = weights
     by_mean, by_square, by_product = scratch[worker, 0], scratch[worker, 1], scratch[worker, 2]
@@ -172,7 +175,7 @@ def _combine(worker, workers, x, y, maps, taps, step, weights, scratch, rows, gr
         scratch[worker] = f4(0)
         if similar != f4(0):
             for tap in range(taps.shape[0]):
-                offset = (tap - REACH) * step
+                offset = (tap - RADIUS) * step
                 low, high = max(0, -offset), min(width, width - offset)
                 if low < high:
                     for k in range(3):

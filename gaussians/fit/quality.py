@@ -1,7 +1,4 @@
-"""How good a fit is: PSNR and SSIM on photographs it never saw, and pictures to look at.
-
-Knows renders and photographs. Refuses to know training.
-"""
+"""Evaluate a trained scene: PSNR and SSIM on held-out photographs, and side-by-side comparison images."""
 
 from __future__ import annotations
 
@@ -15,10 +12,10 @@ from numpy.typing import NDArray
 
 from ..cloud import GaussianCloud
 from ..render import render
-from .loss import similarity
+from .loss import ssim
 from .train import Shot
 
-BEST = 100.0  # dB, where equal pictures are capped
+MAX_PSNR = 100.0  # dB, reported for identical images
 
 
 @dataclass(frozen=True)
@@ -27,7 +24,7 @@ class Quality:
 
     Attributes:
         psnr: dB, of pictures clipped to [0, 1].
-        ssim: Wang et al. 2004, as `loss.similarity`.
+        ssim: Wang et al. 2004, see `loss.ssim`.
         each: name to (psnr, ssim).
     """
 
@@ -37,19 +34,19 @@ class Quality:
 
 
 def measure(cloud: GaussianCloud, shots: Sequence[Shot]) -> Quality:
-    """How a cloud shows what was photographed; NaN of no photographs."""
+    """PSNR and SSIM of a cloud's renders against photographs; NaN without photographs."""
     each = {}
     for shot in shots:
         seen = render(cloud, shot.camera).rgb.clamp(0, 1)
         photo = torch.from_numpy(shot.colors)
-        off = float((seen - photo).square().mean(dtype=torch.float64))
-        each[shot.camera.name] = (min(BEST, -10 * math.log10(max(off, 1e-12))), float(similarity(seen, photo)))
-    psnr, ssim = np.mean(list(each.values()), axis=0).tolist() if each else (math.nan, math.nan)
-    return Quality(psnr, ssim, each)
+        mse = float((seen - photo).square().mean(dtype=torch.float64))
+        each[shot.camera.name] = (min(MAX_PSNR, -10 * math.log10(max(mse, 1e-12))), float(ssim(seen, photo)))
+    mean_psnr, mean_ssim = np.mean(list(each.values()), axis=0).tolist() if each else (math.nan, math.nan)
+    return Quality(mean_psnr, mean_ssim, each)
 
 
-def beside(cloud: GaussianCloud, shot: Shot) -> NDArray[np.uint8]:
-    """The photograph, the render, and their difference fourfold, side by side: `[H, 3 W, 3]`."""
+def comparison(cloud: GaussianCloud, shot: Shot) -> NDArray[np.uint8]:
+    """The photograph, the render, and four times their absolute difference, side by side: `[H, 3 W, 3]`."""
     seen = render(cloud, shot.camera).to_uint8()
-    off = np.clip(4 * np.abs(seen.astype(int) - shot.photo.astype(int)), 0, 255).astype(np.uint8)
-    return np.concatenate([shot.photo, seen, off], axis=1)
+    difference = np.clip(4 * np.abs(seen.astype(int) - shot.photo.astype(int)), 0, 255).astype(np.uint8)
+    return np.concatenate([shot.photo, seen, difference], axis=1)

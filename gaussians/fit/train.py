@@ -1,8 +1,7 @@
-"""The loop of training: a photograph, a step, and now and then Gaussians that come and go.
+"""The training loop: one photograph per step, the learning-rate and SH schedule, and refinement by a strategy.
 
-Knows the order of things and the schedule. Refuses to know files, where a step happens (`engine`), and which strategy
-grows the scene. Progress is counted in steps or in seconds; counted in steps, on the CPU, the same photographs, start
-and seed give the same bytes.
+Progress is measured in steps or in seconds. Measured in steps, on the CPU, the same photographs, initial parameters and
+seed give the same bytes. An engine executes the steps (`engine`), a strategy densifies and prunes (`densify`).
 """
 
 from __future__ import annotations
@@ -17,22 +16,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..camera import Camera
-from .densify import Growth
-from .engine import CpuEngine, Maker
+from .densify import Strategy
+from .engine import CpuEngine, EngineFactory
 from .parameters import Parameters
 
 F32 = NDArray[np.float32]
 
-MEANS = 1.6e-4  # rate of means at the start, in shares of the scene's extent
-FALL = 0.01  # of that rate is left at the end
-EVERY = 100  # steps between two changes of the number of Gaussians
-QUIET = 300  # steps before the first
-SETTLED = 0.8  # of the training, after which numbers of Gaussians and bands stay
+MEANS_LR = 1.6e-4  # initial learning rate of means, times the scene's extent
+LR_DECAY = 0.01  # learning rate of means at the end, as a share of the initial one; exponential in between
+REFINE_EVERY = 100  # steps between two refinements
+REFINE_START_ITER = 300  # step of the first refinement
+REFINE_STOP = 0.8  # share of the training after which the numbers of Gaussians and SH bands stay constant
 
 
 @dataclass(frozen=True, eq=False)
 class Shot:
-    """A photograph to learn from: `photo [H, W, 3]` uint8, undistorted, of the camera's size."""
+    """A posed photograph: `photo [H, W, 3]` uint8, undistorted, of the camera's size."""
 
     camera: Camera
     photo: NDArray[np.uint8]
@@ -45,103 +44,104 @@ class Shot:
 
 @dataclass(frozen=True)
 class Schedule:
-    """How long and how.
+    """Length and schedule of a training.
 
     Attributes:
-        steps, seconds: what ends training, whichever is given; exactly one of them.
+        steps, seconds: length of the training; exactly one is given.
         coarse: share of the training on photographs of half the size.
-        degree: of the harmonics at the end; bands are added one by one in the first half.
-        similarity: share of SSIM in the loss.
+        degree: final SH degree; bands are added one by one in the first half.
+        ssim_lambda: weight of D-SSIM in the loss.
     """
 
     steps: int | None = None
     seconds: float | None = None
     coarse: float = 0.0
     degree: int = 0
-    similarity: float = 0.2
+    ssim_lambda: float = 0.2
 
 
 class Trainer:
-    """A training under way.
+    """A training in progress.
 
     Args:
-        shots: photographs to learn from.
-        start: the parameters; changed in place.
-        growth: how Gaussians come and go.
-        extent: radius of the scene as the cameras stand around it, scene units.
-        schedule: how long and how.
-        rng: what the order of photographs is drawn by; the same as growth has, so that one state holds both.
-        engine: makes what the steps happen in.
+        shots: photographs to train on.
+        start: initial parameters; changed in place.
+        strategy: densifies and prunes.
+        extent: radius of the camera positions, scene units.
+        schedule: length and schedule.
+        rng: draws the order of photographs; shared with the strategy, so that one state covers both.
+        engine: makes the engine that executes the steps.
     """
 
     def __init__(
         self,
         shots: Sequence[Shot],
         start: Parameters,
-        growth: Growth,
+        strategy: Strategy,
         extent: float,
         schedule: Schedule,
         rng: np.random.Generator,
-        engine: Maker = CpuEngine,
+        engine: EngineFactory = CpuEngine,
     ) -> None:
-        self.growth, self.schedule = growth, schedule
-        self._engine = engine(start, growth, schedule.similarity)
+        self.strategy, self.schedule = strategy, schedule
+        self._engine = engine(start, strategy, schedule.ssim_lambda)
         self._shots, self._extent, self._rng = shots, extent, rng
         self._order: list[int] = []
         self.steps, self.seconds = 0, 0.0
 
     @property
     def parameters(self) -> Parameters:
-        """As they are now, on the host. To be changed, if at all, before the next step."""
+        """The current parameters on the host. Changes made before the next step take effect."""
         return self._engine.fetch()
 
     def state(self) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Arrays and plain values from which `restore` goes on to the same bytes, right after `changed` steps."""
+        """Arrays and JSON values from which `restore` continues to the same bytes; complete only `at_refinement`."""
         rng = self._rng.bit_generator.state
         return self.parameters.state(), {
             "steps": self.steps, "seconds": self.seconds, "order": self._order, "rng": rng,
         }  # fmt: skip
 
     def restore(self, arrays: Mapping[str, Any], values: Mapping[str, Any]) -> None:
-        """Go on from a state; raises KeyError or ValueError if it is none."""
+        """Continue from a state; raises KeyError or ValueError if it is invalid."""
         self._engine.send(Parameters.load(arrays))
         self.steps, self.seconds, self._order = values["steps"], values["seconds"], list(values["order"])
         self._rng.bit_generator.state = values["rng"]
 
     @property
-    def changed(self) -> bool:
-        """Whether growth has nothing in mind: when a state is whole."""
-        return self.steps >= QUIET and self.steps % EVERY == 0
+    def at_refinement(self) -> bool:
+        """Whether the last step ended with a refinement: the strategy has no accumulated statistics, so that `state` is
+        complete."""
+        return self.steps >= REFINE_START_ITER and self.steps % REFINE_EVERY == 0
 
     @property
-    def done(self) -> float:
-        """Share of the training behind us, in [0, 1]."""
+    def progress(self) -> float:
+        """Completed share of the training, in [0, 1]."""
         schedule = self.schedule
         share = self.steps / schedule.steps if schedule.steps else self.seconds / (schedule.seconds or math.inf)
         return min(1.0, share)
 
     def step(self) -> float:
-        """One photograph; returns its loss."""
-        started, done = time.perf_counter(), self.done
+        """Train on one photograph; returns its loss."""
+        started, progress = time.perf_counter(), self.progress
         if not self._order:
             self._order = self._rng.permutation(len(self._shots)).tolist()
         shot = self._shots[self._order.pop()]
-        camera, photo = halved(shot) if done < self.schedule.coarse else (shot.camera, shot.colors)
-        degree, most = self._engine.degree, self.schedule.degree
-        if degree < most and 0.5 * (degree + 1) / (most + 1) <= done < SETTLED:  # what is left out then stays out
-            self.parameters.widen(degree + 1)
-        loss = self._engine.learn(camera, photo, MEANS * self._extent * FALL**done)
+        camera, photo = half_size(shot) if progress < self.schedule.coarse else (shot.camera, shot.colors)
+        degree, final = self._engine.degree, self.schedule.degree
+        if degree < final and 0.5 * (degree + 1) / (final + 1) <= progress < REFINE_STOP:  # later, bands are dropped
+            self.parameters.raise_degree(degree + 1)
+        loss = self._engine.train_step(camera, photo, MEANS_LR * self._extent * LR_DECAY**progress)
         self.steps += 1
-        if self.changed and done < SETTLED:
+        if self.at_refinement and progress < REFINE_STOP:
             parameters = self.parameters
-            self.growth.change(parameters, self.steps)
-            parameters.take(along_a_curve(parameters.means))
+            self.strategy.refine(parameters, self.steps)
+            parameters.take(morton_order(parameters.means))
         self.seconds += time.perf_counter() - started
         return loss
 
 
-def halved(shot: Shot) -> tuple[Camera, F32]:
-    """Camera and photograph at half the size; an odd last row or column is left out."""
+def half_size(shot: Shot) -> tuple[Camera, F32]:
+    """Camera and photograph at half the size, by averages of 2x2 pixels; an odd last row or column is dropped."""
     height, width = shot.camera.height // 2, shot.camera.width // 2
     even = shot.colors[: 2 * height, : 2 * width].reshape(height, 2, width, 2, 3)
     whole = shot.camera
@@ -151,8 +151,8 @@ def halved(shot: Shot) -> tuple[Camera, F32]:
     return camera, np.ascontiguousarray(even.mean(axis=(1, 3), dtype=np.float32))
 
 
-def along_a_curve(means: F32) -> NDArray[np.int64]:
-    """Rows in the order of a Morton curve: what is near in space is near in memory, which renders a third faster."""
+def morton_order(means: F32) -> NDArray[np.int64]:
+    """Rows in Morton order. Gaussians near in space are then near in memory, and rendering is a third faster."""
     low, high = np.quantile(means, [0.01, 0.99], axis=0)
     cells = np.clip((means - low) / np.maximum(high - low, 1e-12), 0, 1 - 1e-6) * 1024
     code = np.zeros(len(means), np.int64)

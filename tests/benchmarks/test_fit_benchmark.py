@@ -20,8 +20,8 @@ from scenewright.benchmarks.files import glossy
 from scenewright.gaussians import files
 from scenewright.gaussians.errors import FileError, UserError
 from scenewright.gaussians.fit import Photos, Settings
-from scenewright.gaussians.fit.densify import Classic
-from scenewright.gaussians.fit.engine import CpuEngine, Maker
+from scenewright.gaussians.fit.densify import DefaultStrategy
+from scenewright.gaussians.fit.engine import CpuEngine, EngineFactory
 from scenewright.gaussians.fit.parameters import F32, Parameters
 from scenewright.gaussians.fit.train import Schedule, Trainer
 from scenewright.gaussians.scene import Scene
@@ -37,23 +37,25 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.delenv(name, raising=False)
 
 
-class Noting(Classic):
-    """Classic growth that shows what it is told after a step."""
+class Recording(DefaultStrategy):
+    """Records the centre gradients of the last step."""
 
     centers: F32
 
-    def stepped(self, parameters: Parameters, centers: F32, size: tuple[int, int], rate: float) -> None:
+    def after_step(self, parameters: Parameters, centers: F32, size: tuple[int, int], rate: float) -> None:
         self.centers = centers
 
-    def stepped_there(self, values: Mapping[str, Tensor], centers: Tensor, size: tuple[int, int], rate: float) -> None:
+    def after_step_torch(
+        self, values: Mapping[str, Tensor], centers: Tensor, size: tuple[int, int], rate: float
+    ) -> None:
         self.centers = centers.numpy()
 
 
-def step(engine: Maker, photos: Photos) -> tuple[float, Parameters, F32]:
+def step(engine: EngineFactory, photos: Photos) -> tuple[float, Parameters, F32]:
     """Loss, what the optimiser remembers, and the pulls at centres, of one step from a start of degree 1, where no
     gradient is zero but for rounding."""
     rng = np.random.default_rng(0)
-    parameters, growth = Parameters.of(glossy(300).with_degree(1)), Noting(photos.extent, rng)
+    parameters, growth = Parameters.of(glossy(300).with_degree(1)), Recording(photos.extent, rng)
     trainer = Trainer(photos.shots, parameters, growth, photos.extent, Schedule(steps=100), rng, engine)
     return trainer.step(), trainer.parameters, growth.centers
 
@@ -65,9 +67,9 @@ def test_a_plain_step_is_a_step_of_the_trainer_in_other_arithmetic() -> None:
     assert loss == pytest.approx(plain_loss, rel=1e-5)  # sums of a thousand float32 in another order
     # Adam's first memory is a tenth of the gradient. Gaussians that few pixels see are sums that cancel, in float32 on
     # both sides, which the goal of the renderer's gradients against float64 (1e-4) allows for.
-    for name, memory in fast.memory.items():
-        assert apart(memory.first, plain.memory[name].first) <= 1e-4, name
-        assert memory.steps == plain.memory[name].steps == 1
+    for name, memory in fast.optimisers.items():
+        assert apart(memory.first, plain.optimisers[name].first) <= 1e-4, name
+        assert memory.steps == plain.optimisers[name].steps == 1
     assert apart(centers, plain_centers) <= 1e-4
     np.testing.assert_array_equal(centers.any(axis=1), plain_centers.any(axis=1))
 
@@ -81,17 +83,17 @@ def test_the_plain_recipe_adds_bands_by_steps(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(_plain, "BAND_EVERY", 2)  # for a thousand
     plain = _plain.trainer(_fits.small_photos(), Settings(steps=10))
     degrees = []
-    while plain.done < 1:
+    while plain.progress < 1:
         plain.step()
         degrees.append(plain.parameters.degree)
     assert degrees == [0, 0, 1, 1, 2, 2, 3, 3, 3, 3]
 
 
 def test_the_plain_recipe_moves_higher_bands_at_the_published_rate() -> None:
-    plain = _plain.PlainEngine(Parameters.of(glossy(300).with_degree(1)), Noting(3.5, np.random.default_rng(0)), 0.2)
+    plain = _plain.PlainEngine(Parameters.of(glossy(300).with_degree(1)), Recording(3.5, np.random.default_rng(0)), 0.2)
     before = plain.fetch().sh.copy()
     shot = _fits.small_photos().shots[0]
-    plain.learn(shot.camera, shot.colors, 1e-3)
+    plain.train_step(shot.camera, shot.colors, 1e-3)
     moved = np.abs(plain.fetch().sh - before)[:, 1:]
     assert float(moved.max()) == pytest.approx(2.5e-3 / 20, rel=1e-3)  # Adam's first step is as long as its rate
 

@@ -1,9 +1,9 @@
-"""From photographs alone to poses, lenses and surveyed points: SIFT, pairs that look alike, matches, and a global
-reconstruction, all by pycolmap (https://colmap.github.io/pycolmap/) on the CPU.
+"""Structure from motion by pycolmap (https://colmap.github.io/pycolmap/) on the CPU: SIFT features, image retrieval,
+matching, and global mapping, from photographs to poses, intrinsics and sparse points.
 
-Run by `survey` as a process of its own, `python -m scenewright.gaussians.fit.photographs.reconstruct FOLDER`: an abort
-of the C++ library ends only this process, an interrupt ends it at once, and its memory is free before training begins.
-Reads only the plan and the pictures in FOLDER, which `survey` wrote.
+Run by `pose_estimation` as a separate process, `python -m scenewright.gaussians.fit.photographs.reconstruct FOLDER`: an
+abort of the C++ library ends only this process, an interrupt ends it at once, and its memory is freed before training
+begins. Reads only the plan and the images in FOLDER, which `pose_estimation` wrote.
 """
 
 from __future__ import annotations
@@ -21,42 +21,44 @@ from numpy.typing import NDArray
 PLAN, PICTURES, MODEL = "plan.json", "pictures", "sparse/0"
 LENS = "SIMPLE_RADIAL"
 FEATURES = 4096  # of a photograph
-SMALL = 1000  # px of the longer side, up to which features are looked for at twice the size
-WIDEST = 300  # features of a photograph by which pairs are chosen
-PARTNERS = 16  # photographs that each is matched with at least, where there are more
-AHEAD = 3  # and the next ones by name, as people walk
-RATIO = 0.8  # of the distances to the nearest and the second nearest feature (Lowe 2004)
-LOT = 8  # photographs between two words of progress
+SMALL = 1000  # px of the longer side; features of smaller images are extracted at twice the size
+WIDEST = 300  # features of a photograph that pairs are selected by, those of the largest scale
+PARTNERS = 16  # most similar photographs that each one is matched with
+SEQUENTIAL = 3  # following photographs by name that each one is also matched with
+RATIO = 0.8  # ratio test: distances to the nearest and the second nearest feature (Lowe 2004)
+BATCH = 8  # photographs between two progress reports
 SEED = 0
 
 
 def main(folder: Path) -> None:
-    """Reconstruct what `folder/plan.json` names; the largest model goes to `folder/sparse/0`, if there is one."""
+    """Reconstruct the photographs of `folder/plan.json`; writes the largest model to `folder/sparse/0`, if any."""
     pycolmap.logging.minloglevel = int(pycolmap.logging.ERROR)
     pycolmap.set_random_seed(SEED)
     lots = json.loads((folder / PLAN).read_text(encoding="utf-8"))
     database = folder / "features.db"
     find_features(database, folder / PICTURES, lots)
     match(database, folder)
-    tell("placing cameras", 0.0)
+    report("placing cameras", 0.0)
     model = reconstruct(database, folder)
     if model is not None:
-        _as_taken(model, lots)
+        _restore_sizes(model, lots)
         (folder / MODEL).mkdir(parents=True)
         model.write(folder / MODEL)
-    tell("placing cameras", 1.0)
+    report("placing cameras", 1.0)
 
 
-def tell(stage: str, share: float) -> None:
-    """One line of progress for whoever started this."""
+def report(stage: str, share: float) -> None:
+    """Print one line of progress for the parent process."""
     print(json.dumps([stage, round(share, 4)]), flush=True)
 
 
 def find_features(database: Path, pictures: Path, lots: list[dict[str, Any]]) -> None:
-    """SIFT features of all pictures; each lot has one camera. Pictures are listed before they are looked at, so that
-    their numbers do not depend on which thread is done first."""
+    """Extract SIFT features of all images; each lot shares one camera.
+
+    Images are imported before extraction, so that their ids do not depend on the timing of threads.
+    """
     with pycolmap.Database.open(database):
-        pass  # opening makes it
+        pass  # opening creates it
     for lot in lots:
         reader = pycolmap.ImageReaderOptions()
         reader.camera_model = LENS
@@ -70,14 +72,14 @@ def find_features(database: Path, pictures: Path, lots: list[dict[str, Any]]) ->
         options.sift.max_num_features = FEATURES
         options.sift.first_octave = -1 if max(lot["width"], lot["height"]) <= SMALL else 0
         names = sorted(lot["photos"])
-        for some in (names[i : i + LOT] for i in range(0, len(names), LOT)):
-            tell("finding features", done / total)
-            pycolmap.extract_features(database, pictures, some, extraction_options=options, device=pycolmap.Device.cpu)
-            done += len(some)
+        for batch in (names[i : i + BATCH] for i in range(0, len(names), BATCH)):
+            report("finding features", done / total)
+            pycolmap.extract_features(database, pictures, batch, extraction_options=options, device=pycolmap.Device.cpu)
+            done += len(batch)
 
 
 def match(database: Path, folder: Path) -> None:
-    """Match features of likely pairs, and keep what one camera motion explains."""
+    """Match features of likely pairs and verify the matches geometrically."""
     with pycolmap.Database.open(database) as opened:
         images = sorted(opened.read_all_images(), key=lambda image: image.name)
         widest = [_widest(opened, image.image_id) for image in images]
@@ -86,9 +88,9 @@ def match(database: Path, folder: Path) -> None:
     verify.ransac.random_seed = SEED
     pairing = pycolmap.ImportedPairingOptions()
     pairing.match_list_path = folder / "pairs.txt"
-    size = LOT * PARTNERS
+    size = BATCH * PARTNERS
     for i in range(0, len(pairs), size):
-        tell("matching photographs", i / len(pairs))
+        report("matching photographs", i / len(pairs))
         lines = (f"{images[a].name} {images[b].name}\n" for a, b in pairs[i : i + size])
         (folder / "pairs.txt").write_text("".join(lines))
         pycolmap.match_image_pairs(
@@ -97,8 +99,7 @@ def match(database: Path, folder: Path) -> None:
 
 
 def _widest(database: Any, number: int) -> NDArray[np.float32]:
-    """Descriptors `[N, 128]` of unit length of a picture's widest features, which are the most likely to be found
-    again (Wu 2013)."""
+    """Unit descriptors `[N, 128]` of an image's largest-scale features, which are the most repeatable (Wu 2013)."""
     frames = database.read_keypoints(number)[:, 2:]  # x, y and the 2x2 shape
     width = np.abs(frames[:, 0] * frames[:, 3] - frames[:, 1] * frames[:, 2])
     chosen = np.argsort(-width, kind="stable")[:WIDEST]
@@ -107,25 +108,25 @@ def _widest(database: Any, number: int) -> NDArray[np.float32]:
 
 
 def likely_pairs(descriptors: list[NDArray[np.float32]]) -> set[tuple[int, int]]:
-    """Pairs `a < b` of photographs worth matching.
+    """Pairs `a < b` of photographs to match: all of few photographs, else the most similar and consecutive ones.
 
     Args:
-        descriptors: of each photograph, in the order of names, `[N, D]` of unit length.
+        descriptors: unit descriptors of each photograph, `[N, D]`, in the order of names.
     """
     count = len(descriptors)
     if count <= 2 * PARTNERS:
         return {(a, b) for b in range(count) for a in range(b)}
     alike = np.zeros((count, count), np.int64)
     for a in range(count):
-        if not a % LOT:
-            tell("choosing pairs", 1 - (1 - a / count) ** 2)
+        if not a % BATCH:
+            report("choosing pairs", 1 - (1 - a / count) ** 2)
         for b in range(a + 1, count):
-            alike[a, b] = alike[b, a] = shared(descriptors[a], descriptors[b])
-    return set(_chosen(alike))
+            alike[a, b] = alike[b, a] = count_matches(descriptors[a], descriptors[b])
+    return set(_select_pairs(alike))
 
 
-def shared(a: NDArray[np.float32], b: NDArray[np.float32]) -> int:
-    """How many features of two photographs are each other's nearest, and clearly so."""
+def count_matches(a: NDArray[np.float32], b: NDArray[np.float32]) -> int:
+    """Number of mutual nearest neighbours among the features of two photographs that pass the ratio test."""
     if min(len(a), len(b)) < 2:
         return 0
     cosines = a @ b.T
@@ -135,18 +136,19 @@ def shared(a: NDArray[np.float32], b: NDArray[np.float32]) -> int:
     return int((mutual & (1 - first < RATIO**2 * (1 - second))).sum())  # squared distances are 2 - 2 cosines
 
 
-def _chosen(alike: NDArray[np.int64]) -> Iterator[tuple[int, int]]:
+def _select_pairs(alike: NDArray[np.int64]) -> Iterator[tuple[int, int]]:
+    """Consecutive photographs, and the most similar ones by the numbers of matches `[N, N]`."""
     count = len(alike)
     for a in range(count):
-        yield from ((a, b) for b in range(a + 1, min(a + 1 + AHEAD, count)))
+        yield from ((a, b) for b in range(a + 1, min(a + 1 + SEQUENTIAL, count)))
         best = [int(b) for b in np.argsort(-alike[a], kind="stable")[: PARTNERS + 1] if b != a][:PARTNERS]
         yield from ((min(a, b), max(a, b)) for b in best)
 
 
 def reconstruct(database: Path, folder: Path) -> Any | None:
-    """The model that holds the most photographs; None if there is none. What it left out is then tried one by one.
+    """Global mapping, then incremental mapping of unregistered photographs; the largest model, None if there is none.
 
-    By one thread: several sum in the order in which they are done, and the same photographs are to give the same poses.
+    Uses one thread: with several, the order of summation varies, and the same photographs must give the same poses.
     """
     options = pycolmap.GlobalPipelineOptions()
     options.num_threads = options.mapper.num_threads = 1
@@ -171,19 +173,19 @@ def reconstruct(database: Path, folder: Path) -> Any | None:
     return max([model, *more.values()], key=lambda found: found.num_reg_images())
 
 
-def _as_taken(model: Any, lots: list[dict[str, Any]]) -> None:
-    """Give a model of shrunken pictures the names and sizes of the photographs."""
-    of = {name: lot for lot in lots for name in lot["photos"]}
+def _restore_sizes(model: Any, lots: list[dict[str, Any]]) -> None:
+    """Convert a model of downscaled images to the names and sizes of the photographs."""
+    lot_of = {name: lot for lot in lots for name in lot["photos"]}
     done = set()
     for image in model.images.values():
-        lot = of[image.name]
+        lot = lot_of[image.name]
         image.name = lot["photos"][image.name]
-        across, down = lot["full"]
-        ratio = np.array([across / lot["width"], down / lot["height"]])
+        width, height = lot["full"]
+        ratio = np.array([width / lot["width"], height / lot["height"]])
         for point in image.points2D:
             point.xy = point.xy * ratio
         if image.camera_id not in done:
-            model.cameras[image.camera_id].rescale(across, down)
+            model.cameras[image.camera_id].rescale(width, height)
             done.add(image.camera_id)
 
 

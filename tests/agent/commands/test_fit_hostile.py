@@ -28,7 +28,7 @@ from scenewright.agent import cli
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import FileError
-from scenewright.gaussians.fit import checkpoint, take_photos
+from scenewright.gaussians.fit import checkpoint, load_photos
 from scenewright.gaussians.fit.photographs.image_file import read_photo
 from scenewright.gaussians.harmonics import color_to_dc
 from scenewright.gaussians.render import render
@@ -127,10 +127,10 @@ def test_the_capture_itself_is_without_fault(call: Call) -> None:
 AXES = np.diag([1.0, -1.0, -1.0, 1.0])
 ASIDE = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 WRONG: dict[str, tuple[Callable[[Told], object], str]] = {
-    "a missing photograph": (lambda t: t["frames"][2].update(file_path="images/gone.png"), "gone.png is not there"),
-    "an endless name": (lambda t: t["frames"][2].update(file_path="a" * 5000), "is not there; put it back"),
-    "a device": (lambda t: t["frames"][2].update(file_path="/dev/zero"), "/dev/zero is not there"),
-    "a file that is no picture": (lambda t: t["frames"][2].update(file_path="/etc/passwd"), "it is no PNG, JPEG"),
+    "a missing photograph": (lambda t: t["frames"][2].update(file_path="images/gone.png"), "gone.png is missing"),
+    "an endless name": (lambda t: t["frames"][2].update(file_path="a" * 5000), "is missing; restore it"),
+    "a device": (lambda t: t["frames"][2].update(file_path="/dev/zero"), "/dev/zero is missing"),
+    "a file that is no picture": (lambda t: t["frames"][2].update(file_path="/etc/passwd"), "it is not a PNG, JPEG"),
     "one photograph twice": (lambda t: t["frames"].append(t["frames"][3]), "p03.png; take one of them out"),
     "no frames": (lambda t: t.update(frames=[]), "lists no frames"),
     "a frame that is none": (lambda t: t["frames"].__setitem__(1, None), "frame 1 is broken: it is no object"),
@@ -186,7 +186,7 @@ def test_transforms_that_are_no_json_are_refused(capture: Path, call: Call, body
 def test_what_would_steer_a_terminal_is_left_out(capture: Path, call: Call) -> None:
     changed(capture, lambda told: told["frames"][2].update(file_path="images/\x1b[31m\x9bred.png"))
     code, said = call()
-    assert code == 4 and "[31mred.png is not there" in said and "\x1b" not in said and "\x9b" not in said
+    assert code == 4 and "[31mred.png is missing" in said and "\x1b" not in said and "\x9b" not in said
 
 
 def test_poses_that_no_frame_check_can_fault_are_doubted_by_colour(capture: Path, call: Call) -> None:
@@ -221,9 +221,9 @@ def by_angle_and_without_size(told: Told) -> None:
      posed(lambda m: m[:3])],
 )  # fmt: skip
 def test_other_ways_of_saying_the_same_are_read(capture: Path, change: Callable[[Told], None]) -> None:
-    before = take_photos(capture)
+    before = load_photos(capture)
     changed(capture, change)
-    after = take_photos(capture)
+    after = load_photos(capture)
     assert [s.camera.name for s in before.shots] == [s.camera.name for s in after.shots]
     for a, b in zip(before.shots, after.shots, strict=True):
         assert np.array_equal(a.photo, b.photo) and a.camera.fx == pytest.approx(b.camera.fx)
@@ -233,7 +233,7 @@ def test_other_ways_of_saying_the_same_are_read(capture: Path, change: Callable[
 def test_a_byte_order_mark_is_no_part_of_the_text(capture: Path) -> None:
     path = capture / "transforms.json"
     path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
-    assert len(take_photos(capture).shots) == 10
+    assert len(load_photos(capture).shots) == 10
 
 
 def test_rigs_may_number_the_photographs_of_each_camera(capture: Path) -> None:
@@ -245,8 +245,8 @@ def test_rigs_may_number_the_photographs_of_each_camera(capture: Path) -> None:
             frame["file_path"] = name
 
     changed(capture, moved)
-    taken = take_photos(capture)
-    names = [s.camera.name for s in (*taken.shots, *taken.held)]
+    taken = load_photos(capture)
+    names = [s.camera.name for s in (*taken.shots, *taken.held_out)]
     assert len(set(names)) == 12 and "left-03" in names and all("/" not in name for name in names)
 
 
@@ -255,7 +255,7 @@ def test_rigs_may_number_the_photographs_of_each_camera(capture: Path) -> None:
 
 def taken(capture: Path, index: int = 1) -> NDArray[np.uint8]:
     """The second photograph as it would be learnt from."""
-    return next(s.photo for s in take_photos(capture).shots if s.camera.name == f"p{index:02d}")
+    return next(s.photo for s in load_photos(capture).shots if s.camera.name == f"p{index:02d}")
 
 
 def test_photographs_of_any_kind_are_read_as_what_they_show(capture: Path) -> None:
@@ -284,12 +284,12 @@ def test_a_quarter_turn_that_the_file_asks_for_is_made_where_the_camera_says_so(
 @pytest.mark.parametrize(
     ("save", "told"),
     [
-        (lambda path: path.write_bytes(b""), "it is no PNG, JPEG or other picture"),
+        (lambda path: path.write_bytes(b""), "it is not a PNG, JPEG or other known image"),
         (lambda path: path.write_bytes(path.read_bytes()[:900]), "p03.png: image file is truncated"),
         (lambda path: Image.new("RGB", (44, 44)).save(path), "is 44x44, its camera says 56x44"),
-        (lambda path: Image.new("RGB", (1, 1)).save(path), "is 1x1 pixels, too few to learn from"),
-        (lambda path: Image.new("F", (W, H)).save(path, "TIFF"), "it holds fractions, not colours"),
-        (lambda path: (path.unlink(), os.mkfifo(path)), "p03.png is not there"),
+        (lambda path: Image.new("RGB", (1, 1)).save(path), "is 1x1 pixels, too few to train on"),
+        (lambda path: Image.new("F", (W, H)).save(path, "TIFF"), "it has floating-point pixels"),
+        (lambda path: (path.unlink(), os.mkfifo(path)), "p03.png is missing"),
     ],
 )
 def test_a_broken_photograph_is_named(capture: Path, call: Call, save: Callable[[Path], object], told: str) -> None:
@@ -323,7 +323,7 @@ def test_photographs_of_nothing_are_refused(capture: Path, call: Call) -> None:
     for path in (capture / "images").iterdir():
         Image.new("RGB", (W, H), (0, 90, 0)).save(path)
     code, said = call()
-    assert code == 4 and "is of one plain colour; there is nothing to learn from" in said
+    assert code == 4 and "is of one plain colour; there is nothing to train on" in said
 
 
 # -- points ---------------------------------------------------------------------------------------------------------
@@ -395,7 +395,7 @@ def test_a_folder_in_the_outputs_place_is_refused_even_by_force(call: Call, tmp_
 def test_a_disk_that_is_full_in_the_end_costs_no_training(
     call: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("scenewright.gaussians.fit.fitting.KEEP_EVERY", 0.0)
+    monkeypatch.setattr("scenewright.gaussians.fit.fitting.CHECKPOINT_EVERY", 0.0)
     real, output = os.fsync, tmp_path / "out/scene.ply"
 
     def full(handle: int) -> None:
@@ -416,36 +416,38 @@ def test_a_disk_that_is_full_in_the_end_costs_no_training(
 
 def test_a_disk_that_is_full_on_the_way_leaves_the_last_checkpoint(tmp_path: Path) -> None:
     path = tmp_path / "scene.ply.checkpoint"
-    checkpoint.keep(path, {"a": np.arange(3)}, {"steps": 1})
+    checkpoint.save(path, {"a": np.arange(3)}, {"steps": 1})
     with pytest.MonkeyPatch.context() as disk:
         disk.setattr(os, "fsync", lambda handle: (_ for _ in ()).throw(OSError(28, "No space left on device")))
-        with pytest.raises(FileError, match=r"No space left on device; .*; make room and give the same command again"):
-            checkpoint.keep(path, {"a": np.arange(3)}, {"steps": 2})
-    found = checkpoint.resume(path)
+        with pytest.raises(
+            FileError, match=r"No space left on device; .*; free some disk space and run the same command again"
+        ):
+            checkpoint.save(path, {"a": np.arange(3)}, {"steps": 2})
+    found = checkpoint.load(path)
     assert found is not None and found[1] == {"steps": 1} and [p.name for p in tmp_path.iterdir()] == [path.name]
 
 
 def test_a_checkpoint_with_one_bit_changed_or_its_end_cut_off_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "c"
-    checkpoint.keep(path, {"a": np.arange(40), "b": np.zeros((0, 3), np.float32)}, {"steps": 7})
+    checkpoint.save(path, {"a": np.arange(40), "b": np.zeros((0, 3), np.float32)}, {"steps": 7})
     whole = path.read_bytes()
     for place in range(0, len(whole), 5):
         path.write_bytes(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :])
-        with pytest.raises(FileError, match=r"is no checkpoint to go on from .*; delete it to begin anew"):
-            checkpoint.resume(path)
+        with pytest.raises(FileError, match=r"cannot resume from .*; delete it to start over"):
+            checkpoint.load(path)
         path.write_bytes(whole[:place])
-        with pytest.raises(FileError, match="delete it to begin anew"):
-            checkpoint.resume(path)
+        with pytest.raises(FileError, match="delete it to start over"):
+            checkpoint.load(path)
 
 
 def test_dropping_a_checkpoint_takes_along_what_a_crash_left_of_it(tmp_path: Path) -> None:
     path = tmp_path / "s[1].ply.checkpoint"
-    checkpoint.keep(path, {"a": np.arange(3)}, {})
+    checkpoint.save(path, {"a": np.arange(3)}, {})
     left, other = tmp_path / f".{path.name}.0123456789ab.part", tmp_path / ".other.0123456789ab.part"
     left.write_bytes(b"half")
     other.write_bytes(b"of somebody else")
-    checkpoint.drop(path)
-    checkpoint.drop(path)
+    checkpoint.delete(path)
+    checkpoint.delete(path)
     assert [p.name for p in tmp_path.iterdir()] == [other.name]
 
 
@@ -453,7 +455,7 @@ def test_dropping_a_checkpoint_takes_along_what_a_crash_left_of_it(tmp_path: Pat
 EAGER = """
 import sys
 from scenewright.gaussians.fit import fitting
-fitting.KEEP_EVERY = 0.0
+fitting.CHECKPOINT_EVERY = 0.0
 from scenewright.agent.cli import main
 main(sys.argv[1:])
 """

@@ -15,7 +15,7 @@ from PIL import Image
 from scenewright.agent import cli
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.files.captures.capture import described, read_capture
-from scenewright.gaussians.fit.photographs import survey
+from scenewright.gaussians.fit.photographs import pose_estimation
 from scenewright.gaussians.lens import Lens
 
 
@@ -41,7 +41,7 @@ def test_photographs_alone_become_a_scene(
         (kept / "transforms.json").write_text(json.dumps(told))
         return (photos[-1].name,)
 
-    monkeypatch.setattr(survey, "survey", placed)
+    monkeypatch.setattr(pose_estimation, "estimate_poses", placed)
     with pytest.raises(SystemExit) as ended:
         cli.main(["fit", str(folder), "-o", str(tmp_path / "a.ply"), "--steps", "1", "--sh-degree", "0", "--json"])
     said = capsys.readouterr()

@@ -1,5 +1,5 @@
-"""Training in torch, as on a GPU, against training in numba: step by step, through growth and checkpoints; and the
-whole on a device where there is one."""
+"""Training in torch, as on a GPU, against training in numba: step by step, through refinement and checkpoints; and on a
+device if there is one."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import BackendError
 from scenewright.gaussians.files.captures.colmap import Points
 from scenewright.gaussians.fit import Photos, Settings, Status, fit, fitting, train
-from scenewright.gaussians.fit.densify import Budgeted, Classic, Growth
-from scenewright.gaussians.fit.engine import CpuEngine, Maker, device_of, engine_on
+from scenewright.gaussians.fit.densify import DefaultStrategy, MCMCStrategy, Strategy
+from scenewright.gaussians.fit.engine import CpuEngine, EngineFactory, engine_for, resolve_device
 from scenewright.gaussians.fit.engine_torch import TorchEngine
-from scenewright.gaussians.fit.parameters import Parameters, rates
+from scenewright.gaussians.fit.parameters import Parameters, learning_rates
 from scenewright.gaussians.fit.quality import measure
-from scenewright.gaussians.fit.train import MEANS, Schedule, Shot, Trainer
+from scenewright.gaussians.fit.train import MEANS_LR, Schedule, Shot, Trainer
 from scenewright.gaussians.render import cuda, differentiable, render
 
-IN_TORCH: Maker = partial(TorchEngine, device="cpu", draw=differentiable.draw)
+IN_TORCH: EngineFactory = partial(TorchEngine, device="cpu", draw=differentiable.draw)
 
 
 def blobs(seed: int, count: int = 250) -> GaussianCloud:
@@ -50,17 +50,19 @@ def shots(count: int = 9, side: int = 48) -> list[Shot]:
     return [Shot(c, render(blobs(1), c).to_uint8()) for c in cameras]
 
 
-def growth_of(name: str, rng: np.random.Generator) -> Growth:
+def growth_of(name: str, rng: np.random.Generator) -> Strategy:
     """With few copies at a time, and much noise: copies that lie where the one they came from does change their order
     by a rounding."""
-    return Budgeted(300, rng, share=0.05, noise=5e5) if name == "budgeted" else Classic(3.3, rng, 300)
+    return (
+        MCMCStrategy(300, rng, grow_share=0.05, noise_lr=5e5) if name == "budgeted" else DefaultStrategy(3.3, rng, 300)
+    )
 
 
-def trainer(engine: Maker, growth: str, steps: int, degree: int = 1, count: int = 200) -> Trainer:
+def trainer(engine: EngineFactory, growth: str, steps: int, degree: int = 1, count: int = 200) -> Trainer:
     """A start that is off, some of it faint, so that there is something to learn, to wander and to move."""
     rng = np.random.default_rng(0)
     start = Parameters.of(blobs(2, count))
-    start.logits[::5] = -4.0
+    start.logit_opacities[::5] = -4.0
     return Trainer(
         shots()[1:], start, growth_of(growth, rng), 3.3, Schedule(steps=steps, coarse=0.1, degree=degree), rng, engine
     )
@@ -75,14 +77,14 @@ def assert_close(ours: Trainer, theirs: Trainer, steps: int) -> None:
     """
     a, b = ours.parameters, theirs.parameters
     assert len(a) == len(b) and a.degree == b.degree
-    for name, rate in rates(MEANS * 3.3).items():
+    for name, rate in learning_rates(MEANS_LR * 3.3).items():
         apart = np.abs(getattr(a, name) - getattr(b, name))
         assert np.count_nonzero(apart > 0.01 * steps * rate) <= 0.02 * apart.size, name
-        assert a.memory[name].steps == b.memory[name].steps
+        assert a.optimisers[name].steps == b.optimisers[name].steps
 
 
 @pytest.mark.parametrize("growth", ["budgeted", "classic"])
-def test_steps_in_torch_are_those_in_numba(growth: str) -> None:
+def test_steps_in_torch_equal_those_in_numba(growth: str) -> None:
     ours, theirs = (trainer(engine, growth, 1000) for engine in (CpuEngine, IN_TORCH))
     for _ in range(20):
         assert ours.step() == pytest.approx(theirs.step(), rel=1e-3)  # a pixel whose Gaussians change places
@@ -90,15 +92,15 @@ def test_steps_in_torch_are_those_in_numba(growth: str) -> None:
 
 
 @pytest.mark.parametrize("growth", ["budgeted", "classic"])
-def test_in_torch_gaussians_come_and_go_and_bands_are_added(growth: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Growth decides by thresholds and by chance over all Gaussians, so that a rounding may change who is copied: what
-    is equal is how many there are and how good they are."""
-    monkeypatch.setattr(train, "QUIET", 100)
+def test_refinement_and_added_bands_agree_in_torch_and_numba(growth: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Refinement uses thresholds and random draws over all Gaussians, so rounding may change which ones are copied. The
+    numbers of Gaussians and the quality must agree."""
+    monkeypatch.setattr(train, "REFINE_START_ITER", 100)
     ours, theirs = (trainer(engine, growth, 180) for engine in (CpuEngine, IN_TORCH))
     held = shots()[:1]
     before = measure(ours.parameters.cloud(), held).psnr
     for one in (ours, theirs):
-        while one.done < 1:
+        while one.progress < 1:
             one.step()
         assert one.parameters.degree == 1
     a, b = (measure(one.parameters.cloud(), held).psnr for one in (ours, theirs))
@@ -107,10 +109,10 @@ def test_in_torch_gaussians_come_and_go_and_bands_are_added(growth: str, monkeyp
 
 
 @pytest.mark.parametrize(("first", "second"), [(CpuEngine, IN_TORCH), (IN_TORCH, CpuEngine), (IN_TORCH, IN_TORCH)])
-def test_a_state_of_one_engine_goes_on_in_the_other(
-    first: Maker, second: Maker, monkeypatch: pytest.MonkeyPatch
+def test_a_state_of_one_engine_resumes_in_the_other(
+    first: EngineFactory, second: EngineFactory, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(train, "QUIET", 100)
+    monkeypatch.setattr(train, "REFINE_START_ITER", 100)
     begun = trainer(first, "budgeted", 1000)
     for _ in range(100):
         begun.step()
@@ -126,11 +128,11 @@ def test_a_state_of_one_engine_goes_on_in_the_other(
     }
 
 
-def test_what_is_changed_on_the_host_between_steps_holds() -> None:
+def test_changes_on_the_host_between_steps_take_effect() -> None:
     one = trainer(IN_TORCH, "budgeted", 1000)
     one.step()
     one.parameters.take(np.arange(50))
-    one.parameters.widen(2)
+    one.parameters.raise_degree(2)
     one.step()
     assert len(one.parameters) == 50 and one.parameters.degree == 2
 
@@ -144,11 +146,17 @@ def test_a_gaussian_under_training_is_drawn_by_gsplat_as_on_the_cpu(gsplat: Modu
 
 
 @pytest.mark.parametrize("draw", [differentiable.draw, cuda.draw])
-def test_growth_is_told_the_same_pulls(gsplat: ModuleType, draw: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    """In 1/px, of every Gaussian's footprint, whoever draws."""
+def test_strategies_get_the_same_centre_gradients(
+    gsplat: ModuleType, draw: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In 1/px, of every Gaussian's footprint, from each renderer."""
     pulls: list[NDArray[np.float32]] = []
-    monkeypatch.setattr(Classic, "stepped", lambda self, parameters, centers, size, rate: pulls.append(centers))
-    monkeypatch.setattr(Classic, "stepped_there", lambda self, values, centers, *_: pulls.append(centers.numpy()))
+    monkeypatch.setattr(
+        DefaultStrategy, "after_step", lambda self, parameters, centers, size, rate: pulls.append(centers)
+    )
+    monkeypatch.setattr(
+        DefaultStrategy, "after_step_torch", lambda self, values, centers, *_: pulls.append(centers.numpy())
+    )
     for engine in (CpuEngine, partial(TorchEngine, device="cpu", draw=draw)):
         trainer(engine, "classic", 1000, count=60).step()
     ours, theirs = pulls
@@ -157,15 +165,15 @@ def test_growth_is_told_the_same_pulls(gsplat: ModuleType, draw: Any, monkeypatc
 
 
 def test_devices_are_chosen_or_refused(gsplat: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert device_of("auto") == "cuda" and device_of("cpu") == "cpu" and device_of("cuda") == "cuda"
-    made = engine_on("cuda")(Parameters.of(blobs(1, 3)), Budgeted(3, np.random.default_rng(0)), 0.2)
+    assert resolve_device("auto") == "cuda" and resolve_device("cpu") == "cpu" and resolve_device("cuda") == "cuda"
+    made = engine_for("cuda")(Parameters.of(blobs(1, 3)), MCMCStrategy(3, np.random.default_rng(0)), 0.2)
     assert isinstance(made, TorchEngine) and made.degree == 0
-    assert engine_on("cpu") is CpuEngine
+    assert engine_for("cpu") is CpuEngine
     monkeypatch.setattr(cuda.splatting, "DEVICE", "cuda")
     monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
-    assert device_of("auto") == "cpu"
+    assert resolve_device("auto") == "cpu"
     with pytest.raises(BackendError, match=r"finds no CUDA device.*--device cpu"):
-        device_of("cuda")
+        resolve_device("cuda")
 
 
 def test_on_a_device_a_scene_is_learnt_as_on_the_cpu() -> None:
@@ -173,19 +181,19 @@ def test_on_a_device_a_scene_is_learnt_as_on_the_cpu() -> None:
         pytest.skip(cuda.missing())
     held, found = shots()[:1], []
     for device in ("cpu", "cuda"):
-        one = trainer(engine_on(device), "budgeted", 200)  # type: ignore[arg-type]
-        while one.done < 1:
+        one = trainer(engine_for(device), "budgeted", 200)  # type: ignore[arg-type]
+        while one.progress < 1:
             one.step()
         found.append(measure(one.parameters.cloud(), held).psnr)
     assert abs(found[0] - found[1]) < 0.5
 
 
-def test_a_fit_goes_on_from_its_checkpoint_on_the_other_device(
+def test_a_fit_resumes_from_its_checkpoint_on_the_other_device(
     gsplat: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(fitting, "KEEP_EVERY", 0.0)
-    monkeypatch.setattr(fitting, "TELL_EVERY", 0.0)
-    monkeypatch.setattr(train, "QUIET", 100)
+    monkeypatch.setattr(fitting, "CHECKPOINT_EVERY", 0.0)
+    monkeypatch.setattr(fitting, "REPORT_EVERY", 0.0)
+    monkeypatch.setattr(train, "REFINE_START_ITER", 100)
     cloud, kept = blobs(1), tmp_path / "checkpoint"
     photos = Photos(
         tuple(shots()[1:]), tuple(shots()[:1]), Points(cloud.means.double().numpy(), np.ones((250, 3))), 3.3
@@ -197,9 +205,14 @@ def test_a_fit_goes_on_from_its_checkpoint_on_the_other_device(
         if status.steps > 105:
             raise Killed
 
-    settings = Settings(steps=110, most=260, degree=0, gain=None)
+    settings = Settings(steps=110, max_gaussians=260, degree=0, gain=None)
     with pytest.raises(Killed):
-        fit(photos, settings, kept=kept, told=killed)
+        fit(photos, settings, checkpoint_path=kept, on_status=killed)
     begun: list[int] = []
-    fitted = fit(photos, replace(settings, device="cuda"), kept=kept, told=lambda status: begun.append(status.steps))
+    fitted = fit(
+        photos,
+        replace(settings, device="cuda"),
+        checkpoint_path=kept,
+        on_status=lambda status: begun.append(status.steps),
+    )
     assert begun[0] == 101 and math.isfinite(fitted.quality.psnr)

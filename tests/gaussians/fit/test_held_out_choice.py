@@ -1,4 +1,4 @@
-"""No more than a scene needs: bands and Gaussians that earn their place stay, others go, and the figures say why."""
+"""SH bands and Gaussians that gain too little on held-out photographs are dropped, with the measured figures."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def shiny(strength: float) -> GaussianCloud:
 
 
 def test_a_band_stays_where_colours_change_with_the_view_and_not_where_they_do_not() -> None:
-    settings = Settings(steps=1000, most=300, gain=0.3)
+    settings = Settings(steps=1000, max_gaussians=300, gain=0.3)
     dull, bright = (fit(shown(shiny(strength)), settings) for strength in (0.0, 0.9))
     assert dull.scene.cloud.degree == 0 < bright.scene.cloud.degree
     for done in (dull, bright):
@@ -46,21 +46,21 @@ def test_a_band_stays_where_colours_change_with_the_view_and_not_where_they_do_n
         assert done.scene.cloud.degree == 3 - sum(c.taken for c in bands)
 
 
-def test_gaussians_that_nobody_misses_are_left_out_and_no_more() -> None:
+def test_gaussians_are_dropped_while_that_costs_less_than_the_gain() -> None:
     photos, gain = shown(world(40), points=600), 0.2
-    done = fit(photos, Settings(steps=600, most=600, degree=0, gain=gain))
+    done = fit(photos, Settings(steps=600, max_gaussians=600, degree=0, gain=gain))
     tenths = done.choices
     assert len(done.scene.cloud) < 500 and len(tenths) > 2
     assert [c.taken for c in tenths] == [c.psnr[0] - c.psnr[1] < gain for c in tenths]
     assert all(c.taken for c in tenths[:-1]) and not tenths[-1].taken
     assert all(a.after == b.before and a.psnr[1] == b.psnr[0] for a, b in pairwise(tenths))
     assert len(done.scene.cloud) == tenths[-1].before
-    kept_all = fit(photos, Settings(steps=600, most=600, degree=0, gain=None))
+    kept_all = fit(photos, Settings(steps=600, max_gaussians=600, degree=0, gain=None))
     assert len(kept_all.scene.cloud) == 600 and not kept_all.choices
     assert done.quality.psnr > kept_all.quality.psnr - 2 * gain
 
 
 @pytest.mark.parametrize("wrong", [{"gain": -0.1}, {"gain": float("nan")}, {"gain": None, "degree": "auto"}])
-def test_gains_that_mean_nothing_are_refused(wrong: dict[str, object]) -> None:
+def test_invalid_gains_are_refused(wrong: dict[str, object]) -> None:
     with pytest.raises(UserError, match="gain of at least 0 dB"):
         Settings(**{"steps": 10, **wrong})  # type: ignore[arg-type]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from scenewright.gaussians.fit.adam import Adam
-from scenewright.gaussians.fit.loss import photometric, reference, similarity
+from scenewright.gaussians.fit.loss import photometric, reference, ssim
 
 F32 = NDArray[np.float32]
 
@@ -38,15 +38,15 @@ def test_equal_pictures_are_perfectly_similar_and_have_no_loss() -> None:
     _, photo = pair(30, 20, 1)
     value, gradient = photometric(photo, photo.copy())
     assert abs(value) < 1e-6 and np.abs(gradient).max() < 1e-7
-    assert similarity(torch.from_numpy(photo), torch.from_numpy(photo)) == pytest.approx(1, abs=1e-6)
+    assert ssim(torch.from_numpy(photo), torch.from_numpy(photo)) == pytest.approx(1, abs=1e-6)
 
 
 def test_similarity_falls_with_noise_and_does_not_depend_on_the_order() -> None:
     values = []
     for noise in (0.01, 0.1, 0.3):
         a, b = (torch.from_numpy(p) for p in pair(40, 50, 2, noise))
-        values.append(float(similarity(a, b)))
-        assert similarity(a, b) == pytest.approx(float(similarity(b, a)), abs=1e-6)
+        values.append(float(ssim(a, b)))
+        assert ssim(a, b) == pytest.approx(float(ssim(b, a)), abs=1e-6)
     assert 1 > values[0] > values[1] > values[2] > 0
 
 

@@ -21,8 +21,8 @@ from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import BackendError, FileError, UserError
 from scenewright.gaussians.files.captures.capture import described, photographs_alone, read_capture
-from scenewright.gaussians.fit import take_photos
-from scenewright.gaussians.fit.photographs import survey
+from scenewright.gaussians.fit import load_photos
+from scenewright.gaussians.fit.photographs import pose_estimation
 from scenewright.gaussians.lens import Lens
 from scenewright.gaussians.render import render
 
@@ -83,7 +83,7 @@ def placing(monkeypatch: pytest.MonkeyPatch) -> StandIn:
 
 
 def stand_in(monkeypatch: pytest.MonkeyPatch, made: StandIn) -> StandIn:
-    monkeypatch.setattr(survey, "run", made)
+    monkeypatch.setattr(pose_estimation, "run", made)
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: name)
     return made
 
@@ -107,7 +107,7 @@ def test_who_needs_poses_is_told_where_they_come_from(tmp_path: Path) -> None:
     with pytest.raises(FileError, match=r"has 8 photographs but no poses; `scenewright fit .*` estimates them"):
         read_capture(photographs(tmp_path / "a"))
     with pytest.raises(FileError, match="has 8 photographs but no poses"):
-        take_photos(tmp_path / "a")
+        load_photos(tmp_path / "a")
 
 
 def test_what_is_described_is_read_again(tmp_path: Path) -> None:
@@ -129,9 +129,9 @@ def test_photographs_alone_become_a_capture_beside_them(tmp_path: Path, placing:
     kept.parent.mkdir()
     before = sorted(p.name for p in folder.iterdir())
     told: list[str] = []
-    taken = take_photos(folder, progress=lambda stage, share: told.append(stage), poses=kept)
-    assert taken.surveyed == kept and taken.unplaced == () and len(taken.points.means) == 300
-    shots = sorted((*taken.shots, *taken.held), key=lambda s: s.camera.name)
+    taken = load_photos(folder, progress=lambda stage, share: told.append(stage), poses=kept)
+    assert taken.poses_folder == kept and taken.unplaced == () and len(taken.points.means) == 300
+    shots = sorted((*taken.shots, *taken.held_out), key=lambda s: s.camera.name)
     for shot, camera in zip(shots, around(8), strict=True):
         assert np.allclose(shot.camera.world_to_camera, camera.world_to_camera, atol=1e-5)  # from_matrix is float32
     assert sorted(p.name for p in folder.iterdir()) == before
@@ -142,17 +142,17 @@ def test_photographs_alone_become_a_capture_beside_them(tmp_path: Path, placing:
 
 def test_the_same_photographs_are_surveyed_once_even_if_things_move(tmp_path: Path, placing: StandIn) -> None:
     folder, kept = photographs(tmp_path / "in"), tmp_path / "kept"
-    take_photos(folder, poses=kept)
-    take_photos(folder, poses=kept)
+    load_photos(folder, poses=kept)
+    load_photos(folder, poses=kept)
     assert placing.runs == 1
     away = tmp_path / "far/away/kept"
     away.parent.mkdir(parents=True)
     kept.rename(away)
     folder = folder.rename(tmp_path / "elsewhere")
-    assert len(take_photos(folder, poses=away).shots) == 7 and placing.runs == 1
+    assert len(load_photos(folder, poses=away).shots) == 7 and placing.runs == 1
     assert read_capture(away).photos[0].resolve() == (folder / "p000.png").resolve()
     (folder / "p003.png").write_bytes((folder / "p004.png").read_bytes())
-    take_photos(folder, poses=away)
+    load_photos(folder, poses=away)
     assert placing.runs == 2 and [p.name for p in away.parent.iterdir()] == ["kept"]
 
 
@@ -160,8 +160,8 @@ def test_photographs_that_find_no_place_are_left_out_by_name(tmp_path: Path, mon
     made = stand_in(monkeypatch, StandIn(without=2))
     folder = photographs(tmp_path / "in")
     for _ in range(2):  # just surveyed, and found again
-        taken = take_photos(folder, poses=tmp_path / "kept")
-        assert taken.unplaced == ("p006.png", "p007.png") and len(taken.shots) + len(taken.held) == 6
+        taken = load_photos(folder, poses=tmp_path / "kept")
+        assert taken.unplaced == ("p006.png", "p007.png") and len(taken.shots) + len(taken.held_out) == 6
     assert made.runs == 1
 
 
@@ -171,8 +171,11 @@ def test_photographs_that_find_no_place_are_left_out_by_name(tmp_path: Path, mon
 @pytest.mark.parametrize(
     ("made", "said"),
     [
-        (StandIn(without=5), r"only 3 of 8 photographs .* could be placed, by 300 points .*; take more of them"),
-        (StandIn(points=99), "only 8 of 8 photographs .* could be placed, by 99 points"),
+        (
+            StandIn(without=5),
+            r"only 3 of 8 photographs .* could be placed, with 300 common points; take more photographs",
+        ),
+        (StandIn(points=99), "only 8 of 8 photographs .* could be placed, with 99 common points"),
     ],
 )
 def test_a_survey_that_holds_little_is_refused_and_leaves_nothing(
@@ -181,7 +184,7 @@ def test_a_survey_that_holds_little_is_refused_and_leaves_nothing(
     stand_in(monkeypatch, made)
     folder = photographs(tmp_path / "in")
     with pytest.raises(FileError, match=said):
-        take_photos(folder, poses=tmp_path / "kept")
+        load_photos(folder, poses=tmp_path / "kept")
     assert [p.name for p in tmp_path.iterdir()] == ["in"]
 
 
@@ -189,16 +192,16 @@ def test_an_interrupt_leaves_what_was_kept_before(
     tmp_path: Path, placing: StandIn, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder, kept = photographs(tmp_path / "in"), tmp_path / "kept"
-    take_photos(folder, poses=kept)
+    load_photos(folder, poses=kept)
     before = (kept / "transforms.json").read_bytes()
     (folder / "p000.png").unlink()
 
     def stop(lots: Lots, work: Path, progress: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(survey, "run", stop)
+    monkeypatch.setattr(pose_estimation, "run", stop)
     with pytest.raises(KeyboardInterrupt):
-        take_photos(folder, poses=kept)
+        load_photos(folder, poses=kept)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["in", "kept"]
     assert (kept / "transforms.json").read_bytes() == before
 
@@ -208,7 +211,7 @@ def test_nothing_of_others_is_replaced(tmp_path: Path, placing: StandIn) -> None
     kept.mkdir()
     (kept / "diary.txt").write_text("mine")
     with pytest.raises(UserError, match="holds something else"):
-        take_photos(folder, poses=kept)
+        load_photos(folder, poses=kept)
     assert (kept / "diary.txt").read_text() == "mine" and placing.runs == 0
 
 
@@ -244,19 +247,19 @@ def test_what_is_wrong_with_photographs_is_said_before_the_work(
 ) -> None:
     change(photographs(tmp_path / "in"))
     with pytest.raises(FileError, match=said):
-        take_photos(tmp_path / "in", poses=tmp_path / "kept")
+        load_photos(tmp_path / "in", poses=tmp_path / "kept")
     assert placing.runs == 0 and [p.name for p in tmp_path.iterdir()] == ["in"]
 
 
 def test_no_folder_for_poses_is_a_file_error(tmp_path: Path, placing: StandIn) -> None:
     with pytest.raises(FileError, match="cannot write"):
-        take_photos(photographs(tmp_path / "in"), poses=tmp_path / "no/such/kept")
+        load_photos(photographs(tmp_path / "in"), poses=tmp_path / "no/such/kept")
 
 
 def test_without_pycolmap_the_command_to_install_it_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     with pytest.raises(BackendError, match=r'pip install "scenewright\[sfm\]"'):
-        take_photos(photographs(tmp_path / "in"), poses=tmp_path / "kept")
+        load_photos(photographs(tmp_path / "in"), poses=tmp_path / "kept")
     assert [p.name for p in tmp_path.iterdir()] == ["in"]
 
 
@@ -270,7 +273,7 @@ def test_photographs_of_one_size_and_focal_length_share_a_camera(tmp_path: Path)
     for name, told in (("a", exif), ("b", exif), ("c", Image.Exif())):
         picture.save(tmp_path / f"{name}.jpg", exif=told)
     picture.resize((300, 400)).save(tmp_path / "d.jpg", exif=b"Exif\0\0broken")
-    lots = survey._lots(sorted(tmp_path.glob("*.jpg")), tmp_path / "pictures", lambda stage, share: None)
+    lots = pose_estimation._lots(sorted(tmp_path.glob("*.jpg")), tmp_path / "pictures", lambda stage, share: None)
     assert [sorted(lot["photos"].values()) for lot in lots] == [["a.jpg", "b.jpg"], ["c.jpg"], ["d.jpg"]]
     assert [(lot["width"], lot["height"], lot["full"]) for lot in lots[1:]] == [
         (1600, 1200, [2000, 1500]), (300, 400, [300, 400]),
@@ -288,7 +291,7 @@ def test_photographs_of_one_size_and_focal_length_share_a_camera(tmp_path: Path)
 
 @needs_pycolmap
 def test_pairs_are_all_of_few_and_the_most_alike_of_many() -> None:
-    from scenewright.gaussians.fit.photographs.reconstruct import AHEAD, PARTNERS, likely_pairs, shared
+    from scenewright.gaussians.fit.photographs.reconstruct import PARTNERS, SEQUENTIAL, count_matches, likely_pairs
 
     rng = np.random.default_rng(0)
 
@@ -298,20 +301,20 @@ def test_pairs_are_all_of_few_and_the_most_alike_of_many() -> None:
 
     places = [seen(20) for _ in range(3)]
     views = [np.concatenate([places[i % 3], seen(10)]) for i in range(75)]  # three places, looked at in turn
-    assert shared(views[0], views[3]) >= 20 > 10 > shared(views[0], views[1])
-    assert shared(views[0], views[0][:1]) == 0 == shared(views[0][:0], views[1])
+    assert count_matches(views[0], views[3]) >= 20 > 10 > count_matches(views[0], views[1])
+    assert count_matches(views[0], views[0][:1]) == 0 == count_matches(views[0][:0], views[1])
     assert likely_pairs(views[:10]) == {(a, b) for b in range(10) for a in range(b)}
     pairs = likely_pairs(views)
-    assert all(a < b for a, b in pairs) and len(pairs) <= 75 * (PARTNERS + AHEAD)
-    ahead = {(a, b) for a in range(75) for b in range(a + 1, min(75, a + 1 + AHEAD))}
+    assert all(a < b for a, b in pairs) and len(pairs) <= 75 * (PARTNERS + SEQUENTIAL)
+    ahead = {(a, b) for a in range(75) for b in range(a + 1, min(75, a + 1 + SEQUENTIAL))}
     assert ahead <= pairs and all(a % 3 == b % 3 for a, b in pairs - ahead)
     assert all(sum(i in pair for pair in pairs) >= PARTNERS for i in range(75))
 
 
 @needs_pycolmap
 def test_a_failure_of_the_other_process_is_a_backend_error(tmp_path: Path) -> None:
-    with pytest.raises(BackendError, match=r"pycolmap failed at estimating poses: KeyError: 'focal'"):
-        survey.run([{"photos": {}}], tmp_path, lambda stage, share: None)
+    with pytest.raises(BackendError, match=r"pycolmap failed to estimate poses: KeyError: 'focal'"):
+        pose_estimation.run([{"photos": {}}], tmp_path, lambda stage, share: None)
 
 
 def textured(count: int = 5000) -> GaussianCloud:
@@ -341,9 +344,9 @@ def test_poses_of_a_rendered_scene_are_found_again(tmp_path: Path) -> None:
     for camera in cameras:
         Image.fromarray(render(cloud, camera).to_uint8()).save(tmp_path / "in" / f"{camera.name}.png")
     Image.new("RGB", (400, 300), (90, 90, 90)).save(tmp_path / "in" / "blank.png")
-    taken = take_photos(tmp_path / "in", poses=tmp_path / "kept")
+    taken = load_photos(tmp_path / "in", poses=tmp_path / "kept")
     assert taken.unplaced == ("blank.png",)
-    shots = sorted((*taken.shots, *taken.held), key=lambda s: s.camera.name)
+    shots = sorted((*taken.shots, *taken.held_out), key=lambda s: s.camera.name)
     found, true = ([c.world_to_camera for c in cs] for cs in ([s.camera for s in shots], cameras))
     eyes, told = (np.stack([-w[:3, :3].T @ w[:3, 3] for w in ws]) for ws in (found, true))
     apart, wanted = (np.linalg.norm(e[:, None] - e[None], axis=2) for e in (eyes, told))
@@ -357,7 +360,7 @@ def test_poses_of_a_rendered_scene_are_found_again(tmp_path: Path) -> None:
         assert (shot.camera.width, shot.camera.height) == (camera.width, camera.height)
         assert shot.camera.fx == pytest.approx(camera.fx, rel=0.03)
     assert len({shot.camera.fx for shot in shots}) == 2
-    take_photos(tmp_path / "in", poses=tmp_path / "again")
+    load_photos(tmp_path / "in", poses=tmp_path / "again")
     for name in ("transforms.json", "sparse/0/points3D.bin"):
         assert (tmp_path / "kept" / name).read_bytes() == (tmp_path / "again" / name).read_bytes()
 
@@ -367,5 +370,5 @@ def test_poses_of_a_rendered_scene_are_found_again(tmp_path: Path) -> None:
 def test_photographs_that_share_nothing_cannot_be_placed(tmp_path: Path) -> None:
     folder = photographs(tmp_path / "in")
     with pytest.raises(FileError, match="only 0 of 8 photographs"):
-        take_photos(folder, poses=tmp_path / "kept")
+        load_photos(folder, poses=tmp_path / "kept")
     assert [p.name for p in tmp_path.iterdir()] == ["in"]
