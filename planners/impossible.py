@@ -12,7 +12,8 @@ from typing import Any
 from ..gaussians import assets
 from ..gaussians.errors import InstructionError, UserError
 from ..gaussians.language.query.selection import Selection
-from ..tools.operation import METRES, EditOp, Length
+from ..gaussians.world.lengths import in_metres
+from ..tools.operation import EditOp, Length
 from ..tools.ops.scale import Scale
 from .plan import Verdict
 from .rooms.graph_scene import Id, Stage
@@ -51,7 +52,7 @@ def metres(op: EditOp) -> float | None:
     """The distance an operation says, in metres; a graph's units are metres."""
     said = (getattr(op, name, None) for name in ("distance", "height", "width", "depth"))
     length: Length | None = next((found for found in said if found is not None), None)
-    return None if length is None else round(length.value * METRES.get(length.unit, 1.0), 9)
+    return None if length is None else round(in_metres(length.value, length.unit), 9)
 
 
 def refuse_impossible(stage: Stage, step: Step, chosen: Selection, anchors: Sequence[Selection]) -> None:
@@ -115,7 +116,7 @@ def _refuse_size(stage: Stage, step: Step, chosen: Selection) -> None:
         sides = {"height": group.box.size[2:], "width": group.box.size[:2], "depth": group.box.size[:2]}
         factor = step.op.factor or 1.0
         if length is not None:
-            factor = length[1].value * METRES.get(length[1].unit, 1.0) / max(sides[length[0]])
+            factor = in_metres(length[1].value, length[1].unit) / max(sides[length[0]])
         most = max(sides.get(axis, group.box.size)) * factor
         if factor > 1 and most > 2 * max(stage.graph.room.size):
             raise Stopped("impossible", f"{group.label} would be {most:.3g} m large, which no room of this size holds")

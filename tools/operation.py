@@ -21,6 +21,7 @@ from ..gaussians.camera import Camera
 from ..gaussians.language.query.query import Query
 from ..gaussians.language.query.selection import Selection, mask_of
 from ..gaussians.scene import Frame, Scene
+from ..gaussians.world.lengths import Unit, in_metres
 from .alternatives import NOT_GIVEN, either, given
 from .receipt import Check, Pixels, Receipt, SelectionSummary
 
@@ -29,7 +30,6 @@ __all__ = [
     "Placement", "Receipt", "SelectionSummary", "TargetedOp",
 ]  # fmt: skip
 
-Unit = Literal["m", "cm", "mm", "in", "ft", "units"]
 Direction = Literal["left", "right", "forward", "backward", "up", "down"]
 Spot = Literal[
     "on", "under", "above", "next_to", "left_of", "right_of", "in_front_of", "behind", "opposite", "between", "against",
@@ -40,7 +40,6 @@ AssetName = Annotated[str, Field(min_length=1, max_length=60)]
 
 Way = Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False)]
 
-METRES: dict[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
 # Spots that make no sense without something to be placed against.
 _NEED_ANCHOR = {
     "under", "above", "next_to", "left_of", "right_of", "in_front_of", "behind", "opposite", "between", "inside"
@@ -62,7 +61,7 @@ class Length(BaseModel):
         """This length in scene units; one unit counts as one metre where the scale is unknown (see `assumption`)."""
         if self.unit == "units":
             return self.value
-        return self.value * METRES[self.unit] / (frame.metres_per_unit or 1.0)
+        return in_metres(self.value, self.unit) / (frame.metres_per_unit or 1.0)
 
     def assumption(self, frame: Frame) -> tuple[str, ...]:
         """What had to be assumed to convert it, as notes for the receipt; empty if nothing."""

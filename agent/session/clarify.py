@@ -6,21 +6,18 @@ Knows plans and queries as data. Refuses to know how a query is resolved, and ne
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
-
-from pydantic import BaseModel
+from typing import TYPE_CHECKING
 
 from ...gaussians.errors import UserError
+from ...gaussians.language.query.nested import Path, exchange, queries
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Candidate, Selection
 
 if TYPE_CHECKING:
     from ...planners.plan import EditPlan
     from ...tools.operation import EditOp
-
-Path = tuple[str | int, ...]  # field names and positions that lead from an operation to one of its queries
 
 _NUMBER = re.compile(r"(?:the\s+|number\s+|no\.?\s*|#)*(\d+)(?:st|nd|rd|th)?(?:\s+one)?", re.IGNORECASE)
 _ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
@@ -53,28 +50,6 @@ class Question:
     @property
     def candidates(self) -> tuple[Candidate, ...]:
         return self.selection.candidates
-
-
-def queries(node: Any, path: Path = ()) -> Iterator[tuple[Path, Query]]:
-    """Every query inside an operation, those inside another query before it."""
-    if isinstance(node, BaseModel):
-        for name in type(node).model_fields:
-            yield from queries(getattr(node, name), (*path, name))
-        if isinstance(node, Query):
-            yield path, node
-    elif isinstance(node, tuple):
-        for i, item in enumerate(node):
-            yield from queries(item, (*path, i))
-
-
-def exchange(node: Any, path: Path, query: Query) -> Any:
-    """`node` with the query at `path` exchanged; everything else is shared."""
-    if not path:
-        return query
-    key, rest = path[0], path[1:]
-    if isinstance(key, int):
-        return tuple(exchange(item, rest, query) if i == key else item for i, item in enumerate(node))
-    return node.model_copy(update={key: exchange(getattr(node, key), rest, query)})
 
 
 def find_question(plan: EditPlan, step: int, verdict: str, resolve: Callable[[Query], Selection]) -> Question | None:

@@ -10,9 +10,10 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ...gaussians.errors import AbsentError, AmbiguousError, ScenewrightError
+from ...gaussians.language.query.nested import queries
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
-from .clarify import Question, find_question, queries
+from .clarify import Question, find_question
 from .history import State
 from .refusal import retold
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...gaussians.errors import FileError, ScenewrightError, UserError
-from .clarify import exchange, queries
+from ...gaussians.language.query.nested import exchange, queries
 from .log import Record, read_log
 from .result import Result
 

@@ -16,6 +16,7 @@ from typing import Literal
 import numpy as np
 
 from ..errors import UserError
+from ..world.words import singular
 from .modeling.materials import Tone
 from .modeling.shapes import Piece
 
@@ -80,9 +81,8 @@ def find(name: str) -> Kind:
     """
     said = " ".join(name.lower().replace("_", " ").replace("-", " ").split())
     words = {s: k for k in KINDS.values() for s in k.synonyms} | {k.name: k for k in KINDS.values()}
-    for form in (said, said.removesuffix("s"), said.removesuffix("es")):
-        if form in words:
-            return words[form]
+    if found := words.get(said) or {singular(w): k for w, k in words.items()}.get(singular(said)):
+        return found
     close = difflib.get_close_matches(said, words, n=3, cutoff=0.55)
     hint = f"did you mean {', '.join(close)}?" if close else f"known kinds: {', '.join(sorted(KINDS))}"
     raise UserError(f"no asset is called {name!r}; {hint}")

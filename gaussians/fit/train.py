@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..camera import Camera
+from ..morton import codes
 from .densify import Strategy
 from .engine import CpuEngine, EngineFactory
 from .parameters import Parameters
@@ -155,10 +156,4 @@ def morton_order(means: F32) -> NDArray[np.int64]:
     """Rows in Morton order. Gaussians near in space are then near in memory, and rendering is a third faster."""
     low, high = np.quantile(means, [0.01, 0.99], axis=0)
     cells = np.clip((means - low) / np.maximum(high - low, 1e-12), 0, 1 - 1e-6) * 1024
-    code = np.zeros(len(means), np.int64)
-    for axis in range(3):
-        bits = cells[:, axis].astype(np.int64)
-        for shift, mask in ((16, 0x030000FF), (8, 0x0300F00F), (4, 0x030C30C3), (2, 0x09249249)):
-            bits = (bits | (bits << shift)) & mask
-        code |= bits << axis
-    return np.argsort(code, kind="stable")
+    return np.argsort(codes(cells.astype(np.int64)), kind="stable")

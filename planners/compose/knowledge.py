@@ -14,7 +14,7 @@ from typing import Annotated, Literal, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
 
-from ..grammar.vocabulary import nouns
+from ...gaussians.world.words import singular
 from ..layout.problem import WishName
 
 Name = Annotated[str, Field(min_length=1, max_length=60, pattern=r"^[a-z][a-z' ]*$")]
@@ -195,7 +195,7 @@ Table = Mapping[tuple[str, ...], str]
 def thing_words() -> Table:
     """Names of things as tuples of words, the last one singular, and what they name."""
     told = {_words(a): t.name for t in _things() for a in (*t.also, t.name)}
-    return MappingProxyType({(*w[:-1], nouns.singular(w[-1])): name for w, name in told.items()} | told)
+    return MappingProxyType({(*w[:-1], singular(w[-1])): name for w, name in told.items()} | told)
 
 
 @cache
@@ -220,7 +220,7 @@ def lookup(table: Table, words: Sequence[str], i: int) -> tuple[str, int] | None
     """The longest name of a table at position `i`, in singular or plural, and how many words it has."""
     for taken in range(min(4, len(words) - i), 0, -1):
         said = tuple(words[i : i + taken])
-        for form in (said, (*said[:-1], nouns.singular(said[-1]))):
+        for form in (said, (*said[:-1], singular(said[-1]))):
             if form in table:
                 return table[form], taken
     return None

@@ -9,10 +9,8 @@ them. `SceneGraph.from_scene` reads the graph back.
 from __future__ import annotations
 
 import math
-import time
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -31,6 +29,7 @@ from ...gaussians.language.field.language_field import Group, LanguageField, Lev
 from ...gaussians.language.field.measure import lab_of_cloud
 from ...gaussians.language.query.terms import STRUCTURE
 from ...gaussians.scene import Frame, Scene
+from ...gaussians.timing import timed
 from ...gaussians.world.box import Box
 from ...tools.field_update import Newcomer, enter
 from .asset_folder import Shelf
@@ -114,17 +113,17 @@ def construct(
     _refuse(graph, detail)
     seconds: dict[str, float] = {}
     drawn = [n for n in graph.nodes if n.label.lower().strip() not in STRUCTURE or n.label.lower().strip() == "wall"]
-    with _timed(seconds, "assets"):
+    with timed(seconds, "assets"):
         shop = Workshop(seed, detail, Shelf.read(assets) if assets is not None else None)
         carried = loads(graph)
         made = {n.id: shop.make(n, carried.get(n.id, ())) for n in drawn}
     things = {key: one.asset for key, one in made.items()}
     closed = any(n.support == "ceiling" for n in graph.nodes) if ceiling is None else ceiling
-    with _timed(seconds, "room"):
+    with timed(seconds, "room"):
         layout = _layout(graph, drawn, things, seed)
         room = raised(layout, layout.rng, detail, closed, look)
     notes = tuple(dict.fromkeys(note for one in made.values() for note in one.notes))
-    with _timed(seconds, "table"):
+    with timed(seconds, "table"):
         rows = _rows(drawn)
         # Where things stand: measured on their Gaussians, the sides would be blurred by their extents.
         boxes = {n.id: t.box.box for n, t in zip(drawn, layout.things, strict=True)}
@@ -147,13 +146,6 @@ def _refuse(graph: Drawn, detail: float) -> None:
         raise UserError(f"the room is {said} m; a room to build has sides of {SMALLEST:g} to {LARGEST:g} m")
     if len(graph.nodes) > MOST_THINGS:
         raise UserError(f"the graph has {len(graph.nodes)} nodes; at most {MOST_THINGS} are built into one scene")
-
-
-@contextmanager
-def _timed(seconds: dict[str, float], stage: str) -> Iterator[None]:
-    start = time.perf_counter()
-    yield
-    seconds[stage] = time.perf_counter() - start
 
 
 def _layout(graph: Drawn, drawn: Sequence[Node], things: Mapping[NodeId, Asset], seed: int) -> Layout:

@@ -21,16 +21,14 @@ from ...gaussians.language.encoders.calibration import Calibration
 from ...gaussians.language.encoders.vocabulary import Vocabulary
 from ...gaussians.world import synonyms
 from ...gaussians.world.synonyms import Phrase
-from ...gaussians.world.words import normalise
+from ...gaussians.world.words import AFTER_HEAD, normalise
 
 # Probability that a phrase means a label, by how the two agree. Each step is less than the share of the best score at
 # which the resolver sees a rival (0.55), so that an exact name beats a synonym, and that a broader word.
 EXACT, ALIKE, LOOSE, BROADER, NOT = 0.98, 0.5, 0.4, 0.26, 1e-4
 THRESHOLD = 0.2
 _ABSENT = "nothing of all this"
-
-# "a table with drawers" is a table; "a stack of books" is a stack and books, "a picture of a dog" only a picture.
-_AFTER_HEAD = frozenset({"with", "in", "on", "from", "for", "near", "at", "by", "without"})
+# Of "a stack of books" either may be meant, the stack or the books; "a picture of a dog" is only a picture.
 _COLLECTIVE = frozenset({"stack", "pile", "pair", "bunch", "set", "row", "group", "bouquet", "collection"})
 
 
@@ -196,7 +194,7 @@ def _names(asked: Phrase, label: Phrase) -> float:
 
 def _forms(label: Phrase) -> tuple[Phrase, ...]:
     """The label without what stands behind its head; of a collection ("stack of books") also what it is made of."""
-    cut = next((i for i, w in enumerate(label) if i and w in _AFTER_HEAD), len(label))
+    cut = next((i for i, w in enumerate(label) if i and w in AFTER_HEAD), len(label))
     head = label[:cut]
     if "of" not in head[1:-1]:
         return (head,)

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from functools import cache
 
 from ...gaussians.language.query.query import Query
+from ...gaussians.world.lengths import in_metres
+from ...gaussians.world.words import head
 from ...tools.operation import EditOp
 from ..grammar import GrammarPlanner
 from ..grammar.tagging.words import split
@@ -44,7 +46,6 @@ _JOINED = 4  # what a joint inside a clause costs: more than any clause
 _ONES = frozenset({"one", "ones", "other", "others"})
 _EVERYTHING = frozenset({"everything", "furniture", "the furniture", "all furniture", "all the furniture", "all"})
 _COUNTS = {"a": 1, "couple": 2, "both": 2, "us": 2}
-_TO_METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048, "units": 1.0}
 _BEFORE = frozenset({"in front of", "before"})
 
 
@@ -167,8 +168,7 @@ class Reader:
         plan = self.grammar.plan(f"select {said}")
         if len(plan.ops) != 1 or (query := plan.ops[0].query()) is None or query.last:
             raise Unread(f"“{said}” is not understood", said)
-        head = nouns.head(query.text) if query.text else ""
-        if not head and not query.colors:
+        if not query.text and not query.colors:
             raise Unread(f"“{said}” is not understood", said)
         return query.model_copy(update={"pick": "all"}) if every and query.pick in ("one", "any") else query
 
@@ -218,14 +218,9 @@ def _width(said: str) -> float:
     """
     words = tuple(w.text for w in split(said))
     read = quantities.read(words)
-    if (
-        read is None
-        or read.kind != "LENGTH"
-        or read.taken < len(words)
-        or not read.value * _TO_METRES[read.unit] >= 0.2
-    ):
+    if read is None or read.kind != "LENGTH" or read.taken < len(words) or not in_metres(read.value, read.unit) >= 0.2:
         raise Unread(f"“{said}” is no width", said)
-    return read.value * _TO_METRES[read.unit]
+    return in_metres(read.value, read.unit)
 
 
 def _clear(reader: Reader, parts: Parts) -> Goal:
@@ -252,7 +247,7 @@ def _formation(shape: str) -> Callable[[Reader, Parts], Goal]:
 
 def _declutter(reader: Reader, parts: Parts) -> Goal:
     surface = reader.noun(parts["goal"])
-    if nouns.head(surface.text) not in nouns.SURFACES | nouns.CONTAINERS | nouns.FURNITURE:
+    if head(surface.text) not in nouns.SURFACES | nouns.CONTAINERS | nouns.FURNITURE:
         raise Unread(f"nothing stands on {parts['goal']}", parts["goal"])
     return Declutter(surface)
 

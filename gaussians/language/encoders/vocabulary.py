@@ -12,10 +12,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Self
 
-from ...world.words import normalise
-
-# Words after which a noun phrase only describes its head: "a table with drawers" is a table.
-_AFTER_HEAD = frozenset("with in on from for near at by without made having".split())  # noqa: SIM905
+from ...world.words import AFTER_HEAD, normalise
 
 # What captures show beyond households, one name a thing.
 _BEYOND = (
@@ -75,7 +72,7 @@ class Vocabulary:
         """The longest name that a noun phrase ends in, normalised, and the kinds it means: "small red couch" to
         `(("couch",), {"sofa"})`; both empty if it ends in none."""
         words = normalise(text)
-        cut = next((i for i, w in enumerate(words) if i and w in _AFTER_HEAD), len(words))
+        cut = next((i for i, w in enumerate(words) if i and w in AFTER_HEAD), len(words))
         for phrase in (words, words[:cut]):
             for start in range(len(phrase)):
                 if found := self._phrases.get(phrase[start:]):

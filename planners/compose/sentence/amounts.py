@@ -9,17 +9,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
+from ....gaussians.world.lengths import SQUARE_METRES, in_metres
 from ...grammar.tagging.words import bag
 from ...grammar.vocabulary import quantities
 
 Side = Literal["width", "long", "depth", "height", "area", "any"]
-_METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048, "units": 1.0}
 _TIMES = bag("x by × *")
-_AREAS = {
-    **dict.fromkeys(["square metres", "square meters", "square metre", "square meter", "sq m", "sq metres"], 1.0),
-    **dict.fromkeys(["sq meters", "sqm", "m 2", "m2", "metres squared", "meters squared"], 1.0),
-    **dict.fromkeys(["square feet", "square foot", "sq ft", "sqft", "sq feet", "ft 2"], 0.3048**2),
-}
 _SIDES: dict[str, Side] = {
     "wide": "width", "width": "width", "across": "width", "long": "long", "length": "long", "deep": "depth",
     "depth": "depth", "high": "height", "tall": "height", "height": "height",
@@ -44,7 +39,7 @@ def _area(words: Sequence[str]) -> Extents | None:
     if not number:
         return None
     for taken in (2, 1):
-        if factor := _AREAS.get(" ".join(words[1 : 1 + taken])):
+        if factor := SQUARE_METRES.get(" ".join(words[1 : 1 + taken])):
             return Extents({"area": number[0] * factor}, 1 + taken)
     return None
 
@@ -74,7 +69,7 @@ def _product(words: Sequence[str]) -> Extents | None:
     if len(found) < 2:
         return None
     said = next((u for _, u in reversed(found) if u), "m")
-    lengths = [value * _METRES[unit or said] for value, unit in found]
+    lengths = [in_metres(value, unit or said) for value, unit in found]
     names: tuple[Side, ...] = ("width", "depth", "height")
     return Extents(dict(zip(names, lengths, strict=False)), i)
 
@@ -87,7 +82,7 @@ def _single(words: Sequence[str]) -> Extents | None:
     value, unit, i = amount
     side: Side = _SIDES.get(words[i], "any") if i < len(words) else "any"
     i += side != "any"
-    sides: dict[Side, float] = {side: value * _METRES[unit]}
+    sides: dict[Side, float] = {side: in_metres(value, unit)}
     joined = i + (tuple(words[i : i + 1]) in (("and",), (",",)))
     if side != "any" and joined > i and (more := _single(words[joined:])) and not set(more.sides) & {side, "any"}:
         return Extents(sides | more.sides, joined + more.taken)

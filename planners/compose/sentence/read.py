@@ -13,6 +13,7 @@ from typing import Any
 
 from ....gaussians.errors import UserError
 from ....gaussians.world import synonyms
+from ....gaussians.world.words import is_plural, singular
 from ...grammar.tagging.lookahead import color_at, is_plain, match
 from ...grammar.tagging.words import clean
 from ...grammar.vocabulary import lexicon, nouns, quantities
@@ -153,7 +154,7 @@ class _Reader:
         return found[1] if found else 0
 
     def _feature(self, i: int) -> int:
-        if match(vocabulary.BIG_WINDOWS, [nouns.singular(t) for t in self.texts], i):
+        if match(vocabulary.BIG_WINDOWS, [singular(t) for t in self.texts], i):
             return 0
         if found := match(vocabulary.FEATURES, self.texts, i):
             self.features.append(found[0])
@@ -239,7 +240,7 @@ class _Reader:
         said = self.said
         if said.styles and self.kind and self.linker.book.drafts:
             self.remarks.append(f"“{said.styles[-1]}” of the {name} is not shown")
-        self.linker.thing(name, nouns.singular(word), said, nouns.is_plural(word))
+        self.linker.thing(name, singular(word), said, is_plural(word))
         self.said, self.about_room = Said(), False
 
     def _room(self, name: str) -> None:
@@ -292,10 +293,10 @@ class _Reader:
     def _unknown(self, i: int) -> int:
         """A run of words that nobody knows: a thing without a usual size if it is an everyday one, else named."""
         word = self.texts[i]
-        everyday = nouns.is_known(word) or nouns.singular(word) in synonyms.every_word()
+        everyday = nouns.is_known(word) or singular(word) in synonyms.every_word()
         behind = knowledge.lookup(knowledge.thing_words(), self.texts, i + 1)
         if everyday and is_plain(word) and not behind and word not in vocabulary.STRUCTURE:
-            self._thing(nouns.singular(word)[:60], word, i)
+            self._thing(singular(word)[:60], word, i)
             return 1
         self.unknown.append(word)
         if not behind:

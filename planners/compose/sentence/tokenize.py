@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ....gaussians.world.words import singular
 from ...grammar.tagging import spelling
 from ...grammar.tagging.lookahead import match
 from ...grammar.tagging.words import split
-from ...grammar.vocabulary import lexicon, nouns
+from ...grammar.vocabulary import lexicon
 from .. import knowledge
 from ..brief import RefusedError
 from . import vocabulary
@@ -37,7 +38,7 @@ def words_of(cleaned: str) -> tuple[list[str], list[str]]:
 
 def _is_known(text: str) -> bool:
     known = knowledge.every_word() | vocabulary.FILLER | vocabulary.ABSTRACT | vocabulary.PEOPLE
-    return text in known or nouns.singular(text) in known
+    return text in known or singular(text) in known
 
 
 def refuse_others(texts: Sequence[str]) -> None:

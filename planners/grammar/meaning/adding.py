@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ....gaussians.language.query.query import Query
+from ....gaussians.world.words import head
 from ..nodes import Node, Refusal, tokens, trees
 from ..vocabulary import nouns, sizes
 from . import places
@@ -73,7 +74,7 @@ def more_like_that(said: Phrases, node: Node) -> list[Fields]:
 def _count(noun: Noun) -> int:
     if noun.number is not None:
         return places.whole(noun.number, str(noun.number))
-    if not noun.plural or nouns.head(noun.query.text) in _IN_PLURAL:
+    if not noun.plural or head(noun.query.text) in _IN_PLURAL:
         return 1
     if noun.article == "indef":
         return _SOME
@@ -83,7 +84,7 @@ def _count(noun: Noun) -> int:
 def _asset(noun: Noun) -> Fields:
     """Name and colour of a new thing."""
     query, posts = noun.query, noun.posts
-    if nouns.head(query.text) in nouns.PLACES:
+    if head(query.text) in nouns.PLACES:
         raise Refusal("room is made by moving what is there; say what", query.text)
     contents = f" of {posts[0].anchors[0].said}" if len(posts) == 1 and posts[0].kind == "part" else ""
     if not noun.is_new or query.relations or query.not_colors or (posts and not contents.strip(" of")):
@@ -156,7 +157,7 @@ def _unhung(noun: Noun) -> Noun:
     Raises:
         Refusal: such things do not hang there.
     """
-    kept = tuple(p for p in noun.posts if not (p.anchors and nouns.head(p.anchors[0].query.text) == "ceiling"))
+    kept = tuple(p for p in noun.posts if not (p.anchors and head(p.anchors[0].query.text) == "ceiling"))
     if kept == noun.posts:
         return noun
     name = "pendant lamp" if noun.query.text in ("lamp", "light") else noun.query.text

@@ -12,6 +12,7 @@ from functools import cache
 from itertools import pairwise
 
 from ....gaussians.language.query.query import Query
+from ....gaussians.world.words import head
 from ..nodes import Node, Refusal, tokens, trees
 from ..vocabulary import nouns
 from . import adding, changes, moving, shaping
@@ -88,7 +89,7 @@ def clear(said: Phrases, node: Node) -> list[Fields]:
     """ "clear the plants" removes them; "clear the table" and "clear the corner" say nothing of what is there."""
     found = said.things(node)
     if (place := next((n for n in found if _is_cleared(n)), None)) is not None:
-        there = nouns.head(place.query.text) in nouns.PLACES
+        there = head(place.query.text) in nouns.PLACES
         raise Refusal(f"say {'what is to go from there' if there else 'whether to remove it or everything on it'}",
                       "clear")  # fmt: skip
     _require_clear_end(found)
@@ -235,7 +236,7 @@ def _is_cleared(noun: Noun) -> bool:
     """Whether a noun is rather what is freed than what goes: a place, what carries or holds things, a part of it."""
     places = nouns.SURFACES | nouns.FURNITURE | nouns.EVERYWHERE | nouns.PLACES
     of_a_thing = any(p.kind == "part" for p in noun.posts) or any(r.name == "part_of" for r in noun.query.relations)
-    return noun.query.last or of_a_thing or nouns.head(noun.query.text) in places
+    return noun.query.last or of_a_thing or head(noun.query.text) in places
 
 
 def _require_clear_end(found: Sequence[Noun]) -> None:

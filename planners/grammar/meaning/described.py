@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from ....gaussians.language.query.query import Query, Relation
+from ....gaussians.world.words import head
 from ..nodes import Refusal
 from ..vocabulary import nouns
 
@@ -124,7 +125,7 @@ def attach(query: Query, posts: Sequence[Post]) -> Query:
 
 def _takes_more(post: Post) -> bool:
     """Whether what follows may belong to this phrase's noun; floors and walls are everywhere, so not to theirs."""
-    return bool(post.anchors) and nouns.head(post.anchors[-1].query.text) not in nouns.EVERYWHERE
+    return bool(post.anchors) and head(post.anchors[-1].query.text) not in nouns.EVERYWHERE
 
 
 def _narrow(query: Query, post: Post, behind: Sequence[Post]) -> Query:
@@ -167,7 +168,7 @@ def _narrow(query: Query, post: Post, behind: Sequence[Post]) -> Query:
 
 def _lacking(query: Query, post: Post, anchors: Sequence[Query]) -> Query:
     """ "all lamps without the floor lamp" leaves one lamp out, "the table without a vase" the tables that carry one."""
-    if not anchors[0].text or nouns.head(anchors[0].text) == nouns.head(query.text):
+    if not anchors[0].text or head(anchors[0].text) == head(query.text):
         return updated(query, exclude=(*query.exclude, anchors[0]))
     carrying = [a.model_copy(update={"pick": "all"}) for a in anchors]
     bad = updated(query, relations=(*query.relations, _relation(post.value, carrying)), pick="all", count=None)
@@ -181,14 +182,14 @@ def _relation_name(post: Post) -> str:
     if post.kind == "related":
         return {"against": "next_to", "opposite": "in_front_of"}.get(str(post.value), in_or_on(post))
     if post.kind == "off":
-        inside = nouns.head(post.anchors[0].query.text) in nouns.CONTAINERS
+        inside = head(post.anchors[0].query.text) in nouns.CONTAINERS
         return "inside" if inside else "on"
     return {"part": "part_of", "between": "between"}.get(post.kind, "")
 
 
 def in_or_on(post: Post) -> str:
     """The relation of a prepositional phrase; one sits "in" a chair by being on it."""
-    seat = post.value == "inside" and nouns.head(post.anchors[0].query.text) in nouns.SEATS
+    seat = post.value == "inside" and head(post.anchors[0].query.text) in nouns.SEATS
     return "on" if seat else str(post.value)
 
 

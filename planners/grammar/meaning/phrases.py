@@ -13,6 +13,7 @@ from typing import Any
 from lark import Token, Tree
 
 from ....gaussians.language.query.query import Query, Relation
+from ....gaussians.world.words import is_plural, singular
 from ..nodes import Node, Refusal, tag_of, tokens, trees
 from ..tagging.tags import Tag
 from ..tagging.words import bag
@@ -177,7 +178,7 @@ class Phrases:
         """
         if last.type == "SUP" and not self.sharing and last.text in (_MIDDLES if self.antecedent else _SIDES):
             raise Refusal(f"the {last.text} is a place; say what is there, or which one", last.text)
-        if last.type == "NOUN" and nouns.singular(str(last.value).split()[-1]) in nouns.NOTHING:
+        if last.type == "NOUN" and singular(str(last.value).split()[-1]) in nouns.NOTHING:
             raise Refusal("that is no kind of thing; name the things", last.text)
 
     def _owned(self, node: Node, owner: Noun) -> Noun:
@@ -223,16 +224,15 @@ class Phrases:
         """The noun's text, singular, and whether it was plural."""
         last = tags[-1]
         if last.type == "THING":
-            return ("part" if nouns.singular(last.text) in PARTS else ""), bool(last.value)
+            return ("part" if singular(last.text) in PARTS else ""), bool(last.value)
         if last.type == "ONE":
             return self.antecedent, bool(last.value)
         if last.type != "NOUN":
             if last.type in ("SUP", "ORDINAL") or self.sharing:
                 return self.antecedent, False
             raise Refusal("a noun is missing", *_quote(tags))
-        words = str(last.value).split()
-        plural = nouns.is_plural(words[-1])
-        return " ".join([*words[:-1], nouns.singular(words[-1])]), plural
+        text = str(last.value)
+        return singular(text), is_plural(text)
 
     def _number(self, tags: Sequence[Tag]) -> int | None:
         numbers = [t for t in tags if t.type == "NUMBER"]

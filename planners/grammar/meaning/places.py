@@ -16,6 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ....gaussians.world.words import head
 from ..nodes import Node, Refusal, tag_of, tokens, trees
 from ..vocabulary import nouns
 from .described import Noun, Post, attach, in_or_on
@@ -107,9 +108,9 @@ def anchor_only(phrases: Phrases, np: Node) -> Noun:
 
 def _to(goal: Noun, moved: Noun | None) -> Fields:
     """ "to the floor" is on it, "to the wall" against it, "to the window" next to it; "to the table" depends."""
-    name = nouns.head(goal.query.text)
+    name = head(goal.query.text)
     _refuse_some_corner(goal)
-    big = moved is not None and nouns.head(moved.query.text) in nouns.FURNITURE
+    big = moved is not None and head(moved.query.text) in nouns.FURNITURE
     if name == "wall":
         relation = "against"
     elif name in ("floor", "ground") or (name in nouns.SURFACES and not big):
@@ -161,7 +162,7 @@ def placement(posts: Sequence[Post]) -> Fields:
         if rest:
             raise Refusal("a place is one phrase", rest[0].word)
         return {"relation": first.value}
-    on_floor = first.value == "on" and nouns.head(first.anchors[0].query.text) in ("floor", "ground")
+    on_floor = first.value == "on" and head(first.anchors[0].query.text) in ("floor", "ground")
     if on_floor and rest and rest[0].kind in ("related", "between"):
         return placement(rest)  # "on the floor in front of the sofa": being on the floor goes without saying
     if any(p.joined for p in rest):
@@ -181,7 +182,7 @@ def _refines(first: Post, rest: Sequence[Post]) -> bool:
     if first.kind != "related" or first.value != "on" or not rest or rest[0].kind != "related":
         return False
     beside = rest[0].value in _BESIDE
-    return beside and nouns.head(rest[0].anchors[0].query.text) not in nouns.FURNITURE
+    return beside and head(rest[0].anchors[0].query.text) not in nouns.FURNITURE
 
 
 def _spot(post: Post) -> str:

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 
 from ....gaussians.errors import UserError
+from ....gaussians.world.words import singular
 from ..tagging.lookahead import color_at, match
 from ..tagging.words import bag, clean, phrases, split
 from ..vocabulary import lexicon, nouns, quantities
@@ -153,7 +154,7 @@ def _skip(texts: tuple[str, ...], i: int) -> int:
 
 def _head(run: Sequence[str]) -> str:
     """A run of words as a noun phrase: what is known as a noun behind the last adjective."""
-    words = [*run[:-1], nouns.singular(run[-1])]
+    words = [*run[:-1], singular(run[-1])]
     while len(words) > 1 and (words[0] in _adjectives() or color_at(words, 0)):
         words = words[1:]
     return " ".join(words[-3:])

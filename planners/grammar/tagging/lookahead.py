@@ -11,6 +11,7 @@ from functools import cache
 from typing import Any
 
 from ....gaussians import color as colors
+from ....gaussians.world.words import plural
 from ..vocabulary import lexicon, nouns, quantities
 from ..vocabulary.verbs import Entry
 from .words import bag
@@ -245,5 +246,4 @@ def verb_classes() -> frozenset[str]:
 @cache
 def compounds() -> frozenset[tuple[str, ...]]:
     """The compounds, with a singular and a plural head ("wine glasses")."""
-    plural = {c[-1]: c[-1] + ("es" if c[-1].endswith(("s", "x", "sh", "ch")) else "s") for c in nouns.COMPOUNDS}
-    return nouns.COMPOUNDS | {(*c[:-1], plural[c[-1]]) for c in nouns.COMPOUNDS}
+    return nouns.COMPOUNDS | {(*c[:-1], plural(c[-1])) for c in nouns.COMPOUNDS}

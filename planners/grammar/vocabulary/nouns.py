@@ -1,42 +1,13 @@
-"""Nouns: plural or singular, which of two nouns is furniture, a surface or a container, which compounds stay together.
+"""Nouns: which of two nouns is furniture, a surface or a container, and which compounds stay together.
 
-Knows word forms and a short list of everyday things. Refuses to limit what may be named: any word may be a noun; the
+Knows a short list of everyday things. Refuses to limit what may be named: any word may be a noun; the
 lists here only settle preferences ("put it to the desk" means on it) and which word of a wrong sentence to blame.
 """
 
 from __future__ import annotations
 
-import re
-
+from ....gaussians.world.words import MASS, singular
 from ..tagging.words import bag, phrases
-
-_IRREGULAR = {
-    "knives": "knife", "shelves": "shelf", "bookshelves": "bookshelf", "leaves": "leaf", "loaves": "loaf",
-    "scarves": "scarf", "wolves": "wolf", "halves": "half", "wives": "wife", "calves": "calf", "hooves": "hoof",
-    "mice": "mouse", "geese": "goose", "feet": "foot", "teeth": "tooth", "men": "man", "women": "woman",
-    "children": "child", "people": "person", "dice": "die", "cacti": "cactus", "oxen": "ox",
-    "potatoes": "potato", "tomatoes": "tomato", "movies": "movie", "cookies": "cookie", "pies": "pie", "ties": "tie",
-    "shoes": "shoe", "toes": "toe", "canoes": "canoe", "horseshoes": "horseshoe", "axes": "axe", "vases": "vase",
-    "buses": "bus", "gases": "gas", "quizzes": "quiz", "hoes": "hoe", "brownies": "brownie", "hoodies": "hoodie",
-    "selfies": "selfie", "zombies": "zombie", "doggies": "doggie", "heroes": "hero", "mangoes": "mango",
-    "hangers": "hanger", "curios": "curio", "bookcases": "bookcase", "suitcases": "suitcase", "cases": "case",
-    "houses": "house", "roses": "rose", "noses": "nose", "hoses": "hose", "horses": "horse", "nurses": "nurse",
-    "purses": "purse", "blouses": "blouse", "mooses": "moose", "chaises": "chaise", "bases": "base",
-    "caches": "cache", "axles": "axle", "irises": "iris", "lenses": "lens", "cruises": "cruise",
-}  # fmt: skip
-# Words that end in s and are one thing, or have no singular that anyone says.
-_NOT_PLURAL = {
-    "glass", "grass", "bus", "gas", "dress", "mattress", "canvas", "cactus", "compass", "chess", "brass", "cross",
-    "moss", "press", "class", "iris", "lens", "atlas", "bass", "boss", "cutlass", "fortress", "harness", "harps",
-    "octopus", "platypus", "crocus", "hibiscus", "virus", "campus", "christmas", "pus", "this", "thus", "yes",
-    "bias", "trellis", "tennis", "apparatus", "abacus", "asparagus", "chassis", "debris", "chaos", "mess", "less",
-    "status", "menus", "nexus", "plus", "surplus", "eucalyptus", "papyrus", "walrus", "lotus", "focus", "series",
-}  # fmt: skip
-_ONLY_PLURAL = {"scissors", "trousers", "jeans", "pants", "shorts", "stairs", "headphones", "binoculars", "pliers",
-                "tongs", "pyjamas", "pajamas", "sunglasses", "eyeglasses", "goggles", "tights", "tweezers"}  # fmt: skip
-_MASS = {"furniture", "cutlery", "clutter", "bedding", "clothing", "luggage", "glassware", "crockery", "silverware",
-         "rubbish", "trash", "litter", "garbage", "foliage", "greenery", "seating", "lighting",
-         "electronics", "stuff"}  # fmt: skip
 
 SURFACES = bag(
     "floor ground table desk shelf bookshelf bed windowsill sill counter countertop worktop dresser nightstand cabinet "
@@ -82,36 +53,7 @@ COMPOUNDS: frozenset[tuple[str, ...]] = phrases(
     ";",
 )
 
-_VOWEL_OES = re.compile(r"(.*[^aeiou]o)es$")
-
-
-def singular(word: str) -> str:
-    """The singular of a noun ("shelves": "shelf"); the word itself where it has none or is one already."""
-    if word in _IRREGULAR:
-        return _IRREGULAR[word]
-    if not word.endswith("s") or len(word) < 4 or word in _NOT_PLURAL or word in _ONLY_PLURAL or word.endswith("ss"):
-        return word
-    if word.endswith("ies"):
-        return word[:-3] + "y"
-    if found := _VOWEL_OES.match(word):
-        return found.group(1)
-    if word.endswith(("sses", "shes", "ches", "xes", "zzes", "uses")) and not word.endswith(("auses", "ouses")):
-        return word[:-2]
-    if word.endswith(("us", "is")):
-        return word
-    return word[:-1]
-
-
-def is_plural(word: str) -> bool:
-    """Whether the noun says that several are meant ("chairs", "furniture")."""
-    return word in _MASS or word in _ONLY_PLURAL or singular(word) != word
-
-
-def head(phrase: str) -> str:
-    """The head noun of a singular phrase: its last word."""
-    return phrase.rsplit(" ", 1)[-1]
-
 
 def is_known(word: str) -> bool:
     """Whether it is one of the everyday nouns that help to decide which word to blame."""
-    return word in KNOWN or singular(word) in KNOWN or singular(word) in _MASS
+    return word in KNOWN or singular(word) in KNOWN or word in MASS

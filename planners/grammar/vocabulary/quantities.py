@@ -11,22 +11,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from ....gaussians.world.lengths import IN_METRES, UNITS
+
 Kind = Literal["LENGTH", "ANGLE", "PERCENT", "TIMES", "FRACTION", "NUMBER", "ORDINAL"]
 
-UNITS: dict[str, str] = {
-    **dict.fromkeys(["m", "meter", "meters", "metre", "metres"], "m"),
-    **dict.fromkeys(["cm", "cms", "centimeter", "centimeters", "centimetre", "centimetres"], "cm"),
-    **dict.fromkeys(["mm", "millimeter", "millimeters", "millimetre", "millimetres"], "mm"),
-    **dict.fromkeys(["inch", "inches", '"'], "in"),
-    **dict.fromkeys(["ft", "foot", "feet", "'"], "ft"),
-    **dict.fromkeys(["unit", "units"], "units"),
-}  # fmt: skip
-# Units that lengths have no name for, in metres.
-_METRES = {
-    **dict.fromkeys(["km", "kms", "kilometer", "kilometers", "kilometre", "kilometres"], 1000.0),
-    **dict.fromkeys(["yd", "yds", "yard", "yards"], 0.9144), **dict.fromkeys(["mile", "miles"], 1609.344),
-    **dict.fromkeys(["dm", "decimeter", "decimeters", "decimetre", "decimetres"], 0.1),
-}  # fmt: skip
 _ONES = (
     "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
     "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen",
@@ -93,9 +81,9 @@ def _with_unit(words: Sequence[str], value: float, taken: int) -> Quantity | Non
         rest, unit, taken = rest[2:], rest[2], taken + 2
     elif unit in ("a", "an") and len(rest) > 1 and (rest[1] in UNITS or rest[1] in _TURNS):
         rest, unit, taken = rest[1:], rest[1], taken + 1
-    if unit in _METRES:
+    if unit in IN_METRES:
         extra = _and_a_half(rest[1:])
-        return Quantity("LENGTH", round((value + extra[0]) * _METRES[unit], 9), "m", taken + 1 + extra[1])
+        return Quantity("LENGTH", round((value + extra[0]) * IN_METRES[unit], 9), "m", taken + 1 + extra[1])
     if unit in UNITS and (unit not in "'\"" or digits):
         extra = _and_a_half(rest[1:]) if UNITS[unit] != "ft" else _and_inches(rest[1:])
         return Quantity("LENGTH", value + extra[0], UNITS[unit], taken + 1 + extra[1])
@@ -121,7 +109,7 @@ def _with_unit(words: Sequence[str], value: float, taken: int) -> Quantity | Non
 def _one_unit(words: Sequence[str]) -> Quantity | None:
     """ "a metre (and a half)", "a quarter", "a full turn", "a degree"."""
     unit = words[1]
-    if unit in _METRES:
+    if unit in IN_METRES:
         return _with_unit(("1", *words[1:]), 1.0, 1)
     if unit in UNITS and unit not in ("m", "'", '"'):
         extra = _and_a_half(words[2:])
@@ -144,7 +132,7 @@ def _and_a_half(words: Sequence[str]) -> tuple[float, int]:
 def _and_inches(words: Sequence[str]) -> tuple[float, int]:
     """The inches behind feet (5'6", "five feet six inches"), in feet, or "and a half"."""
     number = _whole(words) if words else None
-    if number and tuple(words[number[1] : number[1] + 1]) in (("inches",), ("inch",), ("in",), ('"',)):
+    if number and (unit := " ".join(words[number[1] : number[1] + 1])) and UNITS.get(unit, unit) == "in":
         return number[0] / 12, number[1] + 1
     return _and_a_half(words)
 

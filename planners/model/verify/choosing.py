@@ -11,10 +11,11 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import Any
 
+from ....gaussians.language.query.nested import with_queries
 from ....gaussians.language.query.query import Query
 from ....tools.operation import EditOp
 from ...rooms.label_encoder import words
-from .rehearsal import Rehearsal, with_queries
+from .rehearsal import Rehearsal
 
 _LOOSE = ("all", "any", "rest")
 _WORD = re.compile(r"[^\W\d_]+")

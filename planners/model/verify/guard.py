@@ -19,6 +19,7 @@ from functools import cache, cached_property
 
 from ....gaussians.color import parse as parse_color
 from ....gaussians.errors import UserError
+from ....gaussians.language.query.nested import queries
 from ....gaussians.language.query.query import Query
 from ....gaussians.language.query.terms import STRUCTURE
 from ....tools.operation import EditOp
@@ -32,7 +33,7 @@ from ...rooms.label_encoder import words
 from ...rooms.plan_on_graph import Resolved
 from ..prompt.pruning import Relevance
 from .choosing import numbered, stems, without_guesses, without_inventions
-from .rehearsal import Rehearsal, queries
+from .rehearsal import Rehearsal
 from .removal_words import Ground, said
 
 # What takes things away, and the words that ask for it. Another operation that does belongs here.
@@ -104,7 +105,7 @@ class Guard:
 
     def _ids(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
         """Ids of nothing, and ids of something else than they are called."""
-        for query in queries(tuple(ops)):
+        for _, query in queries(tuple(ops)):
             if query.groups and self._scene is None:
                 yield Fault("ids", "no scene was shown, so groups must be left out: say in words what is meant")
             elif query.groups and self._scene is not None:
@@ -123,7 +124,9 @@ class Guard:
         """Words that are no colours; those which the graph itself writes are."""
         written = {plain_color(n.color) for n in self._scene.graph.nodes} if self._scene is not None else set()
         painted = [c for op in ops if isinstance(c := getattr(op, "color", None), str)]
-        sought = [c for q in queries(tuple(ops)) for c in (*q.colors, *q.not_colors) if plain_color(c) not in written]
+        sought = [
+            c for _, q in queries(tuple(ops)) for c in (*q.colors, *q.not_colors) if plain_color(c) not in written
+        ]
         for color in (*painted, *sought):
             try:
                 parse_color(color)
@@ -143,7 +146,7 @@ class Guard:
 
     def _last(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
         """ "it" without anything before."""
-        if not self._previous and any(q.last for q in queries(tuple(ops[:1]))):
+        if not self._previous and any(q.last for _, q in queries(tuple(ops[:1]))):
             told = "last: there was no instruction before, so it means nothing; name the thing"
             yield Fault("last", told, "not_understood", "nothing was done before that 'it' could mean; name the thing")
 

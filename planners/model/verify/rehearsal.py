@@ -6,13 +6,11 @@ it (guard.py). The names of the graph are those that a model may see, so that wh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property
-from typing import Any
-
-from pydantic import BaseModel
 
 from ....gaussians.errors import UserError
+from ....gaussians.language.query.nested import queries, with_queries
 from ....gaussians.language.query.query import Query
 from ....gaussians.language.query.selection import Selection
 from ....tools.operation import EditOp
@@ -26,29 +24,6 @@ from ..prompt.pruning import line
 
 _NEAR = 5  # nodes shown instead of one that is not there
 _SHOWN = 12  # candidates shown
-
-
-def queries(node: Any) -> Iterator[Query]:
-    """Every query in an operation, those within queries too."""
-    if isinstance(node, Query):
-        yield node
-    if isinstance(node, BaseModel):
-        node = tuple(getattr(node, name) for name in type(node).model_fields)
-    if isinstance(node, tuple):
-        for item in node:
-            yield from queries(item)
-
-
-def with_queries(node: Any, change: Callable[[Query], Query]) -> Any:
-    """An operation with every query changed, inner ones first; what does not change is shared."""
-    if isinstance(node, tuple):
-        return tuple(with_queries(item, change) for item in node)
-    if not isinstance(node, BaseModel):
-        return node
-    old = {name: getattr(node, name) for name in type(node).model_fields}
-    new = {name: made for name, value in old.items() if (made := with_queries(value, change)) != value}
-    node = node.model_copy(update=new) if new else node
-    return change(node) if isinstance(node, Query) else node
 
 
 class Rehearsal:
@@ -89,7 +64,7 @@ class Rehearsal:
 
         All ids must be there.
         """
-        if self.last is None and any(q.last for q in queries(tuple(ops[:1]))):
+        if self.last is None and any(q.last for _, q in queries(tuple(ops[:1]))):
             return None
         staged = tuple(with_queries(op, self._staged) for op in ops)
         return resolve_plan(self.stage, EditPlan(instruction="", ops=staged, planner=""), self.last)

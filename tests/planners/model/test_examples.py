@@ -7,12 +7,13 @@ from typing import get_args
 import pytest
 
 from scenewright import prompts
+from scenewright.gaussians.language.query.nested import queries
 from scenewright.planners.grammar import GrammarPlanner
 from scenewright.planners.model.prompt import examples
 from scenewright.planners.model.prompt.labels import cleaned
 from scenewright.planners.model.verify import reply
 from scenewright.planners.model.verify.guard import Guard
-from scenewright.planners.model.verify.rehearsal import Rehearsal, queries
+from scenewright.planners.model.verify.rehearsal import Rehearsal
 from scenewright.planners.plan import Verdict
 from scenewright.tools import registry
 
@@ -48,9 +49,9 @@ def test_every_operation_and_every_verdict_is_shown() -> None:
 
 def test_every_way_of_pointing_is_shown() -> None:
     said = [(e, reply.read(e.answer)) for e in EXAMPLES]
-    asked = [q for _, r in said for q in queries(r.ops)]
+    asked = [q for _, r in said for _, q in queries(r.ops)]
     assert any(len(r.ops) > 1 for _, r in said)  # compound
-    assert any(e.previous and any(q.last for q in queries(r.ops)) for e, r in said)  # "it"
+    assert any(e.previous and any(q.last for _, q in queries(r.ops)) for e, r in said)  # "it"
     assert any(q.relations for q in asked)
     assert any(q.colors for q in asked)
     assert any(q.exclude for q in asked) and any(q.not_colors for q in asked)

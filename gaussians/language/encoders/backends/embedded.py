@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....errors import BackendError
-from ....world.words import normalise
+from ....world.words import normalise, plural
 from .. import checked_images, checked_texts, weights_folder
 from ..calibration import Calibration
 from ..sessions import open_session, read_object
@@ -105,7 +105,10 @@ class Embedded:
 
     @cached_property
     def _index(self) -> dict[str, int]:
-        return {word: i + 1 for i, word in enumerate(self._words["words"])}  # 0 is padding
+        """Row of each trained word; 0 is padding. Its plural finds it too: a model may have been trained on a form that
+        is no singular ("clothe")."""
+        trained = {word: i + 1 for i, word in enumerate(self._words["words"])}
+        return {plural(word): i for word, i in trained.items()} | trained
 
     @cached_property
     def _image_session(self) -> Any:
