@@ -6,7 +6,6 @@ Level 4 names (through Pillow's table) plus a few that people say and CSS does n
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 
@@ -14,6 +13,7 @@ import torch
 from torch import Tensor
 
 from .errors import UserError
+from .world.spelling import did_you_mean
 
 Rgb = tuple[float, float, float]
 
@@ -68,9 +68,8 @@ def parse(text: str) -> Rgb:
     stem = plain.removesuffix("ish")
     if stem != plain and (named := _named(stem) or _named(stem[:-1]) or _named(f"{stem}e")):
         return named  # greenish, reddish, bluish
-    close = difflib.get_close_matches(joined, names(), n=3, cutoff=0.6)
-    hint = f"; did you mean {', '.join(close)}?" if close else "; use a CSS name such as teal, or #1f8a8a"
-    raise UserError(f"unknown colour {text!r}{hint}")
+    hint = did_you_mean(joined, names()) or "use a CSS name such as teal, or #1f8a8a"
+    raise UserError(f"unknown colour {text!r}; {hint}")
 
 
 def _named(plain: str) -> Rgb | None:

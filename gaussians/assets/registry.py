@@ -8,7 +8,6 @@ Adding a kind is one decorated function in one family file:
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
@@ -16,6 +15,7 @@ from typing import Literal
 import numpy as np
 
 from ..errors import UserError
+from ..world.spelling import did_you_mean
 from ..world.words import singular
 from .modeling.materials import Tone
 from .modeling.shapes import Piece
@@ -83,6 +83,5 @@ def find(name: str) -> Kind:
     words = {s: k for k in KINDS.values() for s in k.synonyms} | {k.name: k for k in KINDS.values()}
     if found := words.get(said) or {singular(w): k for w, k in words.items()}.get(singular(said)):
         return found
-    close = difflib.get_close_matches(said, words, n=3, cutoff=0.55)
-    hint = f"did you mean {', '.join(close)}?" if close else f"known kinds: {', '.join(sorted(KINDS))}"
+    hint = did_you_mean(said, words, likeness=0.55) or f"known kinds: {', '.join(sorted(KINDS))}"
     raise UserError(f"no asset is called {name!r}; {hint}")

@@ -226,6 +226,12 @@ def lookup(table: Table, words: Sequence[str], i: int) -> tuple[str, int] | None
     return None
 
 
+def longest_name(words: Sequence[str], i: int) -> int:
+    """How many words the longest name of a thing, a room or a style has at position `i`; 0 if none stands there."""
+    found = (lookup(table, words, i) for table in (thing_words(), room_words(), style_words()))
+    return max((f[1] for f in found if f), default=0)
+
+
 def thing(name: str) -> ThingKind | None:
     """The kind that a name means, in singular or plural, by any of its words; None if nobody described it."""
     words = _words(" ".join(name.lower().split()))

@@ -6,7 +6,6 @@ means (commands.py).
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
@@ -15,6 +14,7 @@ from lark import Lark, Token
 from lark.exceptions import UnexpectedInput, UnexpectedToken
 from lark.lexer import Lexer
 
+from ...gaussians.world.spelling import did_you_mean
 from .nodes import Node, Refusal
 from .tagging.lookahead import color_at
 from .tagging.tags import Clause, Tag
@@ -71,9 +71,8 @@ def _blame(clause: Clause, at: int | None) -> Refusal:
 
 def _unknown_verb(word: str) -> Refusal:
     verbs = [v[0] for v in lexicon.VERB_PHRASES if len(v) == 1]
-    close = difflib.get_close_matches(word, verbs, n=1, cutoff=0.75)
-    hint = f"; did you mean {close[0]}?" if close else ""
-    return Refusal(f"“{word}” is no verb this planner knows{hint}", word)
+    hint = did_you_mean(word, verbs, most=1, likeness=0.75)
+    return Refusal(f"“{word}” is no verb this planner knows" + (hint and f"; {hint}"), word)
 
 
 def first_words(clause: Clause) -> tuple[str, ...]:

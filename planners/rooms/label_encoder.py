@@ -22,6 +22,7 @@ from ...gaussians.language.encoders.vocabulary import Vocabulary
 from ...gaussians.world import synonyms
 from ...gaussians.world.synonyms import Phrase
 from ...gaussians.world.words import AFTER_HEAD, normalise
+from ..grammar.tagging.spelling import slips
 
 # Probability that a phrase means a label, by how the two agree. Each step is less than the share of the best score at
 # which the resolver sees a rival (0.55), so that an exact name beats a synonym, and that a broader word.
@@ -35,11 +36,7 @@ _COLLECTIVE = frozenset({"stack", "pile", "pair", "bunch", "set", "row", "group"
 @cache
 def vocabulary() -> Vocabulary:
     """The vocabulary of the embedded encoder, without loading its weights."""
-    import json
-
-    from ...gaussians.language.encoders import weights_folder
-
-    return Vocabulary.from_json(json.loads((weights_folder() / "words.json").read_bytes())["vocabulary"])
+    return Vocabulary.household()
 
 
 @dataclass(frozen=True)
@@ -151,8 +148,6 @@ def respelt(asked: Phrase, labels: Sequence[str]) -> Phrase:
 
 @cache
 def _respelt(asked: Phrase, there: frozenset[str]) -> Phrase:
-    from ..grammar.tagging.spelling import slips
-
     return tuple(slips(w, there) or w for w in asked)
 
 

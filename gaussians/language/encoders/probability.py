@@ -15,13 +15,13 @@ Knows vectors, names and sizes. Refuses to know scenes, and never tunes itself o
 
 from __future__ import annotations
 
-import difflib
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import BackendError
+from ...world.spelling import did_you_mean
 from . import Encoder
 from .calibration import SIZE_CAP, Array
 
@@ -31,9 +31,8 @@ def doubt(encoder: Encoder, text: str) -> str | None:
     unknown = encoder.unknown_words(text)
     if unknown:
         said = ", ".join(repr(w) for w in unknown)
-        close = difflib.get_close_matches(text, encoder.vocabulary.names, n=2, cutoff=0.75)
-        hint = f" (did you mean {' or '.join(close)}?)" if close else ""
-        return f"the encoder does not know the word{'s' if len(unknown) > 1 else ''} {said}{hint}"
+        hint = did_you_mean(text, encoder.vocabulary.names, most=2, likeness=0.75)
+        return f"the encoder does not know the word{'s' if len(unknown) > 1 else ''} {said}" + (hint and f" ({hint})")
     return None if encoder.knows(text) else "the phrase holds no word that names a thing"
 
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ....gaussians.world.words import singular
-from ...grammar.tagging import spelling
 from ...grammar.tagging.lookahead import match
+from ...grammar.tagging.spelling import slips as slips_of
 from ...grammar.tagging.words import split
 from ...grammar.vocabulary import lexicon
 from .. import knowledge
@@ -20,20 +20,21 @@ _GREETINGS = frozenset({"hi", "hello", "hey"})
 
 
 def words_of(cleaned: str) -> tuple[list[str], list[str]]:
-    """The words in lower case, possessives joined ("childrens room"), slips corrected; and a remark for each slip."""
+    """The words in lower case, possessives joined ("childrens room"), slips corrected; and a remark for each slip.
+
+    A word is only corrected to one of a name that then stands there as a whole: "gravel" is no "travel bag".
+    """
     joined: list[str] = []
     for word in split(cleaned):
         if word.text == "'s" and joined:
             joined[-1] += "" if joined[-1].endswith("s") else "s"
         elif word.text not in ('"', "'"):
             joined.append(word.text)
-    told, fixed = [], []
-    for text in joined:
-        meant = "" if _is_known(text) else spelling.slips(text, knowledge.every_word())
-        if meant:
-            told.append(f"read “{text}” as {meant}")
-        fixed.append(meant or text)
-    return fixed, told
+    slips = {i: s for i, t in enumerate(joined) if not _is_known(t) and (s := slips_of(t, knowledge.every_word()))}
+    fixed = [slips.get(i, text) for i, text in enumerate(joined)]
+    named = {j for i in range(len(fixed)) if (n := knowledge.longest_name(fixed, i)) for j in range(i, i + n)}
+    told = [f"read “{joined[i]}” as {meant}" for i, meant in slips.items() if i in named]
+    return [text if i in named else joined[i] for i, text in enumerate(fixed)], told
 
 
 def _is_known(text: str) -> bool:

@@ -11,7 +11,6 @@ captions of non-objects do not exist here. Knows names and rows. Refuses to know
 
 from __future__ import annotations
 
-import difflib
 import hashlib
 import json
 from collections.abc import Sequence
@@ -23,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....errors import BackendError
+from ....world.spelling import did_you_mean
 from ....world.words import normalise
 from .. import checked_images, checked_texts
 from ..calibration import Calibration, of_clip
@@ -94,9 +94,10 @@ class Vectors:
         for row, phrase in zip(found, texts, strict=True):
             meant = sorted(self._row[name] for name in self.vocabulary.covered(phrase))
             if not meant:
-                close = difflib.get_close_matches(phrase, self.vocabulary.names, n=3, cutoff=0.6)
-                hint = f"; nearest spelling: {', '.join(close)}" if close else ""
-                raise BackendError(f"there is no vector for {phrase!r} among {len(self.rows)} names{hint}")
+                hint = did_you_mean(phrase, self.vocabulary.names)
+                raise BackendError(
+                    f"there is no vector for {phrase!r} among {len(self.rows)} names" + (hint and f"; {hint}")
+                )
             mean = self.rows[meant].astype(np.float64).mean(axis=0)
             row[:] = mean / np.linalg.norm(mean)
         return found

@@ -84,7 +84,7 @@ def test_a_phrase_is_known_by_its_head(vectors: encoders.Encoder) -> None:
     for phrase in ("cloth", "", "the", "quixotic cat", "couch with wheels", "red"):
         assert not vectors.knows(phrase) and doubt(vectors, phrase) is not None, phrase
         assert (probability(vectors, phrase, _ROWS) == 0).all(), phrase
-    with pytest.raises(BackendError, match=r"no vector for 'bicicle'.*spelling: bicycle"):
+    with pytest.raises(BackendError, match=r"no vector for 'bicicle'.*did you mean bicycle"):
         vectors.encode_text(["bicicle"])
 
 
