@@ -35,11 +35,29 @@ BASIC: dict[str, str] = {
     "black": "#1a1a1a", "gray": "#808080", "white": "#f2f2f2",
 }  # fmt: skip
 
+# Colours and materials that people count to a basic colour, whatever a photometer says.
+FAMILIES: dict[str, str] = {
+    "navy": "blue", "indigo": "blue", "denim": "blue", "azure": "blue", "royalblue": "blue", "skyblue": "blue",
+    "oak": "brown", "walnut": "brown", "wood": "brown", "wooden": "brown", "mahogany": "brown", "chestnut": "brown",
+    "pine": "brown", "teak": "brown", "cherry": "brown", "maple": "brown", "bamboo": "beige", "chocolate": "brown",
+    "bronze": "brown", "copper": "brown", "terracotta": "orange", "rust": "orange", "maroon": "red", "burgundy": "red",
+    "crimson": "red", "scarlet": "red", "lilac": "purple", "lavender": "purple", "violet": "purple", "mauve": "purple",
+    "cream": "white", "ivory": "white", "silver": "gray", "chrome": "gray", "steel": "gray", "metal": "gray",
+    "charcoal": "gray", "gold": "yellow", "golden": "yellow", "brass": "yellow", "mustard": "yellow",
+    "olive": "green", "sage": "green", "mint": "green", "emerald": "green", "turquoise": "teal", "aqua": "teal",
+    "tan": "beige", "sand": "beige", "timber": "brown", "birch": "brown", "reclaimed": "brown", "leather": "brown",
+    "rattan": "beige", "wicker": "beige", "cane": "beige", "straw": "beige", "jute": "beige", "metallic": "gray",
+    "aluminium": "gray", "aluminum": "gray", "concrete": "gray", "stone": "gray", "stainless": "gray", "iron": "black",
+    "marble": "white", "porcelain": "white", "ceramic": "white",
+}  # fmt: skip
+
+QUALIFIERS = ("very dark", "very light", "dark", "deep", "light", "pale", "bright", "vivid")
+
 _TEXT_LIMIT = 80  # characters; no colour name with qualifiers is longer
 NAMING_LIGHTNESS = 0.45
 
 _WORDS = re.compile(r"[^a-z0-9#]+")
-_QUALIFIER = re.compile(r"^(very dark|dark|deep|very light|light|pale|bright|vivid) (.+)$")
+_QUALIFIER = re.compile(rf"^({'|'.join(QUALIFIERS)}) (.+)$")
 
 
 def names() -> tuple[str, ...]:
@@ -47,6 +65,22 @@ def names() -> tuple[str, ...]:
     from PIL import ImageColor
 
     return tuple(sorted(set(ImageColor.colormap) | set(EVERYDAY)))
+
+
+def plain_color(text: str) -> str:
+    """A colour as written, in lower case and with gray spelt one way."""
+    return text.lower().replace("grey", "gray").strip()
+
+
+def shade_of(text: str) -> Rgb:
+    """RGB of a colour word: of a basic term what people picture and furniture wears, of others as in `parse`.
+
+    CSS "blue" is a glowing #0000ff, which leaves a display no room for light and shadow and measures as purple.
+
+    Raises:
+        UserError: unknown colour.
+    """
+    return parse(BASIC.get(plain_color(text), text))
 
 
 def parse(text: str) -> Rgb:

@@ -1,7 +1,4 @@
-"""Colours as people write them in a scene graph: "dark oak", "navy", "tartan".
-
-Knows which basic word a written colour belongs to, and its Lab value for the resolver. Refuses to know graphs.
-"""
+"""Lab values of colours as people write them in a scene graph: "dark oak", "navy", "tartan"."""
 
 from __future__ import annotations
 
@@ -11,31 +8,13 @@ import numpy as np
 import torch
 
 from ...gaussians.camera import Vec3
-from ...gaussians.color import BASIC, lab_to_rgb, parse, rgb_to_lab
+from ...gaussians.color import BASIC, FAMILIES, lab_to_rgb, plain_color, rgb_to_lab, shade_of
 from ...gaussians.errors import UserError
 from ...gaussians.language.query import attributes
 
 _FAMILY = 0.7  # a "light blue" thing answers to "blue" at least this well, to any other basic word less
 # Of a node whose colour nobody wrote or nobody knows: no word fits. By lightness, as names compress chroma.
 NO_COLOR: Vec3 = (1000.0, 0.0, 0.0)
-
-# Colours that people count to a basic one, whatever a photometer says.
-_FAMILIES = {
-    "navy": "blue", "indigo": "blue", "denim": "blue", "azure": "blue", "royalblue": "blue", "skyblue": "blue",
-    "oak": "brown", "walnut": "brown", "wood": "brown", "wooden": "brown", "mahogany": "brown", "chestnut": "brown",
-    "pine": "brown", "teak": "brown", "cherry": "brown", "maple": "brown", "bamboo": "beige", "chocolate": "brown",
-    "bronze": "brown", "copper": "brown", "terracotta": "orange", "rust": "orange", "maroon": "red", "burgundy": "red",
-    "crimson": "red", "scarlet": "red", "lilac": "purple", "lavender": "purple", "violet": "purple", "mauve": "purple",
-    "cream": "white", "ivory": "white", "silver": "gray", "chrome": "gray", "steel": "gray", "metal": "gray",
-    "charcoal": "gray", "gold": "yellow", "golden": "yellow", "brass": "yellow", "mustard": "yellow",
-    "olive": "green", "sage": "green", "mint": "green", "emerald": "green", "turquoise": "teal", "aqua": "teal",
-    "tan": "beige", "sand": "beige",
-}  # fmt: skip
-
-
-def plain_color(color: str) -> str:
-    """A colour as written, in lower case and with gray spelt one way."""
-    return color.lower().replace("grey", "gray").strip()
 
 
 def hex_of(lab: Vec3) -> str:
@@ -53,8 +32,8 @@ def color_of(name: str) -> Vec3:
     plain = plain_color(name)
     own, family = _lab(plain), _family(plain)
     if family is None or plain in BASIC:
-        return _lab(BASIC[plain]) if plain in BASIC else own
-    basic = _lab(BASIC[family])
+        return own
+    basic = _lab(family)
     if own == NO_COLOR:
         return basic
     for step in range(21):
@@ -68,12 +47,12 @@ def _family(plain: str) -> str | None:
     """The basic colour word that a name ends with or belongs to."""
     last = plain.replace("-", " ").split()[-1:] or [""]
     joined = plain.replace(" ", "")
-    return last[0] if last[0] in BASIC else _FAMILIES.get(joined) or _FAMILIES.get(last[0])
+    return last[0] if last[0] in BASIC else FAMILIES.get(joined) or FAMILIES.get(last[0])
 
 
 def _lab(text: str) -> Vec3:
     try:
-        return _vec(rgb_to_lab(torch.tensor(parse(text), dtype=torch.float64)).numpy())
+        return _vec(rgb_to_lab(torch.tensor(shade_of(text), dtype=torch.float64)).numpy())
     except UserError:
         return NO_COLOR
 

@@ -20,12 +20,12 @@ from ...gaussians.assets.modeling.make import Asset
 from ...gaussians.assets.modeling.materials import Material
 from ...gaussians.assets.modeling.shapes import Piece, bounds, box
 from ...gaussians.camera import Vec3
-from ...gaussians.color import BASIC, Rgb, parse
+from ...gaussians.color import BASIC, Rgb, parse, plain_color, shade_of
 from ...gaussians.errors import UserError
 from ...gaussians.world import synonyms
 from ...gaussians.world.words import normalise
 from .asset_folder import Shelf
-from .color_words import NO_COLOR, color_of, hex_of, plain_color
+from .color_words import NO_COLOR, color_of, hex_of
 from .node import Node
 from .rest_heights import Load, level_error
 
@@ -87,7 +87,7 @@ class Workshop:
                 return Made(taken.asset, notes)
         kind = kind_of(node.label)
         if kind is None:
-            color = parse(BASIC["gray"]) if rgb is None else rgb
+            color = shade_of("gray") if rgb is None else rgb
             why = f"no asset is called {node.label!r}: {said} is drawn as a plain block"
             return Made(_block(size, color, self.detail), (*notes, why), True)
         if " ".join(normalise(node.label)) in _LIKE:
@@ -235,7 +235,7 @@ def _shade(node: Node, said: str) -> tuple[Rgb | None, tuple[str, ...]]:
     if not plain:
         return None, ()
     if plain in BASIC:
-        return parse(BASIC[plain]), ()
+        return shade_of(plain), ()
     lab = color_of(plain)
     if lab == NO_COLOR:
         return None, (f"no colour is called {node.color!r}: {said} is drawn in one of its own",)

@@ -17,7 +17,7 @@ import torch
 
 from ...gaussians.camera import Camera, Vec3
 from ...gaussians.cloud import GaussianCloud
-from ...gaussians.color import BASIC
+from ...gaussians.color import BASIC, plain_color
 from ...gaussians.language.field.language_field import Group, LanguageField
 from ...gaussians.language.query.query import Query, Relation
 from ...gaussians.language.query.resolve import resolve
@@ -27,7 +27,7 @@ from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.box import Box, distance
 from ...gaussians.world.person import EYE_HEIGHT
 from ...gaussians.world.support import SHELL
-from .color_words import NO_COLOR, color_of, hex_of, plain_color
+from .color_words import NO_COLOR, color_of, hex_of
 from .graph import SceneGraph
 from .label_encoder import WordEncoder
 from .node import Node

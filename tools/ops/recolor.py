@@ -9,7 +9,7 @@ import torch
 from pydantic import ConfigDict, Field, model_validator
 from torch import Tensor
 
-from ...gaussians.color import BASIC, parse, rgb_to_lab
+from ...gaussians.color import rgb_to_lab, shade_of
 from ...gaussians.language.field.measure import Sample, lit_lab, sample
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
@@ -73,14 +73,10 @@ class Recolor(TargetedOp):
         return Outcome(after.replace(language=recolored(after, selection.ids)), touched=selection.ids)
 
     def _asked(self) -> Tensor | None:
-        """Lab of the named colour; a basic colour word means what people picture, not the corner of the RGB cube.
-
-        CSS blue and red leave a display no room for light and shadow, and CSS blue measures as purple.
-        """
+        """Lab of the named colour, as people picture it."""
         if self.color is None:
             return None
-        word = self.color.lower().strip().replace("grey", "gray")
-        return rgb_to_lab(torch.tensor(parse(BASIC.get(word, self.color)), dtype=torch.float64))
+        return rgb_to_lab(torch.tensor(shade_of(self.color), dtype=torch.float64))
 
     def _map(self, taken: Sample, asked: Tensor | None) -> ColorMap:
         """The map for one coat of paint."""

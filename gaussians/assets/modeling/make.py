@@ -15,10 +15,9 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from ... import color as colors
 from ...camera import Vec3
 from ...cloud import GaussianCloud
-from ...color import Rgb
+from ...color import Rgb, name_of, rgb_to_lab, shade_of
 from ...errors import UserError
 from .. import registry
 from . import light, sampling, shapes
@@ -154,11 +153,6 @@ def design(known: registry.Kind, seed: int, wanted: Rgb | None = None) -> tuple[
     return known.build(rng, tone), tone
 
 
-def shade_of(color: str) -> Rgb:
-    """RGB of a colour word: a basic term as furniture wears it (CSS "blue" is a glowing #0000ff), else as parsed."""
-    return colors.parse(colors.BASIC.get(color.strip().lower(), color))
-
-
 def _typical(pieces: Sequence[Piece], known: registry.Kind) -> Vec3:
     """The design's own size, brought back into the kind's typical range."""
     low, high = shapes.bounds(pieces)
@@ -224,4 +218,4 @@ def quaternions(frames: Array) -> Array:
 
 def basic_name(rgb: Rgb) -> str:
     """Basic colour term of an RGB, without "dark" or "light"."""
-    return colors.name_of(colors.rgb_to_lab(torch.tensor(rgb))).split()[-1]
+    return name_of(rgb_to_lab(torch.tensor(rgb))).split()[-1]

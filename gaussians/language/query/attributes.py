@@ -14,7 +14,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from ...color import BASIC, naming_space, parse, rgb_to_lab
+from ...color import BASIC, naming_space, parse, rgb_to_lab, shade_of
 from ..field.language_field import Group, LanguageField
 
 F64 = NDArray[np.float64]
@@ -47,11 +47,8 @@ def color_scores(word: str, lab: NDArray[np.floating]) -> F64:
 @cache
 def _terms(word: str) -> tuple[F64, F64]:
     """The asked colour `[3]` and the basic terms that compete with it `[R, 3]`, in naming space."""
-    asked = naming_space(rgb_to_lab(torch.tensor(parse(word), dtype=torch.float64))).numpy()
-    basic = naming_space(rgb_to_lab(torch.tensor([parse(v) for v in BASIC.values()], dtype=torch.float64))).numpy()
-    own = BASIC.get(word.strip().lower())
-    if own is not None:  # a basic term means its typical shade, not the CSS value of that name
-        asked = naming_space(rgb_to_lab(torch.tensor(parse(own), dtype=torch.float64))).numpy()
+    asked = naming_space(rgb_to_lab(torch.tensor(shade_of(word), dtype=torch.float64))).numpy()
+    basic = naming_space(rgb_to_lab(torch.tensor([shade_of(v) for v in BASIC], dtype=torch.float64))).numpy()
     return asked, basic[np.linalg.norm(basic - asked, axis=1) > DISTINCT]
 
 

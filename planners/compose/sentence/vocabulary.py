@@ -5,6 +5,7 @@ Knows spellings and what each stands for. Refuses to know how they combine (read
 
 from __future__ import annotations
 
+from ....gaussians.color import FAMILIES
 from ...grammar.tagging.words import bag, phrases
 from ...grammar.vocabulary.lexicon import RELATIONS as SAID
 from ..brief import Scale
@@ -80,16 +81,13 @@ SIZES: dict[str, Scale] = {
     **dict.fromkeys(bag("huge enormous giant gigantic massive vast"), "huge"),
     **dict.fromkeys(bag("medium mid normal average"), "normal"),
 }  # fmt: skip
-# Materials and the colour that a thing of them has where none is said.
-MATERIALS = {
-    **dict.fromkeys(bag("wooden wood oak walnut pine teak mahogany timber birch reclaimed"), "brown"),
-    **dict.fromkeys(bag("leather"), "brown"),
-    **dict.fromkeys(bag("rattan wicker bamboo cane straw jute"), "beige"),
-    **dict.fromkeys(bag("metal metallic steel chrome aluminium aluminum concrete stone stainless"), "gray"),
-    **dict.fromkeys(bag("iron"), "black"),
-    **dict.fromkeys(bag("marble porcelain ceramic"), "white"),
-    **dict.fromkeys(bag("glass plastic fabric velvet linen wool cotton upholstered acrylic brick brass"), ""),
-}  # fmt: skip
+# Materials and the basic colour that a thing of them has where none is said; of the first ones it may have any.
+MATERIALS = dict.fromkeys(
+    bag("glass plastic fabric velvet linen wool cotton upholstered acrylic brick brass"), ""
+) | {m: FAMILIES[m] for m in bag(
+    "wooden wood oak walnut pine teak mahogany timber birch reclaimed leather rattan wicker bamboo cane straw jute "
+    "metal metallic steel chrome aluminium aluminum concrete stone stainless iron marble porcelain ceramic"
+)}  # fmt: skip
 SHAPES = bag("round square rectangular circular oval curved shaped corner open closed tiered folding")
 COUNTS: dict[Phrase, int] = {
     ("a", "few"): 3, ("few",): 3, ("several",): 4, ("multiple",): 4, ("many",): 6, ("some",): 3, ("lots", "of"): 6,

@@ -18,7 +18,6 @@ from .words import bag
 
 # Colours that are things as well ("delete the orange").
 NOUN_COLORS = bag("orange rose peach apricot olive lime tomato salmon plum chocolate snow sand coral orchid wine mint")
-_QUALIFIERS = ("very dark", "very light", "dark", "deep", "light", "pale", "bright", "vivid")
 _OPENERS = frozenset({"DET", "PRON", "EVERYTHING", "NUMBER", "OTHERS"})
 _PARTICLES = frozenset({"up", "down", "out", "away", "off", "over"})
 
@@ -41,7 +40,7 @@ def color_at(texts: Sequence[str], i: int) -> tuple[str, int] | None:
 
 def _without_basic(phrase: str, taken: int, behind: Sequence[str]) -> tuple[str, int]:
     """ "navy blue" and "mint green" are navy and mint."""
-    precise = phrase not in colors.BASIC and phrase not in ("grey", *_QUALIFIERS) and not phrase.startswith("#")
+    precise = phrase not in colors.BASIC and phrase not in ("grey", *colors.QUALIFIERS) and not phrase.startswith("#")
     doubled = taken == 1 and precise and bool(behind) and behind[0] in (*colors.BASIC, "grey")
     return phrase, taken + doubled
 
@@ -50,7 +49,7 @@ def _is_color(phrase: str) -> bool:
     joined = phrase.replace(" ", "").replace("grey", "gray")
     if joined in _color_names() or phrase.startswith("#"):
         return len(phrase) < 30
-    for qualifier in _QUALIFIERS:
+    for qualifier in colors.QUALIFIERS:
         if phrase.startswith(qualifier + " "):
             return _is_color(phrase[len(qualifier) + 1 :])
     if phrase.endswith("ish") and " " not in phrase:

@@ -17,8 +17,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ....gaussians.color import plain_color
 from ....gaussians.world.support import SHELL
-from ...rooms.color_words import plain_color
 from ...rooms.graph import SceneGraph
 from ...rooms.label_encoder import THRESHOLD, agreement, words
 from ...rooms.node import Node

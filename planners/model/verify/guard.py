@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 
 from ....gaussians.color import parse as parse_color
+from ....gaussians.color import plain_color
 from ....gaussians.errors import UserError
 from ....gaussians.language.query.nested import queries
 from ....gaussians.language.query.query import Query
@@ -26,7 +27,6 @@ from ....tools.operation import EditOp
 from ...grammar.vocabulary.verbs import VERBS
 from ...impossible import MAKES_PLACE
 from ...plan import Planner, Verdict
-from ...rooms.color_words import plain_color
 from ...rooms.graph import SceneGraph
 from ...rooms.graph_scene import Id
 from ...rooms.label_encoder import words
