@@ -23,7 +23,7 @@ _MAY_OPEN = bag(", and to")
 _ARTICLES = bag("the a an this that these those my your our his her its their every each another any")
 _DETERMINERS = _ARTICLES | bag("all both it them everything some one two three four five")
 _BEHIND_NOUN = bag(
-    ". , ; ! and or but then to from on onto in into at by near next under behind beside with of over above below "
+    ". , ; ! and or but then to from on onto in into at by near next under behind beside with over above below "
     "between left right up down forward backward"
 )
 
@@ -71,7 +71,10 @@ def _opens(texts: Sequence[str], i: int) -> bool:
 
 
 def _is_noun(texts: Sequence[str], i: int) -> bool:
-    """Whether only a noun fits: between a determiner and what follows a noun phrase."""
+    """Whether only a noun fits: between a determiner and what follows a noun phrase.
+
+    Before "of" a comparative may stand as well ("the taller of the two").
+    """
     behind = texts[i + 1] if i + 1 < len(texts) else "."
     return i > 0 and texts[i - 1] in _ARTICLES and behind in _BEHIND_NOUN
 
