@@ -1,6 +1,7 @@
-"""What stands on a thing and goes where the thing goes: the vase on the table, the cushions on the sofa.
+"""What stands on a thing: it goes where the thing goes, or is told to hang in the air when the thing goes alone.
 
-Knows the table of groups. Refuses to know operations, and to load furniture on a rug: what is flat is stood upon.
+The vase on the table, the cushions on the sofa. What is flat, such as a rug, carries nothing: it slides away from under
+the furniture.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from dataclasses import replace
 import torch
 from torch import Tensor
 
+from ..gaussians.language.field.language_field import Group
 from ..gaussians.language.query.selection import Selection, mask_of
 from ..gaussians.scene import Scene
 from ..gaussians.world.support import standing_on
@@ -66,3 +68,28 @@ def went_along(scene: Scene, bodies: Sequence[Body]) -> tuple[str, ...]:
     names = [scene.language.groups[g].label or "something" for b in bodies for g in b.riders]
     more = f" and {len(names) - TOLD} more" if len(names) > TOLD else ""
     return (f"what stood on it went along: {', '.join(names[:TOLD])}{more}",) if names else ()
+
+
+def left_hanging(before: Scene, after: Scene, groups: tuple[int, ...]) -> tuple[str, ...]:
+    """A note naming the things that stood on one of `groups` and no longer do; none without a language field."""
+    if before.language is None or after.language is None:
+        return ()
+    old, new = before.language, after.language
+    if all(a.box == b.box and a.count == b.count for a, b in zip(old.groups, new.groups, strict=False)):
+        return ()  # nothing moved or went
+    targets = [old.groups[g] for g in groups if old.groups[g].level == "object"]
+    stood = {g.id: (g, t) for t in targets for g in standing_on(old, before.frame, t) if g.id not in groups}
+    hanging = [g for g, t in stood.values() if new.groups[g.id].count and not _still(after, g, t)]
+    if not hanging:
+        return ()
+    named = ", ".join(g.label or "something" for g in sorted(hanging, key=lambda g: g.id)[:TOLD])
+    more = f" and {len(hanging) - TOLD} more" if len(hanging) > TOLD else ""
+    return (f"left hanging in the air: {named}{more}; move or delete what stood there too",)
+
+
+def _still(after: Scene, thing: Group, support: Group) -> bool:
+    """Whether `thing` stands on `support` after the edit."""
+    field = after.language
+    assert field is not None
+    now = field.groups[support.id]
+    return bool(now.count) and any(g.id == thing.id for g in standing_on(field, after.frame, now))

@@ -9,10 +9,10 @@ import numpy as np
 import torch
 
 from ..gaussians.camera import Camera
+from ..gaussians.language.field.measure import reach, solid_points
 from ..gaussians.language.query.selection import mask_of
 from ..gaussians.scene import Scene
 from ..gaussians.world.box import overlap
-from .measure import reach, solid_points
 from .operation import Affine, Outcome
 from .placement.bodies import Array, centimetre, contact_box, neighbours
 from .placement.occupancy import hits, obstacle_points

@@ -32,8 +32,7 @@ from torch import Tensor
 
 from ..gaussians.color import lab_to_rgb, rgb_to_lab
 from ..gaussians.harmonics import SH_C0
-from ..gaussians.language.field.measure import Sample, lit_of
-from .measure import lightness_spread, mean_lab
+from ..gaussians.language.field.measure import Sample, lightness_spread, lit_of, mean_lab
 
 LUMA = (0.2126, 0.7152, 0.0722)  # ITU-R BT.709
 PATTERN = 0.35  # departures from the mean hue keep at most this share of the asked chroma

@@ -17,10 +17,10 @@ from ..gaussians.language.query.selection import Selection, mask_of
 from ..gaussians.scene import Scene
 from ..gaussians.timing import timed
 from . import pixel_diff
+from .carried_objects import left_hanging
 from .cloud_diff import Difference, difference
 from .operation import Context, EditOp, Outcome
 from .receipt import Check, Pixels, Receipt, SelectionSummary, at_most
-from .unsupported import left_hanging
 
 
 class Done(NamedTuple):

@@ -16,12 +16,12 @@ from ..gaussians import assets
 from ..gaussians.camera import Vec3
 from ..gaussians.cloud import NO_GROUP, GaussianCloud
 from ..gaussians.errors import InstructionError, UserError
+from ..gaussians.language.field.measure import reach, solid_points
 from ..gaussians.scene import Scene
 from ..gaussians.world.person import HUNG_AT
 from . import field_update
 from .cloud_diff import fresh_ids, joined
 from .field_update import Newcomer
-from .measure import reach, solid_points
 from .operation import Affine, Context, Length, Placement
 from .placement.bodies import Array, Body, as_vec, contact_box, heading
 from .placement.occupancy import obstacle_points

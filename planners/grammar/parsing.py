@@ -1,8 +1,4 @@
-"""A clause's tokens as a tree, or which of its words to blame.
-
-Knows the parser (grammar.lark, LALR) and how its error becomes a sentence for the user. Refuses to know what a tree
-means (commands.py).
-"""
+"""A clause's tokens as a tree (grammar.lark, LALR), how to find its parts, and which words to blame if it has none."""
 
 from __future__ import annotations
 
@@ -10,15 +6,46 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 
-from lark import Lark, Token
+from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedInput, UnexpectedToken
 from lark.lexer import Lexer
 
 from ...gaussians.world.spelling import did_you_mean
-from .nodes import Node, Refusal
 from .tagging.lookahead import color_at
 from .tagging.tags import Clause, Tag
 from .vocabulary import lexicon, nouns
+
+Node = Tree[Token]
+
+
+class Refusal(Exception):
+    """The clause cannot become a plan.
+
+    Attributes:
+        verdict: of the plan.
+        words: the words to blame, as written.
+    """
+
+    def __init__(self, reason: str, *words: str, verdict: str = "not_understood") -> None:
+        super().__init__(reason)
+        self.verdict = verdict
+        self.words = words
+
+
+def tag_of(token: Token) -> Tag:
+    """The tag that a token of the grammar carries."""
+    value: Tag = token.value
+    return value
+
+
+def tokens(node: Node, *types: str) -> list[Tag]:
+    """The tags of these types directly below a node."""
+    return [tag_of(c) for c in node.children if isinstance(c, Token) and c.type in types]
+
+
+def trees(node: Node, *names: str) -> list[Node]:
+    """The children with these names."""
+    return [c for c in node.children if isinstance(c, Tree) and (not names or c.data in names)]
 
 
 class _Passed(Lexer):

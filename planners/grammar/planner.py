@@ -18,11 +18,10 @@ from ...gaussians.language.query.query import Query
 from ...tools.operation import EditOp
 from ...tools.registry import parse as parse_op
 from ..plan import MAX_OPS, EditPlan
+from .meaning.changes import Fields
 from .meaning.commands import read
-from .meaning.joining import merge_copies, release, sparing
 from .meaning.phrases import Phrases
-from .nodes import Refusal, trees
-from .parsing import first_words, parse
+from .parsing import Refusal, first_words, parse, trees
 from .tagging.lookahead import match
 from .tagging.non_edits import FORBIDDEN, STATEMENT, empty, is_chat, refuse_idle
 from .tagging.spelling import respell
@@ -125,15 +124,15 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
         if topic is not None and ops[0].get("target") == Query(last=True):
             ops[0] = {**ops[0], "target": topic}
     if idle and ops and str(idle) == FORBIDDEN and topic is not None:
-        ops, idle = [sparing(op, topic) for op in ops], None  # "don't touch the sofa, remove everything"
-    ops = release(ops)
+        ops, idle = [_sparing(op, topic) for op in ops], None  # "don't touch the sofa, remove everything"
+    ops = _release(ops)
     if not ops:
         raise idle or empty(words)
     if idle and not is_chat(idle):
         raise Refusal(f"this part is not an edit, so nothing was planned: {idle}", *idle.words)
     if len(ops) > MAX_OPS:
         raise Refusal(f"that is more than {MAX_OPS} steps; say it in parts")
-    return _Outcome(tuple(merge_copies(ops)), said.antecedent, tuple(said.before), remarks, said.colors)
+    return _Outcome(tuple(_merge_copies(ops)), said.antecedent, tuple(said.before), remarks, said.colors)
 
 
 def _topic(clause: Clause, idle: Refusal) -> Query | None:
@@ -180,3 +179,53 @@ def _quote(clause: Clause, cleaned: str) -> str:
     words = [w for t in clause.tags for w in t.words]
     said = cleaned[words[0].start : words[-1].end] if words else cleaned
     return said if len(said) <= 80 else said[:79] + "…"
+
+
+# ---- what one clause's operations mean for another's ----
+
+
+def _sparing(op: Fields, spared: Query) -> Fields:
+    """An operation on several things without what was forbidden to touch."""
+    target = op.get("target")
+    if target is None or target.pick != "all" or len(target.exclude) >= 4:
+        return op
+    return {**op, "target": target.model_copy(update={"exclude": (*target.exclude, spared)})}
+
+
+def _release(ops: Sequence[Fields]) -> list[Fields]:
+    """Settle clauses that are half a sentence: "keep the sofa (and delete the rest)", "take the cup (and put …)".
+
+    Raises:
+        Refusal: the other half is missing.
+    """
+    settled: list[Fields] = []
+    taken: Query | None = None
+    for i, op in enumerate(ops):
+        held, fields = op.get("held"), {k: v for k, v in op.items() if k != "held"}
+        after = ops[i + 1].get("target") if i + 1 < len(ops) else None
+        if held == "kept" and (after is None or Query(last=True) not in after.exclude):
+            raise Refusal("it says what to keep, and asks for no change", "keep", verdict="not_an_edit")
+        if op["op"] == "isolate" and after is not None and after.pick == "all" and Query(last=True) in after.exclude:
+            fields = {"op": "select", "target": op["target"]}  # "just keep the sofa and remove everything else"
+        if held == "taken":
+            if after != Query(last=True) or ops[i + 1]["op"] != "move":
+                raise Refusal("say where to, or take it away", "take")
+            taken = op["target"]
+            continue
+        if taken is not None:
+            fields, taken = {**fields, "target": taken}, None
+        settled.append(fields)
+    return settled
+
+
+def _merge_copies(ops: Sequence[Fields]) -> list[Fields]:
+    """ "copy the chair and put it next to the desk" is one copy that goes there."""
+    merged: list[Fields] = []
+    for op in ops:
+        before = merged[-1] if merged else {}
+        bare = before.get("op") == "duplicate" and not {"place", "direction"} & before.keys()
+        if bare and op["op"] == "move" and op["target"].last and "toward" not in op:
+            merged[-1] = {**before, **{k: v for k, v in op.items() if k not in ("op", "target")}}
+        else:
+            merged.append(op)
+    return merged

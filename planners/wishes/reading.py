@@ -7,7 +7,7 @@ and to guess: an instruction of which any clause is not understood is not read a
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -16,9 +16,8 @@ from ...gaussians.world.lengths import in_metres
 from ...gaussians.world.words import head
 from ...tools.operation import EditOp
 from ..grammar import GrammarPlanner
-from ..grammar.tagging.words import split
-from ..grammar.vocabulary import nouns, quantities
-from .clauses import plain, sentences
+from ..grammar.tagging.words import clean, split
+from ..grammar.vocabulary import lexicon, nouns, quantities
 from .goals import (
     Become,
     Clear,
@@ -47,6 +46,9 @@ _ONES = frozenset({"one", "ones", "other", "others"})
 _EVERYTHING = frozenset({"everything", "furniture", "the furniture", "all furniture", "all the furniture", "all"})
 _COUNTS = {"a": 1, "couple": 2, "both": 2, "us": 2}
 _BEFORE = frozenset({"in front of", "before"})
+_MARKS = frozenset(".;!:\n")
+_POLITE = tuple(sorted((*lexicon.POLITE, *lexicon.FILLER), key=len, reverse=True))
+_KEPT = frozenset({"i want", "i need"})  # openers that some wishes begin with
 
 
 class Unread(Exception):
@@ -85,7 +87,7 @@ class Reader:
         """
         goals: list[Goal] = []
         wished = False
-        for words in sentences(text):
+        for words in _sentences(text):
             found = self._clauses(words)
             if found is None:
                 raise Unread("this is no wish for a room that is understood", *self._blamed(words))
@@ -101,10 +103,10 @@ class Reader:
         Raises:
             UserError: it is too long to be an instruction.
         """
-        for words in sentences(text):
+        for words in _sentences(text):
             joints = [i for i, word in enumerate(words) if word in _JOINTS]
             spans = ((a, b) for a in (0, *(i + 1 for i in joints)) for b in (*joints, len(words)) if a < b)
-            if any(p.fullmatch(" ".join(plain(words[a:b]))) for a, b in spans for _, p in COMPILED):
+            if any(p.fullmatch(" ".join(_plain(words[a:b]))) for a, b in spans for _, p in COMPILED):
                 return True
         return False
 
@@ -138,7 +140,7 @@ class Reader:
 
     def _clause(self, words: tuple[str, ...]) -> Goal | None:
         """One clause as a goal, None if it is not understood."""
-        said = " ".join(plain(words))
+        said = " ".join(_plain(words))
         for kind, pattern in COMPILED:
             matched = pattern.fullmatch(said)
             goal = self._goal(kind, {k: v for k, v in matched.groupdict().items() if v}) if matched else None
@@ -181,8 +183,30 @@ class Reader:
 
     def _blamed(self, words: Sequence[str]) -> tuple[str, ...]:
         """The words of a sentence that no way of saying a wish has, else all of it."""
-        strange = [w for w in plain(words) if w not in _vocabulary() and not nouns.is_known(w) and w not in _JOINTS]
+        strange = [w for w in _plain(words) if w not in _vocabulary() and not nouns.is_known(w) and w not in _JOINTS]
         return tuple(strange) or (" ".join(words),)
+
+
+def _sentences(text: str) -> Iterator[tuple[str, ...]]:
+    """The words of each sentence; a colon parts a headline from what it means."""
+    words: list[str] = []
+    for word in (*(w.text for w in split(clean(text))), "."):
+        if word in _MARKS or word == "?":
+            if words:
+                yield tuple(words)
+            words = []
+        else:
+            words.append(word)
+
+
+def _plain(words: Sequence[str]) -> list[str]:
+    """The words of a clause without politeness before and filler in and behind it."""
+    kept = [w for w in words if w not in (",", '"')]
+    while found := next((p for p in _POLITE if tuple(kept[: len(p)]) == p and " ".join(p) not in _KEPT), None):
+        kept = kept[len(found) :]
+    while found := next((p for p in lexicon.FILLER if p and tuple(kept[-len(p) :]) == p and p[-1] != "room"), None):
+        kept = kept[: -len(found)]
+    return [w for w in kept if w not in ("please", "just", "simply")]
 
 
 def _refers_back(words: Sequence[str], ops: Sequence[EditOp]) -> bool:

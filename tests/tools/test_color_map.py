@@ -10,9 +10,8 @@ from torch import Tensor
 
 from scenewright.gaussians.color import parse, rgb_to_lab
 from scenewright.gaussians.harmonics import evaluate
-from scenewright.gaussians.language.field.measure import Sample, lit_lab
+from scenewright.gaussians.language.field.measure import Sample, lightness_spread, lit_lab, mean_lab
 from scenewright.tools.color_map import LUMA, NEAR, distance, saturation, toward_color, warmth
-from scenewright.tools.measure import lightness_spread, mean_lab
 
 COLORS = ("teal", "white", "black", "gray", "yellow", "blue", "red", "olive", "pink", "brown")
 

@@ -13,7 +13,7 @@ from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.color import name_of
 from scenewright.gaussians.errors import AbsentError, AmbiguousError, CheckFailedError, InstructionError, UserError
 from scenewright.gaussians.language.field.language_field import Group
-from scenewright.gaussians.language.field.measure import box_of, lab_of_cloud
+from scenewright.gaussians.language.field.measure import box_of, lab_of_cloud, reach, solid_points
 from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.scene import Frame, Scene
 from scenewright.gaussians.world.box import Box, overlap
@@ -21,7 +21,6 @@ from scenewright.gaussians.world.support import standing_on
 from scenewright.tools import execute
 from scenewright.tools.carried_objects import riders_of
 from scenewright.tools.execute import Done, carry_out, preview
-from scenewright.tools.measure import reach, solid_points
 from scenewright.tools.operation import Context
 from scenewright.tools.ops.opacity import Opacity
 from scenewright.tools.placement.bodies import bodies_of, contact_box

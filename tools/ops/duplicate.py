@@ -9,12 +9,12 @@ import torch
 from pydantic import ConfigDict, Field, model_validator
 from torch import Tensor
 
+from ...gaussians.language.field.measure import solid_points
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
 from ..checks import bumps, carried_as_asked, collision_free, counted, supported
 from ..cloud_diff import Draft, selection_of
-from ..measure import solid_points
 from ..new_objects import Arrivals
 from ..operation import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
 from ..placement.bodies import Array, Body, bodies_of, centimetre, heading

@@ -9,13 +9,13 @@ import torch
 from torch import Tensor
 
 from ...gaussians.errors import InstructionError
+from ...gaussians.language.field.measure import solid_points
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..carried_objects import loaded, riders_of, rows_along, went_along
 from ..checks import carried_as_asked, collision_free, counted, supported
 from ..cloud_diff import Draft
 from ..field_update import carried
-from ..measure import solid_points
 from ..operation import Affine, Context, Outcome, TargetedOp
 from ..placement.bodies import Body, bodies_of, contact_box, groups_of, mask_of_bodies, turned_axes
 from ..placement.facing import angle_between, front_of

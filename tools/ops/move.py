@@ -10,6 +10,7 @@ from pydantic import ConfigDict, model_validator
 from torch import Tensor
 
 from ...gaussians.errors import InstructionError
+from ...gaussians.language.field.measure import solid_points
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
@@ -18,7 +19,6 @@ from ..carried_objects import loaded, rows_along, went_along
 from ..checks import bumps, carried_as_asked, collision_free, counted, supported
 from ..cloud_diff import Draft
 from ..field_update import carried
-from ..measure import solid_points
 from ..operation import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
 from ..placement.bodies import (
     Array,

@@ -10,7 +10,7 @@ from pydantic import ConfigDict, Field, model_validator
 from torch import Tensor
 
 from ...gaussians.color import rgb_to_lab, shade_of
-from ...gaussians.language.field.measure import Sample, lit_lab, sample
+from ...gaussians.language.field.measure import Sample, lightness_spread, lit_lab, mean_lab, sample
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
@@ -18,7 +18,6 @@ from ..checks import counted
 from ..cloud_diff import Draft, rows_of
 from ..color_map import NEAR, ColorMap, distance, saturation, toward_color, warmth
 from ..field_update import recolored
-from ..measure import lightness_spread, mean_lab
 from ..operation import ColorName, Context, Outcome, TargetedOp
 from ..placement.bodies import bodies_of
 from ..receipt import Check, at_least, at_most, report

@@ -9,6 +9,7 @@ import torch
 from pydantic import ConfigDict, Field, model_validator
 from torch import Tensor
 
+from ...gaussians.language.field.measure import centroid, reach, solid_points
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
@@ -17,7 +18,6 @@ from ..carried_objects import loaded, rows_along, went_along
 from ..checks import bumps, carried_as_asked, counted
 from ..cloud_diff import Draft
 from ..field_update import carried
-from ..measure import centroid, reach, solid_points
 from ..operation import Affine, Context, Outcome, TargetedOp
 from ..placement.bodies import Array, Body, bodies_of, groups_of, heading
 from ..placement.facing import turn_to_face

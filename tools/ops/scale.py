@@ -8,13 +8,13 @@ import numpy as np
 from pydantic import ConfigDict, Field, model_validator
 
 from ...gaussians.errors import InstructionError
+from ...gaussians.language.field.measure import reach, solid_points
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, Given, Keywords, either, given
 from ..checks import bumps, carried_as_asked, counted, size_changed
 from ..cloud_diff import Draft
 from ..field_update import carried
-from ..measure import reach, solid_points
 from ..operation import Affine, Context, Length, Outcome, TargetedOp
 from ..placement.bodies import Array, Body, bodies_of, heading
 from ..receipt import Check, at_most

@@ -15,13 +15,12 @@ from torch import Tensor
 
 from ...gaussians.camera import Camera, Vec3
 from ...gaussians.errors import InstructionError
-from ...gaussians.language.field.measure import Axes, as_axes, box_along, level_axes
+from ...gaussians.language.field.measure import Axes, as_axes, box_along, level_axes, reach, solid_points
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.box import Box
 from ...gaussians.world.relations import viewer_stand
 from ..cloud_diff import rows_of
-from ..measure import reach, solid_points
 from ..operation import Direction
 
 Array = NDArray[np.float64]

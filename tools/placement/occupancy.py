@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
+from ...gaussians.language.field.measure import OPAQUE
 from ...gaussians.rotations import to_matrix
 from ...gaussians.world.box import Box
-from ..measure import OPAQUE
 
 Array = NDArray[np.float64]
 Bool = NDArray[np.bool_]

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...gaussians.language.field.measure import solid_points
 from ...gaussians.scene import Scene
-from ..measure import solid_points
 from ..operation import Context
 from .bodies import Body, centimetre, contact_box, mask_of_bodies
 from .occupancy import obstacle_points

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from ...gaussians.camera import Vec3
+from ...gaussians.language.field.measure import OPAQUE
 from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.box import Box
-from ..measure import OPAQUE
 from ..operation import Context
 from .bodies import Array, Body, as_vec, centimetre
 from .occupancy import Bool, obstacle_points

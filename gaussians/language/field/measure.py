@@ -1,7 +1,7 @@
-"""What is measured of a group: its upright box and its colour. Knows numbers only.
+"""What is measured of a group of Gaussians: its upright box, its colour, and the points that one could touch.
 
-The one definition of both: embedding fills the table with it and editing keeps the table true with it, so that a
-scene says the same of a thing whether it was embedded before an edit or after.
+Embedding fills the table of groups with these boxes and colours and editing keeps it true with them, so that a scene
+says the same of a thing whether it was embedded before an edit or after.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ Axes = tuple[Vec3, Vec3, Vec3]
 LIT = 0.8  # quantile of lightness that stands for an object's lit faces
 TRIM = 0.01  # of the Gaussians on each side may lie outside the box
 SOLID = 0.05  # below this opacity a Gaussian does not widen a box
+OPAQUE = 0.3  # below this a Gaussian is haze rather than something one could touch
 ANGLES = np.radians(np.arange(0.0, 90.0, 3.0))
 _SAMPLE = 1 << 13  # rows a colour is measured on: its mean is then known to about 1/90 of the spread
 _EXTENT = 20_000  # rows a box is measured on
@@ -133,6 +134,40 @@ def as_axes(rows: F64) -> Axes:
     """The rows of `[3, 3]` as a box holds them."""
     first, second, third = (_vec(r) for r in rows)
     return first, second, third
+
+
+def mean_lab(taken: Sample) -> Tensor:
+    """`[3]` float64, weighted mean in CIE Lab of the colours as shown."""
+    return (taken.weight[:, None] * taken.lab).sum(dim=0)
+
+
+def lightness_spread(taken: Sample) -> float:
+    """Weighted standard deviation of Lab lightness: how much shading and texture there is."""
+    lightness = taken.lab[:, 0]
+    mean = (taken.weight * lightness).sum()
+    return float((taken.weight * (lightness - mean) ** 2).sum().sqrt())
+
+
+def centroid(cloud: GaussianCloud, rows: Tensor) -> F64:
+    """`[3]`, plain mean of the centres, scene units."""
+    means: F64 = cloud.means[rows].to(torch.float64).mean(dim=0).cpu().numpy()
+    return means
+
+
+def solid_points(cloud: GaussianCloud, rows: Tensor) -> F64:
+    """`[M, 3]` centres of those rows that are opaque enough to touch; all of them if none is."""
+    points: F64 = cloud.means[rows].to(torch.float64).cpu().numpy()
+    solid = (cloud.opacities[rows] >= OPAQUE).cpu().numpy()
+    return points[solid] if solid.any() else points
+
+
+def reach(values: F64) -> tuple[float, float]:
+    """Lowest and highest of `[M]`, a thousandth of them left out at each end (stray splats), none below 1000."""
+    if not len(values):
+        return 0.0, 0.0
+    skip = len(values) // 1000
+    ordered = np.partition(values, (skip, len(values) - 1 - skip))
+    return float(ordered[skip]), float(ordered[len(values) - 1 - skip])
 
 
 def _solid(cloud: GaussianCloud, rows: Tensor | None) -> Tensor:

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from ....gaussians.language.query.query import Query
 from ....gaussians.world.words import head
-from ..nodes import Node, Refusal, tokens, trees
+from ..parsing import Node, Refusal, tokens, trees
 from ..vocabulary import nouns, sizes
 from . import places
 from .changes import Fields

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..nodes import Node, Refusal, tokens, trees
+from ..parsing import Node, Refusal, tokens, trees
 
 Fields = dict[str, Any]
 

@@ -13,7 +13,7 @@ from itertools import pairwise
 
 from ....gaussians.language.query.query import Query
 from ....gaussians.world.words import head
-from ..nodes import Node, Refusal, tokens, trees
+from ..parsing import Node, Refusal, tokens, trees
 from ..vocabulary import nouns
 from . import adding, changes, moving, shaping
 from .adding import inserted

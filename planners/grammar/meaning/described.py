@@ -16,7 +16,7 @@ from typing import Any, Literal
 
 from ....gaussians.language.query.query import Query, Relation
 from ....gaussians.world.words import head
-from ..nodes import Refusal
+from ..parsing import Refusal
 from ..vocabulary import nouns
 
 # "the cup on the table that is white", "anything on the bed that is not a pillow": about the first noun, not the last.

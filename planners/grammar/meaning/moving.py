@@ -8,7 +8,7 @@ from __future__ import annotations
 from lark import Token, Tree
 
 from ....gaussians.language.query.query import Query
-from ..nodes import Node, Refusal, tokens, trees
+from ..parsing import Node, Refusal, tokens, trees
 from . import changes, places
 from .changes import Fields
 from .described import Noun, known

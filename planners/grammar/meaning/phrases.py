@@ -14,7 +14,7 @@ from lark import Token, Tree
 
 from ....gaussians.language.query.query import Query, Relation
 from ....gaussians.world.words import is_plural, singular
-from ..nodes import Node, Refusal, tag_of, tokens, trees
+from ..parsing import Node, Refusal, tag_of, tokens, trees
 from ..tagging.tags import Tag
 from ..tagging.words import bag
 from ..vocabulary import nouns

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ....gaussians.world.words import head
-from ..nodes import Node, Refusal, tag_of, tokens, trees
+from ..parsing import Node, Refusal, tag_of, tokens, trees
 from ..vocabulary import nouns
 from .described import Noun, Post, attach, in_or_on
 from .phrases import Phrases

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..nodes import Node, Refusal, tokens, trees
+from ..parsing import Node, Refusal, tokens, trees
 from . import changes, places
 from .changes import Fields
 from .phrases import Phrases

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..nodes import Refusal
+from ..parsing import Refusal
 from ..vocabulary import lexicon
 from .tags import Clause
 from .words import Word, bag
