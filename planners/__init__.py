@@ -38,14 +38,16 @@ def load(
         UserError: no planner has this name.
         BackendError: a model that was named alone lacks something.
     """
+    from .grammar import GrammarPlanner
+
     if spec == "grammar":
-        return _grammar()
+        return GrammarPlanner()
     kind, colon, rest = spec.partition(":")
     named = rest if colon else os.environ.get(MODEL_VARIABLE, "").strip()
     if kind == "auto" and not colon and not named:
         from .cascade import Cascade
 
-        return Cascade(_grammar(), _wishes)
+        return Cascade(GrammarPlanner(), _wishes)
     from . import model
 
     settings: dict[str, Any] = {"ledger": ledger or Ledger(), "pictures": pictures, "progress": progress}
@@ -56,17 +58,11 @@ def load(
     if kind == "auto" and model.is_model(named):
         from .cascade import Cascade
 
-        return Cascade(_grammar(), _wishes, _metered(named, **settings))
+        return Cascade(GrammarPlanner(), _wishes, _metered(named, **settings))
     known = f"planners are auto, grammar, {', '.join(model.FORMS)}, and auto: before one of these"
     if spec == "auto":
         raise UserError(f"{MODEL_VARIABLE} names no language model ({_public(named)!r}); {known}")
     raise UserError(f"unknown planner {_public(spec)!r}; {known}")
-
-
-def _grammar() -> Planner:
-    from .grammar import GrammarPlanner
-
-    return GrammarPlanner()
 
 
 def _wishes() -> Wisher:

@@ -19,7 +19,7 @@ from ..cloud_diff import Draft, rows_of
 from ..color_map import NEAR, ColorMap, distance, saturation, toward_color, warmth
 from ..field_update import recolored
 from ..operation import ColorName, Context, Outcome, TargetedOp
-from ..placement.bodies import bodies_of
+from ..placement.bodies import rows_by_thing
 from ..receipt import Check, at_least, at_most, report
 
 Adjust = Literal["darker", "lighter", "more_saturated", "less_saturated", "warmer", "cooler", "toward"]
@@ -154,12 +154,12 @@ def coats(scene: Scene, selection: Selection) -> list[Tensor]:
     So patches of one cloth keep their shading against each other, while a white and a black chair both turn red.
     """
     found: list[tuple[Tensor, list[Tensor]]] = []
-    for body in bodies_of(scene, selection):
-        mean = mean_lab(sample(scene.cloud, body.rows, 2048))
-        for other, rows in found:
+    for _, rows in rows_by_thing(scene, selection):
+        mean = mean_lab(sample(scene.cloud, rows, 2048))
+        for other, alike in found:
             if float(torch.linalg.vector_norm((mean - other) * torch.tensor([0.5, 1, 1]))) < ALIKE:
-                rows.append(body.rows)
+                alike.append(rows)
                 break
         else:
-            found.append((mean, [body.rows]))
-    return [torch.cat(rows).sort().values for _, rows in found]
+            found.append((mean, [rows]))
+    return [torch.cat(alike).sort().values for _, alike in found]

@@ -56,6 +56,11 @@ class Body:
 
 def bodies_of(scene: Scene, selection: Selection) -> list[Body]:
     """The selection split into things, in order of group id; Gaussians outside any group form one body at the end."""
+    return [_body(scene, rows, group) for group, rows in rows_by_thing(scene, selection)]
+
+
+def rows_by_thing(scene: Scene, selection: Selection) -> list[tuple[int, Tensor]]:
+    """The rows `[M]` of each selected thing with its group id, in the order of `bodies_of`."""
     rows = rows_of(scene.cloud, selection.ids)
     leaf = scene.cloud.group[rows]
     owner = _owners(scene, selection)
@@ -63,7 +68,7 @@ def bodies_of(scene: Scene, selection: Selection) -> list[Body]:
     for part, whole in owner.items():
         table[part] = whole
     owners = table[torch.where(leaf < 0, len(table) - 1, leaf.to(torch.int64))]
-    return [_body(scene, rows[owners == group], int(group)) for group in _in_order(owners)]
+    return [(group, rows[owners == group]) for group in _in_order(owners)]
 
 
 def _in_order(owners: Tensor) -> list[int]:

@@ -132,7 +132,7 @@ class Resolver:
             return self._floaters(query)
         try:
             found = self.described(query, out)
-            fronts = self._frames_told(query)
+            fronts = self._frames_told(query) if query.relations else ""
         except Unresolved as anchor:
             return replace(anchor.selection, query=query)
         return replace(found, reason="; ".join(r for r in (found.reason, fronts) if r)) if fronts else found
