@@ -38,16 +38,14 @@ def load(
         UserError: no planner has this name.
         BackendError: a model that was named alone lacks something.
     """
-    from .grammar import GrammarPlanner
-
     if spec == "grammar":
+        from .grammar import GrammarPlanner
+
         return GrammarPlanner()
     kind, colon, rest = spec.partition(":")
     named = rest if colon else os.environ.get(MODEL_VARIABLE, "").strip()
     if kind == "auto" and not colon and not named:
-        from .cascade import Cascade
-
-        return Cascade(GrammarPlanner(), _wishes)
+        return _cascade()
     from . import model
 
     settings: dict[str, Any] = {"ledger": ledger or Ledger(), "pictures": pictures, "progress": progress}
@@ -56,13 +54,18 @@ def load(
         planner.require()  # what is missing is said now, not at the first instruction
         return planner
     if kind == "auto" and model.is_model(named):
-        from .cascade import Cascade
-
-        return Cascade(GrammarPlanner(), _wishes, _metered(named, **settings))
+        return _cascade(_metered(named, **settings))
     known = f"planners are auto, grammar, {', '.join(model.FORMS)}, and auto: before one of these"
     if spec == "auto":
         raise UserError(f"{MODEL_VARIABLE} names no language model ({_public(named)!r}); {known}")
     raise UserError(f"unknown planner {_public(spec)!r}; {known}")
+
+
+def _cascade(model: Planner | None = None) -> Planner:
+    from .cascade import Cascade
+    from .grammar import GrammarPlanner
+
+    return Cascade(GrammarPlanner(), _wishes, model)
 
 
 def _wishes() -> Wisher:
