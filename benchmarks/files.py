@@ -21,8 +21,8 @@ from ..gaussians import files, harmonics
 from ..gaussians.camera import Camera
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.files.formats import spz
-from ..gaussians.files.formats.morton import arranged
-from ..gaussians.reduce import most_visible, psnr
+from ..gaussians.files.formats.morton import morton_sorted
+from ..gaussians.reduce import prune, psnr
 from ..gaussians.scene import Scene
 from ..gaussians.viewpoints.coverage import candidates, choose_views
 from ._data import folder, missing
@@ -89,7 +89,7 @@ def _formats() -> dict[str, tuple[str, Write]]:
     """Suffix and writer of each format by name."""
     found = {suffix[1:]: (suffix, files.writer(Path(f"a{suffix}")))
              for suffix in (".ply", ".compressed.ply", ".splat", ".sog")}  # fmt: skip
-    return found | {f"spz {v}": (".spz", lambda s, f, v=v: spz.write(arranged(s), f, v)) for v in spz.WRITABLE}
+    return found | {f"spz {v}": (".spz", lambda s, f, v=v: spz.write(morton_sorted(s), f, v)) for v in spz.WRITABLE}
 
 
 def _settings() -> dict[str, Callable[[Case], Scene]]:
@@ -113,7 +113,7 @@ def _settings() -> dict[str, Callable[[Case], Scene]]:
 def _pruned(case: Case, most: int) -> Scene:
     poses = {camera.world_to_camera.tobytes() for camera in case.cameras}
     views = candidates(case.scene.cloud, case.scene.frame, PRUNE_SIZE)
-    return most_visible(case.scene, most, [v for v in views if v.world_to_camera.tobytes() not in poses])
+    return prune(case.scene, most, [v for v in views if v.world_to_camera.tobytes() not in poses])
 
 
 def _cases(quick: bool) -> tuple[list[Case], list[str]]:

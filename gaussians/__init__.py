@@ -1,4 +1,4 @@
-"""What a scene *is*: clouds, cameras, harmonics, files, pixels, language features and groups.
+"""Scene data and its algorithms: clouds, cameras, harmonics, files, rendering, language features and groups.
 
-Knows nothing of instructions, plans, language models or sessions.
+Instructions, plans, language models and sessions belong to the packages above (`tools`, `planners`, `agent`).
 """

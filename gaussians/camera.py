@@ -1,4 +1,4 @@
-"""Pinhole cameras and what a renderer returns.
+"""Pinhole cameras (`Camera`) and rendered images (`Render`).
 
 World-to-camera 4x4, OpenCV axes (+x right, +y down, +z forward), intrinsics in pixels, pixel centres at +0.5.
 """
@@ -28,7 +28,7 @@ class Camera:
         fx, fy: focal lengths in pixels.
         cx, cy: principal point in pixels from the outer corner of the top-left pixel.
         width, height: image size in pixels.
-        name: where it came from (a photo's file name, "orbit 3", ...).
+        name: its origin (a photograph's file name, "orbit 3", ...).
     """
 
     world_to_camera: NDArray[np.float64]
@@ -122,15 +122,15 @@ class Camera:
         pixels = np.stack([self.fx * local[:, 0] / safe + self.cx, self.fy * local[:, 1] / safe + self.cy], axis=1)
         return pixels, depth
 
-    def shows(self, pixels: NDArray[np.float64], depth: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """`[M]`, which of the points that `project` told of lie in front of the eye and in the picture."""
+    def contains(self, pixels: NDArray[np.float64], depth: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """`[M]` bool, whether points, as `project` returned them, lie in front of the camera and inside the image."""
         inside = (pixels >= 0).all(axis=1) & (pixels < [self.width, self.height]).all(axis=1)
         return np.asarray((depth > 0) & inside)
 
 
 @dataclass(frozen=True, eq=False)
 class Render:
-    """What a renderer saw.
+    """The images that a renderer returns for one camera.
 
     Attributes:
         rgb: `[H, W, 3]` float32, display space, composited over the background.
@@ -145,6 +145,6 @@ class Render:
     group: Tensor
 
     def to_uint8(self) -> NDArray[np.uint8]:
-        """`[H, W, 3]` uint8 picture, clipped and rounded."""
+        """`[H, W, 3]` uint8 image, clipped and rounded."""
         image: NDArray[np.uint8] = (self.rgb.clamp(0, 1) * 255 + 0.5).to(torch.uint8).cpu().numpy()
         return image

@@ -1,6 +1,6 @@
-"""The Gaussian cloud: one frozen struct of aligned columns.
+"""The Gaussian cloud: one frozen struct of aligned columns in physical units.
 
-Knows tensors and their shapes. Refuses to know files (which store logits and logs), cameras and words.
+Files store opacities as logits and scales as logarithms; `files` converts both when it reads and writes.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ NO_GROUP = -1
 class GaussianCloud:
     """N Gaussians as physical values, never as logits or logarithms. All columns share one device.
 
-    A changed cloud is a new value that shares every column it did not change, so undo is the old
-    reference. Columns are never written in place.
+    A changed cloud is a new value that shares every unchanged column, so undo keeps a reference to the
+    old cloud. Columns are never written in place.
 
     Attributes:
         means: `[N, 3]` float32, centres in scene units, world frame (right-handed).
@@ -80,7 +80,7 @@ class GaussianCloud:
         group: Tensor | None = None,
         ids: Tensor | None = None,
     ) -> Self:
-        """Build a cloud, filling `group` with `NO_GROUP` and `ids` with row numbers where not given."""
+        """Build a cloud; `group` defaults to `NO_GROUP` and `ids` to row numbers."""
         n, device = means.shape[0], means.device
         if group is None:
             group = torch.full((n,), NO_GROUP, dtype=torch.int32, device=device)
@@ -127,7 +127,7 @@ class GaussianCloud:
         return type(self)(**{name: column[index] for name, column in self.columns()})
 
     def replace(self, **columns: Any) -> Self:
-        """A new cloud with some columns exchanged; the others are shared."""
+        """A new cloud with some columns replaced; the others are shared."""
         return replace(self, **columns)
 
     def to(self, device: str | torch.device) -> Self:
@@ -145,7 +145,7 @@ class GaussianCloud:
         return self.replace(sh=torch.cat([self.sh, pad], dim=1))
 
     def digest(self) -> str:
-        """Hex SHA-256 of shapes and bytes of all columns: equal exactly when the clouds are equal bit for bit."""
+        """Hex SHA-256 of the shapes and bytes of all columns: equal only for clouds that are equal bit for bit."""
         h = hashlib.sha256()
         for name, column in self.columns():
             h.update(f"{name}{tuple(column.shape)}{column.dtype};".encode())
@@ -157,7 +157,7 @@ def concat(clouds: list[GaussianCloud]) -> GaussianCloud:
     """Stack clouds row by row; harmonics are padded to the largest degree; ids must not collide.
 
     Raises:
-        UserError: if no cloud is given or two rows share an id (give new rows ids above `max(ids)` first).
+        UserError: no cloud is given, or two rows share an id (first give the new rows ids above `max(ids)`).
     """
     if not clouds:
         raise UserError("concat needs at least one cloud")
@@ -171,6 +171,6 @@ def concat(clouds: list[GaussianCloud]) -> GaussianCloud:
 
 
 def _ranges_overlap(clouds: list[GaussianCloud]) -> bool:
-    """Whether id ranges of any two clouds intersect (cheap test before the exact one)."""
+    """Whether the id ranges of any two clouds intersect (a cheap test before the exact one)."""
     spans = sorted((int(c.ids.min()), int(c.ids.max())) for c in clouds if len(c))
     return any(low <= high for (_, high), (low, _) in itertools.pairwise(spans))

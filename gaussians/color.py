@@ -1,7 +1,7 @@
-"""Colours: names to RGB, and display RGB to CIE Lab and LCh and back.
+"""Colours: names to RGB and back, and display RGB to CIE Lab and LCh and back.
 
-Display space is sRGB with the D65 white point (IEC 61966-2-1); Lab is CIE 1976. Names are the CSS Color Module
-Level 4 names (through Pillow's table) plus a few that people say and CSS does not know.
+Display space is sRGB with the D65 white point (IEC 61966-2-1); Lab is CIE 1976. Names are those of CSS Color Module
+Level 4 (through Pillow's table) and some everyday names that CSS lacks.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def parse(text: str) -> Rgb:
     """RGB in [0, 1], display space, of a CSS name, an everyday name, `#rgb`, `#rrggbb`, or "dark/light/… NAME".
 
     Raises:
-        UserError: for an unknown colour, naming the closest known ones.
+        UserError: the colour is unknown; the message lists the closest known names.
     """
     if len(text) > _TEXT_LIMIT:
         raise UserError(f"unknown colour {text[:40]!r}…; use a CSS name such as teal, or #1f8a8a")
@@ -175,9 +175,10 @@ def lab_to_rgb(lab: Tensor) -> Tensor:
 
 
 def displayable(lab: Tensor) -> Tensor:
-    """The display RGB `[..., 3]` in [0, 1] nearest to Lab `[..., 3]` of the same lightness and hue.
+    """The display RGB `[..., 3]` in [0, 1] of Lab `[..., 3]`, with its chroma reduced until it fits the gamut.
 
-    Clipping channels would turn a deep blue back into plain blue; here chroma gives way instead, by bisection.
+    Lightness and hue are kept; the largest chroma that fits is found by bisection. Clipping the channels instead
+    would turn a deep blue back into plain blue.
     """
     lightness, chroma = lab[..., :1].clamp(0, 100), lab[..., 1:]
 
@@ -195,7 +196,7 @@ def displayable(lab: Tensor) -> Tensor:
 
 
 def name_of(lab: tuple[float, float, float] | Tensor) -> str:
-    """The basic colour term nearest to a Lab value, with "dark" or "light" where the lightness is far off."""
+    """The basic colour term nearest to a Lab value, with "dark" or "light" where its lightness differs much."""
     lightness, a, b = (float(v) for v in lab)
     chroma = math.hypot(a, b)
     if chroma < 9:
@@ -217,10 +218,10 @@ def name_of(lab: tuple[float, float, float] | Tensor) -> str:
 
 
 def naming_space(lab: Tensor) -> Tensor:
-    """Lab `[..., 3]` to a space where distance follows what people call a colour rather than what they can tell apart.
+    """Lab `[..., 3]` to a space whose distances follow colour names rather than visible difference.
 
-    Lightness is discounted, since names tolerate shading, and chroma is compressed, C' = 45 C / (C + 15), since a dull
-    dark purple is called purple by its hue long before it is as colourful as the paint of that name.
+    Lightness is weighted by `NAMING_LIGHTNESS`, because a name covers many shades. Chroma is compressed,
+    C' = 45 C / (C + 15), because a dull dark purple is called purple for its hue although its chroma is low.
     """
     chroma = lab[..., 1:].norm(dim=-1, keepdim=True)
     return torch.cat([NAMING_LIGHTNESS * lab[..., :1], lab[..., 1:] * (45.0 / (chroma + 15.0))], dim=-1)

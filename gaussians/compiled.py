@@ -1,10 +1,8 @@
-"""How kernels are compiled, kept and run: numba's machine code on plain threads.
+"""Compiles kernels with numba, caches their machine code on disk and runs them on plain threads.
 
-Knows compiler options, the cache and the cores. Refuses to know what the kernels compute.
-
-numba's own threading layers are not used: its portable one is not safe to enter from two threads, and its OpenMP one
-spins against torch's OpenMP between kernels. Kernels release the interpreter lock, so plain threads have neither fault
-and compile faster.
+numba's own threading layers are not used: its portable layer is not safe to enter from two threads, and its OpenMP
+layer spins against torch's OpenMP between kernels. Kernels release the interpreter lock, so plain threads avoid both
+problems and compile faster.
 """
 
 from __future__ import annotations
@@ -27,9 +25,9 @@ from numba import extending, njit, types
 
 log = logging.getLogger(__name__)
 
-# fastmath without "nnan" and "ninf": degenerate rows must compare as IEEE says; tests are written to fail on NaN.
-# _nrt: kernels allocate nothing, so references need no counting; counting them at every call of a helper that takes an
-# array cost more than the helpers' work.
+# fastmath without "nnan" and "ninf": degenerate rows must compare as IEEE 754 says; tests are written to fail on NaN.
+# _nrt off: kernels allocate nothing, so they need no reference counts. Counting at every call of a helper that takes an
+# array cost more time than the helpers themselves.
 _OPTIONS: dict[str, Any] = {
     "nogil": True, "error_model": "numpy", "boundscheck": False, "_nrt": False,
     "fastmath": {"contract", "reassoc", "arcp", "nsz", "afn"},
@@ -38,8 +36,11 @@ _OPTIONS: dict[str, Any] = {
 
 @cache
 def fingerprint(folder: Path) -> str:
-    """Digest of all that machine code of a folder depends on: numba itself looks only at the file of the function it
-    caches, and would keep code that inlined a helper or a constant of another file after that one has changed."""
+    """Digest of every source file that the machine code of a folder depends on.
+
+    numba checks only the file of the cached function. It would keep code that inlined a helper or constant of another
+    file after that file has changed.
+    """
     digest = hashlib.sha256()
     for path in [*sorted(folder.glob("*.py")), *sorted(folder.parent.glob("convention.py")), Path(__file__)]:
         digest.update(path.read_bytes())
@@ -47,8 +48,8 @@ def fingerprint(folder: Path) -> str:
 
 
 def kernel(function: Callable[..., Any], **options: Any) -> Any:
-    """Decorate a function that `run` calls: compiled on first use for this CPU and kept on disk for later processes."""
-    # numba names the cached file after the function
+    """Decorate a function that `run` calls: compiled on first use for this CPU and cached on disk."""
+    # numba names the cached file after the function.
     function.__qualname__ += f"_{fingerprint(Path(function.__code__.co_filename).parent)}"
     try:
         return njit(**{**_OPTIONS, **options}, cache=True)(function)
@@ -57,28 +58,27 @@ def kernel(function: Callable[..., Any], **options: Any) -> Any:
 
 
 def exact(function: Callable[..., Any]) -> Any:
-    """As `kernel`, with every operation rounded as it is written: for loops whose order of adding must not depend on
-    which of its versions LLVM takes."""
+    """As `kernel`, without fastmath: for loops whose order of additions must not depend on LLVM's choice of code."""
     return kernel(function, fastmath=False)
 
 
 def helper(function: Callable[..., Any]) -> Any:
-    """Decorate a function that kernels call: always inlined, as an out-of-line call passes a dozen words an array."""
+    """Decorate a function that kernels call. It is always inlined: an out-of-line call passes 12 words per array."""
     return njit(**_OPTIONS, forceinline=True)(function)
 
 
-def inlined(function: Callable[..., Any]) -> Any:
-    """As `helper`, for `exact` kernels."""
+def exact_helper(function: Callable[..., Any]) -> Any:
+    """As `helper`, without fastmath, for `exact` kernels."""
     return njit(**{**_OPTIONS, "fastmath": False}, forceinline=True)(function)
 
 
 def intrinsic(function: Callable[..., Any]) -> Any:
-    """Decorate a function that emits LLVM code: called from kernels, without the typing context it is declared with."""
+    """Decorate a function that emits LLVM code; kernels call it without the typing context it is declared with."""
     return extending.intrinsic(function)
 
 
 def workers() -> int:
-    """How many threads to run kernels on: as many as torch uses, so that one setting rules both."""
+    """Number of threads that kernels run on: torch's, so that one setting controls both."""
     return max(1, torch.get_num_threads())
 
 
@@ -91,14 +91,14 @@ def run(kernel: Any, count: int, *arguments: Any) -> None:
     kernel(0, count, *arguments)
     for other in others:
         other.result()
-    _note(kernel, start)
+    _record_time(kernel, start)
 
 
 def run_alone(kernel: Any, *arguments: Any) -> Any:
-    """Call `kernel(*arguments)` here, for work that does not divide; returns what it returns."""
+    """Call `kernel(*arguments)` on this thread, for work that cannot be divided; returns its result."""
     start = time.perf_counter()
     value = kernel(*arguments)
-    _note(kernel, start)
+    _record_time(kernel, start)
     return value
 
 
@@ -107,7 +107,7 @@ _times: ContextVar[dict[str, float] | None] = ContextVar("times", default=None)
 
 @contextmanager
 def stage_times() -> Iterator[dict[str, float]]:
-    """Collect, while the block runs, the seconds spent in each kernel by its name (of this thread's renders)."""
+    """Collect the seconds spent in each kernel, by name, while the block runs (in this thread's renders)."""
     times: dict[str, float] = {}
     token = _times.set(times)
     try:
@@ -116,40 +116,40 @@ def stage_times() -> Iterator[dict[str, float]]:
         _times.reset(token)
 
 
-def _note(kernel: Any, start: float) -> None:
+def _record_time(kernel: Any, start: float) -> None:
     """Add the time since `start` to the kernel's."""
     times = _times.get()
     if times is not None:
         times[kernel.__name__] = times.get(kernel.__name__, 0.0) + time.perf_counter() - start
 
 
-_announced: set[Path] = set()  # folders of which it was said
+_announced: set[Path] = set()  # cache folders whose compilation was logged
 
 
 def _announce(kernel: Any) -> None:
-    """Say once a folder that its kernels are compiled now, if they are."""
+    """Log once per cache folder that kernels are being compiled, unless the cache holds them."""
     folder = Path(kernel.stats.cache_path or os.devnull)
     if folder in _announced:
         return
     _announced.add(folder)
     try:
-        kept = any(folder.glob(f"*{kernel.py_func.__qualname__.rpartition('_')[2]}*.nbi"))
+        cached = any(folder.glob(f"*{kernel.py_func.__qualname__.rpartition('_')[2]}*.nbi"))
     except OSError:
-        kept = False
-    if not kept:
+        cached = False
+    if not cached:
         log.info("compiling for this CPU: about 5 seconds, once")
 
 
 @cache
 def _pool(process: int, count: int) -> ThreadPoolExecutor:
-    """A pool for this process: threads do not survive a fork, so a child makes its own."""
-    del process  # only part of the cache's key
+    """The thread pool of this process: threads do not survive a fork, so a child process makes its own."""
+    del process  # only part of the cache key
     return ThreadPoolExecutor(max(1, count - 1), thread_name_prefix="scenewright-render")
 
 
 @intrinsic
 def fetch_add(typing_context: Any, counter: Any, amount: Any) -> Any:
-    """Add `amount` to `counter[0]` (int64 array) as one step no other thread can split; returns the value before."""
+    """Atomically add `amount` to `counter[0]` (int64 array); returns the previous value."""
 
     def generate(context: Any, builder: ir.IRBuilder, signature: Any, arguments: Any) -> Any:
         array = context.make_array(signature.args[0])(context, builder, arguments[0])

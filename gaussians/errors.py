@@ -1,15 +1,15 @@
-"""Every error Scenewright raises on purpose, named by who must act. Each message says what to do next.
+"""The exceptions that Scenewright raises on purpose, named by who must act. Each message says what to do next.
 
     ScenewrightError                 exit code
     ├── UserError             2      the request itself is wrong: change the words, the argument, the flag
-    ├── InstructionError      3      understood, but cannot be carried out as said; nothing was changed
-    │   ├── AbsentError              what was named is not in the scene
-    │   ├── AmbiguousError           several things match
+    ├── InstructionError      3      understood, but cannot be carried out as stated; nothing was changed
+    │   ├── AbsentError              the named object is not in the scene
+    │   ├── AmbiguousError           several objects match
     │   └── CheckFailedError         the edit was made, failed its own check and was rolled back
     ├── FileError             4      a file is missing, broken, unwritable or of an unknown format
     └── BackendError          4      a back end (encoder, planner, renderer) is missing or failed
 
-`assert` is for our own mistakes, never for a user's input.
+`assert` is for programming errors, never for a user's input.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ class UserError(ScenewrightError):
 
 
 class InstructionError(ScenewrightError):
-    """The instruction was understood but cannot be carried out as said. The scene is as it was."""
+    """The instruction was understood but cannot be carried out as stated. The scene is unchanged."""
 
     exit_code = 3
 
 
 class AbsentError(InstructionError):
-    """What was named is not in the scene."""
+    """The named object is not in the scene."""
 
 
 class AmbiguousError(InstructionError):
-    """Several things match and the instruction asks for one."""
+    """Several objects match and the instruction asks for one."""
 
 
 class CheckFailedError(InstructionError):

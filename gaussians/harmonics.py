@@ -1,7 +1,7 @@
-"""Real spherical harmonics up to degree 3: evaluate them, turn them, and go between colour and the constant band.
+"""Real spherical harmonics up to degree 3: evaluation, rotation, and conversion between colour and the constant band.
 
-Knows the band order and signs of Kerbl et al. 2023 (the polynomials of Sloan, "Stupid Spherical Harmonics Tricks",
-2008, with the Condon-Shortley signs): band l holds 2l + 1 coefficients; band 1 is (-y, z, -x). Refuses to know clouds.
+Band order and signs are those of Kerbl et al. 2023 (the polynomials of Sloan, "Stupid Spherical Harmonics Tricks",
+2008, with the Condon-Shortley signs): band l holds 2l + 1 coefficients; band 1 is (-y, z, -x).
 Coefficients are `[..., K, 3]`, K = (degree + 1)^2; directions run from the eye to the Gaussian, world frame.
 """
 
@@ -53,7 +53,7 @@ def basis(directions: Tensor, degree: int) -> Tensor:
 
 
 def evaluate(sh: Tensor, directions: Tensor) -> Tensor:
-    """The bare sum of coefficients times basis, `[..., 3]`, without the 0.5 offset or the clamp (see `to_color`).
+    """Sum of coefficients times basis, `[..., 3]`, without the 0.5 offset and the clamp (see `to_color`).
 
     Args:
         sh: `[..., K, 3]`.
@@ -68,32 +68,32 @@ def to_color(sh: Tensor, directions: Tensor) -> Tensor:
 
 
 def color_to_dc(rgb: Tensor) -> Tensor:
-    """The constant coefficient `[..., 3]` that alone shows display colour `rgb` `[..., 3]`."""
+    """The constant coefficient `[..., 3]` that, without other bands, gives the display colour `rgb` `[..., 3]`."""
     return (rgb - 0.5) / SH_C0
 
 
 def dc_to_color(dc: Tensor) -> Tensor:
-    """The display colour `[..., 3]` that constant coefficients `[..., 3]` show on their own; not clamped."""
+    """The display colour `[..., 3]` that constant coefficients `[..., 3]` give without other bands; not clamped."""
     return dc * SH_C0 + 0.5
 
 
 def rotate(sh: Tensor, rotation: Tensor) -> Tensor:
-    """Turn the colour with the object: `evaluate(rotate(sh, R), R @ d) == evaluate(sh, d)`.
+    """Rotate view-dependent colour with its object: `evaluate(rotate(sh, R), R @ d) == evaluate(sh, d)`.
 
     Args:
         sh: `[N, K, 3]`.
         rotation: `[3, 3]` proper rotation, world frame.
 
     Returns:
-        A new `[N, K, 3]`; the constant band is untouched, bit for bit.
+        A new `[N, K, 3]`; the constant band is copied bit for bit.
 
     Raises:
         UserError: `rotation` is not a rotation (mirrored, scaled or not finite).
     """
     matrix = rotation.detach().to("cpu", torch.float64)
     if tuple(matrix.shape) != (3, 3) or not _is_rotation(matrix):
-        raise UserError("harmonics can only be turned by a proper 3x3 rotation; take out scale and mirroring first")
-    # One product over all bands and channels at once is three times as fast as a small one for each band.
+        raise UserError("harmonics can only be rotated by a proper 3x3 rotation; remove scale and mirroring first")
+    # One product over all bands and channels is three times as fast as a small one for each band.
     turn = torch.eye(int(sh.shape[-2]), dtype=torch.float64)
     for degree in range(1, SH_BANDS[len(turn)] + 1):
         band = slice(degree**2, (degree + 1) ** 2)
@@ -105,10 +105,10 @@ def rotate(sh: Tensor, rotation: Tensor) -> Tensor:
 
 
 def band_matrix(rotation: Tensor, degree: int) -> Tensor:
-    """`[2l + 1, 2l + 1]` float64 orthogonal matrix that turns the coefficients of band l = `degree`.
+    """`[2l + 1, 2l + 1]` float64 orthogonal matrix that rotates the coefficients of band l = `degree`.
 
-    A band's functions span a space that rotations map to itself: `y(R d) = D(R) y(d)` for every d. D is solved from
-    well-spread directions, which needs no recurrence and cannot disagree with `basis` about order or sign.
+    The functions of a band span a space that rotations map to itself: `y(R d) = D(R) y(d)` for every d. D is solved
+    from evenly spread directions. This needs no recurrence and always agrees with `basis` in order and sign.
     """
     directions, inverse = _samples(degree)
     turned = basis(directions @ rotation.to(torch.float64).T, degree)[:, degree**2 :]
@@ -117,7 +117,7 @@ def band_matrix(rotation: Tensor, degree: int) -> Tensor:
 
 @functools.cache
 def _samples(degree: int) -> tuple[Tensor, Tensor]:
-    """Directions `[64, 3]` on a Fibonacci sphere and the pseudo-inverse `[2l + 1, 64]` of one band there."""
+    """Directions `[64, 3]` on a Fibonacci sphere and the pseudo-inverse `[2l + 1, 64]` of one band at them."""
     index = torch.arange(64, dtype=torch.float64)
     z = 1 - (2 * index + 1) / 64
     turn = index * (math.pi * (3 - math.sqrt(5)))
@@ -127,6 +127,6 @@ def _samples(degree: int) -> tuple[Tensor, Tensor]:
 
 
 def _is_rotation(matrix: Tensor) -> bool:
-    """Whether a float64 `[3, 3]` is orthogonal and not mirrored; 1e-4 allows for float32 products of many turns."""
+    """Whether a float64 `[3, 3]` is orthogonal and not mirrored; 1e-4 allows for float32 products of many rotations."""
     m = matrix.numpy()
     return bool(np.isfinite(m).all() and np.allclose(m @ m.T, np.eye(3), atol=1e-4) and np.linalg.det(m) > 0)

@@ -1,7 +1,4 @@
-"""Fewer Gaussians: cutting a scene out of its surroundings, and keeping those that pictures are made of.
-
-Knows clouds, cameras and blending weights. Refuses to know files and words.
-"""
+"""Reduces the number of Gaussians of a scene: cropping to a box or sphere, and pruning by contribution to views."""
 
 from __future__ import annotations
 
@@ -17,14 +14,14 @@ from .errors import UserError
 from .render import contributions, render
 from .scene import Scene
 
-BEST_PSNR = 120.0  # dB, where equal pictures are capped
+MAX_PSNR = 120.0  # dB, reported for equal images
 
 
 def crop_box(scene: Scene, low: Vec3, high: Vec3) -> Scene:
     """The Gaussians whose centres lie in the box between two corners (scene units, world axes, edges included).
 
     Raises:
-        UserError: the corners are in the wrong order, or nothing lies between them.
+        UserError: the corners are in the wrong order, or no Gaussian lies between them.
     """
     if not all(a < b for a, b in zip(low, high, strict=True)):
         raise UserError(f"the box from {low} to {high} is empty; give the lower corner first: x0,y0,z0,x1,y1,z1")
@@ -37,7 +34,7 @@ def crop_sphere(scene: Scene, center: Vec3, radius: float) -> Scene:
     """The Gaussians whose centres lie within `radius` of `center` (scene units).
 
     Raises:
-        UserError: the radius is not positive, or nothing lies within it.
+        UserError: the radius is not positive, or no Gaussian lies within it.
     """
     if not radius > 0:
         raise UserError(f"a sphere needs a positive radius, got {radius}; give x,y,z,radius")
@@ -45,41 +42,41 @@ def crop_sphere(scene: Scene, center: Vec3, radius: float) -> Scene:
     return _cut(scene, away <= radius, "sphere")
 
 
-def ranked(cloud: GaussianCloud, cameras: Sequence[Camera]) -> NDArray[np.int64]:
-    """Rows of a cloud from the one that matters most to what these cameras see to the least, `[N]`.
+def rank_by_contribution(cloud: GaussianCloud, cameras: Sequence[Camera]) -> NDArray[np.int64]:
+    """Rows `[N]` of a cloud by their contribution to the views of these cameras, largest first.
 
-    A Gaussian counts by the most that it is of any view, its blending weight summed over pixels
-    (`render.contributions`; the maximum over views as in Niemeyer et al. 2024, RadSplat), times its opacity. Sums over
-    views, roots of them, and size times opacity without looking lost more on real scenes (see docs/files.md).
+    The score of a Gaussian is its blending weight summed over the pixels of a view (`render.contributions`), maximised
+    over views (as in Niemeyer et al. 2024, RadSplat), times its opacity. The sum over views, roots of it, and size
+    times opacity without rendering lost more on real scenes (see docs/files.md).
     """
     score = np.zeros(len(cloud), np.float32)
     for camera in cameras:
         np.maximum(score, contributions(cloud, camera).numpy(), out=score)
     score *= cloud.opacities.numpy()
-    # What no camera sees goes last, the larger and more opaque before the smaller.
+    # Gaussians that no camera sees come last, sorted by volume times opacity.
     bulk = (cloud.opacities.double().log() + cloud.scales.double().log().sum(dim=1)).numpy()
     return np.lexsort((-bulk, -score))
 
 
-def most_visible(scene: Scene, most: int, cameras: Sequence[Camera]) -> Scene:
-    """The `most` Gaussians that matter most to what these cameras see (`ranked`), in their old order.
+def prune(scene: Scene, max_gaussians: int, cameras: Sequence[Camera]) -> Scene:
+    """At most `max_gaussians` Gaussians that contribute most to these views (`rank_by_contribution`), in row order.
 
     Raises:
-        UserError: `most` is not positive, or no camera is given.
+        UserError: `max_gaussians` is not positive, or no camera is given.
     """
-    if most < 1:
-        raise UserError(f"a scene needs at least one Gaussian, {most} were asked for")
-    if len(scene.cloud) <= most:
+    if max_gaussians < 1:
+        raise UserError(f"a scene needs at least one Gaussian, {max_gaussians} were asked for")
+    if len(scene.cloud) <= max_gaussians:
         return scene
     if not cameras:
-        raise UserError("nothing can be seen of this scene, so there is no telling which Gaussians matter; crop it")
-    kept = np.sort(ranked(scene.cloud, cameras)[:most])
+        raise UserError("no view shows anything of this scene, so its Gaussians cannot be ranked; crop it instead")
+    kept = np.sort(rank_by_contribution(scene.cloud, cameras)[:max_gaussians])
     return scene.replace(cloud=scene.cloud[torch.from_numpy(kept)])
 
 
 def psnr(truth: GaussianCloud, other: GaussianCloud, cameras: Sequence[Camera]) -> tuple[float, ...]:
-    """PSNR in dB of what each camera sees of `other`, against what it sees of `truth`; at most `BEST_PSNR`."""
-    return tuple(_psnr(_picture(truth, camera), _picture(other, camera)) for camera in cameras)
+    """PSNR in dB of each camera's view of `other` against its view of `truth`; at most `MAX_PSNR`."""
+    return tuple(_psnr(_image(truth, camera), _image(other, camera)) for camera in cameras)
 
 
 def _cut(scene: Scene, inside: torch.Tensor, what: str) -> Scene:
@@ -90,11 +87,11 @@ def _cut(scene: Scene, inside: torch.Tensor, what: str) -> Scene:
     return scene.replace(cloud=scene.cloud[inside])
 
 
-def _picture(cloud: GaussianCloud, camera: Camera) -> NDArray[np.float64]:
-    """`[H, W, 3]` as shown, in [0, 1]."""
+def _image(cloud: GaussianCloud, camera: Camera) -> NDArray[np.float64]:
+    """The rendered view `[H, W, 3]`, clipped to [0, 1]."""
     return np.clip(render(cloud, camera).rgb.numpy().astype(np.float64), 0, 1)
 
 
 def _psnr(truth: NDArray[np.float64], other: NDArray[np.float64]) -> float:
     error = float(np.mean((truth - other) ** 2))
-    return BEST_PSNR if error == 0 else min(BEST_PSNR, -10 * float(np.log10(error)))
+    return MAX_PSNR if error == 0 else min(MAX_PSNR, -10 * float(np.log10(error)))

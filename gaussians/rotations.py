@@ -1,7 +1,7 @@
 """Rotations as unit quaternions in wxyz order, batched over leading axes.
 
-Knows quaternions and 3x3 matrices. Refuses to know what is being rotated (harmonics turn in `harmonics.rotate`).
-A quaternion and its negative are the same rotation. All functions return new tensors.
+A quaternion and its negative are the same rotation. All functions return new tensors. Harmonics are rotated by
+`harmonics.rotate`.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ def from_matrix(matrices: Tensor) -> Tensor:
 
 
 def from_axis_angle(axis: Tensor | Sequence[float], radians: Tensor | float) -> Tensor:
-    """Unit quaternions `[..., 4]` of a turn by `radians` about `axis` `[..., 3]`, counter-clockwise from its tip.
+    """Unit quaternions `[..., 4]` of a rotation by `radians` about `axis` `[..., 3]`, counter-clockwise from its tip.
 
     Raises:
         UserError: an axis is zero or not finite.
@@ -95,5 +95,5 @@ def from_axis_angle(axis: Tensor | Sequence[float], radians: Tensor | float) -> 
     length = torch.linalg.vector_norm(axis_, dim=-1, keepdim=True)
     if not bool((torch.isfinite(length) & (length > 0)).all()):
         raise UserError(f"a rotation axis must be finite and not zero, got {axis_.tolist()}")
-    half = half + torch.zeros_like(length)  # as many angles as axes
+    half = half + torch.zeros_like(length)  # broadcast: one angle per axis
     return torch.cat([torch.cos(half), torch.sin(half) * (axis_ / length)], dim=-1)

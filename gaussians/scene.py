@@ -1,4 +1,4 @@
-"""A scene: a cloud, the frame it stands in, the cameras it came with and the language field over it."""
+"""A scene (`Scene`): a cloud with its frame, cameras and language field; and the frame (`Frame`): up, floor, scale."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ Source = Literal["given", "file", "estimated", "unknown"]
 
 @dataclass(frozen=True)
 class Frame:
-    """Where up is and how long a metre is; each says where it came from.
+    """Up direction, floor height and scale of a scene, each with its source.
 
     Attributes:
         up: unit vector, world frame.
         floor: height of the floor along `up` (scene units), None if there is none.
-        metres_per_unit: None if the scale is unknown; distances are then in scene units and labelled so.
-        up_source, scale_source: how each was obtained.
+        metres_per_unit: None if the scale is unknown; distances are then in scene units and labelled as such.
+        up_source, scale_source: how up and scale were obtained.
     """
 
     up: Vec3 = (0.0, 0.0, 1.0)
@@ -67,13 +67,13 @@ class Frame:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A frozen scene. Editing makes a new one; what did not change is shared.
+    """A frozen scene. An edit makes a new scene that shares what did not change.
 
     Attributes:
         cloud: the Gaussians.
         frame: up, floor and scale.
         cameras: cameras that came with the scene (may be empty); the first is the viewer by default.
-        language: groups that words resolve to, or None before embedding.
+        language: the groups that phrases resolve to, or None before embedding.
         path: the file it was loaded from, or None.
     """
 
@@ -84,5 +84,5 @@ class Scene:
     path: Path | None = None
 
     def replace(self, **changes: Any) -> Self:
-        """A new scene with some parts exchanged."""
+        """A new scene with some fields replaced."""
         return replace(self, **changes)

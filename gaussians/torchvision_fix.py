@@ -1,9 +1,9 @@
 """Makes `import torchvision` work beside a CPU build of torch.
 
-The torchvision wheel on PyPI is built against CUDA torch: beside CPU torch its native library does not load, and its
-import then stops with `operator torchvision::nms does not exist`. open_clip and most of transformers import it. Only
-the two operators it wants to register shapes for are missing, so they are declared (never implemented: nothing here
-detects boxes) and the import is tried again. Knows nothing of encoders. Refuses to touch a torchvision that works.
+The torchvision wheel on PyPI is built against CUDA torch. Beside CPU torch its native library does not load, and its
+import fails with `operator torchvision::nms does not exist`. open_clip and most of transformers import it. Only the
+two operators that it registers shapes for are missing. They are declared (but not implemented: nothing here detects
+boxes) and the import is tried again. A torchvision that works is left alone.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ _kept: list[Any] = []  # torch drops the declarations of a Library that is garba
 
 
 def import_torchvision() -> ModuleType:
-    """The torchvision module, cured if need be. Call it before importing open_clip or transformers.
+    """The torchvision module, repaired if necessary. Call this before importing open_clip or transformers.
 
     Raises:
-        BackendError: torchvision is not installed, or fails for a reason this does not cure.
+        BackendError: torchvision is not installed, or fails for another reason than the missing operators.
     """
     try:
         return importlib.import_module("torchvision")
@@ -32,7 +32,7 @@ def import_torchvision() -> ModuleType:
         raise BackendError("torchvision is not installed; run: pip install 'scenewright[models]'") from error
     except RuntimeError as error:
         if "torchvision::" not in str(error):
-            raise BackendError(f"torchvision does not import: {error}") from error
+            raise BackendError(f"torchvision cannot be imported: {error}") from error
     _forget("torchvision")
     declare_operators()
     try:
@@ -45,7 +45,7 @@ def import_torchvision() -> ModuleType:
 
 
 def declare_operators() -> tuple[str, ...]:
-    """Declare the missing operators; names of those that were missing."""
+    """Declare the missing operators; returns the names of those that were missing."""
     import torch
 
     declared = []
@@ -59,6 +59,6 @@ def declare_operators() -> tuple[str, ...]:
 
 
 def _forget(package: str) -> None:
-    """Drop a half-imported package and its modules."""
+    """Remove a partly imported package and its modules from `sys.modules`."""
     for name in [m for m in sys.modules if m == package or m.startswith(f"{package}.")]:
         del sys.modules[name]

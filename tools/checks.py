@@ -102,7 +102,7 @@ def bumps(after: Scene, groups: set[int]) -> tuple[str, ...]:
 def unseen(after: Scene, moved: tuple[Affine, ...], viewer: Camera) -> tuple[str, ...]:
     """A note if something new stands where the viewer does not look."""
     centers = np.stack([after.cloud.means[body.rows].mean(dim=0, dtype=torch.float64).cpu().numpy() for body in moved])
-    hidden = int((~viewer.shows(*viewer.project(centers))).sum())
+    hidden = int((~viewer.contains(*viewer.project(centers))).sum())
     return (f"{hidden} of {len(moved)} stand outside the current view",) if hidden else ()
 
 

@@ -170,7 +170,7 @@ def _views(scene: Scene, count: int) -> tuple[Camera, ...]:
 
 def _smaller(scene: Scene, degree: int | None, most: int | None, measured: tuple[Camera, ...]) -> Scene:
     """Fewer Gaussians as other views than the measured ones see them, and fewer harmonics."""
-    from ...gaussians.reduce import most_visible
+    from ...gaussians.reduce import prune
     from ...gaussians.viewpoints.coverage import candidates, fit_camera
 
     if most is not None and most < len(scene.cloud):
@@ -178,7 +178,7 @@ def _smaller(scene: Scene, degree: int | None, most: int | None, measured: tuple
         pool = [fit_camera(camera, PRUNE_SIZE, PRUNE_SIZE) for camera in own]
         pool += candidates(scene.cloud, scene.frame, PRUNE_SIZE)
         poses = {camera.world_to_camera.tobytes() for camera in measured}
-        scene = most_visible(scene, most, [c for c in pool if c.world_to_camera.tobytes() not in poses] or pool)
+        scene = prune(scene, most, [c for c in pool if c.world_to_camera.tobytes() not in poses] or pool)
     if degree is not None and degree < scene.cloud.degree:
         scene = scene.replace(cloud=scene.cloud.with_degree(degree))
     return scene
@@ -187,11 +187,11 @@ def _smaller(scene: Scene, degree: int | None, most: int | None, measured: tuple
 def _save(scene: Scene, output: Path, force: bool, spz_version: int) -> None:
     from ...gaussians.files import save, writing
     from ...gaussians.files.formats import spz
-    from ...gaussians.files.formats.morton import arranged
+    from ...gaussians.files.formats.morton import morton_sorted
 
     if output.suffix.lower() == ".spz" and spz_version != spz.LATEST:
         with writing(output, force) as file:
-            spz.write(arranged(scene), file, spz_version)
+            spz.write(morton_sorted(scene), file, spz_version)
     else:
         save(scene, output, force)
 

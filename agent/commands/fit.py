@@ -70,7 +70,7 @@ def command(
     """
     from ...gaussians.errors import FileError, UserError
     from ...gaussians.files import save
-    from ...gaussians.files.captures.capture import photographs_alone
+    from ...gaussians.files.captures.capture import unposed_photos
     from ...gaussians.fit import Settings, fit, load_photos
     from ...gaussians.fit.checkpoint import delete
     from ...gaussians.fit.engine import resolve_device
@@ -84,7 +84,7 @@ def command(
         seconds, steps, most, "auto" if degree == "auto" else int(degree), gain, growth, coarse, seed, where
     )
     poses = output.with_name(output.name + ".poses")
-    if photographs_alone(capture) and not poses.exists():
+    if unposed_photos(capture) and not poses.exists():
         terminal.say(f"the photographs have no poses: estimating them first, on the CPU, to be kept in {poses}")
     photos = load_photos(capture, scale, terminal.progress, poses)
     terminal.say(_told(photos) + (", on the GPU" if where == "cuda" else ""))

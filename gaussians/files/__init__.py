@@ -1,7 +1,8 @@
-"""Scenes in files: `load`, `load_with_report`, `save`. The only room that knows logits, logarithms and packing.
+"""Loads and saves scenes in files: `load`, `load_with_report`, `save`.
 
-One module a format; a module of this package with a `FORMAT` is a format (see `format.Format`), found by scanning.
-Content decides which format a file has; its name decides only where the content does not say.
+Each module of `formats` with a `FORMAT` is one file format (see `format.Format`); the modules are found by scanning.
+The format of a file is recognised by its content, and by its name only where the content does not decide. Logits,
+logarithms and packed values exist only in this package.
 """
 
 from __future__ import annotations
@@ -18,14 +19,14 @@ from ..scene import Scene
 from . import formats
 from .atomic import writing
 from .format import HEAD_BYTES, Format, Report
-from .formats.morton import arranged
+from .formats.morton import morton_sorted
 
 __all__ = ["Format", "Report", "known_formats", "load", "load_with_report", "save", "writer", "writing"]
 
 
 @functools.cache
 def known_formats() -> tuple[Format, ...]:
-    """Every known format, by name."""
+    """Every known format, sorted by name."""
     names = (info.name for info in pkgutil.iter_modules(formats.__path__))
     modules = (importlib.import_module(f"{formats.__name__}.{name}") for name in names)
     found = [module.FORMAT for module in modules if hasattr(module, "FORMAT")]
@@ -33,16 +34,16 @@ def known_formats() -> tuple[Format, ...]:
 
 
 def load(path: str | Path) -> Scene:
-    """The scene in a file or folder of any known format; ids are the row numbers there.
+    """The scene in a file or folder of any known format; the ids of its Gaussians are the row numbers of the file.
 
     Raises:
-        FileError: missing, unreadable, of unknown format, or without a single usable Gaussian.
+        FileError: the path is missing, unreadable, of an unknown format, or without a usable Gaussian.
     """
     return load_with_report(path)[0]
 
 
 def load_with_report(path: str | Path) -> tuple[Scene, Report]:
-    """As `load`, with what was found and repaired on the way."""
+    """As `load`, with a report of the file's format, its rows and the repairs made while reading."""
     path = Path(path)
     try:
         return _detect(path).read(path)
@@ -51,7 +52,7 @@ def load_with_report(path: str | Path) -> tuple[Scene, Report]:
 
 
 def _detect(path: Path) -> Format:
-    """The format of what lies at `path`: by content first, by name second."""
+    """The format of the file or folder at `path`: by content first, by name second."""
     if not path.exists():
         raise FileError(f"no such file or folder: {path}")
     if not (path.is_file() or path.is_dir()):
@@ -69,36 +70,36 @@ def _detect(path: Path) -> Format:
 
 
 def _unknown(path: Path) -> str:
-    """What is wrong with a path that no format recognises."""
+    """The error message for a path that no format recognises."""
     if path.is_dir():
-        inside = sorted(p.name for p in path.iterdir() if _promising(p))
+        inside = sorted(p.name for p in path.iterdir() if _looks_like_scene(p))
         if inside:
             return f"{path} is a folder that holds scenes; name one of them: {', '.join(inside[:10])}"
     listed = "; ".join(f"{f.name} ({', '.join(f.suffixes)})" for f in known_formats())
-    return f"{path}: unknown format. Known are: {listed}"
+    return f"{path}: unknown format. Known formats are: {listed}"
 
 
-def _promising(path: Path) -> bool:
-    """Whether something in a folder looks like a scene."""
+def _looks_like_scene(path: Path) -> bool:
+    """Whether an entry of a folder looks like a scene."""
     return any(f.recognises(path, b"") for f in known_formats()) if path.is_dir() else _by_suffix(path) is not None
 
 
 def _by_suffix(path: Path) -> Format | None:
-    """The format with the longest suffix that the name ends in."""
+    """The format with the longest suffix that the name ends with, or None."""
     name = path.name.lower()
     matches = [(len(s), f) for f in known_formats() for s in f.suffixes if name.endswith(s)]
     return max(matches, key=lambda m: m[0])[1] if matches else None
 
 
 def save(scene: Scene, path: str | Path, force: bool = False) -> None:
-    """Write a scene in the format its name asks for, whole or not at all.
+    """Write a scene atomically in the format that the file name asks for.
 
-    Rows keep their order, but for formats where neighbours share storage (compressed .ply, SPZ, SOG): there they are
-    arranged along a Morton curve, unless the scene has a language field, which is bound to rows.
+    Rows keep their order, except in formats where neighbouring rows share storage (compressed .ply, SPZ, SOG): there
+    they are sorted along a Morton curve, unless the scene has a language field, which refers to rows by number.
 
     Raises:
         UserError: the format cannot be written, the scene is empty, or the file exists and `force` is not set.
-        FileError: the folder is missing or the disk refuses; an existing file is then unchanged.
+        FileError: the folder is missing or cannot be written; an existing file is then unchanged.
     """
     path = Path(path)
     write = writer(path)
@@ -109,14 +110,14 @@ def save(scene: Scene, path: str | Path, force: bool = False) -> None:
 
 
 def writer(path: Path) -> Callable[[Scene, BinaryIO], None]:
-    """What writes a scene in the format that a name asks for, arranged as `save` says.
+    """The function that writes a scene in the format of a file name, with rows ordered as in `save`.
 
     Raises:
-        UserError: no format that can be written has this name.
+        UserError: no writable format has this suffix.
     """
     known = _by_suffix(path)
     if known is None or known.write is None:
         writable = ", ".join(s for f in known_formats() if f.write for s in f.suffixes)
         raise UserError(f"cannot write {path.name}: scenes are written as {writable}")
-    write, arranges = known.write, known.arranges
-    return lambda scene, file: write(arranged(scene) if arranges and scene.language is None else scene, file)
+    write, sort = known.write, known.morton_order
+    return lambda scene, file: write(morton_sorted(scene) if sort and scene.language is None else scene, file)

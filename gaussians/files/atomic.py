@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all, and never over another one unasked. Knows nothing of what is written."""
+"""Atomic file writing: the complete file appears or none does, and existing files are only replaced on request."""
 
 from __future__ import annotations
 
@@ -15,18 +15,19 @@ from ..errors import FileError, UserError
 
 @contextlib.contextmanager
 def writing(path: str | Path, force: bool = False) -> Iterator[BinaryIO]:
-    """A binary file that takes the place of `path` when the block ends well, and leaves no trace when it does not.
+    """A binary file that replaces `path` when the block succeeds and is removed when it fails.
 
-    The bytes go to a hidden file in the same folder, reach the disk, and are renamed over `path` in one step, so a
-    full disk, a crash or an exception in the block leaves the old file as it was. A link is followed, not replaced.
+    The bytes are written to a hidden file in the same folder, synced to disk, and renamed over `path` in one step. A
+    full disk, a crash or an exception in the block therefore leaves the old file unchanged. A link is followed, not
+    replaced.
 
     Raises:
         UserError: `path` exists and `force` is not set, or it is a folder.
-        FileError: the folder is missing or the system refuses to write.
+        FileError: the folder is missing or cannot be written.
     """
     target = Path(os.path.realpath(path))
     _check_target(target, force)
-    part = target.with_name(f".{target.name[:100]}.{secrets.token_hex(6)}.part")  # nobody else's, whatever runs beside
+    part = target.with_name(f".{target.name[:100]}.{secrets.token_hex(6)}.part")  # unique among concurrent writers
     try:
         with open(part, "xb") as file:
             yield file
@@ -34,13 +35,13 @@ def writing(path: str | Path, force: bool = False) -> Iterator[BinaryIO]:
             os.fsync(file.fileno())
             if target.exists():
                 os.fchmod(file.fileno(), stat.S_IMODE(target.stat().st_mode))
-        _check_target(target, force)  # it may have appeared while we wrote
+        _check_target(target, force)  # another program may have created it meanwhile
         os.replace(part, target)
         _sync_folder(target.parent)
     except OSError as error:
         raise FileError(f"cannot write {target}: {error.strerror or error}; the file there was not changed") from error
     finally:
-        with contextlib.suppress(OSError):  # where nothing may be written, nothing was
+        with contextlib.suppress(OSError):  # a folder that cannot be written holds no partial file either
             part.unlink(missing_ok=True)
 
 
@@ -54,7 +55,7 @@ def _check_target(target: Path, force: bool) -> None:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Make the rename itself last; where folders cannot be synced (some network disks) the data is safe anyway."""
+    """Make the rename durable. Some network disks cannot sync folders; the file's data is on disk in any case."""
     with contextlib.suppress(OSError):
         handle = os.open(folder, os.O_RDONLY)
         try:

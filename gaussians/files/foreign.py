@@ -1,7 +1,4 @@
-"""JSON and NumPy files that anybody may have written: whatever is wrong with one is one `FileError`.
-
-Knows how such files break. Refuses to know what is in them, and to unpickle anything.
-"""
+"""Reads untrusted JSON and NumPy files: every defect raises `FileError`, and nothing is unpickled."""
 
 from __future__ import annotations
 
@@ -16,29 +13,29 @@ from numpy.typing import NDArray
 
 from ..errors import FileError
 
-# What NumPy and zipfile raise for cut, overwritten, encrypted or lying files; a header may ask for terabytes.
+# What NumPy and zipfile raise for truncated, corrupted, encrypted or forged files; a header may ask for terabytes.
 _BROKEN = (OSError, ValueError, EOFError, KeyError, RuntimeError, zipfile.BadZipFile, zlib.error, MemoryError)
 
 
 def read_json(path: Path) -> Any:
-    """What a JSON file says.
+    """The parsed content of a JSON file.
 
     Raises:
-        FileError: it cannot be read, is no JSON, or is nested too deeply to be any file of ours.
+        FileError: the file cannot be read, is not JSON, or is nested too deeply.
     """
     try:
-        return json.loads(path.read_text(encoding="utf-8-sig"))  # Windows marks its files
+        return json.loads(path.read_text(encoding="utf-8-sig"))  # Windows programs write a byte order mark
     except OSError as error:
         raise FileError(f"cannot read {path}: {error.strerror or error}") from error
     except (ValueError, RecursionError) as error:
-        raise FileError(f"{path} is no JSON: {error}") from error
+        raise FileError(f"{path} is not valid JSON: {error}") from error
 
 
 def read_array(path: Path) -> NDArray[Any]:
-    """The array in a `.npy`, never of objects.
+    """The array in a `.npy` file; object arrays are refused.
 
     Raises:
-        FileError: it cannot be read or holds something else.
+        FileError: the file cannot be read or holds something else.
     """
     try:
         held = np.load(path, allow_pickle=False)
@@ -51,10 +48,10 @@ def read_array(path: Path) -> NDArray[Any]:
 
 
 def read_archive(path: Path) -> dict[str, NDArray[Any]]:
-    """The arrays in a `.npz` by name, never of objects; members that are no arrays are left out.
+    """The arrays in a `.npz` file by name; object arrays are refused, members that are not arrays are skipped.
 
     Raises:
-        FileError: it cannot be read or holds something else.
+        FileError: the file cannot be read or holds something else.
     """
     try:
         held = np.load(path, allow_pickle=False)

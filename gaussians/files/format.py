@@ -1,7 +1,4 @@
-"""What a file format offers, and what reading a file reports.
-
-Knows no format. A format is a module of this package with a module-level `FORMAT`; the package finds it by scanning.
-"""
+"""The interface of a file format (`Format`) and the report of reading a file (`Report`)."""
 
 from __future__ import annotations
 
@@ -12,18 +9,18 @@ from typing import BinaryIO
 
 from ..scene import Scene
 
-HEAD_BYTES = 65536  # of the start of a file that recognition may look at
+HEAD_BYTES = 65536  # of the start of a file, given to `Format.recognises`
 
 
 @dataclass(frozen=True)
 class Report:
-    """What happened while a scene was read.
+    """The result of reading a scene file.
 
     Attributes:
-        format: name of the format that read it.
-        rows: Gaussians the file holds.
-        loaded: Gaussians that became part of the scene.
-        notes: each repair in a sentence with its count; empty if the file was sound.
+        format: name of the format.
+        rows: Gaussians in the file.
+        loaded: Gaussians in the scene.
+        notes: one sentence per kind of repair, with its count; empty if the file was valid.
     """
 
     format: str
@@ -37,14 +34,14 @@ class Format:
     """One file format.
 
     Attributes:
-        name: for people, e.g. "INRIA .ply".
+        name: the name shown to users, e.g. "INRIA .ply".
         suffixes: lower case, with dot, longest first if one contains another.
-        recognises: `(path, head)` whether the content is this format's; `head` is the first `HEAD_BYTES` of the file,
-            empty for a folder. Must be cheap and must not raise.
-        read: the scene and a report; raises FileError for anything it cannot read.
-        write: puts the scene into a binary file opened for writing, row by row in order, or None if the format is
-            only read.
-        arranges: whether rows beside each other share storage, so that neighbours in space should be neighbours there.
+        recognises: `(path, head)` -> whether the content is of this format; `head` is the first `HEAD_BYTES` of the
+            file, empty for a folder. Must be cheap and must not raise.
+        read: returns the scene and a report; raises FileError for anything it cannot read.
+        write: writes the scene in row order into a binary file opened for writing; None if the format is read-only.
+        morton_order: whether neighbouring rows share storage, so that files are smaller or more exact if rows follow a
+            Morton curve.
     """
 
     name: str
@@ -52,4 +49,4 @@ class Format:
     recognises: Callable[[Path, bytes], bool]
     read: Callable[[Path], tuple[Scene, Report]]
     write: Callable[[Scene, BinaryIO], None] | None = None
-    arranges: bool = False
+    morton_order: bool = False

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import compiled
-from ..compiled import exact, inlined
+from ..compiled import exact, exact_helper
 
 F32 = NDArray[np.float32]
 BETAS = (0.9, 0.999)
@@ -62,7 +62,7 @@ class Adam:
         self.first[rows] = self.second[rows] = 0
 
 
-@inlined
+@exact_helper
 def _move(values, gradient, first, second, i, rate, numbers):  # type: ignore[no-untyped-def]
     scale, epsilon, beta1, beta2 = numbers
     g = gradient[i]

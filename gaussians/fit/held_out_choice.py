@@ -14,7 +14,7 @@ import numpy as np
 import torch
 
 from ..cloud import GaussianCloud
-from ..reduce import ranked
+from ..reduce import rank_by_contribution
 from .photographs.photos import Photos
 from .quality import measure
 from .train import Trainer
@@ -58,11 +58,11 @@ def drop_gaussians(trainer: Trainer, photos: Photos, gain: float) -> list[Choice
     """Drop the least visible tenth of the Gaussians repeatedly while that costs less than `gain` dB on the held-out
     photographs.
 
-    Visibility is measured by `reduce.ranked` with cameras of training photographs.
+    Visibility is measured by `reduce.rank_by_contribution` with cameras of training photographs.
     """
     cloud = trainer.parameters.cloud()
     views = [photos.shots[i].camera for i in _evenly_spaced(len(photos.shots), MAX_VIEWS)]
-    order = ranked(cloud, views)
+    order = rank_by_contribution(cloud, views)
     smaller = ((count, cloud[torch.from_numpy(np.sort(order[:count]))]) for count in _counts(len(order)))
     choices = _reduce("gaussians", smaller, photos, gain)
     kept = min((choice.after for choice in choices if choice.taken), default=len(order))

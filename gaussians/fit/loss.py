@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from .. import compiled
-from ..compiled import exact, inlined
+from ..compiled import exact, exact_helper
 
 F32 = NDArray[np.float32]
 Array = NDArray[Any]
@@ -81,7 +81,7 @@ def _taps() -> F32:
     return (weights / weights.sum()).astype(np.float32)
 
 
-@inlined
+@exact_helper
 def _add(target, source, weight):  # type: ignore[no-untyped-def]
     """`target += weight * source`, two lines of equal length; compilers vectorise this loop."""
     for i in range(target.shape[0]):
@@ -142,7 +142,7 @@ def _ssim_backward(worker, workers, maps, taps, slopes, rows, scratch):  # type:
         rows[row, 0] = _total(similar)
 
 
-@inlined
+@exact_helper
 def _total(line):  # type: ignore[no-untyped-def]
     """Sum of a line, added up in float64 from left to right."""
     total = 0.0

@@ -1,4 +1,4 @@
-"""Cropping and pruning: what is kept is what was said, and pruning by what is seen loses less than by chance."""
+"""Cropping and pruning: the right rows are kept, and pruning by contribution loses less than even sampling."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import UserError
-from scenewright.gaussians.reduce import BEST_PSNR, crop_box, crop_sphere, most_visible, psnr
+from scenewright.gaussians.reduce import MAX_PSNR, crop_box, crop_sphere, prune, psnr
 from scenewright.gaussians.scene import Scene
 
 
@@ -65,13 +65,13 @@ def test_nothing_left_is_said_with_where_the_scene_is() -> None:
 
 def test_pruning_keeps_what_is_seen_in_its_order() -> None:
     scene = scattered()
-    kept = most_visible(scene, 150, EYES).cloud
+    kept = prune(scene, 150, EYES).cloud
     assert len(kept) == 150 and (kept.ids.diff() > 0).all()
     even = scene.cloud[torch.arange(0, 400, 400 / 150).long()[:150]]
     assert (
         np.mean(psnr(scene.cloud, kept, EYES)) > np.mean(psnr(scene.cloud, even, EYES)) + 3
     )  # dB; any good order does
-    assert most_visible(scene, 400, EYES) is scene
+    assert prune(scene, 400, EYES) is scene
 
 
 def test_what_is_hidden_goes_first() -> None:
@@ -79,16 +79,16 @@ def test_what_is_hidden_goes_first() -> None:
     means = scene.cloud.means.clone()
     means[7] = torch.tensor([0.0, 0.0, 500.0])  # above every eye, outside every picture
     scene = scene.replace(cloud=scene.cloud.replace(means=means))
-    assert 7 not in most_visible(scene, 19, EYES).cloud.ids.tolist()
+    assert 7 not in prune(scene, 19, EYES).cloud.ids.tolist()
 
 
 def test_pruning_needs_a_number_and_views() -> None:
     with pytest.raises(UserError, match="at least one"):
-        most_visible(scattered(), 0, EYES)
-    with pytest.raises(UserError, match="nothing can be seen"):
-        most_visible(scattered(), 10, [])
+        prune(scattered(), 0, EYES)
+    with pytest.raises(UserError, match="no view shows anything"):
+        prune(scattered(), 10, [])
 
 
 def test_equal_scenes_look_alike() -> None:
     cloud = scattered().cloud
-    assert psnr(cloud, cloud, EYES) == (BEST_PSNR,) * len(EYES)
+    assert psnr(cloud, cloud, EYES) == (MAX_PSNR,) * len(EYES)

@@ -1,1 +1,1 @@
-"""Photographs with poses: transforms.json, COLMAP models and camera paths."""
+"""Reads captures (photographs with camera poses: transforms.json, COLMAP models) and camera paths."""

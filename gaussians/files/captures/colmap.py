@@ -1,8 +1,7 @@
-"""Photographs and where they were taken from, as COLMAP writes them: `cameras`, `images` and `points3D`, as `.bin` or
-`.txt` (https://colmap.github.io/format.html).
+"""Reads COLMAP models: `cameras`, `images` and `points3D`, as `.bin` or `.txt` (https://colmap.github.io/format.html).
 
-Poses there are world-to-camera with quaternions wxyz and OpenCV axes, as ours are. Knows the files. Refuses to know
-what is done with them. Bodies are read by counted records, and no count is believed that the file has no room for.
+Poses in these files are world-to-camera with wxyz quaternions and OpenCV axes, as ours are. A record count in a binary
+file is checked against the file's size before records are read.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from ...camera import Camera
 from ...errors import FileError, UserError
 from ...lens import Lens, check_lens
 
-# Name of each model by its number, and what its parameters are called.
+# Name and parameter names of each camera model, by its number.
 _MODELS: dict[int, tuple[str, tuple[str, ...]]] = {
     0: ("SIMPLE_PINHOLE", ("f", "cx", "cy")),
     1: ("PINHOLE", ("fx", "fy", "cx", "cy")),
@@ -31,7 +30,7 @@ _MODELS: dict[int, tuple[str, tuple[str, ...]]] = {
     4: ("OPENCV", ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2")),
 }
 _BY_NAME = {name: parameters for name, parameters in _MODELS.values()}
-_LONGEST = 1 << 16  # pixels of a side
+_MAX_SIDE = 1 << 16  # pixels
 
 
 @dataclass(frozen=True)
@@ -45,14 +44,14 @@ class View:
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Surveyed points: `means [N, 3]` float64, world, and `colors [N, 3]` in [0, 1]."""
+    """Sparse reconstructed points: `means [N, 3]` float64, world, and `colors [N, 3]` in [0, 1]."""
 
     means: NDArray[np.float64]
     colors: NDArray[np.float64]
 
 
 def find(folder: Path) -> Path | None:
-    """Where a capture's reconstruction lies: `sparse/0`, `sparse` or the folder itself; None if it has none."""
+    """The folder of a capture's COLMAP model: `sparse/0`, `sparse` or the folder itself; None if there is none."""
     places = (folder / "sparse" / "0", folder / "sparse", folder)
     return next((p for p in places if any((p / f"cameras.{kind}").is_file() for kind in ("bin", "txt"))), None)
 
@@ -61,7 +60,7 @@ def read_views(folder: Path) -> list[View]:
     """The photographs of a reconstruction, sorted by name.
 
     Raises:
-        FileError: a file is missing, cut short or lies, or a camera's model is not one of the five that are known.
+        FileError: a file is missing, cut short or inconsistent, or a camera model is not one of the five known ones.
     """
     path = _one_of(folder, "cameras")
     cameras = dict(_binary_cameras(path) if path.suffix == ".bin" else _text_cameras(path))
@@ -79,10 +78,10 @@ def read_views(folder: Path) -> list[View]:
 
 
 def read_points(folder: Path) -> Points:
-    """The points of a reconstruction, without those that are not finite; perhaps none.
+    """The finite points of a reconstruction; there may be none.
 
     Raises:
-        FileError: the file is missing, cut short or lies.
+        FileError: the file is missing, cut short or inconsistent.
     """
     path = _one_of(folder, "points3D")
     rows = list(_binary_points(path) if path.suffix == ".bin" else _text_points(path))
@@ -95,28 +94,28 @@ def _one_of(folder: Path, name: str) -> Path:
     for kind in ("bin", "txt"):
         if (folder / f"{name}.{kind}").is_file():
             return folder / f"{name}.{kind}"
-    raise FileError(f"{folder} has no {name}.bin or {name}.txt; give the folder that COLMAP wrote its whole model to")
+    raise FileError(f"{folder} has no {name}.bin or {name}.txt; give the folder with the whole COLMAP model")
 
 
-def _view(path: Path, name: str, told: tuple[int, int, Mapping[str, float]], quat: Any, offset: Any) -> View:
-    width, height, values = told
+def _view(path: Path, name: str, camera_data: tuple[int, int, Mapping[str, float]], quat: Any, offset: Any) -> View:
+    width, height, values = camera_data
     try:
         if not np.linalg.norm(quat) > 0:
-            raise ValueError("its rotation is no quaternion")
-        turn = np.eye(4)
+            raise ValueError("its rotation is a zero quaternion")
+        pose = np.eye(4)
         unit = torch.nn.functional.normalize(torch.tensor([quat], dtype=torch.float64), dim=1)
-        turn[:3, :3] = rotations.to_matrix(unit)[0].numpy()
-        turn[:3, 3] = offset
-        if not 0 < max(width, height) <= _LONGEST:
-            raise ValueError(f"a photograph of {width}x{height} pixels is none")
+        pose[:3, :3] = rotations.to_matrix(unit)[0].numpy()
+        pose[:3, 3] = offset
+        if not 0 < max(width, height) <= _MAX_SIDE:
+            raise ValueError(f"the size {width}x{height} must lie between 1 and {_MAX_SIDE} pixels a side")
         fx, fy = values.get("fx", values.get("f", 0.0)), values.get("fy", values.get("f", 0.0))
-        camera = Camera(turn, fx, fy, values["cx"], values["cy"], width, height, Path(name).stem)
+        camera = Camera(pose, fx, fy, values["cx"], values["cy"], width, height, Path(name).stem)
         lens = Lens(*(float(values.get(key, 0.0)) for key in ("k1", "k2", "k3", "p1", "p2")))
         if not np.isfinite([lens.k1, lens.k2, lens.p1, lens.p2]).all():
             raise ValueError("its lens distortion is not finite")
         check_lens(camera, lens)
     except (UserError, ValueError) as error:
-        raise FileError(f"{path}: {name} is broken: {error}") from error
+        raise FileError(f"{path}: {name} is invalid: {error}") from error
     return View(name, camera, lens)
 
 
@@ -129,7 +128,7 @@ def _unknown(path: Path, model: object) -> FileError:
 
 
 class _Bytes:
-    """A file read from front to back; asking for more than there is raises."""
+    """Sequential reader of a binary file; reading beyond its end raises `FileError`."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -142,19 +141,19 @@ class _Bytes:
     def take(self, form: str) -> tuple[Any, ...]:
         size = struct.calcsize(form)
         self.need(size)
-        told = struct.unpack_from(form, self.data, self.at)
+        fields = struct.unpack_from(form, self.data, self.at)
         self.at += size
-        return told
+        return fields
 
-    def count(self, least: int) -> int:
-        """A count of records that take at least so many bytes each."""
-        (many,) = self.take("<Q")
-        self.need(many * least)
-        return int(many)
+    def count(self, min_bytes: int) -> int:
+        """The next record count, where a record takes at least `min_bytes`; checked against the bytes left."""
+        (count,) = self.take("<Q")
+        self.need(count * min_bytes)
+        return int(count)
 
     def need(self, size: int) -> None:
         if size > len(self.data) - self.at:
-            raise FileError(f"{self.path} is cut short: {size} more bytes should follow after {self.at}")
+            raise FileError(f"{self.path} is cut short: {size} more bytes should follow after byte {self.at}")
 
     def skip(self, size: int) -> None:
         self.need(size)
@@ -164,9 +163,9 @@ class _Bytes:
         end = self.data.find(b"\0", self.at)
         if end < 0:
             raise FileError(f"{self.path} is cut short in a name")
-        told = self.data[self.at : end].decode("utf-8", errors="replace")
+        name = self.data[self.at : end].decode("utf-8", errors="replace")
         self.at = end + 1
-        return told
+        return name
 
 
 def _binary_cameras(path: Path) -> Iterator[tuple[int, tuple[int, int, Mapping[str, float]]]]:
@@ -200,7 +199,7 @@ def _binary_points(path: Path) -> Iterator[tuple[float, ...]]:
 
 
 def _lines(path: Path) -> Iterator[list[str]]:
-    """Lines that are no comments, in words; an empty line is an empty list (an image that sees no points)."""
+    """The words of each line that is not a comment; [] for an empty line (an image without points)."""
     try:
         text = path.read_text(encoding="utf-8", errors="replace")
     except OSError as error:
@@ -224,7 +223,7 @@ def _text_cameras(path: Path) -> Iterator[tuple[int, tuple[int, int, Mapping[str
         if len(values) != len(names):
             raise FileError(f"{path}: camera {words[0]} has {len(values)} parameters, {words[1]} has {len(names)}")
         if not np.isfinite([number, width, height]).all():
-            raise FileError(f"{path}: camera {words[0]} of {words[2]}x{words[3]} pixels is none")
+            raise FileError(f"{path}: the number or size of camera {words[0]} ({words[2]}x{words[3]}) is not finite")
         yield int(number), (int(width), int(height), dict(zip(names, values, strict=True)))
 
 
@@ -239,13 +238,13 @@ def _text_images(path: Path) -> Iterator[tuple[str, int, Any, Any]]:
         if not np.isfinite(numbers).all():
             raise FileError(f"{path}: the pose of {words[9]} is not finite")
         yield " ".join(words[9:]), int(numbers[7]), numbers[:4], numbers[4:7]
-        if not _sees(next(lines, [])):
-            raise FileError(f"{path}: the line after {words[9]} lists no points; every photograph takes two lines, "
-                            "the second of which may be empty")  # fmt: skip
+        if not _is_point_list(next(lines, [])):
+            raise FileError(f"{path}: the line after {words[9]} is not a list of points; every photograph takes two "
+                            "lines, the second of which may be empty")  # fmt: skip
 
 
-def _sees(words: list[str]) -> bool:
-    """Whether a line is what a photograph's second one is: pixels x, y and a point's number, over and over."""
+def _is_point_list(words: list[str]) -> bool:
+    """Whether a line repeats pixel x, pixel y and point number, as the second line of a photograph does."""
     try:
         return len(words) % 3 == 0 and all(int(number) >= -1 for number in words[2:12:3])
     except ValueError:

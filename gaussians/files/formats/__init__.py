@@ -1,1 +1,1 @@
-"""One module a scene file format, found by scanning this package, and the codecs they share."""
+"""One module per scene file format, found by scanning this package, and the codecs that formats share."""

@@ -1,7 +1,6 @@
-"""Few values that stand for many: codebooks of numbers and palettes of vectors, by k-means (Lloyd 1982).
+"""Vector quantisation by k-means (Lloyd 1982): codebooks of numbers and palettes of vectors.
 
-Knows arrays. Refuses to know what they mean. Equal input gives equal output: seeds are fixed, and products of
-matrices run on one thread.
+Equal input gives equal output: seeds are fixed, and matrix products run on one thread.
 """
 
 from __future__ import annotations
@@ -14,16 +13,16 @@ Floats = NDArray[np.float32]
 Labels = NDArray[np.int64]
 
 _ROUNDS_SCALAR, _ROUNDS_VECTOR = 40, 6
-_SAMPLE = 1 << 20  # numbers that a codebook is made from; more change it by less than its own step
+_SAMPLE = 1 << 20  # numbers that a codebook is fitted to; more change it by less than its own step
 _BLOCK = 1 << 12  # rows compared with all centres at a time
-_LEAST = 64  # rows a branch of a palette has on average; fewer would be compared with too many branches
+_MIN_BRANCH_ROWS = 64  # average rows per branch of a palette; with fewer, rows are compared with too many branches
 _SEED = 5
 
 
 def codebook(numbers: Floats, size: int) -> Floats:
-    """At most `size` sorted values that stand for `numbers` `[...]` with small squared error.
+    """At most `size` sorted values that approximate `numbers` `[...]` with small squared error.
 
-    Starts half from quantiles, which follow the mass, and half from even steps, which follow the ends.
+    Half of the initial centres are quantiles, which follow the density; half are even steps, which cover the range.
     """
     flat = np.sort(numbers.ravel()[:: -(-numbers.size // _SAMPLE)]).astype(np.float64)
     first, last = float(numbers.min()), float(numbers.max())
@@ -43,23 +42,23 @@ def codebook(numbers: Floats, size: int) -> Floats:
 
 
 def nearest(numbers: Floats, book: Floats) -> NDArray[np.uint8]:
-    """Position in a sorted codebook of at most 256 values of the one nearest to each number, in its shape."""
+    """Index of the nearest value in a sorted codebook of at most 256 values, for each of `numbers` (same shape)."""
     middles = (book[1:].astype(np.float64) + book[:-1]) / 2
     return np.searchsorted(middles, numbers).astype(np.uint8)
 
 
 def palette(rows: Floats, size: int) -> tuple[Floats, Labels]:
-    """At most `size` vectors that stand for `rows [N, D]`, and which one stands for each row, `[N]`.
+    """At most `size` vectors that approximate `rows [N, D]`, and the index `[N]` of each row's vector.
 
-    Two levels, each plain k-means: the square root of `size` branches, then in every branch its share of the palette
-    by its number of rows. A row is compared with the branches and with the vectors of its own branch only, which makes
-    a million rows and 65,536 vectors a matter of seconds.
+    Two levels of plain k-means: first about sqrt(`size`) branches, then in every branch a share of the palette in
+    proportion to its rows. A row is compared only with the branches and with the vectors of its own branch, so a
+    million rows and 65,536 vectors take seconds.
     """
     distinct, inverse = _distinct(rows, size)
     if distinct is not None:
         return distinct, inverse
     threads = torch.get_num_threads()
-    torch.set_num_threads(1)  # the products are small: handing them around takes ten times as long on a busy machine
+    torch.set_num_threads(1)  # the products are small: distributing them takes ten times as long on a busy machine
     try:
         return _two_levels(rows, size)
     finally:
@@ -67,9 +66,9 @@ def palette(rows: Floats, size: int) -> tuple[Floats, Labels]:
 
 
 def _two_levels(rows: Floats, size: int) -> tuple[Floats, Labels]:
-    """See `palette`."""
+    """The two k-means levels of `palette`."""
     rng = np.random.default_rng(_SEED)
-    branches, branch = _means(rows, max(1, min(int(np.sqrt(size)), len(rows) // _LEAST)), rng)
+    branches, branch = _means(rows, max(1, min(int(np.sqrt(size)), len(rows) // _MIN_BRANCH_ROWS)), rng)
     order = np.argsort(branch, kind="stable")
     counts = np.bincount(branch, minlength=len(branches))
     ends = np.cumsum(counts)
@@ -88,14 +87,14 @@ def _two_levels(rows: Floats, size: int) -> tuple[Floats, Labels]:
 
 
 def _distinct(rows: Floats, size: int) -> tuple[Floats | None, Labels]:
-    """The different rows and where each went, if they all fit into a palette."""
+    """The distinct rows (None if more than `size`) and the index of each row among them."""
     keys = np.ascontiguousarray(rows).view(np.dtype((np.void, rows.shape[1] * rows.itemsize)))[:, 0]
     _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
     return (rows[first], inverse) if len(first) <= size else (None, inverse)
 
 
 def _means(rows: Floats, size: int, rng: np.random.Generator) -> tuple[Floats, Labels]:
-    """Plain k-means; centres that lose all their rows are dropped."""
+    """Plain k-means: centres and the label of each row; centres without rows are dropped."""
     centres = rows[np.sort(rng.choice(len(rows), min(size, len(rows)), replace=False))]
     label = _assign(rows, centres)
     for _ in range(_ROUNDS_VECTOR):
@@ -109,7 +108,7 @@ def _means(rows: Floats, size: int, rng: np.random.Generator) -> tuple[Floats, L
 
 
 def _assign(rows: Floats, centres: Floats) -> Labels:
-    """Which centre is nearest to each row."""
+    """Index of the nearest centre for each row."""
     half = torch.from_numpy(np.einsum("ij,ij->i", centres, centres) / 2)
     across = torch.from_numpy(np.ascontiguousarray(centres.T))
     blocks = torch.split(torch.from_numpy(np.ascontiguousarray(rows)), _BLOCK)

@@ -1,12 +1,12 @@
-"""Frame and cameras of a scene as header comments of a .ply, so that a scene we saved comes back as it was.
+"""Stores the frame and cameras of a scene in header comments of a .ply and reads them back.
 
-One line each, `scenewright <what> <JSON>`: other programs skip them, people can read and edit them.
+One line each, `scenewright <what> <JSON>`; other programs ignore them.
 
     scenewright frame {"up": [0, 0, 1], "floor": 0, "metres_per_unit": 1, "up_source": "file", "scale_source": "file"}
     scenewright camera {"name": "door", "size": [640, 480], "focal": [500, 500], "center": [320, 240],
                         "world_to_camera": [16 numbers, row by row]}   (on one line)
 
-A frame that was given by the user is one that comes from the file for whoever loads it. Refuses to know PLY itself.
+A frame whose source is "given" (by the user) is stored with the source "file".
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ Source = Literal["given", "file", "estimated", "unknown"]
 
 
 class _Stored(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="ignore")  # a later version may say more
+    model_config = ConfigDict(frozen=True, extra="ignore")  # later versions may add fields
 
 
 class _Frame(_Stored):
-    """As `Frame`."""
+    """The stored form of `Frame`."""
 
     up: tuple[Finite, Finite, Finite]
     floor: Finite | None = None
@@ -42,7 +42,7 @@ class _Frame(_Stored):
 
 
 class _Camera(_Stored):
-    """As `Camera`, in pairs; a size beyond a million pixels a side is a fault, and would exhaust a renderer."""
+    """The stored form of `Camera`. Sides above 2^20 pixels are refused: they would exhaust a renderer's memory."""
 
     name: Annotated[str, Field(max_length=500)] = ""
     size: tuple[Annotated[int, Field(ge=1, le=1 << 20)], Annotated[int, Field(ge=1, le=1 << 20)]]
@@ -52,7 +52,7 @@ class _Camera(_Stored):
 
 
 def describe(scene: Scene) -> tuple[str, ...]:
-    """The comment lines of a scene; none for what is unknown."""
+    """The comment lines of a scene: one for its frame unless it is unknown, one per camera."""
     frame = _describe_frame(scene.frame)
     return (*([frame] if scene.frame != Frame() else []), *(_describe_camera(camera) for camera in scene.cameras))
 
@@ -80,7 +80,7 @@ def _describe_camera(camera: Camera) -> str:
 
 
 def parse(comments: tuple[str, ...]) -> tuple[Frame, tuple[Camera, ...], tuple[str, ...]]:
-    """Frame, cameras and notes about our own comments that could not be used; foreign comments are ignored."""
+    """Frame, cameras, and a note for each unusable comment of ours; comments of other programs are ignored."""
     frame, cameras, notes = Frame(), [], []
     for comment in comments:
         prefix, _, rest = comment.partition(" ")
@@ -104,5 +104,5 @@ def _camera(stored: _Camera) -> Camera:
 
 
 def _line(what: str, stored: dict[str, Any]) -> str:
-    """ASCII and on one line whatever a camera's name holds; numbers are written so that they read back exactly."""
+    """A comment line: JSON escapes names to ASCII without line breaks, and writes numbers that read back exactly."""
     return f"{_PREFIX} {what} {json.dumps(stored)}"

@@ -1,9 +1,9 @@
-"""PlayCanvas' compressed .ply: 256 Gaussians share a chunk of bounds, each is four 32-bit words.
+"""Reads and writes PlayCanvas' compressed .ply: chunks of 256 Gaussians share bounds, a Gaussian is four 32-bit words.
 
-Knows the layout as written by SuperSplat and splat-transform (github.com/playcanvas/splat-transform, reader of
-compressed PLY): element `chunk` with float bounds of position, log scale and, in newer files, colour; element
-`vertex` with packed position and scale (11, 10, 11 bits), rotation (index of the largest component in 2 bits, the
-other three in 10 each) and colour with opacity (8 bits each); optional element `sh` with one byte a coefficient.
+The layout is that of SuperSplat and splat-transform (github.com/playcanvas/splat-transform, reader of compressed
+PLY): element `chunk` with float bounds of position, log scale and, in newer files, colour; element `vertex` with
+packed position and scale (11, 10, 11 bits), rotation (index of the largest component in 2 bits, the other three in 10
+each) and colour with opacity (8 bits each); optional element `sh` with one byte per coefficient.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def read(path: Path) -> tuple[Scene, Report]:
     """Read the scene.
 
     Raises:
-        FileError: cut off, malformed, without Gaussians, or with chunks or harmonics that do not fit the vertices.
+        FileError: the file is cut off, malformed or empty, or its chunks or harmonics do not match the vertices.
     """
     with open(path, "rb") as file:
         header = ply.read_header(file, path)
@@ -49,22 +49,22 @@ def read(path: Path) -> tuple[Scene, Report]:
         rest = _harmonics(file, path, header, degree)
     chunk = np.arange(count) // _CHUNK
     position, rotation, scale, color = words.T
-    rgb = _between(bounds, _COLOR, chunk, _unpack(color, (8, 8, 8, 8))[:, :3])
+    rgb = _interpolate(bounds, _COLOR, chunk, _unpack(color, (8, 8, 8, 8))[:, :3])
     sh = np.concatenate([values.rounded((rgb - 0.5) / SH_C0)[:, None], rest], axis=1)
-    logs = _between(bounds, _SCALE, chunk, _unpack(scale, (11, 10, 11)))
+    logs = _interpolate(bounds, _SCALE, chunk, _unpack(scale, (11, 10, 11)))
     cloud, notes = values.sound_cloud(
-        values.rounded(_between(bounds, _POSITION, chunk, _unpack(position, (11, 10, 11)))),
+        values.rounded(_interpolate(bounds, _POSITION, chunk, _unpack(position, (11, 10, 11)))),
         _rotations(rotation),
         values.scales_from_logs(values.rounded(logs)),
         values.opacities_from_bytes(color & 255),
         sh,
     )
-    frame, cameras, doubts = comments.parse(header.comments)
-    return Scene(cloud, frame, cameras, path=path), Report(NAME, count, len(cloud), notes + doubts)
+    frame, cameras, ignored = comments.parse(header.comments)
+    return Scene(cloud, frame, cameras, path=path), Report(NAME, count, len(cloud), notes + ignored)
 
 
 def _check(path: Path, header: ply.Header) -> tuple[int, int]:
-    """Number of Gaussians and harmonics degree, once the elements are seen to fit together."""
+    """Check that the elements fit together; returns the number of Gaussians and the harmonics degree."""
     chunk, vertex, sh = (header.element(name) for name in ("chunk", "vertex", "sh"))
     if chunk is None or vertex is None:
         raise FileError(f"{path}: a compressed PLY needs the elements chunk and vertex")
@@ -118,9 +118,9 @@ def _bounds(file: BinaryIO, path: Path, header: ply.Header) -> dict[str, NDArray
 
 
 def _harmonics(file: BinaryIO, path: Path, header: ply.Header, degree: int) -> values.Floats:
-    """Bands above the constant one, `[N, K - 1, 3]`, from one byte each over -4 to 4; channel-major in the file.
+    """Coefficients above the constant band, `[N, K - 1, 3]`, one byte each for -4 to 4; channel-major in the file.
 
-    The ends stand for themselves, the bytes between for the middle of their interval.
+    Bytes 0 and 255 mean exactly -4 and 4, the others the middle of their interval.
     """
     vertex, k = header.element("vertex"), (degree + 1) ** 2
     assert vertex is not None
@@ -136,7 +136,7 @@ def _harmonics(file: BinaryIO, path: Path, header: ply.Header, degree: int) -> v
 
 
 def _unpack(words: _Words, bits: tuple[int, ...]) -> NDArray[np.float64]:
-    """`[N, fields]` in [0, 1] of unsigned fields, the first in the highest bits."""
+    """Unsigned bit fields of words as `[N, fields]` in [0, 1]; the first field has the highest bits."""
     out = np.empty((len(words), len(bits)))
     shift = 32
     for i, width in enumerate(bits):
@@ -145,12 +145,12 @@ def _unpack(words: _Words, bits: tuple[int, ...]) -> NDArray[np.float64]:
     return out
 
 
-def _between(
+def _interpolate(
     bounds: dict[str, NDArray[np.float64]], names: tuple[str, ...], chunk: NDArray[np.int64], t: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """`[N, 3]` between the bounds of each Gaussian's chunk, at fractions `t` `[N, 3]`."""
+    """`[N, 3]` linear interpolation between the bounds of each Gaussian's chunk, at fractions `t` `[N, 3]`."""
     low, high = (np.stack([bounds[f"{end}_{name}"] for name in names], axis=1)[chunk] for end in ("min", "max"))
-    with np.errstate(all="ignore"):  # bounds that are not finite give rows that are dropped as such
+    with np.errstate(all="ignore"):  # bounds that are not finite give rows that `sound_cloud` drops
         mixed: NDArray[np.float64] = low * (1 - t) + high * t
     return mixed
 
@@ -161,10 +161,10 @@ def _rotations(words: _Words) -> values.Floats:
 
 
 def write(scene: Scene, file: BinaryIO) -> None:
-    """Write the scene in row order; rows of one chunk should lie close together (`arrange.arranged`).
+    """Write the scene in row order; rows of one chunk should be neighbours in space (`morton.morton_sorted`).
 
-    Log scales beyond ±20 (2e-9 and 5e8 units) are cut off there, so that one flat Gaussian does not spoil its chunk,
-    and coefficients above the constant one beyond ±4, which the format cannot hold.
+    Log scales are clamped to ±20 (2e-9 and 5e8 units), so that one flat Gaussian does not widen the bounds of its
+    chunk. Coefficients above the constant band are clamped to ±4, the range of the format.
     """
     cloud = values.columns(scene.cloud)
     means, sh, n = cloud["means"].astype(np.float64), cloud["sh"], len(cloud["means"])
@@ -174,7 +174,7 @@ def write(scene: Scene, file: BinaryIO) -> None:
     for part, (column, (low, high), widths) in enumerate(
         ((means, (0, 3), (11, 10, 11)), (logs, (6, 9), (11, 10, 11)), (colors, (12, 15), (8, 8, 8)))
     ):
-        fractions = _chunked(column, chunks[:, low:high], chunks[:, high : high + 3])
+        fractions = _normalise(column, chunks[:, low:high], chunks[:, high : high + 3])
         words[:, (0, 2, 3)[part]] = _pack(fractions, widths)
     words[:, 3] = (words[:, 3] << np.uint32(8)) | values.codes(cloud["opacities"], 255)
     thirds, largest = values.without_largest(cloud["quats"])
@@ -189,7 +189,7 @@ def write(scene: Scene, file: BinaryIO) -> None:
 
 
 def _header(scene: Scene, chunks: int, rest: int) -> bytes:
-    """The header's bytes for `rest` coefficients a Gaussian above the constant one."""
+    """The header's bytes; `rest` is the number of coefficients per Gaussian above the constant band."""
     bounds = [f"{end}_{n}" for group in (_POSITION, _SCALE, _COLOR) for end in ("min", "max") for n in group]
     lines = ["ply", "format binary_little_endian 1.0", *(f"comment {note}" for note in comments.describe(scene))]
     lines += [f"element chunk {chunks}", *(f"property float {name}" for name in bounds)]
@@ -199,8 +199,8 @@ def _header(scene: Scene, chunks: int, rest: int) -> bytes:
     return ("\n".join([*lines, "end_header"]) + "\n").encode("ascii")
 
 
-def _chunked(column: NDArray[np.float64], low: NDArray[Any], high: NDArray[Any]) -> NDArray[np.float64]:
-    """Fractions `[N, 3]` of `column` between the bounds of its chunks, which are stored into `low` and `high`."""
+def _normalise(column: NDArray[np.float64], low: NDArray[Any], high: NDArray[Any]) -> NDArray[np.float64]:
+    """Fractions `[N, 3]` of `column` between the bounds of its chunks; the bounds are written to `low` and `high`."""
     starts = np.arange(0, len(column), _CHUNK)
     low[:], high[:] = np.minimum.reduceat(column, starts), np.maximum.reduceat(column, starts)
     chunk = np.arange(len(column)) // _CHUNK
@@ -209,11 +209,11 @@ def _chunked(column: NDArray[np.float64], low: NDArray[Any], high: NDArray[Any])
 
 
 def _pack(fractions: NDArray[np.float64], widths: tuple[int, ...]) -> _Words:
-    """`[N]` words of fields in [0, 1], the last in the lowest bits."""
+    """Pack fields in [0, 1] into `[N]` words; the last field gets the lowest bits."""
     words = np.zeros(len(fractions), np.uint32)
     for i, width in enumerate(widths):
         words = (words << np.uint32(width)) | values.codes(fractions[:, i], (1 << width) - 1)
     return words
 
 
-FORMAT = Format(NAME, (".compressed.ply",), recognises, read, write, arranges=True)
+FORMAT = Format(NAME, (".compressed.ply",), recognises, read, write, morton_order=True)

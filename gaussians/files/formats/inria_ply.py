@@ -1,8 +1,8 @@
-"""The .ply of the original 3D Gaussian Splatting (Kerbl et al. 2023), read and written.
+"""Reads and writes the .ply of the original 3D Gaussian Splatting (Kerbl et al. 2023).
 
-Knows its property names: x y z, f_dc_0..2, f_rest_* (channel-major: all of red, then green, then blue), opacity
-(logit), scale_0..2 (natural logarithm), rot_0..3 (wxyz). Order of properties, byte order and extra properties do not
-matter. Our own files carry frame and cameras in header comments (see `comments`). Refuses to know other layouts.
+Properties: x y z, f_dc_0..2, f_rest_* (channel-major: all of red, then green, then blue), opacity (logit), scale_0..2
+(natural logarithm), rot_0..3 (wxyz). Order of properties, byte order and extra properties do not matter. Our own files
+store frame and cameras in header comments (see `comments`).
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def read(path: Path) -> tuple[Scene, Report]:
     """Read the scene.
 
     Raises:
-        FileError: cut off, malformed, without Gaussians, or without the properties of Gaussians.
+        FileError: the file is cut off, malformed or empty, or lacks properties of Gaussians.
     """
     with open(path, "rb") as file:
         header = ply.read_header(file, path)
@@ -47,13 +47,13 @@ def read(path: Path) -> tuple[Scene, Report]:
     cloud, notes = values.sound_cloud(
         means, quats, values.scales_from_logs(logs), values.opacities_from_logits(logits), sh
     )
-    frame, cameras, doubts = comments.parse(header.comments)
+    frame, cameras, ignored = comments.parse(header.comments)
     scene = Scene(cloud, frame, cameras, path=path)
-    return scene, Report(NAME, vertex.count, len(cloud), notes + doubts)
+    return scene, Report(NAME, vertex.count, len(cloud), notes + ignored)
 
 
 def _degree(path: Path, vertex: ply.Element | None) -> int:
-    """Harmonics degree of a vertex element that has all that Gaussians need."""
+    """Check that the vertex element has the properties of Gaussians; returns the harmonics degree."""
     if vertex is None:
         raise FileError(f"{path}: the PLY file has no vertex element, so no Gaussians")
     missing = [name for name in _REQUIRED if name not in vertex.names]
@@ -78,7 +78,7 @@ def _gather(blocks: Any, count: int, degree: int) -> tuple[values.Floats, ...]:
     k = (degree + 1) ** 2
     means, quats, logs = (np.empty((count, width), np.float32) for width in (3, 4, 3))
     logits, sh = np.empty(count, np.float32), np.empty((count, k, 3), np.float32)
-    with np.errstate(over="ignore"):  # a double beyond float32 becomes infinite and is dropped as such
+    with np.errstate(over="ignore"):  # a double beyond float32 becomes infinite, and `sound_cloud` drops its row
         for start, rows in blocks:
             span = slice(start, start + len(rows))
             for axis in range(3):
@@ -127,7 +127,7 @@ def write(scene: Scene, file: BinaryIO) -> None:
 
 
 def _header(names: list[str], count: int, notes: tuple[str, ...]) -> bytes:
-    """The header's bytes. Comments come last: INRIA's viewer takes the third line for the vertex count."""
+    """The header's bytes. Comments come last: INRIA's viewer reads the vertex count from the third line."""
     lines = ["ply", "format binary_little_endian 1.0", f"element vertex {count}"]
     lines += [f"property float {name}" for name in names]
     lines += [f"comment {note}" for note in notes]

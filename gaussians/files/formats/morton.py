@@ -1,4 +1,4 @@
-"""The order of rows along a Morton curve, which lays neighbours in space side by side."""
+"""Sorts the rows of a scene along a Morton curve, so that neighbouring rows are neighbours in space."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from ...morton import BITS, codes
 from ...scene import Scene
 
 
-def arranged(scene: Scene) -> Scene:
-    """The same scene with its rows in Morton order; rows of one cell stay as they were."""
+def morton_sorted(scene: Scene) -> Scene:
+    """The same scene with its rows in Morton order; rows of one cell keep their order."""
     return scene.replace(cloud=scene.cloud[torch.from_numpy(morton_order(scene.cloud.means.cpu().numpy()))])
 
 
 def morton_order(means: NDArray[np.float32]) -> NDArray[np.int64]:
     """Row numbers `[N]` in the order of a Morton curve through the positions `[N, 3]`.
 
-    The curve is laid through the ranks of the coordinates, not their values: a floater far out does not push all
-    others into one cell.
+    The curve uses the ranks of the coordinates instead of their values. A floater far away therefore does not move
+    all other Gaussians into one cell.
     """
     cells = np.empty((len(means), 3), np.int64)
     for axis in range(3):

@@ -1,6 +1,6 @@
-"""The PLY container (Turk 1994): header, elements, rows of scalar properties, in three encodings.
+"""Reads the PLY container (Turk 1994): header, elements and rows of scalar properties, in three encodings.
 
-Knows types and bytes. Refuses to know what the properties mean, and list properties, which no Gaussian format uses.
+List properties are refused, because no Gaussian format uses them.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from ...errors import FileError
 
 Encoding = Literal["ascii", "binary_little_endian", "binary_big_endian"]
 
-HEADER_LIMIT = 4 << 20  # bytes; far above what cameras in comments need
-BLOCK_ROWS = 8192  # rows read at a time: about 2 MB of degree 3, which stays in cache
+HEADER_LIMIT = 4 << 20  # bytes; far more than cameras in comments need
+BLOCK_ROWS = 8192  # rows read at a time: about 2 MB at degree 3, which stays in cache
 _TYPES = {
     "char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",
     "uint16": "u2", "int": "i4", "int32": "i4", "uint": "u4", "uint32": "u4", "float": "f4", "float32": "f4",
@@ -49,7 +49,7 @@ class Element:
 
 @dataclass(frozen=True)
 class Header:
-    """What the head of a file promises; `size` is its length in bytes."""
+    """A parsed PLY header; `size` is its length in bytes."""
 
     encoding: Encoding
     elements: tuple[Element, ...]
@@ -65,7 +65,7 @@ def read_header(file: BinaryIO, path: Path) -> Header:
     """Parse the header and leave `file` at the first byte of the body.
 
     Raises:
-        FileError: it is not a PLY header, never ends, or declares something that cannot be read.
+        FileError: it is not a PLY header, has no end, or declares something that cannot be read.
     """
     lines = _header_lines(file, path)
     encoding: Encoding | None = None
@@ -96,7 +96,7 @@ def read_header(file: BinaryIO, path: Path) -> Header:
 
 
 def _header_lines(file: BinaryIO, path: Path) -> list[str]:
-    """The lines from "ply" to "end_header", without line ends."""
+    """The lines from "ply" to "end_header", without line breaks."""
     if file.readline(8).rstrip(b"\r\n") != b"ply":
         raise FileError(f"{path}: not a PLY file (it does not start with the line 'ply')")
     lines = ["ply"]
@@ -113,11 +113,11 @@ def _header_lines(file: BinaryIO, path: Path) -> list[str]:
 def read_rows(file: BinaryIO, path: Path, header: Header, name: str) -> Iterator[tuple[int, NDArray[Any]]]:
     """Blocks of rows of one element as `(first row, structured array)`, in order.
 
-    Nothing larger than a block is allocated. Callers may allocate `count` rows after the first call, because it
-    checks the promise of the header against the size of the file.
+    No more than one block is allocated. Callers may allocate `count` rows after the first call, because it checks
+    the counts in the header against the size of the file.
 
     Raises:
-        FileError: the file holds fewer rows than its header promises, or an ASCII row cannot be read.
+        FileError: the file holds fewer rows than its header declares, or an ASCII row cannot be parsed.
     """
     _check_size(file, path, header)
     if header.encoding == "ascii":
@@ -126,20 +126,20 @@ def read_rows(file: BinaryIO, path: Path, header: Header, name: str) -> Iterator
 
 
 def _check_size(file: BinaryIO, path: Path, header: Header) -> None:
-    """Refuse a header that promises more than the file can hold."""
+    """Refuse a header that declares more rows than the file can hold."""
     end = file.seek(0, 2)
-    held = end - header.size
+    left = end - header.size
     for element in header.elements:
         # The shortest ASCII row is a digit and a separator for each property.
         row = len(element.properties) * 2 if header.encoding == "ascii" else element.dtype(header.encoding).itemsize
         needed = element.count * row - (1 if header.encoding == "ascii" else 0)
-        if needed > held:
-            fit = held // row if row else 0
+        if needed > left:
+            fit = left // row if row else 0
             raise FileError(
-                f"{path}: the header promises {element.count:,} {element.name} rows, the file ends after at most "
-                f"{fit:,}; it is cut off, get it again"
+                f"{path}: the header declares {element.count:,} {element.name} rows, the file ends after at most "
+                f"{fit:,}; it is cut off, download it again"
             )
-        held -= max(needed, 0)
+        left -= max(needed, 0)
 
 
 def _binary_rows(file: BinaryIO, path: Path, header: Header, name: str) -> Iterator[tuple[int, NDArray[Any]]]:
@@ -153,7 +153,7 @@ def _binary_rows(file: BinaryIO, path: Path, header: Header, name: str) -> Itera
             rows = min(BLOCK_ROWS, element.count - start)
             data = file.read(rows * dtype.itemsize)
             if len(data) < rows * dtype.itemsize:
-                raise FileError(f"{path}: the file became shorter while it was read")
+                raise FileError(f"{path}: the file was truncated while it was read")
             yield start, np.frombuffer(data, dtype)
         return
 
@@ -172,7 +172,7 @@ def _ascii_rows(file: BinaryIO, path: Path, header: Header, name: str) -> Iterat
 
 
 def _parse_ascii(lines: list[bytes], wanted: int, dtype: np.dtype[Any], where: str) -> NDArray[Any]:
-    """Whole lines of numbers as structured rows."""
+    """Parse lines of numbers into structured rows."""
     width = len(dtype.names or ())
     tokens = [line.split() for line in lines]
     if len(tokens) < wanted or any(len(row) != width for row in tokens):

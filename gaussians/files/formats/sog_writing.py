@@ -1,7 +1,6 @@
-"""Writing SOG version 2, the other half of `sog`: one zip archive of meta.json and lossless WebP images.
+"""Writes SOG version 2 (see `sog` for reading): one zip archive of meta.json and lossless WebP images.
 
-Knows the specification (developer.playcanvas.com/user-manual/gaussian-splatting/formats/sog). Refuses to know how
-codebooks and palettes come about.
+The specification is developer.playcanvas.com/user-manual/gaussian-splatting/formats/sog.
 """
 
 from __future__ import annotations
@@ -21,15 +20,15 @@ from . import codebooks, values
 
 PALETTE_COLUMNS = 64
 PALETTE_LIMIT = 1 << 16  # labels have 16 bits
-_SHARE = 4  # Gaussians a set of coefficients, where there are enough of them
-_BOOK = 256
+_GAUSSIANS_PER_SET = 4  # of coefficients, in scenes with enough Gaussians
+_CODEBOOK_SIZE = 256
 _LOG_LIMIT = 20.0  # of log scales: 2e-9 to 5e8 units
-_YEAR = (1980, 1, 1, 0, 0, 0)  # zip's first date, so that equal scenes give equal bytes
+_DATE = (1980, 1, 1, 0, 0, 0)  # the first date of zip, so that equal scenes give equal bytes
 Bytes = NDArray[np.uint8]
 
 
 def write(scene: Scene, file: BinaryIO) -> None:
-    """Write the scene in row order, row by row of the images."""
+    """Write the scene in row order: one pixel per Gaussian, row by row of each image."""
     cloud = values.columns(scene.cloud)
     count = len(scene.cloud)
     meta: dict[str, Any] = {"version": 2, "asset": {"generator": "scenewright"}, "count": count}
@@ -43,19 +42,19 @@ def write(scene: Scene, file: BinaryIO) -> None:
         ("scales", logs, np.full(count, 255)),
         ("sh0", cloud["sh"][:, 0], values.codes(cloud["opacities"], 255)),
     ):
-        book = codebooks.codebook(column, _BOOK)
+        book = codebooks.codebook(column, _CODEBOOK_SIZE)
         parts[f"{name}.webp"] = _square(codebooks.nearest(column, book), alpha)
         meta[name] = {"codebook": _padded(book), "files": [f"{name}.webp"]}
     if scene.cloud.degree:
         meta["shN"] = _bands(cloud["sh"][:, 1:], scene.cloud.degree, parts)
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
-        archive.writestr(zipfile.ZipInfo("meta.json", _YEAR), json.dumps(meta, separators=(",", ":")))
+        archive.writestr(zipfile.ZipInfo("meta.json", _DATE), json.dumps(meta, separators=(",", ":")))
         for name, pixels in parts.items():
-            archive.writestr(zipfile.ZipInfo(name, _YEAR), _webp(pixels))
+            archive.writestr(zipfile.ZipInfo(name, _DATE), _webp(pixels))
 
 
 def _means(means: values.Floats, parts: dict[str, Bytes]) -> dict[str, Any]:
-    """Positions as 16 bits of `sign(x) log(1 + |x|)` between its bounds; low bytes and high bytes apart."""
+    """Store positions as `sign(x) log(1 + |x|)` in 16 bits between bounds, one image per byte; returns their meta."""
     logs = np.sign(means) * np.log1p(np.abs(means.astype(np.float64)))
     low, high = logs.min(axis=0), logs.max(axis=0)
     span = np.where(high > low, high - low, 1.0)
@@ -66,16 +65,16 @@ def _means(means: values.Floats, parts: dict[str, Bytes]) -> dict[str, Any]:
 
 
 def _bands(rest: values.Floats, degree: int, parts: dict[str, Bytes]) -> dict[str, Any]:
-    """Bands above the constant one `[N, K - 1, 3]` as a palette of coefficient sets and a label a Gaussian."""
+    """Store coefficients above the constant band `[N, K - 1, 3]` as a palette of sets and one label per Gaussian."""
     count, k, _ = rest.shape
-    size = min(PALETTE_LIMIT, max(count // _SHARE, min(count, 1024)))
+    size = min(PALETTE_LIMIT, max(count // _GAUSSIANS_PER_SET, min(count, 1024)))
     centres, labels = codebooks.palette(rest.reshape(count, -1), size)
-    book = codebooks.codebook(centres, _BOOK)
+    book = codebooks.codebook(centres, _CODEBOOK_SIZE)
     rows = -(-len(centres) // PALETTE_COLUMNS)
-    picture = np.zeros((rows * PALETTE_COLUMNS, k, 4), np.uint8)
-    picture[..., 3] = 255
-    picture[: len(centres), :, :3] = codebooks.nearest(centres, book).reshape(-1, k, 3)
-    parts["shN_centroids.webp"] = picture.reshape(rows, PALETTE_COLUMNS * k, 4)
+    image = np.zeros((rows * PALETTE_COLUMNS, k, 4), np.uint8)
+    image[..., 3] = 255
+    image[: len(centres), :, :3] = codebooks.nearest(centres, book).reshape(-1, k, 3)
+    parts["shN_centroids.webp"] = image.reshape(rows, PALETTE_COLUMNS * k, 4)
     low, high = labels & 255, labels >> 8
     parts["shN_labels.webp"] = _square(np.stack([low, high, np.zeros_like(low)], axis=1), np.full(count, 255))
     files = ["shN_centroids.webp", "shN_labels.webp"]
@@ -83,22 +82,22 @@ def _bands(rest: values.Floats, degree: int, parts: dict[str, Bytes]) -> dict[st
 
 
 def _padded(book: values.Floats) -> list[float]:
-    """A codebook of exactly 256 entries, as readers expect; the last value fills the rest."""
-    return [float(v) for v in np.concatenate([book, np.repeat(book[-1:], _BOOK - len(book))])]
+    """A codebook padded with its last value to exactly 256 entries, as readers expect."""
+    return [float(v) for v in np.concatenate([book, np.repeat(book[-1:], _CODEBOOK_SIZE - len(book))])]
 
 
 def _square(rgb: NDArray[np.integer], alpha: NDArray[np.integer]) -> Bytes:
-    """`[height, width, 4]` picture, about square, of a pixel a Gaussian; width and height multiples of four."""
+    """`[height, width, 4]` image, about square, one pixel per Gaussian; width and height are multiples of four."""
     count = len(rgb)
     width = 4 * math.ceil(math.sqrt(count) / 4)
     height = 4 * math.ceil(count / width / 4)
-    picture = np.zeros((height * width, 4), np.uint8)
-    picture[:count, :3], picture[:count, 3] = rgb, alpha
-    return picture.reshape(height, width, 4)
+    image = np.zeros((height * width, 4), np.uint8)
+    image[:count, :3], image[:count, 3] = rgb, alpha
+    return image.reshape(height, width, 4)
 
 
 def _webp(pixels: Bytes) -> bytes:
-    """A lossless WebP that keeps colours under full transparency as well."""
+    """A lossless WebP that keeps the colours of transparent pixels."""
     from PIL import Image, features
 
     if not features.check("webp"):

@@ -1,8 +1,8 @@
-""".splat: 32 bytes a Gaussian and nothing else, read and written.
+"""Reads and writes .splat: 32 bytes per Gaussian, without a header.
 
-Knows the layout of antimatter15/splat (github.com/antimatter15/splat, convert.py and main.js): three float32 of
-position, three of standard deviation, RGBA bytes of base colour and opacity, four bytes of the quaternion wxyz as
-128 + 128 q. Refuses to know harmonics above the constant one, which the format cannot hold.
+The layout is that of antimatter15/splat (github.com/antimatter15/splat, convert.py and main.js): three float32 of
+position, three of standard deviation, RGBA bytes of base colour and opacity, four bytes of the wxyz quaternion as
+128 + 128 q. The format cannot hold harmonics above the constant band.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _ROW = np.dtype([("mean", "<f4", 3), ("scale", "<f4", 3), ("rgba", "u1", 4), ("q
 
 
 def recognises(path: Path, head: bytes) -> bool:
-    """Never: any bytes could be this format, so only the name says it."""
+    """Always False: any bytes could be this format, so only the file name identifies it."""
     return False
 
 
@@ -31,7 +31,7 @@ def read(path: Path) -> tuple[Scene, Report]:
     """Read the scene.
 
     Raises:
-        FileError: empty, cut off inside a row, or without a usable row.
+        FileError: the file is empty, cut off inside a row, or without a usable row.
     """
     size = path.stat().st_size
     if size == 0 or size % _ROW.itemsize:
@@ -41,7 +41,7 @@ def read(path: Path) -> tuple[Scene, Report]:
         )
     rows = np.fromfile(path, _ROW)
     scales = rows["scale"]
-    with np.errstate(invalid="ignore"):  # a negative deviation is a fault like NaN
+    with np.errstate(invalid="ignore"):  # a negative standard deviation makes a row invalid, like NaN
         scales = np.where(scales >= 0, np.maximum(scales, np.float32(values.SCALE_MIN)), np.float32(np.nan))
     quats = ((rows["quat"].astype(np.float64) - 128) / 128).astype(np.float32)
     dc = ((rows["rgba"][:, :3] / 255 - 0.5) / SH_C0).astype(np.float32)
@@ -56,14 +56,14 @@ def read(path: Path) -> tuple[Scene, Report]:
 
 
 def write(scene: Scene, file: BinaryIO) -> None:
-    """Write the scene in row order; only the constant band of the harmonics has a place."""
+    """Write the scene in row order; harmonics above the constant band are dropped."""
     cloud = values.columns(scene.cloud)
     rows = np.empty(len(cloud["means"]), _ROW)
     rows["mean"], rows["scale"] = cloud["means"], cloud["scales"]
     rows["rgba"][:, :3] = values.codes(cloud["sh"][:, 0].astype(np.float64) * SH_C0 + 0.5, 255)
     rows["rgba"][:, 3] = values.codes(cloud["opacities"], 255)
     quats = values.unit_quats(cloud["quats"])[0]
-    # Of q and -q the one whose largest component is negative: -1 has a byte, 1 has none.
+    # Of q and -q, write the one whose largest component is negative: a byte can hold -1 but not 1.
     largest = np.take_along_axis(quats, np.argmax(np.abs(quats), axis=1)[:, None], axis=1)
     rows["quat"] = np.clip(np.rint(np.where(largest > 0, -quats, quats) * 128 + 128), 0, 255)
     file.write(rows.tobytes())

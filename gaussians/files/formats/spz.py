@@ -1,9 +1,9 @@
-"""SPZ (Niantic), versions 1 to 4 read, 2 to 4 written: one stream of bytes an attribute, packed.
+"""Reads SPZ (Niantic) of versions 1 to 4 and writes versions 2 to 4: one compressed byte stream per attribute.
 
-Knows the containers (github.com/nianticlabs/spz, README "File Format" and extensions/README.md): up to version 3 one
-gzip stream with a header of 16 bytes, in version 4 a plain header of 32, extension records, a table of contents and
-one Zstandard frame an attribute. What the bytes mean stands in `spz_codes`.
-Refuses to unpack more than ten times the file's size (a few megabytes are free), so no file can exhaust the memory.
+Containers (github.com/nianticlabs/spz, README "File Format" and extensions/README.md): up to version 3 one gzip stream
+with a header of 16 bytes, in version 4 a plain header of 32, extension records, a table of contents and one Zstandard
+frame per attribute. `spz_codes` quantises the attributes.
+At most ten times the file's size (or `FREE` bytes) is decompressed, so no file can exhaust the memory.
 """
 
 from __future__ import annotations
@@ -48,12 +48,12 @@ class _Header:
 
     @property
     def widths(self) -> tuple[int, ...]:
-        """Bytes a Gaussian of positions, opacities, colours, scales, rotations and harmonics."""
+        """Bytes per Gaussian of positions, opacities, colours, scales, rotations and harmonics."""
         return (6 if self.version == 1 else 9, 1, 3, 3, 3 if self.version < 3 else 4, 3 * _COEFFICIENTS[self.degree])
 
 
 def recognises(path: Path, head: bytes) -> bool:
-    """Whether it starts with the magic, in the plain or inside a gzip stream."""
+    """Whether the content starts with the magic number, plain or inside a gzip stream."""
     if head[:2] == _GZIP:
         try:
             head = zlib.decompressobj(31).decompress(head[:4096], 4)
@@ -91,7 +91,7 @@ def read(path: Path) -> tuple[Scene, Report]:
 
 
 def _checked(path: Path, header: _Header, size: int) -> _Header:
-    """The header, once its promise is seen to be possible for a file of `size` bytes."""
+    """The header, after checking that a file of `size` bytes can hold what it declares."""
     if header.degree >= len(_COEFFICIENTS):
         raise FileError(f"{path}: harmonics of degree {header.degree}; SPZ knows 0 to {len(_COEFFICIENTS) - 1}")
     if header.fraction > 24:
@@ -104,7 +104,7 @@ def _checked(path: Path, header: _Header, size: int) -> _Header:
 
 
 def _unzip(path: Path, data: bytes) -> tuple[_Header, list[bytes]]:
-    """Header and streams of versions 1 to 3."""
+    """Header and streams of a file of version 1 to 3."""
     inflater = zlib.decompressobj(31)
     try:
         head = inflater.decompress(data, _LEGACY.size)
@@ -128,7 +128,7 @@ def _unzip(path: Path, data: bytes) -> tuple[_Header, list[bytes]]:
 
 
 def _unframe(path: Path, data: bytes) -> tuple[_Header, list[bytes]]:
-    """Header and streams of version 4."""
+    """Header and streams of a file of version 4."""
     if len(data) < _HEADER.size:
         raise FileError(f"{path}: not an SPZ file, or one that ends inside its header")
     magic, version, count, degree, fraction, flags, streams, table = _HEADER.unpack_from(data)
@@ -155,7 +155,7 @@ def _unframe(path: Path, data: bytes) -> tuple[_Header, list[bytes]]:
 
 
 def _axes(path: Path, records: bytes) -> codes.Signs:
-    """Signs of the file's axes as its extension records `[type u32, length u32, bytes]` say; others are skipped."""
+    """Signs of the axes from the extension records `[type u32, length u32, bytes]`; other records are skipped."""
     at = 0
     while at + 8 <= len(records):
         kind, length = struct.unpack_from("<II", records, at)
@@ -196,7 +196,7 @@ def write(scene: Scene, file: BinaryIO, version: int = LATEST) -> None:
 
 
 def _gzip(header: _Header, streams: list[bytes]) -> bytes:
-    """A file of version 2 or 3; not packed at all where it would look like one made to exhaust a reader's memory."""
+    """A file of version 2 or 3; stored uncompressed if its compression ratio exceeds what our reader accepts."""
     fields = (_MAGIC, header.version, header.count, header.degree, header.fraction, header.flags, 0)
     body = _LEGACY.pack(*fields) + b"".join(streams)
     for level in (6, 0):
@@ -208,7 +208,7 @@ def _gzip(header: _Header, streams: list[bytes]) -> bytes:
 
 
 def _frames(header: _Header, streams: list[bytes]) -> bytes:
-    """A file of version 4; not packed at all where it would look like one made to exhaust a reader's memory."""
+    """A file of version 4; stored uncompressed if its compression ratio exceeds what our reader accepts."""
     size = sum(map(len, streams))
     packed = [zstd.compress(stream) for stream in streams]
     if size > max(FREE, RATIO * sum(map(len, packed))):
@@ -218,4 +218,4 @@ def _frames(header: _Header, streams: list[bytes]) -> bytes:
     return b"".join([_HEADER.pack(*fields, _HEADER.size), *table, *packed])
 
 
-FORMAT = Format(NAME, (".spz",), recognises, read, write, arranges=True)
+FORMAT = Format(NAME, (".spz",), recognises, read, write, morton_order=True)

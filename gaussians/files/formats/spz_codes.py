@@ -1,9 +1,8 @@
-"""The numbers inside an SPZ file: what its bytes mean, in both directions.
+"""Quantises the attributes of an SPZ file to bytes and back.
 
-Knows Niantic's quantisation (github.com/nianticlabs/spz, README "File Format" and load-spz.cc): 24-bit fixed-point
+The quantisation is Niantic's (github.com/nianticlabs/spz, README "File Format" and load-spz.cc): 24-bit fixed-point
 positions, log scales in sixteenths, rotations as three bytes (versions 1 and 2) or 32 bits (3 and 4), opacities and
-wide colours in a byte, harmonics as signed 128ths. And the axes: right-up-back in the file, right-down-forward here.
-Refuses to know how the bytes are packed or found.
+wide colours in a byte, harmonics as signed 128ths. Axes are right-up-back in the file and right-down-forward here.
 """
 
 from __future__ import annotations
@@ -16,13 +15,13 @@ from . import values
 Bytes = NDArray[np.uint8]
 Signs = tuple[int, int, int]
 
-RIGHT_UP_BACK: Signs = (1, -1, -1)  # of the file's axes against right-down-forward, which .ply has
+RIGHT_UP_BACK: Signs = (1, -1, -1)  # signs of the file's axes in our right-down-forward axes (those of .ply)
 COLOR_GAIN = 0.15  # of the constant coefficient: leaves room for colours that higher bands bring back into range
-BITS_FIRST, BITS_HIGHER = 5, 4  # bits kept of the first band and of those above, as Niantic's own writer does
-STANDARD_FRACTION = 12  # fractional bits of Niantic's own writer
-_FINE = 16  # bits that the extent of most of a scene gets at least
+BITS_FIRST, BITS_HIGHER = 5, 4  # bits kept of the first band and of those above, as in Niantic's writer
+STANDARD_FRACTION = 12  # fractional bits of Niantic's writer
+_MIN_BITS = 16  # per axis, for the extent of the middle 98 % of a scene
 _LIMIT = (1 << 23) - 1
-# Parity of each coefficient above the constant one in x, y and z: -1 to this power is its sign after a flip.
+# Parity of each coefficient above the constant band in x, y and z: -1 to this power is its sign after a flip.
 _PARITY = np.array(
     [
         (0, 1, 0), (0, 0, 1), (1, 0, 0),
@@ -33,14 +32,14 @@ _PARITY = np.array(
 
 
 def fraction_bits(means: values.Floats) -> int:
-    """Fractional bits for positions `[N, 3]`: 12, more where the scene is small, fewer where they would not fit.
+    """Fractional bits for positions `[N, 3]`: 12, more for small scenes, fewer if the positions would not fit.
 
-    Small means that 12 would give the middle 98 % less than 16 bits an axis. Returns a negative number if the
-    farthest position fits in no way.
+    A scene is small if 12 fractional bits would give its middle 98 % less than 16 bits per axis. The result is
+    negative if the farthest position cannot be represented.
     """
     farthest = float(np.abs(means).max(initial=0))
     span = float((np.quantile(means, 0.99, axis=0) - np.quantile(means, 0.01, axis=0)).max())
-    wanted = STANDARD_FRACTION if span <= 0 else max(STANDARD_FRACTION, _FINE - int(np.floor(np.log2(span))))
+    wanted = STANDARD_FRACTION if span <= 0 else max(STANDARD_FRACTION, _MIN_BITS - int(np.floor(np.log2(span))))
     fits = 24 if farthest == 0 else int(np.floor(np.log2(_LIMIT / farthest)))
     return min(wanted, fits, 24)
 
@@ -72,7 +71,7 @@ def scales(packed: Bytes) -> values.Floats:
 
 
 def pack_scales(deviations: values.Floats) -> Bytes:
-    """`[N, 3]` bytes; deviations outside e^-10 to e^5.9375 go to the nearer end."""
+    """`[N, 3]` bytes of standard deviations `[N, 3]`, clamped to e^-10 to e^5.9375."""
     return _bytes((values.logs_from_scales(deviations).astype(np.float64) + 10) * 16)
 
 
@@ -94,8 +93,8 @@ def rotations(packed: Bytes, signs: Signs) -> values.Floats:
 def pack_rotations(quats: values.Floats, width: int) -> Bytes:
     """`[N, width]` bytes of quaternions `[N, 4]` wxyz.
 
-    Four bytes are a word: in the highest two bits which of x, y, z, w is the largest, then the other three in order,
-    a sign and nine bits of size over 1/√2 each.
+    With width 4 they form a word: the index of the largest of x, y, z, w in the two highest bits, then the other three
+    in order, each a sign and nine bits of magnitude relative to 1/√2. With width 3 they are x, y, z.
     """
     turned = values.unit_quats(quats)[0] * np.array((1, *RIGHT_UP_BACK), np.float32)
     if width == 3:
@@ -115,12 +114,12 @@ def colors(packed: Bytes) -> values.Floats:
 
 
 def pack_colors(dc: values.Floats) -> Bytes:
-    """`[N, 3]` bytes; coefficients beyond ±3.33 go to the nearer end."""
+    """`[N, 3]` bytes of constant coefficients `[N, 3]`, clamped to ±3.33."""
     return _bytes(dc.astype(np.float64) * COLOR_GAIN * 255 + 127.5)
 
 
 def harmonics(packed: Bytes, signs: Signs) -> values.Floats:
-    """Coefficients above the constant one `[N, K - 1, 3]` of bytes `[N, 3 (K - 1)]`, colour innermost."""
+    """Coefficients above the constant band `[N, K - 1, 3]` of bytes `[N, 3 (K - 1)]`, channel innermost."""
     count = packed.shape[1] // 3
     flip = np.prod(np.array(signs) ** _PARITY[:count], axis=1).astype(np.float32) / np.float32(128)
     bands: values.Floats = (packed.reshape(len(packed), count, 3).astype(np.float32) - np.float32(128)) * flip[:, None]
@@ -128,7 +127,7 @@ def harmonics(packed: Bytes, signs: Signs) -> values.Floats:
 
 
 def pack_harmonics(rest: values.Floats) -> Bytes:
-    """`[N, 3 (K - 1)]` bytes; coefficients beyond ±1 go to the nearer end, low bits are dropped (`BITS_FIRST`)."""
+    """`[N, 3 (K - 1)]` bytes of coefficients clamped to ±1, rounded to `BITS_FIRST` and `BITS_HIGHER` bits."""
     count = rest.shape[1]
     flip = np.prod(np.array(RIGHT_UP_BACK) ** _PARITY[:count], axis=1).astype(np.float32)
     step = np.where(np.arange(count) < 3, 1 << (8 - BITS_FIRST), 1 << (8 - BITS_HIGHER)).astype(np.float32)

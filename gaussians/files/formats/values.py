@@ -1,7 +1,7 @@
-"""Between what files store (logits, logarithms, faulty rows) and what a cloud holds (physical, sound values).
+"""Converts between stored values (logits, logarithms, packed rotations) and physical ones, and drops invalid rows.
 
-Conversions run in float64 and round once to float32. Rounding a smooth function and its inverse correctly makes a
-second conversion return the first one's bits: either the value or its logarithm is the coarser of the two grids.
+Conversions run in float64 and are rounded once to float32. With correct rounding of a smooth function and its inverse,
+a second conversion returns the bits of the first: either the value or its logarithm lies on the coarser grid.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Floats = NDArray[np.float32]
 OPACITY_MIN = 2.0**-24  # the largest float32 below one is 1 - 2^-24; both ends keep a finite logit of 16.6
 OPACITY_MAX = 1.0 - 2.0**-24
 SCALE_MIN = float(np.finfo(np.float32).tiny)
-UNIT_TOLERANCE = 1e-6  # float32 rounding of a unit quaternion leaves its length within 1.2e-7 of one
+UNIT_TOLERANCE = 1e-6  # rounding a unit quaternion to float32 changes its length by at most 1.2e-7
 _BLOCK = 1 << 16  # rows converted at a time, so that float64 temporaries stay in cache
 
 
@@ -35,7 +35,7 @@ def logs_from_scales(scales: Floats) -> Floats:
 
 
 def opacities_from_logits(logits: Floats) -> Floats:
-    """Opacities `[N]` strictly inside (0, 1); infinite logits, which some converters write for 0 and 1, are clamped."""
+    """Opacities `[N]` in (0, 1); infinite logits, which some converters write for 0 and 1, are clamped."""
     return _by_block(logits, lambda block: np.clip(1 / (1 + np.exp(-block)), OPACITY_MIN, OPACITY_MAX))
 
 
@@ -50,22 +50,22 @@ def logits_from_opacities(opacities: Floats) -> Floats:
 
 
 def rounded(values: NDArray[np.float64]) -> Floats:
-    """To float32; what is too large becomes infinite, which `sound_cloud` reports."""
+    """Round to float32; values that are too large become infinite, and `sound_cloud` reports them."""
     with np.errstate(over="ignore", invalid="ignore"):
         return values.astype(np.float32)
 
 
 def opacities_from_bytes(codes: NDArray[np.integer]) -> Floats:
-    """Opacities `[N]` strictly inside (0, 1) of linear bytes 0 to 255."""
+    """Opacities `[N]` in (0, 1) of linear bytes 0 to 255."""
     return np.clip(codes / 255, OPACITY_MIN, OPACITY_MAX).astype(np.float32)
 
 
 def smallest_three(thirds: NDArray[np.float64], largest: NDArray[np.integer]) -> Floats:
-    """Unit quaternions `[N, 4]` wxyz packed without their largest component, which is positive.
+    """Unpack unit quaternions `[N, 4]` wxyz that were stored without their largest component, which is positive.
 
     Args:
-        thirds: `[N, 3]` in [0, 1], the other components in order, over -1/√2 to 1/√2.
-        largest: `[N]` index 0 to 3 of the one left out.
+        thirds: `[N, 3]` in [0, 1], the other components in order, mapped from -1/√2 to 1/√2.
+        largest: `[N]` index 0 to 3 of the missing component.
     """
     three = (thirds - 0.5) * np.sqrt(2)
     index = largest.astype(np.int64)
@@ -78,11 +78,11 @@ def smallest_three(thirds: NDArray[np.float64], largest: NDArray[np.integer]) ->
 
 
 def without_largest(quats: Floats) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """What `smallest_three` takes apart from its range: the inverse, for quaternions `[N, 4]` in any order.
+    """Pack quaternions `[N, 4]` without their largest component; inverse of `smallest_three` up to the range.
 
     Returns:
-        `[N, 3]` the components left, in order, times √2 and so in [-1, 1], of the one of q and -q whose largest is
-        positive; and `[N]` the index of the largest.
+        `[N, 3]` the other components in order, times √2 and so in [-1, 1], of q or -q, whichever has a positive
+        largest component; and `[N]` the index of the largest.
     """
     unit = unit_quats(quats)[0].astype(np.float64)
     index = np.argmax(np.abs(unit), axis=1)
@@ -92,12 +92,12 @@ def without_largest(quats: Floats) -> tuple[NDArray[np.float64], NDArray[np.int6
 
 
 def codes(values: NDArray[np.floating], top: int) -> NDArray[np.uint32]:
-    """Values in [0, 1] to the nearest of `top + 1` even steps; what lies outside goes to the nearer end."""
+    """Quantise values, clamped to [0, 1], to the integers 0 to `top`."""
     return np.rint(np.clip(values, 0, 1) * top).astype(np.uint32)
 
 
 def columns(cloud: GaussianCloud) -> dict[str, Floats]:
-    """The cloud's columns as NumPy arrays, by name, for formats whose steps a number that is not finite would spoil.
+    """The cloud's columns as NumPy arrays by name, for formats that cannot store non-finite values.
 
     Raises:
         UserError: some rows hold NaN or infinite values.
@@ -108,16 +108,16 @@ def columns(cloud: GaussianCloud) -> dict[str, Floats]:
         sound &= _finite_rows(found[name])
     if not sound.all():
         raise UserError(
-            f"{int((~sound).sum()):,} Gaussians hold NaN or infinite values, which only INRIA .ply can store; leave "
-            "them out first"
+            f"{int((~sound).sum()):,} Gaussians hold NaN or infinite values, which only INRIA .ply can store; remove "
+            "them first"
         )
     return found
 
 
 def unit_quats(quats: Floats) -> tuple[Floats, int]:
-    """Quaternions `[N, 4]` of unit length, and how many had none (they become the identity).
+    """Quaternions `[N, 4]` scaled to unit length, and the number of zero or non-finite ones, which become the identity.
 
-    Rows that are unit within float32 rounding are left alone, so that reading what was written changes no bit.
+    Rows of unit length within float32 rounding are kept, so that reading a written file changes no bit.
     """
     length = np.sqrt(np.einsum("ij,ij->i", quats, quats, dtype=np.float64))
     lost = ~(length > 0) | ~np.isfinite(length)
@@ -134,13 +134,13 @@ def unit_quats(quats: Floats) -> tuple[Floats, int]:
 def sound_cloud(
     means: Floats, quats: Floats, scales: Floats, opacities: Floats, sh: Floats
 ) -> tuple[GaussianCloud, tuple[str, ...]]:
-    """A cloud of the sound rows, with row numbers of the file as ids, and a note for each kind of repair.
+    """A cloud of the finite rows, with row numbers of the file as ids, and a note for each kind of repair.
 
     Args:
-        means, quats, scales, opacities, sh: physical values in the cloud's shapes, possibly with faults.
+        means, quats, scales, opacities, sh: physical values in the cloud's shapes, possibly invalid.
 
     Raises:
-        FileError: no row is sound.
+        FileError: no row is usable.
     """
     notes: list[str] = []
     rows = len(means)
@@ -152,18 +152,18 @@ def sound_cloud(
         lost = int(rows - sound.sum())
         if lost == rows:
             raise FileError(f"none of its {rows:,} Gaussians is usable: every row holds NaN or infinite values")
-        notes.append(f"{lost:,} of {rows:,} Gaussians were left out: NaN or infinite values")
+        notes.append(f"{lost:,} of {rows:,} Gaussians were dropped: NaN or infinite values")
         means, quats, scales, opacities, sh = (c[sound] for c in (means, quats, scales, opacities, sh))
         ids = ids[sound]
     quats, turned = unit_quats(quats)
     if turned:
-        notes.append(f"{turned:,} zero quaternions were replaced by no rotation")
+        notes.append(f"{turned:,} zero quaternions were replaced by the identity rotation")
     columns = {"means": means, "quats": quats, "scales": scales, "opacities": opacities, "sh": sh, "ids": ids}
     return GaussianCloud.create(**{name: torch.from_numpy(c) for name, c in columns.items()}), tuple(notes)
 
 
 def _finite_rows(column: Floats) -> NDArray[np.bool_]:
-    """`[N]`, whether all values of a row are finite. A sum is finite if all terms are, one pass without a mask."""
+    """`[N]`, whether all values of a row are finite, by their sum: one pass without a mask."""
     flat = column.reshape(len(column), -1)
     with np.errstate(all="ignore"):
         total = flat.sum(axis=1, dtype=np.float64)  # float64 so that large float32 terms cannot overflow
@@ -174,7 +174,7 @@ def _finite_rows(column: Floats) -> NDArray[np.bool_]:
 def _by_block(values: Floats, function: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> Floats:
     """`function` on float64 copies of blocks of rows, rounded into a new float32 array."""
     out = np.empty_like(values)
-    with np.errstate(all="ignore"):  # overflow becomes infinity, which `sound_cloud` reports
+    with np.errstate(all="ignore"):  # overflow gives infinity, which `sound_cloud` reports
         for start in range(0, len(values), _BLOCK):
             out[start : start + _BLOCK] = function(values[start : start + _BLOCK].astype(np.float64))
     return out

@@ -17,7 +17,7 @@ _WINDOW = 8 << 20  # RFC 8878, 3.1.1.1.2: the window that every decoder is recom
 
 
 class BrokenFrameError(Exception):
-    """The bytes are no sound frame of the expected size."""
+    """The bytes are not a valid frame of the expected size."""
 
 
 def compress(data: bytes) -> bytes:

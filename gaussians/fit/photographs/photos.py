@@ -14,8 +14,8 @@ import numpy as np
 from ...camera import Camera
 from ...errors import FileError, UserError
 from ...files.captures import colmap
-from ...files.captures.capture import Capture, is_file, photographs_alone, read_capture
-from ...lens import Lens, straightened
+from ...files.captures.capture import Capture, is_file, read_capture, unposed_photos
+from ...lens import Lens, undistort
 from ..train import Shot
 from .image_file import MIN_SIDE, read_photo
 from .pose_check import check_colors, check_views
@@ -76,7 +76,7 @@ def load_photos(
         raise UserError(f"--scale must lie between 0 and 1, got {scale:g}")
     poses_folder: Path | None = None
     unplaced: tuple[str, ...] = ()
-    if poses is not None and (unposed := photographs_alone(path)):
+    if poses is not None and (unposed := unposed_photos(path)):
         from .pose_estimation import estimate_poses
 
         unplaced = estimate_poses(unposed, poses, progress)
@@ -129,7 +129,7 @@ def _shot(path: Path, camera: Camera, lens: Lens, scale: float | None) -> Shot:
     photo = read_photo(path, (camera.width, camera.height))
     height, width = photo.shape[:2]
     camera = camera.resized(width, height)
-    photo = straightened(photo, camera, lens)
+    photo = undistort(photo, camera, lens)
     factor = scale if scale is not None else _default_scale(max(width, height))
     small = int(width * factor), int(height * factor)
     if min(small) < MIN_SIDE:

@@ -91,7 +91,7 @@ def _inside(camera: Camera, points: NDArray[np.float64]) -> tuple[NDArray[np.flo
     """Pixels `[M, 2]` of points, and which of them are in the image."""
     with np.errstate(over="ignore", invalid="ignore"):  # points may have extreme coordinates
         pixels, depth = camera.project(points)
-        return pixels, camera.shows(pixels, depth)
+        return pixels, camera.contains(pixels, depth)
 
 
 def _correlation(shot: Shot, means: NDArray[np.float64], bright: NDArray[np.float64]) -> float:

@@ -25,7 +25,7 @@ from typing import Any
 from ...errors import BackendError, FileError, UserError
 from ...files import writing
 from ...files.captures import colmap
-from ...files.captures.capture import TRANSFORMS, described
+from ...files.captures.capture import TRANSFORMS, to_transforms
 from ...files.foreign import read_json
 from .image_file import read_photo
 
@@ -215,7 +215,7 @@ def _transforms(photos: Sequence[Path], model: Path, folder: Path, digest: str) 
     placed = [p for p in photos if p.name in views]
     home = os.path.realpath(folder)
     paths = [(Path(os.path.relpath(os.path.realpath(p.parent), home)) / p.name).as_posix() for p in placed]
-    cameras = described([views[p.name].camera for p in placed], [views[p.name].lens for p in placed], paths)
+    cameras = to_transforms([views[p.name].camera for p in placed], [views[p.name].lens for p in placed], paths)
     return {**cameras, "photographs": digest, "unplaced": [p.name for p in photos if p.name not in views]}
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from scenewright.gaussians import files
-from scenewright.gaussians.reduce import BEST_PSNR
+from scenewright.gaussians.reduce import MAX_PSNR
 from scenewright.gaussians.scene import Scene
 
 SUFFIXES = (".ply", ".compressed.ply", ".splat", ".sog", ".spz")
@@ -36,7 +36,7 @@ def test_every_format_and_back(call: Any, room: Path, tmp_path: Path, suffix: st
     assert there["gaussians"] == there["gaussians_before"] == COUNT
     assert there["bytes_before"] == room.stat().st_size and there["bytes"] == (tmp_path / f"b{suffix}").stat().st_size
     assert there["psnr"] >= there["psnr_least"] > 35 and there["views"] > 0
-    assert (there["psnr"] == BEST_PSNR) == (suffix == ".ply")
+    assert (there["psnr"] == MAX_PSNR) == (suffix == ".ply")
     kept = suffix.endswith(".ply")  # of which both kinds have comments for frame and cameras
     assert any("cameras" in note for note in there["notes"]) != kept
     back = told(call("convert", tmp_path / f"b{suffix}", tmp_path / "c.ply", "--json"))

@@ -14,7 +14,7 @@ from PIL import Image
 
 from scenewright.agent import cli
 from scenewright.gaussians.camera import Camera
-from scenewright.gaussians.files.captures.capture import described, read_capture
+from scenewright.gaussians.files.captures.capture import to_transforms, read_capture
 from scenewright.gaussians.fit.photographs import pose_estimation
 from scenewright.gaussians.lens import Lens
 
@@ -37,7 +37,7 @@ def test_photographs_alone_become_a_scene(
         ]
         kept.mkdir()
         paths = [f"../photos/{p.name}" for p in photos[:-1]]
-        told = described(cameras[:-1], [Lens()] * len(paths), paths)
+        told = to_transforms(cameras[:-1], [Lens()] * len(paths), paths)
         (kept / "transforms.json").write_text(json.dumps(told))
         return (photos[-1].name,)
 

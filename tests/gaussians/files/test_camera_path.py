@@ -64,8 +64,8 @@ def test_nerfstudio(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("told", "says"),
     [
-        ([], "no camera path"),
-        ({}, "no camera path"),
+        ([], "not a camera path"),
+        ({}, "not a camera path"),
         ({"keyframes": []}, "1 to"),
         ({"keyframes": [A] * 20_001}, "1 to"),
         ({"keyframes": {}}, "1 to"),
@@ -78,7 +78,7 @@ def test_nerfstudio(tmp_path: Path) -> None:
         ({"keyframes": [{**A, "position": [10**400, 0, 0]}]}, "position must be a number"),
         ({"keyframes": [{**A, "position": [0, 0, 0]}]}, "same point"),
         ({"keyframes": [{**A, "fov": 180}]}, "field of view"),
-        ({"keyframes": [{**A, "up": [0, 0, 0]}]}, "up must point"),
+        ({"keyframes": [{**A, "up": [0, 0, 0]}]}, "up must be a direction"),
         ({"keyframes": [{**A, "time": 0}, B]}, "no time"),
         ({"keyframes": [{**A, "time": 1}, {**B, "time": 1}]}, "ascend"),
         ({"keyframes": [{**A, "time": float("inf")}]}, "time must be a number"),

@@ -14,7 +14,7 @@ from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.errors import FileError
 from scenewright.gaussians.files.captures import colmap
 from scenewright.gaussians.files.captures.capture import read_capture
-from scenewright.gaussians.lens import Lens, straightened
+from scenewright.gaussians.lens import Lens, undistort
 
 QUAT, OFFSET = (np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0), (0.1, -0.2, 3.0)  # a quarter turn about y
 
@@ -72,7 +72,7 @@ def test_a_capture_may_be_a_model_with_photographs(tmp_path: Path) -> None:
     binary(tmp_path / "sparse" / "0")
     taken = read_capture(tmp_path)
     assert [p.relative_to(tmp_path).as_posix() for p in taken.photos] == ["images/a.jpg", "images/b.jpg"]
-    assert [c.name for c in taken.cameras] == ["a", "b"] and not taken.lenses[0].bare
+    assert [c.name for c in taken.cameras] == ["a", "b"] and not taken.lenses[0].is_identity
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=150)
@@ -102,7 +102,7 @@ def test_broken_models_are_file_errors(
         ("cameras.txt", "1 PINHOLE 80 60 70 71", "has 2 parameters, PINHOLE has 4"),
         ("cameras.txt", "1 PINHOLE 80 60 x 71 40 30", "could not convert"),
         ("images.txt", "1 1 0 0 0 0 0 0 9 a.jpg", "was taken by camera 9, which is not listed"),
-        ("images.txt", "1 0 0 0 0 0 0 0 1 a.jpg", "a.jpg is broken"),
+        ("images.txt", "1 0 0 0 0 0 0 0 1 a.jpg", "a.jpg is invalid"),
         ("images.txt", "1 1 0 0 0 nan 0 0 1 a.jpg", "not finite"),
         ("images.txt", "1 1 0 0 0", "has 5 entries"),
         ("images.txt", "", "lists no photographs"),
@@ -122,19 +122,19 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
         colmap.read_points(folder)
 
 
-def test_a_straightened_picture_shows_each_point_where_the_bare_camera_projects_it() -> None:
-    """Draw soft dots where the lens puts them; without the lens they must be where a pinhole puts them."""
+def test_an_undistorted_photograph_shows_each_point_where_the_pinhole_camera_projects_it() -> None:
+    """Draw soft dots at their distorted positions; after undistortion they must be at the pinhole positions."""
     camera, lens = Camera(np.eye(4), 90, 92, 60, 45, 120, 90), Lens(-0.15, 0.03, 0.0, 0.004, -0.003)
     rows, columns = np.mgrid[0:90, 0:120] + 0.5
     for x, y in ((0.0, 0.0), (0.4, 0.3), (-0.45, 0.1), (0.2, -0.35)):
-        bent_x, bent_y = lens.bent(np.array(x), np.array(y))
+        bent_x, bent_y = lens.distort(np.array(x), np.array(y))
         dot = np.exp(-((columns - 90 * bent_x - 60) ** 2 + (rows - 92 * bent_y - 45) ** 2) / 8)
         photo = np.repeat((255 * dot)[..., None], 3, axis=2).astype(np.uint8)
-        flat = straightened(photo, camera, lens)[..., 0].astype(float)
+        flat = undistort(photo, camera, lens)[..., 0].astype(float)
         seen = np.array([(flat * columns).sum(), (flat * rows).sum()]) / flat.sum()
         assert np.abs(seen - [90 * x + 60, 92 * y + 45]).max() < 0.15  # px: 8 bits and a dot that is bent itself
 
 
-def test_a_bare_lens_leaves_the_photograph_as_it_is() -> None:
+def test_an_identity_lens_leaves_the_photograph_as_it_is() -> None:
     photo = np.random.default_rng(0).integers(0, 256, (8, 9, 3), dtype=np.uint8)
-    assert straightened(photo, Camera(np.eye(4), 9, 9, 4, 4, 9, 8), Lens()) is photo
+    assert undistort(photo, Camera(np.eye(4), 9, 9, 4, 4, 9, 8), Lens()) is photo

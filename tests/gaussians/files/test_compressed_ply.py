@@ -122,10 +122,10 @@ def test_chunks_with_absurd_bounds_cost_only_their_rows(tmp_path: Path, bound: s
 
 GOOD, SH = Packed(3).bytes(), Packed(3, 1).bytes()
 BAD: dict[str, tuple[bytes, str]] = {
-    "cut": (GOOD[:-1], "promises 3 vertex"),
+    "cut": (GOOD[:-1], "declares 3 vertex"),
     "too many rows": (GOOD.replace(b"vertex 3", b"vertex 3000000000000"), "chunks cannot describe"),
     "too many of both": (
-        GOOD.replace(b"vertex 3", b"vertex 25600000000").replace(b"chunk 1", b"chunk 100000000"), "promises"
+        GOOD.replace(b"vertex 3", b"vertex 25600000000").replace(b"chunk 1", b"chunk 100000000"), "declares"
     ),
     "no rows": (GOOD.replace(b"vertex 3", b"vertex 0"), "zero Gaussians"),
     "few chunks": (GOOD.replace(b"chunk 1", b"chunk 0"), "0 chunks cannot describe 3"),

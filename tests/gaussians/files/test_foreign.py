@@ -97,7 +97,7 @@ def test_an_array_is_read_as_it_is_and_nothing_else(tmp_path: Path) -> None:
 @pytest.mark.parametrize("content", [b"", b"{", b"\xff\xfe", DEEP.encode()], ids=["empty", "cut", "bytes", "deep"])
 def test_what_is_no_json_is_a_file_error(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "a.json").write_bytes(content)
-    with pytest.raises(FileError, match=r"a\.json is no JSON"):
+    with pytest.raises(FileError, match=r"a\.json is not valid JSON"):
         read_json(tmp_path / "a.json")
 
 

@@ -161,8 +161,8 @@ def test_faulty_rows_are_left_out_counted_and_ids_stay_row_numbers(tmp_path: Pat
     assert scene.cloud.quats[2].tolist() == [1, 0, 0, 0]
     assert (report.rows, report.loaded) == (8, 4)
     assert report.notes == (
-        "4 of 8 Gaussians were left out: NaN or infinite values",
-        "1 zero quaternions were replaced by no rotation",
+        "4 of 8 Gaussians were dropped: NaN or infinite values",
+        "1 zero quaternions were replaced by the identity rotation",
     )
 
 
@@ -232,13 +232,13 @@ def test_foreign_and_future_comments_are_ignored_silently(tmp_path: Path) -> Non
 
 GOOD = pack(random_rows(3), names(0))
 BAD: dict[str, tuple[bytes, str]] = {
-    "more rows promised than held": (GOOD.replace(b"vertex 3", b"vertex 4"), "promises 4 vertex rows.*at most 3"),
-    "absurd count": (GOOD.replace(b"vertex 3", b"vertex 999999999999999999"), "promises"),
+    "more rows promised than held": (GOOD.replace(b"vertex 3", b"vertex 4"), "declares 4 vertex rows.*at most 3"),
+    "absurd count": (GOOD.replace(b"vertex 3", b"vertex 999999999999999999"), "declares"),
     "beyond 64 bits": (GOOD.replace(b"vertex 3", b"vertex " + b"9" * 30), "header line"),
     "negative count": (GOOD.replace(b"vertex 3", b"vertex -3"), "header line"),
     "zero rows": (GOOD.replace(b"vertex 3", b"vertex 0"), "zero Gaussians"),
     "cut in the header": (GOOD[:100], "end_header"),
-    "cut in the body": (GOOD[:-1], "promises 3"),
+    "cut in the body": (GOOD[:-1], "declares 3"),
     "empty": (b"", "not a PLY"),
     "no vertex": (GOOD.replace(b"element vertex", b"element point"), "no vertex"),
     "point cloud": (GOOD.replace(b"f_dc", b"dc").replace(b"scale", b"size"), "point cloud.*f_dc_0"),

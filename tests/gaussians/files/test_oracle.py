@@ -17,7 +17,7 @@ from scipy.spatial import cKDTree
 from scenewright.gaussians import files
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.files.formats import spz
-from scenewright.gaussians.files.formats.morton import arranged
+from scenewright.gaussians.files.formats.morton import morton_sorted
 from scenewright.gaussians.scene import Scene
 
 PROGRAM = shutil.which("splat-transform")
@@ -79,7 +79,7 @@ def test_what_we_write_is_read_alike(tmp_path: Path, suffix: str, degree: int) -
     ours = tmp_path / f"ours{suffix}"
     if suffix[1].isdigit():
         with ours.open("wb") as file:
-            spz.write(arranged(scene(degree)), file, int(suffix[1]))
+            spz.write(morton_sorted(scene(degree)), file, int(suffix[1]))
     else:
         files.save(scene(degree), ours)
     alike(ours, transform(ours, tmp_path / "theirs.ply"))

@@ -20,7 +20,7 @@ from scenewright.gaussians.camera import Camera, Vec3
 from scenewright.gaussians.cloud import GaussianCloud, concat
 from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.files.formats import spz
-from scenewright.gaussians.files.formats.morton import arranged
+from scenewright.gaussians.files.formats.morton import morton_sorted
 from scenewright.gaussians.reduce import psnr
 from scenewright.gaussians.scene import Scene
 
@@ -59,7 +59,7 @@ def put(cloud: GaussianCloud, path: Path) -> tuple[GaussianCloud, GaussianCloud]
     back, report = files.load_with_report(path)
     assert report.rows == report.loaded == len(cloud) and report.notes == ()
     plain = path.suffix == ".splat"
-    return (cloud if plain else arranged(Scene(cloud)).cloud), back.cloud
+    return (cloud if plain else morton_sorted(Scene(cloud)).cloud), back.cloud
 
 
 def angles(a: GaussianCloud, b: GaussianCloud) -> NDArray[np.float64]:

@@ -149,15 +149,15 @@ def changed(key: str, value: Any) -> Parts:
 
 BIG = [0.0] * 256
 BAD: dict[str, tuple[Parts, str]] = {
-    "malformed JSON": ({**Sog().parts(), "meta.json": b'{"version": 2,'}, "meta.json is not that of"),
-    "nested JSON": ({**Sog().parts(), "meta.json": b"[" * 100_000}, "meta.json is not that of"),
-    "binary JSON": ({**Sog().parts(), "meta.json": b"\xff\xfe\x00"}, "meta.json is not that of"),
+    "malformed JSON": ({**Sog().parts(), "meta.json": b'{"version": 2,'}, "meta.json does not describe"),
+    "nested JSON": ({**Sog().parts(), "meta.json": b"[" * 100_000}, "meta.json does not describe"),
+    "binary JSON": ({**Sog().parts(), "meta.json": b"\xff\xfe\x00"}, "meta.json does not describe"),
     "version 1": (changed("version", 1), "version"),
     "zero rows": (changed("count", 0), "zero Gaussians"),
     "negative count": (changed("count", -1), "count"),
-    "absurd count": (changed("count", 2**31), "cannot be held in"),
+    "absurd count": (changed("count", 2**31), "do not fit into"),
     "too few pixels": (changed("count", 10_000), "pixels for 10,000"),
-    "NaN bounds": (changed("means.mins", [0, 0, math.nan]), "meta.json is not that of"),
+    "NaN bounds": (changed("means.mins", [0, 0, math.nan]), "meta.json does not describe"),
     "short codebook": (changed("scales.codebook", [0.0] * 3), "codebook of 3"),
     "empty codebook": (changed("sh0.codebook", []), "codebook"),
     "climbs out": (changed("quats.files", ["../../quats.webp"]), "quats.files"),
@@ -189,9 +189,9 @@ def test_archives_that_are_not_sound(tmp_path: Path) -> None:
     whole = archive(tmp_path / "a.sog", Sog().parts(), zipfile.ZIP_DEFLATED).read_bytes()
     path = tmp_path / "b.sog"
     for content, message in (
-        (whole[: len(whole) // 2], "not a sound zip"),
-        (whole[:100] + bytes(200) + whole[300:], "sound zip|is missing|meta.json|readable"),
-        (b"PK\x03\x04", "not a sound zip"),
+        (whole[: len(whole) // 2], "not a valid zip"),
+        (whole[:100] + bytes(200) + whole[300:], "valid zip|is missing|meta.json|readable"),
+        (b"PK\x03\x04", "not a valid zip"),
     ):
         path.write_bytes(content)
         with pytest.raises(FileError, match=message):

@@ -20,7 +20,7 @@ from scenewright.gaussians import rotations
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import BackendError, FileError, UserError
-from scenewright.gaussians.files.captures.capture import described, photographs_alone, read_capture
+from scenewright.gaussians.files.captures.capture import to_transforms, unposed_photos, read_capture
 from scenewright.gaussians.fit import load_photos
 from scenewright.gaussians.fit.photographs import pose_estimation
 from scenewright.gaussians.lens import Lens
@@ -97,10 +97,10 @@ def test_photographs_are_found_in_the_folder_or_in_images_whatever_their_case(tm
     for folder in (plain, inside):
         (folder / "notes.txt").write_text("none")
         (folder / ".hidden.jpg").write_bytes(b"what macOS leaves on disks of others")
-    assert [p.name for p in photographs_alone(plain)] == [f"p00{i}.JPG" for i in range(8)]
-    assert [p.parent.name for p in photographs_alone(inside)] == ["images"] * 8
+    assert [p.name for p in unposed_photos(plain)] == [f"p00{i}.JPG" for i in range(8)]
+    assert [p.parent.name for p in unposed_photos(inside)] == ["images"] * 8
     (inside / "transforms.json").write_text("{}")
-    assert photographs_alone(inside) == [] == photographs_alone(tmp_path) == photographs_alone(tmp_path / "no")
+    assert unposed_photos(inside) == [] == unposed_photos(tmp_path) == unposed_photos(tmp_path / "no")
 
 
 def test_who_needs_poses_is_told_where_they_come_from(tmp_path: Path) -> None:
@@ -112,7 +112,7 @@ def test_who_needs_poses_is_told_where_they_come_from(tmp_path: Path) -> None:
 
 def test_what_is_described_is_read_again(tmp_path: Path) -> None:
     cameras, lens = around(5), Lens(0.1, -0.02, 0.003, 0.0004, -0.0005)
-    told = described(cameras, [lens] * 5, [f"../{c.name}.png" for c in cameras])
+    told = to_transforms(cameras, [lens] * 5, [f"../{c.name}.png" for c in cameras])
     (tmp_path / "transforms.json").write_text(json.dumps(told))
     again = read_capture(tmp_path)
     assert again.lenses == (lens,) * 5 and [p.name for p in again.photos] == [f"{c.name}.png" for c in cameras]

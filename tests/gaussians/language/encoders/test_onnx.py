@@ -199,7 +199,7 @@ def test_what_cannot_be_loaded_is_said(exported_clip: Path, tmp_path: Path, copy
     with pytest.raises(BackendError, match="does not say size"):
         encoders.load(f"onnx:{copy}").encode_images(_noise(1))
     (copy / "preprocessor_config.json").write_text("[")
-    with pytest.raises(BackendError, match="is no JSON"):
+    with pytest.raises(BackendError, match="is not valid JSON"):
         encoders.load(f"onnx:{copy}").encode_images(_noise(1))
     (copy / "vision_model.onnx").write_bytes(b"not a graph")
     shutil.copy(exported_clip / "preprocessor_config.json", copy)
