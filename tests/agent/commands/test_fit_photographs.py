@@ -14,7 +14,7 @@ from PIL import Image
 
 from scenewright.agent import cli
 from scenewright.gaussians.camera import Camera
-from scenewright.gaussians.files.captures.capture import to_transforms, read_capture
+from scenewright.gaussians.files.captures.capture import read_capture, to_transforms
 from scenewright.gaussians.fit.photographs import pose_estimation
 from scenewright.gaussians.lens import Lens
 

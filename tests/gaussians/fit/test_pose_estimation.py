@@ -20,7 +20,7 @@ from scenewright.gaussians import rotations
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import BackendError, FileError, UserError
-from scenewright.gaussians.files.captures.capture import to_transforms, unposed_photos, read_capture
+from scenewright.gaussians.files.captures.capture import read_capture, to_transforms, unposed_photos
 from scenewright.gaussians.fit import load_photos
 from scenewright.gaussians.fit.photographs import pose_estimation
 from scenewright.gaussians.lens import Lens
