@@ -229,7 +229,7 @@ def _relations(
         for name, aim in zip(_VIEWED, ((-1, 0), (1, 0), (0, -1), (0, 1)), strict=True):
             if float(way @ np.array(aim)) > _CLEARLY:
                 said.add(pair)
-                yield Wish(subject=one.id, name=name, objects=(other.id,))  # type: ignore[arg-type]
+                yield Wish(subject=one.id, name=name, objects=(other.id,))
 
 
 def _witness(

@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Annotated, Any, ClassVar, Literal, Protocol, Self, get_args
+from typing import Annotated, Any, ClassVar, Literal, Protocol, Self
 
 import numpy as np
 import torch
@@ -21,6 +21,7 @@ from ..gaussians.camera import Camera
 from ..gaussians.language.query.query import Query
 from ..gaussians.language.query.selection import Selection, mask_of
 from ..gaussians.scene import Frame, Scene
+from ..gaussians.world import relations
 from ..gaussians.world.lengths import Unit, in_metres
 from .alternatives import NOT_GIVEN, either, given
 from .receipt import Check, Pixels, Receipt, SelectionSummary
@@ -31,22 +32,16 @@ __all__ = [
 ]  # fmt: skip
 
 Direction = Literal["left", "right", "forward", "backward", "up", "down"]
-Spot = Literal[
-    "on", "under", "above", "next_to", "left_of", "right_of", "in_front_of", "behind", "opposite", "between", "against",
-    "inside", "center", "corner",
-]  # fmt: skip
 ColorName = Annotated[str, Field(min_length=1, max_length=40)]
 AssetName = Annotated[str, Field(min_length=1, max_length=60)]
 
 Way = Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False)]
 
-# Spots that make no sense without something to be placed against.
-_NEED_ANCHOR = {
-    "under", "above", "next_to", "left_of", "right_of", "in_front_of", "behind", "opposite", "between", "inside"
-}  # fmt: skip
+_KINDS = [kind for kind in relations.KINDS if kind.used("placement")]
+_RELATIVE = [k.name for k in _KINDS if not k.default and k.anchors == 1]
+_PAIRED = [k.name for k in _KINDS if k.anchors == 2]
+_ABSOLUTE = [k.name for k in _KINDS if k.default and k.name != "on"]
 _OFFSET = ("on", "against")
-_RELATIVE = [s for s in get_args(Spot) if s in _NEED_ANCHOR and s != "between"]
-_ABSOLUTE = [s for s in get_args(Spot) if s not in (*_NEED_ANCHOR, "on")]
 
 
 class Length(BaseModel):
@@ -88,14 +83,14 @@ class Placement(BaseModel):
         extra="forbid",
         json_schema_extra=either(
             {"relation": given(enum=_RELATIVE), "anchors": given(minItems=1, maxItems=1), "offset": NOT_GIVEN},
-            {"relation": given(enum=["between"]), "anchors": given(minItems=1), "offset": NOT_GIVEN},
+            {"relation": given(enum=_PAIRED), "anchors": given(minItems=1), "offset": NOT_GIVEN},
             {"relation": given(enum=_ABSOLUTE), "anchors": {"maxItems": 1}, "offset": NOT_GIVEN},
             {"relation": given(enum=["on"]), "anchors": {"maxItems": 1}},
             {"relation": given(enum=["against"]), "anchors": {"maxItems": 0}},
         ),
     )
 
-    relation: Spot
+    relation: relations.PlacementName
     anchors: Annotated[tuple[Query, ...], Field(max_length=2)] = ()
     offset: tuple[Way, Way] | None = None
     """With "on", or "against" a wall: near which point, metres along the scene graph's x and y from the middle of the
@@ -103,18 +98,19 @@ class Placement(BaseModel):
 
     @model_validator(mode="after")
     def _anchored(self) -> Self:
-        if self.relation in _NEED_ANCHOR and not self.anchors:
-            raise ValueError(f'place "{self.relation}" needs an anchor: say {self.relation.replace("_", " ")} what')
+        kind = relations.named(self.relation)
+        if not kind.default and not self.anchors:
+            raise ValueError(f'place "{self.relation}" needs an anchor: say {kind.told("what")}')
         if self.offset is not None and (self.relation not in _OFFSET or (self.relation != "on" and self.anchors)):
             raise ValueError(f'an offset goes with "on", or "against" a wall, not with "{self.describe()}"')
-        if len(self.anchors) > 1 and self.relation != "between":
+        if len(self.anchors) > kind.anchors:
             raise ValueError(f'place "{self.relation}" takes one anchor, got {len(self.anchors)}')
         return self
 
     def describe(self) -> str:
         """ "next to the sofa"."""
-        things = " and ".join(a.describe() for a in self.anchors) or "the room"
-        return f"{self.relation.replace('_', ' ')} {things}"
+        kind = relations.named(self.relation)
+        return kind.told(*(a.describe() for a in self.anchors)) if self.anchors else kind.told(kind.default)
 
 
 class Encoder(Protocol):

@@ -1,53 +1,312 @@
-"""Relations between groups as geometry of their boxes, in a stated frame of reference.
+"""The table of spatial relations: what each is called, what people say for it, where it may be used, how it is judged.
 
-Every function scores all candidates at once against one anchor (or two) in [0, 1]; 0.5 is where a relation begins to
-hold. Left, right, in front and behind are those of the viewer, levelled to the ground, or of the anchor's own axes.
-
-Names: C candidates, `[C]` scores; a plan is the picture from above, its boxes are rectangles.
+Queries, placements, wishes of a layout and stated relations of a scene graph take their names from here, the grammar
+and the reader of room descriptions their phrases, messages their sentences. The geometry is in `relation_geometry.py`.
+To add a relation, add an entry to `KINDS` and, where none fits, a scoring function.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..camera import Camera
 from ..language.field.language_field import Group
-from .box import Boxes, distances, lattice
+from . import relation_geometry as geometry
+from .box import Boxes
+from .relation_geometry import F64, HOLDS, Score, Stand, Things, object_stand, viewer_stand
 
-HOLDS = 0.5
-F64 = NDArray[np.float64]
-SIDEWAYS = ("left_of", "right_of", "in_front_of", "behind")
-RESTS, HANGS = 0.02, 0.1  # of a thing's, or a wall's, height: what begins above is on it; lower stands on the floor
-TOUCH = 0.06  # gap or overlap that still counts as resting on something, as a share of the typical object size
+__all__ = ["HOLDS", "KINDS", "Stand", "object_stand", "score", "scores", "viewer_stand"]
+
+Use = Literal["query", "placement", "wish", "stated"]
+Region = Literal["top", "inside", "under", "between", "beside", "across"]
 
 
 @dataclass(frozen=True)
-class Stand:
-    """Where one stands when saying left and right: unit vectors, world frame; `scale` a typical object size."""
+class Phrases:
+    """What people say, separated by commas.
 
-    right: F64
-    forward: NDArray[np.float64]
-    up: NDArray[np.float64]
-    eye: NDArray[np.float64]
-    scale: float
+    Attributes:
+        shared: in commands and in descriptions of rooms.
+        commands, descriptions: only there.
+        reversed: in descriptions, with subject and object exchanged: "a table surrounded by chairs".
+    """
+
+    shared: str = ""
+    commands: str = ""
+    descriptions: str = ""
+    reversed: str = ""
+
+    def in_commands(self) -> Iterator[str]:
+        """Phrases that a command may use."""
+        yield from _listed(self.shared, self.commands)
+
+    def in_descriptions(self) -> Iterator[str]:
+        """Phrases that a description may use, as said."""
+        yield from _listed(self.shared, self.descriptions)
+
+    def in_reverse(self) -> Iterator[str]:
+        """Phrases that a description may use, the other way round."""
+        yield from _listed(self.reversed)
 
 
-def viewer_stand(camera: Camera, up: F64, scale: float) -> Stand:
-    """The camera's right and forward, levelled. A camera looking straight down keeps its image's right and top."""
-    right = camera.right - up * (camera.right @ up)
-    if np.linalg.norm(right) < 1e-6:  # a picture taken upright: its right is up or down, but it still looks ahead
-        right = np.cross(camera.forward, up)
-    right = right / np.linalg.norm(right)
-    return Stand(right, np.cross(up, right), up, camera.position, scale)
+@dataclass(frozen=True)
+class RelationKind:
+    """One relation.
+
+    Attributes:
+        name: as in JSON.
+        uses: where it may stand, separated by spaces: "query", "placement", "wish", "stated" (in a scene graph).
+        words: "left of {}"; with two anchors "{}" stands for both, joined by "and".
+        score: its geometry; None where a use of its own judges it (an order, a wall of the room).
+        anchors: how many it relates to: 0, 1 or 2.
+        default: what a placement without an anchor is meant of ("on" alone is on the floor); "": it needs one.
+        phrases: what people say before an anchor.
+        alone: what people say without one: "in the corner".
+        aliases: further names in scene graphs.
+        inverse: the relation that its anchor then has to its subject, if there is one.
+        sentence: as said of a thing, if not "is" and `words`.
+        at_wall: the sentence where a wall is named, for wishes that may name one.
+        aim: the side that is meant, (to the right, behind), for relations that depend on a frame of reference.
+        region: where a placement looks for a place; "beside" at a distance of `gap`.
+        gap: metres between the two, for a placement.
+        query_as, placement_as: the relation that stands for it where it is none itself.
+        own_frame: whether a query takes it in the anchor's own frame.
+        enters: how far its subject may enter the floor that the anchor keeps free for its use: not at all, at its
+            sides, or before it too ("a stool at a piano").
+        orders: whether it orders what matches instead of being true or false.
+    """
+
+    name: str
+    uses: str
+    words: str
+    score: Score | None = None
+    anchors: int = 1
+    default: str = ""
+    phrases: Phrases = Phrases()
+    alone: Phrases = Phrases()
+    aliases: tuple[str, ...] = ()
+    inverse: str = ""
+    sentence: str = ""
+    at_wall: str = ""
+    aim: tuple[float, float] | None = None
+    region: Region = "beside"
+    gap: float = 0.03
+    query_as: str = ""
+    placement_as: str = ""
+    own_frame: bool = False
+    enters: Literal["no", "beside", "before"] = "no"
+    orders: bool = False
+
+    def used(self, use: Use) -> bool:
+        """Whether it may stand there."""
+        return use in self.uses.split()
+
+    def told(self, *anchors: str) -> str:
+        """In words: "left of the sofa", "between the two chairs"."""
+        return self.words.partition("{}")[0] + " and ".join(anchors) if self.anchors else self.words
+
+    def says(self, *anchors: str) -> str:
+        """As said of a thing: "is left of the sofa", "faces the sofa"."""
+        return self.sentence.format(*anchors) if self.sentence else f"is {self.told(*anchors)}"
 
 
-def object_stand(anchor: Group, front: F64, viewer: Stand) -> Stand:
-    """The anchor's own frame: in front is where `front` (`[3]`, level, unit) points, right is its own right hand."""
-    return Stand(np.cross(front, viewer.up), front, viewer.up, np.array(anchor.box.center), viewer.scale)
+def _listed(*phrases: str) -> Iterator[str]:
+    yield from (p.strip() for listed in phrases for p in listed.split(",") if p.strip())
+
+
+def _side(name: str, words: str, aim: tuple[float, float], inverse: str, **more: object) -> RelationKind:
+    """A side of the anchor in a frame of reference."""
+    uses = "query placement wish stated"
+    made: RelationKind = RelationKind(
+        name, uses, words, geometry.toward(aim), aim=aim, inverse=inverse, **more  # type: ignore[arg-type]
+    )  # fmt: skip
+    return made
+
+
+KINDS: tuple[RelationKind, ...] = (
+    _side(
+        "left_of", "left of {}", (-1.0, 0.0), "right_of",
+        phrases=Phrases("to the left of, left of, on the left of, at the left of, to the left side of, on the left "
+                        "side of, to the left hand side of, on the left hand side of"),
+        aliases=("left", "to_the_left_of"),
+    ),
+    _side(
+        "right_of", "right of {}", (1.0, 0.0), "left_of",
+        phrases=Phrases("to the right of, right of, on the right of, at the right of, to the right side of, on the "
+                        "right side of, to the right hand side of, on the right hand side of"),
+        aliases=("right", "to_the_right_of"),
+    ),
+    _side(
+        "in_front_of", "in front of {}", (0.0, -1.0), "behind",
+        phrases=Phrases("in front of, to the front of, at the front of", descriptions="at the foot of, before"),
+        aliases=("front",), enters="before",
+    ),
+    _side(
+        "behind", "behind {}", (0.0, 1.0), "in_front_of",
+        phrases=Phrases("behind, in back of, at the back of, to the back of, in the back of"),
+    ),
+    RelationKind(
+        "on", "query placement wish stated", "on {}", geometry.resting, default="the floor", region="top",
+        enters="before",
+        phrases=Phrases("on, on top of, onto, on to, upon, atop, on the top of, to the top of",
+                        reversed="topped with, topped by, holding, carrying, stocked with, laden with, covered with"),
+        aliases=("on_top_of", "upon"),
+    ),
+    RelationKind(
+        "under", "query placement wish stated", "under {}", geometry.beneath, region="under", enters="before",
+        phrases=Phrases("under, underneath, beneath"), aliases=("beneath", "underneath"),
+    ),
+    RelationKind(
+        "above", "query placement wish stated", "above {}", geometry.over, enters="before",
+        phrases=Phrases("above, over", descriptions="hanging over, hung over, hanging above, mounted above, hung "
+                        "above, up above"),
+        aliases=("over",),
+    ),
+    RelationKind(
+        "below", "query wish stated", "below {}", geometry.beneath, placement_as="under", enters="before",
+        phrases=Phrases("below, below the level of"),
+    ),
+    RelationKind(
+        "inside", "query placement wish stated", "inside {}", geometry.within, region="inside", enters="before",
+        phrases=Phrases("inside, in, into, within, inside of"), aliases=("in", "within"),
+    ),
+    RelationKind(
+        "next_to", "query placement wish stated", "next to {}", geometry.near, inverse="next_to", enters="beside",
+        phrases=Phrases(
+            "next to, beside, by, near, near to, close to, alongside, adjacent to, at, at the side of, to the side of, "
+            "by the side of, right next to, right by, close by, right beside, surrounding, around by, in the vicinity "
+            "of, not far from, next",
+            descriptions="nearby, on each side of, on both sides of, on either side of, at each side of, along with "
+            "the, on one side of, beside the, next the",
+            reversed="flanked by, framed by, bordered by",
+        ),
+        aliases=("near", "beside", "by", "adjacent_to", "close_to"),
+    ),
+    RelationKind(
+        "diagonally_opposite", "query placement wish stated", "diagonally opposite {}", geometry.across,
+        region="across",
+        phrases=Phrases("diagonally opposite, diagonally opposite to, diagonally opposite from, diagonally across "
+                        "from, diagonally across the room from"),
+        aliases=("diagonally_across_from",),
+    ),
+    RelationKind(
+        "between", "query placement wish", "between {}", geometry.between, anchors=2, region="between",
+        phrases=Phrases("between, in between"), enters="before",
+    ),
+    RelationKind("nearest_to", "query", "nearest to {}", placement_as="next_to", orders=True,
+                 phrases=Phrases(commands="nearest, nearest to, closest to, closest, nearest from")),
+    RelationKind("farthest_from", "query", "farthest from {}", orders=True,
+                 phrases=Phrases(commands="farthest from, furthest from, farthest away from, furthest away from")),
+    RelationKind("part_of", "query", "part of {}"),
+    # Of placements only.
+    RelationKind(
+        "opposite", "placement", "opposite {}", aim=(0.0, -1.0), own_frame=True, gap=1.2, query_as="in_front_of",
+        phrases=Phrases(commands="opposite, opposite to, opposite of, across from, directly across from, across the "
+                        "room from"),
+    ),
+    RelationKind(
+        "against", "placement", "against {}", default="a wall", gap=0.0, query_as="next_to",
+        phrases=Phrases("against, up against, along, flush against",
+                        descriptions="leaning against, lining, pushed against, leaning on"),
+    ),
+    RelationKind(
+        "center", "placement", "in the middle of {}", default="the room", region="top",
+        phrases=Phrases(commands="in the middle of, in the center of, in the centre of, to the middle of, to the "
+                        "center of, to the centre of, at the center of, at the centre of"),
+        alone=Phrases(
+            "in the middle, in the center, in the centre, in the middle of the room, in the center of the room, in the "
+            "centre of the room, at the center of the room, at the centre of the room",
+            commands="to the center, to the centre, to the middle, at the middle of the room, to the middle of the "
+            "room, to the center of the room, to the centre of the room, into the middle, into the middle of the room, "
+            "into the center of the room, into the centre of the room",
+            descriptions="centered, centred, centered in the room, centred in the room, centrally, at the center, at "
+            "the centre, in its center",
+        ),
+    ),
+    RelationKind(
+        "corner", "placement", "in a corner of {}", default="the room", region="top",
+        alone=Phrases(
+            "in the corner, in the corner of the room, in a corner, in one corner",
+            commands="to the corner, into the corner, to the corner of the room, into a corner, into the corner of the "
+            "room, to a corner",
+            descriptions="in the corners, in each corner, in every corner, at the corners, in all corners, in a corner "
+            "of the room, in the corners of the room, in the other corner, in another corner, at the corners of the "
+            "room, in opposite corners, in the far corner, in two corners",
+        ),
+    ),
+    # Of layouts.
+    RelationKind(
+        "facing", "wish stated", "facing {}", geometry.facing, sentence="faces {}", aliases=("faces",), enters="beside",
+        phrases=Phrases(descriptions="facing, turned to, turned toward, turned towards, facing toward, facing towards, "
+                        "looking at, opposite, opposite to, across from, looking out of, looking out, overlooking, "
+                        "that faces, which faces"),
+        alone=Phrases(descriptions="facing each other, opposite each other, facing one another, face to face, across "
+                      "from each other"),
+    ),
+    RelationKind(
+        "around", "wish", "around {}", sentence="stands around {}", enters="before",
+        phrases=Phrases(descriptions="around, all around, gathered around, arranged around, set around",
+                        reversed="surrounded by, ringed by, encircled by"),
+    ),
+    RelationKind("against_wall", "wish", "against a wall", anchors=0, at_wall="is against the {} wall"),
+    RelationKind("in_corner", "wish", "in a corner", anchors=0, at_wall="is in a corner at the {} wall"),
+    RelationKind("in_center", "wish", "in the middle of the room", anchors=0),
+    RelationKind("at_window", "wish", "at a window", anchors=0, at_wall="is at a window in the {} wall"),
+    RelationKind("far_from", "wish", "far from {}",
+                 phrases=Phrases(descriptions="far from, away from, far away from")),
+    RelationKind(
+        "aligned_with", "wish", "in line with {}",
+        phrases=Phrases(descriptions="aligned with, in line with, parallel to, lined up with"),
+        alone=Phrases(descriptions="in a row, in rows, lined up, in a line, in two rows, side by side, next to each "
+                      "other, in three rows, aligned, beside each other, parallel to each other"),
+    ),
+)  # fmt: skip
+
+_BY_NAME = {kind.name: kind for kind in KINDS}
+_BY_ALIAS = {alias: kind for kind in KINDS for alias in kind.aliases}
+
+
+def named(name: str) -> RelationKind:
+    """The relation of a name that JSON has.
+
+    Raises:
+        ValueError: there is none.
+    """
+    if name not in _BY_NAME:
+        raise ValueError(f"unknown relation {name}")
+    return _BY_NAME[name]
+
+
+def stated(said: str) -> RelationKind | None:
+    """The relation that a scene graph states in its own spelling ("to the left of"); None if it cannot be checked."""
+    name = said.strip().lower().replace(" ", "_")
+    kind = _BY_NAME.get(name) or _BY_ALIAS.get(name)
+    return kind if kind is not None and kind.used("stated") else None
+
+
+def names(use: Use) -> tuple[str, ...]:
+    """Names that may stand there, in the table's order."""
+    return tuple(kind.name for kind in KINDS if kind.used(use))
+
+
+def placed_as(name: str) -> str:
+    """The placement that a relation stands for, "" if there is none."""
+    kind = named(name)
+    return kind.name if kind.used("placement") else kind.placement_as
+
+
+if TYPE_CHECKING:
+    QueryName = str
+    PlacementName = str
+    WishName = str
+else:  # pydantic makes closed enumerations of them; a type checker cannot read a table
+    QueryName = Literal[names("query")]
+    PlacementName = Literal[names("placement")]
+    WishName = Literal[names("wish")]
 
 
 def score(name: str, candidate: Group, anchors: Sequence[Group], stand: Stand) -> float:
@@ -63,96 +322,13 @@ def scores(
 
     Args:
         structure: `[C]`, which candidates are floors, walls or ceilings; None: none of them.
+
+    Raises:
+        ValueError: the relation is judged by no geometry of boxes.
     """
-    first = Boxes.of([anchors[0].box])
-    if name == "between":
-        return _between(candidates, first.centers[0], np.array(anchors[-1].box.center))
-    if name in SIDEWAYS:
-        wide = np.zeros(len(candidates), bool) if structure is None else structure
-        return _beside(name, candidates, first, stand, wide, anchors[0].level == "structure")
-    if name == "next_to":
-        reach = 0.5 * (candidates.sizes.max(axis=1) + first.sizes.max())
-        near: F64 = 1 / (1 + (distances(candidates, first) / np.maximum(0.6 * reach, 1e-9)) ** 2)
-        return near  # 1 when touching, 0.5 at a gap of 0.6 times the mean of their largest extents
-    if name == "inside":
-        return _inside(candidates, first, stand)
-    return _vertical(name, candidates, first, stand, anchors[0].label == "wall")
-
-
-FOOTPRINT, VOLUME = lattice(7, 1), lattice(5, 5)
-
-
-def _beside(
-    name: str, candidates: Boxes, anchor: Boxes, stand: Stand, wide: NDArray[np.bool_], anchor_wide: bool
-) -> F64:
-    """Cosine of the angle to the asked direction, between the boxes' centres: a relation reaches 60 degrees aside.
-
-    A wall is where it is nearest: the one behind the sofa has its middle anywhere along it.
-    """
-    here = np.where(wide[:, None], _nearest(candidates, anchor.centers), candidates.centers)
-    there = _nearest(anchor, candidates.centers) if anchor_wide else anchor.centers
-    offset = here - there
-    level = offset - (offset @ stand.up)[:, None] * stand.up
-    reach = np.linalg.norm(level, axis=1)
-    # "in front" is on the viewer's side of the anchor; in the anchor's own frame it is where the anchor faces.
-    toward_front = stand.forward if np.allclose(stand.eye, anchor.centers[0]) else -stand.forward
-    aim = {
-        "left_of": -stand.right,
-        "right_of": stand.right,
-        "in_front_of": toward_front,
-        "behind": -toward_front,
-    }[name]
-    cosine = (level @ aim) / np.maximum(reach, 1e-9)
-    return np.where(reach < 1e-9, 0.0, np.clip(cosine, 0.0, 1.0))
-
-
-def _nearest(boxes: Boxes, points: F64) -> F64:
-    """`[C, 3]` the point of each box that is nearest to each point; one box or one point serves all."""
-    local = boxes.local(points[:, None])[:, 0]
-    inside = np.clip(local, -boxes.sizes / 2, boxes.sizes / 2)
-    near: F64 = boxes.centers + (inside[:, None] @ boxes.axes)[:, 0]
-    return near
-
-
-def _overlaps(of: Boxes, over: Boxes) -> F64:
-    """`[C]` share of one footprint that lies over another; one box on either side serves all."""
-    local = np.abs(over.local(of.spread(FOOTPRINT)))[..., :2]
-    share: F64 = (local <= over.sizes[:, None, :2] / 2 + 1e-9).all(axis=2).mean(axis=1)
-    return share
-
-
-def _vertical(name: str, candidates: Boxes, anchor: Boxes, stand: Stand, wall: bool) -> F64:
-    low, high = candidates.heights(stand.up)
-    base, top = (float(v[0]) for v in anchor.heights(stand.up))
-    over = _overlaps(candidates, anchor)
-    slack = max(TOUCH * stand.scale, 0.1 * (top - base))
-    if name == "on":
-        # On a shelf is within the shelf's height; a rug or a floor is thinner than a box is precise.
-        lift = HANGS if wall else RESTS
-        rests = (min(base + lift * (top - base), top - slack) < low) & (low < top + slack)
-        smaller = ((high - low) <= 1.5 * (top - base)) | (over > 0.9)
-        return np.where(rests & smaller & ((low + high) / 2 > base), over, 0.0)
-    either = np.maximum(over, _overlaps(anchor, candidates))
-    if name == "above":
-        return np.where(low >= top - slack, either, 0.0)
-    if name in ("under", "below"):
-        return np.where(((low + high) / 2 < (base + top) / 2) & (low < top - slack), either, 0.0)
-    raise ValueError(f"unknown relation {name}")
-
-
-def _inside(candidates: Boxes, anchor: Boxes, stand: Stand) -> F64:
-    """Share of a candidate's volume within the anchor and a little around it; what stands on top is not inside."""
-    half = anchor.sizes / 2
-    within = np.abs(anchor.local(candidates.spread(VOLUME))) <= half[:, None] + TOUCH * stand.scale
-    middle = np.abs(anchor.local(candidates.centers[:, None])[:, 0, 2]) <= half[:, 2]
-    return np.where(middle, within.all(axis=2).mean(axis=1), 0.0)
-
-
-def _between(candidates: Boxes, a: F64, b: F64) -> F64:
-    span = b - a
-    length = float(np.linalg.norm(span))
-    if length < 1e-9:
-        return np.zeros(len(candidates))
-    t = (candidates.centers - a) @ span / length**2
-    aside = np.linalg.norm(candidates.centers - a - t[:, None] * span, axis=1) / length
-    return np.where((t > 0.1) & (t < 0.9), np.exp(-((aside / 0.5) ** 2)), 0.0)
+    measure = named(name).score
+    if measure is None:
+        raise ValueError(f"{name} is no relation of boxes alone")
+    flags = np.zeros(len(candidates), bool) if structure is None else structure
+    parties = [Things(Boxes.of([a.box]), np.array([a.level == "structure"]), a.label == "wall") for a in anchors]
+    return measure(Things(candidates, flags), parties, stand)

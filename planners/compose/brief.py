@@ -11,7 +11,8 @@ from typing import Annotated, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from ...gaussians.errors import InstructionError
-from ..layout.problem import Wall, WishName
+from ...gaussians.world import relations
+from ..layout.problem import Wall
 from ..plan import Verdict
 
 Word = Annotated[str, Field(min_length=1, max_length=60)]
@@ -80,7 +81,7 @@ class Relation(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     subject: Word
-    name: WishName
+    name: relations.WishName
     objects: Annotated[tuple[Word, ...], Field(max_length=2)] = ()
     wall: Wall | None = None
     hard: bool = True
@@ -129,10 +130,10 @@ class Brief(BaseModel):
         for r in self.relations:
             if missing := {r.subject, *r.objects} - known:
                 raise ValueError(f"a relation names {sorted(missing)}, which is no id of a thing")
-            wanted = {"between": (1, 2), "against_wall": (0,), "in_corner": (0,), "in_center": (0,), "at_window": (0,)}
-            if len(r.objects) not in wanted.get(r.name, (1,)):
+            kind = relations.named(r.name)
+            if not min(kind.anchors, 1) <= len(r.objects) <= kind.anchors:  # "between the tables" names one group
                 raise ValueError(f"{r.name} takes another number of objects than {len(r.objects)}")
-            if r.wall and r.name not in ("against_wall", "in_corner", "at_window"):
+            if r.wall and not kind.at_wall:
                 raise ValueError(f"{r.name} is about no wall, got {r.wall}")
         return self
 

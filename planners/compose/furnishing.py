@@ -13,7 +13,8 @@ from math import ceil
 
 import numpy as np
 
-from ..layout.problem import Wall, WishName
+from ...gaussians.world.relations import WishName
+from ..layout.problem import Wall
 from . import knowledge
 from .brief import Brief, Thing
 
@@ -122,7 +123,7 @@ class Furnishing:
 
     def _bond(self, wish: Sequence[str]) -> Bond | None:
         """A habit's wish to the groups that are there."""
-        name: WishName = wish[0]  # type: ignore[assignment]
+        name = wish[0]
         if len(wish) == 1:
             return Bond(name)
         if wish[1] in ("door", "window"):

@@ -10,12 +10,12 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated, Literal, Self, get_args
+from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
 
+from ...gaussians.world.relations import WishName
 from ...gaussians.world.words import singular
-from ..layout.problem import WishName
 
 Name = Annotated[str, Field(min_length=1, max_length=60, pattern=r"^[a-z][a-z' ]*$")]
 Share = Annotated[float, Field(ge=0, le=3, allow_inf_nan=False)]
@@ -244,9 +244,6 @@ def room(name: str) -> RoomKind:
     words = _words(" ".join(name.lower().split()))
     found = lookup(room_words(), words, 0) if words else None
     return rooms()[found[0] if found and found[1] == len(words) else "room"]
-
-
-RELATIONS = get_args(WishName)
 
 
 def summary(kind: RoomKind) -> str:

@@ -12,7 +12,7 @@ from itertools import count
 import numpy as np
 
 from ...gaussians.world.person import HEADROOM, HUNG_AT
-from ..layout.problem import Item, Keepout, Problem, Wish, WishName
+from ..layout.problem import Item, Keepout, Problem, Wish
 from ..rooms.node import Size
 from . import knowledge, sizing
 from .brief import Brief
@@ -261,7 +261,7 @@ class _Pose:
         for one, rug in pairs(subjects, rugs):
             self.wishes.append(Wish(subject=rug, name="under", objects=(one,), hard=hard))
 
-    def _one(self, one: int, name: WishName, other: int, hard: bool) -> None:
+    def _one(self, one: int, name: str, other: int, hard: bool) -> None:
         """One relation between two items; who sits at a desk looks where the desk is said to face."""
         if one == other:
             return

@@ -16,6 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from ... import prompts
 from ...gaussians.errors import BackendError
+from ...gaussians.world import relations
 from ..grammar.tagging.words import clean
 from ..grammar.vocabulary.unsafe import unsafe_words
 from ..model.backend import Message, ModelBackend
@@ -141,7 +142,7 @@ def _system(heard: Brief | None) -> str:
     kind = knowledge.room(heard.kind if heard else "room")
     example = {"verdict": "ok", "brief": _EXAMPLE.model_dump(mode="json", exclude_defaults=True)}
     return prompts.load("compose").fill(
-        relations=", ".join(knowledge.RELATIONS),
+        relations=", ".join(relations.names("wish")),
         rooms=", ".join(sorted(knowledge.rooms())),
         knowledge=f"Usual in a {knowledge.summary(kind)}",
         things=", ".join(sorted(knowledge.things())),

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
+from ...gaussians.world import relations
 from ...gaussians.world.box import YawBox, plan_penetration, to_world
 from ...gaussians.world.person import HEADROOM, STEP
 from ...gaussians.world.support import SHELL
@@ -21,8 +22,9 @@ DOORS = frozenset({"door", "doorway", "entrance", "gate", "exit", "front door", 
 TUCKED = 0.03  # metres between a table and what stands around it
 _ELBOW = 0.08  # metres between neighbours at a table
 _SWING = 0.9  # metres before a door that its leaf takes at most
-_BEFORE = ("around", "in_front_of", "between", "under", "on", "inside", "above", "below")
-_BESIDE_WALL = ("against_wall", "in_corner", "at_window")
+_BEFORE = tuple(k.name for k in relations.KINDS if k.enters == "before")
+_BESIDE = tuple(k.name for k in relations.KINDS if k.enters == "beside")
+_BESIDE_WALL = tuple(k.name for k in relations.KINDS if k.at_wall)
 
 
 class Member(NamedTuple):
@@ -103,7 +105,7 @@ class Prepared:
     @cached_property
     def tied(self) -> frozenset[tuple[int, int]]:
         """Pairs of items that a wish brings together: one may stand in the other's free space, but before it."""
-        return self._pairs(("facing", "next_to", *_BEFORE))
+        return self._pairs((*_BESIDE, *_BEFORE))
 
     @cached_property
     def joined(self) -> frozenset[tuple[int, int]]:

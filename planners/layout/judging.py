@@ -5,6 +5,7 @@ Knows both. Refuses to place anything; what the checker rejects is taken out.
 
 from __future__ import annotations
 
+from ...gaussians.world import relations
 from ..rooms.check import check
 from ..rooms.graph import SceneGraph
 from ..rooms.node import Node, NodeId, RoomShape
@@ -12,19 +13,7 @@ from .bodies import Prepared
 from .problem import Wish
 from .state import State
 
-STATED = (
-    "left_of",
-    "right_of",
-    "in_front_of",
-    "behind",
-    "next_to",
-    "on",
-    "under",
-    "above",
-    "below",
-    "inside",
-    "facing",
-)
+STATED = relations.names("stated")
 _UNSOUND = ("collision", "bounds", "support")
 Relations = tuple[tuple[NodeId, str, NodeId], ...]
 

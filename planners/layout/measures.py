@@ -1,7 +1,8 @@
 """How well each kind of wish is fulfilled by boxes, at one place or at many places at once.
 
-Knows what every wish means as geometry. Refuses to know which wishes there are and how they are weighed. Those that a
-scene graph can state are met only with a little to spare, because the checker has the last word on them.
+What queries know too is measured here by fewer operations than in `gaussians.world.relation_geometry`, with the same
+tolerances less a margin, because the checker of scene graphs has the last word; a test holds the two together. A
+relation without such a measure is judged by that geometry itself.
 """
 
 from __future__ import annotations
@@ -11,13 +12,18 @@ from typing import Any
 
 import numpy as np
 
-from ...gaussians.world.box import YawBox, plan_gap, plan_share, to_world
+from ...gaussians.world import relations
+from ...gaussians.world.box import Boxes, YawBox, plan_gap, plan_share, to_world
+from ...gaussians.world.relation_geometry import CLOSE, ENDS, FACES, HOLDS, Stand, Things
 
 Measured = tuple[Any, Any]  # whether it holds; how far it is from ideal, about 0 to 4
-VIEWED = ("left_of", "right_of", "in_front_of", "behind")
-_AIMS = {"left_of": (-1.0, 0.0), "right_of": (1.0, 0.0), "in_front_of": (0.0, -1.0), "behind": (0.0, 1.0)}
-_CONE = 0.53  # cosine; the checker asks for 0.5
-_OVER = 0.62  # share of the smaller footprint; the checker asks for half, by points
+# What the solver keeps away from where a relation begins to hold for the checker.
+_CONE = HOLDS + 0.03  # cosine
+_OVER = HOLDS + 0.12  # share of the smaller footprint; the checker counts points of it
+_CLOSE = CLOSE - 0.01
+_FACES = FACES - 2.0  # degrees
+_ENDS, _BULGE = ENDS + 0.05, 0.35  # the latter of the way between two things; "between" ends at 0.42 of it
+_SPARE = 0.05  # of the score of what has no measure of its own here
 NEAR_WALL = 0.1  # metres between a thing and the wall it is against
 CORNER = 0.25  # metres to either wall of the corner that a thing is in
 IN_REACH = 0.6  # metres from a window: what is at it
@@ -25,6 +31,8 @@ AT_TABLE = 0.4  # metres between a thing and what it stands around
 WALLS = ("west", "east", "south", "north")
 _INWARD = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))  # from each of them
 IN_LINE = 0.05  # metres between the middles of aligned things
+# A room is looked at along +y; one box is one thing of usual size.
+_STAND = Stand(np.eye(3)[0], np.eye(3)[1], np.eye(3)[2], np.array([0.0, -100.0, 1.6]), 1.0)
 
 
 def measure(
@@ -47,8 +55,8 @@ def measure(
             return kept, cost + gap
         turned = one.front[0] * _INWARD[row][0] + one.front[1] * _INWARD[row][1]
         return kept & (gap <= (CORNER if name == "in_corner" else NEAR_WALL)), cost + gap + 0.5 * (1.0 - turned)
-    if name in _AIMS:
-        kept, cost = _beside(_AIMS[name], one, others[0])
+    if aim := relations.named(name).aim:
+        kept, cost = _beside(aim, one, others[0])
         return kept, cost + _before(one, others[0]) if name == "in_front_of" else cost
     if name in _PAIRS:
         return _PAIRS[name](one, others[0])
@@ -65,7 +73,28 @@ def measure(
             return np.zeros(np.shape(one.x), bool), 0.0
         gap = np.min([plan_gap(one, w) for w in windows], axis=0)
         return gap <= IN_REACH, gap
-    raise ValueError(f"unknown wish {name}")
+    return _scored(name, one, others)
+
+
+def _scored(name: str, one: YawBox, others: Sequence[YawBox]) -> Measured:
+    """By the geometry that queries and the checker use, for relations without a faster measure here."""
+    score = relations.named(name).score
+    if score is None:
+        raise ValueError(f"nothing measures the wish {name}")
+    count = max(np.size(v) for s in (one, *others) for v in (s.x, s.y))
+    held = score(_things(one, count), [_things(o, count) for o in others], _STAND)
+    held = held.reshape(np.broadcast_shapes(*(np.shape(v) for s in (one, *others) for v in (s.x, s.y))))
+    return held >= HOLDS + _SPARE, 4.0 * (1.0 - held)
+
+
+def _things(spot: YawBox, count: int) -> Things:
+    """A box at `count` places."""
+    centers, axes = np.empty((count, 3)), np.eye(3)
+    centers[:, 0], centers[:, 1], centers[:, 2] = np.ravel(spot.x), np.ravel(spot.y), spot.low + spot.h / 2
+    axes[:2, :2] = spot.axes
+    sizes = np.broadcast_to(np.array([spot.w, spot.d, spot.h]), (count, 3))
+    axes = np.broadcast_to(axes, (count, 3, 3))
+    return Things(Boxes(centers, axes, sizes), np.zeros(count, bool))
 
 
 def _beside(aim: tuple[float, float], one: YawBox, other: YawBox) -> Measured:
@@ -86,7 +115,7 @@ def _before(one: YawBox, other: YawBox) -> Any:
 def _next_to(one: YawBox, other: YawBox) -> Measured:
     sizes = [max(s.w, s.d, s.h) for s in (one, other)]
     gap = np.hypot(plan_gap(one, other), max(one.low - other.high, other.low - one.high, 0.0))
-    return gap <= 0.29 * sum(sizes), 2.0 * gap
+    return gap <= _CLOSE * sum(sizes), 2.0 * gap
 
 
 def _around(one: YawBox, other: YawBox) -> Measured:
@@ -118,7 +147,7 @@ def _facing(one: YawBox, other: YawBox) -> Measured:
     bx, by = other.front
     back = -(dx * bx + dy * by) / np.maximum(reach, 1e-9)
     far = 0.3 * np.maximum(reach - 3.0, 0.0)
-    return is_turned(one, other, 43.0), 3.0 * (1.0 - cosine) + 1.0 * (1.0 - back) + far
+    return is_turned(one, other, _FACES), 3.0 * (1.0 - cosine) + 1.0 * (1.0 - back) + far
 
 
 def _over(upper: YawBox, lower: YawBox) -> Measured:
@@ -146,7 +175,7 @@ def _between(one: YawBox, a: YawBox, b: YawBox) -> Measured:
     length = np.maximum(np.hypot(sx, sy), 1e-9)
     t = ((one.x - a.x) * sx + (one.y - a.y) * sy) / length**2
     aside = np.abs((one.x - a.x) * sy - (one.y - a.y) * sx) / length**2
-    return (t > 0.15) & (t < 0.85) & (aside < 0.35), 2.0 * np.abs(t - 0.5) + 2.0 * aside
+    return (t > _ENDS) & (t < 1.0 - _ENDS) & (aside < _BULGE), 2.0 * np.abs(t - 0.5) + 2.0 * aside
 
 
 def walls_gaps(one: YawBox, size: Sequence[float]) -> tuple[Any, Any, Any, Any]:

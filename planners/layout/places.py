@@ -8,14 +8,17 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...gaussians.world import relations
 from ...gaussians.world.box import YawBox, to_world
 from ...gaussians.world.person import HEADROOM, STEP
 from .bodies import Body, Member
 from .candidate_surfaces import FLOOR, Ground, grounds
 from .costs import Place, crowding, habits, in_frame, moved, use, wished
 from .lattice import EPSILON, Flags, Lattice, blocked, in_disc
-from .measures import VIEWED, measure, walls_gaps
+from .measures import measure, walls_gaps
 from .state import SOFT, State
+
+_VIEWED = tuple(k.name for k in relations.KINDS if k.aim)
 
 
 def places(state: State, body: Body, rng: np.random.Generator, noise: float) -> list[Place]:
@@ -65,7 +68,7 @@ def seated(state: State, body: Body, yaw: float) -> Body:
     rows = [
         r
         for r in dict.fromkeys(r for m in body.members for r in state.prepared.wishes_of[m.item])
-        if state.prepared.problem.wishes[r].name in VIEWED
+        if state.prepared.problem.wishes[r].name in _VIEWED
         and set(state.prepared.parties[r]) <= {m.item for m in body.members}
     ]
     if not rows:

@@ -11,18 +11,14 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from ...gaussians.world import relations
 from ...gaussians.world.person import WALKWAY
 from ...gaussians.world.support import SHELL
 from ..rooms.graph import SceneGraph
 from ..rooms.node import NodeId, Point, Size, Support
 
 Metres = Annotated[float, Field(ge=0, le=1000, allow_inf_nan=False)]
-WishName = Literal[
-    "left_of", "right_of", "in_front_of", "behind", "next_to", "on", "under", "above", "below", "inside", "between",
-    "facing", "around", "against_wall", "in_corner", "in_center", "at_window", "far_from", "aligned_with",
-]  # fmt: skip
 Wall = Literal["north", "east", "south", "west"]
-_OBJECTS = {"between": 2, "against_wall": 0, "in_corner": 0, "in_center": 0, "at_window": 0}  # of all others: 1
 
 
 class Stand(BaseModel):
@@ -78,16 +74,17 @@ class Wish(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     subject: NodeId
-    name: WishName
+    name: relations.WishName
     objects: Annotated[tuple[NodeId, ...], Field(max_length=2)] = ()
     hard: bool = True
     wall: Wall | None = None
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
-        if len(self.objects) != _OBJECTS.get(self.name, 1):
-            raise ValueError(f"{self.name} takes {_OBJECTS.get(self.name, 1)} objects, got {len(self.objects)}")
-        if self.wall and self.name not in ("against_wall", "in_corner", "at_window"):
+        kind = relations.named(self.name)
+        if len(self.objects) != kind.anchors:
+            raise ValueError(f"{self.name} takes {kind.anchors} objects, got {len(self.objects)}")
+        if self.wall and not kind.at_wall:
             raise ValueError(f"{self.name} is about no wall, got {self.wall}")
         return self
 

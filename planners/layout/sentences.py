@@ -1,26 +1,12 @@
-"""Statements of a problem as sentences for a person. Knows words; refuses to judge."""
+"""Statements of a problem as sentences for a person."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from ...gaussians.world import relations
 from ..rooms.node import NodeId
 from .problem import Item, Keepout, Wish
-
-_WORDS = {
-    "left_of": "is left of {}", "right_of": "is right of {}", "in_front_of": "is in front of {}",
-    "behind": "is behind {}", "next_to": "is next to {}", "on": "is on {}", "under": "is under {}",
-    "above": "is above {}", "below": "is below {}", "inside": "is inside {}", "between": "is between {} and {}",
-    "facing": "faces {}", "around": "stands around {}", "against_wall": "is against a wall",
-    "in_corner": "is in a corner", "in_center": "is in the middle of the room", "at_window": "is at a window",
-    "far_from": "is far from {}", "aligned_with": "is in line with {}",
-}  # fmt: skip
-
-_AT_WALL = {
-    "against_wall": "is against the {} wall",
-    "in_corner": "is in a corner at the {} wall",
-    "at_window": "is at a window in the {} wall",
-}
 
 
 def said_item(item: Item) -> str:
@@ -35,10 +21,8 @@ def said_room(size: Sequence[float]) -> str:
 
 def said_wish(wish: Wish, item: Callable[[NodeId], Item]) -> str:
     """A wish: "the bed (3) is against a wall"."""
-    others = (said_item(item(o)) for o in wish.objects)
-    words = _WORDS[wish.name].format(*others)
-    if wish.wall:
-        words = _AT_WALL[wish.name].format(wish.wall)
+    kind = relations.named(wish.name)
+    words = kind.at_wall.format(wish.wall) if wish.wall else kind.says(*(said_item(item(o)) for o in wish.objects))
     return f"{said_item(item(wish.subject))} {words}"
 
 

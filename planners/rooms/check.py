@@ -16,6 +16,7 @@ import numpy as np
 
 from ...gaussians.world import relations, support
 from ...gaussians.world.box import Boxes, overlap
+from ...gaussians.world.relation_geometry import degrees_aside
 from ...gaussians.world.support import SHELL
 from .graph import SceneGraph
 from .graph_scene import Stage
@@ -26,15 +27,6 @@ Kind = Literal["collision", "bounds", "support", "relation", "reach"]
 Id = int | str
 
 TOUCHING = 0.01  # metres that boxes may be in each other or in a wall: what a person rounds to when writing
-
-# How relations are written, beside the names that queries use.
-_NAMES = {
-    "left": "left_of", "to_the_left_of": "left_of", "right": "right_of", "to_the_right_of": "right_of",
-    "front": "in_front_of", "near": "next_to", "beside": "next_to", "by": "next_to", "adjacent_to": "next_to",
-    "close_to": "next_to", "on_top_of": "on", "upon": "on", "in": "inside", "within": "inside", "over": "above",
-    "beneath": "under", "underneath": "under",
-}  # fmt: skip
-_KNOWN = ("left_of", "right_of", "in_front_of", "behind", "on", "under", "below", "above", "inside", "next_to")
 
 
 @dataclass(frozen=True)
@@ -189,17 +181,17 @@ def _relations(graph: SceneGraph) -> tuple[list[Violation], tuple[str, ...]]:
     nodes, found, unchecked = {n.id: n for n in graph.nodes}, list[Violation](), list[str]()
     stage = Stage.of(graph)
     for a, said, b in graph.relations:
-        name = said.strip().lower().replace(" ", "_")
-        name = _NAMES.get(name, name)
+        kind = relations.stated(said)
         one, other = nodes[a], nodes[b]
-        if name in ("faces", "facing"):
-            off = _aside(one, other)
-            if off > 45:
-                sentence = f"{_called(one)} is said to face {_called(other)}, which is {off:.0f} degrees off its front"
-                found.append(Violation("relation", (a, b), off, "degrees", sentence))
-        elif name not in _KNOWN:
+        if kind is None:
             unchecked.append(f"{_called(one)} {said} {_called(other)}: this relation is not known")
-        elif (score := _score(stage, name, one, other)) < relations.HOLDS:
+        elif (score := _score(stage, kind.name, one, other)) >= relations.HOLDS:
+            continue
+        elif kind.name == "facing":
+            off = float(degrees_aside(Boxes.of([one.box]), Boxes.of([other.box]))[0])
+            sentence = f"{_called(one)} is said to face {_called(other)}, which is {off:.0f} degrees off its front"
+            found.append(Violation("relation", (a, b), off, "degrees", sentence))
+        else:
             sentence = f"{_called(one)} is said to be {said} {_called(other)}; it scores {score:.2f}, 0.5 is needed"
             found.append(Violation("relation", (a, b), score, "1", sentence))
     return found, tuple(unchecked)
@@ -207,22 +199,10 @@ def _relations(graph: SceneGraph) -> tuple[list[Violation], tuple[str, ...]]:
 
 def _score(stage: Stage, name: str, one: Node, other: Node) -> float:
     """How well a relation holds; what the graph says stands on a thing is on it, as it is in its box at least."""
-    field = stage.scene.language
-    assert field is not None
     if name == "on" and one.support == other.id and not any(_carried(one, other)):
         return 1.0
-    stand = relations.viewer_stand(stage.viewer, stage.scene.frame.up_vector, field.typical_size)
     anchor = stage.group(stage.ids.index(other.id))
-    return float(relations.scores(name, Boxes.of([one.box]), [anchor], stand)[0])
-
-
-def _aside(one: Node, other: Node) -> float:
-    """Degrees between a thing's front (its box's -y) and the way to another."""
-    way = np.array(other.position[:2]) - np.array(one.position[:2])
-    turn = math.radians(one.yaw)
-    front = np.array([math.sin(turn), -math.cos(turn)])
-    reach = float(np.linalg.norm(way))
-    return 0.0 if reach < 1e-9 else math.degrees(math.acos(max(-1.0, min(1.0, float(way @ front) / reach))))
+    return float(relations.scores(name, Boxes.of([one.box]), [anchor], stage.stand)[0])
 
 
 def _out_of_reach(graph: SceneGraph) -> Iterator[Violation]:

@@ -20,12 +20,13 @@ from ...gaussians.cloud import GaussianCloud
 from ...gaussians.color import BASIC, plain_color
 from ...gaussians.language.field.language_field import Group, LanguageField
 from ...gaussians.language.query.query import Query, Relation
-from ...gaussians.language.query.resolve import resolve
+from ...gaussians.language.query.resolve import Resolver, resolve
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.language.query.terms import STRUCTURE
 from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.box import Box, distance
 from ...gaussians.world.person import EYE_HEIGHT
+from ...gaussians.world.relation_geometry import Stand
 from ...gaussians.world.support import SHELL
 from .color_words import NO_COLOR, color_of, hex_of
 from .graph import SceneGraph
@@ -76,6 +77,11 @@ class Stage:
         field = LanguageField(tuple(groups), vectors, encoder.fingerprint)
         frame = Frame(_UP, 0.0, 1.0, "given", "given")
         return cls(graph, Scene(_cloud(groups), frame, language=field), tuple(ids), encoder, _viewer(graph))
+
+    @cached_property
+    def stand(self) -> Stand:
+        """Where the viewer stands when saying left and right."""
+        return Resolver(self.scene, self.viewer).stand
 
     def find(self, query: Query, last: Selection | None = None) -> Selection:
         """What a query means here.

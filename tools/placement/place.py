@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ...gaussians.camera import Vec3
 from ...gaussians.errors import InstructionError
+from ...gaussians.world.relations import named
 from ..operation import Placement
 from .bodies import Array, Body, bodies_of, centimetre, neighbours
 from .occupancy import Bool, grown, histogram, window_sum
@@ -99,7 +100,7 @@ class Placer(Regions):
         Raises:
             InstructionError: there is none.
         """
-        region = self._beside_region(body.box.size, np.array(body.box.axes[:2]), body, "next_to", None)
+        region = self._beside_region(body.box.size, np.array(body.box.axes[:2]), body, named("next_to"), None)
         return self._only(body.box.size, body.box.axes, region, f"next to the {body.label or 'thing'}")
 
     def near(self, size: Vec3, axes: tuple[Vec3, Vec3, Vec3], body: Body) -> Spot:

@@ -13,15 +13,15 @@ import numpy as np
 
 from ...gaussians.camera import Vec3
 from ...gaussians.errors import InstructionError
-from ..operation import Direction, Placement
-from .bodies import Array, Body, centimetre, heading
+from ...gaussians.world.relations import RelationKind, named, viewer_stand
+from ..operation import Placement
+from .bodies import Array, Body, centimetre
 from .facing import front_of
 from .occupancy import levels
 from .surroundings import Surroundings
 
 Cost = Callable[[Array], Array]  # plan positions `[..., 2]` to costs `[...]`
-_GAPS = {"against": 0.0, "opposite": 120.0}  # centimetres to the anchor; 3 for others
-SIDES: dict[str, Direction] = {"left_of": "left", "right_of": "right", "in_front_of": "backward", "behind": "forward"}
+_ASIDE = 1.0  # how far off the asked direction, as a share of the way along it: 45 degrees, well within its cone
 
 
 @dataclass(frozen=True)
@@ -54,18 +54,21 @@ class Regions(Surroundings):
             start = self._off(place.offset, anchors)
         if place is None or not anchors:
             return [self._room_region(size, plan, place.relation if place is not None else "on", start)]
-        relation, anchor = place.relation, anchors[0]
-        if relation in ("on", "center", "corner"):
-            return self._top_regions(size, plan, anchor, relation, start)
-        if relation == "inside":
+        kind, anchor = named(place.relation), anchors[0]
+        if kind.region == "top":
+            return self._top_regions(size, plan, anchor, kind.name, start)
+        if kind.region == "inside":
             return self._inner_regions(size, plan, anchor)
-        if relation == "under":
+        if kind.region == "under":
             return [self._under_region(plan, anchor)]
-        if relation == "between":
+        if kind.region == "between":
             if len(anchors) < 2:
-                raise InstructionError("'between' needs two things: name both")
+                raise InstructionError(f"'{kind.name}' needs two things: name both")
             return [self._between_region(size, plan, anchors[0], anchors[1])]
-        return [self._beside_region(size, plan, anchor, relation, start)]
+        if kind.region == "across":
+            middle = sum(self._room_bounds) / 2 @ np.array(self.room_axes[:2])
+            return [self._room_region(size, plan, "on", 2 * middle - anchor.center)]
+        return [self._beside_region(size, plan, anchor, kind, start)]
 
     def _off(self, offset: tuple[float, float], anchors: Sequence[Body]) -> Array:
         """`[3]` a point that far from the middle of an anchor, or of the floor where there is none."""
@@ -168,13 +171,13 @@ class Regions(Surroundings):
         height, surface = self._base(lower, plan)
         return Region(middle - reach, middle + reach, lambda p: far(p, middle), height, surface)
 
-    def _beside_region(self, size: Vec3, plan: Array, anchor: Body, relation: str, start: Array | None) -> Region:
+    def _beside_region(self, size: Vec3, plan: Array, anchor: Body, kind: RelationKind, start: Array | None) -> Region:
         center = plan @ anchor.center
         anchor_half = np.array([anchor.box.extent(a) for a in plan]) / 2
         half = np.array(size[:2]) / 2
-        gap = _GAPS.get(relation, 3.0) * centimetre(self.frame, max(anchor.box.size))
+        gap = 100 * kind.gap * centimetre(self.frame, max(anchor.box.size))
         reach = anchor_half + half + gap + 0.75 * max(*anchor.box.size[:2], *size[:2])
-        wanted = self._wanted_side(anchor, plan, relation, start)
+        wanted = self._wanted_side(anchor, plan, kind, start)
         height, surface = self._base(anchor, plan)
 
         def cost(p: Array) -> Array:
@@ -185,21 +188,21 @@ class Regions(Surroundings):
             offset = p - center
             along = offset @ wanted
             across = np.linalg.norm(offset - along[..., None] * wanted, axis=-1)
-            if relation in SIDES or relation == "opposite":  # within 45 degrees of the asked side
-                return np.where(across > along, np.inf, total + across)
+            if kind.aim:
+                return np.where(across > _ASIDE * along, np.inf, total + across)
             return np.asarray(total + 0.3 * (np.linalg.norm(offset, axis=-1) - along))
 
         return Region(center - reach, center + reach, cost, height, surface)
 
-    def _wanted_side(self, anchor: Body, plan: Array, relation: str, start: Array | None) -> Array:
+    def _wanted_side(self, anchor: Body, plan: Array, kind: RelationKind, start: Array | None) -> Array:
         """`[2]` unit: the side that was asked for, or the side the thing is on, or the viewer's right.
 
         Opposite a thing that faces nowhere is on the viewer's side of it.
         """
-        front = front_of(self.scene, anchor) if relation == "opposite" else None
-        side: Direction = "backward" if relation == "opposite" else SIDES.get(relation, "right")
-        direction = heading(self.context.viewer, self.frame, side) if front is None else front
-        if relation not in (*SIDES, "opposite") and start is not None:
+        front = front_of(self.scene, anchor) if kind.own_frame else None
+        viewer = viewer_stand(self.context.viewer, self.frame.up_vector, 1.0)
+        direction = viewer.side(kind.aim or (1.0, 0.0)) if front is None else front
+        if kind.aim is None and start is not None:
             direction = start - anchor.center
         level = plan @ direction
         length = float(np.linalg.norm(level))

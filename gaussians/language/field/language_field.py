@@ -103,6 +103,17 @@ class LanguageField:
         return float(np.median(sizes)) if sizes else 1.0
 
     @cached_property
+    def middle(self) -> NDArray[np.float64]:
+        """`[3]` centre of the largest floor, else of the extent of all groups; the origin where there are none."""
+        there = [g for g in self.groups if g.count]
+        if not there:
+            return np.zeros(3)
+        if floors := [g for g in there if g.level == "structure" and g.label == "floor"]:
+            return np.array(max(floors, key=lambda g: g.box.size[0] * g.box.size[1]).box.center)
+        corners = np.concatenate([g.box.corners() for g in there])
+        return np.asarray((corners.min(axis=0) + corners.max(axis=0)) / 2)
+
+    @cached_property
     def answers(self) -> dict[tuple[str, ...], NDArray[np.float64]]:
         """Where a query may keep what does not depend on the viewer, `[G]` values a key; an edit starts a new table."""
         return {}

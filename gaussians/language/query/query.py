@@ -10,11 +10,9 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from ...world.relations import QueryName, named
+
 Name = Annotated[str, Field(max_length=80)]
-Relations = Literal[
-    "left_of", "right_of", "in_front_of", "behind", "on", "under", "above", "below", "inside", "next_to", "between",
-    "nearest_to", "farthest_from", "part_of",
-]  # fmt: skip
 Picks = Literal[
     "one", "all", "any", "largest", "smallest", "tallest", "shortest", "nearest", "farthest", "leftmost", "rightmost",
     "highest", "lowest", "middle", "nth", "rest",
@@ -31,9 +29,13 @@ class Relation(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    name: Relations
+    name: QueryName
     anchors: Annotated[tuple[Query, ...], Field(min_length=1, max_length=2)]
     frame: Literal["viewer", "object"] = "viewer"
+
+    def describe(self) -> str:
+        """ "left of the sofa"."""
+        return named(self.name).told(*(a.describe() for a in self.anchors))
 
 
 class Query(BaseModel):
@@ -101,7 +103,7 @@ class Query(BaseModel):
         if self.not_colors:
             said += f" that is not {' or '.join(self.not_colors)}"
         for r in self.relations:
-            said += f" {r.name.replace('_', ' ')} " + " and ".join(a.describe() for a in r.anchors)
+            said += f" {r.describe()}"
         return said
 
 

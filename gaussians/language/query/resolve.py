@@ -80,7 +80,8 @@ class Resolver:
 
     @cached_property
     def stand(self) -> relations.Stand:
-        return relations.viewer_stand(self.viewer, self.scene.frame.up_vector, self.field.typical_size)
+        field = self.field
+        return relations.viewer_stand(self.viewer, self.scene.frame.up_vector, field.typical_size, field.middle)
 
     @cached_property
     def members(self) -> Members:
@@ -211,8 +212,8 @@ class Resolver:
             # Found by colour alone, it has no group.
             own = [self.field.groups[i] for i in found.groups]
             groups.extend(own or [self._stand_in(found.mask(self.scene.cloud))])
-        if relation.name == "between" and len(groups) < 2:
-            raise Unresolved(nothing(relation.anchors[0], "'between' needs two things"))
+        if relations.named(relation.name).anchors == 2 and len(groups) < 2:
+            raise Unresolved(nothing(relation.anchors[0], f"'{relation.name}' needs two things"))
         return [Anchor(g, self._stand_at(g, relation)) for g in groups]
 
     def _stand_at(self, group: Group, relation: Relation) -> relations.Stand:
@@ -231,7 +232,7 @@ class Resolver:
         """How the front of each anchor was told where a relation is in its own frame; "" where none is."""
         told = []
         for relation in query.relations:
-            if relation.frame == "object" and relation.name in relations.SIDEWAYS:
+            if relation.frame == "object" and relations.named(relation.name).aim:
                 for anchor in self.anchors(relation):
                     by, name = self.facing(anchor.group).by, relation.anchors[0].describe()
                     told.append({

@@ -44,7 +44,7 @@ STRUCTURE = {
     "wall": "wall", "ceiling": "ceiling",
 }  # fmt: skip
 FLOATERS = frozenset({"floater", "noise", "floating bit", "stray"})
-ORDERING = frozenset({"nearest_to", "farthest_from"})  # these order matches instead of being true or false
+ORDERING = frozenset(k.name for k in relations.KINDS if k.orders)
 KEPT = 4096  # phrases and colours whose answers a table remembers
 NAMED = 0.25  # a label less probable than this is not worth telling
 OWN_COLOR = 0.5  # colour score from which no other basic colour is nearer
@@ -277,8 +277,8 @@ def related(relation: Relation, groups: Sequence[Group], field: LanguageField, a
     tabled = all(g.id >= 0 for g in groups)
     boxes = field.boxes.at([g.id for g in groups]) if tabled else Boxes.of([g.box for g in groups])
     wide = np.array([g.level == "structure" for g in groups], dtype=bool)
-    if relation.name == "between":
-        best = relations.scores("between", boxes, [a.group for a in anchors], anchors[0].stand)
+    if relations.named(relation.name).anchors == 2:
+        best = relations.scores(relation.name, boxes, [a.group for a in anchors], anchors[0].stand)
     else:
         best = np.zeros(len(groups))
         for anchor in anchors:

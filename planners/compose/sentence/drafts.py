@@ -9,7 +9,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
-from ...layout.problem import Wall, WishName
+from ....gaussians.world.relations import WishName
+from ...layout.problem import Wall
 from .. import knowledge
 from ..brief import Brief, RefusedError, Relation, RoomSize, Scale, Thing
 from .amounts import Side

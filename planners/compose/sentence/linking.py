@@ -9,8 +9,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import cast
 
+from ....gaussians.world.relations import WishName
 from ...grammar.tagging.lookahead import match
-from ...layout.problem import Wall, WishName
+from ...layout.problem import Wall
 from . import vocabulary
 from .drafts import Book, Draft, Link, Said, changed
 
@@ -149,7 +150,7 @@ class Linker:
         """Make a relation, turned round where it was said so, under its name in layouts."""
         first = objects[0]
         if subject is None:
-            known = cast(WishName, "next_to" if name in ("at", "against", "inside") else name)
+            known = "next_to" if name in ("at", "against", "inside") else name
             self._ahead.append((known, objects, None))
             return
         if name.startswith("reversed "):
@@ -236,9 +237,9 @@ class Linker:
             self._place("in_corner", None)
         elif subject is None:
             return
-        elif spot == "row":
+        elif spot == "aligned_with":
             self.book.link(Link(subject, "aligned_with", (subject,)))
-        elif spot == "mutual":
+        elif spot == "facing":
             self._mutual(subject)
         elif spot == "wall":
             self._at_wall("on", None)
@@ -269,4 +270,4 @@ def _named(name: str, subject: Draft, other: Draft) -> WishName:
         return "next_to"
     if name == "inside" and small and small.support == "surface" and large and large.top:
         return "on"
-    return cast(WishName, name)
+    return name

@@ -6,8 +6,8 @@ Knows spellings and what each stands for. Refuses to know how they combine (read
 from __future__ import annotations
 
 from ....gaussians.color import FAMILIES
+from ....gaussians.world import relations
 from ...grammar.tagging.words import bag, phrases
-from ...grammar.vocabulary.lexicon import RELATIONS as SAID
 from ..brief import Scale
 
 Phrase = tuple[str, ...]
@@ -17,50 +17,25 @@ def _table(said: dict[str, str]) -> dict[Phrase, str]:
     return {tuple(phrase.split()): value for listed, value in said.items() for phrase in listed.split(", ")}
 
 
-# Relations that take an object. `reversed`: "X surrounded by Y" is "Y around X".
-RELATIONS: dict[Phrase, str] = {tuple(p.split()): n for p, n in SAID.items() if n in (
-    "left_of", "right_of", "in_front_of", "behind", "on", "under", "below", "above", "inside", "next_to")} | _table({
-    "next to, beside, by, near, nearby, close to, alongside, adjacent to, on each side of, on both sides of, on either "
-    "side of, at each side of, at the side of, to the side of, along with the, on one side of": "next_to",
-    "on, on top of, atop, upon, onto": "on",
-    "at": "at",
-    "over, hanging over, hung over, hanging above, mounted above, hung above, up above": "above",
-    "under, underneath, beneath": "under",
-    "at the foot of, in front of, at the front of, before": "in_front_of",
-    "facing, turned to, turned toward, turned towards, facing toward, facing towards, looking at, opposite, "
-    "opposite to, across from, looking out of, looking out, overlooking, that faces, which faces": "facing",
-    "around, all around, gathered around, arranged around, set around": "around",
-    "between, in between": "between",
-    "against, up against, along, leaning against, lining, pushed against, flush against, leaning on": "against",
-    "far from, away from, far away from": "far_from",
-    "aligned with, in line with, parallel to, lined up with": "aligned_with",
-    "surrounded by, ringed by, encircled by": "reversed around",
-    "flanked by, framed by, bordered by": "reversed next_to",
-    "topped with, topped by, holding, carrying, stocked with, laden with, covered with": "reversed on",
-    "hanging from, hung from, suspended from, dangling from, from": "from",
-    "in, inside, within, into": "inside",
-    "beside the, next the": "next_to",
-})  # fmt: skip
+# Relations that take an object. `reversed`: "X surrounded by Y" is "Y around X". "at" and "from" depend on the things.
+_SAID = [kind for kind in relations.KINDS if kind.used("wish") or kind.phrases.descriptions]
+RELATIONS: dict[Phrase, str] = {
+    **{tuple(p.split()): kind.name for kind in _SAID for p in kind.phrases.in_descriptions()},
+    **{tuple(p.split()): f"reversed {kind.name}" for kind in _SAID for p in kind.phrases.in_reverse()},
+    **_table({"at": "at", "hanging from, hung from, suspended from, dangling from, from": "from"}),
+}
 
 # Relations that take none, or whose object is a part of the room.
-SPOTS: dict[Phrase, str] = _table({
-    "in the middle, in the center, in the centre, centered, centred, in the middle of the room, in the center of the "
-    "room, in the centre of the room, centered in the room, centred in the room, centrally, at the "
-    "center, at the centre, in its center, at the center of the room, at the centre of the room": "center",
-    "in the corner, in a corner, in one corner, in the corners, in each corner, in every corner, at the corners, "
-    "in all corners, in the corner of the room, in a corner of the room, in the corners of the room, "
-    "in the other corner, in another corner, "
-    "at the corners of the room, in opposite corners, in the far corner, in two corners": "corner",
-    "in a row, in rows, lined up, in a line, in two rows, side by side, next to each other, in three rows, aligned, "
-    "beside each other, parallel to each other": "row",
-    "facing each other, opposite each other, facing one another, face to face, across from each other": "mutual",
-    "hanging, on the wall, hung on the wall, mounted on the wall, wall mounted, on the walls, hanging on the wall, "
-    "hanging on the walls, on a wall": "wall",
-    "on the floor, on the ground": "floor",
-    "from the ceiling, on the ceiling, hanging from the ceiling, hung from the ceiling, suspended from the ceiling, "
-    "overhead, under the ceiling, ceiling mounted": "ceiling",
-})  # fmt: skip
-del SPOTS[("hanging",)]
+SPOTS: dict[Phrase, str] = {
+    **{tuple(p.split()): kind.name for kind in relations.KINDS for p in kind.alone.in_descriptions()},
+    **_table({
+        "on the wall, hung on the wall, mounted on the wall, wall mounted, on the walls, hanging on the wall, hanging "
+        "on the walls, on a wall": "wall",
+        "on the floor, on the ground": "floor",
+        "from the ceiling, on the ceiling, hanging from the ceiling, hung from the ceiling, suspended from the "
+        "ceiling, overhead, under the ceiling, ceiling mounted": "ceiling",
+    }),
+}  # fmt: skip
 
 WALLS = {
     "north": "north", "south": "south", "east": "east", "west": "west", "northern": "north", "southern": "south",

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from ....gaussians.language.query.query import Query, Relation
+from ....gaussians.world import relations
 from ....gaussians.world.words import head
 from ..parsing import Refusal
 from ..vocabulary import nouns
@@ -143,8 +144,8 @@ def _narrow(query: Query, post: Post, behind: Sequence[Post]) -> Query:
     if post.kind == "lacking":
         return _lacking(query, post, anchors)
     if name := _relation_name(post):
-        frame: Literal["viewer", "object"] = "object" if post.value == "opposite" else "viewer"
-        return updated(query, relations=(*query.relations, _relation(name, anchors, frame)))
+        own = post.kind == "related" and relations.named(str(post.value)).own_frame
+        return updated(query, relations=(*query.relations, _relation(name, anchors, "object" if own else "viewer")))
     if post.kind == "is_hue":
         return updated(query, colors=(*query.colors, post.value))
     if post.kind == "is_not_hue":
@@ -180,7 +181,7 @@ def _relation_name(post: Post) -> str:
     if post.kind == "having":
         return str(post.value)
     if post.kind == "related":
-        return {"against": "next_to", "opposite": "in_front_of"}.get(str(post.value), in_or_on(post))
+        return relations.named(str(post.value)).query_as or in_or_on(post)
     if post.kind == "off":
         inside = head(post.anchors[0].query.text) in nouns.CONTAINERS
         return "inside" if inside else "on"
@@ -196,4 +197,4 @@ def in_or_on(post: Post) -> str:
 def _relation(name: str, anchors: Sequence[Query], frame: Literal["viewer", "object"] = "viewer") -> Relation:
     """A relation; "next to a chair" is next to whichever chair."""
     anyone = (a.model_copy(update={"pick": "all"}) if a.pick == "any" and not a.last else a for a in anchors)
-    return Relation(name=name, anchors=tuple(anyone), frame=frame)  # type: ignore[arg-type]
+    return Relation(name=name, anchors=tuple(anyone), frame=frame)

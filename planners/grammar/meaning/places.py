@@ -16,6 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ....gaussians.world import relations
 from ....gaussians.world.words import head
 from ..parsing import Node, Refusal, tag_of, tokens, trees
 from ..vocabulary import nouns
@@ -26,7 +27,7 @@ Fields = dict[str, Any]
 LITTLE: Fields = {"value": 20, "unit": "cm"}
 MUCH: Fields = {"value": 1, "unit": "m"}
 MOTIONS = ("direction", "distance", "nudge", "toward", "to", "spot", "times")  # the rules that `read` takes
-_BESIDE = ("next_to", "left_of", "right_of", "in_front_of", "behind")
+_BESIDE = ("next_to", *(kind.name for kind in relations.KINDS if kind.aim and not kind.own_frame))
 
 
 @dataclass
@@ -152,7 +153,7 @@ def _opens(posts: Sequence[Post], verb: str) -> int | None:
 
 
 def _can(post: Post) -> bool:
-    return post.value != "farthest_from"
+    return post.kind != "related" or bool(relations.placed_as(str(post.value)))
 
 
 def placement(posts: Sequence[Post]) -> Fields:
@@ -191,7 +192,7 @@ def _spot(post: Post) -> str:
         return "between"
     if post.kind == "centered":
         return "center"
-    relation = {"below": "under", "nearest_to": "next_to"}.get(post.value, in_or_on(post))
+    relation = relations.placed_as(in_or_on(post))
     if relation in ("on", "inside") and post.anchors[0].query.pick == "all":
         raise Refusal("one place at a time; name one", post.word)
     return relation

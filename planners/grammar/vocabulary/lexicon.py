@@ -8,6 +8,7 @@ Tables map a phrase to a value; `PHRASES` joins them into one trie-like table ke
 
 from __future__ import annotations
 
+from ....gaussians.world import relations
 from ..tagging.words import bag, phrases
 from .verbs import UNSUPPORTED, VERBS, Entry, same
 
@@ -56,24 +57,15 @@ NOUN_VERBS = bag(
 
 # ---- words inside a clause -----------------------------------------------------------------------------------------
 
-RELATIONS: dict[str, str] = {
-    **same("left_of", "to the left of, left of, on the left of, at the left of, to the left side of, "
-            "on the left side of, to the left hand side of, on the left hand side of"),
-    **same("right_of", "to the right of, right of, on the right of, at the right of, to the right side of, "
-            "on the right side of, to the right hand side of, on the right hand side of"),
-    **same("in_front_of", "in front of, to the front of, at the front of"),
-    **same("behind", "behind, in back of, at the back of, to the back of, in the back of"),
-    **same("on", "on, on top of, onto, on to, upon, atop, on the top of, to the top of"),
-    **same("under", "under, underneath, beneath"),
-    **same("below", "below, below the level of"),
-    **same("above", "above, over"),
-    **same("inside", "inside, in, into, within, inside of"),
-    **same("next_to", "next to, beside, by, near, near to, close to, alongside, adjacent to, at, at the side of, "
-            "to the side of, by the side of, right next to, right by, close by, right beside, surrounding, around by, "
-            "in the vicinity of, not far from, next"),
-    **same("against", "against, up against, along, flush against"),
-    **same("opposite", "opposite, opposite to, opposite of, across from, directly across from, across the room from"),
-}  # fmt: skip
+_RELATED = [kind for kind in relations.KINDS if kind.anchors == 1 and not kind.orders and kind.name != "center"]
+RELATIONS: dict[str, str] = {p: kind.name for kind in _RELATED for p in kind.phrases.in_commands()}
+
+
+def _said(kind: str, name: str, alone: bool = False) -> dict[str, Entry]:
+    """A relation's phrases as tokens of a class of their own: before an anchor, or without one."""
+    known = relations.named(name)
+    return dict.fromkeys((known.alone if alone else known.phrases).in_commands(), (kind, name))
+
 
 INSIDE: dict[str, Entry] = {
     **{phrase: ("PREP", name) for phrase, name in RELATIONS.items()},
@@ -81,9 +73,9 @@ INSIDE: dict[str, Entry] = {
     **{f"directly {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside",)},
     **{f"right {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside", "right_of", "left_of")},
     **{f"just {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside",)},
-    **same(("BETWEEN", None), "between, in between"),
-    **same(("NEAR", "nearest_to"), "nearest, nearest to, closest to, closest, nearest from"),
-    **same(("NEAR", "farthest_from"), "farthest from, furthest from, farthest away from, furthest away from"),
+    **_said("BETWEEN", "between"),
+    **_said("NEAR", "nearest_to"),
+    **_said("NEAR", "farthest_from"),
     **same(("FROM", None), "from, off, off of, out of"),
     **same(("OF", None), "of"),
     **same(("TO", None), "to, over to, up to"),
@@ -107,17 +99,9 @@ INSIDE: dict[str, Entry] = {
         "out, keeping, not counting, not including, other then, but never",
     ),
     **same(("AND", None), "and, &, and also, as well as, plus, along with, together with, and then"),
-    **same(("SPOT", "corner"), "in the corner, in the corner of the room, to the corner, in a corner, "
-            "into the corner, to the corner of the room, "
-            "into a corner, in one corner, into the corner of the room, to a corner"),
-    **same(("SPOT", "center"), "in the middle, in the middle of the room, in the center, in the centre, "
-            "to the center, to the centre, to the middle, "
-            "in the center of the room, in the centre of the room, at the center of the room, "
-            "at the centre of the room, at the middle of the room, "
-            "to the middle of the room, to the center of the room, to the centre of the room, into the middle, "
-            "into the middle of the room, into the center of the room, into the centre of the room"),
-    **same(("CENTER", None), "in the middle of, in the center of, in the centre of, to the middle of, "
-            "to the center of, to the centre of, at the center of, at the centre of"),
+    **_said("SPOT", "corner", alone=True),
+    **_said("SPOT", "center", alone=True),
+    **_said("CENTER", "center"),
     **same(("SIDE", "leftmost"), "on the left, on the left side, on the left hand side, at the left, on my left, "
             "on the far left, to the far left, on the very left, farthest to the left, furthest to the left"),
     **same(("SIDE", "rightmost"), "on the right, on the right side, on the right hand side, at the right, "
