@@ -14,7 +14,7 @@ import numpy as np
 
 from ...gaussians.world import relations
 from ...gaussians.world.box import Boxes, YawBox, plan_gap, plan_share, to_world
-from ...gaussians.world.relation_geometry import CLOSE, ENDS, FACES, HOLDS, Stand, Things
+from ...gaussians.world.relation_geometry import CLOSE, ENDS, FACES, FOOTPRINT, HOLDS, Stand, Things
 
 Measured = tuple[Any, Any]  # whether it holds; how far it is from ideal, about 0 to 4
 # What the solver keeps away from where a relation begins to hold for the checker.
@@ -23,6 +23,8 @@ _OVER = HOLDS + 0.12  # share of the smaller footprint; the checker counts point
 _CLOSE = CLOSE - 0.01
 _FACES = FACES - 2.0  # degrees
 _ENDS, _BULGE = ENDS + 0.05, 0.35  # the latter of the way between two things; "between" ends at 0.42 of it
+_INSIDE, _SUNK = 0.98, 0.75  # shares of a thing's footprint and of its height that are in what it is inside of
+_RESTS = 0.02  # metres of air under what is on a thing, as much as the checker allows under what stands
 _SPARE = 0.05  # of the score of what has no measure of its own here
 NEAR_WALL = 0.1  # metres between a thing and the wall it is against
 CORNER = 0.25  # metres to either wall of the corner that a thing is in
@@ -31,6 +33,7 @@ AT_TABLE = 0.4  # metres between a thing and what it stands around
 WALLS = ("west", "east", "south", "north")
 _INWARD = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))  # from each of them
 IN_LINE = 0.05  # metres between the middles of aligned things
+_ROW = np.unique(FOOTPRINT[:, 0])  # one row of the points by which the checker counts footprints
 # A room is looked at along +y; one box is one thing of usual size.
 _STAND = Stand(np.eye(3)[0], np.eye(3)[1], np.eye(3)[2], np.array([0.0, -100.0, 1.6]), 1.0)
 
@@ -151,14 +154,45 @@ def _facing(one: YawBox, other: YawBox) -> Measured:
 
 
 def _over(upper: YawBox, lower: YawBox) -> Measured:
-    held = (plan_share(upper, lower) >= _OVER) & (upper.low >= lower.high - 0.01)
+    held = _overlaps(upper, lower) & (upper.low >= lower.high - 0.01)
     return held, 1.0 - plan_share(upper, lower) + 0.5 * np.hypot(upper.x - lower.x, upper.y - lower.y)
+
+
+def _on(upper: YawBox, lower: YawBox) -> Measured:
+    held, cost = _over(upper, lower)
+    return held & (upper.low <= lower.high + _RESTS) & (_covered(upper, lower) >= _OVER), cost
+
+
+def _inside(one: YawBox, other: YawBox) -> Measured:
+    within = min(one.high, other.high) - max(one.low, other.low)
+    held = (within >= _SUNK * one.h) & (other.low <= one.low + one.h / 2 <= other.high)
+    return (_covered(one, other) >= _INSIDE) & held, 1.0 - plan_share(one, other)
+
+
+def _covered(one: YawBox, other: YawBox) -> Any:
+    """Share of one's own footprint over another; both are taken along the axes."""
+    (ow, od), (w, d) = one.half, other.half
+    return plan_share(one, other) * min(1.0, w * d / max(ow * od, 1e-9))
+
+
+def _overlaps(one: YawBox, other: YawBox) -> Any:
+    """Whether two footprints have enough in common by area, and by points as the checker counts them."""
+    points = np.maximum(_points(one, other), _points(other, one))
+    return (plan_share(one, other) >= _OVER) & (points >= HOLDS)
+
+
+def _points(of: YawBox, over: YawBox) -> Any:
+    """Share of the points of one footprint that lie over another; both are taken along the axes."""
+    counted: Any = 1.0
+    for offset, half, reach in zip((of.x - over.x, of.y - over.y), of.half, over.half, strict=True):
+        counted = counted * (np.abs(np.asarray(offset)[..., None] + 2 * half * _ROW) <= reach + 1e-9).mean(axis=-1)
+    return counted
 
 
 def _under(one: YawBox, other: YawBox) -> Measured:
     lower = (one.low + one.high < other.low + other.high) & (one.low < other.high - 0.1)
     away = np.hypot(one.x - other.x, one.y - other.y)
-    return (plan_share(one, other) >= _OVER) & lower, 1.0 - plan_share(one, other) + 0.5 * away
+    return _overlaps(one, other) & lower, 1.0 - plan_share(one, other) + 0.5 * away
 
 
 def _aligned(one: YawBox, other: YawBox) -> Measured:
@@ -226,10 +260,10 @@ _PAIRS: dict[str, Callable[[YawBox, YawBox], Measured]] = {
     "around": _around,
     "facing": _facing,
     "above": _over,
-    "on": _over,
+    "on": _on,
     "under": _under,
     "below": _under,
-    "inside": lambda one, other: (plan_share(one, other) >= 0.98, 1.0 - plan_share(one, other)),
+    "inside": _inside,
     "aligned_with": _aligned,
 }
 _ROOM: dict[str, Callable[[YawBox, Sequence[float]], Measured]] = {

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from scenewright.gaussians.world.box import YawBox, overlap, plan_gap, plan_penetration
 from scenewright.gaussians.world.person import SHOULDERS
+from scenewright.gaussians.world.relations import KINDS, names
 from scenewright.planners.layout.lattice import Lattice, blocked, in_disc
 from scenewright.planners.layout.measures import measure
 from scenewright.planners.layout.walkable_grid import Ways
@@ -99,7 +100,7 @@ def test_what_is_taken_away_leaves_no_trace() -> None:
 @given(
     spots(st.sampled_from([0.0, 90.0, 180.0, -90.0])),
     spots(st.sampled_from([0.0, 90.0, 180.0, -90.0])),
-    st.sampled_from(["left_of", "right_of", "in_front_of", "behind", "next_to", "facing", "above"]),
+    st.sampled_from(names("stated")),
 )
 def test_what_is_measured_as_kept_is_kept_by_the_checkers_word(one: YawBox, other: YawBox, name: str) -> None:
     kept, _ = measure(name, SIZE, one, [other], [])
@@ -108,9 +109,7 @@ def test_what_is_measured_as_kept_is_kept_by_the_checkers_word(one: YawBox, othe
     assert "relation" not in {v.kind for v in report.violations}
 
 
-@given(
-    st.sampled_from(["left_of", "behind", "next_to", "facing", "around", "aligned_with", "far_from"]), spots(), spots()
-)
+@given(st.sampled_from([k.name for k in KINDS if k.used("wish") and k.anchors == 1]), spots(), spots())
 def test_many_places_at_once_are_measured_as_each_alone(name: str, one: YawBox, other: YawBox) -> None:
     xs, ys = np.linspace(-2, 2, 5), np.linspace(-1.5, 1.5, 5)
     kept, cost = measure(name, SIZE, one._replace(x=xs, y=ys), [other], [])
