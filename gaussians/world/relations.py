@@ -17,9 +17,7 @@ from numpy.typing import NDArray
 from ..language.field.language_field import Group
 from . import relation_geometry as geometry
 from .box import Boxes
-from .relation_geometry import F64, HOLDS, Score, Stand, Things, object_stand, viewer_stand
-
-__all__ = ["HOLDS", "KINDS", "Stand", "object_stand", "score", "scores", "viewer_stand"]
+from .relation_geometry import F64, Score, Stand, Things
 
 Use = Literal["query", "placement", "wish", "stated"]
 Region = Literal["top", "inside", "under", "between", "beside", "across"]

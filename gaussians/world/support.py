@@ -17,7 +17,8 @@ from ..language.field.language_field import Group, LanguageField
 from ..scene import Frame
 from .box import YawBox
 from .person import STEP
-from .relations import HOLDS, Stand, score
+from .relation_geometry import HOLDS, Stand
+from .relations import score
 
 SHELL = ("floor", "wall", "ceiling")
 CONTACT = 0.12  # of the smaller height: measured boxes are that blurred where a thing's underside meets another's top

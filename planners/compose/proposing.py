@@ -143,6 +143,7 @@ def _system(heard: Brief | None) -> str:
     example = {"verdict": "ok", "brief": _EXAMPLE.model_dump(mode="json", exclude_defaults=True)}
     return prompts.load("compose").fill(
         relations=", ".join(relations.names("wish")),
+        alone=", ".join(name for name in relations.names("wish") if not relations.named(name).anchors),
         rooms=", ".join(sorted(knowledge.rooms())),
         knowledge=f"Usual in a {knowledge.summary(kind)}",
         things=", ".join(sorted(knowledge.things())),

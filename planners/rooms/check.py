@@ -16,7 +16,7 @@ import numpy as np
 
 from ...gaussians.world import relations, support
 from ...gaussians.world.box import Boxes, overlap
-from ...gaussians.world.relation_geometry import degrees_aside
+from ...gaussians.world.relation_geometry import HOLDS, degrees_aside
 from ...gaussians.world.support import SHELL
 from .graph import SceneGraph
 from .graph_scene import Stage
@@ -185,7 +185,7 @@ def _relations(graph: SceneGraph) -> tuple[list[Violation], tuple[str, ...]]:
         one, other = nodes[a], nodes[b]
         if kind is None:
             unchecked.append(f"{_called(one)} {said} {_called(other)}: this relation is not known")
-        elif (score := _score(stage, kind.name, one, other)) >= relations.HOLDS:
+        elif (score := _score(stage, kind.name, one, other)) >= HOLDS:
             continue
         elif kind.name == "facing":
             off = float(degrees_aside(Boxes.of([one.box]), Boxes.of([other.box]))[0])

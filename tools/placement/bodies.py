@@ -19,7 +19,7 @@ from ...gaussians.language.field.measure import Axes, as_axes, box_along, level_
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.box import Box
-from ...gaussians.world.relations import viewer_stand
+from ...gaussians.world.relation_geometry import viewer_stand
 from ..cloud_diff import rows_of
 from ..operation import Direction
 

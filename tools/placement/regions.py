@@ -13,7 +13,8 @@ import numpy as np
 
 from ...gaussians.camera import Vec3
 from ...gaussians.errors import InstructionError
-from ...gaussians.world.relations import RelationKind, named, viewer_stand
+from ...gaussians.world.relation_geometry import viewer_stand
+from ...gaussians.world.relations import RelationKind, named
 from ..operation import Placement
 from .bodies import Array, Body, centimetre
 from .facing import front_of

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...world import relations
 from ...world.box import Boxes, distances
+from ...world.relation_geometry import Stand
 from ..field.language_field import Group
 from . import attributes
 from .query import Query
@@ -36,7 +36,7 @@ class Choice:
     refusal: Selection | None = None
 
 
-def pick(query: Query, scored: Scored, stand: relations.Stand) -> Choice:
+def pick(query: Query, scored: Scored, stand: Stand) -> Choice:
     """Which of the matches a query means, by its `pick`. There is at least one match."""
     matches = scored.matches()
     if query.pick == "one":
@@ -126,7 +126,7 @@ def _refused(query: Query, reason: str, told: tuple[Candidate, ...], verdict: Ve
     return Selection(query, verdict, empty.ids, (), told, reason)
 
 
-def _keys(stand: relations.Stand) -> dict[str, Callable[[Group], float]]:
+def _keys(stand: Stand) -> dict[str, Callable[[Group], float]]:
     """What each superlative sorts by, smallest first."""
 
     def rightward(g: Group) -> float:

@@ -20,6 +20,7 @@ from ...errors import BackendError
 from ...scene import Scene
 from ...world import relations
 from ...world.facing import Facing, facing_in
+from ...world.relation_geometry import HOLDS, Stand, object_stand, viewer_stand
 from ..encoders.probability import doubt
 from ..field.group_index import Members, difference, members_of, union
 from ..field.language_field import Group, LanguageField
@@ -79,9 +80,9 @@ class Resolver:
         return self.scene.language
 
     @cached_property
-    def stand(self) -> relations.Stand:
+    def stand(self) -> Stand:
         field = self.field
-        return relations.viewer_stand(self.viewer, self.scene.frame.up_vector, field.typical_size, field.middle)
+        return viewer_stand(self.viewer, self.scene.frame.up_vector, field.typical_size, field.middle)
 
     @cached_property
     def members(self) -> Members:
@@ -216,10 +217,10 @@ class Resolver:
             raise Unresolved(nothing(relation.anchors[0], f"'{relation.name}' needs two things"))
         return [Anchor(g, self._stand_at(g, relation)) for g in groups]
 
-    def _stand_at(self, group: Group, relation: Relation) -> relations.Stand:
+    def _stand_at(self, group: Group, relation: Relation) -> Stand:
         """The viewer's, or for a relation in the anchor's own frame the anchor's where it faces somewhere."""
         front = self.facing(group).front if relation.frame == "object" else None
-        return self.stand if front is None else relations.object_stand(group, front, self.stand)
+        return self.stand if front is None else object_stand(group, front, self.stand)
 
     def facing(self, group: Group) -> Facing:
         """Which way a group faces."""
@@ -301,7 +302,7 @@ class Resolver:
     def stands(self, query: Query, thing: Group) -> bool:
         """Whether something that is no row of the table stands in every asked relation."""
         return all(
-            related(r, [thing], self.field, self.anchors(r))[0] >= relations.HOLDS
+            related(r, [thing], self.field, self.anchors(r))[0] >= HOLDS
             for r in query.relations
             if r.name not in ORDERING
         )

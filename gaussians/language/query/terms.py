@@ -23,6 +23,7 @@ from ...color import name_of
 from ...errors import BackendError
 from ...world import relations
 from ...world.box import Boxes
+from ...world.relation_geometry import HOLDS, Stand
 from ...world.words import normalise
 from ..encoders.probability import probability
 from ..field.language_field import Group, LanguageField
@@ -55,7 +56,7 @@ class Anchor:
     """What a relation relates to, and where one stands when saying so."""
 
     group: Group
-    stand: relations.Stand
+    stand: Stand
 
 
 @dataclass(frozen=True, eq=False)
@@ -259,7 +260,7 @@ def scored(
         limits[f"not {word}"] = 1 - attributes.COLOR_HOLDS
     for relation, anchors in placed:
         name = relation.name if relation.name not in terms else f"{relation.name} {len(terms)}"
-        terms[name], limits[name] = related(relation, groups, field, anchors), relations.HOLDS
+        terms[name], limits[name] = related(relation, groups, field, anchors), HOLDS
     if query.size is not None:
         before = Scored(groups, dict(terms), limits, own)
         fit = np.flatnonzero(before.holds & own) if (before.holds & own).any() else np.flatnonzero(before.holds)

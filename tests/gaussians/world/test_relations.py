@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from scenewright.gaussians.camera import Camera, Vec3
 from scenewright.gaussians.language.field.language_field import Group
 from scenewright.gaussians.world.box import Box, distance
-from scenewright.gaussians.world.relations import HOLDS, KINDS, object_stand, score, viewer_stand
+from scenewright.gaussians.world.relation_geometry import HOLDS, object_stand, viewer_stand
+from scenewright.gaussians.world.relations import KINDS, score
 
 F64 = NDArray[np.float64]
 UP = np.array([0.0, 0.0, 1.0])
