@@ -21,11 +21,12 @@ from scenewright.gaussians.language.encoders import Encoder
 from scenewright.gaussians.language.encoders.calibration import Calibration
 from scenewright.gaussians.language.encoders.vocabulary import Vocabulary
 from scenewright.gaussians.language.field.language_field import Group, LanguageField, Level
-from scenewright.gaussians.language.query.query import Picks, Query, Relation, Relations
+from scenewright.gaussians.language.query.query import Picks, Query, Relation
 from scenewright.gaussians.language.query.resolve import resolve
 from scenewright.gaussians.language.query.selection import Selection
 from scenewright.gaussians.scene import Frame, Scene
 from scenewright.gaussians.world.box import Box
+from scenewright.gaussians.world.relations import QueryName
 from scenewright.gaussians.world.words import normalise
 
 AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -150,7 +151,7 @@ def named(text: str, *colors: str, pick: Picks = "one", **more: object) -> Query
     return Query.model_validate({"text": text, "colors": colors, "pick": pick, **more})
 
 
-def by(name: Relations, *anchors: Query, frame: str = "viewer") -> dict[str, object]:
+def by(name: QueryName, *anchors: Query, frame: str = "viewer") -> dict[str, object]:
     return {"relations": (Relation.model_validate({"name": name, "anchors": anchors, "frame": frame}),)}
 
 
@@ -380,7 +381,7 @@ def test_a_missing_or_doubtful_anchor_is_the_answer() -> None:
 
 
 @pytest.mark.parametrize("name", ["left_of", "nearest_to", "farthest_from"])
-def test_an_anchor_found_by_its_colour_alone_is_an_anchor(name: Relations) -> None:
+def test_an_anchor_found_by_its_colour_alone_is_an_anchor(name: QueryName) -> None:
     answer = ask(named("chair", pick="any", **by(name, named("bicycle", "orange"))), STRANGE)
     assert answer.verdict == "found" and set(answer.groups) <= {RED, BLUE, TALL}
 
