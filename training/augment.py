@@ -1,7 +1,4 @@
-"""Variety at training time, on batches: framing, resolution, light, hue and backgrounds.
-
-Knows pixels. Refuses to know what they show. The same seed gives the same pictures.
-"""
+"""Data augmentation on batches of crops: framing, resolution, light, hue and backgrounds. Deterministic by seed."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
-"""What the pictures are called: kinds, synonyms, broader terms, non-objects, and the words around them.
+"""Generate captions for training images: kinds, synonyms, broader terms, non-objects, and surrounding words.
 
-Knows English for household things. Refuses to know pictures. The asset kinds bring their own synonyms; those here add
-what people also say. Colours are put before names at random, whatever the picture shows: the vectors shall learn to
-ignore them, because colour is measured on the Gaussians themselves.
+The asset kinds have synonyms of their own; those here are additional. Random colours are put before names, independent
+of the image, so that the embeddings learn to ignore them: colour is measured on the Gaussians themselves.
 """
 
 from __future__ import annotations

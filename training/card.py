@@ -1,6 +1,6 @@
-"""The encoder card: a Markdown page whose every figure comes from the `measured.json` that training wrote.
+"""Write the encoder card, a Markdown page with all figures taken from the `measured.json` that training wrote.
 
-`python -m scenewright.training.card > docs/encoder-card.md`. Knows wording. Refuses to know figures.
+`python -m scenewright.training.card > docs/encoder-card.md`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,6 @@
-"""What befalls a thing between the world and the encoder: cuts, unseen sides, thinning, residue, wrong merges.
+"""Simulate defects of segmented objects for training: cuts, unseen sides, thinning, residue, wrong merges.
 
-Knows clouds and random numbers. Refuses to know what the things are. Every function returns a new cloud; randomness
-comes from the generator it is given.
+Every function returns a new cloud and draws from the given random generator.
 """
 
 from __future__ import annotations

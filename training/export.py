@@ -1,4 +1,4 @@
-"""Writes the towers as the folder that `encoders.embedded` loads. Knows ONNX; refuses to know how they were trained.
+"""Export the towers as ONNX to the folder that `encoders.embedded` loads.
 
 Weights are stored in half precision and widened by a Cast when the session starts, so files are half as large and the
 arithmetic stays float32.

@@ -1,7 +1,4 @@
-"""Teaches the two towers: each crop, and each phrase, shall be nearest to the vector of what it is among all labels.
-
-Knows crops and captions. Refuses to know files.
-"""
+"""Train the two towers contrastively: each crop and each phrase shall be nearest to its own label among all labels."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""How the encoder fares on objects made by others: a folder of low-poly household meshes. Measures only, never trains.
+"""Evaluate the encoder on third-party objects, a folder of low-poly household meshes. Nothing is trained on them.
 
-`python -m scenewright.training.foreign_meshes FOLDER [--encoder SPEC]`. Knows the names of the Kenney
-furniture kit's files and which of our kinds each may rightly be called. Refuses to know how the encoder was made.
+`python -m scenewright.training.foreign_meshes FOLDER [--encoder SPEC]`. The expected kinds are listed here for the file
+names of the Kenney furniture kit.
 """
 
 from __future__ import annotations

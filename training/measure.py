@@ -1,6 +1,6 @@
-"""How good the encoder is, on things it never saw, and the two numbers of its calibration.
+"""Evaluate the encoder on unseen objects, and fit the two numbers of its calibration.
 
-Everything goes through the encoder as shipped, not through torch. Knows crops and rates. Refuses to know training.
+Everything runs through the encoder as shipped, not through torch.
 """
 
 from __future__ import annotations

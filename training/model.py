@@ -1,7 +1,4 @@
-"""The two towers: a small residual convnet over pictures and one attention layer over words.
-
-Knows layers and shapes. Refuses to know data, captions and losses.
-"""
+"""The two towers: a small residual convnet over images and one attention layer over words."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Pictures to learn from: procedural assets, whole and damaged, each alone from several sides, as cut-out crops.
+"""Render the training images: procedural assets, intact and damaged, each alone from several sides, as crops.
 
-Knows assets, damage, cameras and the crop that embedding uses too. Refuses to know captions beyond the label of each
-thing, and encoders. A set is a function of its seeds and is kept in a cache folder outside the repository.
+The crop is the one that embedding uses. A set is a function of its seeds and is cached in a folder outside the
+repository.
 """
 
 from __future__ import annotations

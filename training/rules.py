@@ -1,7 +1,4 @@
-"""Fitting a rule on what furnished rooms show, judging it on rooms held out, and writing it beside what uses it.
-
-Knows features, right answers and what a mistake costs. Refuses to know what the features measure.
-"""
+"""Fit a decision rule on furnished rooms, evaluate it on held-out rooms, and write it beside the code that uses it."""
 
 from __future__ import annotations
 

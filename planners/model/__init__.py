@@ -1,4 +1,4 @@
-"""Planning by language models, behind one protocol (`backend.py`), each loaded only when it is named."""
+"""Planning with language models behind one protocol (`backend.py`); a back end is imported when a spec names it."""
 
 from __future__ import annotations
 
@@ -17,27 +17,27 @@ _LOCAL = "transformers"
 
 
 def is_model(spec: str) -> bool:
-    """Whether a string names a language model rather than another planner; it may still be wrong."""
+    """Whether a planner spec has the prefix of a language model; the rest is not validated."""
     return spec.partition(":")[0] in (*_REMOTE, _LOCAL)
 
 
 def load(spec: str) -> ModelBackend:
-    """The language model that one string names: one of `FORMS`.
+    """Load the language model of a spec, which has one of the `FORMS`.
 
     Raises:
-        UserError: it names no kind of model, or no model of that kind.
-        BackendError: what it needs is not installed, or there is no such folder or key.
+        UserError: unknown kind of model, or no model name.
+        BackendError: a package, folder or key is missing.
     """
     kind, _, name = spec.partition(":")
     if kind not in (*_REMOTE, _LOCAL) or not name.strip():
-        raise UserError(f"{spec!r} names no language model; it is one of {', '.join(FORMS)}")
+        raise UserError(f"{spec!r} names no language model; give one of {', '.join(FORMS)}")
     module: Any = importlib.import_module(f"{__name__}.{'local' if kind == _LOCAL else 'remote'}.backend")
     loaded: ModelBackend = module.load(name if kind == _LOCAL else spec)
     return loaded
 
 
 def load_planner(spec: str, **settings: Any) -> ModelPlanner:
-    """A planner that asks the language model that one string names.
+    """A planner that uses the language model of a spec.
 
     Args:
         spec: as `load` takes it.

@@ -1,7 +1,4 @@
-"""What a language model is to the planner: messages in, one JSON text out. Every model is behind this protocol.
-
-Knows messages, answers and what can go wrong with them. Refuses to know prompts, plans and scenes.
-"""
+"""The protocol of language models, `ModelBackend`: messages in, one JSON text out."""
 
 from __future__ import annotations
 
@@ -11,12 +8,12 @@ from typing import Any, Literal, Protocol
 
 from ..plan import NoPlanError, Usage
 
-Heard = Callable[[str], None]  # called with each piece of the answer as it arrives
+OnText = Callable[[str], None]  # called with each piece of the answer as it is streamed
 
 
 @dataclass(frozen=True)
 class Message:
-    """One turn: who speaks, what, and at most one picture (PNG) shown with it."""
+    """One turn of a conversation: role, text, and at most one image (PNG)."""
 
     role: Literal["system", "user", "assistant"]
     text: str
@@ -25,14 +22,14 @@ class Message:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a model said.
+    """A model's response.
 
     Attributes:
-        text: its words, meant to be JSON of the schema; nothing is promised.
+        text: meant to be JSON of the schema, but not guaranteed to be.
         usage: of this one request.
-        end: "done"; "cut", it stopped at its longest answer; "closed", so too, and the back end completed the text by
-            the schema without asking: valid, but not what was meant, so not to be carried out; "declined", it or its
-            provider refused to answer, and `text` is what it said instead.
+        end: "done"; "cut": truncated at the token limit; "closed": truncated, and the back end completed the text to
+            valid JSON without the model, so it must not be executed; "declined": the model or its provider refused to
+            answer, and `text` is the refusal.
     """
 
     text: str
@@ -41,8 +38,8 @@ class Answer:
 
 
 class UnreachableError(NoPlanError):
-    """The model gave no answer: server down, key missing or wrong, no such model, timeout, rate limit, nonsense on
-    the wire. The message says which, what to do, and never holds a key. `usage` is what answers before it cost."""
+    """The model gave no answer: server down, key missing or wrong, unknown model, timeout, rate limit, or a malformed
+    response. The message says which and what to do, and never contains a key. `usage` is that of earlier answers."""
 
 
 class ModelBackend(Protocol):
@@ -50,31 +47,31 @@ class ModelBackend(Protocol):
 
     @property
     def name(self) -> str:
-        """As the user named it, "openai:gpt-…", for receipts; never holds a key."""
+        """The spec as the user gave it, "openai:gpt-…", for receipts; never contains a key."""
         ...
 
     @property
     def sees(self) -> bool:
-        """Whether pictures may be sent to it."""
+        """Whether the model accepts images."""
         ...
 
     @property
     def window(self) -> int:
-        """How many tokens prompt and answer may have together, as far as known."""
+        """Context window: tokens of prompt and answer together, as far as known."""
         ...
 
     def answer(
-        self, messages: Sequence[Message], schema: dict[str, Any], *, seconds: float, heard: Heard | None = None
+        self, messages: Sequence[Message], schema: dict[str, Any], *, seconds: float, on_text: OnText | None = None
     ) -> Answer:
-        """One answer to a conversation.
+        """Answer a conversation.
 
         Args:
-            messages: a system message first, then user and assistant in turn, a user last.
-            schema: JSON Schema that the answer is to follow; a back end enforces it as far as it can.
-            seconds: the longest that may pass, own retries after rate limits included.
-            heard: streamed to, where the back end can.
+            messages: a system message, then alternately user and assistant, ending with a user message.
+            schema: JSON Schema of the answer; a back end enforces it as far as it can.
+            seconds: time limit, including retries after rate limits.
+            on_text: receives the answer in pieces if the back end streams.
 
         Raises:
-            UnreachableError: there was no answer in time.
+            UnreachableError: no answer in time.
         """
         ...

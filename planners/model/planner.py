@@ -1,7 +1,6 @@
-"""The model planner: any instruction to a checked plan, by asking a language model and not believing it.
+"""The model planner: asks a language model for a plan, checks it, and asks again with the faults until it is valid.
 
-Knows the order of the work: ask, read, guard, ask again with what was wrong. Refuses to know how a model is reached
-(`backend.py`) and what is wrong with a plan (`reply.py`, `guard.py`), and never hands on what did not pass every check.
+`reply.py` parses answers and `guard.py` checks plans; a plan that fails a check is never returned.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from ...gaussians.errors import ScenewrightError, UserError
 from ...tools.operation import EditOp
 from ..plan import EditPlan, NoPlanError, Planner, Sight, Usage, Verdict
 from .backend import Answer, Message, ModelBackend, UnreachableError
-from .prompt.labels import cleaned
+from .prompt.labels import sanitize
 from .prompt.messages import Request, messages, prompt_hash, repaired
 from .verify import reply
 from .verify.guard import Fault, Guard
@@ -25,22 +24,22 @@ Progress = Callable[[str, float], None]  # stage in words, share done in [0, 1]
 
 MAX_CHARS = 4000  # of an instruction
 _REASON_CHARS = 400
-_USUAL_ANSWER = 400  # characters; only to show how far an answer may be
+_USUAL_ANSWER = 400  # characters of a typical answer, for the progress estimate
 
 
 class ModelPlanner:
-    """Plans by asking a language model; stateless between instructions.
+    """Plans with a language model; stateless between instructions.
 
     Args:
         backend: the model.
-        attempts: how often it may be asked about one instruction; later ones repair what was wrong.
-        seconds: the longest that all of them may take together.
-        pictures: whether to show it the viewer's picture, if it sees and there is one.
-        progress: told that planning goes on whenever a piece of an answer arrives; without it answers are not
-            streamed. The share is a guess, as nobody knows how long an answer will be.
+        attempts: maximum requests per instruction; later ones ask to repair faults.
+        seconds: time limit of all attempts together.
+        pictures: whether to send the viewer's image if there is one and the model accepts images.
+        progress: called for each piece of an answer; without it answers are not streamed. The share is an estimate,
+            since the length of an answer is unknown.
 
     Raises:
-        UserError: attempts or seconds allow no answer.
+        UserError: `attempts` is below 1 or `seconds` is not above 0.
     """
 
     def __init__(
@@ -66,38 +65,39 @@ class ModelPlanner:
     def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
         """The plan for an instruction; see `Planner.plan`.
 
-        A scene that cannot be looked at is left out of the prompt: whether that matters shows when the plan is carried
-        out.
+        A scene whose graph cannot be read is left out of the prompt; if that matters, the execution of the plan fails.
 
         Raises:
-            UserError: the text is empty, no text, or too long to be an instruction.
-            UnreachableError: the model cannot be reached, or not any more. (A NoPlanError.)
-            NoPlanError: it gave no valid plan in all its attempts, or in the time it had. (A BackendError.)
+            UserError: the text is empty, not valid UTF-8, or too long.
+            UnreachableError: the model cannot be reached. (A NoPlanError.)
+            NoPlanError: no valid plan within the attempts or the time. (A BackendError.)
         """
         _require_words(text)
         started = time.monotonic()
         request = self._request(text, previous, sight)
         guard = Guard(text, request.previous, request.graph, _grammar())
-        asking = _Asking(self.backend, messages(request, self.backend.window), started + self._seconds, self._progress)
-        said = _Said()
+        first = messages(request, self.backend.window)
+        conversation = _Conversation(self.backend, first, started + self._seconds, self._progress)
+        review = _Review()
         for attempt in range(1, self._attempts + 1):
-            answer = asking.once(attempt)
+            answer = conversation.ask(attempt)
             if answer is None:
                 break
-            outcome = said.judged(answer, guard, last=attempt == self._attempts)
+            outcome = review.judge(answer, guard, last=attempt == self._attempts)
             if isinstance(outcome, _Outcome):
-                return self._made(outcome, text, asking.usage, time.monotonic() - started)
-            asking.again(answer.text, outcome)
-        if said.standing is not None:
-            return self._made(_Outcome("ok", said.standing[1]), text, asking.usage, time.monotonic() - started)
-        raise self._nothing(said.wrong, asking)
+                return self._made(outcome, text, conversation.usage, time.monotonic() - started)
+            conversation.add_fault(answer.text, outcome)
+        if review.standing is not None:
+            outcome = _Outcome("ok", review.standing[1])
+            return self._made(outcome, text, conversation.usage, time.monotonic() - started)
+        raise self._no_plan(review.wrong, conversation)
 
     def _request(self, text: str, previous: str | None, sight: Sight | None) -> Request:
-        """What the model is told; what are no names in the scene is left out here, before anything else sees it."""
+        """Input of the prompt. Labels are sanitised here, before anything else uses them."""
         graph, picture = None, None
         if sight is not None:
             with suppress(ScenewrightError):
-                graph = cleaned(sight.graph())
+                graph = sanitize(sight.graph())
             with suppress(ScenewrightError):
                 picture = sight.picture() if self._pictures and self.backend.sees else None
         before = (previous or "").encode(errors="replace").decode()[:MAX_CHARS]
@@ -116,17 +116,18 @@ class ModelPlanner:
             usage=usage,
         )
 
-    def _nothing(self, wrong: str, asking: _Asking) -> NoPlanError:
-        asked = asking.usage.requests if asking.usage is not None else 0
-        late = f" within {self._seconds:g} s (--budget gives it more)" if asking.late else ""
+    def _no_plan(self, wrong: str, conversation: _Conversation) -> NoPlanError:
+        usage = conversation.usage
+        asked = usage.requests if usage is not None else 0
+        late = f" within {self._seconds:g} s (--budget gives it more)" if conversation.late else ""
         last = f"; at last: {_plain(wrong)}" if wrong else ""
-        told = f"{self.name} gave no valid plan in {asked} attempt(s){late}{last}"
-        return NoPlanError(f"{told}. Say it more simply, or use another model", asking.usage)
+        problem = f"{self.name} gave no valid plan in {asked} attempt(s){late}{last}"
+        return NoPlanError(f"{problem}. Say it more simply, or use another model", usage)
 
 
 @dataclass(frozen=True)
 class _Outcome:
-    """What an instruction comes to."""
+    """The result for an instruction."""
 
     verdict: Verdict
     ops: tuple[EditOp, ...] = ()
@@ -134,8 +135,8 @@ class _Outcome:
     unknown: tuple[str, ...] = ()
 
 
-class _Asking:
-    """One conversation with a model: what it was told, until when it may answer, and what that cost."""
+class _Conversation:
+    """A conversation with a model about one instruction, with its deadline and its usage."""
 
     def __init__(
         self, backend: ModelBackend, first: tuple[Message, ...], deadline: float, progress: Progress | None
@@ -145,30 +146,30 @@ class _Asking:
         self.usage: Usage | None = None
         self.late = False
 
-    def once(self, attempt: int) -> Answer | None:
+    def ask(self, attempt: int) -> Answer | None:
         """The next answer; None if the time is up.
 
         Raises:
-            UnreachableError: there was none.
+            UnreachableError: the model gave no answer.
         """
         left = self._deadline - time.monotonic()
         self.late = left <= 0
         if self.late:
             return None
         stage = f"planning with {self._backend.name}" + (f", attempt {attempt}" if attempt > 1 else "")
-        heard = _Heard(self._progress, stage) if self._progress is not None else None
+        stream = _StreamProgress(self._progress, stage) if self._progress is not None else None
         try:
-            answer = self._backend.answer(self._messages, reply.schema(), seconds=left, heard=heard)
+            answer = self._backend.answer(self._messages, reply.schema(), seconds=left, on_text=stream)
         except UnreachableError as error:
-            cost = _sum(self.usage, error.usage)  # the attempts before it were paid for
+            cost = _sum(self.usage, error.usage)  # earlier attempts count too
             raise UnreachableError(str(error), cost) from error
-        if heard is not None:
-            heard.done()
+        if stream is not None:
+            stream.done()
         self.usage = _sum(self.usage, answer.usage)
         return answer
 
-    def again(self, answer: str, fault: str) -> None:
-        """Say what was wrong with the last answer."""
+    def add_fault(self, answer: str, fault: str) -> None:
+        """Append the last answer and what was wrong with it."""
         self._messages = repaired(self._first, answer, fault)
 
 
@@ -176,8 +177,8 @@ def _sum(before: Usage | None, after: Usage | None) -> Usage | None:
     return after if before is None else before if after is None else before.plus(after)
 
 
-class _Heard:
-    """Tells that an answer is coming in; how much of it is there is a guess."""
+class _StreamProgress:
+    """Reports progress for each piece of a streamed answer; the share is an estimate."""
 
     def __init__(self, progress: Progress, stage: str) -> None:
         self._progress, self._stage, self._characters = progress, stage, 0
@@ -192,29 +193,29 @@ class _Heard:
 
 
 @dataclass
-class _Said:
-    """What the answers so far came to.
+class _Review:
+    """Judges the answers of one conversation.
 
     Attributes:
-        wrong: what was wrong with the last one.
-        told: kinds of faults that the model has heard of; it hears of each once.
-        standing: the last operations that had no fault but this one, that the scene leaves something open.
+        wrong: faults of the last answer.
+        told: kinds of faults already reported to the model; each is reported once.
+        standing: the last operations whose worst fault is acceptable (absent or ambiguous on the graph), and the fault.
     """
 
     wrong: str = ""
     told: set[str] = field(default_factory=set)
     standing: tuple[Fault, tuple[EditOp, ...]] | None = None
 
-    def judged(self, answer: Answer, guard: Guard, *, last: bool) -> _Outcome | str:
-        """What an answer comes to, or what to tell the model about it.
+    def judge(self, answer: Answer, guard: Guard, *, last: bool) -> _Outcome | str:
+        """The outcome of an answer, or the faults to report to the model.
 
         Args:
-            last: there is no further attempt, so that faults which a plan may end with end it.
+            last: whether this is the last attempt, after which acceptable faults and refusals decide the outcome.
         """
         if answer.end == "declined":
             return _Outcome("not_understood", reason=f"the model declined: {answer.text}")
         cut = "the answer was cut off because it is too long; answer shorter, with fewer operations"
-        if answer.end == "closed":  # valid, but half of what was meant
+        if answer.end == "closed":  # valid, but incomplete
             self.wrong = cut
             return self.wrong
         try:
@@ -229,8 +230,8 @@ class _Said:
         return self._faulty(said, ops, faults, last) if faults else _Outcome("ok", ops, said.reason)
 
     def _hesitant(self, said: reply.Reply, ops: tuple[EditOp, ...], faults: Sequence[Fault]) -> _Outcome:
-        """Any verdict but ok. Where the graph agrees that something is absent or ambiguous, the operations go to the
-        session, which asks the user; else the model's word stands."""
+        """Outcome of any verdict but "ok". If the graph agrees that something is absent or ambiguous, the operations go
+        to the session, which asks the user; otherwise the model's verdict is returned."""
         if faults and faults[0].kind == said.verdict:
             return _Outcome("ok", ops, said.reason)
         if not ops and self.standing is not None and self.standing[0].kind == said.verdict:
@@ -240,7 +241,7 @@ class _Said:
     def _faulty(
         self, said: reply.Reply, ops: tuple[EditOp, ...], faults: Sequence[Fault], last: bool
     ) -> _Outcome | str:
-        """Faults of a plan: told once a kind; what is insisted on ends as the fault says."""
+        """Outcome of a plan with faults: each kind is reported once; a repeated one ends with its verdict."""
         worst = faults[0]
         self.wrong = "\n".join(f.told for f in faults)
         self.standing = (worst, ops) if worst.verdict == "ok" else None
@@ -254,13 +255,13 @@ class _Said:
 
 
 def _require_words(text: str) -> None:
-    """Raise if a text cannot be an instruction.
+    """Check that a text can be an instruction.
 
     Raises:
-        UserError: it cannot.
+        UserError: it is empty, too long or not valid UTF-8.
     """
     if len(text) > MAX_CHARS:
-        raise UserError(f"the instruction has {len(text)} characters, at most {MAX_CHARS} are read; say it in parts")
+        raise UserError(f"the instruction has {len(text)} characters, at most {MAX_CHARS} are read; split it")
     if not text.strip():
         raise UserError("the instruction is empty; say what to do")
     if any("\ud800" <= c <= "\udfff" for c in text):
@@ -268,13 +269,13 @@ def _require_words(text: str) -> None:
 
 
 def _plain(text: str) -> str:
-    """What a model said, as it may be printed: one line, without control characters, cut short."""
+    """A model's text made printable: one line, without control characters, truncated."""
     line = " ".join("".join(" " if unicodedata.category(c)[0] == "C" else c for c in text).split())
     return line if len(line) <= _REASON_CHARS else line[: _REASON_CHARS - 1] + "…"
 
 
 def _grammar() -> Planner:
-    """Reads the instruction before, to tell what "it" means; costs nothing."""
+    """The planner that resolves "it" in the previous instruction, without a model."""
     from ..grammar import GrammarPlanner
 
     return GrammarPlanner()

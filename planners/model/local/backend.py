@@ -1,9 +1,8 @@
-"""A language model on this machine, through transformers, held to the schema: `transformers:FOLDER`.
+"""A local language model through transformers with constrained decoding: `transformers:FOLDER`.
 
-Decoding is greedy and the same every time. Tokens that the schema forces are not asked for but read together with the
-next one, and a prompt's beginning that the last prompt shared (instructions and examples, mostly) is not read again. It
-is kept in whole chunks: so a reused beginning went through the very same arithmetic, and the answer does not depend on
-what was asked before. Knows how to run a model. Refuses to know what the schema is about.
+Decoding is greedy and deterministic. Tokens that the schema forces are appended without sampling, and the KV cache of
+the prefix shared with the last prompt (mostly instructions and examples) is reused. It is reused in whole chunks, so
+that it went through the same arithmetic and the answer does not depend on earlier prompts.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ from inspect import signature
 from typing import Any
 
 from ...plan import Usage
-from ..backend import Answer, Heard, Message, UnreachableError
+from ..backend import Answer, Message, OnText, UnreachableError
 from . import checkpoint
 from .constrained import Constrained, Vocabulary
 from .conversation import prompt_tokens
@@ -72,7 +71,7 @@ class LocalModel:
         self._cache: Any = None
 
     def answer(
-        self, messages: Sequence[Message], schema: dict[str, Any], *, seconds: float, heard: Heard | None = None
+        self, messages: Sequence[Message], schema: dict[str, Any], *, seconds: float, on_text: OnText | None = None
     ) -> Answer:
         """See `ModelBackend.answer`. The text is valid by the schema, whatever the model wants; one that took too long
         is brought to its end without the model, and its `end` says "closed".
@@ -91,14 +90,14 @@ class LocalModel:
             )
         text = Constrained(self._vocabulary, schema)
         try:
-            taken = self._write(prompt, text, room, started + seconds, heard or (lambda piece: None))
+            taken = self._write(prompt, text, room, started + seconds, on_text or (lambda piece: None))
         except _FAILURES as error:
             raise self._failed(error) from error
         spent = round(time.perf_counter() - started, 3)
         usage = Usage(model=self.name[:200], requests=1, input_tokens=len(prompt), output_tokens=taken, seconds=spent)
         return Answer(text.text, usage, "done" if taken == len(text.tokens) else "closed")
 
-    def _write(self, prompt: list[int], text: Constrained, room: int, until: float, heard: Heard) -> int:
+    def _write(self, prompt: list[int], text: Constrained, room: int, until: float, on_text: OnText) -> int:
         """Write the answer to its end; how many of its tokens the model had a part in."""
         import torch
 
@@ -108,7 +107,7 @@ class LocalModel:
         told = ""
         while not text.done and len(text.tokens) < room and time.perf_counter() < until:
             fresh = text.take(self._choice(scores, text, draw))
-            heard(text.text.removeprefix(told))
+            on_text(text.text.removeprefix(told))
             told = text.text
             if not text.done and len(text.tokens) < room:
                 scores = self._forward(fresh)
@@ -117,7 +116,7 @@ class LocalModel:
         taken = len(text.tokens)
         if not text.done:
             text.close()
-            heard(text.text.removeprefix(told))
+            on_text(text.text.removeprefix(told))
         return taken
 
     def _scores(self, prompt: list[int], forced: list[int], until: float) -> Any:

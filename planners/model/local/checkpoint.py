@@ -1,7 +1,7 @@
-"""A causal language model of transformers, read from a folder or fetched by name, safely.
+"""Load a causal language model of transformers from a folder, or download it by name, without running its code.
 
-Weights are read as safetensors only, since pickled ones run code when they are read, and a folder's own Python is never
-run. Knows transformers' way of storing models. Refuses to know what is asked of them.
+Weights are read as safetensors only, since pickles run code when they are read, and Python files in a model folder are
+never executed.
 """
 
 from __future__ import annotations

@@ -1,7 +1,6 @@
-"""Text held to a JSON Schema, token by token, with llguidance; and the shortest way to its end from anywhere.
+"""Constrain generated text to a JSON Schema, token by token, with llguidance, and close an unfinished text validly.
 
-Knows tokens, the grammar and what JSON is made of. Refuses to know which model chooses the tokens: it says which may
-come next, and is told which one came.
+The caller chooses the tokens: it asks for the mask of allowed ones and reports its choice.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 
 from ....gaussians.errors import BackendError
 from ..backend import UnreachableError
-from .tightening import tightened
+from .tightening import tighten
 
 _SCHEMAS = 4  # kept compiled
 _LONGEST_CLOSING = 4096  # tokens; every step takes the shortest way, some tens are usual
@@ -68,7 +67,7 @@ class Vocabulary:
 
         compact: Any = {"whitespace_flexible": False}  # free whitespace would be one more way never to end
         try:
-            grammar = LLMatcher.grammar_from_json_schema(tightened(schema), overrides=compact)
+            grammar = LLMatcher.grammar_from_json_schema(tighten(schema), overrides=compact)
         except ValueError as error:
             raise _unfollowed(str(error)) from error
         return _checked(LLMatcher(self.reader, grammar, log_level=0))

@@ -1,6 +1,6 @@
-"""A conversation as the tokens a local model reads: by its own chat template, or plainly where it has none.
+"""Tokenise a conversation for a local model with its chat template, or a plain format if it has none.
 
-Knows templates and special tokens. Refuses to let words of the scene or the user act as a template's marks.
+Special tokens in texts of the scene or the user are broken up, so that they cannot act as marks of the template.
 """
 
 from __future__ import annotations

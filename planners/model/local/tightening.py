@@ -1,10 +1,9 @@
-"""A JSON Schema made smaller, so that whatever a model is held to ends soon and is valid.
+"""Tighten a JSON Schema (as pydantic writes it) for constrained decoding, so that answers are valid and end soon.
 
-Constrained decoding can follow only what a schema states, and a model with nothing to say fills every list to its
-limit. So bounds are drawn in, numbers get a limited count of decimals (without it "0.000…" never ends), recursion is
-unrolled to a depth, a union's tag becomes required, and alternatives beside `properties` are multiplied out. What the
-tightened schema allows, the given one allows. Knows JSON Schema as pydantic writes it. Refuses keywords that it does
-not know: dropping one would allow too much.
+A model under constrained decoding may fill every list to its limit. Therefore bounds are reduced, numbers get a maximum
+number of decimals (otherwise "0.000…" never ends), recursion is unrolled to a depth, the tag of a union becomes
+required, and alternatives beside `properties` are multiplied out. The result allows a subset of the given schema.
+Unknown keywords are errors, since ignoring one would allow too much.
 """
 
 from __future__ import annotations
@@ -47,7 +46,7 @@ class Limits:
     decimals: int = 3
 
 
-def tightened(schema: Schema, limits: Limits | None = None) -> Schema:
+def tighten(schema: Schema, limits: Limits | None = None) -> Schema:
     """The smaller schema; descriptions and defaults are gone.
 
     Raises:

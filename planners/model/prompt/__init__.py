@@ -1,1 +1,1 @@
-"""What a language model is shown: messages, examples, operations and the pruned scene."""
+"""Prompts for language models: messages, examples, operations and the pruned scene."""

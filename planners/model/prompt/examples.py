@@ -1,6 +1,6 @@
-"""Worked examples in a prompt: a scene, and instructions with the answers that are right in it.
+"""Parse the few-shot examples of the prompt: a scene, and instructions with correct answers. Tests check the answers.
 
-Knows the form they are written in. Refuses to judge whether they are right; the tests do, on the very scene:
+The format of the file:
 
     ## Scene                       ## make it darker
     ```json                        after: paint the sofa red
@@ -9,7 +9,8 @@ Knows the form they are written in. Refuses to judge whether they are right; the
                                    {…a reply…}
                                    ```
 
-`touches` names the nodes each operation changes, a semicolon between operations, "-" for none; models are not told.
+`touches` lists the nodes that each operation changes, with semicolons between operations and "-" for none. It is for
+the tests and not part of the prompt.
 """
 
 from __future__ import annotations
@@ -27,12 +28,12 @@ _SCENE = "Scene"
 
 @dataclass(frozen=True)
 class Example:
-    """One instruction and its right answer.
+    """One instruction and its correct answer.
 
     Attributes:
-        instruction: the words.
-        previous: the instruction before, None if there was none.
-        touches: for each operation the ids of what it changes.
+        instruction: its text.
+        previous: the previous instruction, if any.
+        touches: for each operation the ids of the nodes it changes.
         answer: the reply as JSON on one line.
     """
 
@@ -42,16 +43,16 @@ class Example:
     answer: str
 
     def told(self) -> str:
-        """As it stands in the prompt."""
+        """The example as text of the prompt."""
         before = f"Instruction before: {_quoted(self.previous)}\n" if self.previous else ""
         return f"{before}Instruction: {_quoted(self.instruction)}\nAnswer: {self.answer}"
 
 
 def parse(text: str) -> tuple[SceneGraph, tuple[Example, ...]]:
-    """The scene and the examples in a prompt's text.
+    """Parse the scene and the examples of a prompt file.
 
     Raises:
-        ValueError: it is not of that form, or a block is no JSON. Our own mistake.
+        ValueError: the file does not have that format, or a block is not JSON. A bug in the file, not a user's error.
     """
     sections = list(_SECTION.finditer(text))
     if len(sections) != len(re.findall(r"^## ", text, re.MULTILINE)) or not sections or sections[0]["title"] != _SCENE:

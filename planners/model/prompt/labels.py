@@ -1,7 +1,7 @@
-"""Which words of a scene may reach a language model: names of things, and nothing that could be an order to it.
+"""Sanitise the labels of a scene graph before they reach a language model, against prompt injection.
 
-Knows what names look like. Refuses to judge what a name means: whoever wrote a graph or a file may have called a chair
-"ignore all instructions", and a name that is no plausible one is left out altogether, not quoted and not escaped.
+A graph or file may call a chair "ignore all instructions". A label that is not a plausible name of an object is omitted
+altogether, not quoted or escaped.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from ...rooms.label_encoder import vocabulary
 from ...rooms.node import Node
 
 MAX_CHARS, MAX_WORDS = 48, 8
-_STRANGE_WORDS, _BESIDE_STRANGE = 3, 6  # strange are words that no table of ours knows
-_UNTIED = 4  # words of a name without any that ties it together ("of", "with")
-_UNSPACED = 8  # characters of a name in a script that sets no spaces; a sentence is longer
-_MARKS = re.compile(r"[^\w\s'’&()/+-]|_")  # what names do not hold, braces among it
+_STRANGE_WORDS, _BESIDE_STRANGE = 3, 6  # most unknown words, and most words of a name that has any
+_UNTIED = 4  # most words of a name without a connecting word ("of", "with")
+_UNSPACED = 8  # most characters of a name in a script without spaces; a sentence is longer
+_MARKS = re.compile(r"[^\w\s'’&()/+-]|_")  # characters that names do not contain, such as braces
 _ADDRESS = re.compile(r"://|\bwww\.|\w\.\w{2,}|\w@\w", re.IGNORECASE)
 _QUOTES = re.compile(r"[\"“”„«»]")
 _BEFORE_THE = frozenset({"of", "in", "on", "by", "from"})
 _LINKS = _BEFORE_THE | {"with", "and", "for", "a", "an", "the"}
 _SCRIPT_OF_IDEAS = re.compile(r"[\u0e00-\u0eff\u1000-\u109f\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
 
-# Words of orders, of speaking to somebody and of "all", which no object has in its name, in the tongues models read
-# best; each stands for all words that begin so, "=" for the word alone.
+# Words of commands, of addressing somebody and of "all", which no object has in its name, in the languages that models
+# understand best. Each is a prefix; with "=" it is a whole word.
 _ORDERS = """
 ignor disregard forget overrid bypass obey disobey =execute =executing delet =remove =removes =removed =removing eras
 destroy elimin obliterat annihilat =purge instruct =command =commands prompt =previous =prior everything anything
@@ -49,27 +49,27 @@ _UNSPACED_ORDERS = re.compile(
 )
 
 
-def cleaned(graph: SceneGraph) -> SceneGraph:
-    """The graph with only those names, colours and relations in it that a model may see; other names become "".
+def sanitize(graph: SceneGraph) -> SceneGraph:
+    """The graph with implausible labels and colours replaced by "" and implausible relations removed.
 
-    Ids, boxes and supports are kept, so that everything can still be pointed at.
+    Ids, boxes and supports are kept, so that all nodes can still be referenced.
     """
-    nodes = tuple(map(_cleaned, graph.nodes))
+    nodes = tuple(map(_sanitize_node, graph.nodes))
     relations = tuple((a, name, b) for a, said, b in graph.relations if (name := plain(said, most=4)))
     return graph.model_copy(update={"nodes": nodes, "relations": relations})
 
 
-def _cleaned(node: Node) -> Node:
+def _sanitize_node(node: Node) -> Node:
     shown = {"label": plain(node.label) or "", "color": plain(node.color, most=3) or ""}
     return node if shown == {"label": node.label, "color": node.color} else node.model_copy(update=shown)
 
 
 @cache
 def plain(name: str, most: int = MAX_WORDS) -> str | None:
-    """A name as a model may see it: one line without quotes; None if it is no plausible name.
+    """A name as a model may see it: one line without quotes; None if it is not a plausible name.
 
     Args:
-        most: words that it may have.
+        most: maximum number of words.
     """
     if "\n" in name or "\r" in name or _ADDRESS.search(name):
         return None
@@ -91,7 +91,7 @@ def plain(name: str, most: int = MAX_WORDS) -> str | None:
 
 
 def _is_order(words: list[str]) -> bool:
-    """Whether a name begins as an order to take something away ("trash the sofa", but not "trash can")."""
+    """Whether a name begins like a command to remove something ("trash the sofa", but not "trash can")."""
     begins = len(words) > 1 and VERBS.get(words[0], ("",))[0] == "DELETE"
     named = any(" ".join(words[:n]) in _phrases() for n in range(2, len(words) + 1))
     speaks = any(w == "the" and before not in _BEFORE_THE for before, w in pairwise(words))
@@ -110,22 +110,21 @@ def _order_words() -> tuple[frozenset[str], tuple[str, ...]]:
 
 
 def _mixed(word: str) -> bool:
-    """Whether a word mixes scripts, as look-alikes of letters do ("іgnore" with a Cyrillic і), or letters and digits
-    within ("1gn0re")."""
+    """Whether a word mixes scripts, as homoglyphs do ("іgnore" with a Cyrillic і), or letters and digits ("1gn0re")."""
     scripts = {unicodedata.name(c, "?").split()[0] for c in word if c.isalpha()}
     return len(scripts) > 1 or bool(re.search(r"[^\W\d]\d+[^\W\d]|^\d+[^\W\d]{3}", word))
 
 
 @cache
 def _phrases() -> frozenset[str]:
-    """Names of the tables, in lower case."""
+    """All names of the vocabulary and the synonyms, in lower case."""
     kinds = vocabulary().kinds
     return frozenset(p.lower() for p in [*kinds, *(n for names in kinds.values() for n in names)]) | synonyms.phrases()
 
 
 @cache
 def _known() -> frozenset[str]:
-    """Words of the embedded vocabulary, of the synonyms and of colours, and those that tie them together."""
+    """Words of the vocabulary, of the synonyms and of colours, and connecting words."""
     table = vocabulary()
     phrases = [*table.kinds, *(n for names in table.kinds.values() for n in names), *table.broader, *table.modifiers]
     words = {w for p in [*phrases, *color_names()] for w in (*p.lower().split(), *normalise(p))}

@@ -1,7 +1,6 @@
-"""The messages that ask a language model for a plan: rules, operations and examples, then the scene and the words.
+"""Build the messages that ask a language model for a plan: rules, operations and examples, then scene and instruction.
 
-Knows what goes into a prompt and how much fits. Refuses to know what a model answers. The same input gives the same
-bytes, and the first message depends on nothing but how much fits, so that providers can keep it.
+The same input gives the same bytes. The first message depends only on the token budget, so that providers can cache it.
 """
 
 from __future__ import annotations
@@ -16,26 +15,26 @@ from ....gaussians.errors import BackendError
 from ...rooms.graph import SceneGraph
 from ..backend import Message
 from . import examples, operations
-from .pruning import MOST_TOKENS, described, tokens
+from .pruning import MAX_TOKENS, described, tokens
 
 ECHO_CHARS = 2000  # of an answer that is shown to the model again
 FAULT_CHARS = 1500
-_LEAST_ANSWER = 2048  # tokens left to the answer, and to what is said about one that was no good
-_REQUEST = 1200  # tokens that examples leave to the scene and the instruction
-_LEAST_SCENE = 200  # tokens; with less no scene is worth showing
-_PICTURE = 1100  # tokens; what providers count for a picture of 768 pixels across, rather too many
+_LEAST_ANSWER = 2048  # tokens reserved for the answer and for the repair message
+_REQUEST = 1200  # tokens reserved for the scene and the instruction when examples are chosen
+_LEAST_SCENE = 200  # tokens; with less, no scene is shown
+_PICTURE = 1100  # tokens; a generous estimate of what providers count for an image 768 pixels wide
 _FILES = ("plan", "plan_request", "plan_repair", "plan_examples")
 _NO_SCENE = "(none is shown: answer in words, without ids, and without the verdicts absent and ambiguous)"
 
 
 @dataclass(frozen=True)
 class Request:
-    """What a model is told about one instruction.
+    """Input of the prompt for one instruction.
 
     Attributes:
         text: the instruction.
-        previous: the instruction before.
-        graph: the scene with names that a model may see (see `labels.cleaned`); None if nobody looked.
+        previous: the previous instruction.
+        graph: the scene with sanitised names (see `labels.sanitize`); None if there is none.
         picture: the viewer's view as PNG.
     """
 
@@ -47,18 +46,18 @@ class Request:
 
 @cache
 def prompt_hash() -> str:
-    """Of the files that every prompt is made of."""
+    """Hash of the prompt files."""
     return prompts.short_hash(*(prompts.load(name).hash for name in _FILES))
 
 
 def messages(request: Request, window: int) -> tuple[Message, ...]:
-    """The conversation so far: the rules, then the request.
+    """The initial messages: the rules, then the request.
 
     Args:
-        window: tokens that prompt and answer may have together.
+        window: tokens of prompt and answer together.
 
     Raises:
-        BackendError: not even the rules fit.
+        BackendError: the rules do not fit the window.
     """
     room = window - max(_LEAST_ANSWER, window // 8) - (_PICTURE if request.picture else 0)
     rules = system(room)
@@ -72,7 +71,7 @@ def messages(request: Request, window: int) -> tuple[Message, ...]:
         )
     asked = bare
     if request.graph is not None:
-        asked = _asked(request, described(request.graph, _said(request), min(left, MOST_TOKENS)))
+        asked = _asked(request, described(request.graph, _said(request), min(left, MAX_TOKENS)))
     return Message("system", rules), Message("user", asked, request.picture)
 
 
@@ -85,10 +84,10 @@ def repaired(first: tuple[Message, ...], answer: str, fault: str) -> tuple[Messa
 
 @cache
 def system(room: int) -> str:
-    """The rules, with as many examples as fit, the most telling first.
+    """The rules, with as many examples as fit, the most informative first.
 
     Args:
-        room: tokens that the rules and the request may have together.
+        room: tokens of the rules and the request together.
     """
     scene, every = _examples()
     bare = _rules("(none)")
@@ -109,7 +108,7 @@ def _rules(shown: str) -> str:
 @cache
 def _examples() -> tuple[str, tuple[str, ...]]:
     graph, every = examples.parse(prompts.load("plan_examples").text)
-    return "Scene of the examples:\n" + described(graph, (), MOST_TOKENS), tuple(example.told() for example in every)
+    return "Scene of the examples:\n" + described(graph, (), MAX_TOKENS), tuple(example.told() for example in every)
 
 
 def _asked(request: Request, scene: str) -> str:
@@ -122,5 +121,5 @@ def _said(request: Request) -> tuple[str, ...]:
 
 
 def _quoted(text: str) -> str:
-    """The words on one line, so that they end where they end."""
+    """The text as a JSON string on one line, so that its end is unambiguous."""
     return json.dumps(text, ensure_ascii=False)

@@ -1,6 +1,6 @@
-"""The operations and the types they use, as a language model reads them: from the very schemas that validate.
+"""Describe all operations and their types for the prompt, generated from the schemas that validate them.
 
-Knows how a JSON Schema is said in few words. Refuses to list an operation: an added one appears by itself.
+No operation is listed here; a new one in the registry appears automatically.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _LIMITS = (("minimum", ">= {}"), ("exclusiveMinimum", "> {}"), ("maximum", "<= {
 
 @cache
 def described() -> str:
-    """Every operation with its docstring, fields and example, then every type that their fields name, in Markdown."""
+    """All operations with docstring, fields and example, then all types of their fields, in Markdown."""
     parts: list[str] = []
     types: dict[str, dict[str, Any]] = {}
     for name, cls in OPS.items():

@@ -1,9 +1,7 @@
-"""A scene graph as lines for a language model, cut to what fits and matters for one instruction.
+"""Describe a scene graph in lines of text for the prompt, pruned to a token budget by relevance to an instruction.
 
-Knows what a line says and which nodes an instruction is about. Refuses to judge names (labels.py) and to resolve
-words: to leave a node out is no verdict on it, and how many were left out is always said.
-
-Names: a node is *named* if some phrase of what was said agrees with its label, or says its colour.
+Pruning does not decide what an instruction refers to, and the number of omitted nodes is always stated. A node is
+*named* if a phrase of the instruction agrees with its label, or states its colour.
 """
 
 from __future__ import annotations
@@ -23,12 +21,12 @@ from ...rooms.graph import SceneGraph
 from ...rooms.label_encoder import THRESHOLD, agreement, words
 from ...rooms.node import Node
 
-MOST_TOKENS = 8000  # of a scene, however long the model's window is: about 200 things; more costs much and tells little
-_COLORED = 0.3  # a node whose colour alone was said, beside what agreement gives labels
+MAX_TOKENS = 8000  # of a scene, whatever the model's window: about 200 things; more costs much and helps little
+_COLORED = 0.3  # score of a node of which only the colour is stated
 _AGREEMENTS = 60_000  # comparisons of phrases with labels for one instruction, about half a second
 _REACH = 1.5  # metres from a named thing within which others are its neighbours
-_ANCHORS = 256  # named things whose neighbours are looked for
-_LEFT_OUT_NAMES = 8
+_ANCHORS = 256  # named things whose neighbours are searched
+_LEFT_OUT_NAMES = 8  # labels of omitted nodes that are listed
 
 _PIECE = re.compile(r"(?P<word>[A-Za-z]+)|(?P<marks>[^\w\s]+)|(?P<other>[\w\n])")
 _LETTERS = {"word": 7, "marks": 2}
@@ -42,11 +40,11 @@ _IDLE = frozenset(_IDLE_WORDS.split())
 
 
 def tokens(text: str) -> int:
-    """About how many tokens a text has.
+    """Estimate the number of tokens of a text.
 
-    Each digit, each letter of another alphabet than ours and each end of a line is one, so are each seven letters of a
-    word and each two marks in a row. On our prompts and scenes this is within 7 % of what CLIP's byte-pair encoding
-    makes of them, mostly more; bytes divided by three are a third too few where there are many numbers.
+    Each digit, each non-Latin letter and each line break counts as one token, as do each seven letters of a word and
+    each two punctuation marks in a row. On our prompts and scenes this is within 7 % of CLIP's byte-pair encoding,
+    mostly above it; bytes divided by three are a third too few for texts with many numbers.
     """
     return sum(-(-len(piece) // _LETTERS.get(kind, 1)) for kind, piece in _pieces(text))
 
@@ -70,12 +68,12 @@ def _short(value: float) -> str:
 
 
 def described(graph: SceneGraph, said: Sequence[str], budget: int) -> str:
-    """The room, its things a line each, and what was left out, in at most `budget` tokens.
+    """The room, its things one per line, and a summary of omitted ones, in at most `budget` tokens.
 
     Args:
-        graph: with names that a model may see (see `labels.cleaned`).
+        graph: with sanitised names (see `labels.sanitize`).
         said: the instruction, and others that it may refer to.
-        budget: as `tokens` counts; where not even one line fits, only the numbers are told.
+        budget: tokens as counted by `tokens`; if not even one line fits, only the counts are given.
     """
     width, depth, height = (_short(s) for s in graph.room.size)
     head = f"Room: {width} x {depth} x {height} m, the origin in the middle of the floor.{_viewer(graph)}"
@@ -108,7 +106,7 @@ def _left_out(missing: Counter[str]) -> list[str]:
 
 
 class _Relations:
-    """Stated relations of nodes to others, at most two a node; what stands on what is told by supports."""
+    """Stated relations of nodes to others, at most two a node; "on" is covered by the support of a node."""
 
     def __init__(self, graph: SceneGraph) -> None:
         index = {n.id: i for i, n in enumerate(graph.nodes)}
@@ -123,10 +121,10 @@ class _Relations:
 
 
 class Relevance:
-    """How much each node of a graph has to do with what was said.
+    """Relevance of each node of a graph to an instruction.
 
     Args:
-        graph: with names that a model may see.
+        graph: with sanitised names.
         said: the instruction, and others that it may refer to.
     """
 
@@ -136,7 +134,7 @@ class Relevance:
 
     @cached_property
     def scores(self) -> NDArray[np.float64]:
-        """`[N]` in [0, 1]: how well a node's label, or at least its colour, is named."""
+        """`[N]` in [0, 1]: agreement of a node's label, or at least its colour, with the instruction."""
         labels = tuple(dict.fromkeys(n.label for n in self.graph.nodes if n.label))
         best = dict.fromkeys(labels, 0.0)
         for phrase in self._phrases(_AGREEMENTS // max(len(labels), 1)):
@@ -144,7 +142,7 @@ class Relevance:
                 best[name] = max(best[name], how)
         spoken = {w for text in self._said for w in text}
         stems = {s for w in spoken for s in words(w)}
-        for name in labels:  # where phrases had to be left out, a shared word still counts
+        for name in labels:  # if phrases were cut off by the limit, a shared word still counts
             if best[name] < THRESHOLD and stems & set(words(name)) - _IDLE:
                 best[name] = THRESHOLD
         colored = np.array([_COLORED * bool(set(plain_color(n.color).split()) & spoken) for n in self.graph.nodes])
@@ -153,13 +151,15 @@ class Relevance:
         return found
 
     def named(self, index: int) -> bool:
-        """Whether a node's label or colour was said."""
+        """Whether the instruction names a node."""
         return bool(self.scores[index] >= THRESHOLD)
 
     def order(self) -> Iterator[int]:
-        """Indices of all nodes, those that matter most first: what is named, each with what carries it; what
-        stands on it or is stated about it; its neighbours; then the rest from large to small. Of many that are named
-        alike, those near something else that is named come first."""
+        """Indices of all nodes by decreasing relevance.
+
+        Named nodes, each followed by its supports; nodes on them or related to them; their neighbours; then the rest by
+        decreasing volume. Of equally named nodes, those near another named node come first.
+        """
         seen: dict[int, None] = {}
         named = self._named()
         index = {n.id: i for i, n in enumerate(self.graph.nodes)}
@@ -176,8 +176,8 @@ class Relevance:
             seen.setdefault(i)
         return iter(seen)
 
-    def _phrases(self, most: int) -> list[str]:
-        """Runs of one to three words that begin and end with one that may name something, longer texts cut short."""
+    def _phrases(self, limit: int) -> list[str]:
+        """N-grams of one to three words that begin and end with a content word, about `limit` at most."""
         found: dict[str, None] = {}
         for text in self._said:
             for length in (1, 2, 3):
@@ -185,10 +185,10 @@ class Relevance:
                     run = text[start : start + length]
                     if run[0] not in _IDLE and run[-1] not in _IDLE:
                         found.setdefault(" ".join(run))
-        return list(found)[: max(most, 8)]
+        return list(found)[: max(limit, 8)]
 
     def _named(self) -> list[int]:
-        """Nodes that are named: the best named first, then the rarer, then the nearer to something else named."""
+        """Named nodes, sorted by score, then rarity of the label, then distance to another named node."""
         chosen = [i for i in range(len(self.graph.nodes)) if self.named(i)]
         label = {i: self.graph.nodes[i].label for i in chosen}
         count = Counter(label.values())
@@ -197,7 +197,7 @@ class Relevance:
         return sorted(chosen, key=lambda i: (-self.scores[i], count[label[i]], near[i], i))
 
     def _partners(self, named: set[int], index: dict[int | str, int]) -> Iterator[int]:
-        """What stands on something named, and what a stated relation binds to it."""
+        """Nodes on a named node, and nodes related to one."""
         for i, node in enumerate(self.graph.nodes):
             if index.get(node.support) in named:
                 yield i
@@ -211,7 +211,7 @@ class Relevance:
         return [int(i) for i in order if gaps[i] <= _REACH]
 
     def _gaps(self, anchors: Sequence[int], apart: bool = False) -> NDArray[np.float64]:
-        """`[N]` metres from each node's middle to the nearest anchor's; `apart`: to one with another label."""
+        """`[N]` metres between each node's centre and the nearest anchor's; `apart`: of another label only."""
         nodes = self.graph.nodes
         best = np.full(len(nodes), np.inf)
         places = np.array([n.position for n in nodes], dtype=np.float64).reshape(-1, 3)

@@ -1,7 +1,6 @@
-"""Where a remote model is and what opens its door: "openai:qwen3:8b@http://localhost:11434/v1" read into an address.
+"""Parse the spec of a remote model, such as "openai:qwen3:8b@http://localhost:11434/v1", into URL, model and API key.
 
-Knows the three wire formats, their variables and their usual addresses, and how to keep keys out of what people read.
-Refuses to know what is said to a model, and opens no connection.
+Also redacts keys from messages. Opens no connection.
 """
 
 from __future__ import annotations

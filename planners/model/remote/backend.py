@@ -1,7 +1,6 @@
-"""Language models behind a network address: OpenAI's wire format (Ollama, vLLM, llama.cpp too), Anthropic's, Google's.
+"""Remote language models: OpenAI's wire format (Ollama, vLLM, llama.cpp too), Anthropic's and Google's.
 
-Knows how an answer is come by: asking with less where a server refuses, again where it is busy, until time is up.
-Refuses to know prompts and plans, and how a request looks on the wire.
+A refused request is repeated with fewer parameters, a failed one after a pause, until the time limit.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from typing import Any
 
 from ....gaussians.errors import BackendError
 from ...plan import Usage
-from ..backend import Answer, Heard, Message, ModelBackend, UnreachableError
+from ..backend import Answer, Message, ModelBackend, OnText, UnreachableError
 from . import errors, http, wire
 from .address import Address, read
 from .errors import Extras
@@ -67,7 +66,7 @@ class Remote:
         return NEAR_WINDOW if self._address.near else HOSTED_WINDOW
 
     def answer(
-        self, messages: Sequence[Message], schema: dict[str, Any], *, seconds: float, heard: Heard | None = None
+        self, messages: Sequence[Message], schema: dict[str, Any], *, seconds: float, on_text: OnText | None = None
     ) -> Answer:
         """One answer, as `ModelBackend.answer`; may be called from a thread with or without an event loop.
 
@@ -86,9 +85,11 @@ class Remote:
         refusals: list[Exception] = []
 
         async def work(emit: Emit) -> Reply:
-            return await self._insist(messages, schema, begun + seconds, emit if heard is not None else None, refusals)
+            return await self._insist(
+                messages, schema, begun + seconds, emit if on_text is not None else None, refusals
+            )
 
-        reply = wait(work, seconds, heard)
+        reply = wait(work, seconds, on_text)
         waited = time.monotonic() - begun
         if isinstance(reply, Failed):
             late = (
@@ -113,7 +114,7 @@ class Remote:
         emit: Callable[[str], None] | None,
         refusals: list[Exception],
     ) -> Reply:
-        """Ask until there is an answer, with less where more is refused, again where that may help.
+        """Request an answer, with fewer parameters after a refusal, and with retries where they may help.
 
         Args:
             refusals: those after which it was asked again because the server is busy or broken are added here.

@@ -1,7 +1,4 @@
-"""What went wrong on the wire, as a sentence that says what to do; what to leave out of a request; when to ask again.
-
-Knows the errors of pydantic-ai and of what it stands on. Refuses to know how a request is made and what is in it.
-"""
+"""Handle errors of remote models: a message that says what to do, parameters to omit after a refusal, retry delays."""
 
 from __future__ import annotations
 

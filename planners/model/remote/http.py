@@ -1,7 +1,4 @@
-"""The HTTP client that remote models are asked with: bounded in size, followed nowhere else, direct to what is near.
-
-Knows connections and bytes. Refuses to know what they say.
-"""
+"""The HTTP client for remote models: bounded response size, no redirects, no proxy for servers on the local network."""
 
 from __future__ import annotations
 
@@ -19,7 +16,7 @@ _CONNECT = 10.0  # seconds for a connection; a server that is there needs less t
 
 
 def open_client(address: Address, seconds: float) -> httpx2.AsyncClient:
-    """An HTTP client that reads at most `_MOST_BYTES` of a response and follows nobody elsewhere.
+    """An HTTP client that reads at most `_MOST_BYTES` of a response and follows no redirects.
 
     Raises:
         ProxyError: the environment names a proxy that cannot be used.
@@ -41,7 +38,7 @@ def open_client(address: Address, seconds: float) -> httpx2.AsyncClient:
 
 
 async def _bound(response: httpx2.Response) -> None:
-    """Refuse what must not be read, and count what is."""
+    """Refuse redirects and compressed responses, and limit the size of the others."""
     if response.is_redirect:
         raise RedirectedError(response.headers.get("location", ""))
     if response.headers.get("content-encoding", "identity") != "identity":

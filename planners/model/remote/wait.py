@@ -1,7 +1,4 @@
-"""Waiting for something asynchronous, for so long and no longer, from a thread that may already run an event loop.
-
-Knows threads, queues and clocks. Refuses to know what is waited for.
-"""
+"""Run a coroutine with a time limit in its own thread, for callers whose thread may already run an event loop."""
 
 from __future__ import annotations
 
@@ -69,11 +66,11 @@ class _Worker(Generic[T]):
 
 
 def wait(
-    work: Callable[[Emit], Coroutine[Any, Any, T]], seconds: float, heard: Callable[[str], None] | None = None
+    work: Callable[[Emit], Coroutine[Any, Any, T]], seconds: float, on_text: Callable[[str], None] | None = None
 ) -> T | Failed:
-    """The result of `work`, which runs in a thread of its own; what it emits is heard in the caller's.
+    """The result of `work`, which runs in its own thread; `on_text` gets what it emits, in the caller's thread.
 
-    Whatever `heard` raises, and an interrupt of the user, stops the work and is raised here.
+    Whatever `on_text` raises, and an interrupt of the user, stops the work and is raised here.
 
     Args:
         work: given a function to emit text with.
@@ -89,8 +86,8 @@ def wait(
                 return Failed(TimeoutError())
             if not isinstance(item, str):
                 return item if isinstance(item, Failed) else item.result
-            if heard is not None:
-                heard(item)
+            if on_text is not None:
+                on_text(item)
             if time.monotonic() > deadline:
                 return Failed(TimeoutError())
     finally:

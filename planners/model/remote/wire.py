@@ -1,7 +1,7 @@
-"""One request to a remote model and its answer, in the three wire formats, through pydantic-ai's direct interface.
+"""One request to a remote model in any of the three wire formats, through pydantic-ai's direct interface.
 
-Knows how our messages, schema and pictures become pydantic-ai's and how its responses become answers. Refuses to know
-when to ask again, and imports pydantic-ai only when something is asked.
+Converts messages, schema and images to pydantic-ai's types and its responses to answers. pydantic-ai is imported on the
+first request.
 """
 
 from __future__ import annotations

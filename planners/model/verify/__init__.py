@@ -1,1 +1,1 @@
-"""What a language model answers, validated and checked before it counts."""
+"""Validation of a language model's answers: parsing, and semantic checks of the plan against the scene graph."""

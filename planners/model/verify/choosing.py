@@ -1,7 +1,6 @@
-"""What chooses between things which the user's words leave open (ids, colours, "all"): found, and taken out.
+"""Remove choices from a model's plan that the instruction does not make: ids, colours and "all".
 
-Knows which words of an instruction tell one thing from another of its kind. Refuses to choose itself: what was said
-stands, and whoever resolves it finds several and asks.
+The queries then fit several things, and the session asks the user which one is meant.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ _WORD = re.compile(r"[^\W\d_]+")
 _OPEN_CHOICE = re.compile(r"\b(?:any|some|either|one of|random|whichever|whatever)\b")
 _SEVERAL = re.compile(r"\b(?:all|every\w*|each|both|any\w*|whole|entire|ones?|others?|rest|set|pair|group|\d+)\b")
 _THE = r"\b(?:the|this|that|my|our|your) "
-# Words that do not tell one thing from another of its kind: what to do, how far, and what ties a sentence together.
+# Words that do not distinguish things of one kind: verbs, amounts and function words.
 _PLAIN_WORDS = """
 a an the this that it its please kindly can could would will you i we me us my our your to of and then now just let s
 want like need have get rid away out off up down go do be is are by for with in on at into onto from so as too also
@@ -36,11 +35,12 @@ inches foot feet ft clockwise counterclockwise transparent invisible opaque
 
 
 def without_guesses(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple[EditOp, ...]:
-    """The operations without ids where the words beside them fit more things, and nothing that was said tells these
-    apart: "delete the chair", and a model that says which of three.
+    """Remove ids where the words of the query fit more things and the instruction does not distinguish them.
+
+    Example: "delete the chair", and a model that picks one of three.
 
     Args:
-        ops: their ids must not all be there; those that are not are left as they are.
+        ops: queries with ids that do not exist are left as they are.
         text: the instruction.
     """
     said = text.lower()
@@ -56,16 +56,17 @@ def without_guesses(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple
         told = all(stems(word) <= _plain() | used | stems(named.text) for word in _WORD.findall(said))
         if not set(query.groups) < set(fits) or not told:
             return query
-        # One is asked for, however many ids there were: never all that the words fit.
+        # One thing is meant, however many ids the model gave; never all that the words fit.
         return named.model_copy(update={"groups": (), "pick": "one" if named.pick in _LOOSE else named.pick})
 
     return tuple(with_queries(op, settled) for op in ops)
 
 
 def without_inventions(ops: Sequence[EditOp], text: str, previous: str | None) -> tuple[EditOp, ...]:
-    """The operations without colours that nobody said, where every word of the instruction is accounted for without
-    them: "delete the chair", and a model that says the red one. A word that is not (another tongue's, "crimson", "my")
-    may be what the colour was read from.
+    """Remove colours that the instruction does not state, where all of its words are explained without them.
+
+    Example: "delete the chair", and a model that says the red one. An unexplained word (of another language, "crimson",
+    "my") may be the source of the colour, and then it stays.
     """
     said = stems(f"{text} {previous or ''}")
     used = {s for op in ops for value in _strings(op.model_dump(exclude_defaults=True)) for s in stems(value)}
@@ -82,10 +83,10 @@ def without_inventions(ops: Sequence[EditOp], text: str, previous: str | None) -
 
 
 def numbered(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple[EditOp, ...]:
-    """The operations with one thing meant where one was said: "delete the chair" is never all chairs, nor any.
+    """Set `pick` to "one" where the instruction speaks of one thing: "delete the chair" is never all chairs, nor any.
 
-    Only where the words can be followed: the name is that of things here, and stands once in the instruction, in the
-    singular, after "the" or its like, without a word for several or for any.
+    Only if the name is that of things in the scene and occurs once in the instruction, in the singular, after "the" or
+    the like, without a word for several or for any.
     """
     said = text.lower()
     heads = {w for node in scene.graph.nodes for w in words(node.label)[-1:]}
@@ -104,7 +105,7 @@ def numbered(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple[EditOp
 
 
 def stems(text: str) -> set[str]:
-    """The words of a text, as they stand and as a thing of that name is called."""
+    """The words of a text, as written and normalised."""
     return {s for w in _WORD.findall(text.lower()) for s in (w, *words(w))}
 
 
@@ -114,7 +115,7 @@ def _plain() -> frozenset[str]:
 
 
 def _strings(node: Any) -> Iterator[str]:
-    """Every text in a dumped operation."""
+    """All strings in a dumped operation."""
     if isinstance(node, str):
         yield node.replace("_", " ")
     for item in node.values() if isinstance(node, dict) else node if isinstance(node, tuple | list) else ():

@@ -1,13 +1,11 @@
-"""What a valid plan may still have wrong: ids of nothing, colours that are none, edits that nobody asked for.
+"""Semantic checks of a valid plan: unknown ids, invalid colours, and removals that the instruction does not ask for.
 
-Knows what was said, the operations, and the scene's graph where there is one. Refuses to mend a plan, except that ids
-and colours which choose where the words leave open are taken out, and "all" where they speak of one, so that the editor
-asks. Each fault is told to the model; what it comes to if the model insists is said with it (`Fault.verdict`).
+Plans are not repaired, except that choices which the instruction leaves open are removed (`choosing`), so that the
+session asks. Each fault is reported to the model; `Fault.verdict` is the outcome if the model repeats it.
 
-Absent and ambiguous phrases are no fault of a plan in the end: the graph holds only those names that the encoder is
-sure of, while the session resolves against the scene itself, and can show the user what it hesitates between. So the
-model hears of them once, because it may have meant something that is there; then the plan stands and the session has
-the last word.
+Absent and ambiguous phrases are reported to the model once, because it may have meant something else in the scene. If
+it repeats them, the plan is accepted: the graph has only those labels that the encoder is sure of, while the session
+resolves against the scene itself and can show the user the candidates.
 """
 
 from __future__ import annotations
@@ -36,15 +34,15 @@ from .choosing import numbered, stems, without_guesses, without_inventions
 from .rehearsal import Rehearsal
 from .removal_words import Ground, said
 
-# What takes things away, and the words that ask for it. Another operation that does belongs here.
+# Operations that remove things, and the kinds of words that justify each. A new operation that removes belongs here.
 _TAKES: dict[str, tuple[Ground, ...]] = {
     "delete": ("removing", "exchanging"),
     "replace": ("removing", "exchanging"),
     "isolate": ("keeping", "removing"),
     "opacity": ("hiding", "removing", "keeping"),
 }
-_HIDES = 0.15  # opacity from which a thing is as good as gone
-_MANY = 4  # things taken away that nobody named
+_HIDES = 0.15  # opacity up to which a thing counts as removed
+_MANY = 4  # unnamed things; a plan that removes as many is a fault
 _FILLERS = re.compile(r"^(?:(?:and|now|then|next|ok|okay|please|so)\b[\s,]*)+")
 _TOO = re.compile(r"\b(?:too|also|as well|same|again|likewise|either|neither)\b")
 _EVERYTHING = frozenset({"", "everything", "anything", "thing", "object", "item", "stuff", "furniture"})
@@ -52,14 +50,14 @@ _EVERYTHING = frozenset({"", "everything", "anything", "thing", "object", "item"
 
 @dataclass(frozen=True)
 class Fault:
-    """Something wrong with a valid plan.
+    """A fault of a valid plan.
 
     Attributes:
-        kind: what sort of thing; one sort is told to the model once.
-        told: to the model.
-        verdict: what the plan comes to if the model insists. "ok": it stands, and the session decides. None: it is
-            as bad as an invalid answer.
-        reason: to the user.
+        kind: each kind is reported to the model once.
+        told: message for the model.
+        verdict: outcome if the model repeats the fault. "ok": the plan is accepted, and the session decides. None: it
+            counts as an invalid answer.
+        reason: message for the user.
     """
 
     kind: str
@@ -69,13 +67,13 @@ class Fault:
 
 
 class Guard:
-    """The checks of one instruction's plans.
+    """Checks the plans for one instruction.
 
     Args:
         text: the instruction.
-        previous: the instruction before, None if there was none.
-        graph: the scene with names that a model may see; None if nobody looked.
-        recall: a planner that reads the instruction before, to tell what "it" means.
+        previous: the previous instruction, if any.
+        graph: the scene with sanitised names; None if there is none.
+        recall: plans the previous instruction, to resolve "it".
     """
 
     def __init__(self, text: str, previous: str | None, graph: SceneGraph | None, recall: Planner) -> None:
@@ -84,18 +82,17 @@ class Guard:
         self._scene = Rehearsal(graph, previous, recall) if graph is not None else None
 
     def settled(self, ops: Sequence[EditOp]) -> tuple[EditOp, ...]:
-        """The operations without ids and colours that choose between things which the instruction leaves open, and
-        without "all" where it speaks of one."""
+        """The operations without choices of ids, colours and "all" that the instruction does not make."""
         if self._scene is None:
             return tuple(ops)
         said = without_inventions(without_guesses(ops, self._text, self._scene), self._text, self._previous)
         return numbered(said, self._text, self._scene)
 
     def faults(self, ops: Sequence[EditOp]) -> list[Fault]:
-        """What is wrong with the operations, worst first; of each kind one."""
+        """Faults of the operations, worst first, one of each kind."""
         found = [f for check in (self._ids, self._colors, self._last) for f in check(ops)]
         if any(f.verdict is None for f in found):
-            return _one_a_kind(found)  # what has no place in the scene cannot be played
+            return _one_a_kind(found)  # a dry run needs existing ids
         played = self._scene.play(ops) if self._scene is not None and ops else None
         found += [*self._groundless(ops), *self._sweeping(ops, played)]
         found += self._shell(ops) if played is None else self._stopped(played)
@@ -104,7 +101,7 @@ class Guard:
     # -- the words of a plan ----------------------------------------------------------------------------------------
 
     def _ids(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
-        """Ids of nothing, and ids of something else than they are called."""
+        """Ids that do not exist, and ids whose node has another name than the query."""
         for _, query in queries(tuple(ops)):
             if query.groups and self._scene is None:
                 yield Fault("ids", "no scene was shown, so groups must be left out: say in words what is meant")
@@ -121,7 +118,7 @@ class Guard:
             yield Fault("ids", told)
 
     def _colors(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
-        """Words that are no colours; those which the graph itself writes are."""
+        """Words that are not colours; all colours written in the graph are valid."""
         written = {plain_color(n.color) for n in self._scene.graph.nodes} if self._scene is not None else set()
         painted = [c for op in ops if isinstance(c := getattr(op, "color", None), str)]
         sought = [
@@ -134,7 +131,7 @@ class Guard:
                 yield Fault("color", str(error), "not_understood", str(error))
 
     def _shell(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
-        """Floor, walls and ceiling stay where they are."""
+        """Operations that would move floor, walls or ceiling."""
         for op in ops:
             query = op.query()
             name = STRUCTURE.get(query.text) if query is not None and not query.groups else None
@@ -145,15 +142,15 @@ class Guard:
                 )
 
     def _last(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
-        """ "it" without anything before."""
+        """ "it" without a previous instruction."""
         if not self._previous and any(q.last for _, q in queries(tuple(ops[:1]))):
             told = "last: there was no instruction before, so it means nothing; name the thing"
             yield Fault("last", told, "not_understood", "nothing was done before that 'it' could mean; name the thing")
 
-    # -- what a plan takes away -------------------------------------------------------------------------------------
+    # -- removals ---------------------------------------------------------------------------------------------------
 
     def _groundless(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
-        """Operations that take something away, where nobody asked for that."""
+        """Operations that remove something although the instruction does not ask for it."""
         for op in _taking(ops):
             asked = any(said(g, self._text, self._before) for g in _TAKES[op.op])
             if not asked and not (op.op == "replace" and self._names(getattr(op, "asset", ""))):
@@ -165,7 +162,7 @@ class Guard:
                 yield Fault("groundless", told, "not_understood", f"{_REFUSED}: {what}. {_SAY}")
 
     def _sweeping(self, ops: Sequence[EditOp], played: Resolved | None) -> Iterator[Fault]:
-        """Everything taken away, or much that nobody named, where nobody said "all"."""
+        """Operations that remove everything, or many unnamed things, although the instruction does not say "all"."""
         if said("all", self._text, self._before):
             return
         sweeping = [op for op in _taking(ops) if op.op != "isolate" and _is_everything(op.query())]
@@ -177,7 +174,8 @@ class Guard:
 
     @cached_property
     def _before(self) -> str | None:
-        """The instruction before, where it is a ground too: this one has no command of its own, or says "too"."""
+        """The previous instruction if it may justify removals too: this one has no command of its own, or says
+        "too"."""
         own = _FILLERS.sub("", self._text.casefold()).split(maxsplit=1)
         commands = bool(own) and own[0] in _commands() and not _TOO.search(self._text.casefold())
         return None if commands else self._previous
@@ -187,7 +185,7 @@ class Guard:
         return len(self._scene.graph.nodes) if self._scene is not None else 0
 
     def _unnamed(self, played: Resolved | None) -> set[Id]:
-        """What would be taken away and goes by no name or colour that was said; walls and floor are no nodes."""
+        """Nodes that would be removed although the instruction names neither their label nor their colour."""
         if played is None or self._scene is None:
             return set()
         gone = {i for s in played.steps if _takes(s.op) and s.op.op != "isolate" for i in s.targets}
@@ -208,10 +206,10 @@ class Guard:
         heard = stems(self._text) | stems(self._previous or "")
         return bool(set(words(asset)[-1:]) & heard)
 
-    # -- what the graph says ----------------------------------------------------------------------------------------
+    # -- the dry run ------------------------------------------------------------------------------------------------
 
     def _stopped(self, played: Resolved) -> Iterator[Fault]:
-        """What would stop the plan on the graph."""
+        """Why the plan fails on the graph, if it does."""
         if played.verdict == "ok" or self._scene is None:
             return
         shown = self._scene.shown(played.candidates)
@@ -237,7 +235,7 @@ _SAY = "If you mean it, say so ('delete …', 'keep only …', 'delete everythin
 
 @cache
 def _commands() -> frozenset[str]:
-    """First words of commands, but for those that begin "do the same"."""
+    """First words of commands, except those of "do the same"."""
     alike = {phrase.split()[0] for phrase, (kind, _) in VERBS.items() if kind == "SAME"}
     return frozenset(phrase.split()[0] for phrase in VERBS) - alike
 
@@ -251,7 +249,7 @@ def _taking(ops: Sequence[EditOp]) -> Iterator[EditOp]:
 
 
 def _is_everything(query: Query | None) -> bool:
-    """Whether a query takes whatever there is."""
+    """Whether a query selects everything."""
     if query is None or query.groups or query.last:
         return query is not None and query.invert
     open_ended = not (query.colors or query.not_colors or query.size or query.relations)
@@ -259,7 +257,7 @@ def _is_everything(query: Query | None) -> bool:
 
 
 def _one_a_kind(faults: Sequence[Fault]) -> list[Fault]:
-    """The first fault of each kind, those that end as no plan before refusals, and what may stand last."""
+    """The first fault of each kind: invalid plans first, then refusals, then accepted ones."""
     first: dict[str, Fault] = {}
     for fault in faults:
         first.setdefault(fault.kind, fault)

@@ -1,7 +1,7 @@
-"""Operations played on the scene graph before anybody sees them: what each would touch, and what ids mean.
+"""Dry run of a model's plan on the scene graph: what each operation would touch, and what its ids refer to.
 
-Knows that a query names nodes by the graph's ids, and the stage that answers by rows. Refuses to say what follows from
-it (guard.py). The names of the graph are those that a model may see, so that whatever is told here may be told to it.
+Queries name nodes by the graph's ids, the graph scene by rows. The graph has sanitised names, so that all texts made
+here may be sent to the model. `guard.py` draws the conclusions.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from ...rooms.node import Node
 from ...rooms.plan_on_graph import Resolved, recalled, resolve_plan
 from ..prompt.pruning import line
 
-_NEAR = 5  # nodes shown instead of one that is not there
+_NEAR = 5  # nodes suggested instead of a missing one
 _SHOWN = 12  # candidates shown
 
 
 class Rehearsal:
-    """One graph on its stage.
+    """Dry runs on one graph.
 
     Args:
-        graph: with names that a model may see.
-        previous: the instruction before, None if there was none.
-        recall: reads it, to tell what "it" means.
+        graph: with sanitised names.
+        previous: the previous instruction, if any.
+        recall: plans the previous instruction, to resolve "it".
     """
 
     def __init__(self, graph: SceneGraph, previous: str | None, recall: Planner) -> None:
@@ -51,7 +51,7 @@ class Rehearsal:
 
     @cached_property
     def last(self) -> Selection | None:
-        """What "it" means, None if that cannot be told."""
+        """What "it" refers to, None if that is unknown."""
         if not self._previous:
             return None
         try:
@@ -60,10 +60,7 @@ class Rehearsal:
             return None
 
     def play(self, ops: Sequence[EditOp]) -> Resolved | None:
-        """What the operations would touch; None if they are about an "it" that cannot be told.
-
-        All ids must be there.
-        """
+        """What the operations would touch; None if they refer to an "it" that is unknown. All ids must exist."""
         if self.last is None and any(q.last for _, q in queries(tuple(ops[:1]))):
             return None
         staged = tuple(with_queries(op, self._staged) for op in ops)
@@ -83,18 +80,18 @@ class Rehearsal:
         return (named or sorted(nodes, key=lambda n: (abs(int(n.id) - lost), n.id)))[:_NEAR]
 
     def misnamed(self, query: Query) -> Node | None:
-        """A node that the query names by id and calls by what only other things here are called."""
+        """A node that the query names by id while its text fits only other things of the scene."""
         labels = sorted({n.label for n in self.graph.nodes if n.label})
         fits = {label for label, p in zip(labels, agreement(query.text, labels), strict=True) if p >= THRESHOLD}
         named = (self.graph.nodes[self.rows[i]] for i in query.groups if i in self.rows)
         return next((n for n in named if fits and n.label and n.label not in fits), None)
 
     def label(self, id: int) -> str:
-        """What the thing with this id is called, "" if nobody could tell."""
+        """Label of the node with this id, "" if it has none."""
         return self.graph.nodes[self.rows[id]].label
 
     def by_words(self, query: Query) -> tuple[Id, ...]:
-        """Ids of all that the words of a query fit, without its ids and its choice among several."""
+        """Ids of all nodes that the words of a query fit, ignoring its ids and its choice among several."""
         words = query.model_copy(update={"groups": (), "also": (), "pick": "all", "count": None, "ordinal": None})
         try:
             found = self.stage.find(with_queries(words, self._staged), self.last)
@@ -103,7 +100,7 @@ class Rehearsal:
         return self.stage.names(found.groups) if found.verdict == "found" else ()
 
     def shown(self, ids: Iterable[Id]) -> str:
-        """Lines for a model about some nodes."""
+        """Some nodes as lines of text for the model."""
         nodes = {n.id: n for n in self.graph.nodes}
         lines = [line(nodes[i]) for i in ids if i in nodes]
         more = [f"and {len(lines) - _SHOWN} more"] if len(lines) > _SHOWN else []

@@ -1,8 +1,7 @@
-"""What in an instruction is a ground for taking things away: words for removing, exchanging, keeping only, and "all".
+"""Detect words in an instruction that justify removing things: removing, exchanging, keeping only, hiding, and "all".
 
-Knows such words in the tongues that models are mostly spoken to in. Refuses to know what a plan does with them. A word
-too many here lets a mistaken plan pass to the editor's own checks and to undo; one too few makes a user say it more
-plainly.
+The words cover the languages that users mostly speak to models in. A superfluous word lets a mistaken plan pass to the
+editor's own checks and to undo; a missing word makes a user rephrase.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from typing import Literal
 
 Ground = Literal["removing", "exchanging", "keeping", "hiding", "all"]
 
-# Beginnings of words; "=" before a whole word, "_" for a space. Scripts without spaces are searched anywhere.
+# Prefixes of words; "=" marks a whole word, "_" a space. Words of scripts without spaces match anywhere.
 _WORDS: dict[Ground, str] = {
     "removing": """
         delet remov eras eliminat discard dispos =rid trash =bin =binned =scrap scrapp =junk dump ditch toss chuck throw
@@ -68,7 +67,7 @@ _UNSPACED = re.compile(r"[\u0e00-\u0eff\u1000-\u109f\u3040-\u30ff\u3400-\u9fff\u
 
 
 def said(ground: Ground, *texts: str | None) -> bool:
-    """Whether any of the texts has a word for it."""
+    """Whether any of the texts contains a word of this kind."""
     return any(_pattern(ground).search(" ".join(text.casefold().split()).replace("’", "'")) for text in texts if text)
 
 

@@ -1,7 +1,6 @@
-"""What a language model is to answer, strictly: a verdict, and operations or the reason why there are none.
+"""The reply type of a language model: its JSON Schema, its parser, and error messages for the model.
 
-Knows the type, its JSON Schema for back ends, how one JSON object is found in what was said, and how to say what is
-wrong with it. Refuses to know how the model was asked and what stands in the scene, and to guess what was meant.
+A reply is a verdict with operations or the reason why there are none. Nothing invalid is repaired or guessed here.
 """
 
 from __future__ import annotations
@@ -17,14 +16,14 @@ from ...plan import MAX_OPS, Verdict
 from .strict_json import DECODER, TooDeepError, given_only
 
 MAX_CHARS = 65_536  # of an answer; the longest plans are a tenth of it
-_FAULTS = 4  # named at once
+_FAULTS = 4  # reported at once
 _FAULT_CHARS = 240  # of each
 _HESITANT = ("absent", "ambiguous")
-_UNTOLD = ("title", "description", "examples", "default")  # the prompt says these things
+_UNTOLD = ("title", "description", "examples", "default")  # keywords left out of the schema; the prompt covers them
 
 
 class ReplyError(ValueError):
-    """An answer is no valid reply. The message is for the model: short, which field, and what it allows."""
+    """An answer is not a valid reply. The message is for the model: short, which field, and what it allows."""
 
 
 class Reply(BaseModel):
@@ -33,9 +32,9 @@ class Reply(BaseModel):
     Attributes:
         verdict: "ok" with operations; every other verdict without, except that "absent" and "ambiguous" may hold the
             operations that were meant, so that the user can be shown what there is.
-        reason: one sentence for the user; needed for every verdict but "ok".
-        unknown: the words of the instruction that were not understood.
-        ops: what to do, in order.
+        reason: one sentence for the user; required for every verdict but "ok".
+        unknown: words of the instruction that were not understood.
+        ops: operations in order.
     """
 
     model_config = ConfigDict(
@@ -72,19 +71,18 @@ class Reply(BaseModel):
 def _schema() -> dict[str, Any]:
     made: dict[str, Any] = _bare(Reply.model_json_schema())
     for definition in made["$defs"].values():
-        if "const" in definition["properties"].get("op", {}):  # the type has a default, but nobody else knows it
+        if "const" in definition["properties"].get("op", {}):  # `op` has a default in our types; models must write it
             definition["required"] = ["op", *definition.get("required", [])]
     return made
 
 
 def schema() -> dict[str, Any]:
-    """The JSON Schema of a reply, for `ModelBackend.answer`: that of the very type that validates, without the words
-    that the prompt says better."""
+    """The JSON Schema of `Reply` for `ModelBackend.answer`, without descriptions, which the prompt contains."""
     return dict(_schema())
 
 
 def _bare(node: Any) -> Any:
-    """A schema without what is only said to readers; a property may be called whatever it is."""
+    """A schema without descriptive keywords; properties with such names are kept."""
     if isinstance(node, list):
         return [_bare(item) for item in node]
     if not isinstance(node, dict):
@@ -94,12 +92,12 @@ def _bare(node: Any) -> Any:
 
 
 def read(text: str) -> Reply:
-    """The reply in an answer: one JSON object, which may stand in a fence or between words without braces.
+    """Parse the reply in an answer: one JSON object, possibly in a code fence or between text without braces.
 
-    Fields that are null count as not given. Everything else must be exactly as the type says.
+    Fields that are null count as omitted. Everything else must be valid for the type.
 
     Raises:
-        ReplyError: there is none, more than one, or it is not valid.
+        ReplyError: there is no object, more than one, or it is not valid.
     """
     if len(text) > MAX_CHARS:
         raise ReplyError(f"the answer has {len(text)} characters, at most {MAX_CHARS} are read; answer shorter")
@@ -112,10 +110,10 @@ def read(text: str) -> Reply:
 
 
 def _object(text: str) -> dict[str, Any]:
-    """The one JSON object in a text.
+    """The only JSON object in a text.
 
-    The first brace must begin it and nothing behind it may look like another: to try one brace after the other would
-    take a part of a broken answer for the whole of it.
+    It must start at the first brace, and no brackets may follow it. Trying later braces could take a part of a broken
+    answer for the whole.
     """
     start = text.find("{")
     if start < 0:
@@ -131,7 +129,7 @@ def _object(text: str) -> dict[str, Any]:
 
 
 def _told(error: ValidationError) -> str:
-    """What is wrong, for the model: the first few faults, each with its field and what that allows."""
+    """The first few errors as text for the model, each with its field and what it allows."""
     faults = error.errors(include_url=False, include_input=False)
     told = [f"{_place(f['loc'])}: {_fault(f)}"[:_FAULT_CHARS] for f in faults[:_FAULTS]]
     return "\n".join([*told, *([f"and {len(faults) - _FAULTS} more"] if len(faults) > _FAULTS else [])])
@@ -149,7 +147,7 @@ def _place(loc: tuple[int | str, ...]) -> str:
 
 
 def _siblings(loc: tuple[int | str, ...]) -> list[str]:
-    """Names of the fields beside a place, found by walking the schema; the name of a union's option is a step too."""
+    """Names of the fields at the level of `loc`, from the schema; the tag of a union's option is a step of its own."""
     options = [_schema()]
     for part in loc[:-1]:
         options = [s for o in options for s in _step(o, part)]
@@ -157,7 +155,7 @@ def _siblings(loc: tuple[int | str, ...]) -> list[str]:
 
 
 def _step(node: dict[str, Any], part: int | str) -> list[dict[str, Any]]:
-    """The objects that one step of a place may lead to."""
+    """The object schemas that one step of a location may lead to."""
     if isinstance(part, int):
         return _parts(node.get("items", {}))
     if part in node.get("properties", {}):
@@ -167,7 +165,7 @@ def _step(node: dict[str, Any], part: int | str) -> list[dict[str, Any]]:
 
 
 def _parts(node: dict[str, Any]) -> list[dict[str, Any]]:
-    """A schema without references and unions."""
+    """The alternatives of a schema, with references and unions resolved."""
     if "$ref" in node:
         return _parts(_schema()["$defs"][str(node["$ref"]).rpartition("/")[2]])
     inner = [o for key in ("anyOf", "oneOf") for o in node.get(key, ()) if "properties" not in node]

@@ -1,18 +1,15 @@
-"""JSON as language models are held to it: no field twice, no number that is none, and nothing nested without end.
-
-Knows JSON. Refuses to know what is in it.
-"""
+"""Strict JSON decoding: duplicate fields, NaN and infinity, and deep nesting are errors."""
 
 from __future__ import annotations
 
 import json
 from typing import Any, NoReturn
 
-MAX_DEPTH = 40  # where a query in a query is four deeper; nobody says so much in one breath
+MAX_DEPTH = 40  # a query within a query is four levels deeper, so real answers stay far below
 
 
 class TooDeepError(ValueError):
-    """The JSON is nested deeper than any answer."""
+    """The JSON is nested deeper than `MAX_DEPTH`."""
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -30,10 +27,10 @@ DECODER = json.JSONDecoder(object_pairs_hook=_unique, parse_constant=_no_number)
 
 
 def given_only(node: Any, depth: int = 0) -> Any:
-    """Without fields that are null: models that must name every field say so what they leave out.
+    """Remove fields that are null, with which models that must write every field mark omitted ones.
 
     Raises:
-        TooDeepError: it is nested deeper than `MAX_DEPTH`.
+        TooDeepError: nested deeper than `MAX_DEPTH`.
     """
     if depth > MAX_DEPTH:
         raise TooDeepError("the JSON is nested too deeply")

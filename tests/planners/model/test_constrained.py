@@ -11,7 +11,7 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from scenewright.gaussians.language.query.query import Query
 from scenewright.planners.model.backend import UnreachableError
-from scenewright.planners.model.local.tightening import Limits, tightened
+from scenewright.planners.model.local.tightening import Limits, tighten
 from scenewright.planners.model.verify.reply import Reply
 from scenewright.planners.plan import EditPlan
 from scenewright.planners.rooms.graph import SceneGraph
@@ -166,7 +166,7 @@ def test_what_can_hold_itself_goes_in_only_so_far() -> None:
 
     depths = []
     for nesting in (1, 2, 3):
-        made = tightened(Query.model_json_schema(), Limits(nesting=nesting))
+        made = tighten(Query.model_json_schema(), Limits(nesting=nesting))
         depths.append(depth(inlined(made, made["$defs"])))  # a loop would never come back
     assert depths == sorted(set(depths))
 

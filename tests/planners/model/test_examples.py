@@ -10,7 +10,7 @@ from scenewright import prompts
 from scenewright.gaussians.language.query.nested import queries
 from scenewright.planners.grammar import GrammarPlanner
 from scenewright.planners.model.prompt import examples
-from scenewright.planners.model.prompt.labels import cleaned
+from scenewright.planners.model.prompt.labels import sanitize
 from scenewright.planners.model.verify import reply
 from scenewright.planners.model.verify.guard import Guard
 from scenewright.planners.model.verify.rehearsal import Rehearsal
@@ -60,7 +60,7 @@ def test_every_way_of_pointing_is_shown() -> None:
 
 
 def test_the_scene_of_the_examples_has_only_names_that_models_see() -> None:
-    assert cleaned(SCENE) == SCENE
+    assert sanitize(SCENE) == SCENE
 
 
 @pytest.mark.parametrize(

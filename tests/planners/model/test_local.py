@@ -116,7 +116,7 @@ def test_a_shared_beginning_is_read_once(parts: checkpoint.Checkpoint, llama: ba
 
 def test_it_is_heard_as_it_speaks(llama: backend.LocalModel) -> None:
     pieces: list[str] = []
-    answer = llama.answer(asked(WORDS[0]), SCHEMA, seconds=120, heard=pieces.append)
+    answer = llama.answer(asked(WORDS[0]), SCHEMA, seconds=120, on_text=pieces.append)
     assert "".join(pieces) == answer.text and len(pieces) > 3
 
 
@@ -134,7 +134,7 @@ def test_tokens_are_counted(parts: checkpoint.Checkpoint) -> None:
 def test_what_is_too_long_is_cut_and_still_valid(parts: checkpoint.Checkpoint, longest: int) -> None:
     brief = backend.LocalModel(parts, "transformers:tiny", longest=longest, temperature=1.0)
     pieces: list[str] = []
-    answer = brief.answer(asked(WORDS[0], "JSON."), SCHEMA, seconds=120, heard=pieces.append)
+    answer = brief.answer(asked(WORDS[0], "JSON."), SCHEMA, seconds=120, on_text=pieces.append)
     EditPlan.model_validate_json(answer.text)
     assert answer.end == "closed" and "".join(pieces) == answer.text
     assert longest <= answer.usage.output_tokens < longest + 20  # forced tokens may go a little beyond
@@ -165,7 +165,7 @@ class Halting:
 
     name, sees, window = "transformers:halting", False, 100_000
 
-    def answer(self, messages: Any, schema: Any, *, seconds: float, heard: Any = None) -> Answer:
+    def answer(self, messages: Any, schema: Any, *, seconds: float, on_text: Any = None) -> Answer:
         plan = {"verdict": "ok", "ops": [{"op": "delete", "target": {"text": "chair"}}]}
         return Answer(json.dumps(plan), Usage(model=self.name, requests=1), "closed")
 

@@ -238,10 +238,10 @@ def test_all_attempts_share_one_time(monkeypatch: pytest.MonkeyPatch) -> None:
     clock, given_seconds = Clock(), []
 
     class Slow(ScriptedModel):
-        def answer(self, messages: Any, schema: Any, *, seconds: float, heard: Any = None) -> Answer:
+        def answer(self, messages: Any, schema: Any, *, seconds: float, on_text: Any = None) -> Answer:
             given_seconds.append(seconds)
             clock.now += 4.0
-            return super().answer(messages, schema, seconds=seconds, heard=heard)
+            return super().answer(messages, schema, seconds=seconds, on_text=on_text)
 
     monkeypatch.setattr(planner_module, "time", clock)
     with pytest.raises(NoPlanError, match=r"in 3 attempt\(s\) within 10 s .*--budget"):

@@ -13,7 +13,7 @@ from scenewright import prompts
 from scenewright.gaussians.errors import BackendError
 from scenewright.planners.model.prompt import operations
 from scenewright.planners.model.prompt.messages import ECHO_CHARS, Request, messages, prompt_hash, repaired, system
-from scenewright.planners.model.prompt.pruning import MOST_TOKENS, Relevance, described, line, tokens
+from scenewright.planners.model.prompt.pruning import MAX_TOKENS, Relevance, described, line, tokens
 from scenewright.planners.rooms.graph import SceneGraph
 from scenewright.planners.rooms.node import Node, RoomShape, Viewpoint
 from scenewright.tools import registry
@@ -58,7 +58,7 @@ def test_the_hash_is_that_of_the_files() -> None:
 def test_a_prompt_leaves_room_for_the_answer(graph: SceneGraph, window: int) -> None:
     told = messages(Request("put the lamp on the grand piano", None, graph), window)
     assert sum(tokens(m.text) for m in told) <= window - 2048
-    assert tokens(told[1].text) <= MOST_TOKENS + 100  # and what it costs is bounded however much would fit
+    assert tokens(told[1].text) <= MAX_TOKENS + 100  # and what it costs is bounded however much would fit
 
 
 def test_a_hall_of_thousands_keeps_what_is_spoken_of() -> None:
@@ -80,7 +80,7 @@ def test_of_many_alike_those_near_the_other_thing_are_kept() -> None:
 
 
 def test_nothing_is_left_out_where_everything_fits() -> None:
-    text = described(LIVING_ROOM, ["make it cosy"], MOST_TOKENS)
+    text = described(LIVING_ROOM, ["make it cosy"], MAX_TOKENS)
     assert shown_ids(text) == {n.id for n in LIVING_ROOM.nodes}
     assert "Not shown" not in text
 
@@ -109,7 +109,7 @@ def test_stated_relations_and_the_viewer_are_told() -> None:
             "viewer": Viewpoint(position=(1, -4, 1.6), target=(0, 0, 1)),
         }
     )
-    text = described(graph, ["take the mug"], MOST_TOKENS)
+    text = described(graph, ["take the mug"], MAX_TOKENS)
     assert "on 4, next to 18" in text and "on 4, on 4" not in text
     assert "The viewer is at (1, -4, 1.6) and looks at (0, 0, 1)." in text
 

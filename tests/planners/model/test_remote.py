@@ -151,7 +151,9 @@ def test_a_picture_arrives_whole(wire: Wire) -> None:
 def test_a_streamed_answer_is_heard_in_pieces_in_the_callers_thread(wire: Wire) -> None:
     heard: list[tuple[str, int]] = []
     pieces = [PLAN[:7], PLAN[7:20], PLAN[20:]]
-    answer, (asked,) = ask(wire, wire.stream(pieces), heard=lambda piece: heard.append((piece, threading.get_ident())))
+    answer, (asked,) = ask(
+        wire, wire.stream(pieces), on_text=lambda piece: heard.append((piece, threading.get_ident()))
+    )
     assert "".join(piece for piece, _ in heard) == PLAN
     assert len(heard) == len(pieces)
     assert {thread for _, thread in heard} == {threading.get_ident()}
@@ -192,7 +194,7 @@ def test_hosted_models_have_a_price() -> None:
 @pytest.mark.parametrize("streamed", [False, True])
 def test_an_answer_cut_off_says_so(wire: Wire, finish: str, streamed: bool) -> None:
     if streamed:
-        answer, _ = ask(wire, wire.stream(['{"ops": [{'], finish), heard=lambda piece: None)
+        answer, _ = ask(wire, wire.stream(['{"ops": [{'], finish), on_text=lambda piece: None)
     else:
         answer, _ = ask(wire, wire.answer('{"ops": [{', finish))
     assert (answer.text, answer.end) == ('{"ops": [{', "cut")
@@ -206,7 +208,7 @@ def test_a_refusal_comes_back_in_its_words(wire: Wire) -> None:
 
 @pytest.mark.parametrize(("wire", "finish"), list(zip(WIRES, ("content_filter", "refusal", "SAFETY"), strict=True)))
 def test_a_filter_that_gives_no_words_is_named(wire: Wire, finish: str) -> None:
-    answer, _ = ask(wire, wire.stream([], finish), heard=lambda piece: None)
+    answer, _ = ask(wire, wire.stream([], finish), on_text=lambda piece: None)
     assert answer.end == "declined" and finish in answer.text
 
 
@@ -291,7 +293,7 @@ def test_a_refusal_without_reason_is_met_with_the_barest_request() -> None:
 def test_a_server_that_cannot_stream_is_asked_at_once() -> None:
     heard: list[str] = []
     refused = wires.OpenAI.error(400, "stream_options is not supported")
-    answer, asked = ask(wires.OpenAI, refused, wires.OpenAI.answer(PLAN), heard=heard.append)
+    answer, asked = ask(wires.OpenAI, refused, wires.OpenAI.answer(PLAN), on_text=heard.append)
     assert answer.text == PLAN and heard == [PLAN]
     assert [request.body["stream"] for request in asked] == [True, False]
 
@@ -402,10 +404,10 @@ def test_a_broken_server_is_asked_again_but_not_for_ever(wire: Wire) -> None:
 
 
 @each_wire
-@pytest.mark.parametrize("heard", [None, lambda piece: None])
+@pytest.mark.parametrize("on_text", [None, lambda piece: None])
 @pytest.mark.parametrize("body", ["<html>Welcome to your router</html>", "", "[1, 2", '"yes"', "{}", '{"choices": 7}'])
-def test_an_answer_that_is_none(wire: Wire, heard: Any, body: str) -> None:
-    assert "no answer of a language model" in fails(wire, wires.plain(body), heard=heard)
+def test_an_answer_that_is_none(wire: Wire, on_text: Any, body: str) -> None:
+    assert "no answer of a language model" in fails(wire, wires.plain(body), on_text=on_text)
 
 
 JUNK = st.recursive(
@@ -461,12 +463,12 @@ def spoiled_answer_is_told(wire: Wire, pliable: tuple[Any, list[Any]], data: st.
         lines = b"".join(wire.stream([PLAN[:9], PLAN[9:]]).chunks).decode().split("\n")
         at = data.draw(st.sampled_from([i for i, line in enumerate(lines) if line.startswith("data: {")]))
         lines[at] = f"data: {json.dumps(spoiled(json.loads(lines[at][6:]), data))}"
-        turn, heard = wires.Turn(["\n".join(lines).encode()], streamed=True), list[str]().append
+        turn, on_text = wires.Turn(["\n".join(lines).encode()], streamed=True), list[str]().append
     else:
-        turn, heard = wires.plain(spoiled(json.loads(b"".join(wire.answer(PLAN).chunks)), data)), None
+        turn, on_text = wires.plain(spoiled(json.loads(b"".join(wire.answer(PLAN).chunks)), data)), None
     turns.append(turn)
     try:
-        answer = model_at(wire, server.url).answer(TALK, {"type": "object"}, seconds=30, heard=heard)
+        answer = model_at(wire, server.url).answer(TALK, {"type": "object"}, seconds=30, on_text=on_text)
     except UnreachableError as error:
         sound(error)
     else:
@@ -495,7 +497,7 @@ def test_a_stream_that_breaks_off(wire: Wire) -> None:
 
     turn = wire.stream(pieces(), cut=True)
     chunks = list(turn.chunks)[: 4 if wire is wires.Anthropic else 2]
-    assert "broke off" in fails(wire, wires.Turn(chunks, streamed=True, cut=True), heard=heard.append)
+    assert "broke off" in fails(wire, wires.Turn(chunks, streamed=True, cut=True), on_text=heard.append)
     assert heard  # and it was not asked again: what was heard cannot be taken back
 
 
@@ -515,7 +517,7 @@ def test_a_stream_without_end_is_left_in_time(wire: Wire) -> None:
             yield " "
 
     heard: list[str] = []
-    assert "within 0.4 s" in fails(wire, wire.stream(endless(), pause=0.02), seconds=0.4, heard=heard.append)
+    assert "within 0.4 s" in fails(wire, wire.stream(endless(), pause=0.02), seconds=0.4, on_text=heard.append)
 
 
 @each_wire
@@ -540,7 +542,7 @@ def test_a_stream_without_end_is_not_read_for_ever(wire: Wire, monkeypatch: pyte
         while True:
             yield "x" * 10_000
 
-    assert "more than any answer" in fails(wire, wire.stream(endless()), heard=lambda piece: None)
+    assert "more than any answer" in fails(wire, wire.stream(endless()), on_text=lambda piece: None)
 
 
 @each_wire
@@ -637,15 +639,15 @@ def _self_signed(folder: Path) -> ssl.SSLContext:
 
 @each_wire
 @pytest.mark.parametrize("status", [200, 400, 401, 404, 418, 429, 500])
-@pytest.mark.parametrize("heard", [None, lambda piece: None])
+@pytest.mark.parametrize("on_text", [None, lambda piece: None])
 def test_a_key_that_the_server_echoes_is_not_shown(
-    wire: Wire, status: int, heard: Any, caplog: pytest.LogCaptureFixture, capfd: pytest.CaptureFixture[str]
+    wire: Wire, status: int, on_text: Any, caplog: pytest.LogCaptureFixture, capfd: pytest.CaptureFixture[str]
 ) -> None:
     caplog.set_level(logging.DEBUG)
     for logger in ("openai", "anthropic", "google_genai", "httpx2", "httpcore2"):
         caplog.set_level(logging.DEBUG, logger)
     echoed = f"no good: {KEY}, that is {KEY[:-4]}**** and {json.dumps(KEY)}; dear \x1b[31m{KEY}\x1b[0m"
-    message = fails(wire, wire.error(status, echoed, Retry_After="999"), heard=heard)
+    message = fails(wire, wire.error(status, echoed, Retry_After="999"), on_text=on_text)
     assert KEY[:20] not in message and "\x1b" not in message
     assert KEY not in caplog.text
     assert KEY not in "".join(capfd.readouterr())
@@ -677,7 +679,7 @@ def test_what_the_listener_raises_ends_the_request(wire: Wire, stop: type[BaseEx
         raise stop("enough")
 
     with wires.serving(wire.stream(endless(), pause=0.01)) as server, pytest.raises(stop, match="enough"):
-        model_at(wire, server.url).answer(TALK, schema("plan"), seconds=30, heard=listener)
+        model_at(wire, server.url).answer(TALK, schema("plan"), seconds=30, on_text=listener)
     for _ in range(200):
         if not any(thread.name == "scenewright-model" for thread in threading.enumerate()):
             return
