@@ -16,9 +16,10 @@ from torch import Tensor
 
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.language.field.language_field import Group, LanguageField
-from ..gaussians.language.field.measure import Axes, box_of, lab_of_cloud
+from ..gaussians.language.field.measure import box_of, lab_of_cloud
 from ..gaussians.language.query.selection import mask_of
 from ..gaussians.scene import Frame, Scene
+from ..gaussians.world.box import Axes
 from .operation import Affine, Encoder
 from .placement.bodies import turned_axes
 

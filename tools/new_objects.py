@@ -18,6 +18,7 @@ from ..gaussians.cloud import NO_GROUP, GaussianCloud
 from ..gaussians.errors import InstructionError, UserError
 from ..gaussians.language.field.measure import reach, solid_points
 from ..gaussians.scene import Scene
+from ..gaussians.world.box import Axes
 from ..gaussians.world.person import HUNG_AT
 from . import field_update
 from .cloud_diff import fresh_ids, joined
@@ -26,7 +27,8 @@ from .operation import Affine, Context, Length, Placement
 from .placement.bodies import Array, Body, as_vec, contact_box, heading
 from .placement.occupancy import obstacle_points
 from .placement.overhead import Hung, over
-from .placement.place import Placer, Spot
+from .placement.place import Spot, anchors_of, free_spot, spot_to_hang
+from .placement.surroundings import Surroundings
 from .transform import transformed
 
 _ROOM = 4.5  # metres across, taken for a scene that gives no other hint of its scale
@@ -127,12 +129,12 @@ def fetch(scene: Scene, wish: Wish) -> Piece:
     return Piece(cloud, made.kind, size, assets.find(wish.kind).support, notes)
 
 
-def set_down(piece: Piece, foot: Array, axes: tuple[Vec3, Vec3, Vec3]) -> GaussianCloud:
+def set_down(piece: Piece, foot: Array, axes: Axes) -> GaussianCloud:
     """The piece turned so that its width, depth and height run along `axes`, standing at `foot`."""
     return transformed(piece.cloud, np.array(axes).T, foot)
 
 
-def find_spot(placer: Placer, piece: Piece, place: Placement | None, start: Array) -> Spot:
+def find_spot(around: Surroundings, piece: Piece, place: Placement | None, start: Array) -> Spot:
     """A spot for a piece, facing the viewer; things for walls and ceilings hang there unless told otherwise.
 
     Raises:
@@ -142,52 +144,52 @@ def find_spot(placer: Placer, piece: Piece, place: Placement | None, start: Arra
         if piece.support not in ("wall", "ceiling"):
             raise InstructionError(f"a {piece.label} stands and does not hang: say on something, or next to it")
         hung: Hung = "wall" if piece.support == "wall" else "ceiling"
-        region, axes = over(placer, piece.size, placer.anchors(place)[0], hung)
-        return placer.hang(piece.size, place, region, axes)
+        region, axes = over(around, piece.size, anchors_of(around, place)[0], hung)
+        return spot_to_hang(around, piece.size, place, region, axes)
     unit = piece.size[2]
-    placer.lift = 0.0
+    around.lift = 0.0
     if place is None and piece.support == "wall":
         place = Placement(relation="against")
-        metre_units = metre(placer.scene).units
-        placer.lift = max(0.0, HUNG_AT * metre_units - unit / 2) if unit < _STANDING * metre_units else 0.0
+        metre_units = metre(around.scene).units
+        around.lift = max(0.0, HUNG_AT * metre_units - unit / 2) if unit < _STANDING * metre_units else 0.0
     if place is None and piece.support == "ceiling":
-        heights = placer.thin @ placer.up.astype(np.float32)
-        placer.lift = max(0.0, float(np.quantile(heights, 0.995)) - placer.floor - unit) if len(heights) else 0.0
-    anchors = placer.anchors(place) if place is not None else []
-    axes = standing_axes(placer, anchors)
+        heights = around.thin @ around.up.astype(np.float32)
+        around.lift = max(0.0, float(np.quantile(heights, 0.995)) - around.floor - unit) if len(heights) else 0.0
+    anchors = anchors_of(around, place) if place is not None else []
+    axes = standing_axes(around, anchors)
     if place is None or place.relation != "against" or anchors:
-        placer.back = None
-        return placer.find(piece.size, axes, place, start)
+        around.back = None
+        return free_spot(around, piece.size, axes, place, start)
     for _ in range(3):  # another wall is as good
         try:
-            placer.back = np.array(axes[1])
-            return placer.find(piece.size, axes, place, start)
+            around.back = np.array(axes[1])
+            return free_spot(around, piece.size, axes, place, start)
         except InstructionError:
             axes = (axes[1], as_vec(-np.array(axes[0])), axes[2])
-    placer.back = np.array(axes[1])
-    return placer.find(piece.size, axes, place, start)
+    around.back = np.array(axes[1])
+    return free_spot(around, piece.size, axes, place, start)
 
 
-def standing_axes(placer: Placer, anchors: Sequence[Body]) -> tuple[Vec3, Vec3, Vec3]:
+def standing_axes(around: Surroundings, anchors: Sequence[Body]) -> Axes:
     """Axes for a new thing: along its anchor's or the room's, its front (-y) turned to the viewer as far as it goes."""
-    base = anchors[0].box.axes if anchors else placer.room_axes
-    forward = heading(placer.context.viewer, placer.frame, "forward")
+    base = anchors[0].box.axes if anchors else around.room_axes
+    forward = heading(around.context.viewer, around.frame, "forward")
     choices = [sign * np.array(axis) for axis in base[:2] for sign in (1, -1)]
     back = max(choices, key=lambda axis: float(axis @ forward))
-    return as_vec(np.cross(back, placer.up)), as_vec(back), as_vec(placer.up)
+    return as_vec(np.cross(back, around.up)), as_vec(back), as_vec(around.up)
 
 
-def gaze(placer: Placer) -> Array:
+def gaze(around: Surroundings) -> Array:
     """`[3]`, where the viewer looks at the floor, or the point of the scene's middle on the floor if nowhere."""
-    camera, up = placer.context.viewer, placer.up
+    camera, up = around.context.viewer, around.up
     down = float(camera.forward @ up)
-    height = float(camera.position @ up) - placer.floor
-    middle = np.median(placer.thin, axis=0).astype(np.float64) if len(placer.thin) else np.zeros(3)
-    middle = middle + up * (placer.floor - float(middle @ up))
+    height = float(camera.position @ up) - around.floor
+    middle = np.median(around.thin, axis=0).astype(np.float64) if len(around.thin) else np.zeros(3)
+    middle = middle + up * (around.floor - float(middle @ up))
     if down > -0.05 or height <= 0:
         return middle
     seen = camera.position + camera.forward * (height / -down)
-    spread = float(np.linalg.norm(np.ptp(np.quantile(placer.thin, [0.05, 0.95], axis=0), axis=0)))
+    spread = float(np.linalg.norm(np.ptp(np.quantile(around.thin, [0.05, 0.95], axis=0), axis=0)))
     return seen if np.linalg.norm(seen - middle) < spread else middle
 
 
@@ -205,9 +207,7 @@ class Arrivals:
     clouds: list[GaussianCloud] = field(default_factory=list)
     newcomers: list[Newcomer] = field(default_factory=list)
 
-    def add(
-        self, cloud: GaussianCloud, label: str, axes: tuple[Vec3, Vec3, Vec3] | None, like: int | None = None
-    ) -> Tensor:
+    def add(self, cloud: GaussianCloud, label: str, axes: Axes | None, like: int | None = None) -> Tensor:
         """One more object, its Gaussians in place, its box along `axes`; the rows they get in the new cloud."""
         top = self.clouds[-1] if self.clouds else self.scene.cloud
         ids = fresh_ids(top, len(cloud))
@@ -237,11 +237,11 @@ class Arrivals:
         return scene.replace(cloud=cloud, language=table), tuple(g for g in groups if g >= 0)
 
 
-def taken_by(cloud: GaussianCloud, scene: Scene, placer: Placer) -> None:
-    """Tell the placer that a new object stands there."""
+def taken_by(cloud: GaussianCloud, scene: Scene, around: Surroundings) -> None:
+    """From now on a new object is in the way."""
     points = obstacle_points(cloud)
     if len(points):
-        placer.take(points.astype(np.float64), contact_box(points.astype(np.float64), scene.frame))
+        around.take(points.astype(np.float64), contact_box(points.astype(np.float64), scene.frame))
 
 
 def as_moved(rows: Tensor, support: float | None) -> Affine:

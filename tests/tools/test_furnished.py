@@ -23,8 +23,7 @@ from scenewright.tools.carried_objects import riders_of
 from scenewright.tools.execute import Done, carry_out, preview
 from scenewright.tools.operation import Context
 from scenewright.tools.ops.opacity import Opacity
-from scenewright.tools.placement.bodies import bodies_of, contact_box
-from scenewright.tools.placement.facing import front_of
+from scenewright.tools.placement.bodies import bodies_of, contact_box, front_of
 from scenewright.tools.receipt import Receipt, at_most
 from scenewright.tools.registry import OPS, parse
 

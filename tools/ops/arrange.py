@@ -19,7 +19,7 @@ from ..cloud_diff import Draft
 from ..field_update import carried
 from ..operation import Affine, Context, Outcome, TargetedOp, Way
 from ..placement.bodies import Array, Body, bodies_of
-from ..placement.support import support_height
+from ..placement.surroundings import support_height
 from ..receipt import Check
 from ..transform import axis_rotation, turn
 

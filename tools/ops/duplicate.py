@@ -18,7 +18,8 @@ from ..cloud_diff import Draft, selection_of
 from ..new_objects import Arrivals
 from ..operation import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
 from ..placement.bodies import Array, Body, bodies_of, centimetre, heading
-from ..placement.place import Placer
+from ..placement.place import free_spot, spot_beside
+from ..placement.surroundings import Surroundings
 from ..receipt import Check
 from ..transform import shift
 
@@ -81,15 +82,15 @@ class Duplicate(TargetedOp):
             way = heading(context.viewer, scene.frame, self.direction)
             step = self._step(scene, bodies, way)
             return [(b, way * step * (i + 1), None) for i in range(self.count) for b in bodies]
-        up, placer, found = scene.frame.up_vector, Placer(scene, context), []
+        up, around, found = scene.frame.up_vector, Surroundings(scene, context), []
         place = self.place
         for body in [b for _ in range(self.count) for b in bodies]:
             if place is not None:
-                spot = placer.find(body.box.size, body.box.axes, place, body.foot(up))
+                spot = free_spot(around, body.box.size, body.box.axes, place, body.foot(up))
             else:
-                spot = placer.beside(body)
+                spot = spot_beside(around, body)
             offset = spot.foot - body.foot(up)
-            placer.take(solid_points(scene.cloud, body.rows) + offset, body.box.shifted(offset))
+            around.take(solid_points(scene.cloud, body.rows) + offset, body.box.shifted(offset))
             found.append((body, offset, spot.support))
         return [(body, offset, support) for body, offset, support in found]
 

@@ -17,10 +17,18 @@ from ..checks import carried_as_asked, collision_free, counted, supported
 from ..cloud_diff import Draft
 from ..field_update import carried
 from ..operation import Affine, Context, Outcome, TargetedOp
-from ..placement.bodies import Body, bodies_of, contact_box, groups_of, mask_of_bodies, turned_axes
-from ..placement.facing import angle_between, front_of
-from ..placement.place import Placer
-from ..placement.support import support_height
+from ..placement.bodies import (
+    Body,
+    angle_between,
+    bodies_of,
+    contact_box,
+    front_of,
+    groups_of,
+    mask_of_bodies,
+    turned_axes,
+)
+from ..placement.place import spot_near
+from ..placement.surroundings import Surroundings, support_height
 from ..receipt import Check
 from ..transform import axis_rotation, turn
 
@@ -42,8 +50,8 @@ class Exchange(TargetedOp):
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         bodies = self._two(scene, selection)
-        placer = Placer(scene, context, mask_of_bodies(scene, bodies), frozenset(groups_of(bodies)))
-        moved = [self._to(scene, placer, one, other) for one, other in (bodies, bodies[::-1])]
+        around = Surroundings(scene, context, mask_of_bodies(scene, bodies), frozenset(groups_of(bodies)))
+        moved = [self._to(scene, around, one, other) for one, other in (bodies, bodies[::-1])]
         draft = Draft(scene.cloud)
         for asked in moved:
             turn(draft, asked.rows, asked.matrix, asked.offset)
@@ -66,13 +74,13 @@ class Exchange(TargetedOp):
             raise InstructionError("a thing cannot change places with what stands on it: say where each should go")
         return loaded(scene, bodies)
 
-    def _to(self, scene: Scene, placer: Placer, one: Body, other: Body) -> Affine:
+    def _to(self, scene: Scene, around: Surroundings, one: Body, other: Body) -> Affine:
         """Where one thing goes when it takes the other's place.
 
         Raises:
             InstructionError: one stands and the other hangs, or there is no room.
         """
-        up, hanging = scene.frame.up_vector, [support_height(scene, b, placer.context) is None for b in (one, other)]
+        up, hanging = scene.frame.up_vector, [support_height(scene, b, around.context) is None for b in (one, other)]
         if hanging[0] != hanging[1]:
             raise InstructionError("one of them stands and the other hangs: they cannot change places")
         matrix = axis_rotation(up, self._turn(scene, one, other))
@@ -80,11 +88,11 @@ class Exchange(TargetedOp):
         if hanging[0]:
             foot = other.center - up * (one.box.size[2] / 2)
         else:
-            spot = placer.near(one.box.size, turned_axes(one.box.axes, matrix, scene.frame), other)
+            spot = spot_near(around, one.box.size, turned_axes(one.box.axes, matrix, scene.frame), other)
             foot, support = spot.foot, spot.support
         offset = foot - matrix @ one.foot(up)
         points = solid_points(scene.cloud, one.rows) @ matrix.T + offset
-        placer.take(points, contact_box(points, scene.frame))
+        around.take(points, contact_box(points, scene.frame))
         return Affine(one.rows, matrix, np.asarray(offset), one.rows, support)
 
     def _turn(self, scene: Scene, one: Body, other: Body) -> float:

@@ -15,7 +15,8 @@ from ..checks import collision_free, counted, supported, unseen
 from ..cloud_diff import rows_of
 from ..new_objects import Arrivals, Wish, as_moved, fetch, find_spot, gaze, metre, set_down, taken_by
 from ..operation import AssetName, ColorName, Context, EditOp, Length, Outcome, Placement
-from ..placement.place import Placer
+from ..placement.place import anchors_of
+from ..placement.surroundings import Surroundings
 from ..receipt import Check, at_least
 
 
@@ -42,15 +43,15 @@ class Insert(EditOp):
         return f"{self.count} {self.asset}" if self.count > 1 else self.asset
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
-        placer, arrivals, moved = Placer(scene, context), Arrivals(scene), []
-        anchors = placer.anchors(self.place) if self.place is not None else []
-        scale, start, notes = metre(scene, anchors), gaze(placer), dict[str, None]()
+        around, arrivals, moved = Surroundings(scene, context), Arrivals(scene), []
+        anchors = anchors_of(around, self.place) if self.place is not None else []
+        scale, start, notes = metre(scene, anchors), gaze(around), dict[str, None]()
         for index in range(self.count):
             wish = Wish(self.asset, self.color, context.seed + index, scale, self.height)
             piece = fetch(scene, wish)
-            spot = find_spot(placer, piece, self.place, start)
+            spot = find_spot(around, piece, self.place, start)
             cloud = set_down(piece, spot.foot, spot.axes)
-            taken_by(cloud, scene, placer)
+            taken_by(cloud, scene, around)
             hangs = self.place is None and piece.support in ("wall", "ceiling")
             moved.append(as_moved(arrivals.add(cloud, piece.label, spot.axes), None if hangs else spot.support))
             notes |= dict.fromkeys(piece.notes)

@@ -31,7 +31,8 @@ from ..placement.bodies import (
     mask_of_bodies,
 )
 from ..placement.overhead import hung_over
-from ..placement.place import Placer
+from ..placement.place import free_spot
+from ..placement.surroundings import Surroundings
 from ..placement.walls import keep_inside
 from ..receipt import Check, at_most
 from ..transform import shift, turn
@@ -131,16 +132,16 @@ class Move(TargetedOp):
     def _placed(self, scene: Scene, bodies: list[Body], context: Context, place: Placement) -> list[Affine]:
         """Each body on a free spot of its own."""
         up = scene.frame.up_vector
-        placer = Placer(scene, context, mask_of_bodies(scene, bodies), frozenset(groups_of(bodies)))
+        around = Surroundings(scene, context, mask_of_bodies(scene, bodies), frozenset(groups_of(bodies)))
         moved = []
         for body in bodies:
             if place.relation == "above":
-                matrix, spot = hung_over(placer, body, place)
+                matrix, spot = hung_over(around, body, place)
             else:
-                matrix, spot = np.eye(3), placer.find(body.box.size, body.box.axes, place, body.foot(up))
+                matrix, spot = np.eye(3), free_spot(around, body.box.size, body.box.axes, place, body.foot(up))
             offset = spot.foot - matrix @ body.foot(up)
             points = solid_points(scene.cloud, body.rows) @ matrix.T + offset
-            placer.take(points, contact_box(points, scene.frame, spot.axes))
+            around.take(points, contact_box(points, scene.frame, spot.axes))
             moved.append(Affine(body.rows, matrix, offset, body.rows, spot.support))
         return moved
 

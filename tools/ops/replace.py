@@ -11,7 +11,8 @@ from ..cloud_diff import selection_of
 from ..new_objects import Arrivals, Piece, Wish, as_moved, fetch, metre, set_down, standing_axes, taken_by
 from ..operation import AssetName, ColorName, Context, Outcome, TargetedOp
 from ..placement.bodies import Body, bodies_of
-from ..placement.place import Placer, Spot
+from ..placement.place import Spot, spot_near
+from ..placement.surroundings import Surroundings
 from ..receipt import Check
 
 
@@ -32,13 +33,13 @@ class Replace(TargetedOp):
         go = mask_of(scene.cloud, selection.ids)
         # Ids of what goes are not given out again: the arrivals are numbered above those of the whole scene.
         arrivals, moved, notes = Arrivals(scene, go), [], dict[str, None]()
-        placer = Placer(scene, context, go, frozenset(b.group for b in bodies))
+        around = Surroundings(scene, context, go, frozenset(b.group for b in bodies))
         for index, body in enumerate(bodies):
             wish = Wish(self.asset, self.color, context.seed + index, metre(scene, [body]))
             piece = fetch(scene, wish)
-            spot = self._spot(placer, piece, body)
+            spot = self._spot(around, piece, body)
             cloud = set_down(piece, spot.foot, spot.axes)
-            taken_by(cloud, scene, placer)
+            taken_by(cloud, scene, around)
             moved.append(as_moved(arrivals.add(cloud, piece.label, spot.axes), spot.support))
             notes |= dict.fromkeys((*piece.notes, *spot.notes))
         after, groups = arrivals.enter(context)
@@ -48,9 +49,9 @@ class Replace(TargetedOp):
             after, added=added, removed=scene.cloud.ids[go], moved=tuple(moved), notes=tuple(notes), focus=focus
         )
 
-    def _spot(self, placer: Placer, piece: Piece, body: Body) -> Spot:
+    def _spot(self, around: Surroundings, piece: Piece, body: Body) -> Spot:
         """Where the old thing stood, or as near to it as there is room."""
-        return placer.near(piece.size, standing_axes(placer, [body]), body)
+        return spot_near(around, piece.size, standing_axes(around, [body]), body)
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         after = outcome.scene

@@ -19,8 +19,7 @@ from ..checks import bumps, carried_as_asked, counted
 from ..cloud_diff import Draft
 from ..field_update import carried
 from ..operation import Affine, Context, Outcome, TargetedOp
-from ..placement.bodies import Array, Body, bodies_of, groups_of, heading
-from ..placement.facing import turn_to_face
+from ..placement.bodies import Array, Body, bodies_of, groups_of, heading, turn_to_face
 from ..receipt import Check
 from ..transform import axis_rotation, turn
 

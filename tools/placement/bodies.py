@@ -5,6 +5,7 @@ Knows geometry of a scene and its groups. Refuses to know where things ought to 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -15,10 +16,11 @@ from torch import Tensor
 
 from ...gaussians.camera import Camera, Vec3
 from ...gaussians.errors import InstructionError
-from ...gaussians.language.field.measure import Axes, as_axes, box_along, level_axes, reach, solid_points
+from ...gaussians.language.field.measure import as_axes, box_along, level_axes, reach, solid_points
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Frame, Scene
-from ...gaussians.world.box import Box
+from ...gaussians.world.box import Axes, Box
+from ...gaussians.world.facing import facing_in
 from ...gaussians.world.relation_geometry import viewer_stand
 from ..cloud_diff import rows_of
 from ..operation import Direction
@@ -162,3 +164,39 @@ def neighbours(scene: Scene, but: set[int]) -> list[tuple[str, Box]]:
 def centimetre(frame: Frame, extent: float) -> float:
     """One centimetre in scene units; where the scale is unknown, a hundredth of `extent`, a thing's own size."""
     return 0.01 / frame.metres_per_unit if frame.metres_per_unit is not None else extent / 100
+
+
+def front_of(scene: Scene, body: Body) -> Array | None:
+    """`[3]` level unit vector out of a body's front, None where neither its shape nor a wall tells."""
+    field = scene.language
+    if field is None or body.group < 0:
+        return None
+    rows = body.rows.cpu().numpy()
+    if body.riders:  # what stands on it says nothing about its back
+        riders = [leaf for g in body.riders for leaf in field.leaves(g)]
+        rows = rows[~np.isin(scene.cloud.group.cpu().numpy()[rows], riders)]
+    return facing_in(field, scene.cloud, rows, field.groups[body.group]).front
+
+
+def turn_to_face(scene: Scene, body: Body, goal: Array) -> tuple[float, tuple[str, ...]]:
+    """Degrees about up by which a body must turn so that its front points at `goal` `[3]`, and notes.
+
+    Raises:
+        InstructionError: the goal is right above or below it.
+    """
+    up = scene.frame.up_vector
+    way = goal - body.center
+    way = way - up * (way @ up)
+    if float(np.linalg.norm(way)) < 1e-3 * max(body.box.size):
+        raise InstructionError(f"the {body.label or 'thing'} stands where it should turn to: name something else")
+    front = front_of(scene, body)
+    notes: tuple[str, ...] = ()
+    if front is None:
+        front = -np.array(body.box.axes[1])
+        notes = (f"which way the {body.label or 'thing'} faces cannot be told; the front of its box was turned there",)
+    return angle_between(front, way, up), notes
+
+
+def angle_between(start: Array, end: Array, up: Array) -> float:
+    """Degrees counter-clockwise about `up` from one level vector `[3]` to another, in (-180, 180]."""
+    return math.degrees(math.atan2(float(np.cross(start, end) @ up), float(start @ end)))

@@ -14,14 +14,14 @@ from ...gaussians import assets
 from ...gaussians.camera import Vec3
 from ...gaussians.errors import InstructionError, UserError
 from ...gaussians.scene import Scene
+from ...gaussians.world.box import Axes
 from ...gaussians.world.person import HUNG_AT
 from ..operation import Context, Placement
 from ..transform import axis_rotation
-from .bodies import Array, Body, as_vec, centimetre
-from .facing import angle_between, front_of
-from .place import Placer, Spot
-from .regions import Region, Regions, far
-from .support import support_height
+from .bodies import Array, Body, angle_between, as_vec, centimetre, front_of
+from .place import Spot, anchors_of, spot_to_hang
+from .regions import Region, far
+from .surroundings import Surroundings, support_height
 
 Hung = Literal["wall", "ceiling"]
 GAP = 15.0  # centimetres between a thing and what hangs on the wall above it, at least
@@ -29,21 +29,21 @@ _BEHIND = 100.0  # centimetres from a thing to the wall behind it, at most
 _NEAR = 0.9  # of the room's height: what hangs from the ceiling has its top above that
 
 
-def hung_over(placer: Placer, body: Body, place: Placement) -> tuple[Array, Spot]:
+def hung_over(around: Surroundings, body: Body, place: Placement) -> tuple[Array, Spot]:
     """How a body that hangs turns, `[3, 3]`, and where it goes, to hang above the anchor of a placement.
 
     Raises:
         InstructionError: it does not hang, no wall is there, or no room.
         AbsentError, AmbiguousError: the anchor is not there or not unique.
     """
-    (anchor, *_), scene = placer.anchors(place), placer.scene
-    hung = how_it_hangs(scene, body, placer.context)
+    (anchor, *_), scene = anchors_of(around, place), around.scene
+    hung = how_it_hangs(scene, body, around.context)
     if hung == "ceiling":
-        region, axes = over(placer, body.box.size, anchor, hung)
-        return np.eye(3), placer.hang(body.box.size, place, region, axes)
-    matrix, size = turned_to(scene, body, wall_axes(placer, anchor))
-    region, axes = over(placer, size, anchor, hung)
-    return matrix, placer.hang(size, place, region, axes)
+        region, axes = over(around, body.box.size, anchor, hung)
+        return np.eye(3), spot_to_hang(around, body.box.size, place, region, axes)
+    matrix, size = turned_to(scene, body, wall_axes(around, anchor))
+    region, axes = over(around, size, anchor, hung)
+    return matrix, spot_to_hang(around, size, place, region, axes)
 
 
 def how_it_hangs(scene: Scene, body: Body, context: Context) -> Hung:
@@ -59,47 +59,47 @@ def how_it_hangs(scene: Scene, body: Body, context: Context) -> Hung:
         return "wall" if usual == "wall" else "ceiling"
     if support_height(scene, body, context) is not None:
         raise InstructionError(f"the {body.label or 'thing'} stands and does not hang: say on something, or next to it")
-    rooms = Regions(scene, context)
+    rooms = Surroundings(scene, context)
     return "ceiling" if body.box.top(rooms.up) > rooms.floor + _NEAR * (rooms.ceiling - rooms.floor) else "wall"
 
 
-def over(regions: Regions, size: Vec3, anchor: Body, hung: Hung) -> tuple[Region, tuple[Vec3, Vec3, Vec3]]:
+def over(around: Surroundings, size: Vec3, anchor: Body, hung: Hung) -> tuple[Region, Axes]:
     """Where a thing of `size` hangs above an anchor, and the axes of its box there, its back to the wall.
 
     Raises:
         InstructionError: no wall is behind the anchor, or there is no height left above it.
     """
-    cm = centimetre(regions.frame, max(anchor.box.size))
-    bottom = anchor.box.top(regions.up) + GAP * cm
+    cm = centimetre(around.frame, max(anchor.box.size))
+    bottom = anchor.box.top(around.up) + GAP * cm
     if hung == "ceiling":
-        axes = regions.room_axes
-        height = regions.ceiling - size[2]
+        axes = around.room_axes
+        height = around.ceiling - size[2]
     else:
-        axes = wall_axes(regions, anchor)
-        height = min(max(bottom, regions.floor + 100 * HUNG_AT * cm - size[2] / 2), regions.ceiling - size[2])
-    if height < (anchor.box.top(regions.up) if hung == "ceiling" else bottom - GAP * cm / 2):
+        axes = wall_axes(around, anchor)
+        height = min(max(bottom, around.floor + 100 * HUNG_AT * cm - size[2] / 2), around.ceiling - size[2])
+    if height < (anchor.box.top(around.up) if hung == "ceiling" else bottom - GAP * cm / 2):
         raise InstructionError(f"there is no room between the {anchor.label or 'thing'} and the ceiling")
     plan = np.array(axes[:2])
     middle = plan @ anchor.center
     if hung == "ceiling":
         reach = np.array([anchor.box.extent(a) for a in plan]) / 2
         return Region(middle - reach, middle + reach, lambda p: far(p, middle), height, None), axes
-    low, high = regions.bounds_for(size, plan)
-    back = np.array(regions.room_axes[:2]) @ plan[1]  # the room's axis that points into the wall, with its sign
+    low, high = around.bounds_for(size, plan)
+    back = np.array(around.room_axes[:2]) @ plan[1]  # the room's axis that points into the wall, with its sign
     wanted = np.array([middle[0], float(np.where(back > 0, high, low) @ back)])
     aside = np.array([anchor.box.extent(plan[0]) / 2, 2 * cm])
     return Region(wanted - aside, wanted + aside, lambda p: far(p, wanted), height, None), axes
 
 
-def wall_axes(regions: Regions, anchor: Body) -> tuple[Vec3, Vec3, Vec3]:
+def wall_axes(around: Surroundings, anchor: Body) -> Axes:
     """Axes of a thing on the wall that is nearest to the anchor's side, its second axis pointing into the wall.
 
     Raises:
         InstructionError: no wall is within a metre of it.
     """
-    most = _BEHIND * centimetre(regions.frame, max(anchor.box.size))
-    plan = np.array(regions.room_axes[:2])
-    low, high = regions.bounds_for(anchor.box.size, np.array(anchor.box.axes[:2]))
+    most = _BEHIND * centimetre(around.frame, max(anchor.box.size))
+    plan = np.array(around.room_axes[:2])
+    low, high = around.bounds_for(anchor.box.size, np.array(anchor.box.axes[:2]))
     at = plan @ anchor.center
     gaps: list[tuple[float, Array]] = []
     for i in range(2):
@@ -107,10 +107,10 @@ def wall_axes(regions: Regions, anchor: Body) -> tuple[Vec3, Vec3, Vec3]:
     gap, back = min(gaps, key=lambda g: g[0])
     if gap > most:
         raise InstructionError(f"no wall is behind the {anchor.label or 'thing'}: name something that stands at a wall")
-    return as_vec(np.cross(back, regions.up)), as_vec(back), as_vec(regions.up)
+    return as_vec(np.cross(back, around.up)), as_vec(back), as_vec(around.up)
 
 
-def turned_to(scene: Scene, body: Body, axes: tuple[Vec3, Vec3, Vec3]) -> tuple[Array, Vec3]:
+def turned_to(scene: Scene, body: Body, axes: Axes) -> tuple[Array, Vec3]:
     """`[3, 3]`, how a body turns so that its back is along the second of the axes, and its size along them then.
 
     What faces nowhere hangs with its thin side to the wall.

@@ -1,7 +1,6 @@
 """Where to put something: a free, supported spot that fulfils a placement, found on a grid over the support.
 
-Knows how to search a region. Refuses to know what is being placed beyond its box, and which regions there are
-(regions.py). One exact search over a grid replaces trial and error: a cell is possible when the thing's footprint
+One exact search over a grid replaces trial and error: a cell is possible when the thing's footprint
 around it is carried by the support, stays within the allowed region and meets no solid point up to the thing's height;
 of the possible cells the one nearest to what was asked wins.
 """
@@ -16,12 +15,13 @@ from numpy.typing import NDArray
 
 from ...gaussians.camera import Vec3
 from ...gaussians.errors import InstructionError
+from ...gaussians.world.box import Axes
 from ...gaussians.world.relations import named
 from ..operation import Placement
 from .bodies import Array, Body, bodies_of, centimetre, neighbours
 from .occupancy import Bool, grown, histogram, window_sum
-from .regions import Region, Regions, far
-from .surroundings import FLOOR_WORDS
+from .regions import Region, beside_region, far, regions_of
+from .surroundings import FLOOR_WORDS, Surroundings
 
 _CELLS = 220  # most cells along a side of the grid
 _FOOT_CELLS = 10  # cells along the shorter side of a footprint, if the region is small enough
@@ -42,160 +42,170 @@ class Spot:
 
     foot: Array
     support: float
-    axes: tuple[Vec3, Vec3, Vec3]
+    axes: Axes
     notes: tuple[str, ...] = ()
 
 
-class Placer(Regions):
-    """Finds spots in one scene for one viewer."""
+def anchors_of(around: Surroundings, place: Placement) -> list[Body]:
+    """The things a placement names, resolved; empty if it is about the room itaround.
 
-    def anchors(self, place: Placement) -> list[Body]:
-        """The things a placement names, resolved; empty if it is about the room itself.
+    Raises:
+        AbsentError, AmbiguousError: an anchor is not there or not unique.
+    """
+    found: list[Body] = []
+    for query in place.anchors:
+        word = query.text.lower()
+        room = place.relation in ("on", "center", "corner") and word in FLOOR_WORDS
+        if room or (place.relation == "against" and word in WALL_WORDS):
+            continue
+        selection = around.context.resolve(around.scene, query).require()
+        found.extend(bodies_of(around.scene, selection))
+    return found
 
-        Raises:
-            AbsentError, AmbiguousError: an anchor is not there or not unique.
-        """
-        found: list[Body] = []
-        for query in place.anchors:
-            word = query.text.lower()
-            room = place.relation in ("on", "center", "corner") and word in FLOOR_WORDS
-            if room or (place.relation == "against" and word in WALL_WORDS):
-                continue
-            selection = self.context.resolve(self.scene, query).require()
-            found.extend(bodies_of(self.scene, selection))
-        return found
 
-    def find(self, size: Vec3, axes: tuple[Vec3, Vec3, Vec3], place: Placement | None, start: Array | None) -> Spot:
-        """A spot for a box of `size` along `axes`.
+def free_spot(around: Surroundings, size: Vec3, axes: Axes, place: Placement | None, start: Array | None) -> Spot:
+    """A spot for a box of `size` along `axes`.
 
-        Args:
-            start: where the thing is now, or where one would expect it; ties are broken toward it.
+    Args:
+        start: where the thing is now, or where one would expect it; ties are broken toward it.
 
-        Raises:
-            InstructionError: there is no free spot; the message says what is in the way.
-        """
-        anchors = self.anchors(place) if place is not None else []
-        regions = self._regions(size, axes, place, anchors, start)
-        crowded = False
-        for region in regions:
-            foot, blocked = self._search(size, axes, region, anchors)
-            if foot is not None:
-                return Spot(foot, region.height, axes)
-            crowded |= blocked
-        where = place.describe() if place is not None else "on the floor"
-        why = "everything there is taken" if crowded else "there is no surface there large enough to carry it"
-        raise InstructionError(f"there is no room {where}: {why}; make it smaller, clear a spot or name another place")
+    Raises:
+        InstructionError: there is no free spot; the message says what is in the way.
+    """
+    anchors = anchors_of(around, place) if place is not None else []
+    regions = regions_of(around, size, axes, place, anchors, start)
+    crowded = False
+    for region in regions:
+        foot, blocked = _search(around, size, axes, region, anchors)
+        if foot is not None:
+            return Spot(foot, region.height, axes)
+        crowded |= blocked
+    where = place.describe() if place is not None else "on the floor"
+    why = "everything there is taken" if crowded else "there is no surface there large enough to carry it"
+    raise InstructionError(f"there is no room {where}: {why}; make it smaller, clear a spot or name another place")
 
-    def hang(self, size: Vec3, place: Placement, region: Region, axes: tuple[Vec3, Vec3, Vec3]) -> Spot:
-        """A free spot in a region where something hangs (see overhead.py).
 
-        Raises:
-            InstructionError: there is none.
-        """
-        return self._only(size, axes, region, place.describe())
+def spot_to_hang(around: Surroundings, size: Vec3, place: Placement, region: Region, axes: Axes) -> Spot:
+    """A free spot in a region where something hangs (see overhead.py).
 
-    def beside(self, body: Body) -> Spot:
-        """A free spot next to a thing for another like it.
+    Raises:
+        InstructionError: there is none.
+    """
+    return _only(around, size, axes, region, place.describe())
 
-        Raises:
-            InstructionError: there is none.
-        """
-        region = self._beside_region(body.box.size, np.array(body.box.axes[:2]), body, named("next_to"), None)
-        return self._only(body.box.size, body.box.axes, region, f"next to the {body.label or 'thing'}")
 
-    def near(self, size: Vec3, axes: tuple[Vec3, Vec3, Vec3], body: Body) -> Spot:
-        """Where a thing that goes away stands, or the free spot nearest to it, on what it stands on.
+def spot_beside(around: Surroundings, body: Body) -> Spot:
+    """A free spot next to a thing for another like it.
 
-        Raises:
-            InstructionError: there is none within its own size.
-        """
-        plan = np.array(axes[:2])
-        middle, reach = plan @ body.center, 0.75 * np.array(size[:2]) + 0.5 * max(body.box.size[:2])
-        height, surface = self._base(body, plan)
-        if surface is not None:  # what it covered carries, too, though nothing of it was ever seen
-            under = np.stack(np.meshgrid(*[np.linspace(-0.5, 0.5, 15)] * 2), axis=-1).reshape(-1, 2)
-            extents = np.array([body.box.extent(a) for a in plan])
-            covered = np.column_stack([middle + under * extents, np.full(len(under), height)])
-            surface = np.concatenate([surface, covered])
-        region = Region(middle - reach, middle + reach, lambda p: far(p, middle), height, surface)
-        return self._only(size, axes, region, f"where the {body.label or 'thing'} stands")
+    Raises:
+        InstructionError: there is none.
+    """
+    region = beside_region(around, body.box.size, np.array(body.box.axes[:2]), body, named("next_to"), None)
+    return _only(around, body.box.size, body.box.axes, region, f"next to the {body.label or 'thing'}")
 
-    def _only(self, size: Vec3, axes: tuple[Vec3, Vec3, Vec3], region: Region, where: str) -> Spot:
-        foot, crowded = self._search(size, axes, region, ())
-        if foot is None:
-            why = "everything there is taken" if crowded else "no surface there is large enough to carry it"
-            raise InstructionError(f"there is no room {where}: {why}; clear a spot or name another place")
-        return Spot(foot, region.height, axes)
 
-    # -- the search -------------------------------------------------------------------------------------------------
+def spot_near(around: Surroundings, size: Vec3, axes: Axes, body: Body) -> Spot:
+    """Where a thing that goes away stands, or the free spot nearest to it, on what it stands on.
 
-    def _search(
-        self, size: Vec3, axes: tuple[Vec3, Vec3, Vec3], region: Region, anchors: Sequence[Body]
-    ) -> tuple[Array | None, bool]:
-        """The best possible foot position on one support, and whether obstacles (rather than the support) ruled."""
-        basis = np.array(axes)
-        half = np.array(size[:2]) / 2
-        span = np.maximum(region.high - region.low, 0) + 2 * half
-        cell = max(float(min(size[:2])) / _FOOT_CELLS, float(span.max()) / _CELLS, 1e-9)
-        shape = np.maximum(np.ceil(span / cell).astype(int) + 1, 1)
-        origin = region.low - half
-        clear = self._clear(size)
-        blocked = self._occupied(basis, origin, cell, shape, (region.height + clear, region.height + size[2]))
-        blocked = grown(blocked, max(1, round(centimetre(self.frame, max(size)) / cell)))  # things do not touch
-        foot = np.maximum(np.ceil(2 * half / cell).astype(int), 1)  # cells of the footprint
-        counts = [np.maximum(s - f + 1, 1) for s, f in zip(shape, foot, strict=True)]
-        corner = np.stack(np.meshgrid(*(np.arange(c) for c in counts), indexing="ij"), axis=-1)
-        centers = origin + (corner + foot / 2) * cell
-        possible = (centers >= region.low - cell).all(axis=-1) & (centers <= region.high + cell).all(axis=-1)
-        if region.surface is not None:
-            carried = histogram(region.surface[:, :2], origin, cell, shape) > 0
-            share = window_sum(grown(carried, self._reach(region.surface, cell)).astype(np.int64), foot, counts)
-            possible &= share / float(foot.prod()) >= _CARRIED
-        else:
-            low, high = self.bounds_for(size, basis[:2])
-            placed = centers @ (np.array(self.room_axes[:2]) @ basis[:2].T).T
-            possible &= ((placed >= low - cell) & (placed <= high + cell)).all(axis=-1)
-        some = bool(possible.any())
-        possible &= window_sum(blocked.astype(np.int64), foot, counts) == 0
-        cost = np.where(possible, region.cost(centers), np.inf)
-        cost = cost + self._crowding(size, basis, centers, region.height, clear, anchors)
-        best = np.unravel_index(int(np.argmin(cost)), cost.shape)
-        if not np.isfinite(cost[best]):
-            return None, some
-        return centers[best] @ basis[:2] + region.height * self.up, some
+    Raises:
+        InstructionError: there is none within its own size.
+    """
+    plan = np.array(axes[:2])
+    middle, reach = plan @ body.center, 0.75 * np.array(size[:2]) + 0.5 * max(body.box.size[:2])
+    height, surface = around.base_under(body, plan)
+    if surface is not None:  # what it covered carries, too, though nothing of it was ever seen
+        under = np.stack(np.meshgrid(*[np.linspace(-0.5, 0.5, 15)] * 2), axis=-1).reshape(-1, 2)
+        extents = np.array([body.box.extent(a) for a in plan])
+        covered = np.column_stack([middle + under * extents, np.full(len(under), height)])
+        surface = np.concatenate([surface, covered])
+    region = Region(middle - reach, middle + reach, lambda p: far(p, middle), height, surface)
+    return _only(around, size, axes, region, f"where the {body.label or 'thing'} stands")
 
-    def _reach(self, surface: Array, cell: float) -> int:
-        """Cells by which points of a surface are grown so that they close: their spacing, but for sparse ones."""
-        area = float(np.prod(np.ptp(surface[:, :2], axis=0))) if len(surface) > 1 else 0.0
-        return int(np.clip(np.ceil((area / max(len(surface), 1)) ** 0.5 / cell), 1, 6))
 
-    def _clear(self, size: Vec3) -> float:
-        """Height above the support below which points do not count: rugs, unevenness, the support's own thickness."""
-        cm = centimetre(self.frame, max(size))
-        return float(np.clip(0.15 * size[2], 0.5 * cm, 4 * cm))
+def _only(around: Surroundings, size: Vec3, axes: Axes, region: Region, where: str) -> Spot:
+    foot, crowded = _search(around, size, axes, region, ())
+    if foot is None:
+        why = "everything there is taken" if crowded else "no surface there is large enough to carry it"
+        raise InstructionError(f"there is no room {where}: {why}; clear a spot or name another place")
+    return Spot(foot, region.height, axes)
 
-    def _occupied(
-        self, basis: Array, origin: Array, cell: float, shape: NDArray[np.int_], heights: tuple[float, float]
-    ) -> Bool:
-        """Cells with a solid point in the height range; single points without any neighbour are floaters."""
-        up = self.solid @ basis[2].astype(np.float32)
-        points = self.solid[(up > heights[0]) & (up < heights[1])] @ basis[:2].T.astype(np.float32)
-        counts = histogram(points.astype(np.float64), origin, cell, shape)
-        around = window_sum(np.pad(counts, 1), np.array([3, 3]), list(shape))
-        occupied: Bool = (counts > 0) & (around > 1)
-        return occupied
 
-    def _crowding(
-        self, size: Vec3, basis: Array, centers: Array, height: float, clear: float, anchors: Sequence[Body]
-    ) -> Array:
-        """A large cost where the box would stand in another object's box, though no point is there (under a table)."""
-        total = np.zeros(centers.shape[:-1])
-        own = {a.group for a in anchors if a.group >= 0} | self.moving_groups
-        for box in [*(box for _, box in neighbours(self.scene, own)), *self.taken]:
-            middle = float(np.array(box.center) @ basis[2])
-            if middle - box.size[2] / 2 > height + size[2] or middle + box.size[2] / 2 < height + clear:
-                continue
-            reach = np.array([box.extent(a) for a in basis[:2]]) / 2 + np.array(size[:2]) / 2
-            within = (np.abs(centers - basis[:2] @ np.array(box.center)) < 0.98 * reach).all(axis=-1)
-            total += np.where(within, 1e3, 0.0)
-        return total
+def _search(
+    around: Surroundings, size: Vec3, axes: Axes, region: Region, anchors: Sequence[Body]
+) -> tuple[Array | None, bool]:
+    """The best possible foot position on one support, and whether obstacles (rather than the support) ruled."""
+    basis = np.array(axes)
+    half = np.array(size[:2]) / 2
+    span = np.maximum(region.high - region.low, 0) + 2 * half
+    cell = max(float(min(size[:2])) / _FOOT_CELLS, float(span.max()) / _CELLS, 1e-9)
+    shape = np.maximum(np.ceil(span / cell).astype(int) + 1, 1)
+    origin = region.low - half
+    clear = _clear(around, size)
+    blocked = _occupied(around, basis, origin, cell, shape, (region.height + clear, region.height + size[2]))
+    blocked = grown(blocked, max(1, round(centimetre(around.frame, max(size)) / cell)))  # things do not touch
+    foot = np.maximum(np.ceil(2 * half / cell).astype(int), 1)  # cells of the footprint
+    counts = [np.maximum(s - f + 1, 1) for s, f in zip(shape, foot, strict=True)]
+    corner = np.stack(np.meshgrid(*(np.arange(c) for c in counts), indexing="ij"), axis=-1)
+    centers = origin + (corner + foot / 2) * cell
+    possible = (centers >= region.low - cell).all(axis=-1) & (centers <= region.high + cell).all(axis=-1)
+    if region.surface is not None:
+        carried = histogram(region.surface[:, :2], origin, cell, shape) > 0
+        share = window_sum(grown(carried, _reach(region.surface, cell)).astype(np.int64), foot, counts)
+        possible &= share / float(foot.prod()) >= _CARRIED
+    else:
+        low, high = around.bounds_for(size, basis[:2])
+        placed = centers @ (np.array(around.room_axes[:2]) @ basis[:2].T).T
+        possible &= ((placed >= low - cell) & (placed <= high + cell)).all(axis=-1)
+    some = bool(possible.any())
+    possible &= window_sum(blocked.astype(np.int64), foot, counts) == 0
+    cost = np.where(possible, region.cost(centers), np.inf)
+    cost = cost + _crowding(around, size, basis, centers, region.height, clear, anchors)
+    best = np.unravel_index(int(np.argmin(cost)), cost.shape)
+    if not np.isfinite(cost[best]):
+        return None, some
+    return centers[best] @ basis[:2] + region.height * around.up, some
+
+
+def _reach(surface: Array, cell: float) -> int:
+    """Cells by which points of a surface are grown so that they close: their spacing, but for sparse ones."""
+    area = float(np.prod(np.ptp(surface[:, :2], axis=0))) if len(surface) > 1 else 0.0
+    return int(np.clip(np.ceil((area / max(len(surface), 1)) ** 0.5 / cell), 1, 6))
+
+
+def _clear(around: Surroundings, size: Vec3) -> float:
+    """Height above the support below which points do not count: rugs, unevenness, the support's own thickness."""
+    cm = centimetre(around.frame, max(size))
+    return float(np.clip(0.15 * size[2], 0.5 * cm, 4 * cm))
+
+
+def _occupied(
+    around: Surroundings,
+    basis: Array,
+    origin: Array,
+    cell: float,
+    shape: NDArray[np.int_],
+    heights: tuple[float, float],
+) -> Bool:
+    """Cells with a solid point in the height range; single points without any neighbour are floaters."""
+    up = around.solid @ basis[2].astype(np.float32)
+    points = around.solid[(up > heights[0]) & (up < heights[1])] @ basis[:2].T.astype(np.float32)
+    counts = histogram(points.astype(np.float64), origin, cell, shape)
+    nearby = window_sum(np.pad(counts, 1), np.array([3, 3]), list(shape))
+    occupied: Bool = (counts > 0) & (nearby > 1)
+    return occupied
+
+
+def _crowding(
+    around: Surroundings, size: Vec3, basis: Array, centers: Array, height: float, clear: float, anchors: Sequence[Body]
+) -> Array:
+    """A large cost where the box would stand in another object's box, though no point is there (under a table)."""
+    total = np.zeros(centers.shape[:-1])
+    own = {a.group for a in anchors if a.group >= 0} | around.moving_groups
+    for box in [*(box for _, box in neighbours(around.scene, own)), *around.taken]:
+        middle = float(np.array(box.center) @ basis[2])
+        if middle - box.size[2] / 2 > height + size[2] or middle + box.size[2] / 2 < height + clear:
+            continue
+        reach = np.array([box.extent(a) for a in basis[:2]]) / 2 + np.array(size[:2]) / 2
+        within = (np.abs(centers - basis[:2] @ np.array(box.center)) < 0.98 * reach).all(axis=-1)
+        total += np.where(within, 1e3, 0.0)
+    return total

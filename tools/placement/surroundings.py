@@ -15,15 +15,17 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from ...gaussians.camera import Vec3
-from ...gaussians.language.field.measure import OPAQUE
+from ...gaussians.language.field.measure import OPAQUE, solid_points
 from ...gaussians.scene import Frame, Scene
-from ...gaussians.world.box import Box
+from ...gaussians.world.box import Axes, Box
 from ..operation import Context
-from .bodies import Array, Body, as_vec, centimetre
+from .bodies import Array, Body, as_vec, centimetre, contact_box, mask_of_bodies
 from .occupancy import Bool, obstacle_points
 
 _LOW = 240.0  # centimetres, height of a low room
 _SAMPLE = 50_000  # points on which extents of the room are measured
+_FEW = 8  # points under a thing; fewer are floaters
+_SHARE = 0.03  # of its height that a thing may be off its support: splats reach about that far beyond their centres
 FLOOR_WORDS = frozenset({"floor", "ground", "carpet", "room"})
 
 
@@ -72,7 +74,7 @@ class Surroundings:
         return self.solid[:: max(1, len(self.solid) // _SAMPLE)]
 
     @cached_property
-    def room_axes(self) -> tuple[Vec3, Vec3, Vec3]:
+    def room_axes(self) -> Axes:
         """Level axes of the floor if the field knows it, else of the frame."""
         if self.scene.language is not None:
             floors = [g for g in self.scene.language.groups if g.level == "structure" and g.label in FLOOR_WORDS]
@@ -108,7 +110,7 @@ class Surroundings:
 
     def bounds_for(self, size: Vec3, plan: Array) -> tuple[Array, Array]:
         """Bounds, along the room's axes, of the centre of a footprint along `plan` that stays in the room."""
-        low, high = self._room_bounds
+        low, high = self.room_bounds
         turn = np.abs(np.array(self.room_axes[:2]) @ plan.T)
         half = turn @ np.array(size[:2]) / 2
         low, high = low + half, high - half
@@ -116,7 +118,7 @@ class Surroundings:
         return np.where(tight, (low + high) / 2, low), np.where(tight, (low + high) / 2, high)
 
     @cached_property
-    def _room_bounds(self) -> tuple[Array, Array]:
+    def room_bounds(self) -> tuple[Array, Array]:
         """Extent along the room's axes of what lies about floor height, stray points left out."""
         plan = np.array(self.room_axes[:2])
         heights = self.thin @ self.up.astype(np.float32)
@@ -128,10 +130,10 @@ class Surroundings:
         low, high = np.quantile(points, [0.004, 0.996], axis=0)
         return low.astype(np.float64), high.astype(np.float64)
 
-    def _base(self, anchor: Body, plan: Array) -> tuple[float, Array | None]:
+    def base_under(self, anchor: Body, plan: Array) -> tuple[float, Array | None]:
         """What a thing stands on: the floor, or the surface just under it with its points."""
         bottom = anchor.box.bottom(self.up)
-        tolerance = max(self._tolerance(anchor), 5 * centimetre(self.frame, max(anchor.box.size)))
+        tolerance = max(self.tolerance(anchor), 5 * centimetre(self.frame, max(anchor.box.size)))
         if abs(bottom - self.floor) <= tolerance and self.frame.floor is not None:
             return self.floor, None
         heights = self.solid @ self.up.astype(np.float32)
@@ -144,16 +146,30 @@ class Surroundings:
 
     def _inside(self, body: Body) -> Bool:
         """Which solid points lie within a body's footprint."""
-        local = np.abs(body.box.local(self.solid))
-        return np.asarray((local[:, :2] <= np.array(body.box.size[:2]) / 2).all(axis=1))
+        return body.box.covers(self.solid)
 
-    def _points_of(self, body: Body) -> Array:
+    def points_of(self, body: Body) -> Array:
         cloud = self.scene.cloud
         points = cloud.means[body.rows].to(torch.float64).cpu().numpy()
         solid = (cloud.opacities[body.rows] >= OPAQUE).cpu().numpy()
         return points[solid] if solid.any() else points
 
-    def _tolerance(self, anchor: Body) -> float:
+    def tolerance(self, anchor: Body) -> float:
         """How uneven a surface may be: 3 % of its owner's height, between 1 and 4 centimetres."""
         cm = centimetre(self.frame, max(anchor.box.size))
         return float(np.clip(0.03 * anchor.box.size[2], cm, 4 * cm))
+
+
+def support_height(scene: Scene, body: Body, context: Context) -> float | None:
+    """Height along up of what a body stands on, scene units; None where nothing is within two centimetres below it."""
+    up = scene.frame.up_vector
+    box = contact_box(solid_points(scene.cloud, body.rows), scene.frame, body.box.axes)
+    bottom = box.bottom(up)
+    slack = max(2 * centimetre(scene.frame, max(box.size)), _SHARE * box.size[2])
+    floor = Surroundings(scene, context).floor
+    if abs(bottom - floor) <= slack:
+        return floor
+    others = obstacle_points(scene.cloud, mask_of_bodies(scene, [body]))
+    heights = others[box.covers(others)] @ up.astype(np.float32)
+    near = heights[np.abs(heights - bottom) <= slack]
+    return float(np.median(near)) if len(near) >= _FEW else None

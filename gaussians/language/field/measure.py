@@ -20,10 +20,9 @@ from ...color import rgb_to_lab
 from ...harmonics import dc_to_color
 from ...rotations import to_matrix
 from ...scene import Frame
-from ...world.box import Box
+from ...world.box import Axes, Box
 
 F64 = NDArray[np.float64]
-Axes = tuple[Vec3, Vec3, Vec3]
 
 LIT = 0.8  # quantile of lightness that stands for an object's lit faces
 TRIM = 0.01  # of the Gaussians on each side may lie outside the box
