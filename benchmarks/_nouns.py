@@ -19,7 +19,7 @@ from ..planners.rooms.label_encoder import THRESHOLD, agreement
 from . import _data
 
 _FILE = "nr3d_utterances.json.gz"
-# What people say for a label of this set, beyond everyday synonyms (gaussians/world/synonyms.py): the label is one
+# What people say for a label of this set, beyond everyday synonyms (gaussians/world/kinds.json): the label is one
 # annotator's choice among several words for the thing.
 SAID = {
     "storage bin": ("box", "container", "tote", "bin", "crate"),

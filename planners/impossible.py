@@ -9,9 +9,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..gaussians import assets
-from ..gaussians.errors import InstructionError, UserError
+from ..gaussians.errors import InstructionError
 from ..gaussians.language.query.selection import Selection
+from ..gaussians.world import kinds
 from ..gaussians.world.lengths import in_metres
 from ..tools.operation import EditOp, Length
 from ..tools.ops.scale import Scale
@@ -92,10 +92,8 @@ def refuse_above(stage: Stage, step: Step, chosen: Selection | None) -> None:
 
 def _usual_support(label: str) -> str:
     """What things of this name stand on or hang from, "" if nothing is known of them."""
-    try:
-        return str(assets.find(label).support)
-    except UserError:
-        return ""
+    kind = kinds.of(label)
+    return "" if kind is None else kind.support
 
 
 def _refuse_exchange(stage: Stage, groups: Sequence[int]) -> None:

@@ -15,9 +15,10 @@ from torch import Tensor
 from ..gaussians import assets
 from ..gaussians.camera import Vec3
 from ..gaussians.cloud import NO_GROUP, GaussianCloud
-from ..gaussians.errors import InstructionError, UserError
+from ..gaussians.errors import InstructionError
 from ..gaussians.language.field.measure import reach, solid_points
 from ..gaussians.scene import Scene
+from ..gaussians.world import kinds
 from ..gaussians.world.box import Axes
 from ..gaussians.world.person import HUNG_AT
 from . import field_update
@@ -61,11 +62,8 @@ def metre(scene: Scene, anchors: Sequence[Body] = ()) -> Metre:
 
 def _usual_height(label: str) -> float | None:
     """Middle of the usual heights of a kind, metres; None for things the library does not know."""
-    try:
-        low, high = assets.find(label).sizes[2] if label else (0.0, 0.0)
-    except UserError:
-        return None
-    return (low * high) ** 0.5 if low > 0 else None
+    kind = kinds.find(label)
+    return None if kind is None else (kind.size[2][0] * kind.size[2][1]) ** 0.5
 
 
 def _across(scene: Scene) -> float:
@@ -126,7 +124,7 @@ def fetch(scene: Scene, wish: Wish) -> Piece:
     center = np.array([-(low + high) / 2 for low, high in spans[:2]] + [-spans[2][0]])
     cloud = transformed(cloud, np.eye(3), center)
     size = as_vec(np.array([max(high - low, 1e-6) for low, high in spans]))
-    return Piece(cloud, made.kind, size, assets.find(wish.kind).support, notes)
+    return Piece(cloud, made.kind, size, kinds.table().kinds[made.kind].support, notes)
 
 
 def set_down(piece: Piece, foot: Array, axes: Axes) -> GaussianCloud:

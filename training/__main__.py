@@ -16,7 +16,6 @@ from typing import Any
 import torch
 
 from ..gaussians import assets
-from ..gaussians.assets import registry
 from ..gaussians.language.encoders.backends.embedded import Embedded
 from . import captions, export, fit, foreign_meshes, in_rooms, measure, renders
 
@@ -36,7 +35,7 @@ def main(argv: list[str] | None = None) -> int:
 
     kinds = assets.kinds(shown=True)
     cache = options.cache or renders.cache_folder()
-    job_words = captions.vocabulary({k: registry.KINDS[k].synonyms for k in kinds})
+    job_words = captions.vocabulary(kinds)
     job = fit.task(job_words, captions.words(job_words))
     shown = renders.cached("train", kinds, range(options.assets), cache, report)
     held = [

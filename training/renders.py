@@ -128,8 +128,8 @@ def things_of_seed(kinds: tuple[str, ...], seed: int) -> Iterator[Thing]:
     rng = np.random.default_rng([seed, 7])
     made = {kind: _made(kind, seed, rng) for kind in kinds}
     for kind in kinds:
-        asset, entry = made[kind], registry.KINDS[kind]
-        hang = (entry.against_wall or entry.support == "wall", str(entry.support))
+        asset, entry = made[kind], registry.KINDS[kind].known
+        hang = (entry.backed or entry.support == "wall", str(entry.support))
         yield Thing(asset.cloud, kind, WHOLE, seed, *hang)
         yield Thing(damaged(asset.cloud, made[kinds[rng.integers(len(kinds))]].cloud, rng), kind, DAMAGED, seed, *hang)
         if rng.random() < 0.6 and (piece := fragment(asset, rng)) is not None:

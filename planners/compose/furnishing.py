@@ -7,12 +7,13 @@ layout (problems.py).
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import ceil
 
 import numpy as np
 
+from ...gaussians.world.kinds import Kind
 from ...gaussians.world.relations import WishName
 from ..layout.problem import Wall
 from . import knowledge
@@ -21,7 +22,7 @@ from .brief import Brief, Thing
 _FEWEST, _MOST = 8, 22  # objects that a room without a stated size is filled to
 _PER_AREA = 0.9  # objects for each square metre of a stated size
 _SKIPPED = 0.15  # share of habits that chance leaves out, so that not every living room is the same
-_PLAIN = knowledge.ThingKind(name="thing", size=((0.5, 0.5), (0.5, 0.5), (0.5, 0.5)))
+_PLAIN = Kind(name="thing", size=((0.5, 0.5), (0.5, 0.5), (0.5, 0.5)))
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class Group:
 
     key: str
     thing: Thing
-    kind: knowledge.ThingKind
+    kind: Kind
     bonds: list[Bond] = field(default_factory=list)
 
     @property
@@ -80,7 +81,7 @@ class Furnishing:
         for thing in self.brief.things:
             if thing.name in ("door", "window"):
                 continue
-            kind = knowledge.thing(thing.name) or _PLAIN.model_copy(update={"name": thing.name})
+            kind = knowledge.thing(thing.name) or replace(_PLAIN, name=thing.name)
             self.groups.append(Group(thing.id, thing, kind))
         known = {g.key: g for g in self.groups}
         for said in self.brief.relations:
@@ -117,7 +118,7 @@ class Furnishing:
                 group.bonds.append(bond)
         self.pending = []
 
-    def _there(self, kind: knowledge.ThingKind) -> bool:
+    def _there(self, kind: Kind) -> bool:
         """Whether the brief asked for it or its like, or the room has it already."""
         return any(g.kind.name == kind.name or (g.asked and g.kind.role == kind.role) for g in self.groups)
 
@@ -137,7 +138,7 @@ class Furnishing:
         used = {g.key for g in self.groups}
         return name if name not in used else next(k for i in range(2, 99) if (k := f"{name} {i}") not in used)
 
-    def carrier(self, kind: knowledge.ThingKind, usual: bool = False) -> Group | None:
+    def carrier(self, kind: Kind, usual: bool = False) -> Group | None:
         """The group that a small thing is put on; only one that it is usually found on, if `usual`."""
         for name in kind.on:
             if (found := self.find(name)) and (found.kind.top or found.kind.name in kind.on):

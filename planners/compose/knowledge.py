@@ -1,7 +1,6 @@
-"""What rooms are like: kinds of rooms and what belongs in them, things with their sizes, styles. Read from three files.
+"""What rooms are like: kinds of rooms and what belongs in them, and styles. Things are those of the table of kinds.
 
-Knows names, ranges and habits. Refuses to know sentences (reading.py) and places (the layout solver).
-Sizes are those of furniture as it is sold and of rooms as they are built, rounded ranges from common knowledge.
+Sizes are those of rooms as they are built, rounded ranges from common knowledge.
 """
 
 from __future__ import annotations
@@ -10,10 +9,12 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
 
+from ...gaussians.world import kinds
+from ...gaussians.world.kinds import Kind
 from ...gaussians.world.relations import WishName
 from ...gaussians.world.words import singular
 
@@ -27,52 +28,6 @@ Counts = tuple[Number, Number]
 
 class _Entry(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class ThingKind(_Entry):
-    """A kind of thing.
-
-    Attributes:
-        name, also: what it is called, singular and lower case, and other words for it.
-        size: lowest and highest width, depth and height, metres.
-        support: what it is put on or hung from; "surface": the top of another thing.
-        like: what it stands in for: who asks for a queen bed needs no other "bed".
-        on: names of the things that a small one is usually found on, the likeliest first.
-        backed: its back belongs against a wall.
-        aisle: metres between its back and that wall, where somebody works behind it.
-        front: whether it has a side that people look at or use.
-        round: whether all its sides are alike.
-        top: whether small things are put on it.
-        clear: metres kept free before, behind, left and right of it.
-        seats: how many people sit on it.
-        colors: that it usually has.
-    """
-
-    name: Name
-    also: tuple[Name, ...] = ()
-    size: tuple[Span, Span, Span]
-    support: Literal["floor", "surface", "wall", "ceiling"] = "floor"
-    like: Name | None = None
-    on: tuple[Name, ...] = ()
-    backed: bool = False
-    aisle: Share = 0.0
-    front: bool = False
-    round: bool = False
-    top: bool = False
-    clear: tuple[Share, Share, Share, Share] = (0.0, 0.0, 0.0, 0.0)
-    seats: Annotated[int, Field(ge=0, le=12)] = 0
-    colors: tuple[Name, ...] = ()
-
-    @property
-    def role(self) -> str:
-        """What it is in a room, whatever sort of it."""
-        return self.like or self.name
-
-    @model_validator(mode="after")
-    def _ordered(self) -> Self:
-        if any(low > high for low, high in self.size):
-            raise ValueError(f"{self.name}: a range of sizes runs from high to low")
-        return self
 
 
 class Habit(_Entry):
@@ -154,29 +109,31 @@ class Style(_Entry):
 
 
 @cache
-def _things() -> tuple[ThingKind, ...]:
-    return TypeAdapter(tuple[ThingKind, ...]).validate_json(_text("things.json"))
-
-
-@cache
-def things() -> Mapping[str, ThingKind]:
-    """Every kind of thing by its name."""
-    return MappingProxyType({t.name: t for t in _things()})
+def things() -> Mapping[str, Kind]:
+    """Every kind of thing by its name, without names for several things as one."""
+    return MappingProxyType({k.name: k for k in kinds.table().kinds.values() if k.one is None})
 
 
 @cache
 def rooms() -> Mapping[str, RoomKind]:
     """Every kind of room by its name; what they hold is among `things`."""
     found = TypeAdapter(tuple[RoomKind, ...]).validate_json(_text("rooms.json"))
-    strange = {h.thing for room in found for h in room.habits} - set(things())
+    strange = {n for room in found for n in _asked(room)} - set(things())
     assert not strange, f"rooms hold things that nobody described: {sorted(strange)}"
     return MappingProxyType({r.name: r for r in found})
+
+
+def _asked(room: RoomKind) -> set[str]:
+    """Names of the things that a room holds or seats people on."""
+    return {h.thing for h in room.habits} | {s.thing for s in room.seats}
 
 
 @cache
 def styles() -> Mapping[str, Style]:
     """Every style by its name."""
     found = TypeAdapter(tuple[Style, ...]).validate_json(_text("styles.json"))
+    strange = {name for style in found for name in style.adds} - set(things())
+    assert not strange, f"styles add things that nobody described: {sorted(strange)}"
     return MappingProxyType({s.name: s for s in found})
 
 
@@ -194,7 +151,9 @@ Table = Mapping[tuple[str, ...], str]
 @cache
 def thing_words() -> Table:
     """Names of things as tuples of words, the last one singular, and what they name."""
-    told = {_words(a): t.name for t in _things() for a in (*t.also, t.name)}
+    every = kinds.table().kinds.values()
+    told = {_words(a): k.one or k.name for k in every for a in k.names}
+    told = {w: name for w, name in told.items() if w not in room_words()}  # a closet is a room here, no wardrobe
     return MappingProxyType({(*w[:-1], singular(w[-1])): name for w, name in told.items()} | told)
 
 
@@ -232,7 +191,7 @@ def longest_name(words: Sequence[str], i: int) -> int:
     return max((f[1] for f in found if f), default=0)
 
 
-def thing(name: str) -> ThingKind | None:
+def thing(name: str) -> Kind | None:
     """The kind that a name means, in singular or plural, by any of its words; None if nobody described it."""
     words = _words(" ".join(name.lower().split()))
     found = lookup(thing_words(), words, 0) if words else None

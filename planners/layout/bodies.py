@@ -11,14 +11,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from ...gaussians.world import relations
+from ...gaussians.world import kinds, relations
 from ...gaussians.world.box import YawBox, plan_penetration, to_world
 from ...gaussians.world.person import HEADROOM, STEP
 from ...gaussians.world.support import SHELL
 from .lattice import EPSILON
 from .problem import Item, Problem, Wall
 
-DOORS = frozenset({"door", "doorway", "entrance", "gate", "exit", "front door", "entry"})
 TUCKED = 0.03  # metres between a table and what stands around it
 _ELBOW = 0.08  # metres between neighbours at a table
 _SWING = 0.9  # metres before a door that its leaf takes at most
@@ -152,7 +151,7 @@ class Prepared:
         item = self.items[i]
         width, deep, height = item.size
         before, behind, left, right = item.clear
-        if item.label.lower().strip() in DOORS and not any(item.clear):
+        if kinds.is_door(item.label) and not any(item.clear):
             before = behind = min(width, _SWING)
         low = 0.0 if item.support == "floor" else (item.height or 0.0)
         high = min(HEADROOM, low + max(height, 0.3))

@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Literal, NamedTuple
 
+from ...gaussians.world import kinds
 from ...gaussians.world.person import STEP
 from ..rooms.node import NodeId
-from .bodies import DOORS, Prepared
+from .bodies import Prepared
 from .problem import Conflict, Item, Problem, Wish
 from .search import Search
 from .sentences import said_item, said_keepout, said_room, said_wish
@@ -156,7 +157,7 @@ class _Explainer:
         found += [Statement("keepout", k) for k in range(len(self.problem.free))]
         for item in self.problem.items:
             if item.id in names and not item.optional:
-                opening = item.label.lower().strip() in DOORS or "window" in item.label.lower()
+                opening = kinds.is_opening(item.label)
                 found += [Statement("stand", item.id)] if item.stand and not opening else []
                 found += [Statement("size", item.id)] if not opening else []
         return tuple(dict.fromkeys((*found, Statement("room"))))
@@ -217,7 +218,7 @@ class _Explainer:
         return (i, *self.prepared.carriers[i])
 
     def _stated_item(self, item: Item, stated: frozenset[Statement]) -> Item:
-        opening = item.stand is not None and (item.label.lower().strip() in DOORS or "window" in item.label.lower())
+        opening = item.stand is not None and (kinds.is_opening(item.label))
         if opening:
             return item.model_copy(update={"clear": (0.0,) * 4})
         changes: dict[str, object] = {"optional": False, "clear": (0.0,) * 4, "backed": False}

@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from ...gaussians.world import kinds
 from ...gaussians.world.box import YawBox, plan_penetration, shared_height, to_world, wrapped
 from ...gaussians.world.person import STEP
 from ...gaussians.world.support import is_stepped_on
-from .bodies import DOORS, Body, Member, Prepared
+from .bodies import Body, Member, Prepared
 from .lattice import EPSILON
 from .measures import behind_gap, measure, walls_gaps
 from .problem import Keepout, Stand
@@ -77,7 +78,7 @@ class State:
         self.zones[i] = tuple(placed(z, spot) for z in self.prepared.zones_of[i])
         for floor in self.ways:
             solid = item.support == "floor" and item.size[2] > STEP
-            floor.put(i, spot, asked=solid, door=item.label.lower().strip() in DOORS)
+            floor.put(i, spot, asked=solid, door=kinds.is_door(item.label))
 
     def take(self, i: int) -> None:
         """Remove one item."""

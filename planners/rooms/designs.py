@@ -21,9 +21,7 @@ from ...gaussians.assets.modeling.materials import Material
 from ...gaussians.assets.modeling.shapes import Piece, bounds, box
 from ...gaussians.camera import Vec3
 from ...gaussians.color import BASIC, Rgb, parse, plain_color, shade_of
-from ...gaussians.errors import UserError
-from ...gaussians.world import synonyms
-from ...gaussians.world.words import normalise
+from ...gaussians.world import kinds
 from .asset_folder import Shelf
 from .color_words import NO_COLOR, color_of, hex_of
 from .node import Node
@@ -90,7 +88,7 @@ class Workshop:
             color = shade_of("gray") if rgb is None else rgb
             why = f"no asset is called {node.label!r}: {said} is drawn as a plain block"
             return Made(_block(size, color, self.detail), (*notes, why), True)
-        if " ".join(normalise(node.label)) in _LIKE:
+        if _is_stand_in(node.label):
             notes = (*notes, f"no asset is called {node.label!r}: {said} is drawn as a {kind.name}")
         best = self._nearest(kind, size, rgb, loads, f"{node.label}{node.color}")
         if best.stretch > TOLD:
@@ -154,79 +152,21 @@ def _stretch(span: Array, size: Vec3) -> float:
 
 
 def kind_of(label: str) -> registry.Kind | None:
-    """The kind that a label names: itself, a synonym of it, or without the words before its head.
+    """What draws the kind that a label names: itself, a synonym of it, or without the words before its head.
 
-    "exposed wooden beams", "round café table" and "velvet couch" have one; a "sleeping bag" has none, though "bag" is a
-    loose word for backpacks: of the words that close a longer label, only those that hardly change their meaning count.
+    "exposed wooden beams", "round café table" and "velvet couch" have one; a "sleeping bag" has none.
     """
-    spoken, words = label.lower().split(), normalise(label)
-    for start in range(len(spoken)):
-        if (found := _known(" ".join(spoken[start:]), own=start > 0)) is not None:
-            return found
-        if start == 0 and (found := _by_synonym(words)) is not None:
-            return found
-    return next((k for i in range(1, len(words)) if (k := _known(" ".join(words[i:]), own=True)) is not None), None)
+    meant = kinds.of(label)
+    return registry.KINDS[meant.asset] if meant is not None and meant.asset else None
 
 
-def _by_synonym(words: tuple[str, ...]) -> registry.Kind | None:
-    """The kind that a phrase names in other words, or that looks enough like it."""
-    others = sorted(synonyms.same(words)) if words else []
-    others += [normalise(_LIKE[" ".join(words)])] if " ".join(words) in _LIKE else []
-    return next((k for other in others if (k := _known(" ".join(other), own=False)) is not None), None)
-
-
-def _known(phrase: str, own: bool) -> registry.Kind | None:
-    """The kind that is called so; with `own`, only by its own name or a synonym of several words."""
-    try:
-        found = registry.find(phrase)
-    except UserError:
-        return None
-    plain = " ".join(normalise(found.name))
-    return found if not own or phrase == plain or " " in phrase or phrase in _PLAIN else None
-
-
-# What has no kind of its own is drawn as what it resembles most.
-_LIKE = {
-    "banquette": "sofa",
-    "booth": "sofa",
-    "daybed": "sofa",
-    "kitchen island": "counter",
-    "island": "counter",
-    "host stand": "lectern",
-    "pedestal": "side table",
-    "sculpture pedestal": "side table",
-    "blanket": "cushion",
-    "dog bed": "cushion",
-    "projector screen": "whiteboard",
-    "disco ball": "pendant lamp",
-    "ceiling fan": "pendant lamp",
-    "air hockey table": "pool table",
-    "flower bucket": "flowers",
-    "watering can": "kettle",
-    "pen holder": "mug",
-    "tip jar": "vase",
-    "umbrella stand": "bin",
-    "safe": "nightstand",
-    "server rack": "wardrobe",
-    "fitting room": "shower",
-    "toy": "toy car",
-    "elliptical": "treadmill",
-    "game console": "radio",
-    "projector": "radio",
-    "food warmer": "microwave",
-    "coffee grinder": "kettle",
-    "napkin holder": "box",
-    "popcorn machine": "arcade machine",
-    "medicine cabinet": "cabinet",
-}
-# Synonyms of one word that may close a longer label: "velvet couch" is a couch, a "parking space bench" still a bench.
-_PLAIN = frozenset({
-    "couch", "settee", "loveseat", "plant", "fern", "palm", "bookcase", "cupboard", "sideboard", "credenza", "lamp",
-    "bike", "refrigerator", "freezer", "oven", "carpet", "mat", "picture", "photo", "poster", "tv", "screen", "till",
-    "closet", "armoire", "planter", "pouf", "chandelier", "heater", "basin", "tub", "bath", "drape", "balloon", "beam",
-    "rafter", "garland", "bunting", "chalkboard", "blackboard", "drawer", "shelf", "chest", "crate", "hamper",
-    "barstool",
-})  # fmt: skip
+def _is_stand_in(label: str) -> bool:
+    """Whether a label's kind is drawn as one of another sort: a banquette as a sofa, but not a queen bed as a bed."""
+    meant = kinds.of(label)
+    if meant is None or meant.asset == meant.name:
+        return False
+    related = (meant.like, meant.one, *meant.alike)
+    return meant.asset not in related and meant.asset.split()[-1] != meant.name.split()[-1]
 
 
 def _shade(node: Node, said: str) -> tuple[Rgb | None, tuple[str, ...]]:

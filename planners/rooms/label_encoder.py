@@ -1,8 +1,8 @@
 """An encoder that compares words only: what a phrase and the labels of a scene graph have to do with each other.
 
-Knows labels as words: heads ("lamp" means a floor lamp), synonyms and words for families (the embedded vocabulary and
-synonyms.py). Refuses to know pictures. It meets the `Encoder` protocol, so that queries on a graph go through the very
-resolver that scenes use; a thing's vector is one-hot on its label, a phrase's vector holds how well it names each.
+It compares heads ("lamp" means a floor lamp), synonyms and words for families, as the table of kinds has them. It
+meets the `Encoder` protocol, so that queries on a graph go through the very resolver that scenes use; a thing's vector
+is one-hot on its label, a phrase's vector holds how well it names each.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from ...gaussians.errors import BackendError
 from ...gaussians.language.encoders.calibration import Calibration
 from ...gaussians.language.encoders.vocabulary import Vocabulary
-from ...gaussians.world import synonyms
-from ...gaussians.world.synonyms import Phrase
+from ...gaussians.world import kinds
+from ...gaussians.world.kinds import Phrase
 from ...gaussians.world.words import AFTER_HEAD, normalise
 from ..grammar.tagging.spelling import slips
 
@@ -198,31 +198,11 @@ def _forms(label: Phrase) -> tuple[Phrase, ...]:
 
 
 @cache
-def _kinds() -> tuple[frozenset[Phrase], ...]:
-    """The names of each kind of the embedded vocabulary."""
-    return tuple(frozenset(normalise(n) for n in (k, *names)) for k, names in vocabulary().kinds.items())
-
-
-@cache
-def _own_names() -> frozenset[Phrase]:
-    """The names that the embedded vocabulary calls its kinds by."""
-    return frozenset(normalise(kind) for kind in vocabulary().kinds)
-
-
-@cache
-def _wider() -> dict[Phrase, frozenset[Phrase]]:
-    """What the embedded vocabulary's words for families cover."""
-    return {normalise(t): frozenset(normalise(k) for k in kinds) for t, kinds in vocabulary().broader.items()}
-
-
-@cache
 def _alike(phrase: Phrase) -> frozenset[Phrase]:
     """The phrase and its synonyms, also those of its head alone ("floor light": floor lamp)."""
-    kinds = frozenset().union(*(names for names in _kinds() if phrase in names))
-    # The vocabulary calls round and square tables by one name; here they are told apart.
-    found = synonyms.same(phrase) | {n for n in kinds if len(n) < 2 or len(phrase) < 2 or n[-1] != phrase[-1]}
+    found = kinds.same(phrase)
     if len(phrase) == 2:
-        found |= {(*phrase[:-1], *other) for other in synonyms.same(phrase[-1:]) if len(other) == 1}
+        found |= {(*phrase[:-1], *other) for other in kinds.same(phrase[-1:]) if len(other) == 1}
     return found
 
 
@@ -240,7 +220,13 @@ def _other(asked: Phrase) -> bool:
 
 
 @cache
+def _own_names() -> frozenset[Phrase]:
+    """The names of kinds."""
+    return frozenset(normalise(name) for name in kinds.table().kinds)
+
+
+@cache
 def _covers(asked: Phrase, label: Phrase) -> bool:
     """Whether what is asked is a word for a family that the label belongs to."""
-    members = synonyms.narrower(asked) | _wider().get(asked, frozenset())
+    members = kinds.narrower(asked)
     return any(_names(member, label) > NOT for member in members)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from ...gaussians.world import kinds
 from ...gaussians.world.person import ARM, HEADROOM, SHOULDERS, STEP
 from .graph import SceneGraph
 from .node import Node
@@ -22,7 +23,6 @@ Flags = NDArray[np.bool_]
 
 CELL = 0.05  # metres, side of a cell; a way is found or missed by this much
 _MOST = 1200  # cells along a side, for halls that would need more the cells grow
-_DOORS = frozenset({"door", "doorway", "entrance", "gate", "exit", "front door", "entry"})
 
 
 def unreached(graph: SceneGraph) -> Iterator[tuple[Node, float]]:
@@ -33,7 +33,7 @@ def unreached(graph: SceneGraph) -> Iterator[tuple[Node, float]]:
     xs, ys = _axes(graph)
     areas, _ = ndimage.label(_free(graph, xs, ys), structure=np.ones((3, 3)))
     entered = set[int]()
-    for door in (n for n in graph.nodes if n.label.lower().strip() in _DOORS):
+    for door in (n for n in graph.nodes if kinds.is_door(n.label)):
         area, distance = _nearest(areas > 0, areas, door, xs, ys)
         if distance > SHOULDERS + ARM:
             yield door, distance
@@ -41,7 +41,7 @@ def unreached(graph: SceneGraph) -> Iterator[tuple[Node, float]]:
             entered.add(area)
     walkable = np.isin(areas, sorted(entered or _largest(areas)))
     for node in graph.nodes:
-        if node.support == "floor" and node.size[2] > STEP and node.label.lower().strip() not in _DOORS:
+        if node.support == "floor" and node.size[2] > STEP and not kinds.is_door(node.label):
             _, distance = _nearest(walkable, areas, node, xs, ys)
             if distance > SHOULDERS / 2 + ARM:
                 yield node, distance

@@ -13,11 +13,10 @@ from ...gaussians.errors import UserError
 from ...gaussians.language.field.group_index import members_of
 from ...gaussians.language.field.language_field import Group
 from ...gaussians.scene import Scene
+from ...gaussians.world import kinds
 from ...gaussians.world.facing import facing_in
 from ...gaussians.world.support import support_of
 from .node import Node, Point, Size, Support, Viewpoint
-
-_WALL_FIXTURES = frozenset({"painting", "picture", "mirror", "window", "clock", "curtain", "poster", "door"})
 
 
 def nodes_of(scene: Scene) -> tuple[tuple[Node, ...], RoomFrame]:
@@ -33,7 +32,8 @@ def nodes_of(scene: Scene) -> tuple[tuple[Node, ...], RoomFrame]:
     boxes = [n.yaw_box for n in nodes]
 
     def rests_on(i: int) -> Support:
-        fixture = not _WALL_FIXTURES.isdisjoint(nodes[i].label.split()[-1:])
+        kind = kinds.of(nodes[i].label)
+        fixture = kind is not None and kind.support == "wall"
         found = support_of(i, boxes, room.size, fixture)
         return nodes[found].id if isinstance(found, int) else found
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ...gaussians.assets.furnishing.layout import HANG
 from ...gaussians.assets.modeling.make import Asset
+from ...gaussians.world import kinds
 from ...gaussians.world.box import YawBox
 from ...gaussians.world.support import SHELL
 from .node import Drawn, Node
@@ -23,7 +24,6 @@ Array = NDArray[np.float64]
 NEAR_FLOOR = 0.1  # metres: what is said to stand on the floor and is lower than this does; higher things were meant so
 AT_WALL = 0.15  # metres between a back and a wall from which it counts as fixed to it
 FLUSH = 0.002  # metres before the wall's face, for what is let into it
-_LET_IN = ("door", "window", "doorway")
 _LEVEL = 0.02  # metres: cells within it belong to one face
 _PAD = 0.03  # metres around a footprint: half a cell of a large table, so that a cup has some under it
 _SHARE = 0.3  # of the cells of the fullest face under a footprint that another one must have to carry
@@ -128,7 +128,7 @@ def _box(
     if node.support == "ceiling":
         return box._replace(low=max(graph.room.size[2] - h, 0.0))
     if node.support == "wall":
-        return _at_wall(box, graph, node.label.lower().split()[-1:] in [[word] for word in _LET_IN])
+        return _at_wall(box, graph, kinds.is_opening(node.label))
     if node.support in SHELL or node.support not in boxes:
         return box
     lower = boxes[node.support]

@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Sequence
 
-from ...gaussians import assets
 from ...gaussians.language.query.query import Query
+from ...gaussians.world import kinds
 from ...gaussians.world.person import HEADROOM, STEP
 from ...tools.operation import Placement
 from ...tools.ops.insert import Insert
@@ -22,9 +22,10 @@ from .goals import Clear, ReadingCorner, See, Spread, Walls, Where
 from .room import SMALL, CannotError, Id, Room, copied, toward
 
 _DANCE = 0.3  # of the shorter side of the room is the radius of a dance floor
-_WIDTHS = {"yoga mat": 1.9, "mat": 1.9, "exercise": 2.0, "exercises": 2.0, "yoga": 1.9, "playpen": 1.4, "crib": 1.5,
-           "christmas tree": 1.4, "tree": 1.4, "piano": 1.8, "dancing": 2.4, "dance": 2.4, "bed": 2.2, "desk": 1.5,
-           "play": 1.6, "kids": 1.8, "sofa": 2.0, "table": 1.6, "wheelchair": 1.6}  # fmt: skip
+# Metres of floor for what people do, and for what is no kind of thing.
+_WIDTHS = {"exercise": 2.0, "exercises": 2.0, "yoga": 1.9, "dancing": 2.4, "dance": 2.4, "play": 1.6, "kids": 1.8,
+           "tree": 1.4, "wheelchair": 1.6}  # fmt: skip
+_AROUND = 0.1  # metres of floor more than a thing is long
 _LEAST, _MOST = 0.35, 1.6  # metres, radius of floor that was asked for without a size
 _STEPS = (1.0, 0.85, 0.7, 0.55)  # shares of that radius that are tried before giving up
 
@@ -77,9 +78,12 @@ def _in_the_way(room: Room, node: Node) -> bool:
 def _radius(room: Room, goal: Clear) -> float:
     if goal.width is not None:
         return goal.width / 2
-    for name, width in _WIDTHS.items():
-        if name in goal.called and "floor" not in goal.called:
-            return width / 2
+    if "floor" not in goal.called:
+        if (kind := kinds.of(goal.called)) is not None:
+            return max(high for _, high in kind.size[:2]) / 2 + _AROUND / 2
+        for name, width in _WIDTHS.items():
+            if name in goal.called:
+                return width / 2
     share = _DANCE * min(room.size[:2]) if goal.where.anchor is None else 0.2 * min(room.size[:2])
     return min(max(share, _LEAST), _MOST)
 
@@ -283,7 +287,7 @@ _READING = (("armchair", "chair"), ("floor lamp",), ("side table", "stool"))
 
 def _new(room: Room, label: str) -> Node:
     """A thing that is not there yet, as large as such things are at most, in the middle of the room."""
-    width, depth, height = (0.9 * most for _, most in assets.find(label).sizes)
+    width, depth, height = (0.9 * most for _, most in kinds.table().kinds[label].size)
     return Node(id=f"new {label}", label=label, size=(width, depth, height), position=(0.0, 0.0, height / 2))
 
 

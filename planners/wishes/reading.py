@@ -13,7 +13,6 @@ from functools import cache
 
 from ...gaussians.language.query.query import Query
 from ...gaussians.world.lengths import in_metres
-from ...gaussians.world.words import head
 from ...tools.operation import EditOp
 from ..grammar import GrammarPlanner
 from ..grammar.tagging.words import clean, split
@@ -271,7 +270,8 @@ def _formation(shape: str) -> Callable[[Reader, Parts], Goal]:
 
 def _declutter(reader: Reader, parts: Parts) -> Goal:
     surface = reader.noun(parts["goal"])
-    if head(surface.text) not in nouns.SURFACES | nouns.CONTAINERS | nouns.FURNITURE:
+    name = surface.text
+    if not (nouns.is_surface(name) or nouns.is_container(name) or nouns.is_furniture(name)):
         raise Unread(f"nothing stands on {parts['goal']}", parts["goal"])
     return Declutter(surface)
 

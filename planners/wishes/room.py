@@ -11,9 +11,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from ...gaussians import assets
 from ...gaussians.errors import UserError
 from ...gaussians.language.query.query import Query
+from ...gaussians.world import kinds
 from ...gaussians.world.box import overlap
 from ...tools.operation import EditOp
 from ..grammar.tagging.words import bag
@@ -24,12 +24,7 @@ from ..rooms.node import Node
 Id = int | str
 SMALL = 0.4  # metres; what is smaller in every direction is a thing and no furniture
 TOUCHING = 0.01  # metres that boxes may be in each other
-_BUILT_IN = bag(
-    "door window fireplace radiator stove sink toilet bathtub stairs column pillar beam counter island "
-    "shower fridge oven dishwasher washing_machine wall railing fence tree"
-)
-SEATS = bag("sofa couch armchair chair stool bench loveseat recliner ottoman seat pouf")
-_UNLIKELY = 2.0  # times the largest or smallest usual size
+_BUILDING = bag("column pillar wall railing fence tree")  # what stays and is no kind of thing
 
 
 class CannotError(Exception):
@@ -87,7 +82,7 @@ class Room:
         if query is None:
             return [n for n in self.nodes.values() if self.moves(n) and max(n.size) >= SMALL]
         if query.text in ("seat", "seating") and not query.relations:
-            found = [n for n in self.nodes.values() if set(n.label.split()) & SEATS and not _is_table(n)]
+            found = [n for n in self.nodes.values() if is_seat(n)]
             if found:
                 return found
         if query.text == "furniture":
@@ -110,10 +105,11 @@ class Room:
     def moves(self, node: Node) -> bool:
         """Whether a person would push a thing about: it stands on the floor, is no part of the house, and is what it
         is called."""
-        words = node.label.lower().split()
+        words, kind = node.label.lower().split(), kinds.of(node.label)
         if node.support != "floor" or node.is_stepped_on or not words:
             return False
-        return not (_BUILT_IN & {words[-1], "_".join(words)}) and is_likely(node)
+        stays = words[-1] in _BUILDING if kind is None else kind.fixed
+        return not stays and is_likely(node)
 
     def riders(self, id: Id) -> list[Id]:
         """Ids of what stands on a thing, and on that."""
@@ -156,18 +152,20 @@ class Room:
 
 def is_likely(node: Node) -> bool:
     """Whether a thing is about as large as things of its name are; what nobody knows the size of is."""
-    try:
-        sizes = assets.find(node.label).sizes
-    except UserError:
+    kind = kinds.find(node.label)
+    if kind is None:
         return True
+    sizes = kinds.extent(kind.name)
     usual = [sorted(sizes[:2]), [sizes[2]]]
     measured = [sorted(node.size[:2]), [node.size[2]]]
     pairs = zip([*usual[0], *usual[1]], [*measured[0], *measured[1]], strict=True)
-    return all(low / _UNLIKELY <= size <= high * _UNLIKELY for (low, high), size in pairs)
+    return all(low <= size <= high for (low, high), size in pairs)
 
 
-def _is_table(node: Node) -> bool:
-    return node.label.split()[-1:] == ["table"]
+def is_seat(node: Node) -> bool:
+    """Whether people sit on a thing."""
+    kind = kinds.of(node.label)
+    return kind is not None and kind.seats > 0
 
 
 def carried(node: Node, riders: Sequence[Node], x: float, y: float, yaw: float) -> list[Node]:

@@ -12,12 +12,12 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
+from ...gaussians.world import kinds
 from ...gaussians.world.box import overlap
-from ..grammar.tagging.words import bag
 from ..layout import Item, Keepout, Layout, Problem, Stand, solve
 from ..layout import Wish as LayoutWish
 from ..rooms.node import Node
-from .room import SEATS, CannotError, Id, Room, copied, wrapped
+from .room import CannotError, Id, Room, copied, is_seat, wrapped
 
 MARGIN = 0.05  # metres from the measured walls: a room's size is that of its shell
 GAP = 0.03  # metres by which things are taken for larger, so that they stand apart
@@ -25,11 +25,6 @@ AT_WALL = 0.3  # metres from a wall within which a thing counts as standing at i
 _LEAF = 0.7  # metres before a door that are nobody's place
 _PULLED_UP = 0.3  # metres between a table and who sits at it
 _CHAIR = 0.75  # metres; larger seats are not pulled up to a table
-_FRONTED = bag(
-    "sofa couch armchair chair seat bench loveseat recliner bed desk shelf bookshelf bookcase cabinet wardrobe dresser "
-    "nightstand sideboard television tv stand piano monitor screen mirror speaker clock crib"
-)
-_LONG = bag("bed bathtub chaise")  # their short side is at the wall
 
 
 def rearranged(
@@ -88,7 +83,7 @@ def seated(room: Room, free: Collection[Id]) -> tuple[set[Id], list[LayoutWish]]
     """Who sits at a table that may move, with the wish to stay at it: chairs go where their table goes."""
     along, wishes = set[Id](), list[LayoutWish]()
     for table in (n for n in room.nodes.values() if n.label.split()[-1:] == ["table"]):
-        chairs = [n for n in room.nodes.values() if SEATS & set(n.label.split()[-1:]) and _sits(n, table)]
+        chairs = [n for n in room.nodes.values() if is_seat(n) and _sits(n, table)]
         if table.id in free or any(n.id in free for n in chairs):
             along |= {n.id for n in chairs if room.moves(n)}
             wishes += [
@@ -112,7 +107,7 @@ def _original(room: Room, node: Node) -> float:
     """
     was = room.nodes[node.id]
     yaw = wrapped(node.yaw - 90.0) if is_crosswise(was) else node.yaw
-    if _FRONTED & set(was.label.split()):
+    if _has_front(was):
         return yaw
     square = abs(was.size[0] - was.size[1]) <= GAP
     return wrapped(was.yaw + math.remainder(yaw - was.yaw, 90.0 if square else 180.0))
@@ -120,7 +115,19 @@ def _original(room: Room, node: Node) -> float:
 
 def is_crosswise(node: Node) -> bool:
     """Whether a thing is deeper than wide though its long side belongs along a wall."""
-    return node.size[1] > 1.2 * node.size[0] and not _LONG & set(node.label.split())
+    return node.size[1] > 1.2 * node.size[0] and not _is_long(node)
+
+
+def _has_front(node: Node) -> bool:
+    """Whether it matters which way a thing is turned."""
+    kind = kinds.of(node.label)
+    return kind is not None and (kind.front or kind.backed or kind.support == "wall")
+
+
+def _is_long(node: Node) -> bool:
+    """Whether things of this kind are deeper than wide, as beds are: their short side is at the wall."""
+    kind = kinds.of(node.label)
+    return kind is not None and kind.size[1][0] > kind.size[0][1]
 
 
 def conflict(layout: Layout) -> str:

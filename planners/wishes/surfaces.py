@@ -12,21 +12,16 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ...gaussians.world import kinds
 from ...tools.operation import Placement
 from ...tools.ops.insert import Insert
 from ...tools.ops.move import Move
-from ..grammar.tagging.words import bag
 from ..rooms.node import Node
 from . import solving
 from .goals import Declutter, SetTable
-from .room import SEATS, SMALL, CannotError, Id, Room, is_likely, wrapped
+from .room import SMALL, CannotError, Id, Room, is_likely, is_seat, wrapped
 from .steps import target
 
-_CARRIES = bag("table desk shelf bookshelf bookcase dresser nightstand cabinet sideboard counter stand chest")
-_STORES = ("bookshelf", "bookcase", "shelf", "cabinet", "sideboard", "dresser", "chest", "nightstand")
-# What stands on a desk because it is used there.
-_STAYS = bag("lamp monitor keyboard mouse laptop computer television tv telephone screen printer microwave")
-_ON_FLOOR = bag("shoe rug bin basket ball pot plant mat scale drum suitcase guitar fan box")
 Place = tuple[float, float, float, float]  # of a plate, and the way from the guest to the middle
 
 _REACH = 0.75  # metres from a table within which a seat counts as at it
@@ -73,15 +68,33 @@ def _flush(at: float, most: float) -> float:
 
 def _is_loose(room: Room, node: Node) -> bool:
     """Whether a small thing lies on the floor that belongs on furniture."""
-    words = set(node.label.split())
+    kind = kinds.of(node.label)
+    on_floor = kind is not None and kind.support == "floor"
     small = node.support == "floor" and max(node.size) < SMALL and not node.is_stepped_on
-    return small and bool(words) and not words & _ON_FLOOR and is_likely(node)
+    return small and bool(node.label) and not on_floor and is_likely(node)
 
 
 def _surfaces(room: Room) -> list[Node]:
     """What carries things, the best first: shelves before tables."""
-    found = [n for n in room.nodes.values() if set(n.label.split()) & _CARRIES and n.support == "floor"]
-    return sorted(found, key=lambda n: (not set(n.label.split()) & set(_STORES), -n.size[0] * n.size[1]))
+    found = [n for n in room.nodes.values() if _carries(n) and n.support == "floor"]
+    return sorted(found, key=lambda n: (not _stores(n), -n.size[0] * n.size[1]))
+
+
+def _carries(node: Node) -> bool:
+    kind = kinds.of(node.label)
+    return kind is not None and (kind.top or kind.stores)
+
+
+def _stores(node: Node) -> bool:
+    kind = kinds.of(node.label)
+    return kind is not None and kind.stores
+
+
+def _is_used(node: Node) -> bool:
+    """Whether a thing stands where it does because it is used there: a lamp, a monitor."""
+    families = kinds.table().families
+    kind, used = kinds.of(node.label), (*families["lamp"], *families["electronics"], *families["appliance"])
+    return node.label in families if kind is None else kind.name in used
 
 
 def _put_away(room: Room, node: Node, surfaces: Sequence[Node], taken: dict[Id, float]) -> None:
@@ -117,7 +130,7 @@ def declutter(room: Room, goal: Declutter) -> None:
     if surface is None:
         raise CannotError("say what to clear off")
     on = [n for n in room.nodes.values() if n.support == surface.id]
-    extra = [n for n in on if not set(n.label.split()) & _STAYS]
+    extra = [n for n in on if not _is_used(n)]
     others = [n for n in _surfaces(room) if n.id != surface.id]
     taken = dict[Id, float]()
     for node in extra:
@@ -136,7 +149,7 @@ def set_table(room: Room, goal: SetTable) -> None:
     if not tables:
         raise CannotError("there is no table to be set", "absent")
     table = max(tables, key=lambda n: n.size[0] * n.size[1])  # people eat at the largest
-    seats = [n for n in room.nodes.values() if set(n.label.split()) & SEATS and _gap(n, table) < _REACH]
+    seats = [n for n in room.nodes.values() if is_seat(n) and _gap(n, table) < _REACH]
     people = goal.people or len(seats) or 2
     places = _places(table, seats, people)
     if places is None:

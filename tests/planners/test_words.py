@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scenewright.benchmarks import _nouns
-from scenewright.gaussians.world.synonyms import narrower, same
+from scenewright.gaussians.world.kinds import narrower, same
 from scenewright.planners import load
 from scenewright.planners.grammar.meaning.referring import head_noun, relations_named
 from scenewright.planners.grammar.tagging.spelling import respell, slips

@@ -5,15 +5,14 @@ Knows walls, the ceiling and what stands below. Refuses to hang what stands: a c
 
 from __future__ import annotations
 
-from contextlib import suppress
 from typing import Literal
 
 import numpy as np
 
-from ...gaussians import assets
 from ...gaussians.camera import Vec3
-from ...gaussians.errors import InstructionError, UserError
+from ...gaussians.errors import InstructionError
 from ...gaussians.scene import Scene
+from ...gaussians.world import kinds
 from ...gaussians.world.box import Axes
 from ...gaussians.world.person import HUNG_AT
 from ..operation import Context, Placement
@@ -52,11 +51,9 @@ def how_it_hangs(scene: Scene, body: Body, context: Context) -> Hung:
     Raises:
         InstructionError: it does neither.
     """
-    usual = ""
-    with suppress(UserError):  # nothing is known of such things
-        usual = assets.find(body.label).support if body.label else ""
-    if usual in ("wall", "ceiling"):
-        return "wall" if usual == "wall" else "ceiling"
+    kind = kinds.of(body.label)
+    if kind is not None and kind.support in ("wall", "ceiling"):
+        return "wall" if kind.support == "wall" else "ceiling"
     if support_height(scene, body, context) is not None:
         raise InstructionError(f"the {body.label or 'thing'} stands and does not hang: say on something, or next to it")
     rooms = Surroundings(scene, context)

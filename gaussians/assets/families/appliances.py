@@ -8,13 +8,7 @@ from ..modeling.shapes import Piece, ball, box, boxes, cylinder, extrude, lathe,
 from ..registry import kind
 
 
-@kind(
-    "toaster",
-    ((0.22, 0.42), (0.15, 0.26), (0.16, 0.26)),
-    support="surface",
-    synonyms=("bread toaster",),
-    palette="appliance",
-)
+@kind("toaster", palette="appliance")
 def toaster(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.26, 0.34), rng.uniform(0.16, 0.2), rng.uniform(0.18, 0.21), tone.main
     body = (
@@ -40,13 +34,7 @@ def toaster(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "fridge",
-    ((0.5, 0.95), (0.5, 0.8), (0.8, 2.05)),
-    synonyms=("refrigerator", "freezer", "icebox"),
-    palette="appliance",
-    against_wall=True,
-)
+@kind("fridge", palette="appliance")
 def fridge(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, style = rng.uniform(0.58, 0.72), rng.uniform(0.6, 0.68), rng.uniform(1.5, 1.95), int(rng.integers(4))
     mat, steel, r = tone.main, tone.metal(), rng.uniform(0.01, 0.05)
@@ -83,13 +71,7 @@ def fridge(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "stove",
-    ((0.5, 0.95), (0.5, 0.75), (0.8, 1.15)),
-    synonyms=("oven", "cooker", "range"),
-    palette="appliance",
-    against_wall=True,
-)
+@kind("stove", palette="appliance")
 def stove(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.58, 0.8), 0.62, rng.uniform(0.86, 0.92), tone.main
     dark, steel, y = tone.plain("#1c1d1f"), tone.metal(), -0.31
@@ -123,13 +105,7 @@ def stove(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "sink",
-    ((0.4, 1.3), (0.36, 0.7), (0.75, 1.25)),
-    synonyms=("washbasin", "basin", "kitchen sink", "wash basin"),
-    palette="appliance",
-    against_wall=True,
-)
+@kind("sink", palette="appliance")
 def sink(rng: Rng, tone: Tone) -> list[Piece]:
     mat, steel, style = tone.main, tone.metal(), int(rng.integers(3))
     white = tone.plain("#f4f4f2") if chance(rng, 0.6) else Material((0.75, 0.77, 0.79), "brushed")
@@ -181,13 +157,7 @@ def sink(rng: Rng, tone: Tone) -> list[Piece]:
     return [*out, *(ball(0.02, (s * 0.09, y, h + 0.03)).named("tap", steel, 1.3) for s in (-1, 1))]
 
 
-@kind(
-    "microwave",
-    ((0.4, 0.6), (0.28, 0.46), (0.22, 0.36)),
-    support="surface",
-    synonyms=("microwave oven",),
-    palette="appliance",
-)
+@kind("microwave", palette="appliance")
 def microwave(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.45, 0.52), rng.uniform(0.32, 0.38), rng.uniform(0.26, 0.3), tone.main
     y, dark = -d / 2 - 0.004, tone.plain("#17181a")

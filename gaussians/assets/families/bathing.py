@@ -53,14 +53,7 @@ def _basin(outline: Array, h: float, inner: float, deep: float) -> Piece:
     return Piece(tuple(Sheets(g[None], True, False, True) for g in (walls, rim, tub)))
 
 
-@kind(
-    "bathtub",
-    ((1.2, 2.0), (0.6, 1.0), (0.45, 0.75)),
-    synonyms=("bath", "tub", "bath tub"),
-    palette="light",
-    against_wall=True,
-    shown=False,
-)
+@kind("bathtub", palette="light")
 def bathtub(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, style = rng.uniform(1.5, 1.8), rng.uniform(0.7, 0.82), rng.uniform(0.54, 0.62), int(rng.integers(3))
     if not tone.asked:
@@ -95,14 +88,7 @@ def _panelled(w: float, d: float, h: float, mat: Material) -> Piece:
                   (0.02, d - 0.06, h - 0.03, w / 2 - 0.02, 0, 0)]).named("panel", mat)  # fmt: skip
 
 
-@kind(
-    "toilet",
-    ((0.34, 0.55), (0.5, 0.8), (0.65, 1.0)),
-    synonyms=("loo", "lavatory", "water closet", "wc"),
-    palette="light",
-    against_wall=True,
-    shown=False,
-)
+@kind("toilet", palette="light")
 def toilet(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h = rng.uniform(0.37, 0.42), rng.uniform(0.62, 0.7), rng.uniform(0.76, 0.84)
     if not tone.asked:
@@ -133,14 +119,7 @@ def toilet(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "wash basin",
-    ((0.4, 1.3), (0.35, 0.65), (0.75, 1.1)),
-    synonyms=("bathroom sink", "pedestal sink", "hand basin", "vanity", "bathroom vanity"),
-    palette="light",
-    against_wall=True,
-    shown=False,
-)
+@kind("wash basin", palette="light")
 def wash_basin(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, vanity = rng.uniform(0.52, 0.66), rng.uniform(0.42, 0.5), rng.uniform(0.84, 0.9), chance(rng, 0.5)
     steel = Material((0.8, 0.81, 0.83), "brushed")
@@ -166,14 +145,7 @@ def wash_basin(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "washing machine",
-    ((0.5, 0.75), (0.5, 0.75), (0.75, 1.05)),
-    synonyms=("washer", "clothes washer", "dryer", "tumble dryer", "clothes dryer"),
-    palette="appliance",
-    against_wall=True,
-    shown=False,
-)
+@kind("washing machine", palette="appliance")
 def washing_machine(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = 0.6, rng.uniform(0.55, 0.62), rng.uniform(0.83, 0.88), tone.main
     r, steel, dark = rng.uniform(0.17, 0.21), Material((0.76, 0.77, 0.79), "brushed"), tone.plain("#23262b")
@@ -193,14 +165,7 @@ def washing_machine(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "shower",
-    ((0.7, 1.6), (0.7, 1.2), (1.8, 2.3)),
-    synonyms=("shower cabin", "shower cubicle", "shower stall"),
-    palette="light",
-    against_wall=True,
-    shown=False,
-)
+@kind("shower", palette="light")
 def shower(rng: Rng, tone: Tone) -> list[Piece]:
     w, h = rng.uniform(0.85, 1.0), rng.uniform(1.95, 2.1)
     white, t = tone.in_white(), 0.03
@@ -223,14 +188,7 @@ def shower(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "towel rack",
-    ((0.3, 1.0), (0.05, 0.3), (0.08, 1.0)),
-    support="wall",
-    synonyms=("towel rail", "towel bar", "towel holder"),
-    palette="fabric",
-    shown=False,
-)
+@kind("towel rack", palette="fabric")
 def towel_rack(rng: Rng, tone: Tone) -> list[Piece]:
     w, h = rng.uniform(0.5, 0.66), rng.uniform(0.4, 0.55)
     cloth = tone.textile(0.05, 0.7)
@@ -246,14 +204,7 @@ def towel_rack(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "dishwasher",
-    ((0.4, 0.7), (0.45, 0.7), (0.75, 0.95)),
-    synonyms=("dish washer",),
-    palette="appliance",
-    against_wall=True,
-    shown=False,
-)
+@kind("dishwasher", palette="appliance")
 def dishwasher(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = 0.6, rng.uniform(0.56, 0.6), rng.uniform(0.82, 0.87), tone.main
     y, dark = -d / 2, tone.plain("#26282c")

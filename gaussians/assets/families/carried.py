@@ -25,12 +25,7 @@ from ..modeling.shapes import (
 from ..registry import kind
 
 
-@kind(
-    "backpack",
-    ((0.22, 0.42), (0.14, 0.36), (0.32, 0.6)),
-    synonyms=("rucksack", "school bag", "knapsack", "bag"),
-    palette="any",
-)
+@kind("backpack")
 def backpack(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.27, 0.33), rng.uniform(0.15, 0.2), rng.uniform(0.4, 0.48), tone.textile(0.07, 0.7)
     trim = tone.accent() if chance(rng, 0.5) else mat.shaded(0.6)
@@ -63,12 +58,7 @@ def backpack(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "suitcase",
-    ((0.35, 0.8), (0.16, 0.36), (0.4, 1.15)),
-    synonyms=("luggage", "trolley case", "travel bag", "briefcase"),
-    palette="any",
-)
+@kind("suitcase")
 def suitcase(rng: Rng, tone: Tone) -> list[Piece]:
     mat = tone.main
     if chance(rng, 0.5):  # upright, on wheels
@@ -115,12 +105,7 @@ def suitcase(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "shoe",
-    ((0.16, 0.42), (0.22, 0.34), (0.07, 0.3)),
-    synonyms=("shoes", "sneaker", "boot", "trainer", "slipper"),
-    palette="any",
-)
+@kind("shoe")
 def shoe(rng: Rng, tone: Tone) -> list[Piece]:
     style, mat = int(rng.integers(3)), tone.main
     sole = tone.plain(str(rng.choice(["#f4f2ee", "#26221f", "#8a5a33"])))
@@ -161,7 +146,7 @@ def shoe(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind("umbrella", ((0.09, 1.2), (0.09, 1.2), (0.7, 1.05)), synonyms=("parasol", "brolly"), palette="any")
+@kind("umbrella")
 def umbrella(rng: Rng, tone: Tone) -> list[Piece]:
     mat, metal, wood = tone.textile(0.1, 0.6), Material((0.6, 0.62, 0.65), "brushed"), tone.wood()
     h = rng.uniform(0.82, 0.92)

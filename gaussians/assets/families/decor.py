@@ -31,7 +31,7 @@ from ..modeling.shapes import (
 from ..registry import kind
 
 
-@kind("rug", ((1.0, 3.2), (0.8, 2.4), (0.006, 0.03)), synonyms=("carpet", "mat", "area rug"), palette="fabric")
+@kind("rug", palette="fabric")
 def rug(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h = rng.uniform(1.5, 2.6), rng.uniform(1.1, 1.8), 0.018
     name = str(rng.choice(["rug", "rug", "stripes", "checks", "weave", "dots", "leaves"]))
@@ -75,13 +75,7 @@ def _frame(w: float, h: float, t: float, deep: float, mat: Material) -> Piece:
     return boxes(rows, 0.006).named("frame", mat)
 
 
-@kind(
-    "painting",
-    ((0.28, 1.4), (0.01, 0.09), (0.28, 1.2)),
-    support="wall",
-    synonyms=("picture", "poster", "artwork", "framed picture", "photo", "canvas"),
-    palette="any",
-)
+@kind("painting")
 def painting(rng: Rng, tone: Tone) -> list[Piece]:
     long, ratio = rng.uniform(0.45, 1.1), rng.uniform(0.62, 1.0)
     w, h = (long, long * ratio) if chance(rng, 0.6) else (long * ratio, long)
@@ -109,13 +103,7 @@ def painting(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "mirror",
-    ((0.3, 1.1), (0.01, 0.1), (0.4, 1.9)),
-    support="wall",
-    synonyms=("looking glass", "wall mirror"),
-    palette="wood",
-)
+@kind("mirror", palette="wood")
 def mirror(rng: Rng, tone: Tone) -> list[Piece]:
     glass = Material((0.66, 0.76, 0.82), "glass", (0.93, 0.97, 0.99), seed=tone.seed)
     style, t = int(rng.integers(4)), rng.uniform(0.025, 0.06)
@@ -150,13 +138,7 @@ def _arch(w: float, h: float) -> Array:
     return np.concatenate([top, [[-w / 2, 0], [-w / 2, -h / 2], [0, -h / 2], [w / 2, -h / 2], [w / 2, 0]]])
 
 
-@kind(
-    "clock",
-    ((0.14, 0.5), (0.02, 0.18), (0.14, 0.5)),
-    support="wall",
-    synonyms=("wall clock", "watch", "alarm clock"),
-    palette="any",
-)
+@kind("clock")
 def clock(rng: Rng, tone: Tone) -> list[Piece]:
     r, style = rng.uniform(0.12, 0.19), int(rng.integers(4))
     pale = chance(rng, 0.6)
@@ -191,13 +173,7 @@ def clock(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "globe",
-    ((0.18, 0.45), (0.18, 0.45), (0.26, 0.6)),
-    support="surface",
-    synonyms=("world globe", "earth globe"),
-    palette="any",
-)
+@kind("globe")
 def globe(rng: Rng, tone: Tone) -> list[Piece]:
     r = rng.uniform(0.11, 0.16)
     stand = tone.frame()
@@ -212,13 +188,7 @@ def globe(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "sculpture",
-    ((0.1, 0.45), (0.08, 0.4), (0.2, 0.7)),
-    support="surface",
-    synonyms=("statue", "figurine", "bust", "ornament"),
-    palette="any",
-)
+@kind("sculpture")
 def sculpture(rng: Rng, tone: Tone) -> list[Piece]:
     mat, style = (
         Material(

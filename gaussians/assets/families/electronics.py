@@ -35,14 +35,7 @@ def _display(rng: Rng, w: float, h: float, z: float, tone: Tone, rim: float, thi
     ]
 
 
-@kind(
-    "television",
-    ((0.6, 1.6), (0.04, 0.45), (0.4, 1.05)),
-    support="surface",
-    synonyms=("tv", "tv set", "telly", "flat screen"),
-    palette="dark",
-    against_wall=True,
-)
+@kind("television", palette="dark")
 def television(rng: Rng, tone: Tone) -> list[Piece]:
     style = int(rng.integers(4))
     if style == 3:  # a tube set on legs or with aerials
@@ -86,13 +79,7 @@ def television(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "monitor",
-    ((0.4, 0.9), (0.12, 0.3), (0.35, 0.65)),
-    support="surface",
-    synonyms=("computer screen", "display", "computer monitor", "screen"),
-    palette="dark",
-)
+@kind("monitor", palette="dark")
 def monitor(rng: Rng, tone: Tone) -> list[Piece]:
     w = rng.uniform(0.5, 0.72)
     h, z = w * rng.uniform(0.5, 0.62), rng.uniform(0.1, 0.15)
@@ -109,13 +96,7 @@ def monitor(rng: Rng, tone: Tone) -> list[Piece]:
     return [*out, neck.named("neck", stand), foot.named("foot", stand)]
 
 
-@kind(
-    "laptop",
-    ((0.28, 0.42), (0.2, 0.42), (0.015, 0.32)),
-    support="surface",
-    synonyms=("notebook computer", "computer", "macbook"),
-    palette="dark",
-)
+@kind("laptop", palette="dark")
 def laptop(rng: Rng, tone: Tone) -> list[Piece]:
     w, d = rng.uniform(0.31, 0.37), rng.uniform(0.21, 0.25)
     body = tone.main
@@ -134,13 +115,7 @@ def laptop(rng: Rng, tone: Tone) -> list[Piece]:
     return [*out, deck.named("keyboard", keys), pad.named("touchpad", body.shaded(0.8))]
 
 
-@kind(
-    "keyboard",
-    ((0.28, 0.5), (0.1, 0.2), (0.012, 0.06)),
-    support="surface",
-    synonyms=("computer keyboard",),
-    palette="any",
-)
+@kind("keyboard")
 def keyboard(rng: Rng, tone: Tone) -> list[Piece]:
     w, d = rng.uniform(0.34, 0.45), rng.uniform(0.12, 0.16)
     caps = tone.plain(str(rng.choice(["#f0f0ee", "#232427", "#d8d2c4"])))
@@ -169,13 +144,7 @@ def keyboard(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "computer mouse",
-    ((0.05, 0.09), (0.08, 0.14), (0.025, 0.06)),
-    support="surface",
-    synonyms=("pc mouse", "trackball"),
-    palette="any",
-)
+@kind("computer mouse")
 def computer_mouse(rng: Rng, tone: Tone) -> list[Piece]:
     from ..modeling.shapes import blob
 
@@ -189,13 +158,7 @@ def computer_mouse(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "speaker",
-    ((0.1, 0.4), (0.1, 0.4), (0.16, 1.1)),
-    support="surface",
-    synonyms=("loudspeaker", "stereo speaker"),
-    palette="dark",
-)
+@kind("speaker", palette="dark")
 def speaker(rng: Rng, tone: Tone) -> list[Piece]:
     tall = chance(rng, 0.35)
     w, d, h = (
@@ -220,13 +183,7 @@ def speaker(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "radio",
-    ((0.16, 0.5), (0.07, 0.22), (0.13, 0.45)),
-    support="surface",
-    synonyms=("transistor radio", "stereo", "boombox"),
-    palette="any",
-)
+@kind("radio")
 def radio(rng: Rng, tone: Tone) -> list[Piece]:
     w, d = rng.uniform(0.24, 0.38), rng.uniform(0.09, 0.14)
     h = w * rng.uniform(0.55, 0.7)
@@ -262,9 +219,7 @@ def radio(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "fan", ((0.22, 0.6), (0.14, 0.5), (0.28, 1.4)), synonyms=("electric fan", "ventilator", "desk fan"), palette="any"
-)
+@kind("fan")
 def fan(rng: Rng, tone: Tone) -> list[Piece]:
     r = rng.uniform(0.15, 0.22)
     z = rng.uniform(0.28, 0.38) if chance(rng, 0.5) else rng.uniform(0.85, 1.1)
@@ -296,13 +251,7 @@ def fan(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "telephone",
-    ((0.14, 0.3), (0.14, 0.3), (0.09, 0.22)),
-    support="surface",
-    synonyms=("phone", "landline"),
-    palette="any",
-)
+@kind("telephone")
 def telephone(rng: Rng, tone: Tone) -> list[Piece]:
     mat, w = tone.main, rng.uniform(0.17, 0.21)
     base = extrude([(-w / 2, -w * 0.45), (w / 2, -w * 0.45), (w * 0.36, w * 0.4), (-w * 0.36, w * 0.4)], 0.06, 0.015)
@@ -329,13 +278,7 @@ def telephone(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "record player",
-    ((0.34, 0.55), (0.3, 0.46), (0.1, 0.45)),
-    support="surface",
-    synonyms=("turntable", "gramophone"),
-    palette="wood",
-)
+@kind("record player", palette="wood")
 def record_player(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h = rng.uniform(0.4, 0.48), rng.uniform(0.33, 0.38), rng.uniform(0.09, 0.13)
     out = [

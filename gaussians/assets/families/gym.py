@@ -12,13 +12,7 @@ from ..registry import kind
 _STEEL = Material((0.72, 0.73, 0.75), "brushed")
 
 
-@kind(
-    "exercise bike",
-    ((0.45, 0.7), (0.9, 1.4), (1.0, 1.5)),
-    synonyms=("stationary bike", "spin bike", "spinning bike"),
-    palette="dark",
-    shown=False,
-)
+@kind("exercise bike", palette="dark")
 def exercise_bike(rng: Rng, tone: Tone) -> list[Piece]:
     d, mat, black = rng.uniform(1.05, 1.2), tone.main, tone.plain("#1b1b1d")
     wheel, seat, front = rng.uniform(0.2, 0.24), (0.22, 0.88), -d * 0.27
@@ -58,13 +52,7 @@ def exercise_bike(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "rowing machine",
-    ((0.45, 0.7), (1.9, 2.6), (0.5, 1.1)),
-    synonyms=("rower",),
-    palette="dark",
-    shown=False,
-)
+@kind("rowing machine", palette="dark")
 def rowing_machine(rng: Rng, tone: Tone) -> list[Piece]:
     d, mat, black = rng.uniform(2.15, 2.4), tone.main, tone.plain("#1b1b1d")
     front, slide = -d / 2, rng.uniform(0.1, 0.5)
@@ -83,13 +71,7 @@ def rowing_machine(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "weight bench",
-    ((0.5, 1.5), (1.1, 1.7), (0.4, 1.3)),
-    synonyms=("workout bench", "exercise bench", "flat bench"),
-    palette="dark",
-    shown=False,
-)
+@kind("weight bench", palette="dark")
 def weight_bench(rng: Rng, tone: Tone) -> list[Piece]:
     d, mat, black = rng.uniform(1.3, 1.45), tone.main, tone.plain("#1b1b1d")
     back, plate = d / 2 - 0.12, rng.uniform(0.12, 0.17)
@@ -109,14 +91,7 @@ def weight_bench(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "punching bag",
-    ((0.3, 0.5), (0.3, 0.5), (0.8, 1.6)),
-    support="ceiling",
-    synonyms=("boxing bag", "heavy bag", "punch bag"),
-    palette="dark",
-    shown=False,
-)
+@kind("punching bag", palette="dark")
 def punching_bag(rng: Rng, tone: Tone) -> list[Piece]:
     r, h, mat = rng.uniform(0.17, 0.19), rng.uniform(0.75, 0.85), tone.main
     chains = [rod((0.11 * np.cos(a), 0.11 * np.sin(a), h), (0, 0, h + 0.2), 0.008) for a in np.arange(4) * np.pi / 2]
@@ -129,13 +104,7 @@ def punching_bag(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "drum kit",
-    ((1.2, 2.0), (0.9, 1.6), (0.9, 1.4)),
-    synonyms=("drum set",),
-    palette="any",
-    shown=False,
-)
+@kind("drum kit")
 def drum_kit(rng: Rng, tone: Tone) -> list[Piece]:
     shell, skin, brass = tone.main, tone.plain("#f1eee6"), Material((0.83, 0.66, 0.28), "brushed")
     drums: list[tuple[float, float, float, float, float]] = [  # radius, height, x, y, underside

@@ -10,14 +10,7 @@ from ..modeling.shapes import Piece, ball, box, boxes, cushion, cylinder, disc, 
 from ..registry import kind
 
 
-@kind(
-    "whiteboard",
-    ((0.6, 3.0), (0.02, 0.7), (0.5, 2.0)),
-    support="wall",
-    synonyms=("white board", "dry erase board", "marker board"),
-    palette="light",
-    shown=False,
-)
+@kind("whiteboard", palette="light")
 def whiteboard(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, t = rng.uniform(1.2, 2.0), rng.uniform(0.85, 1.15), 0.03
     face = Material(tone.color if tone.asked else (0.96, 0.97, 0.97), main=True)
@@ -39,13 +32,7 @@ def whiteboard(rng: Rng, tone: Tone) -> list[Piece]:
     return [*out, join(*pens).named("pen", inks[0])]
 
 
-@kind(
-    "treadmill",
-    ((0.6, 1.0), (1.3, 2.1), (1.1, 1.6)),
-    synonyms=("running machine", "running belt"),
-    palette="dark",
-    shown=False,
-)
+@kind("treadmill", palette="dark")
 def treadmill(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.74, 0.84), rng.uniform(1.6, 1.85), rng.uniform(1.3, 1.42), tone.main
     black, steel = tone.plain("#1d1d1f"), Material((0.7, 0.71, 0.73), "brushed")
@@ -72,13 +59,7 @@ def treadmill(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "pool table",
-    ((1.8, 3.0), (1.0, 1.7), (0.74, 0.95)),
-    synonyms=("billiard table", "snooker table", "billiards table"),
-    palette="leaf",
-    shown=False,
-)
+@kind("pool table", palette="leaf")
 def pool_table(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h = rng.uniform(2.2, 2.6), rng.uniform(1.2, 1.4), rng.uniform(0.78, 0.84)
     cloth, wood = Material(tone.color, "flat", seed=tone.seed, main=True), tone.wood()
@@ -109,13 +90,7 @@ def pool_table(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "ping pong table",
-    ((2.0, 3.0), (1.2, 1.7), (0.72, 1.0)),
-    synonyms=("table tennis table", "table tennis"),
-    palette="any",
-    shown=False,
-)
+@kind("ping pong table")
 def ping_pong_table(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, white = 2.74, 1.525, 0.76, tone.plain("#f4f4f1")
     if not tone.asked:
@@ -151,13 +126,7 @@ def ping_pong_table(rng: Rng, tone: Tone) -> list[Piece]:
     return [*out, ball(0.02, (w * 0.2, d * 0.1, h + 0.02)).named("ball", white)]
 
 
-@kind(
-    "foosball table",
-    ((1.1, 1.7), (0.6, 1.3), (0.8, 1.05)),
-    synonyms=("table football", "football table", "foosball"),
-    palette="wood",
-    shown=False,
-)
+@kind("foosball table", palette="wood")
 def foosball_table(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(1.3, 1.45), rng.uniform(0.7, 0.78), rng.uniform(0.88, 0.94), tone.main
     steel, t = Material((0.75, 0.76, 0.78), "brushed"), 0.035
@@ -188,14 +157,7 @@ def foosball_table(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "bunk bed",
-    ((1.0, 1.7), (1.8, 2.3), (1.4, 2.2)),
-    synonyms=("bunkbed", "loft bed"),
-    palette="wood",
-    against_wall=True,
-    shown=False,
-)
+@kind("bunk bed", palette="wood")
 def bunk_bed(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(1.02, 1.15), rng.uniform(2.0, 2.12), rng.uniform(1.58, 1.8), tone.main
     t, linen = rng.uniform(0.06, 0.08), tone.plain("#f3f0e8")
@@ -225,13 +187,7 @@ def bunk_bed(rng: Rng, tone: Tone) -> list[Piece]:
     return [*out, boxes(sides, 0.006).named("ladder", mat), join(*rungs).named("rung", mat)]
 
 
-@kind(
-    "lectern",
-    ((0.4, 0.9), (0.35, 0.7), (0.95, 1.3)),
-    synonyms=("podium", "speaker stand", "pulpit"),
-    palette="wood",
-    shown=False,
-)
+@kind("lectern", palette="wood")
 def lectern(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.5, 0.65), rng.uniform(0.42, 0.5), rng.uniform(1.08, 1.18), tone.main
     slope = box(w, d, 0.03, (0, 0, 0), 0.006).turned("x", 15).moved(0, 0, h - 0.09)
@@ -249,13 +205,7 @@ def lectern(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "easel",
-    ((0.45, 0.9), (0.4, 0.9), (1.2, 1.9)),
-    synonyms=("painter's easel", "painting easel", "flip chart", "flipchart"),
-    palette="wood",
-    shown=False,
-)
+@kind("easel", palette="wood")
 def easel(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, mat = rng.uniform(0.55, 0.7), rng.uniform(1.5, 1.75), tone.main
     legs = [rod((s * w / 2, -0.22, 0), (s * 0.06, 0.06, h), 0.018) for s in (-1, 1)] + [
@@ -275,13 +225,7 @@ def easel(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "school desk",
-    ((0.5, 1.4), (0.4, 0.7), (0.5, 0.85)),
-    synonyms=("student desk", "pupil desk", "classroom desk"),
-    palette="wood",
-    shown=False,
-)
+@kind("school desk", palette="wood")
 def school_desk(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.6, 1.2), rng.uniform(0.48, 0.56), rng.uniform(0.66, 0.74), tone.main
     steel = tone.plain(str(rng.choice(["#5a5f66", "#3d5a80", "#8f9398"])))

@@ -23,13 +23,7 @@ def _vessel(
     ]
 
 
-@kind(
-    "mug",
-    ((0.075, 0.16), (0.065, 0.13), (0.07, 0.14)),
-    support="surface",
-    synonyms=("cup", "coffee mug", "teacup", "coffee cup"),
-    palette="any",
-)
+@kind("mug")
 def mug(rng: Rng, tone: Tone) -> list[Piece]:
     r, h, style = rng.uniform(0.038, 0.046), rng.uniform(0.085, 0.11), int(rng.integers(4))
     profile = [
@@ -60,13 +54,7 @@ def mug(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "bowl",
-    ((0.13, 0.36), (0.13, 0.36), (0.05, 0.2)),
-    support="surface",
-    synonyms=("dish", "salad bowl", "fruit bowl"),
-    palette="any",
-)
+@kind("bowl")
 def bowl(rng: Rng, tone: Tone) -> list[Piece]:
     r, deep = rng.uniform(0.09, 0.15), rng.uniform(0.45, 0.75)
     h = r * deep
@@ -88,13 +76,7 @@ def bowl(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "plate",
-    ((0.16, 0.34), (0.16, 0.34), (0.012, 0.06)),
-    support="surface",
-    synonyms=("saucer", "dinner plate"),
-    palette="any",
-)
+@kind("plate")
 def plate(rng: Rng, tone: Tone) -> list[Piece]:
     r = rng.uniform(0.1, 0.14)
     mat = (
@@ -121,13 +103,7 @@ def plate(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "bottle",
-    ((0.05, 0.13), (0.05, 0.13), (0.18, 0.38)),
-    support="surface",
-    synonyms=("wine bottle", "flask", "water bottle"),
-    palette="any",
-)
+@kind("bottle")
 def bottle(rng: Rng, tone: Tone) -> list[Piece]:
     r, h, style = rng.uniform(0.034, 0.045), rng.uniform(0.22, 0.32), int(rng.integers(4))
     profile = [
@@ -156,13 +132,7 @@ def bottle(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "wine glass",
-    ((0.055, 0.12), (0.055, 0.12), (0.12, 0.26)),
-    support="surface",
-    synonyms=("glass", "goblet", "chalice"),
-    palette="light",
-)
+@kind("wine glass", palette="light")
 def wine_glass(rng: Rng, tone: Tone) -> list[Piece]:
     r, h = rng.uniform(0.032, 0.044), rng.uniform(0.16, 0.22)
     glass = Material(mix(tone.color, (0.85, 0.92, 0.95), 0.4), "brushed", main=True)
@@ -180,13 +150,7 @@ def wine_glass(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "kettle",
-    ((0.16, 0.32), (0.13, 0.26), (0.18, 0.36)),
-    support="surface",
-    synonyms=("tea kettle", "electric kettle", "teapot"),
-    palette="appliance",
-)
+@kind("kettle", palette="appliance")
 def kettle(rng: Rng, tone: Tone) -> list[Piece]:
     r, style, mat = rng.uniform(0.075, 0.095), int(rng.integers(3)), tone.main
     black = tone.plain("#222325")
@@ -230,13 +194,7 @@ def kettle(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "cooking pot",
-    ((0.2, 0.55), (0.18, 0.4), (0.07, 0.32)),
-    support="surface",
-    synonyms=("pot", "saucepan", "pan", "frying pan", "casserole"),
-    palette="appliance",
-)
+@kind("cooking pot", palette="appliance")
 def cooking_pot(rng: Rng, tone: Tone) -> list[Piece]:
     r, style, mat = rng.uniform(0.1, 0.14), int(rng.integers(3)), tone.main
     dark = tone.plain("#232426")
@@ -255,7 +213,7 @@ def cooking_pot(rng: Rng, tone: Tone) -> list[Piece]:
     return [*out, rod((r * 0.97, 0, h * 0.8), (r * 2.2, 0, h * 0.9), 0.011).named("handle", dark)]
 
 
-@kind("apple", ((0.06, 0.1), (0.06, 0.1), (0.06, 0.12)), support="surface", synonyms=("fruit",), palette="any")
+@kind("apple")
 def apple(rng: Rng, tone: Tone) -> list[Piece]:
     r = rng.uniform(0.034, 0.044)
     k = rng.uniform(0.85, 1.1)
@@ -283,13 +241,7 @@ def apple(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "banana",
-    ((0.1, 0.26), (0.04, 0.22), (0.03, 0.14)),
-    support="surface",
-    synonyms=("bananas", "bunch of bananas"),
-    palette="any",
-)
+@kind("banana")
 def banana(rng: Rng, tone: Tone) -> list[Piece]:
     ripe = (0.94, 0.8, 0.2) if chance(rng, 0.75) else (0.62, 0.75, 0.2)
     if not tone.asked:
@@ -314,13 +266,7 @@ def banana(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "cake",
-    ((0.16, 0.36), (0.16, 0.36), (0.09, 0.28)),
-    support="surface",
-    synonyms=("birthday cake", "pie"),
-    palette="any",
-)
+@kind("cake")
 def cake(rng: Rng, tone: Tone) -> list[Piece]:
     r, tiers, icing = rng.uniform(0.1, 0.14), int(rng.integers(1, 3)), tone.main
     out, z = (

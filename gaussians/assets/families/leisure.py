@@ -25,13 +25,7 @@ from ..modeling.shapes import (
 from ..registry import kind
 
 
-@kind(
-    "teddy bear",
-    ((0.16, 0.55), (0.14, 0.5), (0.2, 0.65)),
-    support="surface",
-    synonyms=("teddy", "stuffed animal", "toy bear", "plush toy", "bear"),
-    palette="any",
-)
+@kind("teddy bear")
 def teddy_bear(rng: Rng, tone: Tone) -> list[Piece]:
     s = rng.uniform(0.8, 1.4)
     fur = Material(tone.color, "fur", seed=tone.seed, main=True)
@@ -86,12 +80,7 @@ def _guitar_outline(w: float, h: float, electric: bool) -> Array:
     return np.stack([x, y + h / 2], 1)
 
 
-@kind(
-    "guitar",
-    ((0.26, 0.5), (0.06, 0.5), (0.8, 1.2)),
-    synonyms=("acoustic guitar", "electric guitar", "ukulele", "bass"),
-    palette="any",
-)
+@kind("guitar")
 def guitar(rng: Rng, tone: Tone) -> list[Piece]:
     electric = chance(rng, 0.4)
     w, h, deep = (0.32, 0.4, 0.045) if electric else (rng.uniform(0.34, 0.4), rng.uniform(0.45, 0.5), 0.1)
@@ -139,7 +128,7 @@ def guitar(rng: Rng, tone: Tone) -> list[Piece]:
     return up
 
 
-@kind("bicycle", ((0.4, 0.7), (1.3, 1.9), (0.85, 1.2)), synonyms=("bike", "cycle", "road bike"), palette="any")
+@kind("bicycle")
 def bicycle(rng: Rng, tone: Tone) -> list[Piece]:
     r, frame, black = rng.uniform(0.31, 0.35), tone.main, tone.plain("#1c1c1e")
     steel = Material((0.75, 0.76, 0.78), "brushed")
@@ -241,13 +230,7 @@ def bicycle(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "piano",
-    ((0.9, 1.6), (0.5, 1.8), (0.85, 1.65)),
-    synonyms=("upright piano", "grand piano", "keyboard instrument"),
-    palette="dark",
-    against_wall=True,
-)
+@kind("piano", palette="dark")
 def piano(rng: Rng, tone: Tone) -> list[Piece]:
     wood = Material(tone.color, "wood" if chance(rng, 0.5) else "plain", seed=tone.seed, axis=0, main=True)
     if chance(rng, 0.35) and not tone.asked:
@@ -328,12 +311,7 @@ def piano(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "ball",
-    ((0.06, 0.7), (0.06, 0.7), (0.06, 0.7)),
-    synonyms=("football", "basketball", "beach ball", "soccer ball", "exercise ball"),
-    palette="any",
-)
+@kind("ball")
 def toy_ball(rng: Rng, tone: Tone) -> list[Piece]:
     r, style = (
         float(rng.choice([rng.uniform(0.09, 0.13), rng.uniform(0.25, 0.32)], p=[0.75, 0.25])),
@@ -359,13 +337,7 @@ def toy_ball(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "toy car",
-    ((0.08, 0.2), (0.14, 0.36), (0.06, 0.18)),
-    support="surface",
-    synonyms=("model car", "toy truck", "car"),
-    palette="any",
-)
+@kind("toy car")
 def toy_car(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, mat, black = rng.uniform(0.09, 0.12), rng.uniform(0.2, 0.26), tone.main, tone.plain("#1d1d20")
     glass, r = tone.plain("#a9cbe0"), 0.026
@@ -391,7 +363,7 @@ def toy_car(rng: Rng, tone: Tone) -> list[Piece]:
     return [*out, *(ball(0.009, (s * w * 0.32, -d / 2, 0.045)).named("lamp", tone.plain("#f8e9a0")) for s in (-1, 1))]
 
 
-@kind("drum", ((0.28, 0.7), (0.28, 0.7), (0.2, 0.75)), synonyms=("bongo", "snare drum", "djembe"), palette="any")
+@kind("drum")
 def drum(rng: Rng, tone: Tone) -> list[Piece]:
     r, h, mat, steel = rng.uniform(0.17, 0.26), rng.uniform(0.22, 0.45), tone.main, tone.metal()
     z = 0.02

@@ -57,12 +57,7 @@ def _shade(rng: Rng, r: float, h: float, at: Point, tone: Tone, style: int) -> l
     return out
 
 
-@kind(
-    "floor lamp",
-    ((0.24, 1.1), (0.24, 0.65), (1.2, 2.0)),
-    synonyms=("standing lamp", "standard lamp", "torchiere"),
-    palette="light",
-)
+@kind("floor lamp", palette="light")
 def floor_lamp(rng: Rng, tone: Tone) -> list[Piece]:
     h, style, shade = rng.uniform(1.35, 1.7), int(rng.integers(4)), int(rng.integers(7))
     metal = tone.metal() if chance(rng, 0.7) else tone.wood()
@@ -114,13 +109,7 @@ def floor_lamp(rng: Rng, tone: Tone) -> list[Piece]:
     return out + _shade(rng, r, sh, (0, 0, h - sh * 0.5), tone, shade)
 
 
-@kind(
-    "table lamp",
-    ((0.14, 0.5), (0.14, 0.55), (0.28, 0.75)),
-    support="surface",
-    synonyms=("lamp", "bedside lamp", "reading lamp"),
-    palette="light",
-)
+@kind("table lamp", palette="light")
 def table_lamp(rng: Rng, tone: Tone) -> list[Piece]:
     h, style = rng.uniform(0.22, 0.34), int(rng.integers(5))
     r, sh, shade = rng.uniform(0.11, 0.17), rng.uniform(0.14, 0.22), int(rng.integers(7))
@@ -154,13 +143,7 @@ def table_lamp(rng: Rng, tone: Tone) -> list[Piece]:
     return base + _shade(rng, r, sh, (0, 0, h - sh * 0.35), tone, shade)
 
 
-@kind(
-    "desk lamp",
-    ((0.12, 0.35), (0.25, 0.65), (0.28, 0.7)),
-    support="surface",
-    synonyms=("task lamp", "angle lamp"),
-    palette="any",
-)
+@kind("desk lamp")
 def desk_lamp(rng: Rng, tone: Tone) -> list[Piece]:
     mat, h, reach = tone.main, rng.uniform(0.34, 0.46), rng.uniform(0.14, 0.22)
     elbow, head = (0.0, reach * 0.8, h * 0.55), (0.0, -reach * 0.5, h)
@@ -182,13 +165,7 @@ def desk_lamp(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "pendant lamp",
-    ((0.2, 0.7), (0.2, 0.7), (0.4, 1.2)),
-    support="ceiling",
-    synonyms=("ceiling lamp", "hanging lamp", "chandelier"),
-    palette="any",
-)
+@kind("pendant lamp")
 def pendant_lamp(rng: Rng, tone: Tone) -> list[Piece]:
     r, sh, cord = rng.uniform(0.14, 0.28), rng.uniform(0.16, 0.3), rng.uniform(0.35, 0.7)
     out = _shade(rng, r, sh, (0, 0, 0), tone, int(rng.integers(7)))
@@ -199,13 +176,7 @@ def pendant_lamp(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "candle",
-    ((0.04, 0.2), (0.04, 0.2), (0.06, 0.36)),
-    support="surface",
-    synonyms=("candlestick", "candle holder"),
-    palette="light",
-)
+@kind("candle", palette="light")
 def candle(rng: Rng, tone: Tone) -> list[Piece]:
     style, wax = int(rng.integers(3)), tone.main
     r, h, z = rng.uniform(0.028, 0.04), rng.uniform(0.08, 0.16), 0.0
@@ -242,9 +213,7 @@ def candle(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "lantern", ((0.12, 0.35), (0.12, 0.35), (0.2, 0.55)), support="surface", synonyms=("hurricane lamp",), palette="any"
-)
+@kind("lantern")
 def lantern(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, mat = rng.uniform(0.14, 0.2), rng.uniform(0.22, 0.34), tone.main
     posts = join(

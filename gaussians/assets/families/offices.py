@@ -12,14 +12,7 @@ from ..registry import kind
 Rows = list[tuple[float, ...]]
 
 
-@kind(
-    "printer",
-    ((0.3, 0.7), (0.28, 0.75), (0.15, 1.3)),
-    support="surface",
-    synonyms=("photocopier", "copier", "copy machine", "laser printer"),
-    palette="appliance",
-    shown=False,
-)
+@kind("printer", palette="appliance")
 def printer(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.4, 0.46), rng.uniform(0.36, 0.42), rng.uniform(0.24, 0.32), tone.main
     dark = tone.plain("#2a2c30")
@@ -35,14 +28,7 @@ def printer(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "bulletin board",
-    ((0.5, 2.0), (0.01, 0.1), (0.4, 1.4)),
-    support="wall",
-    synonyms=("notice board", "pin board", "cork board", "pinboard"),
-    palette="wood",
-    shown=False,
-)
+@kind("bulletin board", palette="wood")
 def bulletin_board(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, t = rng.uniform(0.95, 1.15), rng.uniform(0.65, 0.85), 0.035
     cork = Material(tone.color if tone.asked else (0.76, 0.58, 0.38), "fur", main=True)
@@ -60,14 +46,7 @@ def bulletin_board(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "locker",
-    ((0.3, 2.4), (0.35, 0.7), (1.2, 2.2)),
-    synonyms=("lockers", "school locker"),
-    palette="any",
-    against_wall=True,
-    shown=False,
-)
+@kind("locker")
 def locker(rng: Rng, tone: Tone) -> list[Piece]:
     n, d, h, mat = int(rng.integers(2, 4)), rng.uniform(0.45, 0.5), rng.uniform(1.78, 1.9), tone.main
     w = n * 0.31
@@ -90,14 +69,7 @@ def locker(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "cubby",
-    ((0.6, 2.0), (0.25, 0.6), (0.5, 1.6)),
-    synonyms=("cubbies", "cube shelf", "cubby shelf", "shoe rack", "magazine rack", "wine rack"),
-    palette="wood",
-    against_wall=True,
-    shown=False,
-)
+@kind("cubby", palette="wood")
 def cubby(rng: Rng, tone: Tone) -> list[Piece]:
     nx, nz, side, mat = int(rng.integers(2, 5)), int(rng.integers(2, 4)), rng.uniform(0.3, 0.36), tone.main
     w, h, d, t = nx * side, nz * side, rng.uniform(0.34, 0.4), 0.022
@@ -112,13 +84,7 @@ def cubby(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "water cooler",
-    ((0.25, 0.5), (0.25, 0.5), (0.8, 1.5)),
-    synonyms=("water dispenser", "drink dispenser"),
-    palette="appliance",
-    shown=False,
-)
+@kind("water cooler", palette="appliance")
 def water_cooler(rng: Rng, tone: Tone) -> list[Piece]:
     mat, h = tone.in_white(), rng.uniform(0.92, 1.0)
     water = Material((0.45, 0.7, 0.9), "glass", (0.8, 0.92, 0.98))
@@ -139,14 +105,7 @@ def water_cooler(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "sign",
-    ((0.3, 2.0), (0.02, 0.15), (0.15, 1.0)),
-    support="wall",
-    synonyms=("shop sign", "wall sign", "neon sign", "name plate"),
-    palette="any",
-    shown=False,
-)
+@kind("sign")
 def sign(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, mat = rng.uniform(0.65, 1.05), rng.uniform(0.32, 0.46), tone.main
     pale = Material(tone.second)
@@ -166,13 +125,7 @@ def sign(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "ladder",
-    ((0.3, 0.8), (0.05, 1.2), (1.2, 3.0)),
-    synonyms=("step ladder", "stepladder", "library ladder"),
-    palette="wood",
-    shown=False,
-)
+@kind("ladder", palette="wood")
 def ladder(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, mat = rng.uniform(0.42, 0.5), rng.uniform(1.8, 2.1), tone.main
     lean = 0.12
@@ -184,13 +137,7 @@ def ladder(rng: Rng, tone: Tone) -> list[Piece]:
     return [join(*sides).named("side", mat), join(*rungs).named("rung", mat)]
 
 
-@kind(
-    "stage",
-    ((1.5, 6.0), (1.0, 4.0), (0.15, 0.8)),
-    synonyms=("platform", "podium platform"),
-    palette="wood",
-    shown=False,
-)
+@kind("stage", palette="wood")
 def stage(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(2.4, 3.0), rng.uniform(1.4, 1.8), rng.uniform(0.28, 0.4), tone.main
     boards = Material(mat.color, "planks", mat.second, 0.15, 0, tone.seed, True)

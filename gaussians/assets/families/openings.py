@@ -10,13 +10,7 @@ from ..modeling.shapes import Piece, ball, blob, box, boxes, cylinder, join, lat
 from ..registry import kind
 
 
-@kind(
-    "window",
-    ((0.6, 1.9), (0.04, 0.3), (0.7, 1.8)),
-    support="wall",
-    synonyms=("casement", "window pane"),
-    palette="wood",
-)
+@kind("window", palette="wood")
 def window(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, t = rng.uniform(0.8, 1.6), rng.uniform(1.0, 1.45), rng.uniform(0.045, 0.07)
     frame = tone.main
@@ -41,9 +35,7 @@ def window(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "door", ((0.65, 1.1), (0.03, 0.25), (1.85, 2.3)), support="wall", synonyms=("doorway", "entrance"), palette="wood"
-)
+@kind("door", palette="wood")
 def door(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, mat, style = rng.uniform(0.76, 0.92), rng.uniform(1.96, 2.1), tone.main.along(2), int(rng.integers(5))
     trim = mat.shaded(0.85) if chance(rng, 0.5) else tone.plain("#efeeea")
@@ -101,13 +93,7 @@ def door(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "curtain",
-    ((0.7, 2.4), (0.06, 0.32), (1.0, 2.6)),
-    support="wall",
-    synonyms=("curtains", "drapes", "drape"),
-    palette="fabric",
-)
+@kind("curtain", palette="fabric")
 def curtain(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, mat = rng.uniform(1.2, 1.9), rng.uniform(1.5, 2.2), tone.textile(0.14, 0.6)
     closed = chance(rng, 0.25)
@@ -135,13 +121,7 @@ def curtain(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "radiator",
-    ((0.5, 1.5), (0.06, 0.22), (0.4, 0.85)),
-    synonyms=("heater", "radiator heater"),
-    palette="appliance",
-    against_wall=True,
-)
+@kind("radiator", palette="appliance")
 def radiator(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, mat, foot = rng.uniform(0.7, 1.2), rng.uniform(0.45, 0.62), tone.main, 0.1
     if chance(rng, 0.5):
@@ -170,13 +150,7 @@ def radiator(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "fireplace",
-    ((0.9, 1.7), (0.25, 0.6), (0.85, 1.4)),
-    synonyms=("hearth", "chimney", "mantelpiece"),
-    palette="any",
-    against_wall=True,
-)
+@kind("fireplace")
 def fireplace(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, d = rng.uniform(1.15, 1.5), rng.uniform(1.0, 1.2), rng.uniform(0.3, 0.42)
     stone = Material(
@@ -218,12 +192,7 @@ def fireplace(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "folding screen",
-    ((0.9, 2.0), (0.2, 0.8), (1.3, 2.0)),
-    synonyms=("room divider", "partition", "paravent"),
-    palette="any",
-)
+@kind("folding screen")
 def folding_screen(rng: Rng, tone: Tone) -> list[Piece]:
     n, h, w = int(rng.integers(3, 5)), rng.uniform(1.5, 1.8), rng.uniform(0.4, 0.48)
     cloth, wood = tone.textile(0.15, 0.4), tone.wood()

@@ -15,14 +15,7 @@ from ..registry import kind
 _PARTY = ("#e0455e", "#f2c53d", "#3f79c9", "#4fae6a", "#f08a3c", "#9a5fc0")
 
 
-@kind(
-    "ceiling beams",
-    ((1.5, 12.0), (1.5, 12.0), (0.1, 0.45)),
-    support="ceiling",
-    synonyms=("exposed beams", "wooden beams", "rafters", "exposed ceiling beams", "beams"),
-    palette="wood",
-    shown=False,
-)
+@kind("ceiling beams", palette="wood")
 def ceiling_beams(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h = rng.uniform(3.0, 7.0), rng.uniform(3.0, 6.0), rng.uniform(0.16, 0.26)
     if not tone.asked:
@@ -39,14 +32,7 @@ def ceiling_beams(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "beam",
-    ((1.0, 12.0), (0.08, 0.4), (0.08, 0.45)),
-    support="ceiling",
-    synonyms=("ceiling beam", "wooden beam", "exposed beam", "rafter", "timber beam"),
-    palette="wood",
-    shown=False,
-)
+@kind("beam", palette="wood")
 def beam(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h = rng.uniform(3.0, 6.0), rng.uniform(0.12, 0.2), rng.uniform(0.16, 0.26)
     if not tone.asked:
@@ -65,14 +51,7 @@ def _sagging(w: float, sag: float, count: int) -> Array:
     return np.stack([t * w / 2, 0 * t, -sag * (1 - t**2)], axis=1)
 
 
-@kind(
-    "streamers",
-    ((0.8, 8.0), (0.02, 8.0), (0.15, 1.2)),
-    support="ceiling",
-    synonyms=("bunting", "garland", "party streamers", "streamer", "pennants", "festoon"),
-    palette="any",
-    shown=False,
-)
+@kind("streamer")
 def streamers(rng: Rng, tone: Tone) -> list[Piece]:
     w, sag, style = rng.uniform(2.0, 4.0), rng.uniform(0.15, 0.35), int(rng.integers(3))
     tints = [Material(tone.color, main=True), *(tone.plain(c) for c in rng.permutation(_PARTY)[:3])]
@@ -102,13 +81,7 @@ def streamers(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "balloons",
-    ((0.3, 1.2), (0.3, 1.2), (0.5, 2.4)),
-    synonyms=("balloon", "bunch of balloons", "party balloons"),
-    palette="any",
-    shown=False,
-)
+@kind("balloons")
 def balloons(rng: Rng, tone: Tone) -> list[Piece]:
     n, high = int(rng.integers(5, 9)), rng.uniform(1.3, 1.7)
     tints = [Material(tone.color, main=True), *(tone.plain(c) for c in rng.permutation(_PARTY)[:3])]
@@ -128,14 +101,7 @@ def balloons(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "string lights",
-    ((0.8, 8.0), (0.03, 8.0), (0.15, 1.0)),
-    support="ceiling",
-    synonyms=("fairy lights", "light string", "festoon lights", "lights string"),
-    palette="light",
-    shown=False,
-)
+@kind("string lights", palette="light")
 def string_lights(rng: Rng, tone: Tone) -> list[Piece]:
     w, sag, ropes = rng.uniform(2.0, 4.0), rng.uniform(0.2, 0.35), int(rng.integers(1, 4))
     glow = (
@@ -159,14 +125,7 @@ def string_lights(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "paper lantern",
-    ((0.3, 0.9), (0.3, 0.9), (0.2, 0.6)),
-    support="ceiling",
-    synonyms=("lampion", "paper lamp", "rice paper lamp"),
-    palette="light",
-    shown=False,
-)
+@kind("paper lantern", palette="light")
 def paper_lantern(rng: Rng, tone: Tone) -> list[Piece]:
     r, cord = rng.uniform(0.18, 0.28), rng.uniform(0.1, 0.25)
     lit = Material(tone.color, "glow", (1.0, 0.97, 0.9), main=True)

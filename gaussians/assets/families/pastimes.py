@@ -12,13 +12,7 @@ from ..registry import kind
 Rows = list[tuple[float, ...]]
 
 
-@kind(
-    "beanbag",
-    ((0.5, 1.1), (0.5, 1.1), (0.4, 0.9)),
-    synonyms=("bean bag", "bean bag chair"),
-    palette="fabric",
-    shown=False,
-)
+@kind("beanbag", palette="fabric")
 def beanbag(rng: Rng, tone: Tone) -> list[Piece]:
     cloth, w = tone.textile(0.07, 0.8), rng.uniform(0.7, 0.85)
     out = [
@@ -34,14 +28,7 @@ def beanbag(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "crib",
-    ((0.6, 0.9), (1.1, 1.6), (0.8, 1.2)),
-    synonyms=("baby bed", "baby cot"),
-    palette="wood",
-    against_wall=True,
-    shown=False,
-)
+@kind("crib", palette="wood")
 def crib(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.7, 0.76), rng.uniform(1.3, 1.38), rng.uniform(0.92, 1.02), tone.main
     bars: Rows = [
@@ -65,14 +52,7 @@ def crib(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "arcade machine",
-    ((0.5, 1.0), (0.6, 1.0), (1.4, 2.0)),
-    synonyms=("arcade cabinet", "jukebox", "pinball machine"),
-    palette="any",
-    against_wall=True,
-    shown=False,
-)
+@kind("arcade machine")
 def arcade_machine(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.62, 0.7), rng.uniform(0.76, 0.86), rng.uniform(1.68, 1.8), tone.main
     dark = tone.plain("#1b1c20")
@@ -91,14 +71,7 @@ def arcade_machine(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "dart board",
-    ((0.3, 0.7), (0.02, 0.12), (0.3, 0.7)),
-    support="wall",
-    synonyms=("dartboard",),
-    palette="any",
-    shown=False,
-)
+@kind("dart board")
 def dart_board(rng: Rng, tone: Tone) -> list[Piece]:
     r, cream = rng.uniform(0.22, 0.27), tone.plain("#eadfbf")
     black = Material(tone.color if tone.asked else (0.1, 0.1, 0.11), main=True)
@@ -125,14 +98,7 @@ def dart_board(rng: Rng, tone: Tone) -> list[Piece]:
     return [p.turned("x", 90).moved(0, 0, r) for p in out]
 
 
-@kind(
-    "dumbbell rack",
-    ((0.8, 2.0), (0.4, 0.8), (0.5, 1.2)),
-    synonyms=("weight rack", "dumbbells", "kettlebell"),
-    palette="dark",
-    against_wall=True,
-    shown=False,
-)
+@kind("dumbbell rack", palette="dark")
 def dumbbell_rack(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(1.15, 1.45), rng.uniform(0.5, 0.58), rng.uniform(0.75, 0.88), tone.main
     rows: Rows = [(0.05, d, 0.05, s * (w / 2 - 0.03), 0, 0) for s in (-1, 1)] + [
@@ -157,14 +123,7 @@ def dumbbell_rack(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "aquarium",
-    ((0.4, 1.6), (0.25, 0.7), (0.28, 0.8)),
-    support="surface",
-    synonyms=("fish tank", "terrarium"),
-    palette="dark",
-    shown=False,
-)
+@kind("aquarium", palette="dark")
 def aquarium(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat, t = rng.uniform(0.7, 0.95), rng.uniform(0.34, 0.4), rng.uniform(0.4, 0.46), tone.main, 0.025
     back = Material((0.3, 0.62, 0.82), "glass", (0.62, 0.86, 0.95))

@@ -68,12 +68,7 @@ def _crown(rng: Rng, count: int, r: float, at: tuple[float, float, float], lengt
     return join(*out)
 
 
-@kind(
-    "potted plant",
-    ((0.2, 1.2), (0.2, 1.2), (0.3, 1.9)),
-    synonyms=("plant", "houseplant", "pot plant", "fern", "palm", "ficus"),
-    palette="leaf",
-)
+@kind("potted plant", palette="leaf")
 def potted_plant(rng: Rng, tone: Tone) -> list[Piece]:
     style, green = int(rng.integers(7)), Material(tone.color, seed=tone.seed, main=True)
     big = chance(rng, 0.6)
@@ -135,13 +130,7 @@ def potted_plant(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "flowers",
-    ((0.12, 0.5), (0.12, 0.5), (0.22, 0.65)),
-    support="surface",
-    synonyms=("bouquet", "vase of flowers", "flower", "tulips", "roses"),
-    palette="any",
-)
+@kind("flowers")
 def flowers(rng: Rng, tone: Tone) -> list[Piece]:
     h, n = rng.uniform(0.14, 0.2), int(rng.integers(5, 12))
     green, bloom = Material((0.2, 0.45, 0.2)), tone.main
@@ -170,13 +159,7 @@ def flowers(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "vase",
-    ((0.08, 0.4), (0.08, 0.4), (0.14, 0.7)),
-    support="surface",
-    synonyms=("urn", "jar", "amphora"),
-    palette="any",
-)
+@kind("vase")
 def vase(rng: Rng, tone: Tone) -> list[Piece]:
     h, style, mat = rng.uniform(0.2, 0.42), int(rng.integers(6)), tone.glazed(rng.uniform(0.04, 0.1))
     r = h * rng.uniform(0.2, 0.32)
@@ -207,9 +190,7 @@ def vase(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "flower pot", ((0.12, 0.5), (0.12, 0.5), (0.1, 0.5)), synonyms=("planter", "plant pot", "empty pot"), palette="any"
-)
+@kind("flower pot")
 def flower_pot(rng: Rng, tone: Tone) -> list[Piece]:
     r, h = rng.uniform(0.1, 0.18), rng.uniform(0.14, 0.3)
     out = _pot(rng, r, h, tone.glazed(0.05))

@@ -80,12 +80,7 @@ def _hoop(w: float, h: float, y: float, z: float) -> list[Point]:
     return [(float(-w / 2 * np.cos(a)), y, float(z + h * np.sin(a) ** 0.7)) for a in t]
 
 
-@kind(
-    "chair",
-    ((0.38, 0.66), (0.4, 0.7), (0.72, 1.15)),
-    synonyms=("dining chair", "kitchen chair", "wooden chair"),
-    palette="any",
-)
+@kind("chair")
 def chair(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, seat = rng.uniform(0.4, 0.5), rng.uniform(0.42, 0.5), rng.uniform(0.43, 0.48)
     back, style = rng.uniform(0.36, 0.55), int(rng.integers(6))
@@ -127,12 +122,7 @@ def chair(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "office chair",
-    ((0.5, 0.75), (0.5, 0.75), (0.8, 1.3)),
-    synonyms=("desk chair", "swivel chair", "task chair"),
-    palette="fabric",
-)
+@kind("office chair", palette="fabric")
 def office_chair(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, seat = rng.uniform(0.46, 0.54), rng.uniform(0.46, 0.52), rng.uniform(0.44, 0.52)
     mat, metal, black = tone.textile(0.07, 0.85), tone.metal(), tone.plain("#222326")
@@ -230,12 +220,7 @@ def _sofa_body(rng: Rng, tone: Tone, w: float, seats: int) -> list[Piece]:
     return out
 
 
-@kind(
-    "armchair",
-    ((0.68, 1.1), (0.7, 1.05), (0.68, 1.15)),
-    synonyms=("lounge chair", "easy chair", "recliner", "club chair"),
-    palette="fabric",
-)
+@kind("armchair", palette="fabric")
 def armchair(rng: Rng, tone: Tone) -> list[Piece]:
     if chance(rng, 0.25):  # a tub: one shell around the sitter
         r, seat, h = rng.uniform(0.36, 0.42), 0.42, rng.uniform(0.7, 0.85)
@@ -258,20 +243,14 @@ def armchair(rng: Rng, tone: Tone) -> list[Piece]:
     return _sofa_body(rng, tone, rng.uniform(0.75, 0.98), 1)
 
 
-@kind(
-    "sofa",
-    ((1.3, 2.6), (0.75, 1.7), (0.65, 1.1)),
-    synonyms=("couch", "settee", "loveseat", "divan"),
-    palette="fabric",
-    against_wall=True,
-)
+@kind("sofa", palette="fabric")
 def sofa(rng: Rng, tone: Tone) -> list[Piece]:
     seats = int(rng.choice([2, 3, 3]))
     w = 0.4 + seats * rng.uniform(0.56, 0.66)
     return _sofa_body(rng, tone, w, seats)
 
 
-@kind("stool", ((0.26, 0.5), (0.26, 0.5), (0.4, 0.82)), synonyms=("bar stool", "footstool", "taboret"), palette="any")
+@kind("stool")
 def stool(rng: Rng, tone: Tone) -> list[Piece]:
     h, r = rng.choice([rng.uniform(0.42, 0.5), rng.uniform(0.62, 0.78)]), rng.uniform(0.15, 0.2)
     style, mat = int(rng.integers(4)), tone.main
@@ -309,7 +288,7 @@ def stool(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind("bench", ((0.9, 1.8), (0.3, 0.6), (0.4, 0.95)), synonyms=("settle", "pew"), palette="wood")
+@kind("bench", palette="wood")
 def bench(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h = rng.uniform(1.0, 1.6), rng.uniform(0.34, 0.45), rng.uniform(0.42, 0.48)
     mat, style = tone.main, int(rng.integers(4))
@@ -348,7 +327,7 @@ def bench(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind("ottoman", ((0.4, 0.9), (0.4, 0.8), (0.28, 0.5)), synonyms=("pouf", "pouffe", "hassock"), palette="fabric")
+@kind("ottoman", palette="fabric")
 def ottoman(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, mat = rng.uniform(0.45, 0.75), rng.uniform(0.34, 0.45), tone.textile(0.07, 0.4)
     if chance(rng, 0.4):
@@ -376,13 +355,7 @@ def blob_seat(w: float, h: float) -> Piece:
     )
 
 
-@kind(
-    "bed",
-    ((0.85, 1.95), (1.85, 2.3), (0.5, 1.5)),
-    synonyms=("double bed", "single bed", "cot"),
-    palette="fabric",
-    against_wall=True,
-)
+@kind("bed", palette="fabric")
 def bed(rng: Rng, tone: Tone) -> list[Piece]:
     w, d = float(rng.choice([0.95, 1.4, 1.65])) + rng.uniform(0, 0.15), rng.uniform(2.0, 2.15)
     base, painted = rng.uniform(0.26, 0.36), chance(rng, 0.3) or tone.asked
@@ -432,13 +405,7 @@ def bed(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "cushion",
-    ((0.3, 0.62), (0.08, 0.28), (0.28, 0.6)),
-    support="surface",
-    synonyms=("pillow", "throw pillow"),
-    palette="any",
-)
+@kind("cushion")
 def throw_cushion(rng: Rng, tone: Tone) -> list[Piece]:
     w, thick, mat = rng.uniform(0.36, 0.5), rng.uniform(0.13, 0.19), tone.textile(0.06, 0.35)
     if chance(rng, 0.2):

@@ -32,13 +32,7 @@ def _pastries(rng: Rng, tone: Tone, w: float, d: float, z: float) -> list[Piece]
     return [join(*found).named("pastry", tone.plain(_CRUSTS[shade]), 0.8) for shade, found in rows.items()]
 
 
-@kind(
-    "counter",
-    ((0.9, 4.5), (0.45, 1.0), (0.85, 1.2)),
-    synonyms=("service counter", "bar counter", "reception desk", "sales counter", "checkout counter", "shop counter"),
-    palette="wood",
-    shown=False,
-)
+@kind("counter", palette="wood")
 def counter(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(1.4, 3.2), rng.uniform(0.55, 0.75), rng.uniform(0.95, 1.1), tone.main
     style, thick = int(rng.integers(4)), rng.uniform(0.035, 0.06)
@@ -71,14 +65,7 @@ def counter(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "display case",
-    ((0.7, 2.6), (0.4, 1.0), (0.9, 1.7)),
-    synonyms=("pastry display", "pastry case", "display counter", "glass display", "showcase", "vitrine",
-              "display cabinet", "cake display", "bakery display"),
-    palette="wood",
-    shown=False,
-)  # fmt: skip
+@kind("display case", palette="wood")
 def display_case(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(1.0, 1.9), rng.uniform(0.55, 0.75), rng.uniform(1.15, 1.4), tone.main
     low, t, metal = rng.uniform(0.42, 0.62), 0.025, tone.metal()
@@ -107,14 +94,7 @@ def display_case(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "coffee machine",
-    ((0.25, 0.9), (0.25, 0.65), (0.3, 0.65)),
-    support="surface",
-    synonyms=("espresso machine", "coffee maker", "coffeemaker"),
-    palette="appliance",
-    shown=False,
-)
+@kind("coffee machine", palette="appliance")
 def coffee_machine(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.36, 0.72), rng.uniform(0.38, 0.5), rng.uniform(0.4, 0.5), tone.main
     steel, black = Material((0.78, 0.79, 0.8), "brushed"), tone.plain("#1b1b1d")
@@ -154,14 +134,7 @@ def coffee_machine(rng: Rng, tone: Tone) -> list[Piece]:
     return [*out, join(*stack).named("cups", tone.plain("#f4f1ea"))]
 
 
-@kind(
-    "cash register",
-    ((0.25, 0.5), (0.25, 0.55), (0.2, 0.5)),
-    support="surface",
-    synonyms=("till", "cash desk", "point of sale"),
-    palette="dark",
-    shown=False,
-)
+@kind("cash register", palette="dark")
 def cash_register(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, mat = rng.uniform(0.32, 0.42), rng.uniform(0.34, 0.42), tone.main
     tilt = rng.uniform(18, 32)
@@ -178,14 +151,7 @@ def cash_register(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "menu board",
-    ((0.5, 2.4), (0.02, 0.12), (0.4, 1.5)),
-    support="wall",
-    synonyms=("blackboard", "chalkboard", "chalk board", "menu"),
-    palette="dark",
-    shown=False,
-)
+@kind("menu board", palette="dark")
 def menu_board(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, t = rng.uniform(0.8, 1.7), rng.uniform(0.7, 1.05), rng.uniform(0.03, 0.06)
     slate = tone.main if tone.asked else Material((0.13, 0.15, 0.14), main=True)
@@ -208,13 +174,7 @@ def menu_board(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "aisle shelf",
-    ((0.8, 3.0), (0.4, 1.1), (1.2, 2.2)),
-    synonyms=("gondola", "store shelf", "shop shelf", "supermarket shelf", "display shelf", "grocery shelf"),
-    palette="light",
-    shown=False,
-)
+@kind("aisle shelf", palette="light")
 def aisle_shelf(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(1.1, 2.1), rng.uniform(0.5, 0.9), rng.uniform(1.35, 1.8), tone.main
     levels = int(rng.integers(3, 6))

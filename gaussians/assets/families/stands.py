@@ -10,13 +10,7 @@ from ..modeling.shapes import Piece, ball, blob, box, boxes, cylinder, disc, joi
 from ..registry import kind
 
 
-@kind(
-    "flower stand",
-    ((0.6, 2.0), (0.4, 1.2), (0.6, 1.8)),
-    synonyms=("plant stand", "flower display", "flower rack", "florist stand"),
-    palette="wood",
-    shown=False,
-)
+@kind("flower stand", palette="wood")
 def flower_stand(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, steps, mat = rng.uniform(0.9, 1.5), rng.uniform(0.6, 0.9), int(rng.integers(2, 4)), tone.main
     rise = rng.uniform(0.24, 0.34)
@@ -47,13 +41,7 @@ def flower_stand(rng: Rng, tone: Tone) -> list[Piece]:
     return out + [join(*found).named("flower", tone.plain(tints[k]), 0.6) for k, found in blooms.items()]
 
 
-@kind(
-    "bar stool",
-    ((0.32, 0.58), (0.32, 0.6), (0.6, 1.15)),
-    synonyms=("barstool", "counter stool", "high stool"),
-    palette="any",
-    shown=False,
-)
+@kind("bar stool")
 def bar_stool(rng: Rng, tone: Tone) -> list[Piece]:
     r, h, style = rng.uniform(0.17, 0.2), rng.uniform(0.66, 0.78), int(rng.integers(4))
     seat, frame = (tone.textile(0.05, 0.8) if chance(rng, 0.5) else tone.main), tone.frame()
@@ -100,14 +88,7 @@ def bar_stool(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "tv stand",
-    ((0.8, 2.4), (0.3, 0.6), (0.35, 0.8)),
-    synonyms=("television stand", "media console", "tv cabinet", "media unit", "tv unit", "tv bench"),
-    palette="wood",
-    against_wall=True,
-    shown=False,
-)
+@kind("tv stand", palette="wood")
 def tv_stand(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(1.2, 1.9), rng.uniform(0.36, 0.45), rng.uniform(0.42, 0.58), tone.main
     foot, t, style = rng.uniform(0.05, 0.15), 0.022, int(rng.integers(3))

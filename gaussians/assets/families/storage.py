@@ -38,13 +38,7 @@ def _open_box(w: float, d: float, h: float, t: float, z: float = 0.0) -> Piece:
     )
 
 
-@kind(
-    "wardrobe",
-    ((0.75, 2.2), (0.45, 0.75), (1.65, 2.35)),
-    synonyms=("closet", "armoire"),
-    palette="wood",
-    against_wall=True,
-)
+@kind("wardrobe", palette="wood")
 def wardrobe(rng: Rng, tone: Tone) -> list[Piece]:
     doors = int(rng.integers(2, 5))
     w, d, h, mat = doors * rng.uniform(0.42, 0.52), rng.uniform(0.52, 0.62), rng.uniform(1.8, 2.2), tone.main
@@ -71,13 +65,7 @@ def wardrobe(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "cabinet",
-    ((0.5, 1.7), (0.3, 0.55), (0.55, 1.25)),
-    synonyms=("cupboard", "sideboard", "credenza", "buffet"),
-    palette="wood",
-    against_wall=True,
-)
+@kind("cabinet", palette="wood")
 def cabinet(rng: Rng, tone: Tone) -> list[Piece]:
     columns = int(rng.integers(1, 4))
     w, d, mat = 0.15 + columns * rng.uniform(0.4, 0.5), rng.uniform(0.36, 0.46), tone.main
@@ -96,13 +84,7 @@ def cabinet(rng: Rng, tone: Tone) -> list[Piece]:
     )
 
 
-@kind(
-    "dresser",
-    ((0.6, 1.5), (0.36, 0.6), (0.6, 1.35)),
-    synonyms=("chest of drawers", "drawers", "commode"),
-    palette="wood",
-    against_wall=True,
-)
+@kind("dresser", palette="wood")
 def dresser(rng: Rng, tone: Tone) -> list[Piece]:
     wide = chance(rng, 0.5)
     w, h = (
@@ -126,13 +108,7 @@ def dresser(rng: Rng, tone: Tone) -> list[Piece]:
     )
 
 
-@kind(
-    "bookshelf",
-    ((0.55, 1.3), (0.22, 0.42), (0.8, 2.2)),
-    synonyms=("bookcase", "shelf", "shelves", "shelving unit"),
-    palette="wood",
-    against_wall=True,
-)
+@kind("bookshelf", palette="wood")
 def bookshelf(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, mat, t = rng.uniform(0.65, 1.1), rng.uniform(0.26, 0.34), tone.main, 0.024
     shelves = int(rng.integers(3, 7))
@@ -164,13 +140,7 @@ def _little_vase(rng: Rng, h: float) -> Piece:
     return lathe([(0, 0), (r * 0.7, 0), (r, h * 0.4), (r * 0.4, h * 0.8), (r * 0.5, h)], smooth=13)
 
 
-@kind(
-    "books",
-    ((0.14, 0.5), (0.12, 0.35), (0.04, 0.36)),
-    support="surface",
-    synonyms=("book", "stack of books", "novel", "magazine"),
-    palette="any",
-)
+@kind("books")
 def books(rng: Rng, tone: Tone) -> list[Piece]:
     n, pages = int(rng.integers(1, 5)), tone.plain("#f3ecd9")
     main = tone.main
@@ -195,12 +165,7 @@ def books(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "box",
-    ((0.15, 0.65), (0.15, 0.6), (0.1, 0.55)),
-    synonyms=("carton", "crate", "chest", "cardboard box", "trunk"),
-    palette="any",
-)
+@kind("box")
 def storage_box(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, style = rng.uniform(0.25, 0.5), rng.uniform(0.22, 0.4), rng.uniform(0.18, 0.42), int(rng.integers(4))
     mat = tone.main
@@ -237,12 +202,7 @@ def storage_box(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "basket",
-    ((0.22, 0.6), (0.2, 0.6), (0.15, 0.65)),
-    synonyms=("hamper", "wicker basket", "laundry basket"),
-    palette="any",
-)
+@kind("basket")
 def basket(rng: Rng, tone: Tone) -> list[Piece]:
     mat = Material(tone.color, "wicker", scale=rng.uniform(0.018, 0.035), main=True, seed=tone.seed)
     r, h, flare = rng.uniform(0.15, 0.22), rng.uniform(0.2, 0.45), rng.uniform(0.9, 1.3)
@@ -265,12 +225,7 @@ def basket(rng: Rng, tone: Tone) -> list[Piece]:
     return [p.stretched(1.0, squash, 1.0) for p in out]
 
 
-@kind(
-    "bin",
-    ((0.18, 0.5), (0.18, 0.5), (0.22, 0.75)),
-    synonyms=("trash can", "waste bin", "wastebasket", "garbage can", "rubbish bin"),
-    palette="any",
-)
+@kind("bin")
 def waste_bin(rng: Rng, tone: Tone) -> list[Piece]:
     r, h, style, mat = rng.uniform(0.12, 0.17), rng.uniform(0.28, 0.42), int(rng.integers(4)), tone.main
     if style == 0:
@@ -312,7 +267,7 @@ def waste_bin(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind("coat rack", ((0.3, 0.8), (0.3, 0.8), (1.4, 2.0)), synonyms=("coat stand", "hat stand"), palette="wood")
+@kind("coat rack", palette="wood")
 def coat_rack(rng: Rng, tone: Tone) -> list[Piece]:
     h, mat, n = rng.uniform(1.6, 1.85), tone.main, int(rng.integers(3, 6))
     turns = np.linspace(0, 2 * np.pi, n + 1)[:-1]

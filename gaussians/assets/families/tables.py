@@ -62,7 +62,7 @@ def _base(rng: Rng, style: int, w: float, d: float, h: float, mat: Material) -> 
     return join(*bars, rod((-w * 0.36, 0, h / 2), (w * 0.36, 0, h / 2), 0.018)).named("leg", mat)
 
 
-@kind("table", ((0.8, 2.2), (0.7, 1.3), (0.68, 0.8)), synonyms=("dining table", "kitchen table"), palette="wood")
+@kind("table", palette="wood")
 def table(rng: Rng, tone: Tone) -> list[Piece]:
     h, mat = rng.uniform(0.71, 0.77), tone.main
     under = mat if chance(rng, 0.55) else tone.frame()
@@ -76,7 +76,7 @@ def table(rng: Rng, tone: Tone) -> list[Piece]:
     return [_top(rng, shape, w, d, h, thick, mat), _base(rng, style, w, d, h - thick, under)]
 
 
-@kind("coffee table", ((0.55, 1.4), (0.5, 0.95), (0.28, 0.5)), synonyms=("cocktail table", "low table"), palette="wood")
+@kind("coffee table", palette="wood")
 def coffee_table(rng: Rng, tone: Tone) -> list[Piece]:
     h, mat, style = rng.uniform(0.34, 0.45), tone.main, int(rng.integers(5))
     under = mat if chance(rng, 0.5) else tone.frame()
@@ -96,7 +96,7 @@ def coffee_table(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind("side table", ((0.3, 0.65), (0.3, 0.6), (0.4, 0.68)), synonyms=("end table", "occasional table"), palette="wood")
+@kind("side table", palette="wood")
 def side_table(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, mat, style = rng.uniform(0.38, 0.52), rng.uniform(0.45, 0.6), tone.main, int(rng.integers(4))
     if style == 0:
@@ -129,13 +129,7 @@ def side_table(rng: Rng, tone: Tone) -> list[Piece]:
     ]
 
 
-@kind(
-    "nightstand",
-    ((0.35, 0.65), (0.3, 0.55), (0.4, 0.7)),
-    synonyms=("bedside table", "night table"),
-    palette="wood",
-    against_wall=True,
-)
+@kind("nightstand", palette="wood")
 def nightstand(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.42, 0.55), rng.uniform(0.36, 0.44), rng.uniform(0.48, 0.62), tone.main
     foot = rng.uniform(0.06, 0.2)
@@ -155,13 +149,7 @@ def nightstand(rng: Rng, tone: Tone) -> list[Piece]:
     )
 
 
-@kind(
-    "desk",
-    ((1.0, 1.8), (0.5, 0.9), (0.7, 1.1)),
-    synonyms=("writing desk", "workstation", "bureau"),
-    palette="wood",
-    against_wall=True,
-)
+@kind("desk", palette="wood")
 def desk(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(1.15, 1.65), rng.uniform(0.58, 0.78), rng.uniform(0.72, 0.76), tone.main
     under, style = mat if chance(rng, 0.6) else tone.frame(), int(rng.integers(5))

@@ -12,14 +12,7 @@ from ..registry import kind
 Rows = list[tuple[float, ...]]
 
 
-@kind(
-    "vending machine",
-    ((0.6, 1.3), (0.6, 1.0), (1.5, 2.1)),
-    synonyms=("snack machine", "drinks machine"),
-    palette="any",
-    against_wall=True,
-    shown=False,
-)
+@kind("vending machine")
 def vending_machine(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.88, 1.0), rng.uniform(0.78, 0.86), rng.uniform(1.8, 1.9), tone.main
     y, dark = -d / 2, tone.plain("#1d2024")
@@ -45,13 +38,7 @@ def vending_machine(rng: Rng, tone: Tone) -> list[Piece]:
     return out + [boxes(rows, 0.004).named("goods", tone.plain(tints[k])) for k, rows in goods.items()]
 
 
-@kind(
-    "mannequin",
-    ((0.35, 0.7), (0.25, 0.6), (1.4, 2.0)),
-    synonyms=("shop dummy", "dress form", "dummy"),
-    palette="light",
-    shown=False,
-)
+@kind("mannequin", palette="light")
 def mannequin(rng: Rng, tone: Tone) -> list[Piece]:
     skin, cloth = tone.in_white(), tone.accent()
     skirt = chance(rng, 0.5)
@@ -81,13 +68,7 @@ def mannequin(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "clothes rail",
-    ((0.7, 2.0), (0.3, 0.7), (1.2, 2.0)),
-    synonyms=("clothes rack", "garment rack", "clothing rack", "coat rail"),
-    palette="fabric",
-    shown=False,
-)
+@kind("clothes rail", palette="fabric")
 def clothes_rail(rng: Rng, tone: Tone) -> list[Piece]:
     w, h = rng.uniform(1.1, 1.4), rng.uniform(1.5, 1.65)
     bars = [rod((s * w / 2, 0, 0.04), (s * w / 2, 0, h), 0.015) for s in (-1, 1)] + [
@@ -104,13 +85,7 @@ def clothes_rail(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "bar cart",
-    ((0.5, 1.0), (0.3, 0.6), (0.6, 1.1)),
-    synonyms=("serving cart", "trolley", "tea trolley", "book cart", "serving trolley"),
-    palette="wood",
-    shown=False,
-)
+@kind("bar cart", palette="wood")
 def bar_cart(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.68, 0.82), rng.uniform(0.38, 0.44), rng.uniform(0.78, 0.88), tone.main
     metal, glass = tone.metal(), ("#3c7a4a", "#8a5230", "#d8e2e6", "#c8201e")
@@ -137,14 +112,7 @@ def bar_cart(rng: Rng, tone: Tone) -> list[Piece]:
     return out
 
 
-@kind(
-    "workbench",
-    ((1.0, 2.4), (0.5, 0.9), (0.75, 1.1)),
-    synonyms=("work bench", "potting bench", "work table"),
-    palette="wood",
-    against_wall=True,
-    shown=False,
-)
+@kind("workbench", palette="wood")
 def workbench(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(1.4, 1.8), rng.uniform(0.6, 0.7), rng.uniform(0.86, 0.92), tone.main
     return [

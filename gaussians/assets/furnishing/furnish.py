@@ -16,7 +16,8 @@ from torch import Tensor
 from ...camera import Vec3
 from ...errors import UserError
 from ...scene import Frame, Scene
-from ..registry import KINDS, find
+from ...world import kinds
+from ..registry import find
 from . import recipes
 from .assemble import raised
 from .layout import Layout, Placed
@@ -110,7 +111,8 @@ def furnish(
     get = recipes.Supplier(rng, detail)
     recipes.openings(layout, get)
     for extra in include:
-        _add(layout, get, find(extra).name)
+        find(extra)  # refuses what nothing draws
+        _add(layout, get, extra)
     recipe(layout, get)
     recipes.fill_up(layout, get, objects or int(rng.integers(12, 18)))
     return assemble(layout, name, rng, detail, ceiling)
@@ -128,7 +130,8 @@ def _walls(rng: np.random.Generator) -> tuple[str, ...]:
 
 def _add(layout: Layout, get: recipes.Supplier, name: str) -> None:
     """Put something asked for where its kind lives."""
-    thing, known = get(name), KINDS[name]
+    thing, known = get(name), kinds.find(name)
+    assert known is not None
     if known.support == "wall":
         for wall in layout.walls * 4:
             length = layout.w if wall in ("north", "south") else layout.d
@@ -143,7 +146,7 @@ def _add(layout: Layout, get: recipes.Supplier, name: str) -> None:
         stand = layout.against(get("cabinet"))
         if stand is None or layout.on_top(thing, stand) is None:
             layout.anywhere(thing, 0.1)
-    elif known.against_wall:
+    elif known.backed:
         layout.against(thing)
     else:
         layout.anywhere(thing, 0.15, edge=False)

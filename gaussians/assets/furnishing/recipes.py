@@ -362,4 +362,4 @@ def fill_up(room: Layout, get: Supplier, least: int) -> None:
             return
         kind = str(room.rng.choice([*LOOSE, "potted plant", "stool", "chair", "side table", "bookshelf", "cabinet"]))
         thing = get(kind)
-        _ = room.against(thing) if KINDS[kind].against_wall else room.anywhere(thing, 0.2)
+        _ = room.against(thing) if KINDS[kind].known.backed else room.anywhere(thing, 0.2)

@@ -19,6 +19,7 @@ from ...camera import Vec3
 from ...cloud import GaussianCloud
 from ...color import Rgb, name_of, rgb_to_lab, shade_of
 from ...errors import UserError
+from ...world import kinds as world
 from .. import registry
 from . import light, sampling, shapes
 from .materials import Tone
@@ -91,7 +92,7 @@ class Asset:
 
 def kinds(shown: bool = False) -> tuple[str, ...]:
     """Names of everything `make` can make, sorted; with `shown` only of what the embedded encoder was trained on."""
-    return tuple(sorted(name for name, known in registry.KINDS.items() if known.shown or not shown))
+    return tuple(sorted(name for name, known in registry.KINDS.items() if known.known.shown or not shown))
 
 
 def make(
@@ -115,14 +116,15 @@ def make(
     Raises:
         UserError: for an unknown kind or colour, or a size or detail out of range.
     """
-    known = registry.find(kind)
+    known, meant = registry.find(kind), world.find(kind)
+    assert meant is not None
     if not 0.05 <= detail <= 8:
         raise UserError(f"detail must be between 0.05 and 8, got {detail:g}")
     if size is not None and not all(0.005 <= s <= 50 for s in size):
         raise UserError(f"size must be three lengths (w, d, h) between 0.005 and 50 metres, got {size}")
     pieces, tone = design(known, seed, shade_of(color) if color is not None else None)
-    wanted = size if size is not None else _typical(pieces, known)
-    return finished(fitted(pieces, wanted), known.name, tone.color, seed, detail)
+    wanted = size if size is not None else _typical(pieces, meant)
+    return finished(fitted(pieces, wanted), meant.name, tone.color, seed, detail)
 
 
 def finished(pieces: Sequence[Piece], kind: str, rgb: Rgb, seed: int = 0, detail: float = 1.0) -> Asset:
@@ -153,10 +155,12 @@ def design(known: registry.Kind, seed: int, wanted: Rgb | None = None) -> tuple[
     return known.build(rng, tone), tone
 
 
-def _typical(pieces: Sequence[Piece], known: registry.Kind) -> Vec3:
-    """The design's own size, brought back into the kind's typical range."""
+def _typical(pieces: Sequence[Piece], meant: world.Kind) -> Vec3:
+    """The design's own size, brought back into what its builder may draw; a kind that is drawn as another one is as
+    large as it is sold."""
     low, high = shapes.bounds(pieces)
-    w, d, h = np.clip(np.maximum(high - low, 1e-6), *np.array(known.sizes).T).tolist()
+    limits = world.extent(meant.name) if meant.asset == meant.name else meant.size
+    w, d, h = np.clip(np.maximum(high - low, 1e-6), *np.array(limits).T).tolist()
     return (w, d, h)
 
 

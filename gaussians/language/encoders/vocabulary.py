@@ -12,18 +12,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Self
 
+from ...world import kinds as world
 from ...world.words import AFTER_HEAD, normalise
-
-# What captures show beyond households, one name a thing.
-_BEYOND = (
-    "person", "dog", "cat", "bird", "horse", "cow", "sheep", "fish", "bear", "elephant",
-    "car", "truck", "bus", "train", "motorcycle", "boat", "airplane", "wheelchair",
-    "traffic light", "street sign", "fire hydrant", "fence", "building", "tent", "fountain", "tree", "bush", "rock",
-    "bread", "sandwich", "pizza", "carrot", "orange", "pumpkin", "knife", "fork", "spoon", "scissors",
-    "hammer", "ladder", "bucket", "rope", "toothbrush", "soap", "towel", "toilet", "bathtub",
-    "hat", "coat", "glove", "necktie", "helmet", "camera", "flag", "robot",
-    "skateboard", "kite", "surfboard", "tennis racket", "baseball bat",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -97,18 +87,47 @@ class Vocabulary:
     def household(cls) -> Self:
         """The names that ship with the embedded encoder: 81 household kinds, and captions of non-objects."""
         words = Path(__file__).parent / "weights" / "words.json"
-        return cls.from_json(json.loads(words.read_text(encoding="utf-8"))["vocabulary"])
+        return cls.trained(json.loads(words.read_text(encoding="utf-8"))["vocabulary"])
+
+    @classmethod
+    def trained(cls, data: Mapping[str, Any]) -> Self:
+        """The names and phrases that an encoder was trained with; the table of kinds says which kind a phrase means.
+
+        A phrase of a kind that the encoder was not shown means a shown kind that it is alike to or stands in for
+        ("loveseat": sofa), or is left out.
+        """
+        found: dict[str, list[str]] = {name: [] for name in data["kinds"]}
+        for name, phrases in data["kinds"].items():
+            for phrase in phrases:
+                meant = world.find(phrase)
+                wanted = (name,) if meant is None else (meant.name, *meant.alike, meant.role)
+                if (shown := next((w for w in wanted if w in found), None)) is not None:
+                    found[shown].append(phrase)
+        families = {term: tuple(k for k in members if k in found) for term, members in world.table().families.items()}
+        return cls(
+            {name: tuple(phrases) for name, phrases in found.items()},
+            {term: members for term, members in families.items() if members and term in data["broader"]},
+            tuple(data["negatives"]),
+            frozenset(data["modifiers"]),
+        )
 
     @classmethod
     def everyday(cls) -> Self:
-        """The household names and those of `_BEYOND`, for encoders that read any name.
+        """The household names and all others of the table that stand for themselves, for encoders that read any name.
 
         Not only more labels: among household names alone, which are all alike, a thing's own name wins too small a
         share. With real ViT-B/32 vectors of household classes, 13 % of the present are refused against household names
         and 6 % against these, of the absent 98 % and 97 % (`home` in `benchmarks/_clip.py`).
         """
-        home = cls.household()
-        beyond = {name: () for name in _BEYOND if name not in home.kinds}
+        home, table = cls.household(), world.table()
+        own = [k for k in table.kinds.values() if not (k.like or k.alike or k.one or k.name in home.kinds)]
+        named = set(home._phrases)
+        beyond = {
+            k.name: tuple(n for n in k.names[1:] if normalise(n) not in named)
+            for k in own
+            if normalise(k.name) not in named
+        }
+        beyond |= {name: () for name in table.others}
         return cls({**home.kinds, **beyond}, home.broader, home.negatives, home.modifiers)
 
     @classmethod

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
+from ....gaussians.world.kinds import Kind
 from ....gaussians.world.relations import WishName
 from ...layout.problem import Wall
 from .. import knowledge
@@ -50,7 +51,7 @@ class Draft:
     placed: bool = False  # whether a relation was said of it
 
     @property
-    def kind(self) -> knowledge.ThingKind | None:
+    def kind(self) -> Kind | None:
         return knowledge.thing(self.name)
 
     @property

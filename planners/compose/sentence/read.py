@@ -12,7 +12,6 @@ from dataclasses import replace
 from typing import Any
 
 from ....gaussians.errors import UserError
-from ....gaussians.world import synonyms
 from ....gaussians.world.words import is_plural, singular
 from ...grammar.tagging.lookahead import color_at, is_plain, match
 from ...grammar.tagging.words import clean
@@ -293,7 +292,7 @@ class _Reader:
     def _unknown(self, i: int) -> int:
         """A run of words that nobody knows: a thing without a usual size if it is an everyday one, else named."""
         word = self.texts[i]
-        everyday = nouns.is_known(word) or singular(word) in synonyms.every_word()
+        everyday = nouns.is_known(word)
         behind = knowledge.lookup(knowledge.thing_words(), self.texts, i + 1)
         if everyday and is_plain(word) and not behind and word not in vocabulary.STRUCTURE:
             self._thing(singular(word)[:60], word, i)

@@ -234,9 +234,10 @@ def put(said: Phrases, node: Node) -> list[Fields]:
 
 def _is_cleared(noun: Noun) -> bool:
     """Whether a noun is rather what is freed than what goes: a place, what carries or holds things, a part of it."""
-    places = nouns.SURFACES | nouns.FURNITURE | nouns.EVERYWHERE | nouns.PLACES
     of_a_thing = any(p.kind == "part" for p in noun.posts) or any(r.name == "part_of" for r in noun.query.relations)
-    return noun.query.last or of_a_thing or head(noun.query.text) in places
+    name = noun.query.text
+    freed = head(name) in nouns.EVERYWHERE | nouns.PLACES or nouns.is_surface(name) or nouns.is_furniture(name)
+    return noun.query.last or of_a_thing or freed
 
 
 def _require_clear_end(found: Sequence[Noun]) -> None:

@@ -183,14 +183,14 @@ def _relation_name(post: Post) -> str:
     if post.kind == "related":
         return relations.named(str(post.value)).query_as or in_or_on(post)
     if post.kind == "off":
-        inside = head(post.anchors[0].query.text) in nouns.CONTAINERS
+        inside = nouns.is_container(post.anchors[0].query.text)
         return "inside" if inside else "on"
     return {"part": "part_of", "between": "between"}.get(post.kind, "")
 
 
 def in_or_on(post: Post) -> str:
     """The relation of a prepositional phrase; one sits "in" a chair by being on it."""
-    seat = post.value == "inside" and head(post.anchors[0].query.text) in nouns.SEATS
+    seat = post.value == "inside" and nouns.is_seat(post.anchors[0].query.text)
     return "on" if seat else str(post.value)
 
 

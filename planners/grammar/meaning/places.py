@@ -111,12 +111,12 @@ def _to(goal: Noun, moved: Noun | None) -> Fields:
     """ "to the floor" is on it, "to the wall" against it, "to the window" next to it; "to the table" depends."""
     name = head(goal.query.text)
     _refuse_some_corner(goal)
-    big = moved is not None and head(moved.query.text) in nouns.FURNITURE
+    big = moved is not None and nouns.is_furniture(moved.query.text)
     if name == "wall":
         relation = "against"
-    elif name in ("floor", "ground") or (name in nouns.SURFACES and not big):
+    elif name in ("floor", "ground") or (nouns.is_surface(goal.query.text) and not big):
         relation = "on"
-    elif name in nouns.CONTAINERS and not big:
+    elif nouns.is_container(goal.query.text) and not big:
         relation = "inside"
     else:
         relation = "next_to"
@@ -183,7 +183,7 @@ def _refines(first: Post, rest: Sequence[Post]) -> bool:
     if first.kind != "related" or first.value != "on" or not rest or rest[0].kind != "related":
         return False
     beside = rest[0].value in _BESIDE
-    return beside and head(rest[0].anchors[0].query.text) not in nouns.FURNITURE
+    return beside and not nouns.is_furniture(rest[0].anchors[0].query.text)
 
 
 def _spot(post: Post) -> str:

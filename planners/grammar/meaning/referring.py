@@ -122,7 +122,7 @@ def _noun_from(texts: tuple[str, ...], i: int) -> str:
         j = i
         while j < len(texts) and texts[j] not in _ENDS and texts[j] != "'s" and texts[j][0].isalpha():
             j += 1
-        if j == i + 1 and (texts[i] in _adjectives() or color_at(texts, i)) and texts[i] not in nouns.KNOWN:
+        if j == i + 1 and (texts[i] in _adjectives() or color_at(texts, i)) and not nouns.is_known(texts[i]):
             i = j + 1
             continue
         run, behind = texts[i:j], texts[j : j + 1]

@@ -11,9 +11,9 @@ from functools import cache
 
 from ....gaussians import color as colors
 from ....gaussians.language.encoders.vocabulary import Vocabulary
+from ....gaussians.world import kinds
 from ....gaussians.world.lengths import UNITS
 from ....gaussians.world.spelling import SHORTEST, likely_slips, one_slip
-from ....gaussians.world.synonyms import every_word
 from ....gaussians.world.words import normalise, plural
 from ..vocabulary import lexicon, nouns, quantities
 from .words import Word, bag
@@ -105,9 +105,7 @@ def _known() -> frozenset[str]:
     tables = (lexicon.VERB_PHRASES, lexicon.UNSUPPORTED_PHRASES, lexicon.FILLER, lexicon.POLITE, lexicon.GERUND_OPENERS)
     said = {w for table in tables for p in table for w in p}
     said |= lexicon.CHAT | lexicon.QUESTION | lexicon.STATEMENT | lexicon.STRUCTURE | lexicon.ADVERB_NOUNS | _REAL
-    said |= lexicon.COMMANDS | lexicon.ASKING | lexicon.PARTICIPLES | nouns.KNOWN | every_word()
-    household = Vocabulary.household()
-    said |= {w for c in nouns.COMPOUNDS for w in c} | household.modifiers
-    names = (n for kind, others in household.kinds.items() for n in (kind, *others))
-    said |= {w for n in names for w in normalise(n)}
+    said |= lexicon.COMMANDS | lexicon.ASKING | lexicon.PARTICIPLES | nouns.everyday() | kinds.every_word()
+    said |= {w for c in nouns.COMPOUNDS for w in c} | Vocabulary.household().modifiers
+    said |= {w for n in kinds.every_word() for w in normalise(n)}
     return frozenset(said | _closed() | _verbs() | set(map(plural, said)))

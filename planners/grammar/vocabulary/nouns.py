@@ -6,36 +6,66 @@ lists here only settle preferences ("put it to the desk" means on it) and which 
 
 from __future__ import annotations
 
-from ....gaussians.world.words import MASS, singular
+from functools import cache
+
+from ....gaussians.world import kinds
+from ....gaussians.world.words import MASS, head, singular
 from ..tagging.words import bag, phrases
 
-SURFACES = bag(
-    "floor ground table desk shelf bookshelf bed windowsill sill counter countertop worktop dresser nightstand cabinet "
-    "sideboard mantel mantelpiece bench stand stool tray rug carpet mat pedestal plinth sofa couch island bar stove "
-    "workbench ledge chest ottoman"
-)
-CONTAINERS = bag("box basket bin bag drawer bowl bucket crate jar cup mug vase wardrobe closet chest sink")
-SEATS = bag("chair armchair sofa couch bed stool bench recliner loveseat")
 EVERYWHERE = bag("floor ground wall ceiling room")
 # Where things stand, and no things: "clear some space", "empty the corner".
 PLACES = bag("space room area spot place zone region part corner path way passage aisle entrance doorway gap half")
 NOTHING = bag("space gap place clutter mess")  # no kind of thing is called so, whatever stands there
-FURNITURE = bag(
-    "sofa couch armchair chair bed table desk wardrobe cabinet bookshelf bookcase dresser sideboard bench stool shelf "
-    "ottoman nightstand door window wall fireplace piano fridge oven stove bathtub toilet sink counter "
-    "television tv stand rug carpet loveseat recliner crib closet column pillar stairs"
-)
+# Everyday words that name no kind of thing: parts of houses and things, places, people, animals and vehicles.
+_SHELF_LIKE = bag("floor ground sill mantel stand ledge pedestal rug carpet mat")  # things are put on them
+_BUILDING = bag("wall column pillar railing")
 _THINGS = bag(
-    "lamp light plant pot vase clock painting picture mirror poster frame curtain blind cushion pillow blanket cloth "
-    "tablecloth towel laptop monitor screen keyboard computer printer phone telephone book books magazine mug cup "
-    "glass bowl bottle plate dish candle ball box basket bin bear toy doll guitar violin drum bicycle bike scooter "
-    "robot statue sculpture tower globe tree flower bush grass rock stone road path roof ceiling chandelier fan heater "
-    "radiator bag backpack suitcase shoe hat coat jacket knife fork spoon kettle toaster microwave pan tray bucket "
-    "broom ladder tool hammer leg arm head wheel seat back handle lid drawer door part speaker radio camera car truck "
-    "bus boat house fence gate sign cat dog horse bird fish person man woman child room scene object thing place mat "
-    "windowsill counter bonsai ottoman umbrella cart crate barrel hook rack hanger remote console"
+    "frame cloth tablecloth rock stone road path roof ceiling coat jacket knife fork spoon tool hammer leg arm head "
+    "wheel back handle lid drawer part radio camera car truck bus boat house fence gate grass tower cat dog horse bird "
+    "fish hat person man woman child room scene object thing place crate barrel hook hanger remote book bag doll "
+    "violin robot light bear tree broom heater scooter"
 )
-KNOWN = SURFACES | CONTAINERS | FURNITURE | _THINGS
+
+
+@cache
+def everyday() -> frozenset[str]:
+    """Everyday nouns: the head nouns of kinds, and words that name no kind."""
+    return kinds.heads() | _SHELF_LIKE | _BUILDING | _THINGS | EVERYWHERE
+
+
+def is_surface(phrase: str) -> bool:
+    """Whether small things are put on it: it has a top, or is sat on and no chair, or is a rug."""
+    kind = kinds.of(phrase)
+    if kind is None:
+        return head(phrase) in _SHELF_LIKE
+    return kind.top or kind.is_rug or kind.role == "bed" or kind.stores or (kind.seats > 0 and not is_chair(kind))
+
+
+def is_chair(kind: kinds.Kind) -> bool:
+    """Whether one person sits on it, with a back."""
+    return kind.seats == 1 and kind.front
+
+
+def is_container(phrase: str) -> bool:
+    """Whether things are put into it."""
+    kind = kinds.of(phrase)
+    return head(phrase) == "drawer" if kind is None else kind.holds
+
+
+def is_seat(phrase: str) -> bool:
+    """Whether people sit on it."""
+    kind = kinds.of(phrase)
+    return kind is not None and (kind.seats > 0 or kind.role == "bed")
+
+
+def is_furniture(phrase: str) -> bool:
+    """Whether it is furniture or part of the building: no small thing."""
+    kind = kinds.of(phrase)
+    if kind is None:
+        return head(phrase) in _BUILDING
+    used = kind.backed or kind.front or kind.seats > 0 or kind.top or kind.stores or kind.is_rug
+    return (used and kind.support == "floor") or kind.fixed or kind.name == "television"
+
 
 # Compounds whose first word would otherwise be read as a colour or as a verb.
 COMPOUNDS: frozenset[tuple[str, ...]] = phrases(
@@ -56,4 +86,4 @@ COMPOUNDS: frozenset[tuple[str, ...]] = phrases(
 
 def is_known(word: str) -> bool:
     """Whether it is one of the everyday nouns that help to decide which word to blame."""
-    return word in KNOWN or singular(word) in KNOWN or word in MASS
+    return word in everyday() or singular(word) in everyday() or word in MASS

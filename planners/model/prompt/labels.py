@@ -12,7 +12,7 @@ from functools import cache
 from itertools import pairwise
 
 from ....gaussians.color import names as color_names
-from ....gaussians.world import synonyms
+from ....gaussians.world import kinds
 from ....gaussians.world.words import normalise
 from ...grammar.vocabulary.verbs import VERBS
 from ...rooms.graph import SceneGraph
@@ -117,16 +117,13 @@ def _mixed(word: str) -> bool:
 
 @cache
 def _phrases() -> frozenset[str]:
-    """All names of the vocabulary and the synonyms, in lower case."""
-    kinds = vocabulary().kinds
-    return frozenset(p.lower() for p in [*kinds, *(n for names in kinds.values() for n in names)]) | synonyms.phrases()
+    """All names of kinds, in lower case."""
+    return frozenset(p.lower() for p in kinds.phrases())
 
 
 @cache
 def _known() -> frozenset[str]:
-    """Words of the vocabulary, of the synonyms and of colours, and connecting words."""
-    table = vocabulary()
-    phrases = [*table.kinds, *(n for names in table.kinds.values() for n in names), *table.broader, *table.modifiers]
-    words = {w for p in [*phrases, *color_names()] for w in (*p.lower().split(), *normalise(p))}
-    words |= {w for said in synonyms.every_word() for w in (said, *normalise(said))}
+    """Words of the names of kinds, of modifiers and of colours, and connecting words."""
+    phrases = [*kinds.every_word(), *vocabulary().modifiers, *color_names()]
+    words = {w for p in phrases for w in (*p.lower().split(), *normalise(p))}
     return frozenset(words | _LINKS)

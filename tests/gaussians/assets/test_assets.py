@@ -11,6 +11,7 @@ import torch
 from scenewright.gaussians import assets, color
 from scenewright.gaussians.assets.modeling import make, sampling, shapes
 from scenewright.gaussians.errors import UserError
+from scenewright.gaussians.world import kinds
 
 SEEDS = (0, 1, 2, 3)
 SH_C0 = 0.28209479177387814
@@ -27,11 +28,10 @@ def rgb(asset: assets.Asset) -> torch.Tensor:
 
 def test_the_catalogue_is_wide_and_its_words_do_not_clash() -> None:
     assert len(assets.kinds()) >= 50
-    said = [w for k in assets.KINDS.values() for w in k.synonyms]
-    assert sorted(said) == sorted(set(said)), "a word is a synonym of two kinds"
-    # What was a loose word for an older kind may have become a kind of its own, which then is what is meant.
-    taken = {w for w in said if w in assets.KINDS}
-    assert not any(assets.KINDS[w].shown for w in taken) and all(assets.find(w).name == w for w in taken)
+    every = list(kinds.table().kinds.values())
+    said = [w for k in every for w in k.names]
+    assert sorted(said) == sorted(set(said)), "a word names two kinds"
+    assert all(assets.find(w).name == k.asset for k in every if k.asset for w in k.names)
 
 
 def test_what_the_encoder_was_shown_is_what_its_vocabulary_holds() -> None:
@@ -44,7 +44,7 @@ def test_what_the_encoder_was_shown_is_what_its_vocabulary_holds() -> None:
 
 @pytest.mark.parametrize("kind", assets.kinds())
 def test_every_kind_is_sound(kind: str) -> None:
-    low, high = np.array(assets.KINDS[kind].sizes).T
+    low, high = np.array(kinds.extent(kind)).T
     for seed in SEEDS:
         a = made(kind, seed)
         c = a.cloud

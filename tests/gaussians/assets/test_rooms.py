@@ -82,7 +82,7 @@ def test_truth_lines_up_with_the_cloud(seed: int) -> None:
         local = (means[:, :2] - np.array([b.x, b.y])) @ b.axes.T
         assert (np.abs(local) <= np.array([b.w, b.d]) / 2 + 1e-3).all(), o
         assert means[:, 2].min() >= b.low - 1e-3 and means[:, 2].max() <= b.high + 1e-3
-        assert assets.KINDS[o.kind].shown and o.color
+        assert assets.KINDS[o.kind].known.shown and o.color
     assert len(torch.unique(cloud.ids)) == len(cloud)
 
 

@@ -69,7 +69,7 @@ class Embedded:
 
     @cached_property
     def vocabulary(self) -> Vocabulary:
-        return Vocabulary.from_json(self._words["vocabulary"])
+        return Vocabulary.trained(self._words["vocabulary"])
 
     @cached_property
     def calibration(self) -> Calibration:
