@@ -33,7 +33,7 @@ def pieces_met(scene: Scene, truth: NDArray[np.int32]) -> Met:
     share = np.bincount(labels, weights=free) / np.maximum(total, 1)
     met = []
     for _, plane in structure.planes_of(surface, flat)[1]:
-        if (pieces := structure.pieces_of(surface, labels, flat, plane)) is not None:
+        if (pieces := structure.superpoints_near(surface, labels, flat, plane)) is not None:
             chosen, features = coplanar.describe(surface, pieces)
             cost = np.sqrt(total[chosen]) * np.abs(share[chosen] - 0.5)
             met.append(Met(features, share[chosen] > 0.5, cost))

@@ -220,13 +220,14 @@ def cameras(thing: Thing, rng: np.random.Generator) -> list[Camera]:
 
 
 def _portrait(thing: Thing, rng: np.random.Generator) -> list[tuple[float, float, float]]:
-    """Azimuth from the front (-y), elevation and field of view, radians, about as `portraits` looks at a
+    """Azimuth from the front (-y), elevation and field of view, radians, about as `group_renders` looks at a
     group: from the open side of the room, the front of what stands against a wall and any side of the rest."""
     front = rng.normal() * 0.35 if thing.against_wall else rng.uniform(0, 2 * math.pi)
     jitter = rng.normal(size=(VIEWS, 2)) * 0.12
+    angles = itertools.islice(itertools.cycle(group_renders.VIEW_ANGLES), VIEWS)
     return [
         (front + math.radians(a) + da, math.radians(e) + de, math.radians(group_renders.FOV))
-        for (a, e), (da, de) in zip(itertools.islice(itertools.cycle(group_renders.ANGLES), VIEWS), jitter, strict=True)
+        for (a, e), (da, de) in zip(angles, jitter, strict=True)
     ]
 
 

@@ -19,7 +19,7 @@ from ...gaussians.language.field.group_table import with_table
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.resolve import resolve
 from ...gaussians.language.query.selection import Verdict
-from ...gaussians.language.segmentation.segment import ASK_VIEWS, Thing
+from ...gaussians.language.segmentation.segment import VIEWS_PER_CANDIDATE, Segment
 from ...gaussians.scene import Scene
 from ...gaussians.viewpoints.coverage import Views
 from .._iou import Mask, iou
@@ -110,16 +110,16 @@ def furnished(seed: int, detail: float = 1.0) -> Case:
     return case_of(assets.furnish(seed, detail=detail), seed)
 
 
-def embedded(case: Case, encoder: Encoder, portraits: int = ASK_VIEWS) -> Case:
+def embedded(case: Case, encoder: Encoder, views_per_candidate: int = VIEWS_PER_CANDIDATE) -> Case:
     """The case with the field that users get, and the seconds it took."""
     start = time.perf_counter()
-    scene = embed(case.scene, encoder, portraits=portraits)
+    scene = embed(case.scene, encoder, views_per_candidate=views_per_candidate)
     return replace(case, scene=scene, seconds=time.perf_counter() - start)
 
 
 def with_true_groups(case: Case, encoder: Encoder) -> Case:
     """The case with a field over the true objects: what is still wrong then, segmentation did not do."""
-    things = [Thing((), "object") for _ in case.objects]
+    things = [Segment((), "object") for _ in case.objects]
     rows = np.arange(len(case.ids))
     unseen = Views((), rows, np.zeros((0, len(rows)), bool), 0.0)
     scene = with_table(case.scene, things, case.ids.astype(np.int32), case.ids >= 0, unseen, encoder)

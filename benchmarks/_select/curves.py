@@ -12,7 +12,7 @@ from statistics import fmean
 import numpy as np
 
 from ...gaussians.language.encoders import Encoder
-from ...gaussians.language.segmentation.segment import ASK_VIEWS
+from ...gaussians.language.segmentation.segment import VIEWS_PER_CANDIDATE
 from .. import _clip, _data
 from ..harness import Metric, Point
 from . import lifted, pictures, vectors
@@ -28,7 +28,7 @@ ACCEPTED = 0.01  # mIoU that groups may lose to vectors before it has to be said
 
 def measure(rooms: Sequence[Case], encoder: Encoder, grouped: Callable[[Case], Case], quick: bool) -> tuple[Part, ...]:
     """All points."""
-    counts = (2, ASK_VIEWS) if quick else (1, 2, ASK_VIEWS, 4)
+    counts = (2, VIEWS_PER_CANDIDATE) if quick else (1, 2, VIEWS_PER_CANDIDATE, 4)
     return (
         portraits(rooms, encoder, grouped, counts),
         rules(rooms, encoder, grouped),
@@ -41,8 +41,9 @@ def portraits(rooms: Sequence[Case], encoder: Encoder, grouped: Callable[[Case],
     """The embedded path with one to four portraits a thing."""
     points = []
     for count in counts:
-        known = [grouped(room) if count == ASK_VIEWS else embedded(room, encoder, count) for room in rooms]
-        points.append(_embedded_point(f"{count} portrait{'s' * (count > 1)}", known, encoder, count == ASK_VIEWS))
+        known = [grouped(room) if count == VIEWS_PER_CANDIDATE else embedded(room, encoder, count) for room in rooms]
+        name = f"{count} portrait{'s' * (count > 1)}"
+        points.append(_embedded_point(name, known, encoder, count == VIEWS_PER_CANDIDATE))
     return Part(points=tuple(points))
 
 

@@ -22,7 +22,7 @@ from ...gaussians.language.masks import ViewMasks
 from ...gaussians.language.masks.association import HELD, associate
 from ...gaussians.language.masks.lifting import lift
 from ...gaussians.language.masks.sources.embedded import of_view
-from ...gaussians.language.segmentation.segment import Thing
+from ...gaussians.language.segmentation.segment import Segment
 from ...gaussians.render import render
 from ...gaussians.scene import Scene
 from ...gaussians.viewpoints.coverage import Views
@@ -69,7 +69,7 @@ def alone(case: Case, views: Sequence[ViewMasks], encoder: Encoder) -> Scene:
     column = np.where(held, share.argmax(axis=1), -1) if things else np.full(len(case.ids), -1)
     rows = np.arange(len(column))
     unseen = Views((), rows, np.zeros((0, len(rows)), bool), 0.0)
-    table = [Thing((), "object") for _ in things]
+    table = [Segment((), "object") for _ in things]
     return with_table(case.scene, table, column.astype(np.int32), held, unseen, encoder)
 
 

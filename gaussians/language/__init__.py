@@ -1,1 +1,1 @@
-"""Language over Gaussians: groups instead of a vector per Gaussian, and the queries that resolve to them."""
+"""The language field: segmentation into groups, a text-aligned vector for each, and queries that select them."""

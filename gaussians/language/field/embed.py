@@ -27,7 +27,7 @@ from ..masks.lifting import lift
 from ..masks.mask_assignment import UNTOLD, by_votes, claimed
 from ..segmentation.group_renders import one_thread
 from ..segmentation.orient import estimate_frame
-from ..segmentation.segment import ASK_VIEWS, Progress, Thing, segment
+from ..segmentation.segment import VIEWS_PER_CANDIDATE, Progress, Segment, segment
 from ..segmentation.surface import MIN_OPACITY, Surface, surface_of
 from .group_table import with_table
 
@@ -39,7 +39,7 @@ def embed(
     scene: Scene,
     encoder: Encoder,
     progress: Progress = lambda stage, share: None,
-    portraits: int = ASK_VIEWS,
+    views_per_candidate: int = VIEWS_PER_CANDIDATE,
     masks: Masker | None = None,
 ) -> Scene:
     """The scene with `cloud.group` filled and a language field over it; nothing else of the cloud changes.
@@ -48,7 +48,7 @@ def embed(
         scene: any cloud; `frame.up` is estimated if its source is "unknown", the floor if it is None.
         encoder: makes the vectors that names are compared with.
         progress: called with a stage's name and the share of it that is done.
-        portraits: pictures the encoder is shown of each candidate thing, 1 to 4; see `scenewright bench select`.
+        views_per_candidate: renders of each candidate object, 1 to 4; see `scenewright bench select`.
         masks: a source of masks of some views (`masks.load`), whose things and names go before those found without.
 
     Raises:
@@ -67,7 +67,7 @@ def embed(
     progress("segments", 0.0)
     with one_thread():
         eyes = encoder if _knows_pieces(encoder) else encoders.load()
-        labels, things = segment(scene, surface, eyes, progress, portraits)
+        labels, things = segment(scene, surface, eyes, progress, views_per_candidate)
         owner = None
         if tracks is not None:
             vectors = [_vector(t, encoder) for t in tracks.tracks]
@@ -140,7 +140,7 @@ def _noted(scene: Scene, tracks: Tracks) -> Scene:
     return scene.replace(language=replace(scene.language, notes=(*scene.language.notes, said)))
 
 
-def _thing_of_superpoint(things: Sequence[Thing], count: int) -> NDArray[np.int32]:
+def _thing_of_superpoint(things: Sequence[Segment], count: int) -> NDArray[np.int32]:
     owner = np.full(count, NO_GROUP, np.int32)
     for i, thing in enumerate(things):
         owner[list(thing.members)] = i

@@ -18,7 +18,7 @@ from ...viewpoints.coverage import Views
 from ..encoders import Encoder
 from ..encoders.probability import labels as name_things
 from ..segmentation.group_renders import mean_vectors
-from ..segmentation.segment import Thing
+from ..segmentation.segment import Segment
 from .group_index import members_of
 from .language_field import Group, LanguageField
 from .measure import box_of, lab_of_cloud
@@ -26,7 +26,7 @@ from .measure import box_of, lab_of_cloud
 
 def with_table(
     scene: Scene,
-    things: Sequence[Thing],
+    things: Sequence[Segment],
     column: NDArray[np.int32],
     on_skin: NDArray[np.bool_],
     seen: Views,
@@ -59,7 +59,7 @@ def with_table(
     return replace(scene, cloud=cloud, language=field)
 
 
-def _leaves(things: Sequence[Thing], i: int) -> list[int]:
+def _leaves(things: Sequence[Segment], i: int) -> list[int]:
     return [i, *(j for j, t in enumerate(things) if t.parent == i)]
 
 

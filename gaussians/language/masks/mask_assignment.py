@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
 from ..segmentation import grouping, structure
-from ..segmentation.segment import MIN_OBJECT, Thing
+from ..segmentation.segment import MIN_OBJECT, Segment
 from ..segmentation.superpoints import Links, links_of, superpoints, touching
 from ..segmentation.surface import Surface
 from .association import HELD, NESTED, Tracks
@@ -87,10 +87,10 @@ def _mostly_in(held: dict[int, NDArray[np.bool_]], k: int) -> list[int]:
 def claimed(
     surface: Surface,
     labels: I32,
-    things: Sequence[Thing],
+    things: Sequence[Segment],
     tracks: Tracks,
     vectors: Sequence[F32 | None],
-) -> tuple[I32, list[Thing], I32]:
+) -> tuple[I32, list[Segment], I32]:
     """Superpoints cut along the tracks' borders, the things they make up, as `segment` gives them, and the track of
     each surface point.
 
@@ -139,7 +139,7 @@ def by_votes(tracks: Tracks) -> I32:
     return np.where(tracks.seen > ENOUGH, owner, UNTOLD).astype(np.int32)
 
 
-def _structure_only(owner: I32, labels: I32, things: Sequence[Thing], tracks: Tracks) -> NDArray[np.bool_]:
+def _structure_only(owner: I32, labels: I32, things: Sequence[Segment], tracks: Tracks) -> NDArray[np.bool_]:
     """`[P]`: points of tracks that are mostly floor or wall, which are measured better than they are masked; but not of
     what views call something else, as a book that lies flat on the floor.
     """
@@ -151,7 +151,7 @@ def _structure_only(owner: I32, labels: I32, things: Sequence[Thing], tracks: Tr
     return result
 
 
-def _with_rest(owner: I32, labels: I32, things: Sequence[Thing], seen: NDArray[np.bool_], tracks: Tracks) -> I32:
+def _with_rest(owner: I32, labels: I32, things: Sequence[Segment], seen: NDArray[np.bool_], tracks: Tracks) -> I32:
     """Owners, with what masks leave out of the objects that one track has most of.
 
     Points that no view shows go with the track: the underside of a chair is the chair's. So does the rest of an object
@@ -174,7 +174,7 @@ def _left(members: Sequence[int], old: I32, of: I32) -> tuple[int, ...]:
     return tuple(np.flatnonzero(np.isin(old, list(members)) & (of < 0)).tolist())
 
 
-def _whole_objects(things: Sequence[Thing]) -> list[tuple[int, ...]]:
+def _whole_objects(things: Sequence[Segment]) -> list[tuple[int, ...]]:
     """Members of each object, its parts' included, in the order of the things."""
     return [
         t.members + tuple(s for p in things if p.parent == i for s in p.members)
@@ -186,12 +186,12 @@ def _whole_objects(things: Sequence[Thing]) -> list[tuple[int, ...]]:
 def _object(
     members: NDArray[np.integer], vector: F32 | None, parts: I32, own: int, near: dict[int, set[int]], lab: F64,
     size: NDArray[np.int64],
-) -> list[Thing]:  # fmt: skip
+) -> list[Segment]:  # fmt: skip
     """One object as row `own` with its parts: those that masks show, the rest of it in patches of one colour."""
     shown = sorted(set(parts[members].tolist()) - {NOBODY})
     clusters = [members[parts[members] == p].tolist() for p in shown]
     rest = members[parts[members] == NOBODY].tolist()
     clusters += grouping.parts_of(rest, near, lab, size) if rest else []
     if len(clusters) == 1:
-        return [Thing(tuple(clusters[0]), "object", vector=vector)]
-    return [Thing((), "object", vector=vector), *(Thing(tuple(c), "part", parent=own) for c in clusters)]
+        return [Segment(tuple(clusters[0]), "object", vector=vector)]
+    return [Segment((), "object", vector=vector), *(Segment(tuple(c), "part", parent=own) for c in clusters)]

@@ -1,1 +1,1 @@
-"""From Gaussians to groups: surface points, superpoints, planes, the merge tree and its cut."""
+"""Segmentation of Gaussians into groups: surface points, superpoints, planes, merge tree, objects and parts."""

@@ -1,7 +1,7 @@
-"""From superpoints to a graph of regions: which touch, which face each other across a small gap, and all the sums.
+"""The adjacency graph of regions: which superpoints touch, which are close without touching, and their sums.
 
-Knows points, links and superpoints. A lamp's shade hangs a hand above its pole and leaves hang in the air beside
-their stem: what touches nothing is tied to what is near.
+Connected bodies that touch no other are tied to near ones: a lamp's shade hangs a hand's breadth above its pole, and
+leaves float beside their stem.
 """
 
 from __future__ import annotations
@@ -15,24 +15,24 @@ from scipy.spatial import cKDTree
 from .regions import F64, I64, Borders, Graph, Regions
 from .superpoints import Links
 
-REACH = 20.0  # spacings within which separate bodies are tied
-TIES = 3  # nearest other bodies each superpoint is tied to
-FEW = 12  # points: smaller bodies are strays and tied to nothing
-PROBES = 200  # points of a superpoint that are measured from
+TIE_REACH = 20.0  # spacings within which separate bodies are tied
+TIES_PER_REGION = 3  # nearest regions of other bodies that each region is tied to
+MIN_BODY_POINTS = 12  # smaller bodies are noise and are not tied
+MAX_PROBES = 200  # points of a region from which distances are measured
 
 
 def build_graph(
     labels: NDArray[np.int32], points: F64, lab: F64, normals: F64, links: Links,
     kind_of: NDArray[np.int8], spacing: float,
 ) -> Graph:  # fmt: skip
-    """The graph of the free superpoints.
+    """The adjacency graph of the superpoints that are not structure.
 
     Args:
         labels: `[M]` superpoint of each point.
         points, normals: `[M, 3]` in the level frame.
         lab: `[M, 3]`.
         links: which points touch.
-        kind_of: `[S]` what structure each superpoint is, 0 for those that are none.
+        kind_of: `[S]` structure kind of each superpoint, 0 for none.
         spacing: of the surface, scene units.
     """
     chosen = np.flatnonzero(kind_of == 0)
@@ -43,8 +43,8 @@ def build_graph(
     own = number[labels]  # region of each point, -1 on structure
     ends = own[links.pairs]
     inner = (ends >= 0).all(1) & (ends[:, 0] != ends[:, 1])
-    reaching, gap = _ties(own, points, ends[inner], regions, spacing)
-    pairs = np.concatenate([links.pairs[inner], reaching])
+    tied, gap = _ties(own, points, ends[inner], regions, spacing)
+    pairs = np.concatenate([links.pairs[inner], tied])
     distance = np.concatenate([np.zeros(int(inner.sum())), gap])
     weight = np.concatenate([links.weight[inner], np.zeros(len(gap))])
     key, borders = _borders(own[pairs], pairs, weight, distance, points, lab, normals)
@@ -89,7 +89,7 @@ def _regions(
 
 
 def _ties(own: I64, points: F64, ends: I64, regions: Regions, spacing: float) -> tuple[I64, F64]:
-    """Nearest pairs of points `[T, 2]` of regions of separate bodies that face each other, and their distances."""
+    """Nearest pairs of points `[T, 2]` of near regions of separate bodies, and their distances `[T]`."""
     count = len(regions.count)
     none = np.zeros((0, 2), np.int64), np.zeros(0)
     if count < 2:
@@ -99,14 +99,15 @@ def _ties(own: I64, points: F64, ends: I64, regions: Regions, spacing: float) ->
     rows = np.flatnonzero(own >= 0)
     order = rows[np.argsort(own[rows], kind="stable")]
     parts = np.split(order, np.searchsorted(own[order], np.arange(1, count)))
-    reach = REACH * spacing
+    reach = TIE_REACH * spacing
     apart = np.maximum(regions.low[:, None] - regions.high[None], regions.low[None] - regions.high[:, None]).max(2)
-    near = (apart < reach) & (body[:, None] != body[None]) & (mass[body] >= FEW)[:, None] & (mass[body] >= FEW)
+    near = (apart < reach) & (body[:, None] != body[None]) & (mass[body] >= MIN_BODY_POINTS)[:, None]
+    near &= mass[body] >= MIN_BODY_POINTS
     found: dict[tuple[int, int], tuple[float, int, int]] = {}
     trees: dict[int, cKDTree] = {}
     for i, j in np.argwhere(np.triu(near)).tolist():
         a, b = (i, j) if len(parts[i]) <= len(parts[j]) else (j, i)
-        probe = parts[a][:: max(1, len(parts[a]) // PROBES)]
+        probe = parts[a][:: max(1, len(parts[a]) // MAX_PROBES)]
         if b not in trees:
             trees[b] = cKDTree(points[parts[b]])
         gap, at = trees[b].query(points[probe], distance_upper_bound=reach)
@@ -117,7 +118,7 @@ def _ties(own: I64, points: F64, ends: I64, regions: Regions, spacing: float) ->
     kept: set[tuple[int, int]] = set()
     for i in range(count):
         mine = sorted((v[0], key) for key, v in found.items() if i in key)
-        kept.update(key for _, key in mine[:TIES])
+        kept.update(key for _, key in mine[:TIES_PER_REGION])
     if not kept:
         return none
     chosen = [found[key] for key in sorted(kept)]
@@ -127,7 +128,7 @@ def _ties(own: I64, points: F64, ends: I64, regions: Regions, spacing: float) ->
 def _borders(
     ends: I64, pairs: I64, weight: F64, distance: F64, points: F64, lab: F64, normals: F64
 ) -> tuple[I64, Borders]:
-    """Ends `[B, 2]` and sums of every two regions that pairs of points connect."""
+    """Regions `[B, 2]` and border sums of every two regions that pairs of points connect."""
     swap = ends[:, 0] > ends[:, 1]
     ends = np.where(swap[:, None], ends[:, ::-1], ends)
     pairs = np.where(swap[:, None], pairs[:, ::-1], pairs)

@@ -1,7 +1,7 @@
-"""How likely two regions are one thing: the features of a border, the rule that judges them, and the merge tree.
+"""The probability that two adjacent regions are one object, from the features of their border, and the merge tree.
 
-Knows sums over regions and borders. Refuses to know how they were found and what becomes of them. The rule was fitted
-on furnished rooms with known objects (`train/affinity.py`).
+The small network that computes the probability was fitted on furnished rooms with known objects
+(`training/affinity.py`).
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import heapq
 
 import numpy as np
 
-from .learned_rule import shipped
+from .learned_rule import load_rule
 from .regions import F64, I64, Borders, Graph, Node, Regions
 
 FEATURES = (
@@ -24,14 +24,14 @@ FEATURES = (
 
 
 def features(graph: Graph, pairs: list[tuple[int, int]]) -> F64:
-    """`[len(pairs), len(FEATURES)]` of bordering regions."""
+    """Features `[len(pairs), len(FEATURES)]` of pairs of adjacent regions."""
     rows = np.array([graph.around[i][j] for i, j in pairs], np.int64)
     first, second = np.array(pairs, np.int64).reshape(-1, 2).T
     return describe(graph.regions, graph.borders, first, second, rows, graph.scale)
 
 
 def describe(regions: Regions, borders: Borders, first: I64, second: I64, rows: I64, scale: float) -> F64:
-    """Features `[P, len(FEATURES)]` of borders, the same whichever region comes first.
+    """Features `[P, len(FEATURES)]` of borders; they do not depend on the order of the two regions.
 
     Args:
         first, second: `[P]` the regions of each border, as the border's sides are ordered.
@@ -103,7 +103,7 @@ def describe(regions: Regions, borders: Borders, first: I64, second: I64, rows: 
 
 
 class _Shape:
-    """What the sums of some regions `[P]` say about their form."""
+    """Colour, extent and shape of some regions `[P]`, computed from their sums."""
 
     def __init__(self, regions: Regions, rows: I64) -> None:
         self.count = regions.count[rows]
@@ -129,7 +129,7 @@ def _square(upper: F64) -> F64:
 
 
 def _rests(upper: _Shape, lower: _Shape, contact: F64, level: F64) -> F64:
-    """How much it looks as if `upper` stood on a level surface of `lower`: contact at its foot, body above."""
+    """Score `[P]` in [0, 1] that `upper` rests on a level surface of `lower`: contact at its foot, its body above."""
     height = upper.size[:, 2]
     foot = np.clip(1 - np.abs(contact - upper.low[:, 2]) / (0.15 * height + 1e-6), 0, 1)
     result: F64 = foot * level * (upper.high[:, 2] - contact > 0.8 * height)
@@ -137,12 +137,15 @@ def _rests(upper: _Shape, lower: _Shape, contact: F64, level: F64) -> F64:
 
 
 def probability(described: F64) -> F64:
-    """Probability `[...]` that the regions on both sides are one thing, of features `[..., F]`."""
-    return shipped("affinity", FEATURES).probability(described)
+    """Probability `[...]` that the regions on both sides of a border are one object, from its features `[..., F]`."""
+    return load_rule("affinity", FEATURES).probability(described)
 
 
 def merge_tree(graph: Graph) -> list[Node]:
-    """Merge the likeliest border first until none is left; nodes in order, children before parents."""
+    """Merge the regions with the most probable border first, until no border is left.
+
+    Returns the nodes of the merge tree, children before parents.
+    """
     nodes = [Node(members, (), 1.0) for _, members in sorted(graph.members.items())]
     heap: list[tuple[float, int, int]] = []
 

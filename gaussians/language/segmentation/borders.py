@@ -1,8 +1,8 @@
-"""Where two things meet, whose is each single point: borders drawn again, point by point.
+"""Refinement of the borders between objects, point by point.
 
-Knows points, their neighbours and who owns them so far. Superpoints are too coarse for a contact: the foot of a chair
-and the floor's shadow around it end up in one. A small network, fitted on furnished rooms (`train/borders.py`), says
-for each thing near a point how likely the point is its own.
+Superpoints are too coarse at contacts: the foot of a chair and the shadow on the floor around it end up in one
+superpoint. A small network, fitted on furnished rooms (`training/borders.py`), gives the probability that a point
+belongs to each object near it.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .learned_rule import shipped
+from .learned_rule import load_rule
 from .surface import Surface
 
 F64 = NDArray[np.float64]
@@ -22,29 +22,29 @@ FEATURES = (
     "own piece lightness", "own piece chroma",
 )  # fmt: skip
 PASSES = 3  # a border moves by at most one point a pass
-MARGIN = 1.0  # nats by which another thing must be likelier
+MARGIN = 1.0  # log-odds (nats) by which another object must be more probable than the present one
 
 
-def redrawn(
+def refine_borders(
     surface: Surface, labels: NDArray[np.int32], owner: NDArray[np.int32], structure: NDArray[np.bool_]
 ) -> NDArray[np.int32]:
-    """`[M]` superpoints after single points went over to the thing beside them that they rather belong to.
+    """Superpoint of each point `[M]` after points were reassigned to adjacent, more probable objects.
 
     Args:
         labels: `[M]` superpoint of each point.
-        owner: `[S]` thing each superpoint belongs to, -1 for none, structure below that.
-        structure: `[S]` superpoints of floor, walls and ceiling.
+        owner: `[S]` object of each superpoint; -1 for none, smaller numbers for structure.
+        structure: `[S]` whether a superpoint is floor, wall or ceiling.
     """
     for _ in range(PASSES):
         points, things, nearest, features = describe(surface, labels, owner, structure)
         if not len(points):
             break
-        likely = np.clip(shipped("borders", FEATURES).probability(features), 1e-9, 1 - 1e-9)
+        likely = np.clip(load_rule("borders", FEATURES).probability(features), 1e-9, 1 - 1e-9)
         stays = things == owner[labels[points]]
         odds = np.log(likely / (1 - likely)) + MARGIN * stays
         order = np.lexsort((things, -odds, points))
         best = order[np.r_[True, np.diff(points[order]) > 0]]
-        # a point none of whose neighbours is of its own thing is part of something thin, and stays
+        # a point that has no neighbour of its own object is part of something thin and is not reassigned
         moved = best[~stays[best] & np.isin(points[best], points[stays])]
         if not len(moved):
             break
@@ -56,8 +56,10 @@ def redrawn(
 def describe(
     surface: Surface, labels: NDArray[np.int32], owner: NDArray[np.int32], structure: NDArray[np.bool_]
 ) -> tuple[I64, I64, I64, F64]:
-    """Points beside another thing with each thing near them: point, thing and its nearest point `[C]`, features
-    `[C, len(FEATURES)]`."""
+    """The candidates for reassignment: each point that has neighbours of another object, with each object near it.
+
+    Returns the point, the object and the object's nearest point, `[C]` each, and the features `[C, len(FEATURES)]`.
+    """
     own = owner[labels]
     rows = np.flatnonzero((own[surface.neighbours] != own[:, None]).any(axis=1))
     k = surface.neighbours.shape[1]
@@ -85,7 +87,7 @@ def describe(
     light, chroma = np.abs(gap[:, 0]) / 10, np.linalg.norm(gap[:, 1:], axis=1) / 5
     order = np.lexsort((surface.gaps[rows].ravel(), pair))
     nearest = second[order[np.r_[True, np.diff(pair[order]) > 0]]]
-    lab, pattern = _pieces(surface, labels, len(owner))
+    lab, pattern = _superpoint_colors(surface, labels, len(owner))
     piece = surface.raw_lab[point] - lab[labels[nearest]]
     mine = surface.raw_lab[point] - lab[labels[point]]
     local = np.maximum(surface.gaps[point].mean(axis=1), 1e-9)
@@ -112,8 +114,8 @@ def describe(
     return point, thing, nearest, np.stack(columns, axis=1).astype(np.float64)
 
 
-def _pieces(surface: Surface, labels: NDArray[np.int32], count: int) -> tuple[F64, F64]:
-    """Mean Lab `[S, 3]` and spread of colour `[S]` of each superpoint."""
+def _superpoint_colors(surface: Surface, labels: NDArray[np.int32], count: int) -> tuple[F64, F64]:
+    """Mean Lab `[S, 3]` and standard deviation of the colour `[S]` of each superpoint."""
     size = np.maximum(np.bincount(labels, minlength=count), 1)[:, None]
     lab = surface.raw_lab.astype(np.float64)
 

@@ -1,8 +1,8 @@
-"""Which pieces near a plane are the plane itself: its paint, boards and shadows, or a thing that lies in it.
+"""Which superpoints near a plane of the structure belong to it, and which to objects that lie in the plane.
 
-Knows superpoints and one plane. The frame of a door lies in the wall and the underside of a box in the floor: both
-differ from it only a little in colour, and by what they touch. A small network, fitted on furnished rooms
-(`train/paint.py`), weighs that.
+Paint, boards and shadows belong to the plane. The frame of a door in a wall and the underside of a box on the floor do
+not: they differ slightly in colour and in what they touch. A small network, fitted on furnished rooms
+(`training/coplanar.py`), decides from these features.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .learned_rule import shipped
+from .learned_rule import load_rule
 from .surface import Surface
 
 F64 = NDArray[np.float64]
@@ -25,24 +25,24 @@ FEATURES = (
     "lightness beside paint", "chroma beside paint", "lightness beside things", "chroma beside things",
     "reach across", "reach along", "pattern", "paint's pattern", "upright", "bottom", "top",
 )  # fmt: skip
-LEAST = 0.3  # of a superpoint's points near the plane: others are things that merely touch it
-ALIKE = 5.0  # Lab chroma difference within which pieces reach together
-STRANGE = 0.25  # of the first guess: a rule that keeps less of a plane than this was not fitted on anything like it
+MIN_NEAR = 0.3  # share of a superpoint's points near the plane; below it the superpoint only touches the plane
+SAME_CHROMA = 5.0  # Lab chroma difference up to which superpoints count as one colour
+MIN_KEPT = 0.25  # of the first guess: a network that keeps less of a plane than this was not fitted on such a scene
 
 
 @dataclass(frozen=True)
-class Pieces:
-    """Superpoints against one plane.
+class PlaneSuperpoints:
+    """The superpoints near one plane.
 
     Attributes:
         near: `[K]` points near the plane.
-        own: `[M]` superpoint of every point.
-        cell: `[K]` cell of the plane each near point is in.
-        off, along: `[K]` and `[K, 2]`, distance from the plane and place in it.
+        own: `[M]` superpoint of every surface point.
+        cell: `[K]` grid cell of the plane for each near point.
+        off, along: `[K]` and `[K, 2]`, signed distance from the plane and coordinates in it.
         facing: `[M]` |cosine| between each point's normal and the plane's.
-        guess: `[S]` the superpoints that are most likely its paint.
-        band: how far off it a single point of it may lie: a sole on the floor has its colour only by its shadow.
-        upright: whether it is a wall.
+        guess: `[S]` first guess: the superpoints that most probably belong to the plane.
+        band: largest distance of a point of the plane: a sole on the floor has the floor's colour only by its shadow.
+        upright: whether the plane is a wall.
     """
 
     near: I64
@@ -56,26 +56,27 @@ class Pieces:
     upright: bool
 
 
-def painted(surface: Surface, pieces: Pieces) -> Mask:
-    """`[S]` which superpoints belong to the plane.
+def plane_superpoints(surface: Surface, near: PlaneSuperpoints) -> Mask:
+    """Which superpoints belong to the plane `[S]`.
 
-    By the fitted rule, or by the first guess where the rule is at a loss, as before the many shades of a real floor.
+    The fitted network decides. Where it keeps less than MIN_KEPT of the first guess, as on the many shades of a real
+    floor, the first guess is the result.
     """
-    chosen, features = describe(surface, pieces)
-    kept = np.zeros(len(pieces.guess), bool)
+    chosen, features = describe(surface, near)
+    kept = np.zeros(len(near.guess), bool)
     if len(chosen):
-        kept[chosen] = shipped("coplanar", FEATURES).probability(features) > 0.5
-    near = np.bincount(pieces.own[pieces.near], minlength=len(kept))
-    return kept if near[kept].sum() >= STRANGE * near[pieces.guess].sum() else pieces.guess
+        kept[chosen] = load_rule("coplanar", FEATURES).probability(features) > 0.5
+    count = np.bincount(near.own[near.near], minlength=len(kept))
+    return kept if count[kept].sum() >= MIN_KEPT * count[near.guess].sum() else near.guess
 
 
-def describe(surface: Surface, p: Pieces) -> tuple[I64, F64]:
-    """The superpoints that may belong to the plane `[C]`, and their features `[C, len(FEATURES)]`."""
+def describe(surface: Surface, p: PlaneSuperpoints) -> tuple[I64, F64]:
+    """The superpoints that may belong to the plane `[C]` and their features `[C, len(FEATURES)]`."""
     count = len(p.guess)
     own, spacing = p.own[p.near], max(surface.spacing, 1e-12)
     total, inside = np.bincount(p.own, minlength=count), np.bincount(own, minlength=count)
     share = inside / np.maximum(total, 1)
-    chosen = np.flatnonzero(share > LEAST)
+    chosen = np.flatnonzero(share > MIN_NEAR)
     if not len(chosen) or not p.guess.any():
         return np.zeros(0, np.int64), np.zeros((0, len(FEATURES)))
     lab = surface.lab.astype(np.float64)
@@ -96,7 +97,7 @@ def describe(surface: Surface, p: Pieces) -> tuple[I64, F64]:
     each = mean[chosen][:, None] - mean[rivals][None]
     distance = np.linalg.norm(each, axis=2) + 1e6 * (chosen[:, None] == rivals[None])
     nearest = each[np.arange(len(chosen)), distance.argmin(1)]
-    sides = _sides(surface, p, share > LEAST)[:, chosen]
+    sides = _neighbour_features(surface, p, share > MIN_NEAR)[:, chosen]
     reach = _reach(mean, chosen, low, high, span)
     facing = _mean(p.facing[:, None], p.own, count)[chosen, 0]
     columns = [
@@ -125,14 +126,17 @@ def describe(surface: Surface, p: Pieces) -> tuple[I64, F64]:
 
 
 def _mean(values: F64, own: NDArray[np.int32], count: int) -> F64:
-    """`[S, C]` of `[K, C]`."""
+    """Mean `[S, C]` of values `[K, C]` over the points of each superpoint."""
     size = np.maximum(np.bincount(own, minlength=count), 1)[:, None]
     return np.stack([np.bincount(own, weights=v, minlength=count) for v in values.T], axis=1) / size
 
 
-def _sides(surface: Surface, p: Pieces, level: Mask) -> F64:
-    """`[7, S]`: shares of a piece's outward neighbours in paint, in things off the plane and in others near it; and
-    differences in lightness and chroma across to the first two."""
+def _neighbour_features(surface: Surface, p: PlaneSuperpoints, level: Mask) -> F64:
+    """Features `[7, S]` of the neighbours outside each superpoint.
+
+    The shares of them that are in the first guess, off the plane, and near the plane but not in the first guess; then
+    the mean differences in lightness and chroma to the first kind and to the second.
+    """
     count = len(p.guess)
     k = min(6, surface.neighbours.shape[1])
     first = np.repeat(np.arange(len(p.own)), k)
@@ -155,9 +159,9 @@ def _sides(surface: Surface, p: Pieces, level: Mask) -> F64:
 
 
 def _reach(mean: F64, chosen: I64, low: F64, high: F64, span: F64) -> F64:
-    """How far over the plane, both ways `[C, 2]`, the pieces of each piece's colour reach together."""
+    """Extent `[C, 2]`, as a share of the plane's, of all candidates that have each candidate's colour."""
     chroma = mean[chosen][:, 1:]
-    alike = np.linalg.norm(chroma[:, None] - chroma[None], axis=2) < ALIKE
+    alike = np.linalg.norm(chroma[:, None] - chroma[None], axis=2) < SAME_CHROMA
     first = np.where(alike[:, :, None], low[chosen][None], np.inf).min(axis=1)
     last = np.where(alike[:, :, None], high[chosen][None], -np.inf).max(axis=1)
     result: F64 = np.minimum((last - first) / span, 1.2)

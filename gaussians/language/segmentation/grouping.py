@@ -1,7 +1,7 @@
-"""From superpoints to things: which nodes of the merge tree are whole objects, and which parts they have.
+"""Choose the nodes of the merge tree that are whole objects, and split objects into parts of one colour.
 
-Knows the tree, its affinities and a score for "this looks like one whole thing". Refuses to know where that score
-comes from.
+The choice combines the merge probabilities with a score "this looks like one whole object" for each node, which the
+caller supplies.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from .superpoints import LIGHTNESS
 
 F64 = NDArray[np.float64]
 
-GEOMETRY = 1.0  # weight of a merge's log-odds against the encoder's
-SETTLED, HOPELESS = 0.99, 0.01  # likelihoods of a merge from which, and below which, looks are not asked
-CRUMB_SHARE = 0.03  # of a node: a side smaller than this says nothing about the rest
-SAME_SHARE = 0.92  # a node that holds this much of another looks the same
+GEOMETRY_WEIGHT = 1.0  # weight of a merge's log-odds against the encoder's
+CERTAIN, RULED_OUT = 0.99, 0.01  # merge probabilities from which, and below which, the encoder is not asked
+MINOR_SHARE = 0.03  # of a node's points: a child smaller than this says nothing about the rest
+SAME_SHARE = 0.92  # of a node's points: a child that holds this much looks the same as the node
 PATCH_COLOR = 15.0  # Lab difference up to which touching patches of one object are one part
 PATCH_POINTS = 30  # surface points; smaller patches join the touching one they resemble most
-PATCH_SHARE = 0.01  # of the object, likewise
+PATCH_SHARE = 0.01  # of the object's points; smaller patches are joined likewise
 
 
-def alike(nodes: Sequence[Node], points: NDArray[np.int64]) -> NDArray[np.int64]:
-    """For each node the largest node above it that is nearly the same thing, or itself: one portrait serves both."""
+def nearly_same_ancestor(nodes: Sequence[Node], points: NDArray[np.int64]) -> NDArray[np.int64]:
+    """For each node its largest ancestor that holds nearly the same points, or itself; both share one render."""
     same = np.arange(len(nodes))
     for i in range(len(nodes) - 1, -1, -1):
         for child in nodes[i].children:
@@ -36,35 +36,36 @@ def alike(nodes: Sequence[Node], points: NDArray[np.int64]) -> NDArray[np.int64]
     return same
 
 
-def in_question(nodes: Sequence[Node], points: NDArray[np.int64]) -> list[int]:
-    """The nodes whose looks can change the cut: those that geometry neither settles nor rules out, and the whole ones
-    that they are made of."""
+def undecided_nodes(nodes: Sequence[Node], points: NDArray[np.int64]) -> list[int]:
+    """The nodes whose evidence can change the cut: those that geometry neither confirms nor rules out, and the
+    possible objects below them."""
     weakest = weakest_merges(nodes, points)
-    wanted = np.zeros(len(nodes), bool)  # does anything above need this node's evidence?
+    wanted = np.zeros(len(nodes), bool)  # whether an ancestor needs this node's evidence
     found = []
     for i in range(len(nodes) - 1, -1, -1):
-        settled, hopeless = weakest[i] >= SETTLED, weakest[i] < HOPELESS
-        if not hopeless and (wanted[i] or not settled):
+        certain, ruled_out = weakest[i] >= CERTAIN, weakest[i] < RULED_OUT
+        if not ruled_out and (wanted[i] or not certain):
             found.append(i)
-        if not settled:
-            wanted[list(nodes[i].children)] = wanted[i] or not hopeless
+        if not certain:
+            wanted[list(nodes[i].children)] = wanted[i] or not ruled_out
     return found[::-1]
 
 
 def best_cut(
     nodes: Sequence[Node], points: NDArray[np.int64], evidence: dict[int, float], certain: int | None = None
 ) -> list[int]:
-    """Disjoint nodes that cover every superpoint: the things the tree is made of.
+    """The best cut of the merge tree: disjoint nodes that cover every superpoint, each taken for one object.
 
-    Bottom up, a node stays whole if its own evidence, plus what geometry says for the weakest merge inside it, is at
-    least the mean evidence of the best cut below it, weighted by points. A mean, not a sum: two halves that each look
-    like something must not outvote the one thing they make. The weakest merge, not the last: adding a crumb to a wrong
-    merge does not make it right. Where geometry is certain, looks are not asked.
+    From the leaves upwards, a node stays whole if its evidence plus the log-odds of the weakest merge inside it is at
+    least the mean evidence of the best cut below it, weighted by points. The mean is used instead of the sum because
+    two halves that each look like an object must not defeat the one object that they make. The weakest merge is used
+    instead of the last because a wrong merge does not become right when a small region is added to it. Where geometry
+    is certain, the evidence is ignored.
 
     Args:
-        points: `[len(nodes)]` surface points of each node.
-        evidence: log-odds of being one whole thing; 0 where none was asked for.
-        certain: a node that is one thing whatever its parts look like.
+        points: `[len(nodes)]` number of surface points of each node.
+        evidence: log-odds that a node is one whole object; 0 where missing.
+        certain: a node that is one object regardless of its evidence.
     """
     value, whole = np.zeros(len(nodes)), np.ones(len(nodes), bool)
     weakest = weakest_merges(nodes, points)
@@ -72,8 +73,8 @@ def best_cut(
         value[i] = evidence.get(i, 0.0)
         if node.children:
             below = sum(float(points[c]) * value[c] for c in node.children) / max(float(points[i]), 1.0)
-            likely = value[i] + GEOMETRY * np.log(weakest[i] / (1 - weakest[i])) >= below
-            whole[i] = i == certain or weakest[i] >= SETTLED or (likely and weakest[i] >= HOPELESS)
+            likely = value[i] + GEOMETRY_WEIGHT * np.log(weakest[i] / (1 - weakest[i])) >= below
+            whole[i] = i == certain or weakest[i] >= CERTAIN or (likely and weakest[i] >= RULED_OUT)
             value[i] = value[i] if whole[i] else below
     children = {c for node in nodes for c in node.children}
     chosen: list[int] = []
@@ -88,12 +89,14 @@ def best_cut(
 
 
 def weakest_merges(nodes: Sequence[Node], points: NDArray[np.int64]) -> F64:
-    """Affinity of the weakest merge inside each node, the node's own included; merges of crumbs count only for
-    themselves, not for what is built on them."""
+    """Affinity of the weakest merge inside each node, the node's own included.
+
+    A merge with a child below MINOR_SHARE counts only for that node, not for its ancestors.
+    """
     inside, own = np.ones(len(nodes)), np.ones(len(nodes))
     for i, node in enumerate(nodes):
         if node.children:
-            minor = min(points[c] for c in node.children) < CRUMB_SHARE * points[i]
+            minor = min(points[c] for c in node.children) < MINOR_SHARE * points[i]
             below = min(inside[c] for c in node.children)
             own[i] = min(below, node.affinity)
             inside[i] = below if minor else own[i]
@@ -103,22 +106,22 @@ def weakest_merges(nodes: Sequence[Node], points: NDArray[np.int64]) -> F64:
 def parts_of(
     members: Sequence[int], touching: dict[int, set[int]], lab: F64, count: NDArray[np.int64]
 ) -> list[list[int]]:
-    """One object's superpoints as connected patches of one colour each, largest first.
+    """The superpoints of one object as connected patches of one colour each, largest first.
 
     Args:
         members: superpoint ids.
         touching: superpoints that each superpoint touches.
         lab: `[S, 3]` mean colour of every superpoint.
-        count: `[S]` points of every superpoint.
+        count: `[S]` number of points of every superpoint.
     """
     patches = _Patches(members, touching, lab, count)
-    patches.join_alike()
-    patches.join_crumbs(max(PATCH_POINTS, PATCH_SHARE * sum(int(count[s]) for s in members)))
+    patches.join_similar()
+    patches.join_small(max(PATCH_POINTS, PATCH_SHARE * sum(int(count[s]) for s in members)))
     return sorted(patches.members.values(), key=lambda c: (-sum(int(count[s]) for s in c), c))
 
 
 class _Patches:
-    """Patches of one colour under merging; a merged patch gets a new number, so stale pairs are recognised."""
+    """Patches of one colour under merging. A merged patch gets a new number, so that outdated pairs are recognised."""
 
     def __init__(
         self, members: Sequence[int], touching: dict[int, set[int]], lab: F64, count: NDArray[np.int64]
@@ -130,8 +133,8 @@ class _Patches:
         self.near = {s: touching.get(s, set()) & own for s in members}
         self.next = max(members, default=0) + 1
 
-    def join_alike(self) -> None:
-        """Merge touching patches, the most alike first, while they are one colour."""
+    def join_similar(self) -> None:
+        """Merge touching patches, the most similar first, while their colours differ by at most PATCH_COLOR."""
         heap = [(self.gap(s, t), s, t) for s in self.members for t in self.near[s] if s < t]
         heapq.heapify(heap)
         while heap and heap[0][0] <= PATCH_COLOR:
@@ -141,11 +144,11 @@ class _Patches:
                 for other in self.near[new]:
                     heapq.heappush(heap, (self.gap(new, other), other, new))
 
-    def join_crumbs(self, least: float) -> None:
+    def join_small(self, least: float) -> None:
         """Give each patch smaller than `least`, smallest first, to the touching patch it resembles most."""
-        while crumbs := [s for s in self.members if self.size[s] < least and self.near[s]]:
-            crumb = min(crumbs, key=lambda s: (self.size[s], s))
-            self.join(min(self.near[crumb], key=lambda t: (self.gap(crumb, t), t)), crumb)
+        while small := [s for s in self.members if self.size[s] < least and self.near[s]]:
+            smallest = min(small, key=lambda s: (self.size[s], s))
+            self.join(min(self.near[smallest], key=lambda t: (self.gap(smallest, t), t)), smallest)
 
     def gap(self, s: int, t: int) -> float:
         return float(np.linalg.norm((self.lab[s] - self.lab[t]) * np.array([LIGHTNESS, 1.0, 1.0])))

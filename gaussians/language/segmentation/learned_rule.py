@@ -1,7 +1,6 @@
-"""A small network over a few measured features, as a JSON table in this folder holds it.
+"""A small multilayer perceptron over measured features, read from a JSON file in this folder.
 
-Knows numbers. Refuses to know what they were measured on: `affinity`, `paint` and `borders` each have one, fitted on
-furnished rooms by `train/`.
+`affinity`, `coplanar` and `borders` each have one, fitted on furnished rooms by `training/`.
 """
 
 from __future__ import annotations
@@ -20,10 +19,10 @@ F64 = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Rule:
-    """A small network over standardised features: two hidden layers of tanh units.
+    """A multilayer perceptron over standardised features: two hidden layers of tanh units, one sigmoid output.
 
     Attributes:
-        mean, spread: `[F]` of the features.
+        mean, spread: `[F]` mean and standard deviation of the features.
         weights, biases: of the three layers, `[F, H]`, `[H, H]`, `[H, 1]` and `[H]`, `[H]`, `[1]`.
     """
 
@@ -33,7 +32,7 @@ class Rule:
     biases: tuple[F64, ...]
 
     def probability(self, features: F64) -> F64:
-        """`[..., F]` to `[...]`."""
+        """Probability `[...]` of features `[..., F]`."""
         x = (features - self.mean) / self.spread
         for k, (weight, bias) in enumerate(zip(self.weights, self.biases, strict=True)):
             x = (np.tanh(x) if k else x) @ weight + bias
@@ -42,13 +41,13 @@ class Rule:
 
 
 @cache
-def shipped(name: str, features: tuple[str, ...]) -> Rule:
-    """The rule in `NAME.json`, read once."""
+def load_rule(name: str, features: tuple[str, ...]) -> Rule:
+    """The rule in `NAME.json` of this folder, read once a process."""
     return rule_of(json.loads((files(__package__) / f"{name}.json").read_text()), features)
 
 
 def rule_of(table: dict[str, Any], features: tuple[str, ...]) -> Rule:
-    """The rule as a table holds it."""
+    """The rule from its JSON table, which must have been fitted for these features."""
     assert tuple(table["features"]) == features, "the rule was fitted for other features"
     weights, biases = (tuple(np.array(a) for a in table[k]) for k in ("weights", "biases"))
     return Rule(np.array(table["mean"]), np.array(table["spread"]), weights, biases)

@@ -1,6 +1,6 @@
-"""Which way is up, and where the floor is, for a cloud whose file does not say.
+"""Estimate the up direction and the height of the floor of a cloud whose file states neither.
 
-Knows surfaces and cameras. Everything it finds is marked "estimated".
+The up direction comes from the surface points and, if there are any, the cameras. Results are marked "estimated".
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from .surface import Surface
 
 F64 = NDArray[np.float64]
 
-# Files made from photographs point their camera's down along +y (COLMAP's first view), hand-made ones use z or y up.
-AXES = ((np.array([0.0, -1.0, 0.0]), 1.0), (np.array([0.0, 0.0, 1.0]), 0.7), (np.array([0.0, 1.0, 0.0]), 0.4))
-AXIS_REACH = 12.0  # degrees within which a customary axis supports a direction
-AXIS_BONUS = 0.35  # of the strongest concentration
-TOP_REACH = 50.0  # degrees between up and the mean of the images' tops: cameras look down
-ROLL_REACH = 10.0  # degrees by which they are held askew
-LEADS = 8  # directions looked at closely
-APART = 6.0  # degrees between them
-FEWEST = 50  # surface points that say something about up
-GROUND_ASPECT = 2.5  # a floor plan longer than this many widths is no floor plan
+# Common up axes and their weights: captures have the first camera's down along +y (COLMAP), other files use z or y up.
+COMMON_UPS = ((np.array([0.0, -1.0, 0.0]), 1.0), (np.array([0.0, 0.0, 1.0]), 0.7), (np.array([0.0, 1.0, 0.0]), 0.4))
+AXIS_REACH = 12.0  # degrees within which a common axis supports a direction
+AXIS_BONUS = 0.35  # of the strongest layering
+TOP_REACH = 50.0  # degrees between up and the mean of the cameras' up vectors: cameras look down
+ROLL_REACH = 10.0  # degrees of camera roll
+CANDIDATES = 8  # directions that are refined
+SEPARATION = 6.0  # degrees between them
+MIN_SURFACE = 50  # surface points needed for an estimate
+GROUND_ASPECT = 2.5  # a floor plan is at most this many times as long as it is wide
 DIRECTIONS = 2500
 SAMPLES = 12_000
 BINS = 300
@@ -34,7 +34,7 @@ FLOOR_SHARE = 0.2  # the floor is the lowest level surface with at least this sh
 
 
 def estimate_frame(surface: Surface, cameras: Sequence[Camera], known: Frame) -> Frame:
-    """`known` with what it lacks filled in: up from the cameras or the level surfaces, then the floor's height."""
+    """`known` with a missing up direction and floor height estimated: up from the cameras or the level surfaces."""
     frame = known
     if known.up_source == "unknown":
         up = _up_from_cameras(surface, cameras) if cameras else _up_from_surfaces(surface)
@@ -45,9 +45,9 @@ def estimate_frame(surface: Surface, cameras: Sequence[Camera], known: Frame) ->
 
 
 def _up_from_cameras(surface: Surface, cameras: Sequence[Camera]) -> F64:
-    """The sharpest layering that agrees with how the pictures were held: tops up, and rights level.
+    """The most layered direction that agrees with the cameras: near their mean up vector, and level right vectors.
 
-    The tops' mean alone leans forward where all cameras look down on the scene from one side.
+    The mean up vector alone leans forward where all cameras look down on the scene from one side.
     """
     mean = -np.mean([c.world_to_camera[1, :3] for c in cameras], axis=0)
     mean /= max(float(np.linalg.norm(mean)), 1e-12)
@@ -55,42 +55,42 @@ def _up_from_cameras(surface: Surface, cameras: Sequence[Camera]) -> F64:
     roll = np.sqrt(np.mean((around @ np.stack([c.right for c in cameras]).T) ** 2, axis=1))
     upward = around @ mean > np.cos(np.radians(TOP_REACH))
     level = roll < roll[upward].min(initial=1.0) + np.sin(np.radians(ROLL_REACH))
-    if len(surface) < FEWEST or not (upward & level).any():
-        return mean if mean.any() else AXES[0][0]
-    lines, layering = _leading(surface, around[upward & level])
+    if len(surface) < MIN_SURFACE or not (upward & level).any():
+        return mean if mean.any() else COMMON_UPS[0][0]
+    lines, layering = _most_layered(surface, around[upward & level])
     return lines[int(np.argmax(layering))]
 
 
 def _up_from_surfaces(surface: Surface) -> F64:
-    """The direction across which the scene is most layered; customary axes get a bonus and give it its sign."""
-    if len(surface) < FEWEST:
-        return AXES[0][0]
-    lines, layering = _leading(surface, _directions()[:DIRECTIONS])
-    bonus = np.max([w * (np.abs(lines @ a) > np.cos(np.radians(AXIS_REACH))) for a, w in AXES], axis=0)
+    """The direction along which the scene is most layered; common up axes get a bonus and decide the sign."""
+    if len(surface) < MIN_SURFACE:
+        return COMMON_UPS[0][0]
+    lines, layering = _most_layered(surface, _directions()[:DIRECTIONS])
+    bonus = np.max([w * (np.abs(lines @ a) > np.cos(np.radians(AXIS_REACH))) for a, w in COMMON_UPS], axis=0)
     line = lines[int(np.argmax(layering / max(float(layering.max()), 1e-12) + AXIS_BONUS * bonus))]
     if not _is_ground_like(surface, line):
-        return AXES[0][0]
-    return max((line, -line), key=lambda up: max(w * float(up @ a) for a, w in AXES))
+        return COMMON_UPS[0][0]
+    return max((line, -line), key=lambda up: max(w * float(up @ a) for a, w in COMMON_UPS))
 
 
-def _leading(surface: Surface, directions: F64) -> tuple[F64, F64]:
-    """The most layered of some directions, well apart from each other and each sharpened `[L, 3]`, and how layered.
+def _most_layered(surface: Surface, directions: F64) -> tuple[F64, F64]:
+    """The most layered of some directions `[L, 3]`, SEPARATION apart and refined, and their layering `[L]`.
 
-    A floor seen two degrees askew loses most of its layering, and so much by chance that unsharpened directions cannot
-    be compared.
+    Two degrees off the true up a floor loses most of its layering, by an amount that varies by chance, so unrefined
+    directions cannot be compared.
     """
     layering = _layering(surface, directions)
     lines: list[F64] = []
-    while len(lines) < LEADS and layering.max() > 0:
+    while len(lines) < CANDIDATES and layering.max() > 0:
         best = directions[int(np.argmax(layering))]
-        lines.append(_sharpen(surface, best))
-        layering = np.where(np.abs(directions @ best) > np.cos(np.radians(APART)), 0.0, layering)
+        lines.append(_refine(surface, best))
+        layering = np.where(np.abs(directions @ best) > np.cos(np.radians(SEPARATION)), 0.0, layering)
     found = np.stack(lines) if lines else directions[:1]
     return found, _layering(surface, found)
 
 
 def _is_ground_like(surface: Surface, up: F64) -> bool:
-    """Whether the scene is broad across `up`: a tall thing alone (a guitar, a statue) is layered across its front."""
+    """Whether the plan across `up` is broad: a tall object alone (a guitar, a statue) is layered along its front."""
     side = np.cross(up, np.eye(3)[int(np.argmin(np.abs(up)))])
     side /= np.linalg.norm(side)
     across = surface.points @ np.stack([side, np.cross(up, side)], axis=1)
@@ -100,7 +100,7 @@ def _is_ground_like(surface: Surface, up: F64) -> bool:
 
 
 def _directions() -> F64:
-    """`[D, 3]` unit vectors spread evenly over the upper hemisphere of +z (Fibonacci lattice)."""
+    """Unit vectors `[2 * DIRECTIONS, 3]` on a Fibonacci lattice: the hemisphere around +z, then their opposites."""
     i = np.arange(DIRECTIONS)
     z = (i + 0.5) / DIRECTIONS
     angle = i * np.pi * (3 - np.sqrt(5))
@@ -110,15 +110,15 @@ def _directions() -> F64:
 
 
 def _layering(surface: Surface, directions: F64) -> F64:
-    """How much the area piles up in thin layers across each direction, `[D]`: the sum of squared histogram shares.
+    """How much the area concentrates in thin layers along each direction `[D]`: the sum of squared histogram shares.
 
-    Level things (floor, table tops, seats, ceiling) pile up across the true up. Positions say this far more clearly
-    than the normals of trained Gaussians do.
+    Level surfaces (floor, table tops, seats, ceiling) form layers along the true up. Positions show this far more
+    clearly than the normals of trained Gaussians.
     """
     step = max(1, len(surface) // SAMPLES)
     points = surface.points[::step].astype(np.float64)
     area = surface.area[::step].astype(np.float64)
-    area = np.minimum(area, np.quantile(area, 0.9)) / max(float(area.sum()), 1e-20)  # a few giants must not decide
+    area = np.minimum(area, np.quantile(area, 0.9)) / max(float(area.sum()), 1e-20)  # very large ones count less
     points = points - np.median(points, axis=0)
     reach = 3 * float(np.median(np.linalg.norm(points, axis=1))) + 1e-12
     layers = []
@@ -128,8 +128,8 @@ def _layering(surface: Surface, directions: F64) -> F64:
     return np.array(layers)
 
 
-def _sharpen(surface: Surface, up: F64) -> F64:
-    """The best direction near `up`, by rings that shrink from 3 to 0.2 degrees."""
+def _refine(surface: Surface, up: F64) -> F64:
+    """The most layered direction near `up`, searched on rings that shrink from 3 to 0.2 degrees."""
     for radius in (3.0, 1.2, 0.5, 0.2):
         side = np.cross(up, np.eye(3)[int(np.argmin(np.abs(up)))])
         side /= np.linalg.norm(side)
@@ -144,7 +144,7 @@ def _sharpen(surface: Surface, up: F64) -> F64:
 def _floor(surface: Surface, up: F64) -> float | None:
     """Height of the lowest large level surface along up, None where nothing is level."""
     level = np.abs(surface.normals @ up) > 0.85
-    if level.sum() < FEWEST:
+    if level.sum() < MIN_SURFACE:
         return None
     heights, area = surface.points[level] @ up, surface.area[level] * surface.flatness[level]
     low, high = np.quantile(heights, [0.002, 0.998])

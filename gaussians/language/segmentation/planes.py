@@ -1,7 +1,6 @@
-"""The planes of floor, walls and ceiling, or the height field of rough ground, from positions and normals.
+"""Find the planes of floor, walls and ceiling, or the height field of rough ground, from positions and normals.
 
-Knows geometry. Refuses to know colours and superpoints, and so which of the points in a plane are the floor or the wall
-itself: structure.py decides that.
+Colours and superpoints are not used here. `structure.py` decides which of the points in a plane belong to it.
 """
 
 from __future__ import annotations
@@ -18,24 +17,24 @@ from .surface import Surface
 UP = np.array([0.0, 0.0, 1.0])
 
 CELLS = 64  # of the height map across the larger side
-ROUGH = 0.012  # ground whose height varies by more than this share of the scene is terrain, not a floor
-KNOLL = 0.03  # of the scene: bumps, stones and low plants up to this height are terrain
-TALL = 1.5  # a scene this many times as high as it is broad is one tall thing without ground
-OUTSIDE = 0.02  # share of the scene that may lie behind a wall
+ROUGHNESS = 0.012  # ground whose height varies by more than this share of the scene is terrain, not a floor
+MAX_BUMP = 0.03  # of the scene: bumps, stones and low plants up to this height are terrain
+TALL_RATIO = 1.5  # a scene this many times as high as it is broad is one tall object without ground
+MAX_BEHIND_WALL = 0.02  # share of the scene that may lie behind a wall
 WALL_LENGTH = 0.3  # of the scene's extent: shorter upright planes are furniture
-WALL_HEIGHT = 0.55
+WALL_HEIGHT = 0.55  # likewise
 
 
 @dataclass(frozen=True)
 class Level:
-    """Surface points in a level frame: `east, north, height` columns `[M, 3]`, and normals likewise."""
+    """Surface points `[M, 3]` (east, north, height) and normals `[M, 3]` in a frame whose third axis is up."""
 
     points: NDArray[np.float64]
     normals: NDArray[np.float64]
 
 
 def level(surface: Surface, frame: Frame) -> Level:
-    """Rotate the surface so that up is the third axis."""
+    """The surface rotated so that up is the third axis."""
     basis = frame.basis()
     return Level(surface.points @ basis.T, surface.normals @ basis.T)
 
@@ -52,9 +51,9 @@ class Plane:
 
 
 def ground_of(surface: Surface, flat: Level) -> Plane | NDArray[np.bool_] | None:
-    """The floor's plane, or the points of the terrain (a rough height field), or None."""
+    """The plane of the floor, or the points `[M]` of rough terrain, or None where there is no ground."""
     extent = _extent(flat)
-    if extent[2] > TALL * max(extent[:2]):
+    if extent[2] > TALL_RATIO * max(extent[:2]):
         return None
     cell = max(extent[0], extent[1]) / CELLS
     low = np.quantile(flat.points[:, :2], 0.005, axis=0)
@@ -75,9 +74,9 @@ def ground_of(surface: Surface, flat: Level) -> Plane | NDArray[np.bool_] | None
         return None
     weight = close & is_level
     rough = float(np.median(np.abs(above[weight] - np.median(above[weight]))))
-    if rough > ROUGH * max(extent) * 0.25:
+    if rough > ROUGHNESS * max(extent) * 0.25:
         terrain: NDArray[np.bool_] = above < np.median(above[weight]) + min(
-            max(3.0 * rough, KNOLL * max(extent)), 0.08 * max(extent)
+            max(3.0 * rough, MAX_BUMP * max(extent)), 0.08 * max(extent)
         )
         return terrain
     offset = _mode(flat.points[weight, 2], surface.area[weight])
@@ -88,7 +87,7 @@ def ground_of(surface: Surface, flat: Level) -> Plane | NDArray[np.bool_] | None
 
 
 def walls_of(surface: Surface, flat: Level, free: NDArray[np.bool_]) -> list[Plane]:
-    """Upright planes at the scene's edge, long and high enough."""
+    """Upright planes at the edge of the scene that are at least WALL_LENGTH long and WALL_HEIGHT high."""
     extent = _extent(flat)
     upright = (np.abs(flat.normals[:, 2]) < 0.25) & free & (surface.flatness > 0.3)
     planes: list[Plane] = []
@@ -105,7 +104,7 @@ def walls_of(surface: Surface, flat: Level, free: NDArray[np.bool_]) -> list[Pla
         before = float((inside @ normal < offset - 2 * tolerance).mean())
         near = np.abs(flat.points @ normal - offset) < tolerance
         along = np.stack([flat.points @ tangent, flat.points[:, 2]], axis=1)
-        if min(behind, before) > OUTSIDE or not near.any():
+        if min(behind, before) > MAX_BEHIND_WALL or not near.any():
             continue
         size = np.ptp(np.quantile(along[near & facing], [0.02, 0.98], axis=0), axis=0)
         if size[0] >= WALL_LENGTH * max(extent[:2]) and size[1] >= WALL_HEIGHT * extent[2]:
@@ -114,7 +113,7 @@ def walls_of(surface: Surface, flat: Level, free: NDArray[np.bool_]) -> list[Pla
 
 
 def ceiling_of(surface: Surface, flat: Level, free: NDArray[np.bool_]) -> Plane | None:
-    """A level plane at the very top that covers most of the plan."""
+    """The level plane at the top of the scene if it covers most of the floor plan, else None."""
     extent = _extent(flat)
     top = np.quantile(flat.points[:, 2], 0.995)
     near = (np.abs(flat.points[:, 2] - top) < max(2 * surface.spacing, 0.01 * extent[2])) & free
@@ -132,14 +131,14 @@ def _extent(flat: Level) -> NDArray[np.float64]:
 
 
 def _fill(grid: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Empty cells take the value of the nearest full one."""
+    """The grid with each empty cell filled from the nearest full one."""
     index = ndimage.distance_transform_edt(np.isnan(grid), return_distances=False, return_indices=True)
     filled: NDArray[np.float64] = grid[tuple(index)]
     return filled
 
 
 def _mode(values: NDArray[np.floating], weight: NDArray[np.floating]) -> float:
-    """The densest value, refined to the median of what lies near it."""
+    """The mode of a weighted distribution: the median of the values near the fullest bin of its histogram."""
     bins = np.histogram_bin_edges(values, 200)
     share = np.histogram(values, bins, weights=weight)[0]
     peak = int(np.argmax(np.convolve(share, np.ones(3), mode="same")))
@@ -148,7 +147,7 @@ def _mode(values: NDArray[np.floating], weight: NDArray[np.floating]) -> float:
 
 
 def _outermost(values: NDArray[np.floating], weight: NDArray[np.floating]) -> float:
-    """The largest value at which much lies: at least a third of what lies at the densest."""
+    """The largest mode whose weight is at least a third of the strongest mode's."""
     bins = np.histogram_bin_edges(values, 200)
     share = np.convolve(np.histogram(values, bins, weights=weight)[0], np.ones(3), mode="same")
     last = int(np.flatnonzero(share >= share.max() / 3)[-1])
@@ -157,7 +156,7 @@ def _outermost(values: NDArray[np.floating], weight: NDArray[np.floating]) -> fl
 
 
 def _azimuths(surface: Surface, flat: Level, upright: NDArray[np.bool_]) -> list[float]:
-    """Candidate outward directions of walls: each strong azimuth, both ways, in full circle."""
+    """Candidate outward directions of walls, radians: each strong azimuth of the normals and its opposite."""
     if not upright.any():
         return []
     angle = np.arctan2(flat.normals[upright, 1], flat.normals[upright, 0]) % np.pi

@@ -1,7 +1,6 @@
-"""Regions of the surface that grow by merging: what is summed over each and over each border, and the merge tree.
+"""The region adjacency graph: sums over regions and over borders, which merging two regions adds, and tree nodes.
 
-Knows sums and bounds. Refuses to know what makes two regions one thing: `affinity.py` judges that from these sums.
-All statistics live in arrays with a row a region or a border, so that many borders are judged at once.
+All statistics are arrays with one row per region or border, so that `affinity.py` can judge many borders at once.
 """
 
 from __future__ import annotations
@@ -17,12 +16,12 @@ I64 = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Node:
-    """A node of the merge tree.
+    """One node of the merge tree.
 
     Attributes:
-        members: superpoints.
+        members: superpoints of the region.
         children: indices of the two nodes merged into it, () for a superpoint.
-        affinity: probability that its two children are one thing, 1 for a superpoint.
+        affinity: probability that its two children are one object, 1 for a superpoint.
     """
 
     members: tuple[int, ...]
@@ -60,16 +59,16 @@ class Regions:
 
 @dataclass(frozen=True)
 class Borders:
-    """Sums over the pairs of points that face each other across `B` borders.
+    """Sums over the pairs of points across `B` borders.
 
     Attributes:
-        pairs: `[B]` how many.
-        touching: `[B]` how many of them are links; the others reach across a gap.
+        pairs: `[B]` number of pairs.
+        touching: `[B]` number of pairs that are links; the others are ties across a gap.
         weight: `[B]` summed link weight.
-        contrast: `[B]` summed difference of the ends' own colours, Lab.
+        contrast: `[B]` summed colour difference of the two points, Lab.
         height: `[B]` summed height.
-        level: `[B, 2]` summed |n_z| of the first region's ends and of the second's.
-        low, high: `[B, 2]` plan bounds of the ends.
+        level: `[B, 2]` summed |n_z| of the points in the first region and in the second.
+        low, high: `[B, 2]` plan bounds of the points.
         gap: `[B]` shortest distance across, 0 where the regions touch.
     """
 
@@ -85,16 +84,16 @@ class Borders:
 
 
 class Graph:
-    """Regions and borders under merging. A merged region gets the next number, so stale pairs are recognised."""
+    """Regions and borders under merging. A merged region gets a new number, so that outdated pairs are recognised."""
 
     def __init__(self, superpoint: I64, regions: Regions, ends: I64, borders: Borders, scale: float) -> None:
         """Args:
-        superpoint: `[R]` which superpoint each region is.
+        superpoint: `[R]` superpoint of each region.
         ends: `[B, 2]` regions of each border, the smaller number first.
         scale: typical size of a region, scene units.
         """
         count = len(superpoint)
-        self.regions = Regions(*(_with_room(a, max(2 * count - 1, 0)) for a in vars(regions).values()))
+        self.regions = Regions(*(_padded(a, max(2 * count - 1, 0)) for a in vars(regions).values()))
         self.borders = Borders(*(a.copy() for a in vars(borders).values()))
         self.scale = scale
         self.members: dict[int, tuple[int, ...]] = {i: (int(s),) for i, s in enumerate(superpoint)}
@@ -104,11 +103,11 @@ class Graph:
             self.around[i][j] = self.around[j][i] = row
 
     def pairs(self) -> list[tuple[int, int]]:
-        """Every two regions with a border, the smaller number first."""
+        """All pairs of regions with a border, the smaller number first."""
         return [(i, j) for i, near in self.around.items() for j in near if i < j]
 
     def merge(self, i: int, j: int) -> int:
-        """Replace regions i and j by one; its number."""
+        """Merge regions i and j; returns the number of the merged region."""
         new, self.next = self.next, self.next + 1
         r, inner = self.regions, self.borders.touching[self.around[i][j]]
         for name, column in vars(r).items():
@@ -125,14 +124,14 @@ class Graph:
                 del self.around[other][old]
                 if old < other:  # the merged region's number is the larger one: its side comes second
                     self.borders.level[row] = self.borders.level[row, ::-1].copy()
-                near[other] = self._joined(near[other], row) if other in near else row
+                near[other] = self._merge_rows(near[other], row) if other in near else row
         self.around[new] = near
         for other, row in near.items():
             self.around[other][new] = row
         return new
 
-    def _joined(self, row: int, other: int) -> int:
-        """Two borders to the same region become one, in the first one's row."""
+    def _merge_rows(self, row: int, other: int) -> int:
+        """Add the border in row `other` to that in `row`, which both lead to the same region; returns `row`."""
         b = self.borders
         for name, column in vars(b).items():
             if name not in ("low", "high", "gap"):
@@ -142,8 +141,8 @@ class Graph:
         return row
 
 
-def _with_room(rows: F64, count: int) -> F64:
-    """A copy with zero rows behind, `count` in all."""
+def _padded(rows: F64, count: int) -> F64:
+    """A copy with zero rows appended, `count` rows in all."""
     grown = np.zeros((count, *rows.shape[1:]))
     grown[: len(rows)] = rows
     return grown

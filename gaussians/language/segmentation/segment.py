@@ -1,8 +1,7 @@
-"""From the skin of a cloud to the things it is made of:
+"""Segment the surface points of a scene into structure, objects and parts:
 
-superpoints -> floor and walls -> merge tree -> portraits of its nodes -> the best cut into objects -> parts by colour.
-
-Knows the pieces of this room that find borders. Refuses to know queries, and Gaussians off the skin.
+superpoints -> floor and walls -> merge tree -> renders of its nodes -> best cut into objects -> refined borders ->
+parts by colour.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from ..field.language_field import Level
 from . import grouping, planes, structure
 from .adjacency import build_graph
 from .affinity import merge_tree
-from .borders import redrawn
+from .borders import refine_borders
 from .group_renders import mean_vectors
 from .regions import Graph, Node
 from .superpoints import Links, links_of, superpoints, touching
@@ -30,16 +29,23 @@ from .surface import Surface
 Progress = Callable[[str, float], None]
 F64 = NDArray[np.float64]
 
-MIN_OBJECT = 40  # surface points; smaller things are not asked about and not offered
-MOST_ASKED = 700  # nodes whose portraits are taken: bounds the time of a messy scene
-ASK_VIEWS = 3
-MOST_OF_IT = 0.75  # of the surface: a body this large, with neither floor nor wall around it, is one scanned thing
+MIN_OBJECT = 40  # surface points; smaller regions are neither rendered nor kept as objects
+MAX_RENDERED = 700  # nodes that are rendered: bounds the time of a cluttered scene
+VIEWS_PER_CANDIDATE = 3
+SINGLE_OBJECT = 0.75  # of the surface: a region this large in a scene without floor and walls is one scanned object
 
 
 @dataclass(frozen=True, eq=False)
-class Thing:
-    """One group before it becomes a row: which superpoints, under which name, in which object; and its vector where
-    something better than pictures of it says what it is."""
+class Segment:
+    """One group before it is measured: structure, an object, or a part of one.
+
+    Attributes:
+        members: its superpoints; () for an object that consists of parts.
+        level: "structure", "object" or "part".
+        parent: index of the object that a part belongs to, -1 for none.
+        label: its name, "" if the encoder is to name it.
+        vector: `[D]` its embedding where masks give one; None to take that of its renders.
+    """
 
     members: tuple[int, ...]
     level: Level
@@ -53,30 +59,30 @@ def segment(
     surface: Surface,
     encoder: Encoder,
     progress: Progress = lambda stage, share: None,
-    portraits: int = ASK_VIEWS,
-) -> tuple[NDArray[np.int32], list[Thing]]:
-    """Superpoint of each surface point, and what they make up: structure first, then objects, then their parts."""
+    views_per_candidate: int = VIEWS_PER_CANDIDATE,
+) -> tuple[NDArray[np.int32], list[Segment]]:
+    """Superpoint of each surface point `[M]`, and the segments: structure first, then each object and its parts."""
     links = links_of(surface)
     labels, codes = superpoints_and_structure(surface, links, scene.frame)
     count = len(codes)
     nodes = merge_tree(graph_of(surface, links, labels, codes, scene.frame))
     size = np.bincount(labels, minlength=count)
     points = np.array([sum(int(size[s]) for s in n.members) for n in nodes], dtype=np.int64)
-    evidence = _evidence(scene, surface, labels, nodes, points, encoder, portraits, progress)
-    alone = None
-    if nodes and not codes.any() and points.max() >= MOST_OF_IT * len(surface):
-        alone = int(np.flatnonzero(points == points.max())[-1])  # the root: no node above it holds more
-    objects = [nodes[i].members for i in grouping.best_cut(nodes, points, evidence, alone)]
-    owner = np.where(codes > 0, -1 - codes.astype(np.int32), -1)  # structure below -1, none -1, then the objects
+    evidence = _evidence(scene, surface, labels, nodes, points, encoder, views_per_candidate, progress)
+    single = None
+    if nodes and not codes.any() and points.max() >= SINGLE_OBJECT * len(surface):
+        single = int(np.flatnonzero(points == points.max())[-1])  # the root: no node above it holds more
+    objects = [nodes[i].members for i in grouping.best_cut(nodes, points, evidence, single)]
+    owner = np.where(codes > 0, -1 - codes.astype(np.int32), -1)  # structure: below -1, none: -1, objects: from 0
     for number, members in enumerate(objects):
         owner[list(members)] = number
-    labels = redrawn(surface, labels, owner, codes > 0)
-    owner = _without_crumbs(owner, labels, links)
-    return labels, _things(surface, labels, owner, touching(labels, links))
+    labels = refine_borders(surface, labels, owner, codes > 0)
+    owner = _absorb_small(owner, labels, links)
+    return labels, _segments(surface, labels, owner, touching(labels, links))
 
 
-def _without_crumbs(owner: NDArray[np.int32], labels: NDArray[np.int32], links: Links) -> NDArray[np.int32]:
-    """Owners `[S]` after pieces of objects too small to be offered went to what they touch most."""
+def _absorb_small(owner: NDArray[np.int32], labels: NDArray[np.int32], links: Links) -> NDArray[np.int32]:
+    """Owners `[S]` after objects of fewer than MIN_OBJECT points were joined to the segment they touch most."""
     size = np.bincount(labels, minlength=len(owner))
     held = np.bincount(np.maximum(owner, -1) + 1, weights=size)[1:]
     small = (owner >= 0) & (held[np.maximum(owner, 0)] < MIN_OBJECT) if len(held) else np.zeros(len(owner), bool)
@@ -86,18 +92,18 @@ def _without_crumbs(owner: NDArray[np.int32], labels: NDArray[np.int32], links: 
     owner = owner.copy()
     beside, before = owner[ends[:, 1]], owner.copy()
     owner[small] = -1
-    for crumb in np.unique(before[ends[:, 0]]).tolist():
-        things, links_to = np.unique(beside[before[ends[:, 0]] == crumb], return_counts=True)
-        owner[before == crumb] = things[int(np.argmax(links_to))]
+    for tiny in np.unique(before[ends[:, 0]]).tolist():
+        candidates, links_to = np.unique(beside[before[ends[:, 0]] == tiny], return_counts=True)
+        owner[before == tiny] = candidates[int(np.argmax(links_to))]
     return owner
 
 
 def superpoints_and_structure(
     surface: Surface, links: Links, frame: Frame
 ) -> tuple[NDArray[np.int32], NDArray[np.int8]]:
-    """Superpoint of each surface point `[M]`, and each superpoint's code of structure `[S]`.
+    """Superpoint of each surface point `[M]`, and the structure code of each superpoint `[S]`.
 
-    Superpoints that straddle structure and object become two.
+    Superpoints that lie partly in the structure are split in two.
     """
     labels = superpoints(surface, links)
     found = structure.structures(surface, labels, frame)
@@ -108,7 +114,7 @@ def superpoints_and_structure(
 
 
 def graph_of(surface: Surface, links: Links, labels: NDArray[np.int32], codes: NDArray[np.int8], frame: Frame) -> Graph:
-    """The graph of the superpoints that are no structure, in the level frame."""
+    """The adjacency graph of the superpoints that are not structure, in the level frame."""
     flat = planes.level(surface, frame)
     lab = surface.lab.astype(np.float64)
     kinds = structure.kind_of(codes)
@@ -117,19 +123,21 @@ def graph_of(surface: Surface, links: Links, labels: NDArray[np.int32], codes: N
 
 def _evidence(
     scene: Scene, surface: Surface, labels: NDArray[np.int32], nodes: list[Node], points: NDArray[np.int64],
-    encoder: Encoder, portraits: int, progress: Progress,
+    encoder: Encoder, views_per_candidate: int, progress: Progress,
 ) -> dict[int, float]:  # fmt: skip
-    """Log-odds that a node is one whole thing, by its portraits, for the larger nodes that geometry leaves open."""
-    wanted = [i for i in grouping.in_question(nodes, points) if points[i] >= MIN_OBJECT]
-    same = grouping.alike(nodes, points)
-    asked = sorted({int(same[i]) for i in wanted}, key=lambda i: (-points[i], i))[:MOST_ASKED]
+    """Log-odds that a node is one whole object, from its renders, for large nodes that geometry leaves undecided."""
+    wanted = [i for i in grouping.undecided_nodes(nodes, points) if points[i] >= MIN_OBJECT]
+    same = grouping.nearly_same_ancestor(nodes, points)
+    asked = sorted({int(same[i]) for i in wanted}, key=lambda i: (-points[i], i))[:MAX_RENDERED]
     if not asked:
         return {}
     rows = _rows_by_superpoint(surface, labels, int(labels.max(initial=-1)) + 1)
     owned = [np.sort(np.concatenate([rows[s] for s in nodes[i].members])) for i in asked]
     clouds = [scene.cloud[torch.from_numpy(own)] for own in owned]
     middle = np.median(surface.points, axis=0).astype(np.float64)
-    vectors = mean_vectors(encoder, clouds, scene.frame, middle, portraits, lambda share: progress("portraits", share))
+    vectors = mean_vectors(
+        encoder, clouds, scene.frame, middle, views_per_candidate, lambda share: progress("renders", share)
+    )
     whole = np.clip(wholeness(encoder, vectors), 0.001, 0.999)
     odds = {i: float(np.log(w / (1 - w))) for i, w in zip(asked, whole, strict=True)}
     return {i: odds[int(same[i])] for i in wanted if int(same[i]) in odds}
@@ -140,24 +148,24 @@ def _rows_by_superpoint(surface: Surface, labels: NDArray[np.int32], count: int)
     return np.split(surface.rows[order], np.cumsum(np.bincount(labels, minlength=count))[:-1])
 
 
-def _things(
+def _segments(
     surface: Surface, labels: NDArray[np.int32], owner: NDArray[np.int32], near: dict[int, set[int]]
-) -> list[Thing]:
-    """Floor, each wall, ceiling; then the objects, largest first, each followed by its parts."""
+) -> list[Segment]:
+    """Segments in order: floor, each wall, ceiling; then the objects, largest first, each followed by its parts."""
     count = len(owner)
     size = np.bincount(labels, minlength=count)
     total = np.stack([np.bincount(labels, weights=surface.lab[:, c], minlength=count) for c in range(3)], axis=1)
     lab: F64 = total / np.maximum(size, 1)[:, None]
     codes = sorted({-1 - int(o) for o in owner if o < -1}, key=lambda c: (c % structure.KINDS, c))
-    things = [
-        Thing(tuple(np.flatnonzero(owner == -1 - c).tolist()), "structure", label=structure.NAMES[c % structure.KINDS])
-        for c in codes
-    ]
+    segments = []
+    for c in codes:
+        members = tuple(np.flatnonzero(owner == -1 - c).tolist())
+        segments.append(Segment(members, "structure", label=structure.NAMES[c % structure.KINDS]))
     objects = [tuple(np.flatnonzero(owner == o).tolist()) for o in np.unique(owner[owner >= 0])]
     for members in sorted(objects, key=lambda m: (-sum(int(size[s]) for s in m), m)):
         clusters = grouping.parts_of(members, near, lab, size)
-        own = len(things)
-        things.append(Thing(members if len(clusters) == 1 else (), "object"))
+        own = len(segments)
+        segments.append(Segment(members if len(clusters) == 1 else (), "object"))
         if len(clusters) > 1:
-            things.extend(Thing(tuple(c), "part", parent=own) for c in clusters)
-    return things
+            segments.extend(Segment(tuple(c), "part", parent=own) for c in clusters)
+    return segments

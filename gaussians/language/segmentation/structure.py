@@ -1,8 +1,8 @@
-"""Floor or ground, walls and ceiling: the large surfaces that things stand on, hang on and stand in front of.
+"""Label the surface points of floor or ground, walls and ceiling.
 
-Knows which points of a plane are the plane itself, by the colour and breadth of the superpoints in it. A rug lies in
-the floor's plane and a painting in the wall's: they differ by their colour and their small extent, and stay objects.
-Refuses to know where the planes are (planes.py).
+The planes come from `planes.py`. Which points of a plane belong to it is decided by the colour and extent of the
+superpoints in it: a rug lies in the plane of the floor and a painting in that of the wall, but their colour differs and
+their extent is small, so they remain objects.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...scene import Frame
-from .coplanar import Pieces, painted
+from .coplanar import PlaneSuperpoints, plane_superpoints
 from .planes import Level, Plane, ceiling_of, ground_of, level, walls_of
 from .superpoints import LIGHTNESS
 from .surface import Surface
@@ -20,37 +20,37 @@ NONE, FLOOR, WALL, CEILING = 0, 1, 2, 3
 KINDS = 4
 NAMES = {FLOOR: "floor", WALL: "wall", CEILING: "ceiling"}
 
-FEWEST = 200  # points that have structure
-SAME_COLOR = 11.0  # Lab difference within which pieces of a plane are the same paint
+MIN_SURFACE = 200  # points; smaller surfaces are not searched for structure
+SAME_COLOR = 11.0  # Lab difference up to which superpoints of a plane count as one colour
 GRID = 40  # cells along each side of a plane
-LEVELS = 12  # broadest pieces whose level is tried as the plane's own
-TIGHT = 0.3  # of the spacing: how far from a clean plane a piece of it may lie
-SPREAD = 0.6  # a colour that spans this much of a plane both ways belongs to its pattern
+MAX_LEVELS = 12  # superpoints, broadest first, whose distance from the plane is tried as the plane's own
+TIGHT = 0.3  # of the spacing: largest distance of a superpoint from a noise-free plane
+PATTERN_EXTENT = 0.6  # a colour that spans this share of a plane in both directions belongs to its pattern
 
 
 def structures(surface: Surface, labels: NDArray[np.int32], frame: Frame) -> NDArray[np.int8]:
-    """`[M]` code of each surface point: `kind_of` tells NONE, FLOOR, WALL or CEILING; each wall has a code of its own.
+    """Structure code of each surface point `[M]`; each wall has its own code, and `kind_of` gives the kind of a code.
 
-    Whole superpoints where they mostly agree.
+    A superpoint whose points mostly lie in a plane is labelled as a whole.
     """
     flat = level(surface, frame)
     found = np.zeros(len(surface), np.int8)
-    if len(surface) < FEWEST:
+    if len(surface) < MIN_SURFACE:
         return found
     terrain, planes = planes_of(surface, flat)
     found[terrain] = FLOOR
     for number, (kind, plane) in enumerate(planes):
-        found[_painted(surface, labels, flat, plane, found == NONE)] = kind + KINDS * number * (kind == WALL)
+        found[_points_of_plane(surface, labels, flat, plane, found == NONE)] = kind + KINDS * number * (kind == WALL)
     return found
 
 
 def kind_of(codes: NDArray[np.int8]) -> NDArray[np.int8]:
-    """NONE, FLOOR, WALL or CEILING of each code."""
+    """The kind (NONE, FLOOR, WALL or CEILING) of each code."""
     return codes % KINDS
 
 
 def planes_of(surface: Surface, flat: Level) -> tuple[NDArray[np.bool_], list[tuple[int, Plane]]]:
-    """Terrain `[M]` (none where the ground is a floor), and the planes of floor, walls and ceiling with their kinds."""
+    """Points of terrain `[M]` (none where the ground is a flat floor), and the planes with their kinds."""
     ground = ground_of(surface, flat)
     planes: list[tuple[int, Plane]] = []
     terrain = np.zeros(len(surface), bool)
@@ -63,11 +63,11 @@ def planes_of(surface: Surface, flat: Level) -> tuple[NDArray[np.bool_], list[tu
     return terrain, [*planes, (CEILING, top)] if top is not None else planes
 
 
-def pieces_of(surface: Surface, labels: NDArray[np.int32], flat: Level, plane: Plane) -> Pieces | None:
-    """The superpoints near a plane, with a first guess of those that carry its paint: the broadest superpoint's
-    colour, and colours spread all over it. None if there are none.
+def superpoints_near(surface: Surface, labels: NDArray[np.int32], flat: Level, plane: Plane) -> PlaneSuperpoints | None:
+    """The superpoints near a plane, with a first guess of those that belong to it; None if none is near.
 
-    Walls are sampled more coarsely than what hangs on them, so breadth is counted in cells of the plane, not in points.
+    The first guess is the colour of the broadest superpoint and all colours that extend over most of the plane. Walls
+    are sampled more coarsely than what hangs on them, so breadth is counted in grid cells, not in points.
     """
     count = int(labels.max()) + 1
     near = np.flatnonzero(plane.near)
@@ -92,29 +92,29 @@ def pieces_of(surface: Surface, labels: NDArray[np.int32], flat: Level, plane: P
             continue
         alike = member & (np.linalg.norm((lab - lab[piece]) * [LIGHTNESS, 1, 1], axis=1) < SAME_COLOR)
         reach = np.ptp(np.quantile(along[alike[own]], [0.02, 0.98], axis=0), axis=0)
-        if piece == main or (reach > SPREAD * span).all():
+        if piece == main or (reach > PATTERN_EXTENT * span).all():
             kept |= alike
         elif breadth[piece] < 0.01 * breadth.sum():
             break
     band = abs(float(middle[main])) + max(6 * spread, 1.5 * tight)
     facing = np.abs(flat.normals @ plane.normal)
-    return Pieces(near, labels, cell, off, along, facing, kept, band, abs(float(plane.normal[2])) < 0.5)
+    return PlaneSuperpoints(near, labels, cell, off, along, facing, kept, band, abs(float(plane.normal[2])) < 0.5)
 
 
-def _painted(
+def _points_of_plane(
     surface: Surface, labels: NDArray[np.int32], flat: Level, plane: Plane, free: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
-    """Points of a plane that are the plane itself."""
+    """The unlabelled points `[M]` that belong to a plane."""
     within = np.zeros(len(surface), bool)
-    pieces = pieces_of(surface, labels, flat, plane)
+    pieces = superpoints_near(surface, labels, flat, plane)
     if pieces is None:
         return within
     within[pieces.near[np.abs(pieces.off) < pieces.band]] = True
-    return painted(surface, pieces)[labels] & free & within
+    return plane_superpoints(surface, pieces)[labels] & free & within
 
 
 def _plane_cells(along: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Cell `[M]` in 0..GRID² of each point's place in the plane."""
+    """Grid cell `[M]` in 0..GRID² of each point in the plane."""
     low, high = along.min(axis=0), along.max(axis=0)
     index = ((along - low) / (high - low + 1e-9) * GRID).astype(np.int64).clip(0, GRID - 1)
     cell: NDArray[np.int64] = index[:, 0] * GRID + index[:, 1]
@@ -122,8 +122,10 @@ def _plane_cells(along: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def _tilt(off: NDArray[np.float64], along: NDArray[np.float64], cell: NDArray[np.int64]) -> NDArray[np.float64]:
-    """The plane's true distance at each point: a trimmed linear fit to the cells' medians, so that dense things on a
-    sparse wall do not draw it towards them."""
+    """Correction of the distance at each point `[M]`: a trimmed linear fit to the medians of the cells.
+
+    Medians of cells keep densely sampled objects on a sparsely sampled wall from pulling the fit towards them.
+    """
     order = np.lexsort((off, cell))
     starts = np.flatnonzero(np.r_[True, np.diff(cell[order]) > 0])
     middle = order[starts + np.diff(np.r_[starts, len(order)]) // 2]
@@ -151,8 +153,11 @@ def _medians(off: NDArray[np.float64], own: NDArray[np.int32], count: int) -> ND
 
 
 def _broadest_level(middle: NDArray[np.float64], breadth: NDArray[np.int64], tight: float) -> int:
-    """The broadest piece of the level that holds most: one plank of a floor is narrower than the rug on it."""
-    candidates = [c for c in np.argsort(-breadth, kind="stable")[:LEVELS] if breadth[c] > 0]
+    """The broadest superpoint at the distance from the plane at which most cells lie.
+
+    The broadest superpoint alone does not decide: one plank of a floor is narrower than the rug on it.
+    """
+    candidates = [c for c in np.argsort(-breadth, kind="stable")[:MAX_LEVELS] if breadth[c] > 0]
     support = [int(breadth[np.abs(middle - middle[c]) < tight].sum()) for c in candidates]
     best = middle[candidates[int(np.argmax(support))]]
     return int(np.argmax(np.where(np.abs(middle - best) < tight, breadth, -1)))

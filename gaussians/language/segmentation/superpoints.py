@@ -1,7 +1,6 @@
-"""Over-segmentation: surface points to a few hundred superpoints, and the links between touching points.
+"""Over-segmentation of the surface points into a few hundred superpoints, and the links between touching points.
 
-The greedy graph merge of Felzenszwalb & Huttenlocher (IJCV 2004) over nearest neighbours in 3D. Knows geometry and
-colour only.
+The greedy graph merge of Felzenszwalb & Huttenlocher (IJCV 2004) over nearest neighbours in 3D, by geometry and colour.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ class Links:
 
     Attributes:
         pairs: `[E, 2]` int32 indices of points.
-        weight: `[E]` float32, how unlike the two ends are, in noise units.
+        weight: `[E]` float32, dissimilarity of the two points, in noise units.
     """
 
     pairs: NDArray[np.int32]
@@ -37,7 +36,7 @@ class Links:
 
 
 def links_of(surface: Surface) -> Links:
-    """Neighbour links short enough to be contact, and how unlike their ends are."""
+    """Links between neighbours close enough to touch, weighted by dissimilarity of colour and normal."""
     m, k = surface.neighbours.shape
     first = np.repeat(np.arange(m, dtype=np.int32), k)
     second = surface.neighbours.ravel()
@@ -62,14 +61,19 @@ def _median(values: NDArray[np.floating]) -> float:
 
 def superpoints(surface: Surface, links: Links, scale: float = SCALE) -> NDArray[np.int32]:
     """Superpoint of each surface point `[M]`, numbered from 0."""
-    labels = merged(len(surface), links.pairs, links.weight, scale, MIN_POINTS)
+    labels = merge_regions(len(surface), links.pairs, links.weight, scale, MIN_POINTS)
     return np.unique(labels, return_inverse=True)[1].astype(np.int32)
 
 
-def merged(
+def merge_regions(
     count: int, pairs: NDArray[np.integer], weight: NDArray[np.floating], scale: float, least: int
 ) -> NDArray[np.int32]:
-    """One of its members for each region of `count` points `[count]`, merged over weighted pairs `[E, 2]`."""
+    """Merge `count` points over weighted pairs `[E, 2]`; each point's region `[count]`, named by one of its points.
+
+    Args:
+        scale: k of the paper.
+        least: regions of fewer points are joined to the neighbour they differ least from.
+    """
     order = np.argsort(weight, kind="stable")
     edges, sorted_weight = pairs[order].astype(np.int32), weight[order].astype(np.float32)
     labels: NDArray[np.int32] = _merge(count, edges, sorted_weight, np.float32(scale), least)
@@ -88,7 +92,7 @@ def touching(labels: NDArray[np.int32], links: Links) -> dict[int, set[int]]:
 
 @njit(cache=True, nogil=True)
 def _has_reverse(neighbours: NDArray[np.int32]) -> NDArray[np.bool_]:  # pragma: no cover - compiled
-    """`[M, K]`: whether the neighbour also counts this point among its own."""
+    """Whether each neighbour `[M, K]` has this point among its own neighbours."""
     m, k = neighbours.shape
     found = np.zeros((m, k), np.bool_)
     for i in range(m):
@@ -113,7 +117,7 @@ def _root(parent: NDArray[np.int32], i: int) -> int:  # pragma: no cover - compi
 def _merge(
     count: int, edges: NDArray[np.int32], weight: NDArray[np.float32], scale: np.float32, least: int
 ) -> NDArray[np.int32]:  # pragma: no cover - compiled
-    """Union over edges sorted by weight, then small regions into the neighbour they differ least from."""
+    """Union-find over edges sorted by weight, then small regions are joined to the neighbour they differ least from."""
     parent = np.arange(count).astype(np.int32)
     size = np.ones(count, np.int32)
     limit = np.full(count, scale, np.float32)  # internal difference + scale / size

@@ -1,7 +1,4 @@
-"""The visible skin of a cloud as points with normals, colours and neighbours: what segmentation works on.
-
-Knows Gaussians and geometry. Refuses to know words, encoders and views.
-"""
+"""Surface points of a cloud, with normals, colours and neighbours: the input of the segmentation."""
 
 from __future__ import annotations
 
@@ -20,16 +17,16 @@ from ...rotations import to_matrix
 F32 = NDArray[np.float32]
 
 NEIGHBOURS = 10
-MIN_OPACITY = 0.08  # below this a Gaussian adds haze, not surface
-DENSE = 4.0  # spacings within which three neighbours make a surface of any splats
-OVERLAP = 2.0  # standard deviations within which they must lie elsewhere
-PRUNINGS = 3  # floaters keep each other company: without some, others stand alone
+MIN_OPACITY = 0.08  # Gaussians below this are not surface points
+DENSE = 4.0  # spacings within which three neighbours must lie for a point of any size to be kept
+OVERLAP = 2.0  # own standard deviations within which they must lie otherwise
+PRUNINGS = 3  # passes: floaters may be near each other, so removing some isolates more
 MAX_POINTS = 220_000  # more points cost time and add nothing to objects seen at this scale
 
 
 @dataclass(frozen=True)
 class Surface:
-    """M points of the skin.
+    """M surface points.
 
     Attributes:
         rows: `[M]` int64, row of the cloud each point came from.
@@ -65,7 +62,10 @@ def base_lab(cloud: GaussianCloud) -> torch.Tensor:
 
 
 def surface_of(cloud: GaussianCloud, most: int = MAX_POINTS) -> Surface:
-    """The skin of a cloud: opaque enough, not gigantic, not isolated; at most `most` points, chosen evenly."""
+    """The surface points of a cloud: Gaussians that are opaque enough, not oversized and not isolated.
+
+    At most `most` points, taken at even steps over the rows.
+    """
     rows = _solid_rows(cloud)
     if len(rows) > most:
         rows = rows[np.linspace(0, len(rows) - 1, most).astype(np.int64)]
@@ -74,10 +74,10 @@ def surface_of(cloud: GaussianCloud, most: int = MAX_POINTS) -> Surface:
     gaps, neighbours = _nearest(points, k)
     spacing = float(np.median(gaps[:, : max(1, k // 2)])) if len(rows) else 0.0
     for _ in range(PRUNINGS):
-        kept = _among_others(gaps, cloud.scales[rows].amax(dim=1).numpy(), spacing)
+        kept = _not_isolated(gaps, cloud.scales[rows].amax(dim=1).numpy(), spacing)
         if kept.all():
             break
-        rows, points = rows[kept], points[kept]  # drop floaters and ask for neighbours again among the rest
+        rows, points = rows[kept], points[kept]  # drop floaters and search the neighbours again
         gaps, neighbours = _nearest(points, k)
     part = cloud[torch.from_numpy(rows)]
     raw_lab = base_lab(part).numpy()
@@ -98,8 +98,8 @@ def _solid_rows(cloud: GaussianCloud) -> NDArray[np.int64]:
     return solid.nonzero().squeeze(1).numpy()
 
 
-def _among_others(gaps: F32, reach: F32, spacing: float) -> NDArray[np.bool_]:
-    """`[M]` points that others lie close to: as on most surfaces, or, on a coarse one, close against their own size.
+def _not_isolated(gaps: F32, reach: F32, spacing: float) -> NDArray[np.bool_]:
+    """Whether each point `[M]` has close neighbours: close for the scene, or, on a coarse surface, for its own size.
 
     Splats of a surface overlap; floaters do not.
 
@@ -131,10 +131,10 @@ def _footprint(cloud: GaussianCloud) -> F32:
 
 
 def _smoothed_normals(cloud: GaussianCloud, neighbours: NDArray[np.int32]) -> tuple[F32, F32]:
-    """Normal and flatness by averaging `n n^T` of the thin axes over the neighbours with the points' own scatter.
+    """Normals `[M, 3]` and flatness `[M]`, from the mean `n n^T` of the neighbours' thin axes and the points' scatter.
 
-    A trained Gaussian's thin axis is noisy; neighbours' positions are noisy across the surface but not along it.
-    Their sum is right where either is.
+    The thin axis of a trained Gaussian is noisy; positions of neighbours are noisy across the surface but not along it.
+    The sum is correct where one of the two is.
     """
     axes = to_matrix(cloud.quats)  # [M, 3, 3], columns are the local axes in the world
     thin = cloud.scales.argmin(dim=1)
@@ -153,7 +153,7 @@ def _smoothed_normals(cloud: GaussianCloud, neighbours: NDArray[np.int32]) -> tu
 
 
 def _smoothed_lab(lab: F32, neighbours: NDArray[np.int32]) -> F32:
-    """Each point's colour pulled to those neighbours that resemble it: noise goes, edges stay (a bilateral step)."""
+    """Colours `[M, 3]` after one bilateral filter step over the neighbours, which reduces noise and keeps edges."""
     near = lab[neighbours]  # [M, K, 3]
     distance = ((near - lab[:, None]) ** 2).sum(2)
     weight = np.exp(-distance / (2 * 12.0**2))

@@ -269,7 +269,7 @@ def test_coarse_masks_get_the_borders_of_the_segments(scene: Any) -> None:
 
 
 def test_what_no_mask_claims_stays_as_it_was(scene: Any) -> None:
-    from scenewright.gaussians.language.segmentation.segment import Thing
+    from scenewright.gaussians.language.segmentation.segment import Segment
 
     cloud, truth = scene
     views = [
@@ -280,10 +280,10 @@ def test_what_no_mask_claims_stays_as_it_was(scene: Any) -> None:
     surface = surface_of(cloud)
     labels = (truth[surface.rows] + 1).astype(np.int32)  # segments that know the truth: floor, then the four things
     before = [
-        Thing((0,), "structure", label="floor"),
-        Thing((2, 3), "object"),
-        Thing((4,), "object"),
-        Thing((1,), "object"),
+        Segment((0,), "structure", label="floor"),
+        Segment((2, 3), "object"),
+        Segment((4,), "object"),
+        Segment((1,), "object"),
     ]
     tracks = associate(lift(cloud, views))
     vector = np.ones(3, np.float32)
@@ -308,7 +308,7 @@ def test_what_no_mask_claims_stays_as_it_was(scene: Any) -> None:
 
 @pytest.mark.parametrize(("name", "kept"), [("table", True), ("", False), ("floor", False)])
 def test_what_segmentation_takes_for_floor_is_given_up_only_to_a_name(scene: Any, name: str, kept: bool) -> None:
-    from scenewright.gaussians.language.segmentation.segment import Thing
+    from scenewright.gaussians.language.segmentation.segment import Segment
 
     cloud, truth = scene
     views = [
@@ -317,7 +317,7 @@ def test_what_segmentation_takes_for_floor_is_given_up_only_to_a_name(scene: Any
     ]
     surface = surface_of(cloud)
     labels = (truth[surface.rows] + 1).astype(np.int32)
-    before = [Thing((0, 2), "structure", label="floor"), Thing((1,), "object"), Thing((3,), "object")]
+    before = [Segment((0, 2), "structure", label="floor"), Segment((1,), "object"), Segment((3,), "object")]
     tracks = associate(lift(cloud, views))
     _, after, owner = claimed(surface, labels, before, tracks, [np.ones(3, np.float32)] * len(tracks.tracks))
     assert len(tracks.tracks) == 1 and any(t.vector is not None for t in after) == kept

@@ -166,9 +166,8 @@ def test_groups_that_a_file_brought_are_not_looked_at(room: Room, embedded: Scen
 def test_progress_is_told_in_order(world: Callable[[int], object]) -> None:
     told: list[tuple[str, float]] = []
     cloud = world(0).box("crate", (0, 0, 0), (1, 1, 1), (0.8, 0.1, 0.1), 0.05).cloud()  # type: ignore[attr-defined]
-    embed(
-        Scene(cloud, Frame(up_source="given")), ENCODER, lambda stage, share: told.append((stage, share)), portraits=1
-    )
+    scene = Scene(cloud, Frame(up_source="given"))
+    embed(scene, ENCODER, lambda stage, share: told.append((stage, share)), views_per_candidate=1)
     stages = list(dict.fromkeys(stage for stage, _ in told))
     assert stages[:3] == ["surface", "views", "segments"] and stages[-1] == "table"
     assert all(0 <= share <= 1 for _, share in told)
@@ -176,7 +175,7 @@ def test_progress_is_told_in_order(world: Callable[[int], object]) -> None:
 
 def test_a_crate_alone_is_one_object(world: Callable[[int], object]) -> None:
     cloud = world(0).box("crate", (0, 0, 0), (1, 1, 1), (0.8, 0.1, 0.1), 0.05).cloud()  # type: ignore[attr-defined]
-    scene = embed(Scene(cloud, Frame(up_source="given")), ENCODER, portraits=1)
+    scene = embed(Scene(cloud, Frame(up_source="given")), ENCODER, views_per_candidate=1)
     assert scene.language is not None
     largest = max(scene.language.objects(), key=lambda g: g.count)
     assert largest.count > 0.5 * len(cloud)
@@ -192,7 +191,7 @@ def test_degenerate_clouds_are_embedded_without_objects_rather_than_refused(coun
         torch.zeros(count, 1, 3),
     )  # fmt: skip
     for frame in (Frame(), Frame(up_source="given", floor=0.0)):
-        scene = embed(Scene(cloud, frame), ENCODER, portraits=1)
+        scene = embed(Scene(cloud, frame), ENCODER, views_per_candidate=1)
         assert scene.language is not None and len(scene.cloud) == count
         assert all(g.count == rows_of(scene, g).sum() for g in scene.language.groups)
 
@@ -203,7 +202,7 @@ def test_haze_alone_is_embedded_without_objects() -> None:
         means, torch.tensor([[1.0, 0, 0, 0]]).repeat(80, 1), torch.full((80, 3), 0.01), torch.full((80,), 0.02),
         torch.zeros(80, 1, 3),
     )  # fmt: skip
-    scene = embed(Scene(cloud), ENCODER, portraits=1)
+    scene = embed(Scene(cloud), ENCODER, views_per_candidate=1)
     assert scene.language is not None and (scene.cloud.group == -1).all()
 
 
@@ -216,10 +215,10 @@ def test_what_was_estimated_is_noted(world: Callable[[int], object]) -> None:
     made = world(0).sheet("floor", (-1, -1, 0), (2, 0, 0), (0, 2, 0), (0.5, 0.4, 0.3), 0.06)  # type: ignore[attr-defined]
     cloud = made.box("crate", (-0.3, -0.3, 0.02), (0.3, 0.3, 0.6), (0.8, 0.1, 0.1), 0.05).cloud()
     camera = Camera.look_at((0, -3, 2), (0, 0, 0), (0, 0, 1), 64, 64)
-    scene = embed(Scene(cloud, cameras=(camera,)), ENCODER, portraits=1)
+    scene = embed(Scene(cloud, cameras=(camera,)), ENCODER, views_per_candidate=1)
     assert scene.language is not None and scene.frame.up_source == "estimated"
     assert any("up was estimated" in note for note in scene.language.notes)
-    known = embed(Scene(cloud, replace(scene.frame, up_source="given")), ENCODER, portraits=1)
+    known = embed(Scene(cloud, replace(scene.frame, up_source="given")), ENCODER, views_per_candidate=1)
     assert known.language is not None
     assert not any("up was estimated" in note for note in known.language.notes)
 

@@ -1,4 +1,4 @@
-"""Pictures of things, alone and on their background, and that no picture is ever encoded twice."""
+"""Renders of groups, alone and on their background; no image is encoded twice."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from scenewright.gaussians.language.encoders.vocabulary import Vocabulary
 from scenewright.gaussians.language.field.embed import embed
 from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.language.query.resolve import resolve
-from scenewright.gaussians.language.segmentation.group_renders import cameras_around, mean_vectors, portraits
+from scenewright.gaussians.language.segmentation.group_renders import cameras_around, mean_vectors, render_group
 from scenewright.gaussians.render import render
 from scenewright.gaussians.scene import Frame, Scene
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 Pictures = NDArray[np.uint8]
 _FRAME = Frame((0.0, 0.0, 1.0), 0.0)
-_EYE_SIDE = np.array([0.0, -4.0, 0.5])  # where the middle of the scene lies, hence the side portraits are taken from
+_EYE_SIDE = np.array([0.0, -4.0, 0.5])  # middle of the scene: groups are rendered from this side
 
 
 class Counting:
@@ -153,8 +153,8 @@ def test_a_thing_is_shown_alone_and_on_its_background_but_never_behind_what_hide
     room = _room(world)
     box = room[: int((room.means[:, 1].abs() <= 0.5).sum())]
     assert float(box.means[:, 1].max()) < 0.5  # the box is the first sheets
-    alone = portraits(box, _FRAME, _EYE_SIDE, 48, 3)
-    both = portraits(box, _FRAME, _EYE_SIDE, 48, 3, room)
+    alone = render_group(box, _FRAME, _EYE_SIDE, 48, 3)
+    both = render_group(box, _FRAME, _EYE_SIDE, 48, 3, room)
     assert len(alone) == 3 and len(both) == 6
     for own, first, second in zip(alone, both[0::2], both[1::2], strict=True):
         np.testing.assert_array_equal(own, first)  # the scene around does not change the picture alone

@@ -1,4 +1,4 @@
-"""The best cut of a merge tree against brute force; portraits shared by look-alikes; parts as patches of one colour."""
+"""The best cut of a merge tree against brute force; nodes that share a render; parts as patches of one colour."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from scenewright.gaussians.language.segmentation.grouping import (
-    CRUMB_SHARE,
-    GEOMETRY,
-    HOPELESS,
+    CERTAIN,
+    GEOMETRY_WEIGHT,
+    MINOR_SHARE,
     PATCH_COLOR,
     PATCH_POINTS,
+    RULED_OUT,
     SAME_SHARE,
-    SETTLED,
-    alike,
     best_cut,
-    in_question,
+    nearly_same_ancestor,
     parts_of,
+    undecided_nodes,
 )
 from scenewright.gaussians.language.segmentation.regions import Node
 
@@ -59,29 +59,29 @@ def cuts(nodes: Sequence[Node], roots: list[int]) -> Iterator[list[int]]:
 
 
 def stays_whole(nodes: Sequence[Node], i: int, points: NDArray[np.int64], evidence: dict[int, float]) -> bool:
-    """The rule, straight from its words: own evidence and geometry against the mean evidence of the best below."""
+    """The rule of `best_cut`: own evidence and geometry against the mean evidence of the best cut below."""
     if not nodes[i].children:
         return True
-    a = min(max(weakest(nodes, i, points, own=True), 1e-4), 1 - 1e-4)  # a certain merge is still only nearly certain
-    if a >= SETTLED or a < HOPELESS:
-        return a >= SETTLED
+    a = min(max(weakest(nodes, i, points, own=True), 1e-4), 1 - 1e-4)  # clipped as in `weakest_merges`
+    if a >= CERTAIN or a < RULED_OUT:
+        return a >= CERTAIN
     below = [j for c in nodes[i].children for j in best_below(nodes, c, points, evidence)]
     mean = sum(float(points[j]) * evidence.get(j, 0.0) for j in below) / float(points[i])
-    return evidence.get(i, 0.0) + GEOMETRY * math.log(a / (1 - a)) >= mean - 1e-12
+    return evidence.get(i, 0.0) + GEOMETRY_WEIGHT * math.log(a / (1 - a)) >= mean - 1e-12
 
 
 def weakest(nodes: Sequence[Node], i: int, points: NDArray[np.int64], own: bool) -> float:
-    """Smallest affinity inside a node; of the merge of a crumb only if it is the node's own."""
+    """Smallest affinity inside a node; a merge with a minor child counts only if it is the node's own."""
     children = nodes[i].children
     if not children:
         return 1.0
-    crumb = min(points[c] for c in children) < CRUMB_SHARE * points[i]
+    minor = min(points[c] for c in children) < MINOR_SHARE * points[i]
     below = min(weakest(nodes, c, points, own=False) for c in children)
-    return below if crumb and not own else min(below, nodes[i].affinity)
+    return below if minor and not own else min(below, nodes[i].affinity)
 
 
 def best_below(nodes: Sequence[Node], i: int, points: NDArray[np.int64], evidence: dict[int, float]) -> list[int]:
-    """Slow reference: the best cut of the tree under one node, by asking again at every level."""
+    """Slow reference: the best cut of the tree under one node, computed anew at every level."""
     if stays_whole(nodes, i, points, evidence):
         return [i]
     return [j for c in nodes[i].children for j in best_below(nodes, c, points, evidence)]
@@ -106,11 +106,11 @@ def test_the_best_cut_follows_its_rule_at_every_node(
 
 
 @given(forests(), sizes, odds)
-def test_looks_that_are_not_asked_for_could_not_have_changed_the_cut(
+def test_evidence_of_decided_nodes_does_not_change_the_cut(
     nodes: list[Node], weights: list[int], evidence: dict[int, float]
 ) -> None:
     points = points_of(nodes, weights)
-    asked = set(in_question(nodes, points))
+    asked = set(undecided_nodes(nodes, points))
     assert best_cut(nodes, points, {i: e for i, e in evidence.items() if i in asked}) == best_cut(
         nodes, points, evidence
     )
@@ -143,12 +143,12 @@ def test_without_evidence_geometry_decides_and_strong_evidence_overrules_it() ->
     points = np.array([50, 50, 100])
     assert best_cut(nodes, points, {}) == [2]
     assert best_cut(nodes, points, {2: -6.0}) == [0, 1]
-    assert best_cut(nodes, points, {0: 6.0, 1: 6.0, 2: 6.0}) == [2]  # two likely halves do not outvote a likely whole
+    assert best_cut(nodes, points, {0: 6.0, 1: 6.0, 2: 6.0}) == [2]  # two halves do not defeat a probable whole
     assert best_cut(nodes, points, {0: 6.0, 1: 6.0}) == [0, 1]
     assert best_cut([], np.zeros(0, np.int64), {}) == []
 
 
-def test_a_crumb_does_not_make_a_wrong_merge_right() -> None:
+def test_a_minor_child_does_not_make_a_wrong_merge_right() -> None:
     nodes = [Node((i,), (), 1.0) for i in range(3)]
     nodes += [Node((0, 1), (0, 1), 0.02), Node((0, 1, 2), (3, 2), 0.9)]
     points = np.array([500, 500, 10, 1000, 1010])
@@ -156,24 +156,24 @@ def test_a_crumb_does_not_make_a_wrong_merge_right() -> None:
 
 
 @given(forests(), st.lists(st.integers(1, 60), min_size=8, max_size=8))
-def test_alike_points_upwards_to_much_the_same_points(nodes: list[Node], weights: list[int]) -> None:
+def test_the_nearly_same_ancestor_holds_nearly_the_same_points(nodes: list[Node], weights: list[int]) -> None:
     points = points_of(nodes, weights)
-    same = alike(nodes, points)
+    same = nearly_same_ancestor(nodes, points)
     parent = {c: i for i, n in enumerate(nodes) for c in n.children}
     for i, target in enumerate(same.tolist()):
         above = {i}
         while (last := max(above)) in parent:
             above.add(parent[last])
         assert target in above
-        assert same[target] == target  # whose portrait is taken answers for itself
+        assert same[target] == target  # a node that is rendered represents itself
         assert points[i] >= SAME_SHARE * points[target]
 
 
-def test_alike_follows_a_chain_of_small_additions_no_farther_than_the_share() -> None:
+def test_a_chain_of_small_additions_is_followed_no_farther_than_the_share() -> None:
     nodes = [Node((0,), (), 1.0), Node((1,), (), 1.0), Node((0, 1), (0, 1), 0.5), Node((2,), (), 1.0)]
     nodes.append(Node((0, 1, 2), (2, 3), 0.5))
-    assert alike(nodes, np.array([96, 4, 100, 2, 102])).tolist() == [4, 1, 4, 3, 4]
-    assert alike(nodes, np.array([94, 6, 100, 5, 105])).tolist() == [0, 1, 4, 3, 4]  # 94 of 105 is too little
+    assert nearly_same_ancestor(nodes, np.array([96, 4, 100, 2, 102])).tolist() == [4, 1, 4, 3, 4]
+    assert nearly_same_ancestor(nodes, np.array([94, 6, 100, 5, 105])).tolist() == [0, 1, 4, 3, 4]  # below the share
 
 
 @st.composite
@@ -216,7 +216,7 @@ def test_parts_keep_every_member_once_and_are_connected(
 
 
 @given(patchworks())
-def test_a_crumb_remains_only_where_it_touches_nothing(
+def test_a_small_patch_remains_only_where_it_touches_nothing(
     world: tuple[list[int], dict[int, set[int]], np.ndarray, np.ndarray],
 ) -> None:
     members, near, lab, size = world

@@ -1,4 +1,4 @@
-"""Up and floor of rooms that stand askew, against the turn that was applied."""
+"""Estimated up and floor of rotated rooms, against the rotation that was applied."""
 
 from __future__ import annotations
 

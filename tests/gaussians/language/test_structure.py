@@ -1,4 +1,4 @@
-"""Floors, walls and ceilings of hand-made rooms, and the things that lie in their planes and stay things."""
+"""Floors, walls and ceilings of hand-made rooms, and objects that lie in their planes and remain objects."""
 
 from __future__ import annotations
 

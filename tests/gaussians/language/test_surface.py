@@ -1,4 +1,4 @@
-"""The skin of a cloud and its superpoints, on clouds whose planes are known; nothing trips over degenerate clouds."""
+"""Surface points and superpoints of clouds whose planes are known, and of degenerate clouds."""
 
 from __future__ import annotations
 

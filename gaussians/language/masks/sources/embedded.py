@@ -19,7 +19,7 @@ from ....errors import UserError
 from ....render import render
 from ....scene import Scene
 from ....viewpoints.coverage import choose_views, fit_camera
-from ...segmentation.superpoints import COLOR_UNIT, LIGHTNESS, NORMAL_UNIT, merged
+from ...segmentation.superpoints import COLOR_UNIT, LIGHTNESS, NORMAL_UNIT, merge_regions
 from ..view import NONE, ViewMasks
 
 F32 = NDArray[np.float32]
@@ -75,7 +75,7 @@ def of_view(seen: Render, camera: Camera) -> ViewMasks:
         weight = np.linalg.norm(difference, axis=-1) / COLOR_UNIT + turn / NORMAL_UNIT + step / STEP
         pairs.append(np.stack([index[a][both], index[b][both]], axis=1))
         weights.append(weight[both])
-    label = merged(height * width, np.concatenate(pairs), np.concatenate(weights), SCALE, LEAST)
+    label = merge_regions(height * width, np.concatenate(pairs), np.concatenate(weights), SCALE, LEAST)
     label[~filled.ravel()] = NONE
     names, ids, size = np.unique(label, return_inverse=True, return_counts=True)
     good = (names >= 0) & (size >= LEAST)
