@@ -19,7 +19,7 @@ from ...gaussians.language.encoders import Encoder
 from ...gaussians.language.field.embed import embed
 from ...gaussians.language.field.group_table import with_table
 from ...gaussians.language.masks import ViewMasks
-from ...gaussians.language.masks.association import HELD, associate
+from ...gaussians.language.masks.association import INSIDE, associate
 from ...gaussians.language.masks.lifting import lift
 from ...gaussians.language.masks.sources.embedded import of_view
 from ...gaussians.language.segmentation.segment import Segment
@@ -65,7 +65,7 @@ def alone(case: Case, views: Sequence[ViewMasks], encoder: Encoder) -> Scene:
     tracks = associate(lift(case.scene.cloud, views))
     things = [k for k, track in enumerate(tracks.tracks) if track.parent < 0]
     share = np.asarray(tracks.share[:, things].todense())
-    held = share.max(axis=1, initial=0.0) > HELD
+    held = share.max(axis=1, initial=0.0) > INSIDE
     column = np.where(held, share.argmax(axis=1), -1) if things else np.full(len(case.ids), -1)
     rows = np.arange(len(column))
     unseen = Views((), rows, np.zeros((0, len(rows)), bool), 0.0)

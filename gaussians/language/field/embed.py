@@ -24,7 +24,7 @@ from ..encoders import Encoder
 from ..masks import Masker
 from ..masks.association import Track, Tracks, associate
 from ..masks.lifting import lift
-from ..masks.mask_assignment import UNTOLD, by_votes, claimed
+from ..masks.mask_assignment import UNSEEN, apply_tracks, track_by_votes
 from ..segmentation.group_renders import one_thread
 from ..segmentation.orient import estimate_frame
 from ..segmentation.segment import VIEWS_PER_CANDIDATE, Progress, Segment, segment
@@ -71,11 +71,11 @@ def embed(
         owner = None
         if tracks is not None:
             vectors = [_vector(t, encoder) for t in tracks.tracks]
-            labels, things, owner = claimed(surface, labels, things, tracks, vectors)
+            labels, things, owner = apply_tracks(surface, labels, things, tracks, vectors)
         group = _thing_of_superpoint(things, int(labels.max(initial=-1)) + 1)[labels]
         column = _assign(scene.cloud, surface, group)
         if tracks is not None and owner is not None:
-            column = _by_own_votes(scene.cloud, surface, group, column, owner, by_votes(tracks))
+            column = _by_own_votes(scene.cloud, surface, group, column, owner, track_by_votes(tracks))
         progress("table", 0.0)
         on_skin = np.zeros(len(scene.cloud), bool)
         on_skin[surface.rows] = True
@@ -120,9 +120,9 @@ def _by_own_votes(
 
     Args:
         group, owner: `[P]` group and track of each surface point.
-        voted: `[N]` track of each Gaussian by its own votes, see `claims.by_votes`.
+        voted: `[N]` track of each Gaussian by its own votes, see `mask_assignment.track_by_votes`.
     """
-    column, off = column.copy(), (voted >= 0) | ((voted != UNTOLD) & (column != NO_GROUP))
+    column, off = column.copy(), (voted >= 0) | ((voted != UNSEEN) & (column != NO_GROUP))
     off[surface.rows] = False
     for k in np.unique(voted[off]).tolist():
         points, rows = np.flatnonzero(owner == k), np.flatnonzero(off & (voted == k))
@@ -136,7 +136,7 @@ def _noted(scene: Scene, tracks: Tracks) -> Scene:
     """The scene with a note of what became of the masks."""
     assert scene.language is not None
     said = f"{len(tracks.tracks)} things were found by masks"
-    said += f", {tracks.outvoted} that too few views confirm were left out" if tracks.outvoted else ""
+    said += f", {tracks.discarded} that too few views confirm were left out" if tracks.discarded else ""
     return scene.replace(language=replace(scene.language, notes=(*scene.language.notes, said)))
 
 

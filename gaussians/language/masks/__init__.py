@@ -1,6 +1,6 @@
-"""Masks of pictures behind one protocol, one file a source, chosen by one string.
+"""Sources of 2D masks behind one protocol, chosen by one string.
 
-Knows the protocol and how to find a source. Refuses to know any source's library: they are imported when asked for.
+The module of a source, and the libraries it needs, are imported when that source is loaded.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from typing import Protocol, runtime_checkable
 
 from ...errors import BackendError
 from ...scene import Scene
-from .view import NONE, ViewMasks, packed
+from .view import NONE, ViewMasks, pack_layers
 
-__all__ = ["NONE", "Masker", "ViewMasks", "load", "packed", "sources"]
+__all__ = ["NONE", "Masker", "ViewMasks", "load", "pack_layers", "sources"]
 
 Progress = Callable[[str, float], None]
 _MODULES = {"embedded": ".sources.embedded", "folder": ".sources.folder", "sam": ".sources.sam"}
@@ -22,31 +22,31 @@ _MODULES = {"embedded": ".sources.embedded", "folder": ".sources.folder", "sam":
 
 @runtime_checkable
 class Masker(Protocol):
-    """A source of masks. The same scene gives the same masks, in the same order."""
+    """A source of masks. It is deterministic: the same scene gives the same masks in the same order."""
 
     def masks(self, scene: Scene, progress: Progress = lambda stage, share: None) -> Iterator[ViewMasks]:
-        """The masks of one picture after another.
+        """Yield the masks of one image after another.
 
         Raises:
             FileError: a file of masks is missing or broken.
-            BackendError: a model is missing or failed.
+            BackendError: a model is missing or fails.
         """
         ...
 
 
 def names() -> tuple[str, ...]:
-    """Names of the sources in this package, whether or not what they need is installed."""
+    """Names of all sources, whether or not the libraries they need are installed."""
     return tuple(_MODULES)
 
 
 def load(spec: str, capture: Path | None = None) -> Masker:
-    """A source of masks by its specification.
+    """Load a source of masks by its specification.
 
     Args:
         spec: "embedded" (segments of rendered views by depth, normals and colour), "folder:PATH" (a folder of PNGs with
             `masks.json`, or of `.npz`, or a COCO results `.json`), "sam:PATH-or-NAME" (a SAM of transformers).
-        capture: the `transforms.json`, or the folder it lies in, of the photographs that the masks are of; None looks
-            in the folder above the masks, and for SAM renders the views instead of reading photographs.
+        capture: the `transforms.json` of the photographs that the masks belong to, or its folder. With None it
+            is searched in the folder of the masks and the one above, and SAM takes rendered views, not photographs.
 
     Raises:
         BackendError: unknown source, missing extra, missing or broken weights; the message says what to do.

@@ -1,11 +1,9 @@
-"""Which masks of different views are of one thing, and which Gaussians that thing owns.
+"""Associate masks across views: cluster masks of one object into a track and find the Gaussians that it contains.
 
-Two masks agree as far as they cover the same Gaussians among those that both views see; masks that agree are joined,
-the most alike first, into tracks, each with all that its views say of it. A track that few of the views which see its
-place confirm is outvoted, and so is a name that few of them give. The rate at which views confirm each other is the
-idea of MaskClustering (Yan et al., CVPR 2024); blending weights take the place of its point clouds.
-
-Knows lifted masks. Refuses to know surfaces, encoders and scenes (`claims` joins tracks with the scene's own things).
+The similarity of two masks is their intersection over union on the Gaussians that both views see. Masks are clustered
+agglomeratively, the most similar first. A track that too few of the views of its place confirm is discarded, and so is
+a label that too few of them give. The view consensus rate is that of MaskClustering (Yan et al., CVPR 2024), with
+blending weights instead of point clouds. `mask_assignment.py` combines the tracks with the segmentation.
 """
 
 from __future__ import annotations
@@ -24,34 +22,34 @@ from .lifting import Lifted
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
 
-HELD = 0.5  # share of its weight in a view, or of its views' weight in a track, that puts a Gaussian inside
-SEEN = 0.05  # pixels of blending weight below which a view does not see a Gaussian
-SHARED = 0.3  # of either mask must be seen by the other's view before the two can be compared
-ALIKE = 0.5  # intersection over union, among what both see, from which two tracks are one
-UNLIKE = 0.15  # of their intersection is lost to masks that are called, or look, differently
-WITHIN = 0.5  # of the smaller track lies in the larger: two views of different ends of one thing, if named the same
-REAL = 0.2  # share of the views that see a track's place which must have a mask there
-NAMED = 1 / 3  # share of them which must give it its name
-NESTED = 0.8  # of the smaller lies in the larger: a part, or a thing in front of another
+INSIDE = 0.5  # share of its weight in a view, or in a track's views, from which a Gaussian is inside a mask or track
+MIN_SEEN = 0.05  # pixels of blending weight from which a view sees a Gaussian
+MIN_COMMON = 0.3  # share of either mask that the other's view must see for the two to be compared
+JOIN_IOU = 0.5  # intersection over union, among the Gaussians both see, from which two tracks are joined
+DIFFERENCE_PENALTY = 0.15  # of the intersection, for masks with different labels or orthogonal vectors
+JOIN_CONTAINED = 0.5  # share of a track inside another of the same label from which they are two ends of one object
+MIN_CONSENSUS = 0.2  # share of the views that see a track's place which must have a mask of it
+MIN_LABEL_SHARE = 1 / 3  # share of those views which must give its label
+CONTAINED = 0.8  # share of a track inside a larger one from which it is a part, or an object in front of the other
 
 
 @dataclass(frozen=True)
 class Track:
-    """Masks of one thing.
+    """The masks of one object.
 
     Attributes:
         masks: indices into the lifted masks, ascending.
-        views: how many views have a mask of it.
-        watched: how many views see at least half of it.
-        label: the name that most of its masks give, weighted by their scores; "" if none is given often enough.
-        votes: every name they give with the sum of the scores, heaviest first.
+        views: number of views that have a mask of it.
+        visible_in: number of views that see at least half of it.
+        label: the label with the most votes of its masks, weighted by their scores; "" if too few views give it.
+        votes: each label that its masks give with the sum of their scores, highest first.
         vector: `[D]` unit mean of its masks' vectors, weighted by score and pixels; None if they have none.
-        parent: the track it is a part of, -1 if it is a thing of its own.
+        parent: the track it is a part of, -1 for an object.
     """
 
     masks: tuple[int, ...]
     views: int
-    watched: int
+    visible_in: int
     label: str
     votes: tuple[tuple[str, float], ...]
     vector: F32 | None
@@ -63,24 +61,24 @@ class Tracks:
     """K tracks over N Gaussians.
 
     Attributes:
-        tracks: those that hold, most masks first.
-        share: `[N, K]` sparse: of the weight that a track's views give a Gaussian, how much lies in its masks.
-        votes: `[N, K]` sparse: the scores of the masks a Gaussian lies in, each times the share of it that does.
-        seen: `[N]` float32, blending weight of the Gaussian over all views: of what none shows masks say nothing.
-        outvoted: how many tracks were dropped.
+        tracks: the tracks kept, most masks first.
+        share: `[N, K]` sparse: share of a Gaussian's blending weight in a track's views that lies in its masks.
+        votes: `[N, K]` sparse: sum of the scores of the masks a Gaussian lies in, each times its share in the mask.
+        seen: `[N]` float32, blending weight of the Gaussian over all views; where it is 0, masks carry no information.
+        discarded: number of tracks that too few views confirm.
     """
 
     tracks: tuple[Track, ...]
     share: csr_matrix
     votes: csr_matrix
     seen: F32
-    outvoted: int
+    discarded: int
 
 
 def associate(lifted: Lifted) -> Tracks:
-    """Tracks of the lifted masks, without those that are outvoted. Cost grows with the square of the masks."""
+    """The tracks of the lifted masks that enough views confirm. The cost is quadratic in the number of masks."""
     evidence = _Evidence(lifted)
-    joined = _join_named(lifted, evidence, _join_alike(evidence.overlap, evidence.union, evidence.likeness))
+    joined = _join_named(lifted, evidence, _join_similar(evidence.overlap, evidence.union, evidence.likeness))
     least = min(2, len(evidence.views))
     kept: list[Track] = []
     found: list[tuple[NDArray[np.int64], F64, F64]] = []
@@ -89,10 +87,10 @@ def associate(lifted: Lifted) -> Tracks:
         if views < least:
             continue
         rows, share, vote = evidence.membership(masks)
-        held = rows[share > HELD]
-        watched = max(views, evidence.watched(held))
-        if views >= REAL * watched and len(held):
-            kept.append(_track(lifted, masks, watched, evidence.weight))
+        inside = rows[share > INSIDE]
+        visible_in = max(views, evidence.visible_in(inside))
+        if views >= MIN_CONSENSUS * visible_in and len(inside):
+            kept.append(_track(lifted, masks, visible_in, evidence.weight))
             found.append((rows, share, vote))
     count = lifted.weights.shape[0]
     whole = _table([(rows, share) for rows, share, _ in found], count)
@@ -102,14 +100,14 @@ def associate(lifted: Lifted) -> Tracks:
 
 
 class _Evidence:
-    """What pairs of masks say of each other.
+    """Pairwise comparison of masks.
 
     Attributes:
-        mass: `[N]` mean blending weight in the views that see a Gaussian: how large it looks.
+        mass: `[N]` mean blending weight in the views that see a Gaussian: its size in the image.
         weight: `[M]` blending weight of each mask.
-        overlap, union: `[M, M]` float32 mass among what both masks' views see; zero where they cannot be compared.
-        likeness: `[M, M]` 1 where nothing speaks against one thing, less where name or vector does.
-        left: `[M, M]` mass of a mask that another's view sees, zero where they cannot be compared.
+        overlap, union: `[M, M]` float32 mass among the Gaussians both masks' views see; zero where not comparable.
+        likeness: `[M, M]` 1 where labels and vectors agree or are missing, less where they differ.
+        left: `[M, M]` mass of a mask that another's view sees; zero where not comparable.
     """
 
     def __init__(self, lifted: Lifted) -> None:
@@ -120,12 +118,12 @@ class _Evidence:
         self._masks = np.repeat(np.arange(len(lifted.labels)), np.diff(masks.indptr))
         seen = _seen_at(lifted, self._rows, lifted.view[self._masks])
         self._shares = np.minimum(self._weights / np.maximum(seen, 1e-12), 1.0)
-        self._visible = (lifted.seen > SEEN).astype(np.float32).tocsr()
+        self._visible = (lifted.seen > MIN_SEEN).astype(np.float32).tocsr()
         often = np.asarray(self._visible.sum(axis=1)).ravel()
         whole = np.asarray(lifted.seen.multiply(self._visible).sum(axis=1)).ravel()
         self.mass: F32 = (whole / np.maximum(often, 1)).astype(np.float32)
         self.weight: F64 = np.bincount(self._masks, self._weights, len(lifted.labels)).astype(np.float64)
-        held = (self._shares >= HELD) & (seen > SEEN)
+        held = (self._shares >= INSIDE) & (seen > MIN_SEEN)
         inside = csr_matrix(
             (np.ones(int(held.sum()), np.float32), (self._rows[held], self._masks[held])), shape=lifted.weights.shape
         )
@@ -133,7 +131,7 @@ class _Evidence:
         overlap: F32 = (inside.T @ weighed).toarray()
         left: F32 = (weighed.T @ self._visible).toarray()[:, lifted.view]
         size = np.diag(overlap)
-        comparable = (left >= SHARED * size[:, None]) | (SHARED * size[None, :] <= left.T)
+        comparable = (left >= MIN_COMMON * size[:, None]) | (MIN_COMMON * size[None, :] <= left.T)
         comparable &= (size[:, None] > 0) & (size[None, :] > 0)
         np.fill_diagonal(comparable, False)
         self.left = np.where(comparable, left, 0)
@@ -147,10 +145,10 @@ class _Evidence:
         unlike = ((names[:, None] != names[None, :]) & known[:, None] & known[None, :]).astype(np.float32)
         if self.lifted.vectors is not None:
             unlike = np.maximum(unlike, np.clip(1 - self.lifted.vectors @ self.lifted.vectors.T, 0, 1))
-        return 1 - UNLIKE * unlike
+        return 1 - DIFFERENCE_PENALTY * unlike
 
     def membership(self, masks: Sequence[int]) -> tuple[NDArray[np.int64], F64, F64]:
-        """The rows that any mask of a track touches, ascending, and their share and votes, `[R]` each."""
+        """The Gaussians in any mask of a track, ascending, with their share and votes, `[R]` each."""
         entries = np.concatenate([np.arange(self._starts[m], self._starts[m + 1]) for m in masks])
         rows, at = np.unique(self._rows[entries], return_inverse=True)
         within = np.bincount(at, weights=self._weights[entries], minlength=len(rows))
@@ -159,17 +157,17 @@ class _Evidence:
         looked = np.zeros(self.lifted.seen.shape[1])
         looked[self.lifted.view[list(masks)]] = 1
         whole = np.asarray(self.lifted.seen[rows] @ looked).ravel()
-        share: F64 = np.where(whole > SEEN, np.minimum(within / np.maximum(whole, 1e-12), 1), 0.0)
+        share: F64 = np.where(whole > MIN_SEEN, np.minimum(within / np.maximum(whole, 1e-12), 1), 0.0)
         return rows.astype(np.int64), share, votes
 
-    def watched(self, held: NDArray[np.int64]) -> int:
-        """How many views see at least half of what a track holds."""
-        seen = np.asarray(self._visible[held].T @ self.mass[held]).ravel()
-        return int((seen > 0.5 * self.mass[held].sum()).sum())
+    def visible_in(self, rows: NDArray[np.int64]) -> int:
+        """Number of views that see at least half of some Gaussians, by mass."""
+        seen = np.asarray(self._visible[rows].T @ self.mass[rows]).ravel()
+        return int((seen > 0.5 * self.mass[rows].sum()).sum())
 
 
 def _seen_at(lifted: Lifted, rows: NDArray[np.int32], views: NDArray[np.int32]) -> F32:
-    """Weight that each of some `views [E]`, ascending, gives each of some `rows [E]`."""
+    """Blending weight `[E]` of Gaussian `rows[e]` in view `views[e]`; `views` ascend."""
     whole = lifted.seen.tocsc()
     ends = np.searchsorted(views, np.arange(whole.shape[1] + 1))
     found, column = np.zeros(len(rows), np.float32), np.zeros(whole.shape[0], np.float32)
@@ -182,7 +180,7 @@ def _seen_at(lifted: Lifted, rows: NDArray[np.int32], views: NDArray[np.int32]) 
 
 
 def _table(columns: Sequence[tuple[NDArray[np.int64], F64]], count: int) -> csr_matrix:
-    """`[count, K]` sparse from the rows and values of each column."""
+    """Sparse matrix `[count, K]` from the rows and values of each column."""
     if not columns:
         return csr_matrix((count, 0), dtype=np.float32)
     rows, values = (np.concatenate([c[i] for c in columns]) for i in (0, 1))
@@ -190,13 +188,15 @@ def _table(columns: Sequence[tuple[NDArray[np.int64], F64]], count: int) -> csr_
     return csr_matrix((values.astype(np.float32), (rows, place)), shape=(count, len(columns)))
 
 
-def _join_alike(overlap: F32, union: F32, likeness: F32) -> list[list[int]]:
-    """Join the two most alike tracks until none are alike enough. Sums over all pairs of masks decide, so that one
-    wrong mask cannot chain two things together."""
+def _join_similar(overlap: F32, union: F32, likeness: F32) -> list[list[int]]:
+    """Join the two most similar tracks until no two reach JOIN_IOU.
+
+    The similarity of tracks is summed over all pairs of their masks, so that one wrong mask cannot chain two objects.
+    """
     shared, whole = (overlap * likeness).astype(np.float64), union.astype(np.float64)
     members = {i: [i] for i in range(len(shared))}
     version = np.zeros(len(shared), np.int64)
-    first, second = np.nonzero(np.triu(shared >= ALIKE * np.maximum(whole, 1e-9), 1))
+    first, second = np.nonzero(np.triu(shared >= JOIN_IOU * np.maximum(whole, 1e-9), 1))
     heap = [(-shared[i, j] / whole[i, j], i, j, 0, 0) for i, j in zip(first.tolist(), second.tolist(), strict=True)]
     heapq.heapify(heap)
     while heap:
@@ -209,20 +209,20 @@ def _join_alike(overlap: F32, union: F32, likeness: F32) -> list[list[int]]:
             table[i] += table[j]
             table[:, i] = table[i]
             table[j] = table[:, j] = table[i, i] = 0
-        for k in np.flatnonzero(shared[i] >= ALIKE * np.maximum(whole[i], 1e-9)).tolist():
+        for k in np.flatnonzero(shared[i] >= JOIN_IOU * np.maximum(whole[i], 1e-9)).tolist():
             a, b = min(i, k), max(i, k)
             heapq.heappush(heap, (-shared[i, k] / whole[i, k], a, b, int(version[a]), int(version[b])))
     return [sorted(m) for m in members.values()]
 
 
 def _join_named(lifted: Lifted, evidence: _Evidence, tracks: list[list[int]]) -> list[list[int]]:
-    """Join tracks of one name where the smaller lies mostly in the larger: views of different ends of one thing."""
-    names = [_favourite(lifted, masks) for masks in tracks]
+    """Join tracks of one label where the smaller lies mostly in the larger: views of different ends of one object."""
+    names = [_top_label(lifted, masks) for masks in tracks]
     order = sorted(range(len(tracks)), key=lambda t: (-len(tracks[t]), tracks[t]))
     joined: list[list[int]] = []
     for t in order:
         home = next(
-            (h for h in joined if names[t] and _favourite(lifted, h) == names[t] and _within(evidence, tracks[t], h)),
+            (h for h in joined if names[t] and _top_label(lifted, h) == names[t] and _within(evidence, tracks[t], h)),
             None,
         )
         if home is None:
@@ -236,16 +236,16 @@ def _within(evidence: _Evidence, small: Sequence[int], large: Sequence[int]) -> 
     pair = np.ix_(small, large)
     views = evidence.lifted.view
     if set(views[list(small)].tolist()) & set(views[list(large)].tolist()):
-        return False  # a view that has a mask of each says that they are two
-    return bool(evidence.overlap[pair].sum() >= WITHIN * max(float(evidence.left[pair].sum()), 1e-9))
+        return False  # a view with a mask of each shows two objects
+    return bool(evidence.overlap[pair].sum() >= JOIN_CONTAINED * max(float(evidence.left[pair].sum()), 1e-9))
 
 
-def _favourite(lifted: Lifted, masks: Sequence[int]) -> str:
+def _top_label(lifted: Lifted, masks: Sequence[int]) -> str:
     return next((name for name, _ in _votes(lifted, masks)), "")
 
 
 def _votes(lifted: Lifted, masks: Sequence[int]) -> tuple[tuple[str, float], ...]:
-    """The names that masks give with the sum of their scores, heaviest first."""
+    """The labels of some masks with the sum of their scores, highest first."""
     votes: dict[str, float] = {}
     for m in masks:
         if lifted.labels[m]:
@@ -253,14 +253,14 @@ def _votes(lifted: Lifted, masks: Sequence[int]) -> tuple[tuple[str, float], ...
     return tuple(sorted(votes.items(), key=lambda vote: (-vote[1], vote[0])))
 
 
-def _track(lifted: Lifted, masks: Sequence[int], watched: int, weight: F64) -> Track:
-    """What the masks of a track say together."""
+def _track(lifted: Lifted, masks: Sequence[int], visible_in: int, weight: F64) -> Track:
+    """A track with the label and vector that its masks give."""
     votes = _votes(lifted, masks)
     name = votes[0][0] if votes else ""
     views = len({int(lifted.view[m]) for m in masks})
     naming = len({int(lifted.view[m]) for m in masks if lifted.labels[m] == name})
-    label = name if name and naming >= NAMED * watched else ""
-    return Track(tuple(masks), views, watched, label, votes, _mean_vector(lifted, list(masks), weight))
+    label = name if name and naming >= MIN_LABEL_SHARE * visible_in else ""
+    return Track(tuple(masks), views, visible_in, label, votes, _mean_vector(lifted, list(masks), weight))
 
 
 def _mean_vector(lifted: Lifted, masks: list[int], weight: F64) -> F32 | None:
@@ -272,8 +272,8 @@ def _mean_vector(lifted: Lifted, masks: list[int], weight: F64) -> F32 | None:
 
 
 def _with_parents(tracks: Sequence[Track], share: csr_matrix, mass: F32) -> tuple[Track, ...]:
-    """Which tracks are parts: they lie in a larger one and are not called something else."""
-    held = (share > HELD).astype(np.float32)
+    """The tracks with parents set: a part lies in a larger track and has no label of its own."""
+    held = (share > INSIDE).astype(np.float32)
     common: F32 = (held.T @ diags(mass) @ held).toarray()
     size = np.diag(common)
     made = []
@@ -281,8 +281,8 @@ def _with_parents(tracks: Sequence[Track], share: csr_matrix, mass: F32) -> tupl
         around = [
             j
             for j, other in enumerate(tracks)
-            if size[i] < NESTED * size[j]
-            and common[i, j] >= NESTED * size[i]
+            if size[i] < CONTAINED * size[j]
+            and common[i, j] >= CONTAINED * size[i]
             and (not track.label or track.label == other.label)
         ]
         outer = max(around, key=lambda j: (size[j], -j), default=-1)

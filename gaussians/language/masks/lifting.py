@@ -1,11 +1,9 @@
-"""From masks of pictures to masks of Gaussians, without training: alpha times transmittance in the domain of labels.
+"""Lift 2D masks to Gaussians without training, by their blending weights (alpha times transmittance).
 
-For every view one pass of the rasteriser says how much blending weight each Gaussian has inside each mask. Nothing of
-it depends on the width of any feature: vectors enter only when masks have been grouped, or when someone asks for one
-vector a Gaussian (`Lifted.features`). The uplift itself is that of training-free methods such as Occam's LGS (Cheng et
-al. 2024): a weighted mean over views, the weights those with which the picture was blended.
-
-Knows clouds, masks and blending weights. Refuses to know which masks belong together (`association`).
+One pass of the rasteriser per view gives the blending weight of each Gaussian inside each mask. Its cost does not
+depend on the width of feature vectors: these enter after masks have been grouped, or for `Lifted.features`. The method
+is that of training-free uplifting such as Occam's LGS (Cheng et al. 2024): a mean over views, weighted by the blending
+weights. `association.py` decides which masks belong to one object.
 """
 
 from __future__ import annotations
@@ -27,13 +25,13 @@ F32 = NDArray[np.float32]
 
 @dataclass(frozen=True, eq=False)
 class Lifted:
-    """M masks of V views over N Gaussians.
+    """M masks of V views, lifted to N Gaussians.
 
     Attributes:
         weights: `[N, M]` sparse float32, blending weight of each Gaussian summed over each mask's pixels.
-        seen: `[N, V]` sparse float32, the same over each view's pixels, in a mask or not.
-        view: `[M]` int32, ascending: the view a mask is of.
-        labels: M names, "" where none is known.
+        seen: `[N, V]` sparse float32, the same summed over all pixels of each view.
+        view: `[M]` int32, ascending: the view of each mask.
+        labels: M names, "" for unknown.
         scores: `[M]` float32.
         vectors: `[M, D]` float32, unit or zero rows; None if no view has any.
     """
@@ -46,15 +44,15 @@ class Lifted:
     vectors: F32 | None
 
     def features(self) -> F32:
-        """`[N, D]` unit mean vector of the masks each Gaussian was seen in, by weight; zero where it was in none.
+        """Unit mean vector `[N, D]` of the masks that contain each Gaussian, by weight; zero where none does.
 
-        This is the per-Gaussian field that groups replace; it is here to be compared with.
+        This is the per-Gaussian feature field that groups replace. It is kept for comparison.
 
         Raises:
             UserError: the masks have no vectors.
         """
         if self.vectors is None:
-            raise UserError("these masks have no vectors to lift")
+            raise UserError("the masks have no vectors to lift")
         total = np.asarray(self.weights @ self.vectors, dtype=np.float32)
         norms = np.linalg.norm(total, axis=1, keepdims=True)
         units: F32 = (total / np.where(norms > 1e-12, norms, 1)).astype(np.float32)
@@ -62,14 +60,14 @@ class Lifted:
 
 
 def lift(cloud: GaussianCloud, views: Iterable[ViewMasks]) -> Lifted:
-    """Carry the masks of some views to the Gaussians; empty views (no mask) count as seen.
+    """Lift the masks of some views to the Gaussians. Views without masks count as seen.
 
     Raises:
         UserError: the views' vectors have different widths, or only some views have any.
     """
     weights, seen, taken = [], [], []
     for view in views:
-        masks, whole = _one(cloud, view)
+        masks, whole = _lift_view(cloud, view)
         weights.append(masks)
         seen.append(whole)
         taken.append(view)
@@ -84,13 +82,13 @@ def lift(cloud: GaussianCloud, views: Iterable[ViewMasks]) -> Lifted:
     )
 
 
-def _one(cloud: GaussianCloud, view: ViewMasks) -> tuple[csr_matrix, csr_matrix]:
-    """Weights `[N, M]` and seen `[N, 1]` of one view."""
+def _lift_view(cloud: GaussianCloud, view: ViewMasks) -> tuple[csr_matrix, csr_matrix]:
+    """`weights` `[N, M]` and `seen` `[N, 1]` of one view."""
     cell, inside = view.cells
     shares = split(cloud, view.camera, cell)
     by_cell = csr_matrix((shares.weights, (shares.rows, shares.labels)), shape=(len(cloud), len(inside)))
     cells, layers = np.nonzero(inside >= 0)
-    pairs = np.unique(np.stack([cells, inside[cells, layers]], axis=1), axis=0)  # once, though in several layers
+    pairs = np.unique(np.stack([cells, inside[cells, layers]], axis=1), axis=0)  # a mask in several layers counts once
     member = csr_matrix((np.ones(len(pairs), np.float32), (pairs[:, 0], pairs[:, 1])), shape=(len(inside), len(view)))
     whole = csr_matrix(by_cell.sum(axis=1).astype(np.float32))
     return csr_matrix(by_cell @ member, dtype=np.float32), whole

@@ -1,10 +1,8 @@
-"""What tracks of masks change about the things that segmentation found: who owns each surface point, and what is left.
+"""Assign surface points to tracks of masks and revise the segmentation accordingly.
 
-Masks are coarse and right in the main; segments have sharp borders and cannot know what belongs together. So votes
-decide, and where the points of a segment mostly agree they decide for the segment as a whole. What no track claims
-stays as segmentation had it, so nothing is lost.
-
-Knows tracks, superpoints and things. Refuses to know views and encoders.
+Masks find whole objects but have coarse borders; superpoints have sharp borders but do not show what belongs together.
+So the votes of the masks decide, and where the points of a superpoint mostly agree the superpoint is assigned as a
+whole. What belongs to no track keeps its segment.
 """
 
 from __future__ import annotations
@@ -20,55 +18,60 @@ from ..segmentation import grouping, structure
 from ..segmentation.segment import MIN_OBJECT, Segment
 from ..segmentation.superpoints import Links, links_of, superpoints, touching
 from ..segmentation.surface import Surface
-from .association import HELD, NESTED, Tracks
+from .association import CONTAINED, INSIDE, Tracks
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
 
-FINE = 1.0  # scale of the superpoints that votes are pooled in: a third of that of segmentation, so that few straddle
-ENOUGH = 1.0  # pixels of blending weight, over all views, from which a Gaussian's own share counts for half
-NOBODY, UNTOLD = -1, -2
+FINE_SCALE = 1.0  # of the superpoints that pool votes: a third of the segmentation's, so that few cross a border
+HALF_TRUST = 1.0  # pixels of blending weight over all views at which a Gaussian's own share counts for half
+UNASSIGNED, UNSEEN = -1, -2
 
 
-def owners(surface: Surface, links: Links, tracks: Tracks) -> tuple[I32, I32]:
-    """The track each surface point belongs to, and the part of it, `[P]` each; -1 for none.
+def assign_points(surface: Surface, links: Links, tracks: Tracks) -> tuple[I32, I32]:
+    """The track of each surface point and the part of that track, `[P]` each; -1 for none.
 
-    Of several tracks that hold a point the one with most votes has it, unless a smaller one lies within it.
+    Of several tracks that contain a point the one with most votes gets it, unless a smaller track lies within that one.
     """
-    segment = superpoints(surface, links, FINE)
+    segment = superpoints(surface, links, FINE_SCALE)
     share = csc_matrix(tracks.share[surface.rows])
     votes = csc_matrix(tracks.votes[surface.rows])
     seen = tracks.seen[surface.rows]
-    trust = seen / (seen + ENOUGH)
-    size = np.asarray((share > HELD).sum(axis=0)).ravel()
-    owner, part = np.full(len(surface), NOBODY, np.int32), np.full(len(surface), NOBODY, np.int32)
-    best = {NOBODY: np.zeros(len(surface))}
+    trust = seen / (seen + HALF_TRUST)
+    size = np.asarray((share > INSIDE).sum(axis=0)).ravel()
+    owner, part = np.full(len(surface), UNASSIGNED, np.int32), np.full(len(surface), UNASSIGNED, np.int32)
+    best = {UNASSIGNED: np.zeros(len(surface))}
     held: dict[int, NDArray[np.bool_]] = {}
-    for k in sorted(range(len(tracks.tracks)), key=lambda k: (-size[k], k)):  # containers before their contents
+    for k in sorted(range(len(tracks.tracks)), key=lambda k: (-size[k], k)):  # larger tracks before those inside them
         column = np.asarray(share[:, [k]].todense()).ravel()
-        held[k] = pooled(column, segment, trust) > HELD
+        held[k] = pool_shares(column, segment, trust) > INSIDE
         said = np.where(held[k], np.asarray(votes[:, [k]].todense()).ravel() + 1e-6, 0)
         parent = tracks.tracks[k].parent
-        if parent == NOBODY:
+        if parent == UNASSIGNED:
             inside = _mostly_in(held, k)
-            taken = held[k] & ((said > best[NOBODY]) | np.isin(owner, inside))
-            owner[taken], best[NOBODY][taken] = k, said[taken]
-            part[taken] = NOBODY
+            taken = held[k] & ((said > best[UNASSIGNED]) | np.isin(owner, inside))
+            owner[taken], best[UNASSIGNED][taken] = k, said[taken]
+            part[taken] = UNASSIGNED
         else:
             others = best.setdefault(parent, np.zeros(len(surface)))
             taken = held[k] & (said > others)
             part[taken], others[taken] = k, said[taken]
-    belongs = np.array([t.parent for t in tracks.tracks] + [NOBODY], np.int32)[part]
-    return owner, np.where((belongs == owner) & (owner >= 0), part, NOBODY).astype(np.int32)
+    belongs = np.array([t.parent for t in tracks.tracks] + [UNASSIGNED], np.int32)[part]
+    return owner, np.where((belongs == owner) & (owner >= 0), part, UNASSIGNED).astype(np.int32)
 
 
-def pooled(share: NDArray[np.floating], segment: I32, trust: NDArray[np.floating]) -> F64:
-    """Shares `[P]` drawn to the mean of their segment, the more the segment's points agree and the less each is to be
-    trusted, in [0, 1]: 0 for a point that no view shows.
+def pool_shares(share: NDArray[np.floating], segment: I32, trust: NDArray[np.floating]) -> F64:
+    """Shares `[P]` moved towards the mean of their segment.
 
-    Agreement is one minus the ratio of the shares' deviation to the largest that such a mean allows, that of all or
-    nothing: a segment that one half of the masks' border cuts keeps its points' own shares.
+    They move the more, the more the points of the segment agree and the lower the trust in a point. Agreement is one
+    minus the ratio of the standard deviation of the shares to its maximum for their mean, which shares of 0 and 1 have:
+    a segment that the border of a mask divides keeps the shares of its points.
+
+    Args:
+        share: `[P]` in [0, 1].
+        segment: `[P]` superpoint of each point.
+        trust: `[P]` in [0, 1], 0 for a point that no view shows.
     """
     count = np.maximum(np.bincount(segment, weights=trust), 1e-9)
     mean = np.bincount(segment, weights=trust * share) / count
@@ -79,31 +82,34 @@ def pooled(share: NDArray[np.floating], segment: I32, trust: NDArray[np.floating
 
 
 def _mostly_in(held: dict[int, NDArray[np.bool_]], k: int) -> list[int]:
-    """Larger tracks that track k mostly lies in."""
+    """The larger tracks that contain most of track k."""
     own = held[k].sum()
-    return [j for j, other in held.items() if j != k and (other & held[k]).sum() >= NESTED * max(int(own), 1)]
+    return [j for j, other in held.items() if j != k and (other & held[k]).sum() >= CONTAINED * max(int(own), 1)]
 
 
-def claimed(
+def apply_tracks(
     surface: Surface,
     labels: I32,
-    things: Sequence[Segment],
+    segments: Sequence[Segment],
     tracks: Tracks,
     vectors: Sequence[F32 | None],
 ) -> tuple[I32, list[Segment], I32]:
-    """Superpoints cut along the tracks' borders, the things they make up, as `segment` gives them, and the track of
-    each surface point.
+    """Revise a segmentation by tracks of masks.
 
-    Things that tracks claim carry the tracks' vectors. Of the others what is left stays a thing if it is large enough.
+    Each track becomes an object with the track's vector. What remains of other objects is kept if it is large enough.
 
     Args:
-        labels: `[P]` superpoint of each surface point, whose numbers are the `members` of `things`.
-        vectors: one `[D]` a track, None for those that say nothing.
+        labels: `[P]` superpoint of each surface point; `segments` refer to these numbers.
+        vectors: one `[D]` per track, None for tracks without a vector.
+
+    Returns:
+        The superpoint of each surface point `[P]` after division along the borders of the tracks, the segments in the
+        order of `segment`, and the track of each surface point `[P]`, -1 for none.
     """
     links = links_of(surface)
-    owner, part = owners(surface, links, tracks)
-    owner = np.where(_structure_only(owner, labels, things, tracks), NOBODY, owner).astype(np.int32)
-    owner = _with_rest(owner, labels, things, tracks.seen[surface.rows] > ENOUGH, tracks)
+    owner, part = assign_points(surface, links, tracks)
+    owner = np.where(_structure_only(owner, labels, segments, tracks), UNASSIGNED, owner).astype(np.int32)
+    owner = _complete_objects(owner, labels, segments, tracks.seen[surface.rows] > HALF_TRUST, tracks)
     code = (labels.astype(np.int64) * (len(tracks.tracks) + 1) + owner + 1) * (len(tracks.tracks) + 1) + part + 1
     _, first, cut = np.unique(code, return_index=True, return_inverse=True)
     cut = cut.astype(np.int32)
@@ -113,72 +119,78 @@ def claimed(
     lab: F64 = total / np.maximum(size, 1)[:, None]
     near = touching(cut, links)
     made = [
-        replace(t, members=members) for t in things if t.level == "structure" and (members := _left(t.members, old, of))
+        replace(t, members=members)
+        for t in segments
+        if t.level == "structure" and (members := _unassigned(t.members, old, of))
     ]
     objects = [(np.flatnonzero(of == k), k) for k in range(len(tracks.tracks)) if (of == k).any()]
     for own, k in sorted(objects, key=lambda o: (-int(size[o[0]].sum()), o[1])):
         if size[own].sum() >= MIN_OBJECT:
             made += _object(own, vectors[k], parts, len(made), near, lab, size)
-    for whole in _whole_objects(things):
-        left = np.array(_left(whole, old, of), dtype=np.int64)
+    for whole in _whole_objects(segments):
+        left = np.array(_unassigned(whole, old, of), dtype=np.int64)
         if size[left].sum() >= MIN_OBJECT:
             made += _object(left, None, parts, len(made), near, lab, size)
     return cut, made, owner
 
 
-def by_votes(tracks: Tracks) -> I32:
-    """The track that each Gaussian's own votes give it to, `[N]`; -1 for none, -2 where too little is seen to tell."""
-    owner = np.full(len(tracks.seen), NOBODY, np.int32)
+def track_by_votes(tracks: Tracks) -> I32:
+    """The track with most votes of each Gaussian `[N]`; UNASSIGNED for none, UNSEEN where too little of it is seen."""
+    owner = np.full(len(tracks.seen), UNASSIGNED, np.int32)
     best = np.zeros(len(owner))
     for k, track in enumerate(tracks.tracks):
-        if track.parent == NOBODY:
-            held = np.asarray(tracks.share[:, [k]].todense()).ravel() > HELD
+        if track.parent == UNASSIGNED:
+            held = np.asarray(tracks.share[:, [k]].todense()).ravel() > INSIDE
             votes = np.where(held, np.asarray(tracks.votes[:, [k]].todense()).ravel() + 1e-6, 0)
             owner = np.where(votes > best, k, owner)
             best = np.maximum(best, votes)
-    return np.where(tracks.seen > ENOUGH, owner, UNTOLD).astype(np.int32)
+    return np.where(tracks.seen > HALF_TRUST, owner, UNSEEN).astype(np.int32)
 
 
-def _structure_only(owner: I32, labels: I32, things: Sequence[Segment], tracks: Tracks) -> NDArray[np.bool_]:
-    """`[P]`: points of tracks that are mostly floor or wall, which are measured better than they are masked; but not of
-    what views call something else, as a book that lies flat on the floor.
+def _structure_only(owner: I32, labels: I32, segments: Sequence[Segment], tracks: Tracks) -> NDArray[np.bool_]:
+    """Whether each point `[P]` belongs to a track that lies mostly in the structure and has no label of an object.
+
+    The segmentation finds floor and walls more precisely than masks. Tracks with another label, such as a book that
+    lies flat on the floor, are kept.
     """
-    within = np.isin(labels, [s for t in things if t.level == "structure" for s in t.members])
+    within = np.isin(labels, [s for t in segments if t.level == "structure" for s in t.members])
     count = np.bincount(owner + 1)
     share = np.bincount(owner + 1, weights=within) / np.maximum(count, 1)
     called = np.array([False, *(t.label not in ("", *structure.NAMES.values()) for t in tracks.tracks)])[: len(share)]
-    result: NDArray[np.bool_] = ((share > HELD) & ~called)[owner + 1] & (owner >= 0)
+    result: NDArray[np.bool_] = ((share > INSIDE) & ~called)[owner + 1] & (owner >= 0)
     return result
 
 
-def _with_rest(owner: I32, labels: I32, things: Sequence[Segment], seen: NDArray[np.bool_], tracks: Tracks) -> I32:
-    """Owners, with what masks leave out of the objects that one track has most of.
+def _complete_objects(
+    owner: I32, labels: I32, segments: Sequence[Segment], seen: NDArray[np.bool_], tracks: Tracks
+) -> I32:
+    """Owners `[P]` in which objects that belong mostly to one track are completed by points without a track.
 
-    Points that no view shows go with the track: the underside of a chair is the chair's. So does the rest of an object
-    that a track with a name has nearly all of: detectors draw what is telling of a thing, a crown and not its pot.
+    Points that no view shows join the track, such as the underside of a chair. Seen points join it if the track has a
+    label and contains nearly all of the object: detectors often leave out parts, such as the pot of a plant.
     """
     owner = owner.copy()
-    for members in _whole_objects(things):
+    for members in _whole_objects(segments):
         inside = np.isin(labels, members)
         names, counts = np.unique(owner[inside & seen], return_counts=True)
-        if not len(names) or names[counts.argmax()] == NOBODY or counts.max() <= HELD * counts.sum():
+        if not len(names) or names[counts.argmax()] == UNASSIGNED or counts.max() <= INSIDE * counts.sum():
             continue
         most = int(names[counts.argmax()])
-        nearly = bool(tracks.tracks[most].label) and counts.max() >= NESTED * counts.sum()
-        owner[inside & (owner == NOBODY) & (~seen | nearly)] = most
+        nearly = bool(tracks.tracks[most].label) and counts.max() >= CONTAINED * counts.sum()
+        owner[inside & (owner == UNASSIGNED) & (~seen | nearly)] = most
     return owner
 
 
-def _left(members: Sequence[int], old: I32, of: I32) -> tuple[int, ...]:
-    """The cut superpoints of some old ones that no track claims."""
+def _unassigned(members: Sequence[int], old: I32, of: I32) -> tuple[int, ...]:
+    """The new superpoints of some old ones that belong to no track."""
     return tuple(np.flatnonzero(np.isin(old, list(members)) & (of < 0)).tolist())
 
 
-def _whole_objects(things: Sequence[Segment]) -> list[tuple[int, ...]]:
-    """Members of each object, its parts' included, in the order of the things."""
+def _whole_objects(segments: Sequence[Segment]) -> list[tuple[int, ...]]:
+    """Superpoints of each object, including those of its parts, in the order of the segments."""
     return [
-        t.members + tuple(s for p in things if p.parent == i for s in p.members)
-        for i, t in enumerate(things)
+        t.members + tuple(s for p in segments if p.parent == i for s in p.members)
+        for i, t in enumerate(segments)
         if t.level == "object"
     ]
 
@@ -187,10 +199,10 @@ def _object(
     members: NDArray[np.integer], vector: F32 | None, parts: I32, own: int, near: dict[int, set[int]], lab: F64,
     size: NDArray[np.int64],
 ) -> list[Segment]:  # fmt: skip
-    """One object as row `own` with its parts: those that masks show, the rest of it in patches of one colour."""
-    shown = sorted(set(parts[members].tolist()) - {NOBODY})
+    """One object as segment `own`, followed by its parts: those of masks, then patches of one colour of the rest."""
+    shown = sorted(set(parts[members].tolist()) - {UNASSIGNED})
     clusters = [members[parts[members] == p].tolist() for p in shown]
-    rest = members[parts[members] == NOBODY].tolist()
+    rest = members[parts[members] == UNASSIGNED].tolist()
     clusters += grouping.parts_of(rest, near, lab, size) if rest else []
     if len(clusters) == 1:
         return [Segment(tuple(clusters[0]), "object", vector=vector)]

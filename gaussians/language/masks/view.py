@@ -1,7 +1,4 @@
-"""The masks of one picture: what every source of masks hands over, whatever made them.
-
-Knows pixels, labels and vectors. Refuses to know Gaussians and where masks come from.
-"""
+"""`ViewMasks`: the masks of one image with their camera, labels, scores and vectors."""
 
 from __future__ import annotations
 
@@ -19,18 +16,18 @@ NONE = -1  # a pixel without a mask
 
 @dataclass(frozen=True, eq=False)
 class ViewMasks:
-    """What was seen in one picture.
+    """The masks of one image.
 
     Attributes:
-        camera: of the masks' own size.
-        ids: `[H, W]` or, where masks overlap, `[L, H, W]` int32: index of the mask a pixel lies in, -1 for none. A
+        camera: camera of the image, at the size of the masks.
+        ids: `[H, W]` or, where masks overlap, `[L, H, W]` int32: index of the mask at each pixel, -1 for none. A
             mask may lie in several layers.
-        labels: M names, "" where none is known.
-        scores: `[M]` float32 in [0, 1], how sure the source is of the name.
-        vectors: `[M, D]` float32, unit rows (a zero row: none), of the space of some encoder; None for none at all.
+        labels: M names, "" for unknown.
+        scores: `[M]` float32 in [0, 1], confidence of the name.
+        vectors: `[M, D]` float32, unit rows in an encoder's space, a zero row for none; None if no mask has a vector.
 
     Raises:
-        UserError: the parts do not fit each other, or hold numbers that are none.
+        UserError: shapes do not match, ids are out of range, or numbers are not finite.
     """
 
     camera: Camera
@@ -63,14 +60,14 @@ class ViewMasks:
 
     @property
     def layers(self) -> NDArray[np.int32]:
-        """`[L, H, W]`."""
+        """The ids as layers `[L, H, W]`."""
         return self.ids if self.ids.ndim == 3 else self.ids[None]
 
     @cached_property
     def cells(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-        """The picture cut where any mask ends: cell of each pixel `[H, W]`, and the masks each cell lies in `[C, L]`.
+        """The image partitioned by all masks: cell of each pixel `[H, W]` and the masks of each cell `[C, L]`.
 
-        So overlapping masks cost one pass over the picture, not one each.
+        With cells, overlapping masks need one pass over the image instead of one each.
         """
         layers = self.layers
         height, width = layers.shape[1:]
@@ -78,13 +75,13 @@ class ViewMasks:
             return np.zeros((height, width), np.int32), np.zeros((1, 0), np.int32)
         flat = layers.reshape(len(layers), -1)
         code = flat[0].astype(np.int64) + 1
-        for layer in flat[1:]:  # numbered anew after each layer, so the product never overflows
+        for layer in flat[1:]:  # renumbered after each layer, so that the product cannot overflow
             code = np.unique(code, return_inverse=True)[1] * (len(self) + 1) + layer + 1
         _, first, cell = np.unique(code, return_index=True, return_inverse=True)
         return cell.reshape(height, width).astype(np.int32), flat[:, first].T.copy()
 
     def areas(self) -> NDArray[np.int64]:
-        """`[M]` pixels of each mask."""
+        """Number of pixels of each mask `[M]`."""
         cell, inside = self.cells
         pixels = np.bincount(cell.ravel(), minlength=len(inside))
         total = np.zeros(len(self), np.int64)
@@ -94,8 +91,8 @@ class ViewMasks:
         return total
 
 
-def packed(masks: NDArray[np.bool_]) -> NDArray[np.int32]:
-    """Overlapping masks `[M, H, W]` in as few layers `[L, H, W]` of ids as first fit finds; at least one."""
+def pack_layers(masks: NDArray[np.bool_]) -> NDArray[np.int32]:
+    """Pack overlapping masks `[M, H, W]` into layers `[L, H, W]` of ids by first fit; at least one layer."""
     count, height, width = masks.shape
     layers = [np.full((height, width), NONE, np.int32)]
     for i in range(count):

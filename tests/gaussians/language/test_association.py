@@ -1,4 +1,4 @@
-"""Masks of many views joined into things: worlds whose truth is known, seen badly in every way a detector knows."""
+"""Association of masks of many views, on scenes with known objects and masks with the errors of detectors."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.language.encoders.backends import vectors as vector_encoder
 from scenewright.gaussians.language.field.embed import embed
 from scenewright.gaussians.language.masks import ViewMasks
-from scenewright.gaussians.language.masks.association import HELD, Tracks, associate
+from scenewright.gaussians.language.masks.association import INSIDE, Tracks, associate
 from scenewright.gaussians.language.masks.lifting import lift
-from scenewright.gaussians.language.masks.mask_assignment import claimed, owners, pooled
+from scenewright.gaussians.language.masks.mask_assignment import apply_tracks, assign_points, pool_shares
 from scenewright.gaussians.language.segmentation.superpoints import links_of, superpoints
 from scenewright.gaussians.language.segmentation.surface import surface_of
 from scenewright.gaussians.render import render
@@ -50,7 +50,7 @@ def around(count: int) -> list[Camera]:
 
 
 def seen_by(cloud: GaussianCloud, truth: NDArray[np.int64], cameras: Sequence[Camera]) -> list[ViewMasks]:
-    """What a faultless detector says of each view: the visible pixels of every thing, with its name."""
+    """Masks of a perfect detector for each view: the visible pixels of every object, with its name."""
     marked = cloud.replace(group=torch.from_numpy(truth.astype(np.int32)))
     views = []
     for camera in cameras:
@@ -75,11 +75,11 @@ def scene(world: type[Any]) -> tuple[GaussianCloud, NDArray[np.int64]]:
 
 
 def ious(tracks: Tracks, truth: NDArray[np.int64], seen: NDArray[np.bool_]) -> dict[str, float]:
-    """For each thing the track of its name, against the Gaussians of it that any view sees; 0 where it has none."""
+    """IoU of each object's track with the Gaussians of it that any view sees; 0 where it has no track."""
     found = dict.fromkeys(THINGS, 0.0)
     for k, track in enumerate(tracks.tracks):
         if track.label:
-            own = (np.asarray(tracks.share[:, [k]].todense()).ravel() > HELD) & seen
+            own = (np.asarray(tracks.share[:, [k]].todense()).ravel() > INSIDE) & seen
             true = (truth == THINGS.index(track.label)) & seen
             found[track.label] = max(found[track.label], float((own & true).sum() / (own | true).sum()))
     return found
@@ -93,11 +93,11 @@ def judged(
     return tracks, ious(tracks, truth, np.asarray((lifted.seen > 0.5).sum(axis=1)).ravel() > 0)
 
 
-def test_every_thing_is_one_track_of_its_name(scene: Any) -> None:
+def test_every_object_is_one_track_with_its_label(scene: Any) -> None:
     cloud, truth = scene
     tracks, found = judged(cloud, truth, seen_by(cloud, truth, around(20)))
-    assert sorted(t.label for t in tracks.tracks) == sorted(THINGS) and tracks.outvoted == 0
-    assert all(t.parent == -1 and t.views <= t.watched for t in tracks.tracks)
+    assert sorted(t.label for t in tracks.tracks) == sorted(THINGS) and tracks.discarded == 0
+    assert all(t.parent == -1 and t.views <= t.visible_in for t in tracks.tracks)
     assert min(found.values()) > 0.9  # whole pixels at the rims are given to what makes up most of them
 
 
@@ -114,7 +114,7 @@ def test_views_may_be_missing(scene: Any, dropped: float, least: float) -> None:
 def test_one_view_makes_what_it_shows(scene: Any) -> None:
     cloud, truth = scene
     tracks, found = judged(cloud, truth, seen_by(cloud, truth, around(7)[:1]))
-    assert {t.label for t in tracks.tracks} == set(THINGS) and all(t.views == t.watched == 1 for t in tracks.tracks)
+    assert {t.label for t in tracks.tracks} == set(THINGS) and all(t.views == t.visible_in == 1 for t in tracks.tracks)
     assert min(found.values()) > 0.6  # Gaussians behind a rim pixel cannot be told from those on it
 
 
@@ -125,19 +125,19 @@ def test_a_fifth_of_the_names_may_be_wrong(scene: Any) -> None:
     assert sum(label == "cat" for v in wrong for label in v.labels) >= 10
     tracks, found = judged(cloud, truth, wrong)
     assert "cat" not in {t.label for t in tracks.tracks} and min(found.values()) > 0.9
-    assert any(dict(t.votes).get("cat") for t in tracks.tracks)  # heard, and outvoted
+    assert any(dict(t.votes).get("cat") for t in tracks.tracks)  # counted, but not the label
 
 
-def test_things_seen_only_once_are_outvoted(scene: Any) -> None:
+def test_masks_confirmed_by_too_few_views_are_discarded(scene: Any) -> None:
     cloud, truth = scene
     views = seen_by(cloud, truth, around(20))
     ghost = np.where(np.arange(SIZE[0])[None, :] < 60, 0, -1) * np.ones((SIZE[1], 1), int)
     odd = ViewMasks(views[3].camera, ghost.astype(np.int32), ("person",), np.array([0.9], np.float32))
     tracks, found = judged(cloud, truth, [*views, odd])
-    assert "person" not in {t.label for t in tracks.tracks} and tracks.outvoted >= 1 and min(found.values()) > 0.9
+    assert "person" not in {t.label for t in tracks.tracks} and tracks.discarded >= 1 and min(found.values()) > 0.9
 
 
-def test_a_name_that_few_views_give_is_no_name(scene: Any) -> None:
+def test_a_label_that_few_views_give_is_not_used(scene: Any) -> None:
     cloud, truth = scene
     views = [
         replace(v, labels=tuple("" if label == "crate" and i % 5 else label for label in v.labels))
@@ -154,7 +154,7 @@ def test_an_occluder_that_no_mask_names_keeps_its_own(scene: Any, world: type[An
     both, ids = concat([cloud, above(screen, cloud)]), np.concatenate([truth, np.full(len(screen), -1)])
     tracks, found = judged(both, ids, seen_by(both, ids, around(20)))
     assert min(found.values()) > 0.9
-    taken = np.asarray((tracks.share[len(cloud) :] > HELD).sum(axis=1)).ravel() > 0
+    taken = np.asarray((tracks.share[len(cloud) :] > INSIDE).sum(axis=1)).ravel() > 0
     assert taken.mean() < 0.03  # its rim
 
 
@@ -166,7 +166,7 @@ def test_floaters_before_the_lens_join_nothing(scene: Any) -> None:
     both, ids = concat([cloud, above(strays, cloud)]), np.concatenate([truth, np.full(60, -1)])
     tracks, found = judged(both, ids, seen_by(cloud, truth, around(20)))  # the masks know nothing of them
     assert min(found.values()) > 0.9
-    assert (np.asarray((tracks.share[len(cloud) :] > HELD).sum(axis=1)).ravel() > 0).mean() < 0.1
+    assert (np.asarray((tracks.share[len(cloud) :] > INSIDE).sum(axis=1)).ravel() > 0).mean() < 0.1
 
 
 def test_no_masks_make_no_tracks(scene: Any) -> None:
@@ -192,7 +192,7 @@ def test_masks_of_parts_without_a_name_lie_in_their_thing(scene: Any) -> None:
     assert tracks.tracks[part.parent].label == "table" and min(found.values()) > 0.9
     surface = surface_of(cloud)
     labels = superpoints(surface, links_of(surface))
-    _, things, _ = claimed(surface, labels, [], tracks, [None] * len(tracks.tracks))
+    _, things, _ = apply_tracks(surface, labels, [], tracks, [None] * len(tracks.tracks))
     assert [t.level for t in things].count("object") == len(THINGS)
     assert any(t.level == "part" for t in things)
 
@@ -235,7 +235,7 @@ def test_vectors_tell_things_apart_where_names_are_missing(scene: Any) -> None:
         assert track.vector is not None and track.vector.max() > 0.98 and abs(np.linalg.norm(track.vector) - 1) < 1e-5
 
 
-# -- what becomes of segments
+# -- assignment to segments
 
 
 def test_segments_that_agree_decide_as_one_and_those_that_do_not_are_cut() -> None:
@@ -243,7 +243,7 @@ def test_segments_that_agree_decide_as_one_and_those_that_do_not_are_cut() -> No
     rng = np.random.default_rng(0)
     agreed = np.clip(rng.normal(0.7, 0.15, 100), 0, 1)
     share = np.concatenate([agreed, np.repeat([0.0, 1.0], 50), np.zeros(100)])
-    found = pooled(share, segment, np.ones(300))
+    found = pool_shares(share, segment, np.ones(300))
     assert (agreed < 0.5).any() and (found[:100] > 0.5).mean() > (agreed > 0.5).mean()
     assert np.allclose(found[100:200], share[100:200]) and np.allclose(found[200:], 0)
     for s in range(3):  # pooling moves shares within a segment, never its mean
@@ -258,17 +258,17 @@ def test_coarse_masks_get_the_borders_of_the_segments(scene: Any) -> None:
         coarse.append(replace(v, ids=np.repeat(np.repeat(blocks, 4, axis=0), 4, axis=1)))
     tracks = associate(lift(cloud, coarse))
     surface = surface_of(cloud)
-    owner, _ = owners(surface, links_of(surface), tracks)
+    owner, _ = assign_points(surface, links_of(surface), tracks)
     seen = tracks.seen[surface.rows] > 0.5
     for name in ("chair", "table", "crate"):
         true = (truth[surface.rows] == THINGS.index(name)) & seen
         k = next(i for i, t in enumerate(tracks.tracks) if t.label == name)
-        alone = (np.asarray(tracks.share[surface.rows][:, [k]].todense()).ravel() > HELD) & seen
+        alone = (np.asarray(tracks.share[surface.rows][:, [k]].todense()).ravel() > INSIDE) & seen
         pooled_, by_point = (float((o & true).sum() / (o | true).sum()) for o in ((owner == k) & seen, alone))
         assert pooled_ > by_point and pooled_ > 0.9
 
 
-def test_what_no_mask_claims_stays_as_it_was(scene: Any) -> None:
+def test_objects_without_masks_stay_as_they_were(scene: Any) -> None:
     from scenewright.gaussians.language.segmentation.segment import Segment
 
     cloud, truth = scene
@@ -287,7 +287,7 @@ def test_what_no_mask_claims_stays_as_it_was(scene: Any) -> None:
     ]
     tracks = associate(lift(cloud, views))
     vector = np.ones(3, np.float32)
-    cut, after, _ = claimed(surface, labels, before, tracks, [vector] * len(tracks.tracks))
+    cut, after, _ = apply_tracks(surface, labels, before, tracks, [vector] * len(tracks.tracks))
     owned = [
         np.isin(cut, t.members + tuple(s for p in after if p.parent == i for s in p.members))
         for i, t in enumerate(after)
@@ -319,7 +319,7 @@ def test_what_segmentation_takes_for_floor_is_given_up_only_to_a_name(scene: Any
     labels = (truth[surface.rows] + 1).astype(np.int32)
     before = [Segment((0, 2), "structure", label="floor"), Segment((1,), "object"), Segment((3,), "object")]
     tracks = associate(lift(cloud, views))
-    _, after, owner = claimed(surface, labels, before, tracks, [np.ones(3, np.float32)] * len(tracks.tracks))
+    _, after, owner = apply_tracks(surface, labels, before, tracks, [np.ones(3, np.float32)] * len(tracks.tracks))
     assert len(tracks.tracks) == 1 and any(t.vector is not None for t in after) == kept
     assert ((owner == 0).sum() > 500) == kept
 

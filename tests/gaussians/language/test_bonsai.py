@@ -64,7 +64,7 @@ def tracks(bare: Scene, capture: Capture) -> Tracks:
     return associate(lift(bare.cloud, masks.load(f"folder:{capture.path.parent / 'masks'}").masks(bare)))
 
 
-def test_things_are_named_and_what_a_few_views_imagine_is_outvoted(tracks: Tracks) -> None:
+def test_objects_are_labelled_and_masks_of_too_few_views_are_discarded(tracks: Tracks) -> None:
     names = [t.label for t in tracks.tracks if t.label]
     assert {"bicycle", "chair", "potted plant"} <= set(names) and names.count("chair") == 2  # both are real
     assert not {"cat", "person", "couch", "dining table", "vase", "bed"} & set(names)

@@ -1,4 +1,4 @@
-"""Masks carried to Gaussians: one fast pass against the readable renderer, and the laws of a share."""
+"""Lifting of masks to Gaussians: the fast pass against the reference renderer, and the laws of shares."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sources of masks: what every view hands over, the files of other programs, and models."""
+"""Sources of masks: `ViewMasks`, files of other programs, and models."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import BackendError, FileError, UserError
 from scenewright.gaussians.files.captures.capture import read_capture
 from scenewright.gaussians.language import masks
-from scenewright.gaussians.language.masks import Masker, ViewMasks, packed
+from scenewright.gaussians.language.masks import Masker, ViewMasks, pack_layers
 from scenewright.gaussians.language.masks.sources import rle
 from scenewright.gaussians.scene import Scene
 
@@ -43,7 +43,7 @@ def overlapping(draw: st.DrawFn) -> NDArray[np.bool_]:
 @given(overlapping())
 def test_packing_loses_no_mask_and_cells_are_where_masks_end(given_masks: NDArray[np.bool_]) -> None:
     count, height, width = given_masks.shape
-    view = ViewMasks(camera(width, height), packed(given_masks), ("",) * count, np.ones(count, np.float32))
+    view = ViewMasks(camera(width, height), pack_layers(given_masks), ("",) * count, np.ones(count, np.float32))
     for i in range(count):
         assert ((view.layers == i).any(axis=0) == given_masks[i]).all()
     cell, inside = view.cells
@@ -360,13 +360,13 @@ def test_a_segment_anything_model_gives_masks_of_photographs(tmp_path: Path) -> 
         Image.fromarray(noise).save(tmp_path / "images" / f"{name}.JPG")
     source = masks.load(f"sam:{tmp_path / 'sam'}", capture)
     assert isinstance(source, Masker)
-    loose = replace(source, points=3, sure=-1.0, stable=0.0)  # type: ignore[type-var]  # random weights are sure of nothing
+    loose = replace(source, points_per_side=3, pred_iou_thresh=-1.0, stability_thresh=0.0)  # type: ignore[type-var]  # random weights are sure of nothing
     views, again = list(loose.masks(EMPTY)), list(loose.masks(EMPTY))
     assert [v.camera.name for v in views] == ["one", "two"] and sum(len(v) for v in views) > 0
     assert [v.ids.tobytes() for v in views] == [v.ids.tobytes() for v in again]
     for view in views:
         assert (np.diff(view.scores) <= 0).all() and set(view.labels) <= {""}
-    strict = replace(source, points=3, sure=1.1)  # type: ignore[type-var]
+    strict = replace(source, points_per_side=3, pred_iou_thresh=1.1)  # type: ignore[type-var]
     assert all(len(v) == 0 for v in strict.masks(EMPTY))
     (tmp_path / "images/one.JPG").unlink()
     with pytest.raises(FileError, match="cannot read the photograph"):

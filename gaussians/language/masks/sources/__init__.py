@@ -1,1 +1,1 @@
-"""One module a source of masks."""
+"""The sources of masks, one module each."""

@@ -1,7 +1,7 @@
-"""Masks of rendered views without any model: patches whose depth, normals and colour go together.
+"""Masks of rendered views without a model: patches of similar depth, normals and colour.
 
-The greedy graph merge of Felzenszwalb & Huttenlocher (IJCV 2004) over the pixels of a rendered RGB-D picture. It finds
-patches, not objects: a chair is its seat, back and legs. Knows pictures with depth. Refuses to know Gaussians.
+The greedy graph merge of Felzenszwalb & Huttenlocher (IJCV 2004) over the pixels of a rendered RGB-D image. It finds
+patches, not objects: a chair gives one mask each for seat, back and legs.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ from ..view import NONE, ViewMasks
 F32 = NDArray[np.float32]
 
 SIDE = 256  # pixels of the rendered views
-STEP = 0.02  # of the depth, beyond what the slope explains: a step between two pixels that counts as one edge unit
-FILLED = 0.5  # alpha below which a pixel shows nothing
+DEPTH_UNIT = 0.02  # of the depth: a step between two pixels that counts as one edge unit
+MIN_ALPHA = 0.5  # pixels below it are empty
 SCALE = 60.0  # of the merge, in edge units times pixels: larger gives larger patches
-LEAST = 60  # pixels of a patch
-SCORE = 0.5  # a patch is as likely a thing as not
+MIN_PIXELS = 60  # of a patch
+SCORE = 0.5  # of every patch: whether it is an object is unknown
 
 
 def load(argument: str = "", capture: Path | None = None) -> Embedded:
-    """See `masks.load`. It looks at rendered views, from the capture's cameras if the scene has them."""
+    """See `masks.load`. The views are rendered, from the cameras of the scene if it has any."""
     del capture
     if argument:
         raise UserError(f"embedded masks take no argument, got {argument!r}")
@@ -42,7 +42,7 @@ def load(argument: str = "", capture: Path | None = None) -> Embedded:
 
 @dataclass(frozen=True)
 class Embedded:
-    """The patches of views chosen to see all that can be seen."""
+    """Patches of views that are chosen to cover the visible scene."""
 
     side: int = SIDE
 
@@ -59,9 +59,9 @@ class Embedded:
 
 
 def of_view(seen: Render, camera: Camera) -> ViewMasks:
-    """The patches of one rendered picture; what shows nothing is in none."""
+    """The patches of one rendered image; empty pixels are in none."""
     depth = seen.depth.cpu().numpy().astype(np.float64)
-    filled = seen.alpha.cpu().numpy() >= FILLED
+    filled = seen.alpha.cpu().numpy() >= MIN_ALPHA
     lab = rgb_to_lab(seen.rgb.cpu().clamp(0, 1)).numpy()
     normals = _normals(depth, camera)
     height, width = depth.shape
@@ -72,20 +72,20 @@ def of_view(seen: Render, camera: Camera) -> ViewMasks:
         difference = (lab[a] - lab[b]) * np.array([LIGHTNESS, 1, 1], np.float32)
         turn = 1 - np.abs((normals[a] * normals[b]).sum(axis=-1))
         step = np.abs(depth[a] - depth[b]) / np.maximum(np.minimum(depth[a], depth[b]), 1e-9)
-        weight = np.linalg.norm(difference, axis=-1) / COLOR_UNIT + turn / NORMAL_UNIT + step / STEP
+        weight = np.linalg.norm(difference, axis=-1) / COLOR_UNIT + turn / NORMAL_UNIT + step / DEPTH_UNIT
         pairs.append(np.stack([index[a][both], index[b][both]], axis=1))
         weights.append(weight[both])
-    label = merge_regions(height * width, np.concatenate(pairs), np.concatenate(weights), SCALE, LEAST)
+    label = merge_regions(height * width, np.concatenate(pairs), np.concatenate(weights), SCALE, MIN_PIXELS)
     label[~filled.ravel()] = NONE
     names, ids, size = np.unique(label, return_inverse=True, return_counts=True)
-    good = (names >= 0) & (size >= LEAST)
+    good = (names >= 0) & (size >= MIN_PIXELS)
     place = np.where(good, np.cumsum(good) - 1, NONE).astype(np.int32)
     count = int(good.sum())
     return ViewMasks(camera, place[ids].reshape(height, width), ("",) * count, np.full(count, SCORE, np.float32))
 
 
 def _normals(depth: NDArray[np.float64], camera: Camera) -> F32:
-    """`[H, W, 3]` unit normals of the surface the depths lie on, in the camera's axes; zero at the picture's rim."""
+    """Unit normals `[H, W, 3]` from depth, in camera axes; zero at the border of the image."""
     y, x = np.mgrid[: camera.height, : camera.width] + 0.5
     points = np.stack([(x - camera.cx) / camera.fx * depth, (y - camera.cy) / camera.fy * depth, depth], axis=-1)
     normals = np.zeros_like(points)

@@ -1,14 +1,14 @@
-"""Masks that another program made of photographs: `folder:PATH`.
+"""Read masks of photographs that another program made: `folder:PATH`.
 
-PATH is a folder with one of these, or the `.json` itself:
+PATH is a COCO `.json` or a folder with one of:
 
 - `masks.json` `{photo: [{"id", "label", "score"}]}` and a `NAME.png` for each photo, pixel value = id, 0 for none;
 - `NAME.npz` for each photo: `masks` `[M, H, W]` bool, or `ids` `[H, W]` or `[L, H, W]` of integers with -1 for none;
   if wanted `labels` `[M]`, `scores` `[M]`, `vectors` `[M, D]`;
 - COCO `.json`: results `[{"image_id", "segmentation", "score", …}]` or a data set with images, categories, annotations.
 
-A photo is found among the cameras by its name without folder and suffix. A photo with no entry was not looked at; one
-with an empty entry was, and nothing was found in it. Knows these files. Refuses to guess what does not fit.
+The camera of a photo is found by the photo's name without folder and suffix. A photo without an entry is not a view;
+one with an empty entry is a view in which nothing was found. Files that do not fit are an error; nothing is guessed.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from ....errors import FileError, UserError
 from ....files.captures.capture import TRANSFORMS, read_capture
 from ....files.foreign import read_archive, read_json
 from ....scene import Scene
-from ..view import NONE, ViewMasks, packed
+from ..view import NONE, ViewMasks, pack_layers
 from . import rle
 
 INDEX = "masks.json"
-MOST_MASKS = 1 << 16  # of a photo: as many as a picture of 16 bits can number
-MOST_PIXELS = 1 << 32  # of all masks of a photo, a byte each while they are read
-LOOSE = 1.0  # pixels by which a side may differ from its photograph's proportions: halves of odd sizes are rounded
+MAX_MASKS = 1 << 16  # of a photo: as many ids as a 16-bit image holds
+MAX_PIXELS = 1 << 32  # of all masks of a photo together, one byte each while they are read
+MAX_RESIDUAL = 1.0  # pixels by which a side may deviate from the photograph's aspect ratio, by rounding of halved sizes
 
 Reader = Callable[[Camera], ViewMasks]
 
@@ -41,8 +41,8 @@ def load(argument: str, capture: Path | None = None) -> Folder:
     """See `masks.load`.
 
     Raises:
-        FileError: the folder or the capture is not there.
-        UserError: no folder was named.
+        FileError: the folder or the capture does not exist.
+        UserError: no folder is given.
     """
     if not argument:
         raise UserError("name the folder of masks: folder:PATH")
@@ -57,11 +57,11 @@ def load(argument: str, capture: Path | None = None) -> Folder:
 
 @dataclass(frozen=True)
 class Folder:
-    """Masks on the disk.
+    """Masks on disk.
 
     Attributes:
-        path: folder or `.json`.
-        cameras: of the photographs; None takes the scene's own.
+        path: the folder or `.json`.
+        cameras: of the photographs; None for those of the scene.
     """
 
     path: Path
@@ -73,7 +73,7 @@ class Folder:
         """See `Masker`. Photographs come in the order of their names."""
         cameras = self.cameras if self.cameras is not None else scene.cameras
         if not cameras:
-            raise FileError(f"nothing says where the photographs of {self.path} were taken; give --capture")
+            raise FileError(f"the cameras of the photographs of {self.path} are unknown; give --capture")
         by_name = {c.name.lower(): c for c in reversed(cameras)} | {
             Path(c.name).stem.lower(): c for c in reversed(cameras)
         }
@@ -93,7 +93,7 @@ class Folder:
 
 
 def _readers(path: Path) -> dict[str, Reader]:
-    """How to read the masks of each photo."""
+    """A reader for the masks of each photo."""
     if path.is_file():
         return _coco(path)
     if (path / INDEX).is_file():
@@ -106,56 +106,58 @@ def _readers(path: Path) -> dict[str, Reader]:
 
 
 def _sized(camera: Camera, width: int, height: int) -> Camera:
-    """The camera at the masks' size.
+    """The camera at the size of the masks.
 
     Raises:
-        UserError: the masks have other proportions than the photograph.
+        UserError: the masks have another aspect ratio than the photograph.
     """
     gain = width / camera.width
-    if abs(camera.height * gain - height) > LOOSE * max(gain, 1):
+    if abs(camera.height * gain - height) > MAX_RESIDUAL * max(gain, 1):
         raise UserError(f"masks of {width}x{height} do not fit a photograph of {camera.width}x{camera.height}")
     return camera.resized(width, height)
 
 
-# -- masks.json and pictures of ids
+# -- masks.json and images of ids
 
 
 def _indexed(folder: Path) -> dict[str, Reader]:
-    told = read_json(folder / INDEX)
-    if not isinstance(told, dict) or not all(isinstance(v, list) for v in told.values()):
-        raise FileError(f"{folder / INDEX} must say {{photo: [{{id, label, score}}]}}")
-    return {photo: _picture(folder / f"{Path(photo).stem}.png", entries) for photo, entries in told.items()}
+    table = read_json(folder / INDEX)
+    if not isinstance(table, dict) or not all(isinstance(v, list) for v in table.values()):
+        raise FileError(f"{folder / INDEX} must hold {{photo: [{{id, label, score}}]}}")
+    return {photo: _id_image(folder / f"{Path(photo).stem}.png", entries) for photo, entries in table.items()}
 
 
-def _picture(path: Path, entries: list[Any]) -> Reader:
+def _id_image(path: Path, entries: list[Any]) -> Reader:
     def read(camera: Camera) -> ViewMasks:
-        drawn = _ids_of(path)
+        ids = _read_ids(path)
         try:
             numbers = [int(e["id"]) for e in entries]
             labels = tuple(str(e.get("label", "")) for e in entries)
             scores = np.array([float(e.get("score", 1.0)) for e in entries], np.float32)
         except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
             raise UserError(f"{INDEX} has an entry without a readable id, label and score ({error!r})") from error
-        if len(set(numbers)) < len(numbers) or not all(1 <= n < MOST_MASKS for n in numbers):
-            raise UserError(f"{INDEX} must number the masks of a photo from 1 without repeating, got {numbers[:9]}")
-        unknown = sorted(set(np.unique(drawn).tolist()) - {0, *numbers})
+        if len(set(numbers)) < len(numbers) or not all(1 <= n < MAX_MASKS for n in numbers):
+            raise UserError(
+                f"{INDEX} must number the masks of a photo from 1 without repeating an id, got {numbers[:9]}"
+            )
+        unknown = sorted(set(np.unique(ids).tolist()) - {0, *numbers})
         if unknown:
             raise UserError(f"{path.name} has a pixel of value {unknown[0]}, which {INDEX} does not list")
         place = np.full(max([0, *numbers]) + 1, NONE, np.int32)
         place[numbers] = np.arange(len(numbers))
-        return ViewMasks(_sized(camera, drawn.shape[1], drawn.shape[0]), place[drawn], labels, scores)
+        return ViewMasks(_sized(camera, ids.shape[1], ids.shape[0]), place[ids], labels, scores)
 
     return read
 
 
-def _ids_of(path: Path) -> NDArray[np.int32]:
-    """`[H, W]` values of a picture with one channel."""
+def _read_ids(path: Path) -> NDArray[np.int32]:
+    """The values `[H, W]` of an image with one channel."""
     from PIL import Image
 
     try:
         with Image.open(path) as picture:
             if picture.mode not in ("L", "P", "1", "I", "I;16"):
-                raise UserError(f"{path.name} is a picture in {picture.mode}; ids need one channel")
+                raise UserError(f"{path.name} is an image in mode {picture.mode}; ids need one channel")
             return np.array(picture).astype(np.int32)
     except (OSError, ValueError, SyntaxError, EOFError, Image.DecompressionBombError) as error:
         raise FileError(f"cannot read the masks {path}: {error}") from error
@@ -173,14 +175,16 @@ def _archive(path: Path) -> Reader:
             scores = columns.get("scores", np.ones(count)).astype(np.float32, casting="same_kind")
             vectors = columns["vectors"].astype(np.float32, casting="same_kind") if "vectors" in columns else None
         except (TypeError, ValueError) as error:
-            raise UserError(f"labels must be names, scores and vectors numbers, one a mask ({error})") from error
+            raise UserError(
+                f"each mask needs a text label, and scores and vectors must be numbers ({error})"
+            ) from error
         return ViewMasks(_sized(camera, ids.shape[-1], ids.shape[-2]), ids, labels, scores, vectors)
 
     return read
 
 
 def _numbered(columns: Mapping[str, NDArray[Any]]) -> tuple[NDArray[np.int32], int]:
-    """Ids as `ViewMasks` wants them, and how many masks there are.
+    """The ids as `ViewMasks` takes them, and the number of masks.
 
     Raises:
         UserError: the archive holds no masks.
@@ -188,14 +192,14 @@ def _numbered(columns: Mapping[str, NDArray[Any]]) -> tuple[NDArray[np.int32], i
     if "masks" in columns:
         masks = columns["masks"]
         if masks.ndim != 3 or masks.dtype.kind not in "biu":
-            raise UserError(f"masks must be [M, H, W] of true and false, got {masks.dtype} {list(masks.shape)}")
-        return packed(masks.astype(bool)), len(masks)
+            raise UserError(f"masks must be booleans [M, H, W], got {masks.dtype} {list(masks.shape)}")
+        return pack_layers(masks.astype(bool)), len(masks)
     ids = columns.get("ids")
     if ids is None or ids.ndim not in (2, 3) or ids.dtype.kind not in "iu":
         raise UserError("an archive needs masks [M, H, W] or ids [H, W] or [L, H, W] of integers")
     least, most = (int(ids.min()), int(ids.max())) if ids.size else (NONE, NONE)
-    if not NONE <= least <= most + 1 <= MOST_MASKS:
-        raise UserError(f"ids must lie between -1 and {MOST_MASKS - 1}, got {least} to {most}")
+    if not NONE <= least <= most + 1 <= MAX_MASKS:
+        raise UserError(f"ids must lie between -1 and {MAX_MASKS - 1}, got {least} to {most}")
     return ids.astype(np.int32), max(most + 1, *(np.size(columns.get(k, ())) for k in ("labels", "scores")))
 
 
@@ -216,7 +220,7 @@ def _coco(path: Path) -> dict[str, Reader]:
             image = entry["image_id"]
             found.setdefault(names.get(image, str(image)), []).append(entry)
     except (KeyError, TypeError, AttributeError) as error:
-        raise FileError(f"{path} is no list of COCO results, nor a COCO data set ({error!r})") from error
+        raise FileError(f"{path} is neither a list of COCO results nor a COCO data set ({error!r})") from error
     return {name: _results(entries, kinds) for name, entries in found.items()}
 
 
@@ -228,16 +232,16 @@ def _results(entries: list[Any], kinds: Mapping[Any, str]) -> Reader:
                 raise ValueError(f"the masks of one photo have different sizes: {sorted(sizes)}")
             height, width = next(iter(sizes), (camera.height, camera.width))
             fitting = _sized(camera, width, height)
-            if len(entries) * height * width > MOST_PIXELS:
+            if len(entries) * height * width > MAX_PIXELS:
                 raise ValueError(
-                    f"{len(entries)} masks of {width}x{height} are more than memory holds; make them smaller"
+                    f"{len(entries)} masks of {width}x{height} exceed the limit of memory; make them smaller"
                 )
             masks = [rle.decode(e["segmentation"]) for e in entries]
             scores = np.array([float(e.get("score", 1.0)) for e in entries], np.float32)
             labels = tuple(str(e.get("label") or kinds.get(e.get("category_id"), "")) for e in entries)
         except (TypeError, ValueError, OverflowError, AttributeError) as error:
             raise UserError(f"a mask cannot be read: {error}") from error
-        ids = packed(np.stack(masks)) if masks else np.full((height, width), NONE, np.int32)
+        ids = pack_layers(np.stack(masks)) if masks else np.full((height, width), NONE, np.int32)
         return ViewMasks(fitting, ids, labels, scores)
 
     return read

@@ -1,8 +1,8 @@
-"""Run-length masks as COCO writes them (`segmentation: {"size": [h, w], "counts": …}`).
+"""Decode and encode run-length masks of COCO (`segmentation: {"size": [h, w], "counts": …}`).
 
-Runs go down the columns, first a run of zeros. Compressed counts are a string: each number in groups of five bits from
-the low end, a sixth bit for "more follows", 48 added to make it printable; from the fourth number on the difference to
-the one two before is written, with sign (the layout of cocoapi's maskApi). Knows that layout and nothing else.
+Runs go down the columns and start with a run of zeros. Compressed counts are a string: each number is written in
+groups of five bits, lowest first, with a sixth bit for "more follows" and 48 added to make it printable. From the
+fourth number on, the signed difference to the number two before is written (the layout of cocoapi's maskApi).
 """
 
 from __future__ import annotations
@@ -13,35 +13,35 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-MOST_PIXELS = 1 << 28
+MAX_PIXELS = 1 << 28
 
 
-def size_of(told: Any) -> tuple[int, int]:
+def size_of(segmentation: Any) -> tuple[int, int]:
     """Height and width of one segmentation, without reading its runs.
 
     Raises:
-        ValueError: it is none; the message says why.
+        ValueError: it is not valid; the message says why.
     """
-    if not isinstance(told, Mapping) or "size" not in told or "counts" not in told:
+    if not isinstance(segmentation, Mapping) or "size" not in segmentation or "counts" not in segmentation:
         raise ValueError("a segmentation must be an object with size and counts (polygons are not read)")
     try:
-        height, width = (int(side) for side in told["size"])
+        height, width = (int(side) for side in segmentation["size"])
     except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"size must be [height, width], not {told['size']!r}") from None
-    if not (height > 0 and width > 0 and height * width <= MOST_PIXELS):
-        raise ValueError(f"a mask of {width}x{height} pixels is none")
+        raise ValueError(f"size must be [height, width], not {segmentation['size']!r}") from None
+    if not (height > 0 and width > 0 and height * width <= MAX_PIXELS):
+        raise ValueError(f"a mask cannot have {width}x{height} pixels")
     return height, width
 
 
-def decode(told: Any) -> NDArray[np.bool_]:
-    """`[H, W]` mask of one segmentation.
+def decode(segmentation: Any) -> NDArray[np.bool_]:
+    """The mask `[H, W]` of one segmentation.
 
     Raises:
-        ValueError: it is none; the message says why.
+        ValueError: it is not valid; the message says why.
     """
-    height, width = size_of(told)
-    counts = told["counts"]
-    runs = _unpacked(counts) if isinstance(counts, str | bytes) else _plain(counts)
+    height, width = size_of(segmentation)
+    counts = segmentation["counts"]
+    runs = _decompressed(counts) if isinstance(counts, str | bytes) else _uncompressed(counts)
     if int(runs.sum()) != height * width or (runs < 0).any():
         raise ValueError(f"its runs cover {int(runs.sum())} pixels instead of {height * width}")
     flat = np.repeat(np.arange(len(runs)) % 2 == 1, runs)
@@ -49,26 +49,26 @@ def decode(told: Any) -> NDArray[np.bool_]:
 
 
 def encode(mask: NDArray[np.bool_]) -> dict[str, Any]:
-    """A mask `[H, W]` with compressed counts."""
+    """A mask `[H, W]` as a segmentation with compressed counts."""
     flat = np.asarray(mask, dtype=bool).T.ravel()
     ends = np.flatnonzero(np.diff(flat)) + 1
     runs = np.diff(np.concatenate([[0], ends, [len(flat)]]))
     if len(flat) and flat[0]:
         runs = np.concatenate([[0], runs])
-    return {"size": [int(side) for side in mask.shape], "counts": _packed(runs.tolist())}
+    return {"size": [int(side) for side in mask.shape], "counts": _compressed(runs.tolist())}
 
 
-def _plain(counts: Any) -> NDArray[np.int64]:
-    whole = isinstance(counts, Sequence) and all(isinstance(c, int) and 0 <= c <= MOST_PIXELS for c in counts)
+def _uncompressed(counts: Any) -> NDArray[np.int64]:
+    whole = isinstance(counts, Sequence) and all(isinstance(c, int) and 0 <= c <= MAX_PIXELS for c in counts)
     if not whole:
         raise ValueError("counts must be a string or a list of whole numbers")
     return np.array(counts, dtype=np.int64)
 
 
-def _unpacked(counts: str | bytes) -> NDArray[np.int64]:
+def _decompressed(counts: str | bytes) -> NDArray[np.int64]:
     codes = [c - 48 for c in (counts.encode() if isinstance(counts, str) else counts)]
     if any(not 0 <= c < 64 for c in codes):
-        raise ValueError("counts holds letters that no compressed mask has")
+        raise ValueError("counts holds characters that no compressed mask has")
     runs: list[int] = []
     at = 0
     while at < len(codes):
@@ -82,12 +82,12 @@ def _unpacked(counts: str | bytes) -> NDArray[np.int64]:
         if code & 16:
             value -= 1 << shift
         runs.append(value + (runs[-2] if len(runs) > 2 else 0))
-        if not 0 <= runs[-1] <= MOST_PIXELS:
-            raise ValueError("its compressed counts hold a run that cannot be")
+        if not 0 <= runs[-1] <= MAX_PIXELS:
+            raise ValueError("its compressed counts hold a run of impossible length")
     return np.array(runs, dtype=np.int64)
 
 
-def _packed(runs: list[int]) -> str:
+def _compressed(runs: list[int]) -> str:
     letters = []
     for i, run in enumerate(runs):
         value = run - (runs[i - 2] if i > 2 else 0)

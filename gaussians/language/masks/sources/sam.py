@@ -1,9 +1,9 @@
 """Masks by a Segment Anything model of transformers (`SamModel`): `sam:PATH-or-NAME`.
 
-Of the photographs of a capture, if there is one, else of rendered views of the scene itself. The masks have no names;
-encoders look at the things they make up. A grid of points prompts the model; masks that it is unsure of, that change
-with the threshold, or that another already covers are dropped (Kirillov et al. 2023, section 5; transformers' pipeline
-of that name needs the compiled half of torchvision, this does not). Refuses to know Gaussians.
+The images are the photographs of a capture if there is one, else rendered views of the scene. The masks have no labels;
+the encoder names the groups they form. The model is prompted with a grid of points. Masks of low predicted IoU or low
+stability, and duplicates, are discarded (Kirillov et al. 2023, section 5). The mask generation pipeline of transformers
+is not used because it needs the compiled operators of torchvision.
 """
 
 from __future__ import annotations
@@ -24,32 +24,32 @@ from ....render import render
 from ....scene import Scene
 from ....torchvision_fix import import_torchvision
 from ....viewpoints.coverage import choose_views, fit_camera
-from ..view import ViewMasks, packed
+from ..view import ViewMasks, pack_layers
 
-SIDE = 640  # pixels: the longer side of what is looked at, photographs included
-MOST_PHOTOS = 48  # of a capture, evenly spaced: more add time and little else
-POINTS = 16  # prompts along each side, half of SAM's usual number
+SIDE = 640  # pixels: the longer side of renders and photographs
+MAX_PHOTOS = 48  # of a capture, evenly spaced: more cost time and add little
+POINTS_PER_SIDE = 16  # prompts along each side, half of SAM's default
 BATCH = 64  # prompts at once
-SURE = 0.88  # intersection over union that the model expects of its mask, at least
-STABLE = 0.92  # intersection over union of the mask at thresholds OFFSET above and below, at least
-OFFSET = 1.0  # logits
-LEAST = 0.0005  # of the picture: smaller masks are specks
-SAME = 0.7  # intersection over union from which two masks are one
+PRED_IOU_THRESH = 0.88  # least intersection over union that the model predicts of its mask
+STABILITY_THRESH = 0.92  # least intersection over union of the masks at thresholds STABILITY_OFFSET above and below
+STABILITY_OFFSET = 1.0  # logits
+MIN_AREA = 0.0005  # of the image: smaller masks are discarded
+NMS_IOU = 0.7  # intersection over union from which two masks are duplicates
 
 
 def load(argument: str, capture: Path | None = None) -> Sam:
     """See `masks.load`.
 
     Raises:
-        UserError: no model was named.
-        BackendError: transformers is not installed, or there is no such model.
-        FileError: the capture is not there.
+        UserError: no model is given.
+        BackendError: transformers is not installed, or the model does not exist.
+        FileError: the capture does not exist.
     """
     if not argument:
         raise UserError("name the model: sam:PATH or sam:NAME, for example sam:facebook/sam-vit-base")
     place = Path(argument).expanduser()
     if not place.is_dir() and (place.is_absolute() or argument.startswith(".")):
-        raise BackendError(f"there is no model at {place}; give sam:PATH of the folder of a SamModel of transformers")
+        raise BackendError(f"there is no model at {place}; give sam:PATH of the folder of a transformers SamModel")
     source = str(place) if place.is_dir() else argument
     taken = None if capture is None else read_capture(capture)
     import_torchvision()
@@ -61,28 +61,28 @@ def load(argument: str, capture: Path | None = None) -> Sam:
         model: Any = SamModel.from_pretrained(source)
         processor = SamProcessor.from_pretrained(source)
     except (OSError, ValueError, KeyError, RuntimeError) as error:
-        advice = "give sam:PATH of the folder of a SamModel, or sam:NAME of one that can be fetched"
+        advice = "give sam:PATH of the folder of a SamModel, or sam:NAME of one that can be downloaded"
         raise BackendError(f"cannot load the SAM {argument!r}: {error}; {advice}") from error
     return Sam(model.eval(), processor, taken)
 
 
 @dataclass(frozen=True)
 class Sam:
-    """A loaded model.
+    """A loaded Segment Anything model.
 
     Attributes:
-        model, processor: of transformers.
-        capture: the photographs to look at; None renders views.
-        points: prompts along each side of a picture.
-        sure, stable: see SURE and STABLE.
+        model, processor: `SamModel` and `SamProcessor` of transformers.
+        capture: the photographs to segment; None to render views.
+        points_per_side: prompts along each side of an image.
+        pred_iou_thresh, stability_thresh: see PRED_IOU_THRESH and STABILITY_THRESH.
     """
 
     model: Any
     processor: Any
     capture: Capture | None = None
-    points: int = POINTS
-    sure: float = SURE
-    stable: float = STABLE
+    points_per_side: int = POINTS_PER_SIDE
+    pred_iou_thresh: float = PRED_IOU_THRESH
+    stability_thresh: float = STABILITY_THRESH
 
     def masks(
         self, scene: Scene, progress: Callable[[str, float], None] = lambda stage, share: None
@@ -91,33 +91,33 @@ class Sam:
         pictures = self._photos() if self.capture is not None else self._rendered(scene)
         for i, (camera, picture, count) in enumerate(pictures):
             masks, scores = self.segment(picture)
-            yield ViewMasks(camera, packed(masks), ("",) * len(masks), scores)
+            yield ViewMasks(camera, pack_layers(masks), ("",) * len(masks), scores)
             progress("masks", (i + 1) / count)
 
     def segment(self, picture: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
-        """Masks `[M, H, W]` of a picture `[H, W, 3]`, surest first, and how sure the model is of each `[M]`.
+        """Masks `[M, H, W]` of an image `[H, W, 3]` and their predicted IoUs `[M]`, highest first.
 
         Raises:
-            BackendError: the model failed.
+            BackendError: the model fails.
         """
         try:
             with torch.inference_mode():
                 masks, scores = self._prompted(picture)
         except (RuntimeError, ValueError, IndexError, TypeError) as error:
-            raise BackendError(f"SAM failed on a picture of {picture.shape[1]}x{picture.shape[0]}: {error}") from error
+            raise BackendError(f"SAM failed on an image of {picture.shape[1]}x{picture.shape[0]}: {error}") from error
         kept: list[int] = []
         for i in np.argsort(-scores, kind="stable").tolist():
-            if all((masks[i] & masks[k]).sum() < SAME * (masks[i] | masks[k]).sum() for k in kept):
+            if all((masks[i] & masks[k]).sum() < NMS_IOU * (masks[i] | masks[k]).sum() for k in kept):
                 kept.append(i)
         return masks[kept], scores[kept]
 
     def _prompted(self, picture: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
-        """All masks worth keeping, over a grid of prompts, and their scores."""
+        """The masks above the thresholds from a grid of prompts, and their predicted IoUs."""
         height, width = picture.shape[:2]
         made = self.processor(images=picture, return_tensors="pt")
         shown = self.model.get_image_embeddings(made["pixel_values"])
         inner_height, inner_width = made["reshaped_input_sizes"][0].tolist()
-        steps = (torch.arange(self.points) + 0.5) / self.points
+        steps = (torch.arange(self.points_per_side) + 0.5) / self.points_per_side
         grid = torch.stack(torch.meshgrid(steps * inner_width, steps * inner_height, indexing="xy"), dim=-1)
         masks, scores = [np.zeros((0, height, width), bool)], [np.zeros(0, np.float32)]
         prompts_of = grid.reshape(-1, 1, 2)
@@ -127,11 +127,12 @@ class Sam:
             logits = self.processor.post_process_masks(
                 answer.pred_masks, made["original_sizes"], made["reshaped_input_sizes"], binarize=False
             )[0].flatten(0, 1)  # [3 P, H, W]
-            sure = answer.iou_scores.flatten().clamp(0, 1)
-            above, below = ((logits > at).sum(dim=(1, 2)) for at in (OFFSET, -OFFSET))
-            good = (sure >= self.sure) & (above >= self.stable * below) & (above >= LEAST * height * width)
+            ious = answer.iou_scores.flatten().clamp(0, 1)
+            above, below = ((logits > at).sum(dim=(1, 2)) for at in (STABILITY_OFFSET, -STABILITY_OFFSET))
+            good = (ious >= self.pred_iou_thresh) & (above >= self.stability_thresh * below)
+            good &= above >= MIN_AREA * height * width
             masks.append((logits[good] > 0).numpy())
-            scores.append(sure[good].numpy().astype(np.float32))
+            scores.append(ious[good].numpy().astype(np.float32))
         return np.concatenate(masks), np.concatenate(scores)
 
     def _photos(self) -> Iterator[tuple[Camera, NDArray[np.uint8], int]]:
@@ -139,7 +140,7 @@ class Sam:
 
         assert self.capture is not None
         total = len(self.capture.cameras)
-        chosen = np.unique(np.linspace(0, total - 1, min(MOST_PHOTOS, total)).round().astype(int))
+        chosen = np.unique(np.linspace(0, total - 1, min(MAX_PHOTOS, total)).round().astype(int))
         for i in chosen:
             camera = _shrunk(self.capture.cameras[i])
             try:
