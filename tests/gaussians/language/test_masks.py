@@ -161,7 +161,7 @@ def test_a_missing_capture_is_a_file_error(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="cannot read"):
         read_capture(tmp_path)
     (tmp_path / "transforms.json").write_text("{")
-    with pytest.raises(FileError, match="no JSON"):
+    with pytest.raises(FileError, match="is not valid JSON"):
         read_capture(tmp_path)
 
 
