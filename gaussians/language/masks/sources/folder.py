@@ -175,9 +175,7 @@ def _archive(path: Path) -> Reader:
             scores = columns.get("scores", np.ones(count)).astype(np.float32, casting="same_kind")
             vectors = columns["vectors"].astype(np.float32, casting="same_kind") if "vectors" in columns else None
         except (TypeError, ValueError) as error:
-            raise UserError(
-                f"each mask needs a text label, and scores and vectors must be numbers ({error})"
-            ) from error
+            raise UserError(f"labels must be text, scores and vectors numbers, one per mask ({error})") from error
         return ViewMasks(_sized(camera, ids.shape[-1], ids.shape[-2]), ids, labels, scores, vectors)
 
     return read
