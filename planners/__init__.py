@@ -1,4 +1,4 @@
-"""Words and JSON: plans, scene graphs and the planners that make them. Knows no session and no pixels."""
+"""Planners: turn instructions into edit plans, and read, check, compose and lay out scene graphs."""
 
 from __future__ import annotations
 
@@ -11,32 +11,32 @@ from .budget import Ledger, Metered, Progress
 from .plan import EditPlan, Planner
 
 if TYPE_CHECKING:
-    from .cascade import Wisher
+    from .cascade import WishReader
 
 __all__ = ["EditPlan", "Planner", "load"]
 
 MODEL_VARIABLE = "SCENEWRIGHT_MODEL"
-_LOGIN = re.compile(r"//[^/@\s]*@")  # name and password in an address
+_LOGIN = re.compile(r"//[^/@\s]*@")  # user name and password in a URL
 
 
 def load(
     spec: str = "auto", *, ledger: Ledger | None = None, pictures: bool = False, progress: Progress | None = None
 ) -> Planner:
-    """The planner that one string names.
+    """Load the planner that a specification names.
 
-    "grammar" reads plain English without a model. "auto" adds wishes for the whole room, and where both abstain the
-    language model that the environment names (`SCENEWRIGHT_MODEL`), if it names one; "auto:MODEL" names it here. A
-    model alone ("openai:…", see `planners.model.FORMS`) plans everything. A model of "auto" is loaded when it is first
-    asked.
+    "grammar" parses plain English without a model. "auto" adds wishes for the whole room; where both abstain it asks
+    the language model that the environment variable `SCENEWRIGHT_MODEL` names, if it is set. "auto:MODEL" names the
+    model directly. A model alone ("openai:…", see `planners.model.FORMS`) plans everything. "auto" loads its model
+    when it first asks it.
 
     Args:
-        ledger: what models may cost, and have cost; without one an account of its own, with the usual patience.
-        pictures: let models see the viewer's picture.
-        progress: told while a model plans.
+        ledger: budget and spending of the session; by default a new one with the default budget.
+        pictures: send the viewer's picture to the model.
+        progress: called while a model plans.
 
     Raises:
         UserError: no planner has this name.
-        BackendError: a model that was named alone lacks something.
+        BackendError: a model named alone cannot be loaded.
     """
     if spec == "grammar":
         from .grammar import GrammarPlanner
@@ -51,7 +51,7 @@ def load(
     settings: dict[str, Any] = {"ledger": ledger or Ledger(), "pictures": pictures, "progress": progress}
     if model.is_model(spec):
         planner = _metered(spec, **settings)
-        planner.require()  # what is missing is said now, not at the first instruction
+        planner.require()  # raises now what is missing, not at the first instruction
         return planner
     if kind == "auto" and model.is_model(named):
         return _cascade(_metered(named, **settings))
@@ -68,23 +68,23 @@ def _cascade(model: Planner | None = None) -> Planner:
     return Cascade(GrammarPlanner(), _wishes, model)
 
 
-def _wishes() -> Wisher:
+def _wishes() -> WishReader:
     from .wishes import WishPlanner
 
     return WishPlanner()
 
 
 def _metered(spec: str, *, ledger: Ledger, pictures: bool, progress: Progress | None) -> Metered:
-    """A model that keeps to the ledger's budget, loaded when it is first asked."""
+    """A model planner within the ledger's budget, loaded when it is first asked."""
 
-    def make(goes_on: Progress) -> Planner:
+    def make(report: Progress) -> Planner:
         from .model import load_planner
 
-        return load_planner(spec, seconds=ledger.budget.seconds, pictures=pictures, progress=goes_on)
+        return load_planner(spec, seconds=ledger.budget.seconds, pictures=pictures, progress=report)
 
     return Metered(_public(spec), make, ledger, progress)
 
 
 def _public(spec: str) -> str:
-    """A specification as it may be shown."""
+    """A specification without user name and password, at most 200 characters, for messages."""
     return _LOGIN.sub("//", spec)[:200]

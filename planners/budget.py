@@ -1,7 +1,4 @@
-"""What asking language models may cost: a budget in words, the account of a session, and a planner that keeps to it.
-
-Knows seconds, dollars and when they are used up. Refuses to know what a model is asked.
-"""
+"""Limits the time and money spent on language models: a parsed budget, the spending of a session, a metered planner."""
 
 from __future__ import annotations
 
@@ -15,17 +12,17 @@ from functools import cached_property
 from ..gaussians.errors import BackendError, ScenewrightError, UserError
 from .plan import EditPlan, NoPlanError, Planner, Sight, Usage
 
-Progress = Callable[[str, float], None]  # stage in words, share done in [0, 1]
+Progress = Callable[[str, float], None]  # called with the stage in words and the share done in [0, 1]
 
-SECONDS = 60.0  # the longest that a model is waited for where no budget says otherwise
-_MOST = {"seconds": 86_400.0, "dollars": 1e6}
+SECONDS = 60.0  # default limit on waiting for a model
+_MAXIMUM = {"seconds": 86_400.0, "dollars": 1e6}
 _PART = re.compile(
     r"(?P<dollar>\$)?\s*(?P<number>\d+(?:\.\d*)?|\.\d+)\s*(?P<unit>s|sec|secs|seconds?|usd|dollars?)?", re.IGNORECASE
 )
 
 
 class OverBudgetError(BackendError):
-    """The budget is used up; the model was not asked."""
+    """The budget is used up, so the model was not asked."""
 
 
 @dataclass(frozen=True)
@@ -33,10 +30,10 @@ class Budget:
     """What language models may cost.
 
     Attributes:
-        seconds: the longest that one instruction may wait for them, all attempts together; not counting the embedding
-            of a scene that they look at for the first time.
-        dollars: what one session may spend; None sets no limit. No instruction is begun when it is used up, so that
-            the last one may go beyond it. Where no price is known (own servers, local models) nothing is counted.
+        seconds: limit on waiting for them in one instruction, all attempts together; the embedding of a scene that
+            they see for the first time does not count.
+        dollars: what one session may spend; None sets no limit. It is checked before each instruction, so the last
+            instruction may exceed it. Models without a known price (own servers, local models) cost nothing here.
     """
 
     seconds: float = SECONDS
@@ -44,10 +41,10 @@ class Budget:
 
     @classmethod
     def parse(cls, text: str) -> Budget:
-        """ "20s", "0.05usd" or both, "20s,0.05usd"; also "$0.05".
+        """Parse "20s", "0.05usd" or "$0.05", or both: "20s,0.05usd".
 
         Raises:
-            UserError: it is no budget.
+            UserError: the text is not a budget.
         """
         said: dict[str, float] = {}
         for part in text.split(","):
@@ -55,29 +52,29 @@ class Budget:
             unit = (found["unit"] or "").lower() if found else ""
             name = "dollars" if found and (found["dollar"] or unit.startswith(("u", "d"))) else "seconds"
             clear = found is not None and bool(found["dollar"]) != bool(unit) and name not in said
-            if not clear or found is None or not 0 < float(found["number"]) <= _MOST[name]:
+            if not clear or found is None or not 0 < float(found["number"]) <= _MAXIMUM[name]:
                 raise UserError(
-                    f"{text!r} is no budget; write seconds for an instruction, dollars for the session or both, above "
-                    "zero: 20s or 0.05usd or 20s,0.05usd (to ask no model at all: --planner grammar)"
+                    f"{text!r} is not a budget; write seconds for an instruction, dollars for the session or both, "
+                    "above zero: 20s or 0.05usd or 20s,0.05usd (to ask no model at all: --planner grammar)"
                 )
             said[name] = float(found["number"])
         return cls(**said)
 
 
 class Ledger:
-    """What a session has spent on language models, against its budget."""
+    """The budget of a session and what it has spent on language models."""
 
     def __init__(self, budget: Budget | None = None) -> None:
         self.budget = budget or Budget()
         self.spent: Usage | None = None
 
     def add(self, usage: Usage | None) -> None:
-        """Write down what was asked."""
+        """Add the usage of one instruction."""
         if usage is not None:
             self.spent = usage if self.spent is None else self.spent.plus(usage)
 
     def require(self) -> None:
-        """Let a model be asked once more.
+        """Check that a model may be asked once more.
 
         Raises:
             OverBudgetError: the session's dollars are spent.
@@ -90,14 +87,14 @@ class Ledger:
 
 
 class Metered:
-    """A planner that costs something: loaded when it is first needed, asked only while the budget lasts.
+    """A planner with a cost: loaded when it is first needed, asked only while the budget lasts.
 
     Args:
-        name: what it is called until it is loaded; holds no key.
-        make: loads it; it is to report pieces of an answer to the progress that it is given.
-        ledger: the account of the session.
-        progress: told when it is asked, whenever a piece of the answer arrives, and when it is done; the share is that
-            of the seconds it may take.
+        name: its name in messages; contains no key.
+        make: loads it; the loaded planner reports each piece of an answer to the callback that `make` is given.
+        ledger: budget and spending of the session.
+        progress: called when the planner is asked, when a piece of the answer arrives, and when it is done; the share
+            is that of the time limit.
     """
 
     def __init__(
@@ -110,26 +107,26 @@ class Metered:
         self._since = 0.0
 
     def require(self) -> None:
-        """Load it now.
+        """Load the planner now.
 
         Raises:
-            BackendError: what it needs is not there.
+            BackendError: something that it needs is missing.
         """
         _ = self._planner
 
     @cached_property
     def _planner(self) -> Planner:
-        return self._make(self._goes_on)
+        return self._make(self._report)
 
     def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
         """The plan for an instruction; see `Planner.plan`.
 
         Raises:
             OverBudgetError: the budget is used up.
-            BackendError: it cannot be loaded, cannot be reached, or gave no plan.
+            BackendError: the planner cannot be loaded or reached, or gave no plan.
         """
         self._ledger.require()
-        if sight is not None:  # embedding may take longer than any model, and is no time of the model's
+        if sight is not None:  # embed the scene before the clock starts: it may take longer than a model
             with suppress(ScenewrightError):
                 sight.graph()
         stage, self._since = f"asking {self.name}", time.monotonic()
@@ -144,6 +141,6 @@ class Metered:
         self._ledger.add(plan.usage)
         return plan
 
-    def _goes_on(self, stage: str, share: float) -> None:
+    def _report(self, stage: str, share: float) -> None:
         waited = time.monotonic() - self._since
         self._progress(f"{stage} ({waited:.0f} s)", min(waited / self._ledger.budget.seconds, 0.99))

@@ -1,7 +1,4 @@
-"""What cannot be because of sizes and supports: a sofa in a vase, a table on the mug that stands on it.
-
-Knows one step of a plan and the stage it meets. Refuses to know how words are read and how queries are resolved.
-"""
+"""Refuses steps of a plan that sizes or supports make impossible: a sofa in a vase, a table on the mug it carries."""
 
 from __future__ import annotations
 
@@ -18,12 +15,12 @@ from ..tools.ops.scale import Scale
 from .plan import Verdict
 from .rooms.graph_scene import Id, Stage
 
-# What floor, walls and ceiling forbid.
-MAKES_PLACE = frozenset({"delete", "move", "rotate", "scale", "duplicate", "replace", "exchange", "arrange"})
+# Operations that floor, walls and ceiling do not take.
+NOT_FOR_STRUCTURE = frozenset({"delete", "move", "rotate", "scale", "duplicate", "replace", "exchange", "arrange"})
 
 
-class Stopped(InstructionError):
-    """A step cannot be done; `verdict` says why."""
+class StepRefused(InstructionError):
+    """A step of a plan cannot be done; `verdict` says why, `candidates` are ids of things that could be meant."""
 
     def __init__(self, verdict: Verdict, reason: str, candidates: Sequence[Id] = ()) -> None:
         super().__init__(reason)
@@ -33,13 +30,13 @@ class Stopped(InstructionError):
 
 @dataclass(frozen=True)
 class Step:
-    """One operation and what it would touch.
+    """One operation and the nodes it affects.
 
     Attributes:
-        op: as planned.
-        targets: ids of the nodes it changes; of what an earlier step adds, "new 1", "new 2", …
-        anchors: ids of what its place or direction refers to.
-        metres: how far it moves, where it says so.
+        op: the operation as planned.
+        targets: ids of the nodes it changes; things that an earlier step adds are "new 1", "new 2", …
+        anchors: ids of the nodes that its place or direction refers to.
+        metres: its distance or length in metres, None if it gives none.
     """
 
     op: EditOp
@@ -49,24 +46,32 @@ class Step:
 
 
 def metres(op: EditOp) -> float | None:
-    """The distance an operation says, in metres; a graph's units are metres."""
+    """The distance or length that an operation gives, in metres, the unit of a graph; None if it gives none."""
     said = (getattr(op, name, None) for name in ("distance", "height", "width", "depth"))
     length: Length | None = next((found for found in said if found is not None), None)
     return None if length is None else round(in_metres(length.value, length.unit), 9)
 
 
 def refuse_impossible(stage: Stage, step: Step, chosen: Selection, anchors: Sequence[Selection]) -> None:
-    """Raise if sizes and supports forbid the step.
+    """Raise if sizes or supports make a step impossible.
+
+    Args:
+        stage: the scene before the step.
+        step: the step.
+        chosen: the things it changes.
+        anchors: the things its place or direction refers to.
 
     Raises:
-        Stopped: they do.
+        StepRefused: they do.
     """
     shell = [g for g in chosen.groups if stage.group(g).level == "structure"]
-    if shell and step.op.op in MAKES_PLACE:
-        raise Stopped("impossible", f"the {stage.group(shell[0]).label} stays: {step.op.op} is for things in the room")
+    if shell and step.op.op in NOT_FOR_STRUCTURE:
+        raise StepRefused(
+            "impossible", f"the {stage.group(shell[0]).label} stays: {step.op.op} is for things in the room"
+        )
     room = stage.graph.room.size
     if step.metres is not None and step.op.op == "move" and step.metres > sum(s * s for s in room) ** 0.5:
-        raise Stopped("impossible", f"{step.metres:g} m leads out of a room of {room[0]:g} x {room[1]:g} m")
+        raise StepRefused("impossible", f"{step.metres:g} m leads out of a room of {room[0]:g} x {room[1]:g} m")
     if step.op.op == "scale":
         _refuse_size(stage, step, chosen)
     if step.op.op == "exchange":
@@ -79,7 +84,7 @@ def refuse_impossible(stage: Stage, step: Step, chosen: Selection, anchors: Sequ
 
 
 def refuse_above(stage: Stage, step: Step, chosen: Selection | None) -> None:
-    """Raise if something that stands is to hang above something."""
+    """Raise if a thing that neither hangs nor is mounted on a wall is to be placed above another."""
     if getattr(getattr(step.op, "place", None), "relation", "") != "above":
         return
     groups = () if chosen is None else chosen.groups
@@ -87,27 +92,27 @@ def refuse_above(stage: Stage, step: Step, chosen: Selection | None) -> None:
     named = [(stage.group(g).label, supports.get(stage.ids[g])) for g in groups] or [(step.op.subject(), None)]
     for label, support in named:
         if support not in ("wall", "ceiling") and _usual_support(label) not in ("wall", "ceiling"):
-            raise Stopped("impossible", f"{label} stands and does not hang: say on something, or next to it")
+            raise StepRefused("impossible", f"{label} stands and does not hang: say on something, or next to it")
 
 
 def _usual_support(label: str) -> str:
-    """What things of this name stand on or hang from, "" if nothing is known of them."""
+    """The usual support of things of this name, "" if it is unknown."""
     kind = kinds.of(label)
     return "" if kind is None else kind.support
 
 
 def _refuse_exchange(stage: Stage, groups: Sequence[int]) -> None:
-    """Raise unless there are two things, neither of which stands on the other."""
+    """Raise unless there are exactly two things and neither stands on the other."""
     if len(groups) != 2:
-        raise Stopped("impossible", f"two things change places; this means {len(groups)}")
+        raise StepRefused("impossible", f"exactly two things can change places; this means {len(groups)}")
     for one, other in (groups, groups[::-1]):
         if _stands_on(stage, one, other):
             told = f"{stage.group(one).label} stands on {stage.group(other).label}"
-            raise Stopped("impossible", f"{told}: they cannot change places")
+            raise StepRefused("impossible", f"{told}: they cannot change places")
 
 
 def _refuse_size(stage: Stage, step: Step, chosen: Selection) -> None:
-    """Raise if something would outgrow the room."""
+    """Raise if a thing would become larger than the room."""
     assert isinstance(step.op, Scale)
     axis, length = step.op.axis, step.op.length
     for group in (stage.group(g) for g in chosen.groups):
@@ -117,29 +122,31 @@ def _refuse_size(stage: Stage, step: Step, chosen: Selection) -> None:
             factor = in_metres(length[1].value, length[1].unit) / max(sides[length[0]])
         most = max(sides.get(axis, group.box.size)) * factor
         if factor > 1 and most > 2 * max(stage.graph.room.size):
-            raise Stopped("impossible", f"{group.label} would be {most:.3g} m large, which no room of this size holds")
+            raise StepRefused(
+                "impossible", f"{group.label} would be {most:.3g} m large, and no room of this size holds that"
+            )
 
 
 def _refuse_place(stage: Stage, target: int, anchor: int, check: Callable[[Stage, int, int], bool] | None) -> None:
     name, other = stage.group(target).label, stage.group(anchor).label
     if target == anchor:
-        raise Stopped("impossible", f"{name} cannot be put relative to itself")
+        raise StepRefused("impossible", f"{name} cannot be put relative to itself")
     if check is None or stage.group(anchor).level == "structure":
         return
     if _stands_on(stage, anchor, target):
-        raise Stopped("impossible", f"{other} stands on {name}, so {name} cannot go on it")
+        raise StepRefused("impossible", f"{other} stands on {name}, so {name} cannot go on it")
     if check(stage, target, anchor):
-        raise Stopped("impossible", f"{name} is too large to go on or into {other}")
+        raise StepRefused("impossible", f"{name} is too large to go on or into {other}")
 
 
 def _too_large_inside(stage: Stage, target: int, anchor: int) -> bool:
-    """Whether the two smaller extents of a thing exceed those of what is to hold it; its length may stick out."""
+    """Whether a thing's two smaller extents exceed its container's two larger ones; its length may stick out."""
     thing, holder = (sorted(stage.group(g).box.size) for g in (target, anchor))
     return thing[0] > holder[1] or thing[1] > holder[2]
 
 
 def _too_large_on(stage: Stage, target: int, anchor: int) -> bool:
-    """Whether even the shorter side of a thing's footprint is twice the longer one of what is to carry it."""
+    """Whether the shorter side of a thing's footprint exceeds twice the longer side of its support's."""
     return min(stage.group(target).box.size[:2]) > 2 * max(stage.group(anchor).box.size[:2])
 
 

@@ -1,7 +1,6 @@
-"""What a planner gives back: operations, or the reason why there are none.
+"""The edit plan (operations, or the reason why there are none) and the protocol that planners implement.
 
-Knows the type of a plan and the protocol of a planner. Refuses to know how words are understood and what a scene is:
-a plan holds queries, not ids, so that it can be carried out on another scene.
+A plan holds queries, not ids, so that it can be carried out on another scene.
 """
 
 from __future__ import annotations
@@ -20,20 +19,20 @@ if TYPE_CHECKING:
 MAX_OPS = 64
 
 Verdict = Literal["ok", "not_an_edit", "not_understood", "impossible", "unsafe", "absent", "ambiguous"]
-"""`not_an_edit`: a question or chat. `not_understood`: an edit, in words the planner does not know. `impossible`:
-understood, but no operation does it. `unsafe`: not about the scene at all. `absent`, `ambiguous`: known only to
-planners that saw the scene, and after resolving."""
+"""`not_an_edit`: a question or chat. `not_understood`: an edit in words that the planner does not know. `impossible`:
+understood, but no operation does it. `unsafe`: not about the scene. `absent`, `ambiguous`: the scene has no such thing
+or several; only planners that see the scene give these, and the resolution of a plan's queries."""
 
 
 class Usage(BaseModel):
-    """What a language model was asked for, summed over all its answers to one instruction.
+    """The use of a language model, summed over all requests for one instruction.
 
     Attributes:
-        model: back end and model, as the planner is named.
-        requests: how often it was asked; more than one where an answer had to be repaired.
-        input_tokens, output_tokens: as the back end counted them, 0 where it did not.
-        dollars: by published prices; None where none are known (local models, own servers).
-        seconds: waiting for it.
+        model: back end and model, as in the planner's name.
+        requests: number of requests; more than one if an answer had to be repaired.
+        input_tokens, output_tokens: as counted by the back end, 0 if it did not count.
+        dollars: cost by published prices; None if no price is known (local models, own servers).
+        seconds: time spent waiting for answers.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -46,7 +45,7 @@ class Usage(BaseModel):
     seconds: Annotated[float, Field(ge=0, le=86_400, allow_inf_nan=False)] = 0.0
 
     def plus(self, other: Usage) -> Usage:
-        """Both together; dollars are unknown only where both are."""
+        """The sum of both; dollars are unknown only if both are."""
         known = [u.dollars for u in (self, other) if u.dollars is not None]
         return Usage(
             model=self.model,
@@ -59,7 +58,7 @@ class Usage(BaseModel):
 
 
 class NoPlanError(BackendError):
-    """A language model was asked and there is no plan; `usage` is what the asking cost, None if that is not known."""
+    """A language model was asked and gave no plan; `usage` is what that cost, None if unknown."""
 
     def __init__(self, message: str, usage: Usage | None = None) -> None:
         super().__init__(message)
@@ -70,16 +69,16 @@ class EditPlan(BaseModel):
     """A plan: either verdict "ok" and at least one operation, or another verdict, no operation and a reason.
 
     Attributes:
-        instruction: the words as given.
-        ops: what to do, in order. `Query.last` means the selection of the operation before, and in the first operation
-            that of the instruction before.
-        planner: who planned it.
-        prompt_hash: hash of the prompt, "" for planners that use none.
+        instruction: the instruction as given.
+        ops: the operations, in order. `Query.last` means the selection of the previous operation, and in the first
+            operation that of the previous instruction.
+        planner: name of the planner that made it.
+        prompt_hash: hash of the prompt, "" for planners without one.
         verdict: see `Verdict`.
-        reason: one sentence for a person; of a plan that is ok, what was read otherwise than it was written.
+        reason: one sentence for a person; in a plan that is ok, the spelling corrections and what was done.
         unknown: the exact words that were not understood.
-        seconds: how long planning took; not compared (`same_as`).
-        usage: what language models were asked for; None if none was. Not compared either.
+        seconds: how long planning took; `same_as` ignores it.
+        usage: use of language models, None if none was asked; `same_as` ignores it.
     """
 
     model_config = ConfigDict(
@@ -109,36 +108,36 @@ class EditPlan(BaseModel):
 
     @property
     def ok(self) -> bool:
-        """Whether there is something to do."""
+        """Whether the plan has operations."""
         return self.verdict == "ok"
 
     def same_as(self, other: EditPlan) -> bool:
-        """Whether both come to the same thing, whoever planned it and however long it took."""
+        """Whether both plans have the same verdict and operations."""
         return (self.verdict, self.ops) == (other.verdict, other.ops)
 
 
 class Sight(Protocol):
-    """The scene as far as planners may look at it, each part made only when somebody looks."""
+    """The scene as planners see it; each part is computed when it is first asked for."""
 
     def graph(self) -> SceneGraph:
-        """What stands where. Its ids are numbers, the groups that a query may name.
+        """The scene graph. Its ids are numbers: the groups that a query may name.
 
         Raises:
-            ScenewrightError: the scene cannot be looked at (it could not be embedded).
+            ScenewrightError: there is no graph because the scene could not be embedded.
         """
         ...
 
     def picture(self) -> bytes | None:
-        """The viewer's view as PNG, None where there are no pixels."""
+        """The viewer's view as PNG, None if the scene has no pixels."""
         ...
 
 
 class Planner(Protocol):
-    """Words to a plan. A planner never raises for words it does not understand; it says so in the verdict."""
+    """Turns an instruction into a plan. Words it does not understand are no error: the verdict reports them."""
 
     @property
     def name(self) -> str:
-        """What receipts call it."""
+        """Name of the planner in plans and receipts."""
         ...
 
     def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
@@ -146,12 +145,12 @@ class Planner(Protocol):
 
         Args:
             text: the instruction.
-            previous: the instruction before, for "the red one" and "a bit more".
-            sight: the scene, for planners that look at it.
+            previous: the previous instruction, for "the red one" and "a bit more".
+            sight: the scene, for planners that see it.
 
         Raises:
-            UserError: the instruction is too long to be one.
-            BackendError: a language model cannot be reached, or gave no plan after all attempts; a `NoPlanError` where
-                attempts were paid for.
+            UserError: the instruction is too long.
+            BackendError: a language model cannot be reached, or gave no plan in any attempt; a `NoPlanError` if
+                attempts may have cost something.
         """
         ...

@@ -1,7 +1,6 @@
-"""JSON Schema of what planners exchange, as a language model or another program reads it.
+"""JSON Schemas of plans, scene graphs, operations, queries and briefs, for language models and other programs.
 
-Knows the pydantic models and what each operation says of itself. Refuses to state anything twice: the schema is that of
-the very models that validate.
+Each schema is generated from the pydantic model that validates the data.
 """
 
 from __future__ import annotations
@@ -29,13 +28,12 @@ NAMES = tuple(_MAKERS)
 
 
 def schema(name: str) -> dict[str, Any]:
-    """The JSON Schema of an edit plan ("plan"), a scene graph, one operation ("ops"), a query or a
-    brief of a room to compose.
+    """The JSON Schema named "plan" (edit plan), "graph" (scene graph), "ops" (one operation), "query" or "brief".
 
-    An operation's description is its docstring and an example in words; `examples` holds the same as JSON.
+    The description of an operation is its docstring and an example in words; `examples` holds the example as JSON.
 
     Raises:
-        UserError: there is no such schema.
+        UserError: there is no schema of this name.
     """
     if name not in _MAKERS:
         raise UserError(f"there is no schema {name!r}; schemas are {', '.join(NAMES)}")

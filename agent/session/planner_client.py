@@ -108,10 +108,10 @@ class Reader:
         return self.last
 
     def noun_phrase(self, text: str) -> Query | None:
-        """A phrase read in passing, by who reads for nothing; None if it is none."""
-        from ...planners.cascade import in_passing
+        """The query of a noun phrase, read without a language model; None if it is not a noun phrase."""
+        from ...planners.cascade import without_model
 
-        return _query(in_passing(self._planner).plan(f"select {text}", sight=self._sight))
+        return _query(without_model(self._planner).plan(f"select {text}", sight=self._sight))
 
     def query(self, phrase: str | Query) -> Query:
         """What is described: by a phrase, as what an instruction is about, or by a query itself.
@@ -131,9 +131,9 @@ class Reader:
         return about[-1] if about else None
 
     def _described(self, text: str) -> Query | None:
-        from ...planners.cascade import in_passing
+        from ...planners.cascade import without_model
 
-        quick = in_passing(self._planner)
+        quick = without_model(self._planner)
         for words in (f"select {text}", text):
             if (query := _query(quick.plan(words, sight=self._sight))) is not None:
                 return query

@@ -1,4 +1,4 @@
-"""A planner without a model: plain imperative English, read with a grammar (lark)."""
+"""The grammar planner: parses plain imperative English with an LALR grammar (lark), without a language model."""
 
 from .planner import GrammarPlanner
 

@@ -23,8 +23,8 @@ from .meaning.commands import read
 from .meaning.phrases import Phrases
 from .parsing import Refusal, first_words, parse, trees
 from .tagging.lookahead import match
-from .tagging.non_edits import FORBIDDEN, STATEMENT, empty, is_chat, refuse_idle
-from .tagging.spelling import respell
+from .tagging.non_edits import FORBIDDEN, STATEMENT, empty_refusal, is_chat, refuse_non_edit
+from .tagging.spelling import correct_spelling
 from .tagging.tagger import clauses
 from .tagging.tags import Clause, Tag, sentences
 from .tagging.words import Word, clean, split
@@ -100,7 +100,7 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     """
     if phrase := unsafe_words(cleaned):
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
-    words, remarks = respell(split(cleaned))
+    words, remarks = correct_spelling(split(cleaned))
     before = _before(previous)
     said = Phrases(before.antecedent, before.again, before.colors)
     ops: list[dict[str, Any]] = []
@@ -127,7 +127,7 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
         ops, idle = [_sparing(op, topic) for op in ops], None  # "don't touch the sofa, remove everything"
     ops = _release(ops)
     if not ops:
-        raise idle or empty(words)
+        raise idle or empty_refusal(words)
     if idle and not is_chat(idle):
         raise Refusal(f"this part is not an edit, so nothing was planned: {idle}", *idle.words)
     if len(ops) > MAX_OPS:
@@ -163,7 +163,7 @@ def _carry(
     clause: Clause, sentence: Sequence[Word], mark: str, said: Phrases, follows: bool, cleaned: str
 ) -> list[dict[str, Any]]:
     """One clause's operations; refusals quote it."""
-    refuse_idle(clause, sentence, mark)
+    refuse_non_edit(clause, sentence, mark)
     try:
         if clause.unsupported:
             raise Refusal(clause.unsupported, clause.tags[0].text, verdict="impossible")

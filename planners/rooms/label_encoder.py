@@ -22,7 +22,7 @@ from ...gaussians.language.encoders.vocabulary import Vocabulary
 from ...gaussians.world import kinds
 from ...gaussians.world.kinds import Phrase
 from ...gaussians.world.words import AFTER_HEAD, normalise
-from ..grammar.tagging.spelling import slips
+from ..grammar.tagging.spelling import misspelled_name
 
 # Probability that a phrase means a label, by how the two agree. Each step is less than the share of the best score at
 # which the resolver sees a rival (0.55), so that an exact name beats a synonym, and that a broader word.
@@ -148,7 +148,7 @@ def respelt(asked: Phrase, labels: Sequence[str]) -> Phrase:
 
 @cache
 def _respelt(asked: Phrase, there: frozenset[str]) -> Phrase:
-    return tuple(slips(w, there) or w for w in asked)
+    return tuple(misspelled_name(w, there) or w for w in asked)
 
 
 @cache

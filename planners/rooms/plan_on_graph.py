@@ -14,7 +14,7 @@ from ...gaussians.errors import UserError
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...tools.operation import EditOp
-from ..impossible import Step, Stopped, metres, refuse_above, refuse_impossible
+from ..impossible import Step, StepRefused, metres, refuse_above, refuse_impossible
 from ..plan import EditPlan, Planner, Sight, Verdict
 from .graph_scene import Id, Stage
 
@@ -65,10 +65,10 @@ def resolve_plan(stage: Stage, plan: EditPlan, last: Selection | None = None) ->
     for number, op in enumerate(plan.ops, start=1):
         try:
             steps.append(play.step(op))
-        except (Stopped, UserError) as error:
+        except (StepRefused, UserError) as error:
             where = f"step {number} of {len(plan.ops)} ({op.op}): " if len(plan.ops) > 1 else ""
-            verdict: Verdict = error.verdict if isinstance(error, Stopped) else "not_understood"
-            candidates = error.candidates if isinstance(error, Stopped) else ()
+            verdict: Verdict = error.verdict if isinstance(error, StepRefused) else "not_understood"
+            candidates = error.candidates if isinstance(error, StepRefused) else ()
             rest = tuple(Step(o) for o in plan.ops[len(steps) :])
             return Resolved(verdict, (*steps, *rest), candidates, where + str(error), plan)
     return Resolved("ok", tuple(steps), (), "; ".join([*filter(None, [plan.reason]), *_slips(stage, plan)]), plan)
@@ -127,7 +127,7 @@ class _Play:
         """The operation with what it would touch.
 
         Raises:
-            Stopped: something is absent, ambiguous or cannot be.
+            StepRefused: something is absent, ambiguous or cannot be.
             UserError: a word is unknown.
         """
         query = op.query()
@@ -148,7 +148,9 @@ class _Play:
             return found
         named = self.stage.names(c.group for c in found.candidates if c.group >= 0)
         near = named if found.verdict == "ambiguous" else named[:3]
-        raise Stopped("ambiguous" if found.verdict == "ambiguous" else "absent", self.stage.told(found.reason), near)
+        raise StepRefused(
+            "ambiguous" if found.verdict == "ambiguous" else "absent", self.stage.told(found.reason), near
+        )
 
     def _anchors(self, op: EditOp) -> list[Selection]:
         """What its place or direction refers to; things added by this plan have no place of their own yet."""

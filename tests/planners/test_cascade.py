@@ -12,7 +12,7 @@ from scenewright.benchmarks import _written
 from scenewright.gaussians.errors import BackendError, UserError
 from scenewright.planners import MODEL_VARIABLE, load
 from scenewright.planners.budget import Budget, Ledger, Metered
-from scenewright.planners.cascade import MEASURABLE, Cascade, in_passing
+from scenewright.planners.cascade import MEASURABLE, Cascade, without_model
 from scenewright.planners.grammar import GrammarPlanner
 from scenewright.planners.plan import EditPlan, NoPlanError, Usage
 from scenewright.tools.registry import parse
@@ -234,12 +234,12 @@ def test_the_settings_reach_the_model(monkeypatch: pytest.MonkeyPatch) -> None:
     planner = load("openai:m", ledger=ledger, pictures=True)
     assert (given["spec"], given["seconds"], given["pictures"]) == ("openai:m", 7, True)
     assert planner.plan("delete the chair").planner == "fake:1"  # a model that is named alone plans everything
-    assert ledger.spent == USAGE and in_passing(planner) is planner
+    assert ledger.spent == USAGE and without_model(planner) is planner
 
 
 def test_passing_phrases_cost_nothing() -> None:
     model = Fake()
-    assert in_passing(Cascade(GRAMMAR, None, model)) is GRAMMAR
+    assert without_model(Cascade(GRAMMAR, None, model)) is GRAMMAR
 
 
 def test_loading_auto_with_a_model_imports_no_model_library() -> None:

@@ -12,7 +12,7 @@ from scenewright.benchmarks import _nouns
 from scenewright.gaussians.world.kinds import narrower, same
 from scenewright.planners import load
 from scenewright.planners.grammar.meaning.referring import head_noun, relations_named
-from scenewright.planners.grammar.tagging.spelling import respell, slips
+from scenewright.planners.grammar.tagging.spelling import correct_spelling, misspelled_name
 from scenewright.planners.grammar.tagging.words import split
 from scenewright.planners.grammar.vocabulary import lexicon
 from scenewright.planners.grammar.vocabulary.unsafe import unsafe_words
@@ -33,7 +33,7 @@ PLANNER = load("grammar")
     ],
 )
 def test_a_slip_is_corrected_and_told(written: str, meant: str) -> None:
-    fixed, told = respell(split(written))
+    fixed, told = correct_spelling(split(written))
     assert meant in [w.text for w in fixed]
     assert len(told) == 1 and meant in told[0]
     plan = PLANNER.plan(written)
@@ -48,7 +48,7 @@ def test_a_slip_is_corrected_and_told(written: str, meant: str) -> None:
     ],
 )  # fmt: skip
 def test_real_and_strange_words_stay_as_they_are(text: str) -> None:
-    fixed, told = respell(split(text))
+    fixed, told = correct_spelling(split(text))
     assert [w.text for w in fixed] == text.split() and told == ()
 
 
@@ -57,15 +57,15 @@ verbs = sorted(v[0] for v in lexicon.VERB_PHRASES if len(v) == 1 and len(v[0]) >
 
 @given(st.sampled_from(verbs))
 def test_what_is_spelt_right_is_never_touched(verb: str) -> None:
-    fixed, told = respell(split(f"{verb} the chair"))
+    fixed, told = correct_spelling(split(f"{verb} the chair"))
     assert fixed[0].text == verb and told == ()
 
 
 def test_a_noun_is_compared_only_with_what_is_there() -> None:
-    assert slips("cushon", frozenset({"cushion", "sofa"})) == "cushion"
-    assert slips("cushon", frozenset({"sofa"})) == ""
-    assert slips("lamb", frozenset({"lamp"})) == ""  # too short to tell from an animal
-    assert slips("chairs", frozenset({"chair"})) == ""  # known
+    assert misspelled_name("cushon", frozenset({"cushion", "sofa"})) == "cushion"
+    assert misspelled_name("cushon", frozenset({"sofa"})) == ""
+    assert misspelled_name("lamb", frozenset({"lamp"})) == ""  # too short to tell from an animal
+    assert misspelled_name("chairs", frozenset({"chair"})) == ""  # known
 
 
 @pytest.mark.parametrize(

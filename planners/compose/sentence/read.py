@@ -13,7 +13,7 @@ from typing import Any
 
 from ....gaussians.errors import UserError
 from ....gaussians.world.words import is_plural, singular
-from ...grammar.tagging.lookahead import color_at, is_plain, match
+from ...grammar.tagging.lookahead import color_at, match, may_be_noun
 from ...grammar.tagging.words import clean
 from ...grammar.vocabulary import lexicon, nouns, quantities
 from ...grammar.vocabulary.unsafe import unsafe_words
@@ -294,7 +294,7 @@ class _Reader:
         word = self.texts[i]
         everyday = nouns.is_known(word)
         behind = knowledge.lookup(knowledge.thing_words(), self.texts, i + 1)
-        if everyday and is_plain(word) and not behind and word not in vocabulary.STRUCTURE:
+        if everyday and may_be_noun(word) and not behind and word not in vocabulary.STRUCTURE:
             self._thing(singular(word)[:60], word, i)
             return 1
         self.unknown.append(word)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from ....gaussians.world.words import singular
 from ...grammar.tagging.lookahead import match
-from ...grammar.tagging.spelling import slips as slips_of
+from ...grammar.tagging.spelling import misspelled_name
 from ...grammar.tagging.words import split
 from ...grammar.vocabulary import lexicon
 from .. import knowledge
@@ -30,7 +30,9 @@ def words_of(cleaned: str) -> tuple[list[str], list[str]]:
             joined[-1] += "" if joined[-1].endswith("s") else "s"
         elif word.text not in ('"', "'"):
             joined.append(word.text)
-    slips = {i: s for i, t in enumerate(joined) if not _is_known(t) and (s := slips_of(t, knowledge.every_word()))}
+    slips = {
+        i: s for i, t in enumerate(joined) if not _is_known(t) and (s := misspelled_name(t, knowledge.every_word()))
+    }
     fixed = [slips.get(i, text) for i, text in enumerate(joined)]
     named = {j for i in range(len(fixed)) if (n := knowledge.longest_name(fixed, i)) for j in range(i, i + n)}
     told = [f"read “{joined[i]}” as {meant}" for i, meant in slips.items() if i in named]

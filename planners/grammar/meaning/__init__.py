@@ -1,1 +1,1 @@
-"""From a parse tree to queries and operations."""
+"""Turns parse trees into queries and edit operations."""

@@ -78,7 +78,7 @@ def relations_named(text: str) -> tuple[str, ...]:
         return ()
     found, i = [], 0
     while i < len(texts):
-        phrase = match(lexicon.INSIDE_PHRASES, texts, i)
+        phrase = match(lexicon.CLOSED_PHRASES, texts, i)
         if phrase and phrase[0][0] in ("PREP", "NEAR", "BETWEEN", "SIDE", "CENTER", "SPOT"):
             found.append(str(phrase[0][1] or phrase[0][0].lower()))
         i += phrase[1] if phrase else 1

@@ -1,1 +1,1 @@
-"""From an instruction to tagged tokens: words, spelling, tags and context rules."""
+"""Tokenizes an instruction, corrects its spelling and tags its words with the word classes of the grammar."""

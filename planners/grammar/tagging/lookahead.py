@@ -1,7 +1,7 @@
-"""Looking ahead in a sentence: what stands at a position, and what would.
+"""Lookups in the vocabulary tables at a position of a sentence, for the tagger.
 
-Knows the tables of words and how to look them up. Refuses to decide: every method answers one question about the words
-from a position and changes nothing (tagger.py asks them).
+Every function and method answers one question about the words from a position on and changes nothing; tagger.py and
+context_rules.py decide which tag a word gets.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ..vocabulary import lexicon, nouns, quantities
 from ..vocabulary.verbs import Entry
 from .words import bag
 
-# Colours that are things as well ("delete the orange").
+# Colour names that are nouns as well ("delete the orange").
 NOUN_COLORS = bag("orange rose peach apricot olive lime tomato salmon plum chocolate snow sand coral orchid wine mint")
 _OPENERS = frozenset({"DET", "PRON", "EVERYTHING", "NUMBER", "OTHERS"})
 _PARTICLES = frozenset({"up", "down", "out", "away", "off", "over"})
@@ -28,7 +28,7 @@ def _color_names() -> frozenset[str]:
 
 
 def color_at(texts: Sequence[str], i: int) -> tuple[str, int] | None:
-    """The colour phrase at `i` and how many words it has."""
+    """The colour phrase at `i` and its number of words, None if there is none."""
     for taken in (4, 3, 2, 1):
         if i + taken > len(texts):
             continue
@@ -39,7 +39,7 @@ def color_at(texts: Sequence[str], i: int) -> tuple[str, int] | None:
 
 
 def _without_basic(phrase: str, taken: int, behind: Sequence[str]) -> tuple[str, int]:
-    """ "navy blue" and "mint green" are navy and mint."""
+    """Count a basic colour behind a precise one as part of it: "navy blue" is navy, "mint green" is mint."""
     precise = phrase not in colors.BASIC and phrase not in ("grey", *colors.QUALIFIERS) and not phrase.startswith("#")
     doubled = taken == 1 and precise and bool(behind) and behind[0] in (*colors.BASIC, "grey")
     return phrase, taken + doubled
@@ -67,25 +67,25 @@ def match(table: Any, texts: Sequence[str], i: int) -> tuple[Any, int] | None:
     return None
 
 
-def is_plain(text: str) -> bool:
-    """Whether a word may be (part of) a noun as far as its own form goes."""
+def may_be_noun(text: str) -> bool:
+    """Whether a word may be (part of) a noun, judged by its form alone."""
     if not text[0].isalpha() or text in lexicon.STRUCTURE:
         return False
     return not (text.endswith("ly") and len(text) > 3 and text not in lexicon.ADVERB_NOUNS)
 
 
-class Reading:
-    """The words of one sentence, to be asked about."""
+class Lookahead:
+    """Questions about the words of one sentence, each asked at a position `i`."""
 
     def __init__(self, texts: Sequence[str]) -> None:
         self.texts = tuple(texts)
 
     def phrase(self, i: int) -> tuple[Entry, int] | None:
         """The phrase of the closed vocabulary at `i`."""
-        return match(lexicon.INSIDE_PHRASES, self.texts, i)
+        return match(lexicon.CLOSED_PHRASES, self.texts, i)
 
     def verb(self, i: int) -> tuple[Entry, int, int | None] | None:
-        """The verb at `i`, how many words it has there, and where its particle stands if behind the object."""
+        """The verb at `i`, its number of words there, and the position of its particle if that follows the object."""
         if found := self.gerund(i):
             return (*found, None)
         if apart := self.separable(i):
@@ -94,7 +94,7 @@ class Reading:
         return (*found, None) if found else None
 
     def separable(self, j: int) -> tuple[Entry, int, int] | None:
-        """ "blow it up": a verb whose particle stands behind its object, within the clause."""
+        """The verb at `j` whose particle follows its object within the clause ("blow it up"); see `verb`."""
         for k in range(j + 2, min(j + 10, len(self.texts))):
             if self.texts[k] in (",", "and", "then"):
                 break
@@ -104,7 +104,7 @@ class Reading:
         return None
 
     def gerund(self, j: int) -> tuple[Entry, int] | None:
-        """ "would you mind removing": the verb of the word in -ing behind such an opener."""
+        """The verb of an -ing form at `j` behind an opener such as "would you mind" ("would you mind removing")."""
         opened = any(self.texts[max(j - len(p), 0) : j] == p for p in lexicon.GERUND_OPENERS)
         text = self.texts[j] if j < len(self.texts) else ""
         if not opened or not text.endswith("ing"):
@@ -115,11 +115,14 @@ class Reading:
         return (entry, 1) if entry else None
 
     def verb_is_noun(self, i: int, taken: int) -> bool:
-        """ "light blue" or "cool colours" where a clause begins: an attribute, not a verb."""
+        """Whether a word that could be a verb begins a colour phrase ("light blue") where a clause begins."""
         return taken == 1 and (found := color_at(self.texts, i)) is not None and found[1] > 1
 
     def skip_polite(self, i: int) -> tuple[int, bool]:
-        """Behind politeness, if a verb follows it, and whether the clause forbids; else `i` itself."""
+        """The position behind polite phrases and filler, and whether the clause is a prohibition ("do not", "never").
+
+        Polite phrases are skipped only if a verb follows them; otherwise only filler and interjections are.
+        """
         j = i
         while j < len(self.texts):
             texts = self.texts
@@ -140,18 +143,20 @@ class Reading:
         return self.skip_interjections(i), False
 
     def skip_interjections(self, i: int) -> int:
+        """The position behind interjections and filler ("no, darker")."""
         i = self.skip_filler(i)
         while i + 1 < len(self.texts) and self.texts[i] in lexicon.INTERJECTIONS:
             i = self.skip_filler(i + 1 + (self.texts[i + 1] == ","))
         return i
 
     def skip_filler(self, i: int) -> int:
+        """The position behind filler words."""
         while found := match(lexicon.FILLER, self.texts, i):
             i += found[1]
         return i
 
     def verb_begins(self, j: int) -> bool:
-        """Whether a clause with a verb begins at `j`, behind "and" or a comma."""
+        """Whether a clause with a verb of its own begins at `j`, which is behind "and" or a comma."""
         k, negated = self.skip_polite(j)
         if negated:
             return True
@@ -168,42 +173,44 @@ class Reading:
         return self.object_follows(k + 1)
 
     def object_follows(self, i: int) -> bool:
+        """Whether a noun phrase begins at `i`."""
         if i >= len(self.texts):
             return False
         found = self.phrase(i)
         if found and found[0][0] in _OPENERS:
             return True
-        return not found and (self.nouny(i) or quantities.read(self.texts[i:]) is not None)
+        return not found and (self.noun_at(i) or quantities.read(self.texts[i:]) is not None)
 
     def preposition_at(self, i: int) -> bool:
+        """Whether a phrase of place begins at `i`."""
         found = self.phrase(i) if i < len(self.texts) else None
         return bool(found) and found[0][0] in ("PREP", "BETWEEN", "NEAR", "SIDE", "SPOT", "CENTER")  # type: ignore[index]
 
-    def nouny(self, i: int) -> bool:
-        """Whether a noun stands at `i`, perhaps behind further attributes."""
+    def noun_at(self, i: int) -> bool:
+        """Whether a noun is at `i`, possibly behind further attributes."""
         while i < len(self.texts):
             if self.texts[i] in ("one", "ones") or match(compounds(), self.texts, i):
                 return True
             phrase = self.phrase(i)
             if phrase and phrase[0][0] == "THING":
                 return True
-            if self.texts[i] == "round" and self.nouny(i + 1):
+            if self.texts[i] == "round" and self.noun_at(i + 1):
                 return True
             step = color_at(self.texts, i) or match(lexicon.ATTRIBUTE_PHRASES, self.texts, i)
             number = quantities.read(self.texts[i:])
-            if step and step[1] == 2 and self.texts[i] == "light" and not self.nouny(i + 2):
-                return True  # a light and its new colour
+            if step and step[1] == 2 and self.texts[i] == "light" and not self.noun_at(i + 2):
+                return True  # "light" is the noun, its new colour follows
             if step:
                 i += step[1]
             elif number and number.kind in ("NUMBER", "ORDINAL"):
                 i += number.taken
             else:
                 filler = match(lexicon.FILLER, self.texts, i)
-                return not phrase and not number and not filler and is_plain(self.texts[i])
+                return not phrase and not number and not filler and may_be_noun(self.texts[i])
         return False
 
     def colors(self, i: int) -> tuple[tuple[str, ...], int]:
-        """Colours joined by "and" or "or" before one noun ("red and blue mugs"), and how many words they take."""
+        """Colours joined by "and" or "or" before one noun ("red and blue mugs"), and their number of words."""
         found, j = [], i
         while color := color_at(self.texts, j):
             found.append(color[0])
@@ -211,23 +218,24 @@ class Reading:
             if self.texts[j : j + 1] not in (("and",), ("or",), (",",)) or not color_at(self.texts, j + 1):
                 break
             j += 1
-        return (tuple(found), j - i) if len(found) > 1 and self.nouny(j) else ((), 0)
+        return (tuple(found), j - i) if len(found) > 1 and self.noun_at(j) else ((), 0)
 
     def colored_noun(self, i: int) -> bool:
-        """Whether a colour stands at `i` with its noun behind it; "the sofa light blue" is no sofa light."""
+        """Whether a colour and then its noun are at `i`; in "the sofa light blue" no noun follows the colour."""
         found = color_at(self.texts, i)
         if not found:
             return False
         shade = found[1] == 2 and self.texts[i] == "light"
-        return self.nouny(i + found[1]) if shade else self.nouny(i)
+        return self.noun_at(i + found[1]) if shade else self.noun_at(i)
 
     def hue_follows(self, i: int) -> bool:
+        """Whether a colour without a noun behind it is at `i`."""
         i += self.texts[i : i + 1] in (("a",), ("an",))
         found = color_at(self.texts, i)
-        return bool(found) and not self.nouny(i + found[1])  # type: ignore[index]
+        return bool(found) and not self.noun_at(i + found[1])  # type: ignore[index]
 
     def opens_noun(self, i: int) -> bool:
-        """Whether "all" goes on as a noun phrase at `i` ("all non-red chairs", "all other chairs")."""
+        """Whether the words at `i` continue a noun phrase that "all" began ("all non-red chairs")."""
         if i >= len(self.texts):
             return False
         if self.texts[i] in ("non", "other", "remaining"):
@@ -238,11 +246,11 @@ class Reading:
 
 @cache
 def verb_classes() -> frozenset[str]:
-    """The classes of verbs."""
+    """The token types of verbs."""
     return frozenset(kind for kind, _ in lexicon.VERB_PHRASES.values())
 
 
 @cache
 def compounds() -> frozenset[tuple[str, ...]]:
-    """The compounds, with a singular and a plural head ("wine glasses")."""
+    """The compound nouns, with singular and with plural head ("wine glass", "wine glasses")."""
     return nouns.COMPOUNDS | {(*c[:-1], plural(c[-1])) for c in nouns.COMPOUNDS}

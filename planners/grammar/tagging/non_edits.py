@@ -1,7 +1,6 @@
-"""Clauses that ask for no change: questions, statements, chat, commands of the session, prohibitions.
+"""Detects clauses that ask for no change: questions, statements, chat, session commands and prohibitions.
 
-Knows how people talk when they ask for nothing. Refuses to decide what that means for the clauses beside it: planner.py
-does.
+planner.py decides what such a clause means for the other clauses of the instruction.
 """
 
 from __future__ import annotations
@@ -18,11 +17,20 @@ FORBIDDEN = "it says what not to do, and asks for no change"
 STATEMENT = "this is a statement, not an edit"
 _JUDGING = bag("looks look seems seem feels sounds works good great nice fine better perfect lovely")
 _BEING = bag("is are was were should")
-_TELLING = ("DIR", "HUE", "LIGHT", "GROWN", "ONE", "OTHER", "OTHERS", "LENGTH", "DEGREE")
+_EDIT_TYPES = ("DIR", "HUE", "LIGHT", "GROWN", "ONE", "OTHER", "OTHERS", "LENGTH", "DEGREE")
 
 
-def refuse_idle(clause: Clause, sentence: Sequence[Word], mark: str) -> None:
-    """Raise if the clause is a question, a statement, chat, a session command or a prohibition."""
+def refuse_non_edit(clause: Clause, sentence: Sequence[Word], mark: str) -> None:
+    """Raise if the clause is a question, a statement, chat, a session command or a prohibition.
+
+    Args:
+        clause: the tagged clause.
+        sentence: the words of the sentence it belongs to.
+        mark: the punctuation mark that ends the sentence.
+
+    Raises:
+        Refusal: it is; the verdict is `not_an_edit`.
+    """
     if clause.negated:
         raise Refusal(FORBIDDEN, "not", verdict="not_an_edit")
     asked = clause.tags[1] if clause.verb == "SELECT" and len(clause.tags) > 1 else None
@@ -35,8 +43,8 @@ def refuse_idle(clause: Clause, sentence: Sequence[Word], mark: str) -> None:
     polite = {w for p in (*lexicon.FILLER, *lexicon.POLITE) for w in p} | lexicon.CHAT
     if first in lexicon.COMMANDS:
         raise Refusal(f"{first} is a command of the session, not an edit", first, verdict="not_an_edit")
-    says = any(t.type in _TELLING for t in clause.tags)
-    if not says and all(t in polite for t in texts) and any(t in lexicon.CHAT for t in texts):
+    asks_for_edit = any(t.type in _EDIT_TYPES for t in clause.tags)
+    if not asks_for_edit and all(t in polite for t in texts) and any(t in lexicon.CHAT for t in texts):
         raise Refusal(CHAT, verdict="not_an_edit")
     if texts[:3] == ["do", "the", "same"] or any(t.type == "SHOULD" for t in clause.tags):
         return
@@ -49,11 +57,12 @@ def refuse_idle(clause: Clause, sentence: Sequence[Word], mark: str) -> None:
 
 
 def is_chat(refusal: Refusal) -> bool:
+    """Whether a clause was refused as chat."""
     return str(refusal) == CHAT
 
 
-def empty(words: Sequence[Word]) -> Refusal:
-    """The refusal of an instruction in which nothing but filler stands."""
+def empty_refusal(words: Sequence[Word]) -> Refusal:
+    """The refusal of an instruction that consists of filler only."""
     said = tuple(w.text for w in words if w.text[0].isalpha())
     if any(w in lexicon.CHAT for w in said):
         return Refusal(CHAT, verdict="not_an_edit")

@@ -1,7 +1,7 @@
-"""Slips of the keyboard in an instruction, corrected where exactly one word is meant; the plan says so.
+"""Corrects typing errors in an instruction where exactly one known word is near; the plan reports each correction.
 
-Only words of the closed vocabulary are corrected here. Any word may be a noun, so a noun is only ever compared with the
-names of what is there (`slips`, called by label_encoder.py and compose).
+`correct_spelling` corrects words of the closed vocabulary only. Any unknown word may be a noun, so nouns are compared
+with the names of things in the scene instead (`misspelled_name`, called by label_encoder.py and compose).
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ _BEHIND_NOUN = bag(
     "between left right up down forward backward"
 )
 
-# Words that people use in rooms and that are one letter from one of ours.
-_REAL = bag(
+# Correct words that people use about rooms and that are one letter away from a word of the vocabulary.
+_CORRECT_WORDS = bag(
     "barge beard beast best black block board boast bound bowl bowls bread break brick bride bright broad brown burn "
     "cable candy chain clock coach coast cove crate crown dove drive drown eight fable feast fern fight first fist "
     "flight flock found fright glide glove gong grate great greek green ground hole hope hose host knock large least "
@@ -40,48 +40,48 @@ _REAL = bag(
 )
 
 
-def respell(words: Sequence[Word]) -> tuple[tuple[Word, ...], tuple[str, ...]]:
-    """The words with slips corrected, and for each correction a remark."""
+def correct_spelling(words: Sequence[Word]) -> tuple[tuple[Word, ...], tuple[str, ...]]:
+    """The words with typing errors corrected, and one remark for each correction."""
     texts = [w.text for w in words]
     fixed, told = [], []
     for i, word in enumerate(words):
-        meant = _meant(texts, i)
+        meant = _correction(texts, i)
         if meant:
             told.append(f"read “{word.text}” as {meant}")
         fixed.append(Word(meant or word.text, word.start, word.end))
     return tuple(fixed), tuple(told)
 
 
-def _meant(texts: Sequence[str], i: int) -> str:
-    """What a word that nobody knows is a slip of, "" if it is known, may be a noun, or several words are as near."""
+def _correction(texts: Sequence[str], i: int) -> str:
+    """The correction of an unknown word; "" if the word is known or may be a noun, or if several words are as near."""
     text = texts[i]
-    if text in _known() or _is_noun(texts, i):
+    if text in _known_words() or _noun_expected(texts, i):
         return ""
-    near = one_slip(text, _verbs()) if _opens(texts, i) else likely_slips(text, _closed())
-    near = frozenset(w for w in near if not text.startswith(w))  # "nicer" is a form of nice, no slip
+    near = one_slip(text, _verbs()) if _verb_expected(texts, i) else likely_slips(text, _closed_words())
+    near = frozenset(w for w in near if not text.startswith(w))  # "nicer" is a form of nice, not an error
     if len({UNITS.get(w, w) for w in near}) == 1:
         return min(near)  # "metrs": metres or meters
     return ""
 
 
-def _opens(texts: Sequence[str], i: int) -> bool:
-    """Whether a verb is expected: at the start of a clause, and behind "and" or "to" where its object follows."""
+def _verb_expected(texts: Sequence[str], i: int) -> bool:
+    """Whether a verb is expected at `i`: where a clause starts, and behind "and" or "to" if an object follows."""
     before = texts[i - 1] if i else "."
     return before in _CLAUSE_OPENERS or (before in _MAY_OPEN and " ".join(texts[i + 1 : i + 2]) in _DETERMINERS)
 
 
-def _is_noun(texts: Sequence[str], i: int) -> bool:
-    """Whether only a noun fits: between a determiner and what follows a noun phrase.
+def _noun_expected(texts: Sequence[str], i: int) -> bool:
+    """Whether only a noun fits at `i`: between a determiner and a word that follows noun phrases.
 
-    Before "of" a comparative may stand as well ("the taller of the two").
+    "of" is not among these words, as a comparative may precede it ("the taller of the two").
     """
     behind = texts[i + 1] if i + 1 < len(texts) else "."
     return i > 0 and texts[i - 1] in _ARTICLES and behind in _BEHIND_NOUN
 
 
-def slips(text: str, there: frozenset[str]) -> str:
-    """The one word of those that are there which an unknown word is a slip of, else ""."""
-    near = frozenset() if text in _known() else likely_slips(text, there)
+def misspelled_name(text: str, there: frozenset[str]) -> str:
+    """The only name in `there` that an unknown word is a misspelling of; "" if there is none or more than one."""
+    near = frozenset() if text in _known_words() else likely_slips(text, there)
     return min(near) if len(near) == 1 else ""
 
 
@@ -91,21 +91,23 @@ def _verbs() -> frozenset[str]:
 
 
 @cache
-def _closed() -> frozenset[str]:
-    """Words that are no nouns: of relations, colours, sizes, amounts."""
-    said = {w for table in (lexicon.INSIDE_PHRASES, lexicon.ATTRIBUTE_PHRASES) for p in table for w in p}
+def _closed_words() -> frozenset[str]:
+    """Words of the closed classes: relations, colours, sizes, amounts."""
+    said = {w for table in (lexicon.CLOSED_PHRASES, lexicon.ATTRIBUTE_PHRASES) for p in table for w in p}
     said |= {c for c in colors.names() if c.isalpha()} | {u for u in UNITS if u.isalpha()}
     said |= {*quantities.NUMBERS, *quantities.ORDINALS, *quantities.FRACTIONS, "degrees", "percent", "times", "turns"}
     return frozenset(w for w in said if len(w) >= SHORTEST and w.isalpha())
 
 
 @cache
-def _known() -> frozenset[str]:
-    """Every word that is spelt as it should be, as far as we know."""
+def _known_words() -> frozenset[str]:
+    """Every word that is taken to be spelt correctly."""
     tables = (lexicon.VERB_PHRASES, lexicon.UNSUPPORTED_PHRASES, lexicon.FILLER, lexicon.POLITE, lexicon.GERUND_OPENERS)
     said = {w for table in tables for p in table for w in p}
-    said |= lexicon.CHAT | lexicon.QUESTION | lexicon.STATEMENT | lexicon.STRUCTURE | lexicon.ADVERB_NOUNS | _REAL
+    said |= (
+        lexicon.CHAT | lexicon.QUESTION | lexicon.STATEMENT | lexicon.STRUCTURE | lexicon.ADVERB_NOUNS | _CORRECT_WORDS
+    )
     said |= lexicon.COMMANDS | lexicon.ASKING | lexicon.PARTICIPLES | nouns.everyday() | kinds.every_word()
     said |= {w for c in nouns.COMPOUNDS for w in c} | Vocabulary.household().modifiers
     said |= {w for n in kinds.every_word() for w in normalise(n)}
-    return frozenset(said | _closed() | _verbs() | set(map(plural, said)))
+    return frozenset(said | _closed_words() | _verbs() | set(map(plural, said)))

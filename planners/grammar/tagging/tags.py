@@ -1,6 +1,6 @@
-"""Tokens for the grammar, the clauses they make, and where a sentence ends.
+"""Data types of the tagger: tagged tokens, clauses and the tagger's state; also splits text into sentences.
 
-Which class a word has is said by context_rules.py and tagger.py.
+context_rules.py and tagger.py decide which class a word has.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from .lookahead import Reading
+from .lookahead import Lookahead
 from .words import Word
 
 _BOUNDARIES = frozenset(".;!?\n")
@@ -17,7 +17,7 @@ _BOUNDARIES = frozenset(".;!?\n")
 
 @dataclass(frozen=True)
 class Tag:
-    """One token for the grammar: its class, what it means, and the words it was made from."""
+    """One token for the parser: its class (a terminal of grammar.lark), its value, and the words it was made from."""
 
     type: str
     value: Any
@@ -30,7 +30,13 @@ class Tag:
 
 @dataclass
 class Clause:
-    """Tagged tokens of one clause; `verb` is the class of its first token, "" if it does not begin with a verb."""
+    """Tagged tokens of one clause.
+
+    Attributes:
+        verb: class of the first token, "" if the clause does not begin with a verb.
+        negated: whether it is a prohibition ("do not touch the sofa").
+        unsupported: why its verb cannot be carried out, "" if it can.
+    """
 
     tags: list[Tag] = field(default_factory=list)
     verb: str = ""
@@ -38,38 +44,38 @@ class Clause:
     unsupported: str = ""
 
 
-class Tagging:
-    """A sentence on the way to tagged clauses.
+class TaggerState:
+    """A sentence while it is being tagged.
 
     Attributes:
-        words, texts: of the sentence.
-        read: looks ahead in it.
-        clause: the one that is being tagged.
-        done: the clauses before it.
-        particles: positions of particles of verbs that were tagged before ("blow it up").
+        words, texts: the words of the sentence, and their text.
+        ahead: lookups at any position of the sentence.
+        clause: the clause that is being tagged.
+        done: the finished clauses.
+        particles: positions of verb particles that were tagged with their verbs ("blow it up").
     """
 
     def __init__(self, words: Sequence[Word]) -> None:
         self.words = tuple(words)
         self.texts = tuple(w.text for w in words)
-        self.read = Reading(self.texts)
+        self.ahead = Lookahead(self.texts)
         self.clause = Clause()
         self.done: list[Clause] = []
         self.particles: set[int] = set()
 
-    def put(self, kind: str, value: Any, i: int, taken: int) -> int:
-        """Tag `taken` words from `i`; the position behind them."""
+    def emit(self, kind: str, value: Any, i: int, taken: int) -> int:
+        """Append a token made of `taken` words from `i`; returns the position behind them."""
         self.clause.tags.append(Tag(kind, value, self.words[i : i + taken]))
         return i + taken
 
     @property
-    def before(self) -> str:
-        """The class of the last token of the clause, "" at its beginning."""
+    def last_type(self) -> str:
+        """The class of the clause's last token, "" at its beginning."""
         return self.clause.tags[-1].type if self.clause.tags else ""
 
 
 def sentences(words: Sequence[Word]) -> Iterator[tuple[tuple[Word, ...], str]]:
-    """The sentences and the mark each ends with ("" at the end of the text)."""
+    """The sentences, each with the punctuation mark that ends it ("" at the end of the text)."""
     start = 0
     for i, word in enumerate(words):
         if word.text in _BOUNDARIES:

@@ -1,7 +1,7 @@
-"""An instruction as plain lower-case words with marks of punctuation between them.
+"""Tokenizes an instruction: splits it into lower-case words and punctuation marks.
 
-Knows typography: quotes, contractions, fractions, hyphens, possessives, numbers glued to units. Refuses to know what
-any word means. Every word remembers how it was written, so that an abstention can quote it.
+Handles quotes, contractions, fractions, hyphens, possessives and numbers attached to units. Every word keeps its
+position in the text, so that a refusal can quote the original.
 """
 
 from __future__ import annotations
@@ -44,12 +44,12 @@ _TOKEN = re.compile(
 
 
 def bag(text: str) -> frozenset[str]:
-    """The words of a table written as running text."""
+    """The set of the words in a text, for writing word tables compactly."""
     return frozenset(text.split())
 
 
 def phrases(text: str, mark: str = ",") -> frozenset[tuple[str, ...]]:
-    """The phrases of a table, separated by `mark`, as tuples of words."""
+    """The set of the phrases in a text, separated by `mark`, each as a tuple of words."""
     return frozenset(tuple(phrase.split()) for phrase in text.split(mark))
 
 
@@ -58,9 +58,9 @@ class Word:
     """One word or mark.
 
     Attributes:
-        text: lower case, contractions and possessives taken apart ("'s" is a word of its own).
-        start: offset in the cleaned instruction, for quoting a clause.
-        end: offset behind it.
+        text: in lower case; contractions and possessives are split ("'s" is a word of its own).
+        start: offset of its first character in the cleaned instruction.
+        end: offset behind its last character.
     """
 
     text: str
@@ -96,7 +96,7 @@ def split(cleaned: str) -> tuple[Word, ...]:
 
 
 def _parts(text: str, start: int, end: int, before: list[Word]) -> list[Word]:
-    """One raw token as the words it stands for."""
+    """The words that one raw token stands for: expands contractions, splits possessives, drops quotes and hyphens."""
     if text in ("'", '"') and not (before and before[-1].end == start and before[-1].text[-1].isdigit()):
         plural_owner = text == "'" and before and before[-1].end == start and before[-1].text.endswith("s")
         return [Word("'s", start, end)] if plural_owner else []

@@ -1,1 +1,1 @@
-"""The words that the grammar knows: nouns, verbs, quantities and closed classes."""
+"""The vocabulary of the grammar planner: nouns, verbs, quantities and the closed word classes."""

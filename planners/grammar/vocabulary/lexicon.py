@@ -67,7 +67,7 @@ def _said(kind: str, name: str, alone: bool = False) -> dict[str, Entry]:
     return dict.fromkeys((known.alone if alone else known.phrases).in_commands(), (kind, name))
 
 
-INSIDE: dict[str, Entry] = {
+CLOSED: dict[str, Entry] = {
     **{phrase: ("PREP", name) for phrase, name in RELATIONS.items()},
     **{f"over {p}": ("PREP", n) for p, n in RELATIONS.items()},
     **{f"directly {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside",)},
@@ -219,9 +219,9 @@ INSIDE: dict[str, Entry] = {
 
 # What is said of the room is said of a garden too.
 _PLACES = ("garden", "patio", "yard", "terrace", "kitchen", "office", "bedroom", "living room", "cafe", "shop", "space")
-INSIDE |= {
+CLOSED |= {
     phrase.replace("the room", f"the {place}"): entry
-    for phrase, entry in list(INSIDE.items())
+    for phrase, entry in list(CLOSED.items())
     if phrase.endswith("of the room")
     for place in _PLACES
 }
@@ -322,7 +322,7 @@ def table(*tables: dict[str, Entry]) -> dict[tuple[str, ...], Entry]:
 
 
 VERB_PHRASES = table(VERBS)
-INSIDE_PHRASES = table(INSIDE)
+CLOSED_PHRASES = table(CLOSED)
 ATTRIBUTE_PHRASES = table(ATTRIBUTES)
 UNSUPPORTED_PHRASES = {tuple(p.split()): reason for p, reason in UNSUPPORTED.items()}
-LONGEST = max(map(len, (*VERB_PHRASES, *INSIDE_PHRASES, *ATTRIBUTE_PHRASES, *FILLER, *POLITE)))
+LONGEST = max(map(len, (*VERB_PHRASES, *CLOSED_PHRASES, *ATTRIBUTE_PHRASES, *FILLER, *POLITE)))

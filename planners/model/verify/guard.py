@@ -23,7 +23,7 @@ from ....gaussians.language.query.query import Query
 from ....gaussians.language.query.terms import STRUCTURE
 from ....tools.operation import EditOp
 from ...grammar.vocabulary.verbs import VERBS
-from ...impossible import MAKES_PLACE
+from ...impossible import NOT_FOR_STRUCTURE
 from ...plan import Planner, Verdict
 from ...rooms.graph import SceneGraph
 from ...rooms.graph_scene import Id
@@ -135,7 +135,7 @@ class Guard:
         for op in ops:
             query = op.query()
             name = STRUCTURE.get(query.text) if query is not None and not query.groups else None
-            if op.op in MAKES_PLACE and name:
+            if op.op in NOT_FOR_STRUCTURE and name:
                 reason = f"the {name} stays: {op.op} is for things in the room"
                 yield Fault(
                     "shell", f'{reason}; if that was asked, answer with verdict "impossible"', "impossible", reason

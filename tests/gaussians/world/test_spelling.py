@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import scenewright
 from scenewright.gaussians.world.spelling import did_you_mean, likely_slips, nearest, one_slip
 from scenewright.planners.compose.sentence.tokenize import words_of
-from scenewright.planners.grammar.tagging.spelling import respell
+from scenewright.planners.grammar.tagging.spelling import correct_spelling
 from scenewright.planners.grammar.tagging.words import split
 
 _THERE = frozenset(
@@ -55,7 +55,7 @@ def test_one_slip_away_is_symmetric(word: str, data: st.DataObject) -> None:
     ],
 )  # fmt: skip
 def test_a_word_where_a_noun_is_expected_stays(text: str) -> None:
-    fixed, told = respell(split(text))
+    fixed, told = correct_spelling(split(text))
     assert [w.text for w in fixed] == text.split() and told == ()
 
 
