@@ -29,7 +29,7 @@ def command(
     from ...gaussians.language import encoders
     from ...gaussians.language import masks as maskers
     from ...gaussians.language.field.embed import embed
-    from ...gaussians.language.field.store import load_field, misfit, save_field
+    from ...gaussians.language.field.store import load_field, mismatch, save_field
     from ..pictures.named_cameras import with_frame
     from ..terminal.thing_names import told
 
@@ -44,7 +44,7 @@ def command(
         terminal.say(f"note: {scene} has cameras of its own; --capture is of use with --masks only")
     source = maskers.load(masks, capture) if masks is not None else None
     known = None if again else load_field(loaded, scene, chosen.fingerprint)
-    if known is None and not again and (why := misfit(scene, chosen.fingerprint)) is not None:
+    if known is None and not again and (why := mismatch(scene, chosen.fingerprint)) is not None:
         terminal.say(f"note: the language field beside {scene} {why}: embedding again")
     embedded = known or embed(loaded, chosen, progress=terminal.progress, masks=source)
     path = None if known else save_field(embedded, scene)

@@ -86,11 +86,11 @@ def _with_saved_field(loaded: Scene, scene: Scene, opening: Opening) -> tuple[Sc
     `scene` is `loaded` in the frame that the user gave; a field that was made in another is not used.
     """
     from ...gaussians.language import encoders
-    from ...gaussians.language.field.store import load_field, misfit
+    from ...gaussians.language.field.store import load_field, mismatch
 
     embedded = load_field(loaded, opening.path)
     if embedded is None or embedded.language is None:
-        if (why := misfit(opening.path)) is not None:
+        if (why := mismatch(opening.path)) is not None:
             again = f"embedding again when words need it; `scenewright embed {opening.path}` keeps the new one"
             terminal.say(f"note: the language field beside {opening.path} {why}: {again}")
         return scene, opening.encoder

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ...gaussians.camera import Camera
 from ...gaussians.color import name_of
 from ...gaussians.errors import UserError
-from ...gaussians.language.field.group_index import members_of
+from ...gaussians.language.field.group_index import index_groups
 from ...gaussians.language.field.language_field import Group
 from ...gaussians.scene import Scene
 from ...gaussians.world import kinds
@@ -48,7 +48,7 @@ class RoomFrame:
         self.basis: NDArray[np.float64] = scene.frame.basis()
         self.scale = scene.frame.metres_per_unit or 1.0
         self.cloud, self.field = scene.cloud, scene.language
-        self.members = members_of(scene.cloud)
+        self.members = index_groups(scene.cloud)
         groups = [g for g in scene.language.groups if g.level in ("object", "structure") and g.count]
         corners = np.concatenate([g.box.corners() for g in groups]) @ self.basis.T if groups else np.zeros((1, 3))
         low, high = corners.min(axis=0), corners.max(axis=0)

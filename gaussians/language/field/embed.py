@@ -1,8 +1,6 @@
-"""From a cloud to a language field, in a straight line:
+"""`embed`: build the language field of a scene.
 
-up and floor -> skin -> views -> things (`segment`) -> what masks say of them -> every Gaussian's group -> the table.
-
-Knows the order of this room's pieces. Refuses to know queries.
+surface points -> up and floor -> views -> segments -> revision by masks -> group of every Gaussian -> table of groups
 """
 
 from __future__ import annotations
@@ -31,8 +29,8 @@ from ..segmentation.segment import VIEWS_PER_CANDIDATE, Progress, Segment, segme
 from ..segmentation.surface import MIN_OPACITY, Surface, surface_of
 from .group_table import with_table
 
-REACH = 6.0  # spacings within which an unassigned Gaussian joins the surface point it is nearest to
-NEAR = 2.0  # likewise for an opaque one, which would be skin if it were not a floater
+MAX_DISTANCE = 6.0  # spacings within which a Gaussian off the surface joins the group of the nearest surface point
+MAX_DISTANCE_OPAQUE = 2.0  # likewise for an opaque one, which is a floater: otherwise it would be a surface point
 
 
 def embed(
@@ -42,18 +40,18 @@ def embed(
     views_per_candidate: int = VIEWS_PER_CANDIDATE,
     masks: Masker | None = None,
 ) -> Scene:
-    """The scene with `cloud.group` filled and a language field over it; nothing else of the cloud changes.
+    """The scene with `cloud.group` filled and a language field; nothing else of the cloud changes.
 
     Args:
         scene: any cloud; `frame.up` is estimated if its source is "unknown", the floor if it is None.
-        encoder: makes the vectors that names are compared with.
-        progress: called with a stage's name and the share of it that is done.
+        encoder: makes the image vectors that labels and queries are compared with.
+        progress: called with the name of a stage and its completed share.
         views_per_candidate: renders of each candidate object, 1 to 4; see `scenewright bench select`.
-        masks: a source of masks of some views (`masks.load`), whose things and names go before those found without.
+        masks: a source of masks of some views (`masks.load`); its objects and labels take precedence.
 
     Raises:
-        UserError: the scene has no Gaussians, or the masks' vectors are not of the encoder's width.
-        FileError, BackendError: the masks cannot be had.
+        UserError: the scene has no Gaussians, or the vectors of the masks have another width than the encoder's.
+        FileError, BackendError: the masks cannot be loaded or made.
     """
     if not len(scene.cloud):
         raise UserError("the scene has no Gaussians, so there is nothing to embed")
@@ -66,34 +64,36 @@ def embed(
     tracks = None if masks is None else associate(lift(scene.cloud, masks.masks(scene, progress)))
     progress("segments", 0.0)
     with one_thread():
-        eyes = encoder if _knows_pieces(encoder) else encoders.load()
-        labels, things = segment(scene, surface, eyes, progress, views_per_candidate)
+        judge = encoder if _knows_fragments(encoder) else encoders.load()
+        labels, segments = segment(scene, surface, judge, progress, views_per_candidate)
         owner = None
         if tracks is not None:
             vectors = [_vector(t, encoder) for t in tracks.tracks]
-            labels, things, owner = apply_tracks(surface, labels, things, tracks, vectors)
-        group = _thing_of_superpoint(things, int(labels.max(initial=-1)) + 1)[labels]
+            labels, segments, owner = apply_tracks(surface, labels, segments, tracks, vectors)
+        group = _segment_of_superpoint(segments, int(labels.max(initial=-1)) + 1)[labels]
         column = _assign(scene.cloud, surface, group)
         if tracks is not None and owner is not None:
-            column = _by_own_votes(scene.cloud, surface, group, column, owner, track_by_votes(tracks))
+            column = _with_voted_tracks(scene.cloud, surface, group, column, owner, track_by_votes(tracks))
         progress("table", 0.0)
-        on_skin = np.zeros(len(scene.cloud), bool)
-        on_skin[surface.rows] = True
-        embedded = with_table(scene, things, column, on_skin, seen, encoder)
-    return embedded if tracks is None else _noted(embedded, tracks)
+        on_surface = np.zeros(len(scene.cloud), bool)
+        on_surface[surface.rows] = True
+        embedded = with_table(scene, segments, column, on_surface, seen, encoder)
+    return embedded if tracks is None else _with_mask_note(embedded, tracks)
 
 
-def _knows_pieces(encoder: Encoder) -> bool:
-    """Whether an encoder learnt what is no whole thing, as ours do on pictures of pieces; one of photographs did not,
-    takes a hundred times longer to look, and is asked only for the names of what was found."""
+def _knows_fragments(encoder: Encoder) -> bool:
+    """Whether an encoder can tell whole objects from fragments, as ours do, which are trained on renders of both.
+
+    An encoder trained on photographs cannot, and takes a hundred times longer; it only names the groups found.
+    """
     return bool(encoder.image_size) and not encoders.looks_at_background(encoder)
 
 
 def _vector(track: Track, encoder: Encoder) -> NDArray[np.float32] | None:
-    """What a track is, as a vector of the encoder: of its masks, or of the names they give if it has a name.
+    """The vector of a track: that of its masks, else the weighted mean of its labels' text vectors if it has a label.
 
     Raises:
-        UserError: the masks' vectors are not of the encoder's width.
+        UserError: the vectors of the masks have another width than the encoder's.
     """
     if track.vector is not None:
         if len(track.vector) != encoder.dim:
@@ -110,17 +110,18 @@ def _vector(track: Track, encoder: Encoder) -> NDArray[np.float32] | None:
     return (total / norm).astype(np.float32) if norm > 1e-8 else None
 
 
-def _by_own_votes(
+def _with_voted_tracks(
     cloud: GaussianCloud, surface: Surface, group: NDArray[np.int32], column: NDArray[np.int32],
     owner: NDArray[np.int32], voted: NDArray[np.int32],
 ) -> NDArray[np.int32]:  # fmt: skip
-    """`column` with Gaussians off the skin moved to the nearest surface point of the track that their own votes give
-    them to: they are few and large, and much of a distant thing is drawn by them. Views that agree on one tell it from
-    a floater better than its distance from the skin does.
+    """`column` with Gaussians off the surface moved to the group of the nearest surface point of their voted track.
+
+    Such Gaussians are few but large and make up much of distant objects. Agreement of views distinguishes them from
+    floaters better than their distance from the surface does.
 
     Args:
         group, owner: `[P]` group and track of each surface point.
-        voted: `[N]` track of each Gaussian by its own votes, see `mask_assignment.track_by_votes`.
+        voted: `[N]` track of each Gaussian, see `mask_assignment.track_by_votes`.
     """
     column, off = column.copy(), (voted >= 0) | ((voted != UNSEEN) & (column != NO_GROUP))
     off[surface.rows] = False
@@ -132,23 +133,23 @@ def _by_own_votes(
     return column
 
 
-def _noted(scene: Scene, tracks: Tracks) -> Scene:
-    """The scene with a note of what became of the masks."""
+def _with_mask_note(scene: Scene, tracks: Tracks) -> Scene:
+    """The scene with a note of how many tracks of masks were used and discarded."""
     assert scene.language is not None
-    said = f"{len(tracks.tracks)} things were found by masks"
-    said += f", {tracks.discarded} that too few views confirm were left out" if tracks.discarded else ""
-    return scene.replace(language=replace(scene.language, notes=(*scene.language.notes, said)))
+    note = f"{len(tracks.tracks)} things were found by masks"
+    note += f", {tracks.discarded} that too few views confirm were discarded" if tracks.discarded else ""
+    return scene.replace(language=replace(scene.language, notes=(*scene.language.notes, note)))
 
 
-def _thing_of_superpoint(things: Sequence[Segment], count: int) -> NDArray[np.int32]:
+def _segment_of_superpoint(segments: Sequence[Segment], count: int) -> NDArray[np.int32]:
     owner = np.full(count, NO_GROUP, np.int32)
-    for i, thing in enumerate(things):
-        owner[list(thing.members)] = i
+    for i, one in enumerate(segments):
+        owner[list(one.members)] = i
     return owner
 
 
 def _assign(cloud: GaussianCloud, surface: Surface, group: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Group of every Gaussian `[N]`: its own, or for those off the skin the nearest surface point's within reach."""
+    """Group of every Gaussian `[N]`: its own, or off the surface that of the nearest surface point if it is close."""
     column = np.full(len(cloud), NO_GROUP, np.int32)
     column[surface.rows] = group
     rest = np.ones(len(cloud), bool)
@@ -158,7 +159,7 @@ def _assign(cloud: GaussianCloud, surface: Surface, group: NDArray[np.int32]) ->
         distance, nearest = cKDTree(surface.points).query(cloud.means[rows].numpy(), workers=-1)
         spread = cloud.scales[rows].amax(dim=1).numpy()
         local = surface.gaps.mean(axis=1)[nearest]
-        reach = np.where((cloud.opacities[rows] > MIN_OPACITY).numpy(), NEAR, REACH)
+        reach = np.where((cloud.opacities[rows] > MIN_OPACITY).numpy(), MAX_DISTANCE_OPAQUE, MAX_DISTANCE)
         near = distance < reach * np.maximum(local, surface.spacing) + 0.5 * np.minimum(spread, 4 * surface.spacing)
         column[rows[near]] = group[nearest[near]]
     return column

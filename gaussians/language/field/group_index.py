@@ -1,10 +1,8 @@
-"""Which rows belong to which group, looked up instead of searched, and algebra of sorted ids.
+"""An index from groups to rows of a cloud, and set operations on sorted ids.
 
-Knows the columns `group` and `ids` of a cloud. Refuses to know what a group means.
-
-The rows are sorted by group once a cloud (0.06 s for a million Gaussians, 6 bytes each, the first time a cloud is
-asked); every later question takes a slice. A cloud is frozen, so what was sorted stays true; an edit that leaves
-groups and ids alone shares the columns and with them the sorting.
+The rows of a cloud are sorted by group when it is first queried (0.06 s for a million Gaussians, 6 bytes each); every
+later query takes a slice. A cloud is frozen, so the index stays valid; an edit that keeps groups and ids shares these
+columns and with them the index.
 """
 
 from __future__ import annotations
@@ -22,21 +20,21 @@ from torch import Tensor
 
 from ...cloud import GaussianCloud
 
-_DENSE = 8  # ids spread over at most this many times their number are looked up in a table of flags
-_TABLE = 1 << 22  # flags that are laid out in less time than many ids are sorted
-_FEW = 1 / 32  # share of the rows from which looking at all of them is faster than sorting the slices
-_KEPT = 4  # clouds whose sorting is remembered: the present, what undo goes back to, and some to compare with
+_DENSE = 8  # ids in a range of at most this many times their number are combined in a table of flags
+_TABLE = 1 << 22  # flags; a table up to this size takes less time than sorting many ids
+_SCAN_SHARE = 1 / 32  # of the rows, from which a scan of all rows is faster than sorting the slices
+_KEPT = 4  # clouds whose index is cached: the present one, those of undo, and some for comparison
 
 
 @dataclass(frozen=True, eq=False)
-class Members:
+class GroupIndex:
     """The rows of a cloud by group.
 
     Attributes:
         column: `[N]` integer, the group of each row plus one: 0 is none.
         order: `[N]` int32, rows sorted by group, ascending within one.
-        starts: `[G + 2]`, where group g begins in `order` stands at `starts[g + 1]`, those of none at `starts[0]`.
-        ids: `[N]` int64, the cloud's column.
+        starts: `[G + 2]`, start of group g in `order` at `starts[g + 1]`, of the rows without a group at `starts[0]`.
+        ids: `[N]` int64, `cloud.ids`.
     """
 
     column: NDArray[np.int16] | NDArray[np.int32]
@@ -46,7 +44,7 @@ class Members:
 
     @cached_property
     def ascending(self) -> bool:
-        """Whether ids grow with the rows, as they do in a file."""
+        """Whether ids ascend with the rows, as in a loaded file."""
         return len(self.ids) < 2 or bool((self.ids[1:] > self.ids[:-1]).all())
 
     @cached_property
@@ -55,9 +53,9 @@ class Members:
         return self.ids if self.ascending else self.ids.sort().values
 
     def rows(self, groups: Iterable[int]) -> NDArray[np.int64]:
-        """`[M]` int64 ascending rows of some groups together; `NO_GROUP` asks for those of none."""
+        """Rows `[M]` int64 of some groups, ascending; `NO_GROUP` stands for the rows without a group."""
         wanted = [g + 1 for g in sorted(set(groups)) if g + 2 < len(self.starts)]
-        if sum(int(self.starts[w + 1] - self.starts[w]) for w in wanted) >= _FEW * len(self.order):
+        if sum(int(self.starts[w + 1] - self.starts[w]) for w in wanted) >= _SCAN_SHARE * len(self.order):
             table = np.zeros(len(self.starts) - 1, bool)
             table[wanted] = True
             return np.flatnonzero(table[self.column])
@@ -67,25 +65,25 @@ class Members:
         return np.sort(np.concatenate(slices)).astype(np.int64)
 
     def ids_of(self, groups: Iterable[int]) -> Tensor:
-        """`[M]` int64 ascending ids of the Gaussians of some groups together."""
+        """Ids `[M]` int64 of the Gaussians of some groups, ascending."""
         return self.ids_at(self.rows(groups))
 
     def ids_but(self, groups: Iterable[int]) -> Tensor:
-        """`[M]` int64 ascending ids of all Gaussians but those of some groups."""
+        """Ids `[M]` int64 of all Gaussians except those of some groups, ascending."""
         table = np.ones(len(self.starts) - 1, bool)
         table[[g + 1 for g in set(groups) if g + 2 < len(self.starts)]] = False
         return self.ids_at(np.flatnonzero(table[self.column]))
 
     def ids_at(self, rows: NDArray[np.int64]) -> Tensor:
-        """`[M]` int64 ascending ids of ascending rows."""
+        """Ids `[M]` int64 of ascending rows, ascending."""
         index = torch.from_numpy(rows).to(self.ids.device)
-        if self._counted:
+        if self._consecutive:
             return index + self.ids[:1]
         found = self.ids[index]
         return found if self.ascending else found.sort().values
 
     def present(self, ids: Tensor) -> Tensor:
-        """Those of some ascending ids that the cloud has."""
+        """The subset of some ascending ids that the cloud contains."""
         every, asked = self.every_id.cpu().numpy(), ids.cpu().numpy()
         if not len(every):
             return ids[:0]
@@ -93,38 +91,38 @@ class Members:
         return ids[torch.from_numpy(every[place] == asked).to(ids.device)]
 
     @cached_property
-    def _counted(self) -> bool:
-        """Whether ids are row numbers, from whatever number on: then nothing need be looked up."""
+    def _consecutive(self) -> bool:
+        """Whether ids are consecutive in row order, so that they are row numbers plus an offset."""
         return self.ascending and len(self.ids) > 0 and int(self.ids[-1] - self.ids[0]) == len(self.ids) - 1
 
 
-_known: OrderedDict[tuple[int, int], tuple[weakref.ref[Tensor], weakref.ref[Tensor], Members]] = OrderedDict()
+_known: OrderedDict[tuple[int, int], tuple[weakref.ref[Tensor], weakref.ref[Tensor], GroupIndex]] = OrderedDict()
 
 
-def members_of(cloud: GaussianCloud) -> Members:
-    """The cloud's rows by group; sorted when first asked for these very columns."""
+def index_groups(cloud: GaussianCloud) -> GroupIndex:
+    """The index of a cloud's groups, built on the first call for its `group` and `ids` columns."""
     key = (id(cloud.group), id(cloud.ids))
     if (known := _known.get(key)) is not None and known[0]() is cloud.group and known[1]() is cloud.ids:
         _known.move_to_end(key)
         return known[2]
-    made = _sorted(cloud)
+    made = _build(cloud)
     _known[key] = (weakref.ref(cloud.group), weakref.ref(cloud.ids), made)
     while len(_known) > _KEPT:
         _known.popitem(last=False)
     return made
 
 
-def _sorted(cloud: GaussianCloud) -> Members:
+def _build(cloud: GaussianCloud) -> GroupIndex:
     column = cloud.group.cpu().numpy() + 1
     groups = int(column.max(initial=0)) + 1
-    narrow = column.astype(np.int16) if groups < np.iinfo(np.int16).max else column  # 16 bits are sorted by digits
+    narrow = column.astype(np.int16) if groups < np.iinfo(np.int16).max else column  # radix sort for 16 bits
     order = np.argsort(narrow, kind="stable").astype(np.int32)
     counts = np.bincount(column, minlength=groups)
-    return Members(narrow, order, np.concatenate([[0], np.cumsum(counts)]), cloud.ids)
+    return GroupIndex(narrow, order, np.concatenate([[0], np.cumsum(counts)]), cloud.ids)
 
 
 def union(a: Tensor, b: Tensor) -> Tensor:
-    """`[K]` ascending: ids in either of two ascending sets without repeats."""
+    """Union `[K]` of two ascending sets of ids without repeats, ascending."""
     if not len(a) or not len(b):
         return b if not len(a) else a
     one, other, low, width = _aligned(a, b)
@@ -138,7 +136,7 @@ def union(a: Tensor, b: Tensor) -> Tensor:
 
 
 def difference(a: Tensor, b: Tensor) -> Tensor:
-    """`[K]` ascending: ids of `a` that are not in `b`, two ascending sets without repeats."""
+    """Ids `[K]` of `a` that are not in `b`, ascending; both are ascending sets without repeats."""
     if not len(a) or not len(b):
         return a
     one, other, low, width = _aligned(a, b)
@@ -152,6 +150,6 @@ def difference(a: Tensor, b: Tensor) -> Tensor:
 
 
 def _aligned(a: Tensor, b: Tensor) -> tuple[NDArray[np.int64], NDArray[np.int64], int, int]:
-    """Both as arrays, the least id of either, and how many ids lie between the least and the greatest."""
+    """Both as arrays, the smallest id of either, and the length of the range of ids."""
     low, high = min(int(a[0]), int(b[0])), max(int(a[-1]), int(b[-1]))
     return a.cpu().numpy(), b.cpu().numpy(), low, high - low + 1

@@ -1,4 +1,4 @@
-"""The language field: a table of groups, never a vector per Gaussian.
+"""`LanguageField`: a table of groups with one embedding per group instead of one per Gaussian.
 
 A group is a node of a two-level tree. Leaves ("part") own Gaussians through `GaussianCloud.group`; an "object" is the
 union of its parts (an object of one part is its own leaf). "structure" is floor, ground, wall or ceiling.
@@ -22,19 +22,19 @@ Level = Literal["object", "part", "structure"]
 
 @dataclass(frozen=True)
 class Group:
-    """One row of the table.
+    """One group: a row of the table.
 
     Attributes:
         id: index into the field's embeddings; leaves appear in `GaussianCloud.group`.
         level: "object", "part" or "structure".
         parent: id of the object a part belongs to, or -1.
-        label: the name the encoder gives it, "" if it has none it is sure of.
-        label_score: calibrated probability of that name, in [0, 1].
+        label: the most probable name by the encoder or the masks, "" if there is none.
+        label_score: calibrated probability of the label, in [0, 1].
         box: robust extent of its Gaussians.
-        lab: measured colour of its lit faces in CIE Lab, see `measure.lit_lab`.
-        count: Gaussians in it.
-        views: how many of the embedding views saw it.
-        confidence: share of its Gaussians that lie on its skin; the others joined it by being near, in [0, 1].
+        lab: colour of its lit faces in CIE Lab, see `measure.lit_lab`.
+        count: number of its Gaussians.
+        views: number of the views that see it.
+        confidence: share of its Gaussians that are surface points, in [0, 1]; the others joined it by distance.
     """
 
     id: int
@@ -51,13 +51,13 @@ class Group:
 
 @dataclass(frozen=True, eq=False)
 class LanguageField:
-    """The table and what is needed to ask it.
+    """The table of groups and what queries need.
 
     Attributes:
         groups: rows, `groups[i].id == i`.
-        embeddings: `[G, D]` float32, unit rows (zero rows for groups that were never encoded).
-        encoder: fingerprint of the encoder that made the embeddings; a query with another one raises.
-        notes: what the embedding left out, in sentences ("3 % of the Gaussians are seen from no view").
+        embeddings: `[G, D]` float32, unit rows; zero rows for groups that were not encoded.
+        encoder: fingerprint of the encoder of the embeddings; a query with another encoder raises.
+        notes: remarks on the result of `embed` ("3 % of the Gaussians are seen from no view").
     """
 
     groups: tuple[Group, ...]
@@ -70,16 +70,16 @@ class LanguageField:
             raise BackendError("the language field's table is inconsistent; embed the scene again")
 
     def objects(self) -> tuple[Group, ...]:
-        """The rows that a person would count as things."""
+        """The rows of level "object"."""
         return tuple(g for g in self.groups if g.level == "object")
 
     def leaves(self, group: int) -> tuple[int, ...]:
-        """Ids under which the Gaussians of a group are filed in the cloud: itself and its parts."""
+        """Ids of `GaussianCloud.group` that belong to a group: its own and those of its parts."""
         return (group, *self.parts.get(group, ()))
 
     @cached_property
     def parts(self) -> dict[int, tuple[int, ...]]:
-        """Ids of the parts of each object that has some."""
+        """Ids of the parts of each object that has parts."""
         found: dict[int, list[int]] = {}
         for g in self.groups:
             if g.parent >= 0:
@@ -88,23 +88,23 @@ class LanguageField:
 
     @cached_property
     def boxes(self) -> Boxes:
-        """Every group's box, by id."""
+        """The boxes of all groups, by id."""
         return Boxes.of([g.box for g in self.groups])
 
     @cached_property
     def labs(self) -> NDArray[np.float64]:
-        """`[G, 3]` every group's measured colour, CIE Lab."""
+        """Colours `[G, 3]` of all groups, CIE Lab."""
         return np.array([g.lab for g in self.groups], dtype=np.float64).reshape(-1, 3)
 
     @cached_property
     def typical_size(self) -> float:
-        """Median of the objects' largest extents, scene units; 1 where there are none."""
+        """Median of the largest extents of the objects, scene units; 1 if there are none."""
         sizes = [max(g.box.size) for g in self.objects() if g.count]
         return float(np.median(sizes)) if sizes else 1.0
 
     @cached_property
     def middle(self) -> NDArray[np.float64]:
-        """`[3]` centre of the largest floor, else of the extent of all groups; the origin where there are none."""
+        """Centre `[3]` of the largest floor, else of the bounds of all groups; the origin if there are none."""
         there = [g for g in self.groups if g.count]
         if not there:
             return np.zeros(3)
@@ -115,14 +115,14 @@ class LanguageField:
 
     @cached_property
     def answers(self) -> dict[tuple[str, ...], NDArray[np.float64]]:
-        """Where a query may keep what does not depend on the viewer, `[G]` values a key; an edit starts a new table."""
+        """A cache of query scores `[G]` that do not depend on the viewer; each new field starts with an empty one."""
         return {}
 
     def require_encoder(self, fingerprint: str) -> Self:
-        """Itself, if it was made with this encoder.
+        """This field, if it was made with the given encoder.
 
         Raises:
-            BackendError: the vectors come from another encoder and cannot be compared.
+            BackendError: the embeddings are of another encoder and cannot be compared.
         """
         if fingerprint != self.encoder:
             raise BackendError(

@@ -1,7 +1,7 @@
-"""What is measured of a group of Gaussians: its upright box, its colour, and the points that one could touch.
+"""Measurements of a group of Gaussians: its upright box, its colour, and its solid points.
 
-Embedding fills the table of groups with these boxes and colours and editing keeps it true with them, so that a scene
-says the same of a thing whether it was embedded before an edit or after.
+Both embedding and editing fill the table of groups with these, so the table does not depend on whether a scene was
+embedded before an edit or after it.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ from ...world.box import Axes, Box
 
 F64 = NDArray[np.float64]
 
-LIT = 0.8  # quantile of lightness that stands for an object's lit faces
-TRIM = 0.01  # of the Gaussians on each side may lie outside the box
-SOLID = 0.05  # below this opacity a Gaussian does not widen a box
-OPAQUE = 0.3  # below this a Gaussian is haze rather than something one could touch
+LIT_QUANTILE = 0.8  # of lightness: that of an object's lit faces
+TRIM = 0.01  # share of the Gaussians on each side that may lie outside the box
+MIN_BOX_OPACITY = 0.05  # Gaussians below it do not extend a box
+OPAQUE = 0.3  # Gaussians below it are haze and not solid
 ANGLES = np.radians(np.arange(0.0, 90.0, 3.0))
-_SAMPLE = 1 << 13  # rows a colour is measured on: its mean is then known to about 1/90 of the spread
-_EXTENT = 20_000  # rows a box is measured on
-_PAD = 1 << 12  # rows the typical reach of a Gaussian beyond its centre is measured on
+_SAMPLE = 1 << 13  # rows for a colour: the error of the mean is then about 1/90 of the standard deviation
+_EXTENT = 20_000  # rows for a box
+_PAD = 1 << 12  # rows for the typical extent of a Gaussian beyond its centre
 
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """An evenly spread sample of some rows.
+    """An evenly spaced sample of some rows.
 
     Attributes:
-        rgb: `[M, 3]` float64 display colour of the constant band (the average over all directions), not clamped.
+        rgb: `[M, 3]` float64 display colour of the constant SH band (the mean over all directions), not clamped.
         weight: `[M]` float64, opacity times footprint, summing to one.
     """
 
@@ -48,7 +48,7 @@ class Sample:
 
     @cached_property
     def lab(self) -> Tensor:
-        """`[M, 3]` of the colours as shown (clamped to the display)."""
+        """CIE Lab `[M, 3]` of the colours, clamped to the display."""
         return rgb_to_lab(self.rgb.clamp(0, 1))
 
 
@@ -56,7 +56,7 @@ def sample(cloud: GaussianCloud, rows: Tensor | None = None, size: int = _SAMPLE
     """At most `size` of the rows (None: of all), evenly spaced, with their weights.
 
     A weight is the product of the two largest extents and the opacity. It is clipped at its 95th percentile so that
-    a few huge splats do not speak for the whole object.
+    a few very large splats do not dominate.
     """
     rows = _thinned(cloud, rows, size)
     extents = cloud.scales[rows].to(torch.float64).sort(dim=1).values
@@ -69,15 +69,15 @@ def sample(cloud: GaussianCloud, rows: Tensor | None = None, size: int = _SAMPLE
 
 
 def lab_of_cloud(cloud: GaussianCloud, rows: Tensor | None = None) -> Vec3:
-    """CIE Lab of the Gaussians (of some rows of them), as `lit_lab` takes it; black if there are none."""
+    """Colour of a cloud, or of some of its rows, by `lit_lab`; black if there are none."""
     lightness, a, b = lit_lab(sample(cloud, rows)).tolist()
-    return (min(lightness, 100.0), a, b)  # the standard's rounded matrix takes white a few millionths too far
+    return (min(lightness, 100.0), a, b)  # the standard's rounded matrix puts white a few millionths above 100
 
 
 def lit_lab(taken: Sample) -> Tensor:
-    """`[3]` float64, what people call its colour: weighted medians, but for the lightness an upper quantile.
+    """Perceived colour `[3]` float64 in CIE Lab: weighted medians of a and b, and the LIT_QUANTILE of the lightness.
 
-    Light falls off on an object's sides and in its folds; its name is that of its lit faces.
+    Sides and folds of an object are darker; people name the colour of its lit faces.
     """
     return lit_of(taken.weight, taken.lab)
 
@@ -89,18 +89,18 @@ def lit_of(weight: Tensor, lab: Tensor) -> Tensor:
     by_channel = lab.transpose(-1, -2).contiguous()  # [..., 3, M]
     ordered, order = by_channel.sort(dim=-1)
     total = weight[order].cumsum(dim=-1)
-    shares = torch.tensor([LIT, 0.5, 0.5], dtype=total.dtype, device=total.device)
+    shares = torch.tensor([LIT_QUANTILE, 0.5, 0.5], dtype=total.dtype, device=total.device)
     wanted = (shares[:, None] * total[..., -1:]).contiguous()  # [..., 3, 1]
     index = torch.searchsorted(total, wanted).clamp(max=len(weight) - 1)
     return ordered.gather(-1, index).squeeze(-1)
 
 
 def box_of(cloud: GaussianCloud, frame: Frame, rows: Tensor | None = None, axes: Axes | None = None) -> Box:
-    """The upright box around the centres and a standard deviation of each, but for the outermost 1 %.
+    """The upright box of the centres, padded by a typical standard deviation, without the outermost 1 %.
 
     Args:
-        rows: `[M]` int64, which of the Gaussians; None takes all.
-        axes: two level axes and up the box lies along; None finds those of the smallest box.
+        rows: `[M]` int64 rows of the Gaussians; None for all.
+        axes: axes of the box, two level ones and up; None for those of the smallest box.
     """
     basis = frame.basis()
     rows = _solid(cloud, rows)
@@ -122,7 +122,7 @@ def box_along(axes: Axes, low: F64, high: F64) -> Box:
 
 
 def level_axes(points: F64, frame: Frame) -> Axes:
-    """Two level axes and up: those of the smallest box around world points `[M, 3]`, to three degrees."""
+    """Axes of the smallest upright box around world points `[M, 3]`, to three degrees: two level ones and up."""
     basis = frame.basis()
     yaw = _yaw(points @ basis[:2].T)
     c, s = np.cos(yaw), np.sin(yaw)
@@ -130,38 +130,38 @@ def level_axes(points: F64, frame: Frame) -> Axes:
 
 
 def as_axes(rows: F64) -> Axes:
-    """The rows of `[3, 3]` as a box holds them."""
+    """The rows of a matrix `[3, 3]` as the axes of a box."""
     first, second, third = (_vec(r) for r in rows)
     return first, second, third
 
 
 def mean_lab(taken: Sample) -> Tensor:
-    """`[3]` float64, weighted mean in CIE Lab of the colours as shown."""
+    """Weighted mean `[3]` float64 of the colours in CIE Lab."""
     return (taken.weight[:, None] * taken.lab).sum(dim=0)
 
 
 def lightness_spread(taken: Sample) -> float:
-    """Weighted standard deviation of Lab lightness: how much shading and texture there is."""
+    """Weighted standard deviation of Lab lightness, a measure of shading and texture."""
     lightness = taken.lab[:, 0]
     mean = (taken.weight * lightness).sum()
     return float((taken.weight * (lightness - mean) ** 2).sum().sqrt())
 
 
 def centroid(cloud: GaussianCloud, rows: Tensor) -> F64:
-    """`[3]`, plain mean of the centres, scene units."""
+    """Unweighted mean `[3]` of the centres, scene units."""
     means: F64 = cloud.means[rows].to(torch.float64).mean(dim=0).cpu().numpy()
     return means
 
 
 def solid_points(cloud: GaussianCloud, rows: Tensor) -> F64:
-    """`[M, 3]` centres of those rows that are opaque enough to touch; all of them if none is."""
+    """Centres `[M, 3]` of the rows with opacity of at least OPAQUE; of all rows if there are none."""
     points: F64 = cloud.means[rows].to(torch.float64).cpu().numpy()
     solid = (cloud.opacities[rows] >= OPAQUE).cpu().numpy()
     return points[solid] if solid.any() else points
 
 
 def reach(values: F64) -> tuple[float, float]:
-    """Lowest and highest of `[M]`, a thousandth of them left out at each end (stray splats), none below 1000."""
+    """Minimum and maximum of values `[M]` without the outermost thousandth at each end (stray splats)."""
     if not len(values):
         return 0.0, 0.0
     skip = len(values) // 1000
@@ -170,8 +170,8 @@ def reach(values: F64) -> tuple[float, float]:
 
 
 def _solid(cloud: GaussianCloud, rows: Tensor | None) -> Tensor:
-    """The rows a box is measured on: those that can be seen, or all if none can; thinned evenly."""
-    opaque = cloud.opacities > SOLID if rows is None else cloud.opacities[rows] > SOLID
+    """The rows that a box is measured on: the visible ones, or all if none is visible; subsampled evenly."""
+    opaque = cloud.opacities > MIN_BOX_OPACITY if rows is None else cloud.opacities[rows] > MIN_BOX_OPACITY
     if bool(opaque.any()):
         seen = opaque.nonzero().squeeze(1)
         rows = seen if rows is None else rows[seen]
@@ -186,7 +186,7 @@ def _thinned(cloud: GaussianCloud, rows: Tensor | None, size: int) -> Tensor:
 
 
 def _typical_reach(cloud: GaussianCloud, rows: Tensor, axes: Axes) -> F64:
-    """`[3]`, median standard deviation of the Gaussians along each axis, scene units."""
+    """Median standard deviation `[3]` of the Gaussians along each axis, scene units."""
     rows = _thinned(cloud, rows, _PAD)
     turned = torch.tensor(axes, dtype=torch.float32, device=cloud.device) @ to_matrix(cloud.quats[rows])  # [M, 3, 3]
     along = torch.linalg.vector_norm(turned * cloud.scales[rows][:, None, :], dim=2)
@@ -195,7 +195,7 @@ def _typical_reach(cloud: GaussianCloud, rows: Tensor, axes: Axes) -> F64:
 
 
 def _yaw(plan: F64) -> float:
-    """Turn (radians, in [-45°, 45°)) that makes the plan's box smallest; 0 unless another saves over 2 %."""
+    """Rotation (radians, in [-45°, 45°)) of the plan with the smallest box; 0 unless it saves over 2 % of the area."""
     areas = []
     for angle in ANGLES:
         c, s = np.cos(angle), np.sin(angle)

@@ -1,7 +1,7 @@
-"""The language field on disk: one safetensors file with the table as JSON in its header, no pickle.
+"""Save and load a language field: one safetensors file with the table as JSON in its header, no pickle.
 
-It is bound to the scene *file* by content: `fingerprint(scene file)` stands in the header, and a field whose scene
-was changed elsewhere is not loaded. It lies beside the scene, or in the user's cache where that folder is read-only.
+A field is bound to the content of its scene file: the header holds `fingerprint(scene file)`, and a field whose scene
+file has changed is not loaded. It is stored beside the scene, or in the user's cache if that folder is read-only.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _FRAME = TypeAdapter(Frame)
 
 
 def fingerprint(path: Path) -> str:
-    """Hex SHA-256 of a scene file's bytes; of names and bytes of all files where the scene is a folder (SOG)."""
+    """Hex SHA-256 of the bytes of a scene file; of the names and bytes of all files if the scene is a folder (SOG)."""
     h = hashlib.sha256()
     try:
         files = sorted(p for p in path.iterdir() if p.is_file()) if path.is_dir() else [path]
@@ -45,22 +45,22 @@ def fingerprint(path: Path) -> str:
     return h.hexdigest()
 
 
-def beside(scene_path: Path) -> Path:
-    """Where the field of a scene file lies when its folder can be written."""
+def field_path(scene_path: Path) -> Path:
+    """Path of the field beside a scene file."""
     return scene_path.with_name(scene_path.name + SUFFIX)
 
 
-def cached(scene_fingerprint: str) -> Path:
-    """Where it lies otherwise."""
+def cached_field_path(scene_fingerprint: str) -> Path:
+    """Path of the field in the user's cache."""
     root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     return root / "scenewright" / "fields" / (scene_fingerprint + SUFFIX)
 
 
 def save_field(scene: Scene, scene_path: Path) -> Path:
-    """Write the field of `scene`, whose cloud stands row for row in the file `scene_path`; returns where it went.
+    """Write the field of `scene`, whose cloud equals that of the file `scene_path` row for row; returns its path.
 
     Raises:
-        FileError: neither the scene's folder nor the cache can be written.
+        FileError: the scene has no field, or neither its folder nor the cache can be written.
     """
     if scene.language is None:
         raise FileError("this scene has no language field to save; embed it first")
@@ -78,7 +78,7 @@ def save_field(scene: Scene, scene_path: Path) -> Path:
         "embeddings": torch.from_numpy(np.ascontiguousarray(scene.language.embeddings, dtype=np.float32)),
     }
     problem: Exception | None = None
-    for target in (beside(scene_path), cached(mark)):
+    for target in (field_path(scene_path), cached_field_path(mark)):
         try:
             return _write(target, tensors, header)
         except (OSError, FileError, UserError) as error:
@@ -87,17 +87,17 @@ def save_field(scene: Scene, scene_path: Path) -> Path:
 
 
 def load_field(scene: Scene, scene_path: Path, encoder: str | None = None) -> Scene | None:
-    """`scene`, freshly loaded from `scene_path`, with its saved field; None if there is none that fits.
+    """`scene`, just loaded from `scene_path`, with its saved field; None if no field matches.
 
-    A field fits when the scene file's bytes are those it was made for and, if given, its encoder is `encoder`. Of two
-    that fit the one written last is meant: where the scene's folder cannot be written any more, that is the cache's.
+    A field matches if it was made for these bytes of the scene file and, if `encoder` is given, with that encoder. Of
+    two that match the newer is loaded: if the folder of the scene has become read-only, that is the one in the cache.
 
     Raises:
-        FileError: a field file is there and bound to this scene, but broken.
+        FileError: a field file exists but is damaged.
     """
     mark = fingerprint(scene_path)
-    there = [target for target in (beside(scene_path), cached(mark)) if target.is_file()]
-    for target in sorted(there, key=lambda path: -path.stat().st_mtime_ns):
+    existing = [target for target in (field_path(scene_path), cached_field_path(mark)) if target.is_file()]
+    for target in sorted(existing, key=lambda path: -path.stat().st_mtime_ns):
         tensors, header = _read(target)
         fits = header.get("version") == VERSION and header.get("scene") == mark
         if fits and (encoder is None or header.get("encoder") == encoder):
@@ -105,14 +105,14 @@ def load_field(scene: Scene, scene_path: Path, encoder: str | None = None) -> Sc
     return None
 
 
-def misfit(scene_path: Path, encoder: str | None = None) -> str | None:
-    """Why the field that lies beside a scene file cannot be used, as the end of a sentence about it; None if it can be
-    or if there is none.
+def mismatch(scene_path: Path, encoder: str | None = None) -> str | None:
+    """Why the field beside a scene file cannot be used, as the predicate of a sentence; None if it can, or if there is
+    none.
 
     Raises:
         FileError: the scene or the field cannot be read.
     """
-    target = beside(scene_path)
+    target = field_path(scene_path)
     if not target.is_file():
         return None
     header = _header(target)
@@ -126,7 +126,7 @@ def misfit(scene_path: Path, encoder: str | None = None) -> str | None:
 
 
 def _header(path: Path) -> dict[str, Any]:
-    """The table alone, without the Gaussians' column."""
+    """The metadata of a field file, without its tensors."""
     from safetensors import SafetensorError, safe_open
 
     try:
@@ -137,7 +137,7 @@ def _header(path: Path) -> dict[str, Any]:
 
 
 def _write(target: Path, tensors: dict[str, torch.Tensor], header: dict[str, Any]) -> Path:
-    """One entry of metadata only: safetensors writes several in no fixed order."""
+    """Write a field file. It has one metadata entry, because safetensors writes several in no fixed order."""
     from safetensors.torch import save
 
     target.parent.mkdir(parents=True, exist_ok=True)
@@ -175,6 +175,6 @@ def _attach(scene: Scene, tensors: dict[str, torch.Tensor], header: dict[str, An
         raise FileError(f"{source} is damaged ({error}); delete it and embed the scene again") from error
     if not fits:
         raise FileError(f"{source} is damaged (its columns do not fit); delete it and embed the scene again")
-    if scene.frame.up_source == "given":  # what the user says now outweighs what was estimated then
+    if scene.frame.up_source == "given":  # a direction given now takes precedence over the saved estimate
         frame = scene.frame
     return scene.replace(cloud=scene.cloud.replace(group=column), language=table, frame=frame)

@@ -17,7 +17,7 @@ from torch import Tensor
 
 from ...cloud import NO_GROUP
 from ...scene import Scene
-from ..field.group_index import members_of
+from ..field.group_index import index_groups
 from ..field.language_field import LanguageField
 from ..segmentation.surface import MIN_OPACITY, base_lab
 from . import attributes
@@ -77,7 +77,7 @@ def by_hue(
     """
     if not _simple(query) or not named:
         return None
-    members = members_of(scene.cloud)
+    members = index_groups(scene.cloud)
     own = np.zeros(len(scene.cloud), bool)
     own[members.rows(leaf for g in named for leaf in field.leaves(g))] = True
     places = [p for p in patches(scene.cloud, query.colors, own) if stands(torch.from_numpy(p.rows))]
@@ -173,7 +173,7 @@ def _of_color(scene: Scene, field: LanguageField, query: Query, home: int) -> ND
     lab = np.array([field.groups[leaf].lab for leaf in leaves])
     fits = np.min([attributes.color_scores(w, lab) for w in query.colors], axis=0) >= attributes.COLOR_HOLDS
     column = scene.cloud.group.numpy()
-    rows = members_of(scene.cloud).rows(leaves.tolist())
+    rows = index_groups(scene.cloud).rows(leaves.tolist())
     place = np.searchsorted(leaves, column[rows])  # leaves ascend: the object, then its parts
     told = np.flatnonzero((lab[:, 0] >= DARK)[place])
     if not len(told) or not fits[place[told]].any():
@@ -221,4 +221,4 @@ def _with_whole_parts(
         and held[g.id] >= PART_TAKEN * max(total[g.id], 1)
         and min(float(attributes.color_scores(w, np.array(g.lab))) for w in query.colors) >= attributes.COLOR_HOLDS
     ]
-    return np.union1d(rows, members_of(scene.cloud).rows(whole))
+    return np.union1d(rows, index_groups(scene.cloud).rows(whole))

@@ -11,14 +11,14 @@ import numpy as np
 import torch
 
 from ...scene import Scene
-from ..field.group_index import Members, difference
+from ..field.group_index import GroupIndex, difference
 from . import morphology
 from .query import Query
 from .selection import Selection, mask_of, nothing
 from .terms import alive
 
 
-def reshaped(scene: Scene, members: Members, found: Selection, query: Query) -> Selection:
+def reshaped(scene: Scene, members: GroupIndex, found: Selection, query: Query) -> Selection:
     """What was found, grown or shrunk by `query.grow` metres and then inverted if the query says so."""
     ids, change = found.ids, ""
     if query.grow:

@@ -22,7 +22,7 @@ from ...world import relations
 from ...world.facing import Facing, facing_in
 from ...world.relation_geometry import HOLDS, Stand, object_stand, viewer_stand
 from ..encoders.probability import doubt
-from ..field.group_index import Members, difference, members_of, union
+from ..field.group_index import GroupIndex, difference, index_groups, union
 from ..field.language_field import Group, LanguageField
 from ..field.measure import box_of
 from .attributes import COLOR_HOLDS, color_scores
@@ -85,8 +85,8 @@ class Resolver:
         return viewer_stand(self.viewer, self.scene.frame.up_vector, field.typical_size, field.middle)
 
     @cached_property
-    def members(self) -> Members:
-        return members_of(self.scene.cloud)
+    def members(self) -> GroupIndex:
+        return index_groups(self.scene.cloud)
 
     # -- the line from query to selection ---------------------------------------------------------------------------
 

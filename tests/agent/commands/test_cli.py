@@ -14,7 +14,7 @@ from scenewright.agent import cli
 from scenewright.agent.session.log import read_log
 from scenewright.agent.terminal.output import terminal
 from scenewright.gaussians.files import load
-from scenewright.gaussians.language.field.store import beside
+from scenewright.gaussians.language.field.store import field_path
 from scenewright.gaussians.scene import Scene
 
 
@@ -209,7 +209,7 @@ def test_edit_writes_scene_field_pictures_and_log(call: Any, room: Path, tmp_pat
     assert answer.code == 0, answer.err
     assert [r["op"]["op"] for r in answer.data["receipts"]] == ["recolor", "delete"]
     assert len(load(tmp_path / "out.ply").cloud) == 2 * 343 + 144
-    assert beside(tmp_path / "out.ply").is_file()
+    assert field_path(tmp_path / "out.ply").is_file()
     assert {p.name for p in (tmp_path / "pics").iterdir()} == {"before.png", "after.png"}
     assert [r["kind"] for r in read_log(tmp_path / "log.jsonl").records] == ["open", "do", "save"]
     assert room.read_bytes() == before

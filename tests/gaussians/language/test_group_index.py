@@ -1,4 +1,4 @@
-"""Rows looked up by group and algebra of sorted ids, against plain searching and Python's sets."""
+"""The index of groups and set operations on sorted ids, against linear search and Python's sets."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scenewright.gaussians.cloud import NO_GROUP, GaussianCloud
-from scenewright.gaussians.language.field.group_index import difference, members_of, union
+from scenewright.gaussians.language.field.group_index import difference, index_groups, union
 
 
 def cloud_of(groups: list[int], ids: list[int]) -> GaussianCloud:
@@ -34,7 +34,7 @@ def test_rows_and_ids_of_groups_are_those_a_search_finds(
 ) -> None:
     some = strays | {i for _, i in made[::2]}
     made = sorted(made, key=lambda r: r[1]) if in_order else made
-    found = members_of(cloud_of([g for g, _ in made], [i for _, i in made]))
+    found = index_groups(cloud_of([g for g, _ in made], [i for _, i in made]))
     assert found.rows(groups).tolist() == [k for k, (g, _) in enumerate(made) if g in groups]
     assert found.ids_of(groups).tolist() == sorted(i for g, i in made if g in groups)
     assert found.ids_but(groups).tolist() == sorted(i for g, i in made if g not in groups)
@@ -45,7 +45,7 @@ def test_rows_and_ids_of_groups_are_those_a_search_finds(
 @given(st.integers(2000, 4000), st.integers(0, 2**31 - 1))
 def test_few_and_many_rows_come_out_alike(count: int, seed: int) -> None:
     column = torch.randint(-1, 200, (count,), generator=torch.Generator().manual_seed(seed))
-    found = members_of(cloud_of(column.tolist(), list(range(5, count + 5))))
+    found = index_groups(cloud_of(column.tolist(), list(range(5, count + 5))))
     for groups in ([7], [3, 9], list(range(150)), [NO_GROUP, 4]):
         wanted = torch.isin(column, torch.tensor(groups)).nonzero().squeeze(1)
         assert found.rows(groups).tolist() == wanted.tolist()
@@ -54,10 +54,10 @@ def test_few_and_many_rows_come_out_alike(count: int, seed: int) -> None:
 
 def test_a_cloud_is_sorted_once_and_again_only_when_its_groups_change() -> None:
     cloud = cloud_of([0, 1, 1, -1], [0, 1, 2, 3])
-    first = members_of(cloud)
-    assert members_of(cloud.replace(opacities=cloud.opacities * 0.5)) is first
+    first = index_groups(cloud)
+    assert index_groups(cloud.replace(opacities=cloud.opacities * 0.5)) is first
     moved = cloud.replace(group=torch.tensor([1, 1, 0, -1], dtype=torch.int32))
-    assert members_of(moved).ids_of([0]).tolist() == [2] and first.ids_of([0]).tolist() == [0]
+    assert index_groups(moved).ids_of([0]).tolist() == [2] and first.ids_of([0]).tolist() == [0]
 
 
 @given(sets, sets)

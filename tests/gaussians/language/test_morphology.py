@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import UserError
-from scenewright.gaussians.language.field.group_index import difference, members_of
+from scenewright.gaussians.language.field.group_index import difference, index_groups
 from scenewright.gaussians.language.query.morphology import grown, shrunk
 
 Sets = tuple[GaussianCloud, set[int], set[int]]
@@ -52,7 +52,7 @@ def shrink(cloud: GaussianCloud, ids: set[int], by: float) -> set[int]:
 
 
 def invert(cloud: GaussianCloud, ids: set[int]) -> set[int]:
-    return set(difference(members_of(cloud).every_id, t(ids)).tolist())
+    return set(difference(index_groups(cloud).every_id, t(ids)).tolist())
 
 
 @given(clouds(), distances)

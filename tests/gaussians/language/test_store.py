@@ -22,7 +22,14 @@ from scenewright.gaussians.errors import FileError
 from scenewright.gaussians.files import atomic
 from scenewright.gaussians.language.field import store
 from scenewright.gaussians.language.field.language_field import Group, LanguageField
-from scenewright.gaussians.language.field.store import beside, cached, fingerprint, load_field, misfit, save_field
+from scenewright.gaussians.language.field.store import (
+    cached_field_path,
+    field_path,
+    fingerprint,
+    load_field,
+    mismatch,
+    save_field,
+)
 from scenewright.gaussians.scene import Frame, Scene
 from scenewright.gaussians.world.box import Box
 
@@ -97,11 +104,11 @@ def same(one: Scene, other: Scene) -> bool:
 
 def test_a_saved_field_comes_back_beside_the_scene(path: Path) -> None:
     scene = embedded()
-    assert save_field(scene, path) == beside(path)
+    assert save_field(scene, path) == field_path(path)
     again = load_field(bare(), path)
     assert again is not None and same(scene, again)
     assert again.frame == scene.frame
-    assert sorted(p.name for p in path.parent.iterdir()) == ["room.ply", beside(path).name]  # no leftovers
+    assert sorted(p.name for p in path.parent.iterdir()) == ["room.ply", field_path(path).name]  # no leftovers
 
 
 @given(field=fields(), frame=frames)
@@ -148,7 +155,7 @@ def test_a_scene_without_a_field(path: Path) -> None:
 def test_a_moved_scene_keeps_what_was_cached_for_its_content(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     refuse(monkeypatch, path.parent)
     saved = save_field(embedded(), path)
-    assert saved == cached(fingerprint(path)) and saved.is_file()
+    assert saved == cached_field_path(fingerprint(path)) and saved.is_file()
     elsewhere = path.parent.parent / "moved.ply"
     path.rename(elsewhere)
     again = load_field(bare(), elsewhere)
@@ -158,7 +165,7 @@ def test_a_moved_scene_keeps_what_was_cached_for_its_content(path: Path, monkeyp
 def test_of_two_fields_that_fit_the_one_written_last_is_meant(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     os.utime(save_field(embedded("fake:1"), path), ns=(1, 1))
     refuse(monkeypatch, path.parent)
-    assert save_field(embedded("fake:2"), path) == cached(fingerprint(path))
+    assert save_field(embedded("fake:2"), path) == cached_field_path(fingerprint(path))
     again = load_field(bare(), path)
     assert again is not None and again.language is not None and again.language.encoder == "fake:2"
 
@@ -179,7 +186,7 @@ def refuse(monkeypatch: pytest.MonkeyPatch, *folders: Path) -> None:
 def test_a_read_only_folder_sends_the_field_to_the_cache(path: Path) -> None:
     path.parent.chmod(0o500)
     try:
-        assert save_field(embedded(), path) == cached(fingerprint(path))
+        assert save_field(embedded(), path) == cached_field_path(fingerprint(path))
         assert load_field(bare(), path) is not None
     finally:
         path.parent.chmod(0o700)
@@ -225,8 +232,8 @@ def test_a_truncated_field_is_an_error_that_names_the_cure(path: Path, share: fl
 def test_a_table_nested_too_deeply_is_an_error_that_names_the_cure(path: Path) -> None:
     from safetensors.torch import save_file
 
-    save_file({"group": torch.zeros(5)}, beside(path), {"scenewright.field": "[" * 100_000})
-    for look in (lambda: load_field(bare(), path), lambda: misfit(path)):
+    save_file({"group": torch.zeros(5)}, field_path(path), {"scenewright.field": "[" * 100_000})
+    for look in (lambda: load_field(bare(), path), lambda: mismatch(path)):
         with pytest.raises(FileError, match="delete it"):
             look()
 
@@ -284,7 +291,7 @@ def test_a_damaged_field_is_a_file_error_and_nothing_else(path: Path, how: dict[
 def test_any_bytes_are_an_error_or_no_field(tmp_path_factory: pytest.TempPathFactory, junk: bytes) -> None:
     target = tmp_path_factory.mktemp("junk") / "scene.ply"
     target.write_bytes(b"x")
-    beside(target).write_bytes(junk)
+    field_path(target).write_bytes(junk)
     with pytest.raises(FileError):
         load_field(bare(), target)
 
@@ -314,19 +321,19 @@ def test_a_missing_scene_file_is_a_file_error(tmp_path: Path) -> None:
 
 
 def test_why_a_field_does_not_fit_is_told(path: Path) -> None:
-    assert misfit(path) is None  # there is none
+    assert mismatch(path) is None  # there is none
     save_field(embedded(), path)
-    assert misfit(path) is None and misfit(path, "fake:1") is None
-    assert misfit(path, "other:2") == "is of encoder fake:1"
+    assert mismatch(path) is None and mismatch(path, "fake:1") is None
+    assert mismatch(path, "other:2") == "is of encoder fake:1"
     path.write_bytes(path.read_bytes() + b"edited elsewhere")
-    assert misfit(path) == "was made for another version of this file"
+    assert mismatch(path) == "was made for another version of this file"
     assert load_field(bare(), path) is None
-    beside(path).write_bytes(b"no field at all")
+    field_path(path).write_bytes(b"no field at all")
     with pytest.raises(FileError, match="not a language field"):
-        misfit(path)
+        mismatch(path)
 
 
 def test_a_field_of_another_layout_says_so(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     save_field(embedded(), path)
     monkeypatch.setattr(store, "VERSION", "next")
-    assert misfit(path) == "was written by another version of scenewright"
+    assert mismatch(path) == "was written by another version of scenewright"
