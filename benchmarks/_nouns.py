@@ -13,10 +13,10 @@ from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..planners.grammar.meaning.referring import head_noun, relations_named
 from ..planners.plan import Planner
 from ..planners.rooms.label_encoder import THRESHOLD, agreement
 from . import _data
+from ._head_noun import head_noun, relations_named
 
 _FILE = "nr3d_utterances.json.gz"
 # What people say for a label of this set, beyond everyday synonyms (gaussians/world/kinds.json): the label is one

@@ -1,4 +1,4 @@
-"""A clause's tokens as a tree (grammar.lark, LALR), how to find its parts, and which words to blame if it has none."""
+"""Parses the tokens of a clause into a tree (grammar.lark, LALR) and names the offending words if that fails."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ Node = Tree[Token]
 
 
 class Refusal(Exception):
-    """The clause cannot become a plan.
+    """A clause cannot be planned.
 
     Attributes:
-        verdict: of the plan.
-        words: the words to blame, as written.
+        verdict: verdict of the plan.
+        words: the words that caused the refusal, as written.
     """
 
     def __init__(self, reason: str, *words: str, verdict: str = "not_understood") -> None:
@@ -33,7 +33,7 @@ class Refusal(Exception):
 
 
 def tag_of(token: Token) -> Tag:
-    """The tag that a token of the grammar carries."""
+    """The tag that a token of the parser carries."""
     value: Tag = token.value
     return value
 
@@ -48,8 +48,8 @@ def trees(node: Node, *names: str) -> list[Node]:
     return [c for c in node.children if isinstance(c, Tree) and (not names or c.data in names)]
 
 
-class _Passed(Lexer):
-    """Hands on tokens that the tagger made."""
+class _TagLexer(Lexer):
+    """A lark lexer that passes on the tags of the tagger as tokens."""
 
     def __init__(self, _conf: object) -> None:
         pass
@@ -64,21 +64,26 @@ class _Passed(Lexer):
 @cache
 def _parser() -> Lark:
     grammar = Path(__file__).with_name("grammar.lark").read_text(encoding="utf-8")
-    return Lark(grammar, parser="lalr", lexer=_Passed)
+    return Lark(grammar, parser="lalr", lexer=_TagLexer)
 
 
 def parse(clause: Clause) -> Node:
+    """The parse tree of a clause.
+
+    Raises:
+        Refusal: the clause does not parse; names the words that did not fit.
+    """
     try:
         return _parser().parse(clause.tags)
     except UnexpectedToken as error:
         at = error.token.start_pos if error.token.type != "$END" else None
-        raise _blame(clause, at) from None
+        raise _refusal_at(clause, at) from None
     except UnexpectedInput as error:
-        raise Refusal("this cannot be read") from error
+        raise Refusal("this cannot be parsed") from error
 
 
-def _blame(clause: Clause, at: int | None) -> Refusal:
-    """Which words to name: `at` is the index of the token that did not fit, None for the end of the clause."""
+def _refusal_at(clause: Clause, at: int | None) -> Refusal:
+    """The refusal that names the offending words; `at` is the index of the token that did not fit, None for the end."""
     tags = clause.tags
     if not clause.verb:
         return _unknown_verb(first_words(clause)[0])
@@ -99,10 +104,11 @@ def _blame(clause: Clause, at: int | None) -> Refusal:
 def _unknown_verb(word: str) -> Refusal:
     verbs = [v[0] for v in lexicon.VERB_PHRASES if len(v) == 1]
     hint = did_you_mean(word, verbs, most=1, likeness=0.75)
-    return Refusal(f"“{word}” is no verb this planner knows" + (hint and f"; {hint}"), word)
+    return Refusal(f"“{word}” is not a verb that this planner knows" + (hint and f"; {hint}"), word)
 
 
 def first_words(clause: Clause) -> tuple[str, ...]:
+    """The first word of a clause, as the words of a refusal."""
     return (clause.tags[0].words[0].text,) if clause.tags else ("",)
 
 
@@ -111,7 +117,7 @@ def _is_known(tag: Tag) -> bool:
 
 
 def _unknown_tail(tag: Tag) -> tuple[str, ...]:
-    """The words behind the last everyday noun of a run ("wall blorange"), or the last word if none is known."""
+    """The words behind the last known noun of a tag ("wall blorange"), or the last word if none is known."""
     if tag.type != "NOUN" or color_at([w.text for w in tag.words], 0):
         return ()
     texts = tag.text.split()

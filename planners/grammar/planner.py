@@ -1,7 +1,7 @@
-"""The grammar planner: plain imperative English to a plan, in milliseconds, or an honest refusal.
+"""The grammar planner: turns plain imperative English into a plan within milliseconds, or refuses.
 
-Knows the order of the work: clean, split into sentences and clauses, tag, parse, build, join. Refuses to guess: a
-clause that does not parse is named with the words to blame, and then nothing of the instruction is planned.
+Steps: clean the text, correct its spelling, split it into sentences and clauses, tag, parse, build operations, join
+them. If one clause is not understood, nothing is planned, and the refusal names the clause and its words.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ...tools.operation import EditOp
 from ...tools.registry import parse as parse_op
 from ..plan import MAX_OPS, EditPlan
 from .meaning.changes import Fields
-from .meaning.commands import read
+from .meaning.commands import operations_of
 from .meaning.phrases import Phrases
 from .parsing import Refusal, first_words, parse, trees
 from .tagging.lookahead import match
@@ -39,8 +39,15 @@ NAME = "grammar"
 
 @dataclass(frozen=True)
 class _Outcome:
-    """What was understood: operations, the last noun, the operations of the last clause, slips corrected, and the last
-    noun's colours."""
+    """What was understood of an instruction.
+
+    Attributes:
+        ops: the operations, as fields.
+        antecedent: the last head noun.
+        again: the operations of the last clause.
+        remarks: spelling corrections.
+        colors: colours of the last head noun.
+    """
 
     ops: tuple[dict[str, Any], ...]
     antecedent: str
@@ -50,7 +57,7 @@ class _Outcome:
 
 
 class GrammarPlanner:
-    """Plans what it understands completely and abstains otherwise. Stateless; one instance serves all threads."""
+    """Plans instructions that it understands completely, abstains otherwise. Stateless and thread-safe."""
 
     name = NAME
 
@@ -58,10 +65,10 @@ class GrammarPlanner:
         _make_tables()
 
     def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
-        """The plan for an instruction; see `Planner.plan`. The scene (`sight`) is not looked at.
+        """The plan for an instruction; see `Planner.plan`. The scene (`sight`) is ignored.
 
         Raises:
-            UserError: the text is too long to be an instruction.
+            UserError: the text is too long.
         """
         started = time.perf_counter()
         cleaned = clean(text)
@@ -70,30 +77,34 @@ class GrammarPlanner:
             outcome = _understand(cleaned, previous)
             told = {"ops": tuple(_valid(op) for op in outcome.ops), "reason": "; ".join(outcome.remarks)[:2000]}
         except Refusal as refusal:
-            told = {"verdict": refusal.verdict, "reason": str(refusal), "unknown": _short(refusal.words)}
+            told = {"verdict": refusal.verdict, "reason": str(refusal), "unknown": _shortened(refusal.words)}
         return EditPlan(instruction=text, planner=NAME, seconds=time.perf_counter() - started, **told)
 
 
 @cache
 def _make_tables() -> None:
-    """Build the parser and the word tables, once a process, so that the first instruction is as fast as the others."""
+    """Build the parser and the word tables once per process, so that the first instruction is as fast as the others."""
     _understand("paint it red and add a small mug", None)
 
 
 def _valid(fields: dict[str, Any]) -> EditOp:
-    """The operation, if its fields are in range."""
+    """The validated operation.
+
+    Raises:
+        Refusal: a field is out of range.
+    """
     try:
         return parse_op(fields)
     except UserError as error:
         raise Refusal(str(error)[:500], verdict="impossible") from error
 
 
-def _short(words: Sequence[str]) -> tuple[str, ...]:
+def _shortened(words: Sequence[str]) -> tuple[str, ...]:
     return tuple(w[:200] for w in words if w)[:64]
 
 
 def _understand(cleaned: str, previous: str | None) -> _Outcome:
-    """Operations of a cleaned instruction.
+    """Parse a cleaned instruction.
 
     Raises:
         Refusal: any part of it is not understood, or none of it is an edit.
@@ -101,10 +112,10 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     if phrase := unsafe_words(cleaned):
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
     words, remarks = correct_spelling(split(cleaned))
-    before = _before(previous)
-    said = Phrases(before.antecedent, before.again, before.colors)
+    before = _understand_previous(previous)
+    phrases = Phrases(before.antecedent, before.again, before.colors)
     ops: list[dict[str, Any]] = []
-    idle: Refusal | None = None
+    non_edit: Refusal | None = None
     topic: Query | None = None
     stated_first = False
     for sentence, mark in sentences(words):
@@ -113,31 +124,31 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
         for clause in clauses(sentence):
             follows = bool(ops) or previous is not None or topic is not None
             try:
-                ops += _carry(clause, sentence, mark, said, follows, cleaned)
+                ops += _plan_clause(clause, sentence, mark, phrases, follows, cleaned)
             except Refusal as refusal:
-                if refusal.verdict != "not_an_edit" or (idle and not is_chat(refusal)):
+                if refusal.verdict != "not_an_edit" or (non_edit and not is_chat(refusal)):
                     raise
-                idle, stated_first = refusal, not ops
+                non_edit, stated_first = refusal, not ops
                 topic = _topic(clause, refusal)
-    if idle and ops and str(idle) == STATEMENT and stated_first:
-        idle = None  # "I love the sofa. Delete the rug."
+    if non_edit and ops and str(non_edit) == STATEMENT and stated_first:
+        non_edit = None  # "I love the sofa. Delete the rug."
         if topic is not None and ops[0].get("target") == Query(last=True):
             ops[0] = {**ops[0], "target": topic}
-    if idle and ops and str(idle) == FORBIDDEN and topic is not None:
-        ops, idle = [_sparing(op, topic) for op in ops], None  # "don't touch the sofa, remove everything"
-    ops = _release(ops)
+    if non_edit and ops and str(non_edit) == FORBIDDEN and topic is not None:
+        ops, non_edit = [_excluding(op, topic) for op in ops], None  # "don't touch the sofa, remove everything"
+    ops = _complete_halves(ops)
     if not ops:
-        raise idle or empty_refusal(words)
-    if idle and not is_chat(idle):
-        raise Refusal(f"this part is not an edit, so nothing was planned: {idle}", *idle.words)
+        raise non_edit or empty_refusal(words)
+    if non_edit and not is_chat(non_edit):
+        raise Refusal(f"this part is not an edit, so nothing was planned: {non_edit}", *non_edit.words)
     if len(ops) > MAX_OPS:
         raise Refusal(f"that is more than {MAX_OPS} steps; say it in parts")
-    return _Outcome(tuple(_merge_copies(ops)), said.antecedent, tuple(said.before), remarks, said.colors)
+    return _Outcome(tuple(_merge_copies(ops)), phrases.antecedent, tuple(phrases.before), remarks, phrases.colors)
 
 
-def _topic(clause: Clause, idle: Refusal) -> Query | None:
-    """What a statement or a prohibition is about: "the sofa is ugly, delete it"."""
-    if str(idle) not in (STATEMENT, FORBIDDEN):
+def _topic(clause: Clause, non_edit: Refusal) -> Query | None:
+    """The query for what a statement or prohibition is about ("the sofa is ugly, delete it"); None if there is none."""
+    if str(non_edit) not in (STATEMENT, FORBIDDEN):
         return None
     first = next((i for i, t in enumerate(clause.tags) if t.type == "DET"), None)
     if first is None:
@@ -145,24 +156,24 @@ def _topic(clause: Clause, idle: Refusal) -> Query | None:
     for end in range(len(clause.tags), first + 1, -1):
         about = clause.tags[first:end]
         with suppress(Refusal):
-            (op,) = read(Phrases(), parse(Clause([Tag("SELECT", None, about[0].words), *about], "SELECT")))
+            (op,) = operations_of(Phrases(), parse(Clause([Tag("SELECT", None, about[0].words), *about], "SELECT")))
             query: Query = op["target"]
             return query.model_copy(update={"pick": "one"}) if query.pick == "any" else query
     return None
 
 
-def _before(previous: str | None) -> _Outcome:
-    """What the instruction before was about."""
+def _understand_previous(previous: str | None) -> _Outcome:
+    """The outcome of the previous instruction, empty if there is none or it is not understood."""
     if previous:
         with suppress(Refusal, UserError):
             return _understand(clean(previous), None)
     return _Outcome((), "")
 
 
-def _carry(
-    clause: Clause, sentence: Sequence[Word], mark: str, said: Phrases, follows: bool, cleaned: str
+def _plan_clause(
+    clause: Clause, sentence: Sequence[Word], mark: str, phrases: Phrases, follows: bool, cleaned: str
 ) -> list[dict[str, Any]]:
-    """One clause's operations; refusals quote it."""
+    """The operations of one clause, as fields; refusals quote the clause."""
     refuse_non_edit(clause, sentence, mark)
     try:
         if clause.unsupported:
@@ -170,33 +181,33 @@ def _carry(
         tree = parse(clause)
         if not follows and any(t.data in ("it_becomes", "it_moves") for t in trees(tree)):
             raise Refusal("it does not say what to do, or to what", *first_words(clause))
-        return read(said, tree)
+        return operations_of(phrases, tree)
     except Refusal as refusal:
         raise Refusal(f"“{_quote(clause, cleaned)}”: {refusal}", *refusal.words, verdict=refusal.verdict) from None
 
 
 def _quote(clause: Clause, cleaned: str) -> str:
     words = [w for t in clause.tags for w in t.words]
-    said = cleaned[words[0].start : words[-1].end] if words else cleaned
-    return said if len(said) <= 80 else said[:79] + "…"
+    quoted = cleaned[words[0].start : words[-1].end] if words else cleaned
+    return quoted if len(quoted) <= 80 else quoted[:79] + "…"
 
 
-# ---- what one clause's operations mean for another's ----
+# ---- combining the operations of several clauses ----
 
 
-def _sparing(op: Fields, spared: Query) -> Fields:
-    """An operation on several things without what was forbidden to touch."""
+def _excluding(op: Fields, spared: Query) -> Fields:
+    """An operation on all things of a kind, with the things that must not be touched excluded."""
     target = op.get("target")
     if target is None or target.pick != "all" or len(target.exclude) >= 4:
         return op
     return {**op, "target": target.model_copy(update={"exclude": (*target.exclude, spared)})}
 
 
-def _release(ops: Sequence[Fields]) -> list[Fields]:
-    """Settle clauses that are half a sentence: "keep the sofa (and delete the rest)", "take the cup (and put …)".
+def _complete_halves(ops: Sequence[Fields]) -> list[Fields]:
+    """Combine clauses that need the next clause: "keep the sofa (and delete the rest)", "take the cup (and put …)".
 
     Raises:
-        Refusal: the other half is missing.
+        Refusal: the next clause is missing.
     """
     settled: list[Fields] = []
     taken: Query | None = None
@@ -219,7 +230,7 @@ def _release(ops: Sequence[Fields]) -> list[Fields]:
 
 
 def _merge_copies(ops: Sequence[Fields]) -> list[Fields]:
-    """ "copy the chair and put it next to the desk" is one copy that goes there."""
+    """Merge a copy and its move: "copy the chair and put it next to the desk" is one copy that is placed there."""
     merged: list[Fields] = []
     for op in ops:
         before = merged[-1] if merged else {}

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scenewright.benchmarks import _nouns
+from scenewright.benchmarks._head_noun import head_noun, relations_named
 from scenewright.gaussians.world.kinds import narrower, same
 from scenewright.planners import load
-from scenewright.planners.grammar.meaning.referring import head_noun, relations_named
 from scenewright.planners.grammar.tagging.spelling import correct_spelling, misspelled_name
 from scenewright.planners.grammar.tagging.words import split
 from scenewright.planners.grammar.vocabulary import lexicon

@@ -1,6 +1,6 @@
-"""What something becomes: redder, twice as tall, half transparent.
+"""Rules for property changes: colour, size, opacity ("redder", "twice as tall", "half transparent").
 
-Knows how much "a bit" is. Refuses to know what it is said of: each function gives an operation without its target.
+Each function returns the fields of an operation without its target. The constants say how much "a bit" and "much" are.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from ..parsing import Node, Refusal, tokens, trees
 
 Fields = dict[str, Any]
 
-# Amounts of recolor.amount: unsaid, "a bit", "much".
+# recolor.amount without a degree, for "a bit", for "much".
 AMOUNT: dict[str, float] = {"": 0.5, "little": 0.25, "much": 0.8}
-# Factors of scale for bigger and smaller: unsaid, "a bit", "much".
+# scale.factor for bigger and smaller: without a degree, for "a bit", for "much".
 BIGGER: dict[str, float] = {"": 1.25, "little": 1.1, "much": 1.75}
 SMALLER: dict[str, float] = {"": 0.8, "little": 0.9, "much": 0.6}
-# What is left of the opacity after "more transparent": unsaid, "a bit", "much".
+# Remaining opacity after "more transparent": without a degree, for "a bit", for "much".
 CLEARER: dict[str, float] = {"": 0.5, "little": 0.75, "much": 0.25}
 TO_A_LENGTH = "say how large it should be, or by which share: 1.2 m tall, 20 % taller"
 MEASURED = {"tall": "height", "short": "height", "wide": "width", "narrow": "width", "deep": "depth"}
@@ -25,14 +25,14 @@ SIZE_AXES = {"large": "all", "small": "all", "tall": "height", "wide": "width"}
 
 
 def share_of(node: Node) -> float | None:
-    """The percentage or fraction below a node, as a number."""
+    """The percentage or fraction below a node as a number, None if there is none."""
     for inner in trees(node, "share"):
         return float(tokens(inner, "PERCENT", "FRACTION")[0].value)
     return None
 
 
 def degree_of(node: Node) -> str:
-    """ "", "little" or "much"."""
+    """The degree below a node: "", "little" or "much"."""
     found = tokens(node, "DEGREE")
     return str(found[0].value) if found else ""
 
@@ -43,10 +43,10 @@ def hue_of(node: Node) -> str:
 
 
 def change(node: Node) -> Fields:
-    """The operation a `change` node asks for.
+    """The operation that a `change` node asks for.
 
     Raises:
-        Refusal: no operation does this.
+        Refusal: no operation does it.
     """
     return _CHANGES[str(node.data)](node)
 
@@ -56,7 +56,7 @@ def _hue(node: Node) -> Fields:
 
 
 def _shade(node: Node) -> Fields:
-    """ "a darker blue" is dark blue."""
+    """A shade of a named colour: "a darker blue" is dark blue."""
     way, color = tokens(node, "LIGHT")[0], tokens(node, "HUE")[0].value
     if way.value not in ("darker", "lighter"):
         raise Refusal("say the colour it should become", way.text)
@@ -83,7 +83,7 @@ def _light(node: Node) -> Fields:
 
 
 def grown(axis: str, up: bool, share: float | None = None, times: float | None = None, degree: str = "") -> Fields:
-    """ "taller", "20 % smaller", "three times wider"."""
+    """A relative change of size: "taller", "20 % smaller", "three times wider"."""
     if times is not None:
         factor = times if up else 1 / times if times else 0.0
     elif share is not None:
@@ -116,7 +116,7 @@ def _relative(node: Node) -> Fields:
 
 
 def measured(node: Node, stretched: bool = False) -> Fields:
-    """ "80 cm tall", "2 m in width": the size itself, in proportion unless it is to be stretched."""
+    """An absolute size: "80 cm tall", "2 m in width". Proportions are kept unless `stretched`."""
     (inner,) = trees(node, "measured")
     said = tokens(inner, "SIZEWORD", "PROP")[0]
     return sized(tokens(inner, "LENGTH")[0].value, MEASURED.get(said.value, said.value), said.text, stretched)
@@ -126,7 +126,7 @@ def sized(value: tuple[float, str], side: str, said: str, stretched: bool = Fals
     """A scale operation to a length.
 
     Raises:
-        Refusal: the word names no side, or the length is none.
+        Refusal: the word names no side, or the length is out of range.
     """
     if side not in ("height", "width", "depth"):
         raise Refusal("say tall, wide or deep", said)

@@ -1,11 +1,8 @@
-"""Nouns with what stands behind them, as queries.
+"""Turns noun phrases with postmodifiers (relations, sides, properties behind the noun) into queries.
 
-Knows what a relation, a side or a spot means for a `Query`, and to which noun a prepositional phrase belongs. Refuses
-to know how a noun phrase is built from its tokens (phrases.py).
-
-Preference: a prepositional phrase belongs to the nearest noun before it ("the lamp on the table next to the sofa" is
+Attachment: a prepositional phrase belongs to the nearest noun before it ("the lamp on the table next to the sofa" is
 about a table next to the sofa), unless "and" joins it to the one before ("left of the table and in front of the
-window" says two things about one noun), it is denied ("not against the window"), or that noun is a floor or a wall.
+window" says two things about one noun), it is negated ("not against the window"), or that noun is a floor or a wall.
 """
 
 from __future__ import annotations
@@ -20,44 +17,44 @@ from ....gaussians.world.words import head
 from ..parsing import Refusal
 from ..vocabulary import nouns
 
-# "the cup on the table that is white", "anything on the bed that is not a pillow": about the first noun, not the last.
+# These describe the first noun, not the last: "the cup on the table that is white".
 _OF_THE_FIRST = ("unrelated", "is_not_kind", "is_hue", "is_not_hue")
 
 Article = Literal["def", "indef", "all", "both", "any", "bare", "pronoun"]
 
 
 @dataclass(frozen=True)
-class Post:
-    """What stands behind a noun: a relation to further nouns, or a property.
+class PostModifier:
+    """A postmodifier of a noun: a relation to further nouns, or a property.
 
     Attributes:
-        kind: the rule's name in grammar.lark.
+        kind: name of its rule in grammar.lark.
         value: the relation, side, spot or colour.
-        word: how it was said ("into").
-        anchors: the nouns it relates to, without anything behind them.
-        joined: whether "and" joins it to the one before.
+        word: its first words as written ("into").
+        anchors: the noun phrases it relates to, without postmodifiers.
+        conjoined: whether "and" joins it to the previous one.
     """
 
     kind: str
     value: Any
     word: str
-    anchors: tuple[Noun, ...] = ()
-    joined: bool = False
+    anchors: tuple[NounPhrase, ...] = ()
+    conjoined: bool = False
 
 
 @dataclass(frozen=True)
-class Noun:
+class NounPhrase:
     """One noun phrase.
 
     Attributes:
-        query: without what stands behind the noun.
-        article: how it is introduced.
-        plural: whether its form is plural.
-        number: "two chairs".
-        adjectives: words before the noun that no field of a query holds, for naming new things.
-        height: "1.8 m tall", value and unit.
-        posts: what stands behind it, flat.
-        said: the noun as said, plural and all ("books").
+        query: the query without the postmodifiers.
+        article: its determiner.
+        plural: whether the noun is in the plural.
+        number: 2 in "two chairs", None without a number.
+        adjectives: size words before the noun, for naming new things.
+        height: value and unit of "1.8 m tall".
+        modifiers: the postmodifiers, as a flat list.
+        said: the noun as written ("books").
     """
 
     query: Query
@@ -66,19 +63,21 @@ class Noun:
     number: int | None = None
     adjectives: tuple[str, ...] = ()
     height: tuple[float, str] | None = None
-    posts: tuple[Post, ...] = field(default=())
+    modifiers: tuple[PostModifier, ...] = field(default=())
     said: str = ""
 
     @property
     def is_new(self) -> bool:
-        """Whether it can name something that is not there yet ("a lamp", "two lamps", "lamp")."""
+        """Whether it can name something new ("a lamp", "two lamps", "lamp")."""
         plain = self.query.pick in ("one", "any", "all") and not self.query.exclude and not self.query.last
         return plain and bool(self.query.text) and self.article in ("indef", "bare")
 
     def full(self) -> Query:
-        """The query with everything behind the noun, which counts for each of several colours ("red and blue mugs")."""
-        first = attach(self.query, self.posts)
-        return updated(first, also=tuple(attach(q, self.posts) for q in first.also)) if first.also else first
+        """The query with all postmodifiers; they apply to each of several colours ("red and blue mugs")."""
+        first = attach_modifiers(self.query, self.modifiers)
+        return (
+            updated(first, also=tuple(attach_modifiers(q, self.modifiers) for q in first.also)) if first.also else first
+        )
 
 
 def updated(query: Query, **fields: Any) -> Query:
@@ -90,50 +89,59 @@ def updated(query: Query, **fields: Any) -> Query:
     try:
         return Query(**{name: fields.get(name, getattr(query, name)) for name in Query.model_fields})
     except ValueError as error:
-        raise Refusal("that is more than one phrase can hold; say it in parts") from error
+        raise Refusal("that is too much for one phrase; say it in parts") from error
 
 
-def union(found: Sequence[Noun]) -> Query:
+def union(found: Sequence[NounPhrase]) -> Query:
     """One query for several nouns."""
     first, *rest = (n.full() for n in found)
     return updated(first, also=(*first.also, *rest)) if rest else first
 
 
-def known(found: Sequence[Noun]) -> Query:
-    """The query for things that are there already; "some chairs" does not say which."""
+def existing(found: Sequence[NounPhrase]) -> Query:
+    """The query for things that exist already.
+
+    Raises:
+        Refusal: it does not say which ("some chairs").
+    """
     if any(n.article == "indef" and n.plural and n.number is None for n in found):
         raise Refusal("say which, or how many", "some")
     return union(found)
 
 
 def all_of(target: Query, out: Query) -> Query:
-    """What "all" means before "but the largest box": boxes; before "but the box" it is everything."""
+    """The meaning of "all" before an exclusion: boxes in "all but the largest box", everything in "all but the box"."""
     ranked = out.pick not in ("one", "all", "any", "rest") and bool(out.text)
     return updated(Query(text=out.text, pick="all")) if target == Query(pick="all") and ranked else target
 
 
-def attach(query: Query, posts: Sequence[Post]) -> Query:
-    """`query` narrowed by what stands behind the noun, each phrase at the noun it belongs to."""
+def attach_modifiers(query: Query, modifiers: Sequence[PostModifier]) -> Query:
+    """`query` restricted by postmodifiers, each attached to the noun it belongs to."""
     i = 0
-    while i < len(posts):
+    while i < len(modifiers):
         j = i + 1
-        while j < len(posts) and not posts[j].joined and posts[j].kind not in _OF_THE_FIRST and _takes_more(posts[i]):
+        while (
+            j < len(modifiers)
+            and not modifiers[j].conjoined
+            and modifiers[j].kind not in _OF_THE_FIRST
+            and _takes_more(modifiers[i])
+        ):
             j += 1
-        query = _narrow(query, posts[i], posts[i + 1 : j])
+        query = _narrow(query, modifiers[i], modifiers[i + 1 : j])
         i = j
     return query
 
 
-def _takes_more(post: Post) -> bool:
-    """Whether what follows may belong to this phrase's noun; floors and walls are everywhere, so not to theirs."""
+def _takes_more(post: PostModifier) -> bool:
+    """Whether the next postmodifier may belong to this one's noun: not to floors and walls, which are everywhere."""
     return bool(post.anchors) and head(post.anchors[-1].query.text) not in nouns.EVERYWHERE
 
 
-def _narrow(query: Query, post: Post, behind: Sequence[Post]) -> Query:
-    """`query` with one phrase behind it; `behind` belongs to that phrase's own (last) noun."""
+def _narrow(query: Query, post: PostModifier, behind: Sequence[PostModifier]) -> Query:
+    """`query` restricted by one postmodifier; `behind` are the postmodifiers of that one's last noun."""
     anchors = [a.full() for a in post.anchors]
     if anchors:
-        anchors[-1] = attach(anchors[-1], behind)
+        anchors[-1] = attach_modifiers(anchors[-1], behind)
     if post.kind == "unrelated":
         wrong = _relation(_relation_name(replace(post, kind="related")), anchors)
         bad = updated(query, relations=(*query.relations, wrong), pick="all", count=None)
@@ -164,11 +172,11 @@ def _narrow(query: Query, post: Post, behind: Sequence[Post]) -> Query:
         return updated(query, pick="middle")
     if post.kind == "in_spot" and post.value == "corner":
         return updated(query, relations=(*query.relations, _relation("inside", [Query(text="corner")])))
-    raise Refusal("things cannot be picked out by this", post.word)
+    raise Refusal("things cannot be selected by this", post.word)
 
 
-def _lacking(query: Query, post: Post, anchors: Sequence[Query]) -> Query:
-    """ "all lamps without the floor lamp" leaves one lamp out, "the table without a vase" the tables that carry one."""
+def _lacking(query: Query, post: PostModifier, anchors: Sequence[Query]) -> Query:
+    """Exclude one thing ("all lamps without the floor lamp") or what carries another ("the table without a vase")."""
     if not anchors[0].text or head(anchors[0].text) == head(query.text):
         return updated(query, exclude=(*query.exclude, anchors[0]))
     carrying = [a.model_copy(update={"pick": "all"}) for a in anchors]
@@ -176,8 +184,8 @@ def _lacking(query: Query, post: Post, anchors: Sequence[Query]) -> Query:
     return updated(query, exclude=(*query.exclude, bad))
 
 
-def _relation_name(post: Post) -> str:
-    """The relation a phrase says, "" if it says none."""
+def _relation_name(post: PostModifier) -> str:
+    """The relation that a postmodifier gives, "" if it gives none."""
     if post.kind == "having":
         return str(post.value)
     if post.kind == "related":
@@ -188,13 +196,13 @@ def _relation_name(post: Post) -> str:
     return {"part": "part_of", "between": "between"}.get(post.kind, "")
 
 
-def in_or_on(post: Post) -> str:
-    """The relation of a prepositional phrase; one sits "in" a chair by being on it."""
+def in_or_on(post: PostModifier) -> str:
+    """The relation of a prepositional phrase; "in" a seat means on it."""
     seat = post.value == "inside" and nouns.is_seat(post.anchors[0].query.text)
     return "on" if seat else str(post.value)
 
 
 def _relation(name: str, anchors: Sequence[Query], frame: Literal["viewer", "object"] = "viewer") -> Relation:
-    """A relation; "next to a chair" is next to whichever chair."""
+    """A relation in which an anchor such as "a chair" means any of them."""
     anyone = (a.model_copy(update={"pick": "all"}) if a.pick == "any" and not a.last else a for a in anchors)
     return Relation(name=name, anchors=tuple(anyone), frame=frame)

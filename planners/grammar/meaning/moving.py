@@ -1,7 +1,4 @@
-"""Commands that move what is there.
-
-Knows the verbs of motion. Refuses to know places and distances (places.py).
-"""
+"""Rules for commands that move things. Directions, distances and destinations are parsed in places.py."""
 
 from __future__ import annotations
 
@@ -11,52 +8,57 @@ from ....gaussians.language.query.query import Query
 from ..parsing import Node, Refusal, tokens, trees
 from . import changes, places
 from .changes import Fields
-from .described import Noun, known
+from .described import NounPhrase, existing
 from .phrases import Phrases
 from .places import MOTIONS
 
 
-def it_moves(said: Phrases, node: Node) -> list[Fields]:
-    motion = places.read(trees(node), said)
+def it_moves(phrases: Phrases, node: Node) -> list[Fields]:
+    motion = places.read_motion(trees(node), phrases)
     if not motion.aims:
         raise Refusal("say which way, or what to change")
     return [{"op": "move", "target": Query(last=True), **motion.fields()}]
 
 
-def move(said: Phrases, node: Node) -> list[Fields]:
-    return moved(said, said.things(node), node, "MOVE")
+def move(phrases: Phrases, node: Node) -> list[Fields]:
+    return moved(phrases, phrases.things(node), node, "MOVE")
 
 
-def centering(said: Phrases, node: Node) -> list[Fields]:
-    found = said.things(node)
-    if any(n.posts for n in found):
-        raise Refusal("say put it there; centring is in the middle of the room", found[-1].posts[0].word)
-    return [{"op": "move", "target": known(found), "place": {"relation": "center"}}]
+def centering(phrases: Phrases, node: Node) -> list[Fields]:
+    found = phrases.things(node)
+    if any(n.modifiers for n in found):
+        raise Refusal("say put it there; centring is in the middle of the room", found[-1].modifiers[0].word)
+    return [{"op": "move", "target": existing(found), "place": {"relation": "center"}}]
 
 
-def moved(said: Phrases, found: list[Noun], node: Node, verb: str) -> list[Fields]:
+def moved(phrases: Phrases, found: list[NounPhrase], node: Node, verb: str) -> list[Fields]:
+    """Move operations for the things `found`; `verb` decides which phrase is the destination (places.py).
+
+    Raises:
+        Refusal: no destination or direction is given.
+    """
     first, second = _split_at_and(node)
-    motion = places.read(first, said, found[0])
+    motion = places.read_motion(first, phrases, found[0])
     if not motion.aims:
-        found[-1], motion.place = places.destination(found[-1], verb)
+        found[-1], motion.place = places.split_destination(found[-1], verb)
         if motion.place is None:
             raise Refusal("say where to: left, 30 cm up, onto the desk, next to the sofa")
         if motion.distance is not None:
             raise Refusal("a distance needs a direction")
-    ops = [{"op": "move", "target": known(found), **motion.fields()}]
+    ops = [{"op": "move", "target": existing(found), **motion.fields()}]
     if second:
-        more = places.read(second, said, found[0])
+        more = places.read_motion(second, phrases, found[0])
         ops.append({"op": "move", "target": Query(last=True), **more.fields()})
     return ops
 
 
-def raise_(said: Phrases, node: Node) -> list[Fields]:
+def raise_(phrases: Phrases, node: Node) -> list[Fields]:
     lengths, degree = tokens(node, "LENGTH"), changes.degree_of(node)
     distance = places.length(lengths[0].value) if lengths else None
     if degree:
         distance = places.LITTLE if degree == "little" else places.MUCH
     fields = {"direction": tokens(node, "RAISE")[0].value, **({"distance": distance} if distance else {})}
-    return said.targeted(node, "move", **fields)
+    return phrases.targeted(node, "move", **fields)
 
 
 def _split_at_and(node: Node) -> tuple[list[Node], list[Node]]:

@@ -1,7 +1,6 @@
-"""Noun phrases of a clause's tree.
+"""Turns noun phrases of the parse tree into queries: determiners, attributes and pronouns.
 
-Knows what a determiner, an attribute and a pronoun mean for a `Query`. Refuses to know verbs, and what the phrases
-behind a noun mean for it (described.py).
+Postmodifiers, the phrases behind a noun, are interpreted in described.py.
 """
 
 from __future__ import annotations
@@ -19,10 +18,10 @@ from ..tagging.tags import Tag
 from ..tagging.words import bag
 from ..vocabulary import nouns
 from .changes import Fields
-from .described import Article, Noun, Post, all_of, known, union, updated
+from .described import Article, NounPhrase, PostModifier, all_of, existing, union, updated
 
 _SHAPES = bag("round square rectangular oval circular wooden metal plastic glass leather striped plain patterned")
-PARTS = frozenset({"part", "piece", "area", "region", "bit"})  # of things, found by their own colour
+PARTS = frozenset({"part", "piece", "area", "region", "bit"})  # of things; selected by their own colour
 
 _MIDDLES = frozenset({"middle", "centre", "center", "left side", "right side"})
 _SIDES = _MIDDLES | {"left", "right", "front", "back", "rear", "top", "bottom"}
@@ -31,13 +30,13 @@ _SIDE_OF = {"left": "leftmost", "right": "rightmost", "forward": "farthest", "ba
 
 
 class Phrases:
-    """The noun phrases of one instruction: builds nouns, and remembers what later words refer to.
+    """Builds the noun phrases of one instruction and remembers what later words refer to.
 
     Attributes:
         antecedent: the last head noun, for "the green one".
-        before: operations of the clause before, for "do the same to the lamp".
-        colors: of the antecedent: "the other one" has them too.
-        sharing: whether the noun of the present phrase is said in the next one.
+        before: operations of the previous clause, for "do the same to the lamp".
+        colors: colours of the antecedent, which "the other one" has as well.
+        sharing: whether the noun of the present phrase comes in a later one ("the red and the blue chair").
     """
 
     def __init__(self, antecedent: str = "", before: Sequence[Fields] = (), colors: tuple[str, ...] = ()) -> None:
@@ -47,15 +46,15 @@ class Phrases:
         self.sharing = False
 
     def targeted(self, node: Node, op: str, **fields: Any) -> list[Fields]:
-        """An operation on the things that a clause names."""
+        """One operation on the things that a clause names, as fields."""
         return [{"op": op, "target": self.query(node), **fields}]
 
     def query(self, node: Node, index: int = 0) -> Query:
-        """The things that a clause names, which are there already."""
-        return known(self.things(node, index))
+        """The query for the things that a clause names, which exist already."""
+        return existing(self.things(node, index))
 
-    def things(self, node: Node, index: int = 0) -> list[Noun]:
-        """The nouns of a clause; a direction behind them ("the chair to the left") is a side of the last one."""
+    def things(self, node: Node, index: int = 0) -> list[NounPhrase]:
+        """The noun phrases of a clause; a direction behind the last one ("the chair to the left") picks by side."""
         found = self.targets(trees(node, "targets")[index])
         if (side := tokens(node, "DIR")) and str(node.data) in ("delete", "select", "isolate", "hide"):
             query = found[-1].query
@@ -64,14 +63,14 @@ class Phrases:
             found[-1] = replace(found[-1], query=query.model_copy(update={"pick": _SIDE_OF[side[0].value]}))
         return found
 
-    def targets(self, node: Node) -> list[Noun]:
-        """The nouns of a `targets` node; an exclusion is folded into each of them."""
+    def targets(self, node: Node) -> list[NounPhrase]:
+        """The noun phrases of a `targets` node; an exclusion is added to each of them."""
         groups = trees(node, "group")
         found = self.group(groups[0])
         return self.without(found, groups[1]) if len(groups) > 1 else found
 
-    def group(self, node: Node) -> list[Noun]:
-        """The nouns of a group; in "the biggest and the smallest planter" both are planters."""
+    def group(self, node: Node) -> list[NounPhrase]:
+        """The noun phrases of a group; in "the biggest and the smallest planter" both are planters."""
         parts = trees(node, "np")
         found = []
         for i, part in enumerate(parts):
@@ -87,15 +86,15 @@ class Phrases:
         tags = [tag_of(c) for c in core.children if isinstance(c, Token)] if isinstance(core, Tree) else []
         return self._head(tags)[0] if tags and tags[-1].type == "NOUN" else ""
 
-    def without(self, found: list[Noun], excluded: Node) -> list[Noun]:
-        """`found` except the nouns of a group."""
+    def without(self, found: list[NounPhrase], excluded: Node) -> list[NounPhrase]:
+        """`found`, each excluding the noun phrases of a group."""
         out = union(self.group(excluded))
         meant = [all_of(n.query, out) if n.said == "all" else n.query for n in found]
         found = [replace(n, query=q) for n, q in zip(found, meant, strict=True)]
         return [replace(n, query=updated(n.query, exclude=(*n.query.exclude, out))) for n in found]
 
-    def noun(self, node: Node) -> Noun:
-        """A noun phrase with what stands behind it."""
+    def noun(self, node: Node) -> NounPhrase:
+        """A noun phrase with its postmodifiers."""
         core, *rest = node.children
         assert isinstance(core, Tree)
         among = bool(rest) and isinstance(rest[0], Tree) and str(rest[0].data) == "part"
@@ -103,26 +102,27 @@ class Phrases:
         if head.query.text:
             self.antecedent, self.colors = _unshaped(head.query.text), head.query.colors
         headless = not tokens(core, "NOUN", "ONE", "THING") and bool(tokens(core, "SUP", "ORDINAL"))
-        posts: list[Post] = []
-        joined = False
+        modifiers: list[PostModifier] = []
+        conjoined = False
         for child in rest:
             if isinstance(child, Token):
-                joined = True
+                conjoined = True
                 continue
-            posts.append(self.post(child, joined))
-            joined = False
-        if headless and posts and posts[0].kind == "part":
-            return self._chosen(head, posts)
-        return replace(head, posts=(*head.posts, *posts))
+            modifiers.append(self.post(child, conjoined))
+            conjoined = False
+        if headless and modifiers and modifiers[0].kind == "part":
+            return self._chosen(head, modifiers)
+        return replace(head, modifiers=(*head.modifiers, *modifiers))
 
-    def _chosen(self, head: Noun, posts: list[Post]) -> Noun:
-        """ "the largest of the red chairs"."""
-        among = posts[0].anchors[0]
+    def _chosen(self, head: NounPhrase, modifiers: list[PostModifier]) -> NounPhrase:
+        """A pick among described things: "the largest of the red chairs"."""
+        among = modifiers[0].anchors[0]
         picked = {"pick": head.query.pick, "ordinal": head.query.ordinal, "count": None}
         self.antecedent = among.query.text or self.antecedent
-        return replace(head, query=updated(among.query, **picked), posts=tuple(posts[1:]))
+        return replace(head, query=updated(among.query, **picked), modifiers=tuple(modifiers[1:]))
 
-    def post(self, node: Node, joined: bool = False) -> Post:
+    def post(self, node: Node, conjoined: bool = False) -> PostModifier:
+        """The postmodifier of a `post` node."""
         first = next((tag_of(c) for c in node.children if isinstance(c, Token)), None)
         anchors = tuple(self.core(c) for c in trees(node, "core"))
         kind, value, word = str(node.data), first.value if first else None, first.text if first else ""
@@ -139,11 +139,11 @@ class Phrases:
             value = tokens(node, "HUE")[0].value
         elif kind == "is_tall":
             value = tokens(node, "TALLER")[0].value
-        return Post(kind, value, word, anchors, joined)
+        return PostModifier(kind, value, word, anchors, conjoined)
 
-    def _sided(self, node: Node) -> tuple[Noun, ...]:
-        """The nouns of "between", each narrowed by a side said behind it."""
-        found: list[Noun] = []
+    def _sided(self, node: Node) -> tuple[NounPhrase, ...]:
+        """The anchors of "between", each restricted by a side given behind it."""
+        found: list[NounPhrase] = []
         for child in node.children:
             if isinstance(child, Tree):
                 found.append(self.core(child))
@@ -151,43 +151,46 @@ class Phrases:
                 found[-1] = replace(found[-1], query=updated(found[-1].query, pick=tag_of(child).value))
         return tuple(found)
 
-    def core(self, node: Node, among: bool = False) -> Noun:
-        """A noun without what stands behind it; `among` if that says of which things it is ("the left of the two")."""
+    def core(self, node: Node, among: bool = False) -> NounPhrase:
+        """A noun phrase without postmodifiers.
+
+        `among` says that the first postmodifier gives the things to pick from ("the left of the two").
+        """
         if not among:
             self._require_thing(tag_of(node.children[-1]))  # type: ignore[arg-type]
         if owner := trees(node, "core"):
             return self._owned(node, self.core(owner[0]))
         first = tag_of(node.children[0])  # type: ignore[arg-type]
         if first.type == "PRON":
-            return Noun(Query(last=True, pick="any" if first.value == "any" else "one"), "pronoun")
+            return NounPhrase(Query(last=True, pick="any" if first.value == "any" else "one"), "pronoun")
         if first.type == "EVERYTHING":
             rest = (Query(last=True),) if first.value == "else" else ()
-            return Noun(Query(pick="all", exclude=rest), "all", True, said=first.text)
+            return NounPhrase(Query(pick="all", exclude=rest), "all", True, said=first.text)
         if first.type == "OTHERS":
-            return Noun(Query(text=self.antecedent, pick="all", exclude=(Query(last=True),)), "all", True)
+            return NounPhrase(Query(text=self.antecedent, pick="all", exclude=(Query(last=True),)), "all", True)
         return self._common(node)
 
     def _require_thing(self, last: Tag) -> None:
-        """Raise if a phrase ends in a place of the room: "clear the middle", "move the left side".
+        """Raise if a phrase names a place of the room instead of a thing: "clear the middle", "move the left side".
 
-        A side may also be short for what is there, where something was spoken of: "delete the left chair", "and the
-        right". The middle is hardly ever.
+        After an antecedent a side may stand for a thing: "delete the left chair", "and the right". The middle rarely
+        does.
 
         Raises:
-            Refusal: it does.
+            Refusal: it names a place.
         """
         if last.type == "SUP" and not self.sharing and last.text in (_MIDDLES if self.antecedent else _SIDES):
             raise Refusal(f"the {last.text} is a place; say what is there, or which one", last.text)
         if last.type == "NOUN" and singular(str(last.value).split()[-1]) in nouns.NOTHING:
-            raise Refusal("that is no kind of thing; name the things", last.text)
+            raise Refusal("that is not a kind of thing; name the things", last.text)
 
-    def _owned(self, node: Node, owner: Noun) -> Noun:
-        """ "the table's legs"."""
+    def _owned(self, node: Node, owner: NounPhrase) -> NounPhrase:
+        """A possessive phrase: "the table's legs"."""
         part = self._common(node)
         relation = Relation(name="part_of", anchors=(owner.full(),))
         return replace(part, article="def", query=updated(part.query, relations=(relation,)))
 
-    def _common(self, node: Node) -> Noun:
+    def _common(self, node: Node) -> NounPhrase:
         tags = [tag_of(c) for c in node.children if isinstance(c, Token)]
         text, plural = self._head(tags)
         article: Article = next((t.value for t in tags if t.type == "DET"), "bare")
@@ -218,10 +221,10 @@ class Phrases:
             fields = _each(joined, fields, plural)
         words = tuple(t.text for t in tags if t.type == "SIZE")
         said = tags[-1].text if tags[-1].type == "NOUN" else ""
-        return Noun(updated(Query(), **fields), article, plural, number, words, height, said=said)
+        return NounPhrase(updated(Query(), **fields), article, plural, number, words, height, said=said)
 
     def _head(self, tags: Sequence[Tag]) -> tuple[str, bool]:
-        """The noun's text, singular, and whether it was plural."""
+        """The head noun in the singular, and whether it is plural in the text."""
         last = tags[-1]
         if last.type == "THING":
             return ("part" if singular(last.text) in PARTS else ""), bool(last.value)
@@ -240,12 +243,12 @@ class Phrases:
             return None
         value = numbers[0].value
         if len(numbers) > 1 or value != int(value) or not 1 <= value <= 1000:
-            raise Refusal("that is no number of things", *(t.text for t in numbers))
+            raise Refusal("that is not a number of things", *(t.text for t in numbers))
         return int(value)
 
 
 def _each(colors: Sequence[str], fields: dict[str, Any], plural: bool) -> dict[str, Any]:
-    """ "the red and blue mugs": those that are red, and those that are blue."""
+    """A query for each of several colours: "the red and blue mugs" are the red ones and the blue ones."""
     if not plural or fields.get("pick") != "all" or fields.get("count"):
         raise Refusal("say which of the colours it has", *colors)
     first, *others = ({**fields, "colors": (c,)} for c in colors)
@@ -253,7 +256,7 @@ def _each(colors: Sequence[str], fields: dict[str, Any], plural: bool) -> dict[s
 
 
 def _pick(tags: Sequence[Tag], article: Article, plural: bool, number: int | None) -> dict[str, Any]:
-    """`pick`, `ordinal` and `count` of a query."""
+    """The fields `pick`, `ordinal` and `count` of a query."""
     superlatives = [t for t in tags if t.type == "SUP"]
     ordinals = [t for t in tags if t.type == "ORDINAL"]
     several = plural or (number or 1) > 1 or article in ("all", "both")
@@ -280,7 +283,7 @@ def _is_headless(node: Node) -> bool:
 
 
 def _unshaped(text: str) -> str:
-    """A noun without words of shape or material, which "the brown one" need not share ("square table": table)."""
+    """A noun without words for shape or material, which "the brown one" need not share ("square table": table)."""
     words = text.split()
     while len(words) > 1 and words[0] in _SHAPES:
         words = words[1:]

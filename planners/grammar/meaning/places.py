@@ -1,9 +1,7 @@
-"""Where something goes: directions, distances and destinations.
+"""Parses directions, distances and destinations, and decides which phrase behind a noun is the destination.
 
-Knows which phrase behind a noun is a destination for a verb of motion. Refuses to know the verbs themselves.
-
-Preferences:
-- A direction ("to the left") or a goal ("to the floor") settles it: what stands behind the noun describes the noun.
+Rules:
+- With a direction ("to the left") or a goal ("to the floor") the phrases behind the noun describe the noun.
 - "move X P1 P2": the last phrase is the destination. "put X P1 P2": the first one opens it, unless the last says
   "into" or "onto", or repeats the relation of the first ("put the book on the table on the shelf").
 - "copy X P": the phrase says which X, unless it begins with "into" or "onto".
@@ -20,19 +18,19 @@ from ....gaussians.world import relations
 from ....gaussians.world.words import head
 from ..parsing import Node, Refusal, tag_of, tokens, trees
 from ..vocabulary import nouns
-from .described import Noun, Post, attach, in_or_on
+from .described import NounPhrase, PostModifier, attach_modifiers, in_or_on
 from .phrases import Phrases
 
 Fields = dict[str, Any]
 LITTLE: Fields = {"value": 20, "unit": "cm"}
 MUCH: Fields = {"value": 1, "unit": "m"}
-MOTIONS = ("direction", "distance", "nudge", "toward", "to", "spot", "times")  # the rules that `read` takes
+MOTIONS = ("direction", "distance", "nudge", "toward", "to", "spot", "times")  # the rules that `read_motion` takes
 _BESIDE = ("next_to", *(kind.name for kind in relations.KINDS if kind.aim and not kind.own_frame))
 
 
 @dataclass
 class Motion:
-    """What was said about a motion, each thing at most once."""
+    """The parts of a motion that a clause gives, each at most once."""
 
     direction: str | None = None
     distance: Fields | None = None
@@ -41,22 +39,28 @@ class Motion:
     times: int | None = None
 
     def fields(self) -> Fields:
-        """The fields of an operation that were said."""
+        """The given parts as fields of an operation."""
         said = {k: getattr(self, k) for k in ("direction", "distance", "place", "toward")}
         return {k: v for k, v in said.items() if v is not None}
 
     @property
     def aims(self) -> bool:
+        """Whether it gives a direction, a place or a goal."""
         return bool(self.direction or self.place or self.toward)
 
     def set(self, name: str, value: Any, said: str) -> None:
+        """Set a part; `said` is quoted if it is given twice.
+
+        Raises:
+            Refusal: it is given twice.
+        """
         if getattr(self, name) is not None:
             raise Refusal(f"two different {name}s in one clause", said)
         setattr(self, name, value)
 
 
-def read(nodes: Sequence[Node], phrases: Phrases, moved: Noun | None = None) -> Motion:
-    """The motion that a clause's motion nodes say; `moved` helps to read "to the table"."""
+def read_motion(nodes: Sequence[Node], phrases: Phrases, moved: NounPhrase | None = None) -> Motion:
+    """The motion that the motion nodes of a clause give; `moved` decides what "to the table" means."""
     motion = Motion()
     for node in nodes:
         said = " ".join(tag_of(t).text for t in node.scan_values(lambda _: True))
@@ -64,7 +68,7 @@ def read(nodes: Sequence[Node], phrases: Phrases, moved: Noun | None = None) -> 
     return motion
 
 
-def _read_one(kind: str, node: Node, motion: Motion, phrases: Phrases, said: str, moved: Noun | None) -> None:
+def _read_one(kind: str, node: Node, motion: Motion, phrases: Phrases, said: str, moved: NounPhrase | None) -> None:
     if kind == "direction":
         motion.set("direction", tokens(node, "DIR")[0].value, said)
     elif kind == "distance":
@@ -76,39 +80,46 @@ def _read_one(kind: str, node: Node, motion: Motion, phrases: Phrases, said: str
     elif kind == "spot":
         motion.set("place", {"relation": tokens(node, "SPOT")[0].value}, said)
     elif kind == "toward":
-        motion.set("toward", anchor_only(phrases, trees(node, "np")[0]).full(), said)
+        motion.set("toward", goal_of(phrases, trees(node, "np")[0]).full(), said)
     elif kind == "to":
-        motion.set("place", _to(anchor_only(phrases, trees(node, "np")[0]), moved), said)
+        motion.set("place", _place_of_goal(goal_of(phrases, trees(node, "np")[0]), moved), said)
 
 
 def length(value: tuple[float, str]) -> Fields:
-    """A length token's value as fields."""
+    """The value of a LENGTH token as fields.
+
+    Raises:
+        Refusal: it is not above 0 and at most 10,000.
+    """
     if not 0 < value[0] <= 10_000:
         raise Refusal("that is no length for things in a room", f"{value[0]:g}", verdict="impossible")
     return {"value": value[0], "unit": value[1]}
 
 
 def whole(value: float, said: str) -> int:
-    """A count.
+    """A number as a count of copies.
 
     Raises:
-        Refusal: it is no whole number from 1 to 50.
+        Refusal: it is not a whole number from 1 to 50.
     """
     if value != int(value) or not 1 <= value <= 50:
         raise Refusal("copies are counted from 1 to 50", said)
     return int(value)
 
 
-def anchor_only(phrases: Phrases, np: Node) -> Noun:
-    """The noun of a goal; it does not become what "one" refers to."""
+def goal_of(phrases: Phrases, np: Node) -> NounPhrase:
+    """The noun phrase of a goal; it does not become the antecedent of "one"."""
     kept = phrases.antecedent
     found = phrases.noun(np)
     phrases.antecedent = kept
     return found
 
 
-def _to(goal: Noun, moved: Noun | None) -> Fields:
-    """ "to the floor" is on it, "to the wall" against it, "to the window" next to it; "to the table" depends."""
+def _place_of_goal(goal: NounPhrase, moved: NounPhrase | None) -> Fields:
+    """The place that a goal means: "to the floor" is on it, "to the wall" against it, "to the window" next to it.
+
+    For surfaces and containers it depends on what is moved: furniture goes next to them.
+    """
     name = head(goal.query.text)
     _refuse_some_corner(goal)
     big = moved is not None and nouns.is_furniture(moved.query.text)
@@ -123,71 +134,75 @@ def _to(goal: Noun, moved: Noun | None) -> Fields:
     return {"relation": relation, "anchors": (goal.full(),)}
 
 
-def _refuse_some_corner(goal: Noun) -> None:
+def _refuse_some_corner(goal: NounPhrase) -> None:
     if goal.query.text == "corner":
         raise Refusal("one corner cannot be told from another; say the corner, or next to what", "corner")
 
 
-def destination(found: Noun, verb: str) -> tuple[Noun, Fields | None]:
-    """What is moved without its destination, and the destination among the phrases behind it, if there is one."""
-    posts = found.posts
-    at = _opens(posts, verb)
+def split_destination(found: NounPhrase, verb: str) -> tuple[NounPhrase, Fields | None]:
+    """Split the destination off the postmodifiers of what is moved; the destination is None if there is none."""
+    modifiers = found.modifiers
+    at = _destination_start(modifiers, verb)
     if at is None:
         return found, None
-    return replace(found, posts=posts[:at]), placement(posts[at:])
+    return replace(found, modifiers=modifiers[:at]), placement(modifiers[at:])
 
 
-def _opens(posts: Sequence[Post], verb: str) -> int | None:
-    """The index of the phrase that opens the destination."""
-    goals = [i for i, p in enumerate(posts) if p.kind in ("related", "between", "centered", "in_spot") and _can(p)]
+def _destination_start(modifiers: Sequence[PostModifier], verb: str) -> int | None:
+    """The index of the first postmodifier that belongs to the destination, None if there is no destination."""
+    goals = [
+        i
+        for i, p in enumerate(modifiers)
+        if p.kind in ("related", "between", "centered", "in_spot") and _can_be_destination(p)
+    ]
     if not goals:
         return None
-    explicit = [i for i in goals if posts[i].word.split()[0] in ("into", "onto", "to", "against", "up")]
+    explicit = [i for i in goals if modifiers[i].word.split()[0] in ("into", "onto", "to", "against", "up")]
     if explicit:
         return explicit[0]
     if verb == "COPY":
         return None  # a copy needs no place, so "copy the lamp on the desk" says which lamp
     first, last = goals[0], goals[-1]
-    repeats = first != last and posts[last].value in (posts[first].value, "inside")
+    repeats = first != last and modifiers[last].value in (modifiers[first].value, "inside")
     return last if verb == "MOVE" or repeats else first
 
 
-def _can(post: Post) -> bool:
+def _can_be_destination(post: PostModifier) -> bool:
     return post.kind != "related" or bool(relations.placed_as(str(post.value)))
 
 
-def placement(posts: Sequence[Post]) -> Fields:
-    """A place from the phrases that say it."""
-    first, rest = posts[0], posts[1:]
+def placement(modifiers: Sequence[PostModifier]) -> Fields:
+    """The placement that postmodifiers give, as fields."""
+    first, rest = modifiers[0], modifiers[1:]
     if first.kind == "in_spot":
         if rest:
             raise Refusal("a place is one phrase", rest[0].word)
         return {"relation": first.value}
     on_floor = first.value == "on" and head(first.anchors[0].query.text) in ("floor", "ground")
     if on_floor and rest and rest[0].kind in ("related", "between"):
-        return placement(rest)  # "on the floor in front of the sofa": being on the floor goes without saying
-    if any(p.joined for p in rest):
+        return placement(rest)  # "on the floor in front of the sofa": "on the floor" is redundant
+    if any(p.conjoined for p in rest):
         raise Refusal("a place is one phrase; name one of the two", rest[0].word)
     anchors = [a.full() for a in first.anchors]
     for anchor in first.anchors:
         _refuse_some_corner(anchor)
     if _refines(first, rest):
-        beside = replace(rest[0].anchors[0], posts=(first,))
-        return {"relation": _spot(rest[0]), "anchors": (attach(beside.full(), rest[1:]),)}
-    anchors[-1] = attach(anchors[-1], rest)
-    return {"relation": _spot(first), "anchors": tuple(anchors)}
+        beside = replace(rest[0].anchors[0], modifiers=(first,))
+        return {"relation": _relation_of(rest[0]), "anchors": (attach_modifiers(beside.full(), rest[1:]),)}
+    anchors[-1] = attach_modifiers(anchors[-1], rest)
+    return {"relation": _relation_of(first), "anchors": tuple(anchors)}
 
 
-def _refines(first: Post, rest: Sequence[Post]) -> bool:
-    """Whether "on A next to B" means beside the small thing B that is on A."""
+def _refines(first: PostModifier, rest: Sequence[PostModifier]) -> bool:
+    """Whether "on A next to B" means next to the small thing B that is on A."""
     if first.kind != "related" or first.value != "on" or not rest or rest[0].kind != "related":
         return False
     beside = rest[0].value in _BESIDE
     return beside and not nouns.is_furniture(rest[0].anchors[0].query.text)
 
 
-def _spot(post: Post) -> str:
-    """The placement's relation."""
+def _relation_of(post: PostModifier) -> str:
+    """The relation of a placement."""
     if post.kind == "between":
         return "between"
     if post.kind == "centered":

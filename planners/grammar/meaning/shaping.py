@@ -1,6 +1,6 @@
-"""Commands that turn what is there or change its size.
+"""Rules for commands that rotate or resize things, with defaults for turns and sizes without a number.
 
-Knows the verbs, and what a turn or a size means that gives no number. Refuses to know factors and shares (changes.py).
+Factors and shares are parsed in changes.py.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from .phrases import Phrases
 # ---- turning -------------------------------------------------------------------------------------------------
 
 
-def rotate(said: Phrases, node: Node) -> list[Fields]:
+def rotate(phrases: Phrases, node: Node) -> list[Fields]:
     turns = trees(node, "turning")
     angle, clock, direction = (_only(turns, *kind) for kind in (("ANGLE", "NUMBER"), ("CLOCK",), ("DIR",)))
     if angle is None and (share := _only(turns, "FRACTION")) is not None:
@@ -24,7 +24,7 @@ def rotate(said: Phrases, node: Node) -> list[Fields]:
     if any(tokens(t, "UPSIDE") for t in turns):
         if len(turns) > 1:
             raise Refusal("turning upside down is half a turn; leave the rest out")
-        return said.targeted(node, "rotate", degrees=180.0, axis="forward")
+        return phrases.targeted(node, "rotate", degrees=180.0, axis="forward")
     if direction is not None and direction not in ("left", "right"):
         raise Refusal("things turn to the left or right, clockwise or counterclockwise")
     if clock is not None and direction is not None:
@@ -35,18 +35,18 @@ def rotate(said: Phrases, node: Node) -> list[Fields]:
         raise Refusal("say by how many degrees, or to the left, or around")
     if _only(turns, "DEGREE") is not None and angle is None:
         angle = _slight(turns)
-    # A quarter turn is what "turn it to the left" means without a number; "around" is half a turn.
+    # Without a number "turn it to the left" is a quarter turn and "around" half a turn.
     degrees = float(angle) if angle is not None else 180.0 if around else 90.0
-    return said.targeted(node, "rotate", degrees=sign * degrees)
+    return phrases.targeted(node, "rotate", degrees=sign * degrees)
 
 
-def flip(said: Phrases, node: Node) -> list[Fields]:
+def flip(phrases: Phrases, node: Node) -> list[Fields]:
     if tokens(node, "AROUND"):
-        return said.targeted(node, "rotate", degrees=180.0)
-    return said.targeted(node, "rotate", degrees=180.0, axis="forward")
+        return phrases.targeted(node, "rotate", degrees=180.0)
+    return phrases.targeted(node, "rotate", degrees=180.0, axis="forward")
 
 
-def tilt(said: Phrases, node: Node) -> list[Fields]:
+def tilt(phrases: Phrases, node: Node) -> list[Fields]:
     turns = trees(node, "turning")
     angle, clock, direction = (_only(turns, *kind) for kind in (("ANGLE",), ("CLOCK",), ("DIR",)))
     if angle is None or (clock is None) == (direction is None):
@@ -56,21 +56,21 @@ def tilt(said: Phrases, node: Node) -> list[Fields]:
     axis, sign = ("forward", -clock) if clock is not None else signs.get(direction or "", ("", 0))
     if not sign:
         raise Refusal("things tilt left, right, forward or backward")
-    return said.targeted(node, "rotate", degrees=sign * float(angle), axis=axis)
+    return phrases.targeted(node, "rotate", degrees=sign * float(angle), axis=axis)
 
 
-def turn_to(said: Phrases, node: Node) -> list[Fields]:
-    """ "turn the armchair toward the window", "make the chairs face away from the table"."""
-    goal = places.anchor_only(said, trees(node, "np")[0]).full()
+def turn_to(phrases: Phrases, node: Node) -> list[Fields]:
+    """Turn to face something: "turn the armchair toward the window", "make the chairs face away from the table"."""
+    goal = places.goal_of(phrases, trees(node, "np")[0]).full()
     away = {"degrees": 180.0} if tokens(node, "FACEAWAY") else {}
-    return said.targeted(node, "rotate", toward=goal, **away)
+    return phrases.targeted(node, "rotate", toward=goal, **away)
 
 
 # ---- sizing --------------------------------------------------------------------------------------------------
 
 
 def _factor(node: Node) -> tuple[float | None, float | None, bool, str]:
-    """Share, times, whether "to" was said, and degree of a clause's `factor`."""
+    """Share, factor, whether "to" precedes it, and degree of a clause's `factor` node."""
     for inner in trees(node, "factor", "degree_factor"):
         times = tokens(inner, "TIMES", "NUMBER")
         value = float(times[0].value) if times else None
@@ -78,71 +78,71 @@ def _factor(node: Node) -> tuple[float | None, float | None, bool, str]:
     return None, None, False, ""
 
 
-def scale(said: Phrases, node: Node) -> list[Fields]:
+def scale(phrases: Phrases, node: Node) -> list[Fields]:
     share, times, to, degree = _factor(node)
     way = [t.value for t in tokens(node, "DIR")]
     if way and way[0] in ("up", "down"):
-        return _sized(said, node, "all", way[0] == "up", (share, times, to, degree))
+        return _sized(phrases, node, "all", way[0] == "up", (share, times, to, degree))
     if way or (share is None and times is None):
         raise Refusal("say by how much: by 1.5, to 50 %, up by 20 %")
-    return said.targeted(node, **changes.scaled(times if times is not None else share or 0.0))
+    return phrases.targeted(node, **changes.scaled(times if times is not None else share or 0.0))
 
 
 def _sized(
-    said: Phrases, node: Node, axis: str, up: bool, factor: tuple[float | None, float | None, bool, str]
+    phrases: Phrases, node: Node, axis: str, up: bool, factor: tuple[float | None, float | None, bool, str]
 ) -> list[Fields]:
     share, times, to, degree = factor
     if to and (share is not None or times is not None):
-        return said.targeted(node, **changes.scaled(share if share is not None else times or 0.0, axis))
-    return said.targeted(node, **changes.grown(axis, up, share, times, degree))
+        return phrases.targeted(node, **changes.scaled(share if share is not None else times or 0.0, axis))
+    return phrases.targeted(node, **changes.grown(axis, up, share, times, degree))
 
 
-def grow(said: Phrases, node: Node) -> list[Fields]:
+def grow(phrases: Phrases, node: Node) -> list[Fields]:
     axis, up = tokens(node, "GROW")[0].value
     if axis == "prop" and trees(node, "factor"):
         axis = "all"
     if axis == "prop":
         raise Refusal("say what of it: its size, its height, its width", tokens(node, "GROW")[0].text)
-    return _sized(said, node, axis, up, _factor(node))
+    return _sized(phrases, node, axis, up, _factor(node))
 
 
-def grow_prop(said: Phrases, node: Node) -> list[Fields]:
+def grow_prop(phrases: Phrases, node: Node) -> list[Fields]:
     _, up = tokens(node, "GROW")[0].value
-    return _sized(said, node, tokens(node, "PROP")[0].value, up, _factor(node))
+    return _sized(phrases, node, tokens(node, "PROP")[0].value, up, _factor(node))
 
 
-def measure(said: Phrases, node: Node) -> list[Fields]:
-    return said.targeted(node, **changes.measured(node))
+def measure(phrases: Phrases, node: Node) -> list[Fields]:
+    return phrases.targeted(node, **changes.measured(node))
 
 
-def measure_prop(said: Phrases, node: Node) -> list[Fields]:
+def measure_prop(phrases: Phrases, node: Node) -> list[Fields]:
     side = tokens(node, "PROP")[0]
-    return said.targeted(node, **changes.sized(tokens(node, "LENGTH")[0].value, side.value, side.text))
+    return phrases.targeted(node, **changes.sized(tokens(node, "LENGTH")[0].value, side.value, side.text))
 
 
-def stretch(said: Phrases, node: Node) -> list[Fields]:
-    """ "stretch the table to 2 m wide", "stretch it by 20 %": one side only, the width if none is said."""
+def stretch(phrases: Phrases, node: Node) -> list[Fields]:
+    """Change one side only, the width by default: "stretch the table to 2 m wide", "stretch it by 20 %"."""
     if trees(node, "measured"):
-        return said.targeted(node, **changes.measured(node, stretched=True))
+        return phrases.targeted(node, **changes.measured(node, stretched=True))
     share, times, to, degree = _factor(node)
-    return _sized(said, node, "width", True, (share, times, to, degree))
+    return _sized(phrases, node, "width", True, (share, times, to, degree))
 
 
-def multiply(said: Phrases, node: Node) -> list[Fields]:
+def multiply(phrases: Phrases, node: Node) -> list[Fields]:
     prop = tokens(node, "PROP")
-    return said.targeted(node, **changes.scaled(tokens(node, "MULTIPLY")[0].value, prop[0].value if prop else "all"))
+    return phrases.targeted(node, **changes.scaled(tokens(node, "MULTIPLY")[0].value, prop[0].value if prop else "all"))
 
 
 def _only(nodes: Sequence[Node], *types: str) -> Any:
-    """The one value of these token types below the nodes, None if there is none."""
+    """The value of the only token of these types below the nodes, None if there is none."""
     found = [t for n in nodes for t in tokens(n, *types)]
     if len(found) > 1:
-        raise Refusal("two of one kind in one clause", *(t.text for t in found))
+        raise Refusal("this is given twice in one clause", *(t.text for t in found))
     return found[0].value if found else None
 
 
 def _slight(turns: Sequence[Node]) -> float:
-    """Degrees of "turn it slightly to the left"."""
+    """Degrees for "turn it slightly to the left"."""
     if _only(turns, "DEGREE") != "little":
         raise Refusal("say by how many degrees", "much")
     return 15.0

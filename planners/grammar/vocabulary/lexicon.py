@@ -1,9 +1,8 @@
-"""The closed vocabulary: every phrase that is not a noun, and the word class it stands for.
+"""The closed vocabulary: maps every phrase that is not a noun to its word class and value.
 
-Knows spellings and what each one means ("get rid of" is DELETE, "to the left of" is PREP left_of). Refuses to know
-grammar: how the classes combine is in grammar.lark, which class wins in context is in tagger.py.
-
-Tables map a phrase to a value; `PHRASES` joins them into one trie-like table keyed by tuples of words.
+For example "get rid of" is DELETE and "to the left of" is PREP left_of. grammar.lark combines the classes; tagger.py
+chooses the class in context. The tables are keyed by phrase; `table` turns them into tables keyed by tuples of words
+(VERB_PHRASES, CLOSED_PHRASES, ATTRIBUTE_PHRASES).
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ from ....gaussians.world import relations
 from ..tagging.words import bag, phrases
 from .verbs import UNSUPPORTED, VERBS, Entry, same
 
-# What the session answers, not a planner; and words that ask for nothing.
+# Commands that the session answers, not a planner; then words of chat and questions, which ask for no edit.
 COMMANDS = frozenset(
     {
         "undo",
@@ -39,7 +38,7 @@ QUESTION = bag(
     "what where who whom whose which why how when is are am was were does do did has have had can could will would "
     "shall should may might"
 )
-# A sentence that begins so takes back the one before.
+# A sentence that begins with one of these takes back the previous one.
 RETRACTIONS = phrases(
     "no, nope, nah, wait, no wait, actually no, actually not, scratch that, never mind, nevermind, forget it, forget "
     "that, cancel that, cancel, sorry, i mean, i meant, oops, on second thought, rather not, hold on, stop, "
@@ -47,7 +46,7 @@ RETRACTIONS = phrases(
 )
 STATEMENT = bag("i we you he she they there my our your")
 
-# Nouns too: verbs only if an object follows.
+# Words that are nouns as well; they are verbs only if an object follows.
 NOUN_VERBS = bag(
     "plant light paint set stand copy clone duplicate mark place park drop bin mount rest tip roll change show pick "
     "color colour tint stain dye coat spray swap switch trade slide push dump scrap trash lock play fold lift double "
@@ -62,7 +61,7 @@ RELATIONS: dict[str, str] = {p: kind.name for kind in _RELATED for p in kind.phr
 
 
 def _said(kind: str, name: str, alone: bool = False) -> dict[str, Entry]:
-    """A relation's phrases as tokens of a class of their own: before an anchor, or without one."""
+    """The phrases of a relation that has a token class of its own: those before an anchor, or those without one."""
     known = relations.named(name)
     return dict.fromkeys((known.alone if alone else known.phrases).in_commands(), (kind, name))
 
@@ -217,7 +216,7 @@ CLOSED: dict[str, Entry] = {
     **same(("THING", True), "things, objects, items, parts, pieces, areas, regions, elements, bits, stuff"),
 }  # fmt: skip
 
-# What is said of the room is said of a garden too.
+# Phrases about "the room" are accepted for other places as well.
 _PLACES = ("garden", "patio", "yard", "terrace", "kitchen", "office", "bedroom", "living room", "cafe", "shop", "space")
 CLOSED |= {
     phrase.replace("the room", f"the {place}"): entry
@@ -226,7 +225,7 @@ CLOSED |= {
     for place in _PLACES
 }
 
-# Only before a noun ("the left chair"), or after a determiner where the noun is left out ("the largest").
+# Attributes: used before a noun ("the left chair"), or after a determiner without a noun ("the largest").
 ATTRIBUTES: dict[str, Entry] = {
     **same(("SUP", "largest"), "largest, biggest, greatest"),
     **same(("SUP", "smallest"), "smallest, tiniest, littlest"),
@@ -247,7 +246,7 @@ ATTRIBUTES: dict[str, Entry] = {
     **same(("SIZE", "narrow"), "narrow, thin, slim, skinny, narrower"),
 }  # fmt: skip
 
-# Dropped wherever they stand.
+# Filler: dropped at any position.
 FILLER = phrases(
     "please, kindly, just, now, actually, for me, if you can, if possible, if you could, would you, will you, "
     "thanks, thank you, thank you very much, ok, okay, well, so, hey, hi, hello, also, as well, right now, "
@@ -272,13 +271,13 @@ PARTICIPLES = bag(
     "tucked kept parked"
 )
 
-# Dropped before words that carry on ("no, darker").
+# Dropped at the start of a clause that continues ("no, darker").
 INTERJECTIONS = bag("no yes yeah yep hmm oh ok okay and so but well maybe perhaps")
 
 # Before a verb in -ing ("would you mind removing the mug").
 GERUND_OPENERS = phrases("would you mind, do you mind, how about, what about, what if we try, try, start by, consider")
 
-# Dropped where a clause begins, before its verb.
+# Polite phrases: dropped at the start of a clause, before its verb.
 POLITE = phrases(
     "could you, can you, would you, will you, could we, can we, shall we, i would like you to, i would like to, "
     "i want you to, i want to, i need you to, i need to, we need to, we want to, let us, let me, you should, "
@@ -297,7 +296,7 @@ POLITE = phrases(
     "cool, perfect, nice, no, yes, yeah, yep, sure"
 )
 
-# Never part of a noun: words that carry structure or that would be dropped at a cost.
+# Never part of a noun: function words, and words whose loss would change the meaning.
 STRUCTURE = bag(
     "if unless until till while because since when whenever although though who whom whose which what where why how "
     "that than then so last next previous former latter or nor yet no without "
@@ -317,7 +316,7 @@ ASKING = bag("tell describe list count explain name ask say answer imagine remem
 
 
 def table(*tables: dict[str, Entry]) -> dict[tuple[str, ...], Entry]:
-    """The tables joined and keyed by tuples of words."""
+    """The tables merged and keyed by tuples of words."""
     return {tuple(phrase.split()): entry for t in tables for phrase, entry in t.items()}
 
 

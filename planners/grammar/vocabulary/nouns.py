@@ -1,7 +1,7 @@
-"""Nouns: which of two nouns is furniture, a surface or a container, and which compounds stay together.
+"""Classifies nouns as surface, container, seat or furniture, and lists compound nouns that must not be split.
 
-Knows a short list of everyday things. Refuses to limit what may be named: any word may be a noun; the
-lists here only settle preferences ("put it to the desk" means on it) and which word of a wrong sentence to blame.
+Any word may be a noun. The classes only decide between readings ("put it to the desk" means on it), and the known nouns
+which word of a sentence that does not parse is reported.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from ....gaussians.world.words import MASS, head, singular
 from ..tagging.words import bag, phrases
 
 EVERYWHERE = bag("floor ground wall ceiling room")
-# Where things stand, and no things: "clear some space", "empty the corner".
+# Places, not things: "clear some space", "empty the corner".
 PLACES = bag("space room area spot place zone region part corner path way passage aisle entrance doorway gap half")
-NOTHING = bag("space gap place clutter mess")  # no kind of thing is called so, whatever stands there
+NOTHING = bag("space gap place clutter mess")  # never the name of a kind of thing
 # Everyday words that name no kind of thing: parts of houses and things, places, people, animals and vehicles.
 _SHELF_LIKE = bag("floor ground sill mantel stand ledge pedestal rug carpet mat")  # things are put on them
 _BUILDING = bag("wall column pillar railing")
@@ -34,7 +34,7 @@ def everyday() -> frozenset[str]:
 
 
 def is_surface(phrase: str) -> bool:
-    """Whether small things are put on it: it has a top, or is sat on and no chair, or is a rug."""
+    """Whether small things are put on it: it has a top, stores things, is a bed, rug or seat other than a chair."""
     kind = kinds.of(phrase)
     if kind is None:
         return head(phrase) in _SHELF_LIKE
@@ -42,7 +42,7 @@ def is_surface(phrase: str) -> bool:
 
 
 def is_chair(kind: kinds.Kind) -> bool:
-    """Whether one person sits on it, with a back."""
+    """Whether it is a seat for one person with a front side."""
     return kind.seats == 1 and kind.front
 
 
@@ -59,7 +59,7 @@ def is_seat(phrase: str) -> bool:
 
 
 def is_furniture(phrase: str) -> bool:
-    """Whether it is furniture or part of the building: no small thing."""
+    """Whether it is furniture or part of the building, not a small thing."""
     kind = kinds.of(phrase)
     if kind is None:
         return head(phrase) in _BUILDING
@@ -85,5 +85,5 @@ COMPOUNDS: frozenset[tuple[str, ...]] = phrases(
 
 
 def is_known(word: str) -> bool:
-    """Whether it is one of the everyday nouns that help to decide which word to blame."""
+    """Whether a word, or its singular, is an everyday noun."""
     return word in everyday() or singular(word) in everyday() or word in MASS

@@ -1,7 +1,6 @@
-"""Numbers, fractions, lengths, angles, percentages and "three times", in digits or in words.
+"""Parses numbers, fractions, lengths, angles, percentages and factors ("three times"), in digits or in words.
 
-Knows how people say an amount. Refuses to know what the amount is of. Each reader takes the words from a position and
-gives the amount and how many words it took, or None.
+Each function takes the words from a position on and returns the amount and how many words it consumed, or None.
 """
 
 from __future__ import annotations
@@ -40,9 +39,9 @@ class Quantity:
 
     Attributes:
         kind: what it measures.
-        value: of a LENGTH in its `unit`, degrees, 0.2 for 20 %, 3 for "three times", 1/3 for "a third".
-        unit: of a LENGTH, else "".
-        taken: how many words it took.
+        value: a LENGTH in its `unit`, an ANGLE in degrees, 0.2 for 20 %, 3 for "three times", 1/3 for "a third".
+        unit: the unit of a LENGTH, else "".
+        taken: how many words it consumed.
     """
 
     kind: Kind
@@ -52,7 +51,7 @@ class Quantity:
 
 
 def read(words: Sequence[str]) -> Quantity | None:
-    """The amount that `words` begin with, the longest reading."""
+    """The longest amount at the start of `words`, None if there is none."""
     skip = 1 if len(words) > 1 and words[0] in _HEDGES and (words[1] in ("a", "half") or _whole(words[1:])) else 0
     found = _read(words[skip:])
     return Quantity(found.kind, found.value, found.unit, found.taken + skip) if found else None
@@ -73,7 +72,7 @@ def _read(words: Sequence[str]) -> Quantity | None:
 
 
 def _with_unit(words: Sequence[str], value: float, taken: int) -> Quantity | None:
-    """A number and the unit after it, if there is one."""
+    """A number with the unit behind it, if there is one."""
     rest = words[taken:]
     unit = rest[0] if rest else ""
     digits = words[0][-1].isdigit()
@@ -107,7 +106,7 @@ def _with_unit(words: Sequence[str], value: float, taken: int) -> Quantity | Non
 
 
 def _one_unit(words: Sequence[str]) -> Quantity | None:
-    """ "a metre (and a half)", "a quarter", "a full turn", "a degree"."""
+    """One unit: "a metre (and a half)", "a full turn", "a right angle", "a degree"."""
     unit = words[1]
     if unit in IN_METRES:
         return _with_unit(("1", *words[1:]), 1.0, 1)
@@ -187,7 +186,7 @@ def _whole(words: Sequence[str]) -> tuple[float, int] | None:
 
 
 def _digits(text: str) -> float | None:
-    """ "1,000", "1,5" (a decimal comma), "3/4"; None if it is no finite number."""
+    """The value of "1,000", "1,5" (decimal comma) or "3/4"; None if it is not a finite number."""
     above, _, below = text.replace(" ", "").partition("/")
     values = []
     for part in (above, below) if below else (above,):
@@ -203,7 +202,7 @@ def _digits(text: str) -> float | None:
 
 
 def _is_part(words: Sequence[str]) -> bool:
-    """Whether a fraction below one stands there in digits: "1/2"."""
+    """Whether the first word is a fraction below one in digits: "1/2"."""
     value = _digits(words[0]) if words and "/" in words[0] and words[0][0].isdigit() else None
     return value is not None and 0 < value < 1
 

@@ -1,4 +1,4 @@
-"""How tall a "small mug" is, and what hangs, from the table of kinds."""
+"""Heights for size words ("a small mug") and whether a kind hangs from the ceiling, from the table of kinds."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ _SMALL, _LARGE = ("small", "short"), ("large", "tall")
 
 
 def usual_height(name: str, size: str) -> float | None:
-    """Height in metres of a small or large thing of this kind: the end of the usual range; None if that says nothing.
+    """Height in metres of a small or large thing of a kind: the lower or upper end of the kind's range.
 
-    Width words ("wide") give None, as a new thing keeps its proportions, and so do kinds that are not in the table.
+    None for width words ("wide"), because a new thing keeps its proportions, and for kinds that are not in the table.
     """
     kind = kinds.find(name)
     if size not in (*_SMALL, *_LARGE) or kind is None:

@@ -1,7 +1,6 @@
-"""What a scene editor must not be asked to do: files, commands, secrets, other people's orders.
+"""Detects requests that are not about the scene but unsafe: files, shell commands, secrets, prompt injection.
 
-Knows the words of such requests. Refuses to know objects: a folder on a desk or a server rack is furniture, so that a
-noun of computing alone is not enough unless nobody would edit it in a room.
+A computing noun alone is not enough if such a thing may be in a room: a folder on a desk or a server rack is furniture.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ _SECRETS = r"""
 | \b(?:send|post|share|forward|publish|copy|transmit|move)\b.*
   \b(?:server\b(?!\ (?:rack|cabinet|stand|room))|internet|the\ web|online|twitter|facebook|instagram|reddit|cloud|ftp)\b
 """
-# Orders against the planner itself.
+# Prompt injection.
 _ORDERS = r"""
 \b(?:ignore|disregard|forget|override|bypass|disobey|skip)\b.{0,40}
   \b(?:instructions?|rules?|prompts?|guidelines?|restrictions?|safety|polic(?:y|ies)|commands?)\b
@@ -49,7 +48,7 @@ def _patterns() -> tuple[re.Pattern[str], ...]:
 
 
 def unsafe_words(cleaned: str) -> str:
-    """The words that make an instruction one about the computer or its user; "" if it is about things in a room."""
+    """The words that make an instruction unsafe, "" if there are none."""
     for pattern in _patterns():
         if found := pattern.search(cleaned):
             return found.group()

@@ -1,6 +1,6 @@
-"""The verbs: every way to begin a command, what it stands for, and those that no operation carries out.
+"""The verb table: maps each phrase that begins a command to its word class, or to why no operation does it.
 
-Knows spellings and classes. Refuses to know what stands behind a verb (lexicon.py) and what it does (commands.py).
+Phrases behind a verb are in lexicon.py; the rules that turn verbs into operations are in meaning/.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ Entry = tuple[str, Any]  # word class, value
 
 
 def same(value: Any, phrases: str) -> dict[str, Any]:
-    """Phrases separated by commas, all with one value."""
+    """A table that maps each of the phrases, separated by commas, to the same value."""
     return {p.strip(): value for p in phrases.split(",")}
 
 
@@ -125,7 +125,7 @@ VERBS: dict[str, Entry] = {
 
 TO_ALIGN = "things cannot be lined up with each other in one step"
 
-# Verbs we know and cannot carry out: named, so that the answer says so instead of "not understood".
+# Verbs that no operation carries out. They are listed so that the refusal gives the reason, not "not understood".
 UNSUPPORTED: dict[str, str] = {
     **same("moving parts and switches cannot be operated", "open, close, shut, turn on, turn off, switch on, "
             "switch off, unlock, lock, fold, unfold, light up, dim"),

@@ -1,7 +1,7 @@
-"""What a description speaks of, even where the rest of it is not understood: the head noun, and the relations named.
+"""Finds the head noun of a description and the relations that it names, for counting descriptions by noun.
 
-Knows how people begin when they point something out ("it's the …", "facing the window, …", "of the two chairs …").
-Refuses to select anything: a head noun alone picks no one thing, it only tells what an instruction seems to be about.
+Handles the ways in which people introduce a description ("it's the …", "facing the window, …", "of the two chairs …").
+The rest of the description need not be understood.
 """
 
 from __future__ import annotations
@@ -9,24 +9,24 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import cache
 
-from ....gaussians.errors import UserError
-from ....gaussians.world.words import singular
-from ..tagging.lookahead import color_at, match
-from ..tagging.words import bag, clean, phrases, split
-from ..vocabulary import lexicon, nouns, quantities
+from ..gaussians.errors import UserError
+from ..gaussians.world.words import singular
+from ..planners.grammar.tagging.lookahead import color_at, match
+from ..planners.grammar.tagging.words import bag, clean, phrases, split
+from ..planners.grammar.vocabulary import lexicon, nouns, quantities
 
 _GENERIC = bag(
     "one ones option choice object item thing it pair set group row stack part side end top bottom bunch piece unit "
     "place spot answer target section portion middle corner area pile kind type correct left right view image photo "
     "room"
 )
-# Where one stands while pointing: what is named there is not what is meant.
+# Words that begin a clause about the speaker's position: the thing named there is not the one described.
 _STANCE = bag(
     "go turn turning orient position facing face when if looking look standing stand sitting sit from as with while "
     "walking entering enter imagine staring viewing using on in at among amongst out between to coming lying laying "
     "upon under behind above"
 )
-# What a pointing begins with; "is" and "are" only behind a word that names nothing ("the correct one is the lamp").
+# Openers of descriptions; "is" and "are" count only behind a word that names nothing ("the correct one is the lamp").
 _OPENERS = phrases(
     "it is, this is, that is, choose, select, pick, find, locate, click, click on, you want, you are looking for, you "
     "should select, you should choose, you need, look for, i want, there is, there are, i am, i am looking for, its, "
@@ -34,7 +34,7 @@ _OPENERS = phrases(
     "pick out, grab, take, you need to choose, you need to select, you want to choose, you want to select, you want to "
     "pick, you need to pick, want, we want, we are looking for, looking for, searching for, locate for, see, the one"
 )
-_LEADING = bag("the a an two three four five six these those facing at")  # what a noun phrase begins behind
+_LEADING = bag("the a an two three four five six these those facing at")  # a noun phrase follows these words
 _THE_ONE = phrases("the correct one, it is the, the one on, the correct choice", ",")
 _SAID = bag("is are was were be")
 _STOP = bag(
@@ -55,13 +55,13 @@ _BEFORE = bag(
 
 
 def head_noun(text: str) -> str:
-    """The singular noun that a description is about, "" if none is found.
+    """The singular head noun of a description, "" if none is found.
 
     Raises:
         UserError: the text is too long.
     """
     texts = tuple(w.text for w in split(clean(text)))
-    looked_at = ""  # what was last named while saying where one stands: "facing the chairs, it's the one on the left"
+    looked_at = ""  # last noun of a clause about the speaker's position: "facing the chairs, it's the one on the left"
     for clause in _clauses(texts):
         found, standing = _of_clause(clause)
         if found and not standing:
@@ -86,7 +86,7 @@ def relations_named(text: str) -> tuple[str, ...]:
 
 
 def _clauses(texts: Sequence[str]) -> Iterator[tuple[str, ...]]:
-    """The words between marks, and what stands behind an opener within them on its own."""
+    """The words between punctuation marks; a comma between two adjectives does not split."""
     start = 0
     for i, text in enumerate((*texts, ".")):
         if text == "," and i and (texts[i - 1] in _adjectives() or color_at(texts, i - 1)):
@@ -98,7 +98,7 @@ def _clauses(texts: Sequence[str]) -> Iterator[tuple[str, ...]]:
 
 
 def _of_clause(texts: tuple[str, ...]) -> tuple[str, bool]:
-    """The head noun of a clause, and whether it only says where one stands."""
+    """The head noun of a clause, and whether the clause only gives the speaker's position."""
     if texts[:2] == ("do", "not") or texts[0] == "not":
         return "", True
     standing = texts[0] in _STANCE
@@ -138,7 +138,7 @@ def _noun_from(texts: tuple[str, ...], i: int) -> str:
 
 
 def _skip(texts: tuple[str, ...], i: int) -> int:
-    """Behind determiners, colours, sizes and amounts, as long as a word is left."""
+    """The position behind determiners, colours, sizes and amounts, as long as a word is left."""
     while i < len(texts) - 1:
         if texts[i] == ",":
             i += 1
@@ -153,7 +153,7 @@ def _skip(texts: tuple[str, ...], i: int) -> int:
 
 
 def _head(run: Sequence[str]) -> str:
-    """A run of words as a noun phrase: what is known as a noun behind the last adjective."""
+    """The noun of a run of words: its last three words at most, without adjectives, in the singular."""
     words = [*run[:-1], singular(run[-1])]
     while len(words) > 1 and (words[0] in _adjectives() or color_at(words, 0)):
         words = words[1:]
@@ -166,7 +166,7 @@ def _is_amount(word: str) -> bool:
 
 @cache
 def _adjectives() -> frozenset[str]:
-    """Words that say what a thing is like and not what it is."""
+    """Words that give a property of a thing, not its kind."""
     sizes = {w for p in lexicon.ATTRIBUTE_PHRASES for w in p}
     return frozenset(sizes) | bag(
         "rectangular round square circular oval tallest shortest larger smaller wooden metal open closed empty lone "
