@@ -1,4 +1,4 @@
-"""How a scene *changes* and is *measured*: one file per atomic operation, the registry, post-conditions, receipts.
+"""Edits of a scene: one file for each atomic operation, their registry, their post-conditions and their receipts.
 
-Never knows where an operation came from: a sentence, a model, a script and a test look the same here.
+Operations carry no trace of their source: a sentence, a model, a script and a test are treated alike.
 """

@@ -1,7 +1,7 @@
-"""Which fields of a model go together, published in its JSON Schema as the alternatives that they are.
+"""Publish in a model's JSON Schema which combinations of its fields are allowed.
 
 "Exactly one of direction, toward and place" is a validator in Python; a program or a language model that reads only the
-schema would never learn of it. Knows schemas. Refuses to validate: the validators do, and say what is wrong in words.
+schema does not see it. This module only writes schemas: the validators check values and write the error messages.
 """
 
 from __future__ import annotations
@@ -16,27 +16,27 @@ NOT_GIVEN: Keywords = {"type": "null"}
 
 @dataclass(frozen=True)
 class Given:
-    """A field that is there and not null, and meets `keywords` besides."""
+    """A field that is present, not null and meets the JSON Schema `keywords`."""
 
     keywords: Keywords
 
 
 def given(**keywords: Any) -> Given:
-    """The field is there and not null; `keywords` of JSON Schema narrow what it may be."""
+    """The field is present and not null; `keywords` of JSON Schema narrow its values."""
     return Given(keywords)
 
 
 def nonzero(limit: float) -> Given:
-    """The field is there, a number from -limit to limit but not 0."""
+    """The field is present and a number from -limit to limit, but not 0."""
     signs = ({"exclusiveMinimum": 0, "maximum": limit}, {"minimum": -limit, "exclusiveMaximum": 0})
     return given(anyOf=[{"type": "number", **sign} for sign in signs])
 
 
 def either(*alternatives: dict[str, Given | Keywords]) -> Callable[[Keywords], None]:
-    """One of the alternatives holds: for `json_schema_extra` of a model's configuration.
+    """The value of `json_schema_extra` in a model's configuration that says: at least one of the alternatives holds.
 
-    Each maps names of fields to `given(...)`, to `NOT_GIVEN`, or to keywords that the field meets if it is there;
-    fields that it does not name are free. They are published under `anyOf`, beside the properties they narrow.
+    Each alternative maps names of fields to `given(...)`, to `NOT_GIVEN`, or to keywords that the field meets if it is
+    present; fields that it does not name are free. They are published under `anyOf`, beside the narrowed properties.
     """
 
     def publish(schema: Keywords) -> None:
@@ -52,7 +52,7 @@ def _branch(fields: Keywords, wanted: dict[str, Given | Keywords]) -> Keywords:
 
 
 def _present(field: Keywords, keywords: Keywords) -> Keywords:
-    """What a field may be besides null: the keywords if they say so, else what its own schema says."""
+    """The schema of a field that is not null: the keywords if there are any, else its own schema without null."""
     if keywords or "anyOf" not in field:
         return keywords
     kept = [option for option in field["anyOf"] if option != NOT_GIVEN]

@@ -1,7 +1,4 @@
-"""Post-conditions that several operations share, each measured on the scenes before and after.
-
-Knows scenes, what was asked of each body, and tolerances with their reasons. Refuses to know which operation asked.
-"""
+"""Post-conditions that several operations share, each measured on the scenes before and after."""
 
 from __future__ import annotations
 
@@ -15,37 +12,37 @@ from ..gaussians.scene import Scene
 from ..gaussians.world.box import overlap
 from .operation import Affine, Outcome
 from .placement.bodies import Array, centimetre, contact_box, neighbours
-from .placement.occupancy import hits, obstacle_points
+from .placement.occupancy import obstacle_points, points_inside
 from .receipt import Check, at_most, report
 
-# A body may pass through this share of its points' number of foreign points: floaters and touching surfaces.
+# Foreign points allowed inside a body, as a share of the number of its own: floaters and touching surfaces.
 _TOUCHING = 0.01
-_BLOCK = 1 << 16  # rows compared at a time, so that float64 copies stay small
+_ROWS = 1 << 16  # rows compared at a time, so that float64 copies stay small
 
 
-def counted(before: Scene, after: Scene, outcome: Outcome) -> Check:
-    """No Gaussian appeared or vanished beyond those the operation names."""
+def count_matches(before: Scene, after: Scene, outcome: Outcome) -> Check:
+    """The number of Gaussians changed by exactly those that the operation says it added and removed."""
     off = len(after.cloud) - (len(before.cloud) + len(outcome.added) - len(outcome.removed))
     return at_most("count", abs(off), 0, "Gaussians", f"{abs(off)} Gaussians more or fewer than the edit accounts for")
 
 
-def gone(after: Scene, outcome: Outcome) -> Check:
-    """None of the removed ids is left."""
+def none_left(after: Scene, outcome: Outcome) -> Check:
+    """None of the removed ids is left in the scene."""
     left = int(mask_of(after.cloud, outcome.removed).sum())
     return at_most("none left", left, 0, "Gaussians", f"{left} of {len(outcome.removed):,} removed Gaussians are left")
 
 
-def carried_as_asked(before: Scene, after: Scene, moved: tuple[Affine, ...]) -> Check:
-    """Every centre is where the asked map takes it."""
+def moved_as_asked(before: Scene, after: Scene, moved: tuple[Affine, ...]) -> Check:
+    """Every centre is where the requested affine map takes it."""
     worst, extent = 0.0, 0.0
     for body in moved:
-        for source, rows in zip(torch.split(body.source, _BLOCK), torch.split(body.rows, _BLOCK), strict=True):
+        for source, rows in zip(torch.split(body.source, _ROWS), torch.split(body.rows, _ROWS), strict=True):
             was = before.cloud.means[source].to(torch.float64).cpu().numpy()
             now = after.cloud.means[rows].to(torch.float64).cpu().numpy()
             if len(now):
                 worst = max(worst, float(np.abs(was @ body.matrix.T + body.offset - now).max()))
                 extent = max(extent, float(np.abs(now).max()))
-    # float32 keeps 24 bits of a coordinate; a few roundings later a millionth of the largest one is still safe.
+    # float32 keeps 24 bits of a coordinate: after a few roundings two millionths of the largest one are a safe bound.
     bound = 2e-6 * max(extent, 1.0)
     return at_most(
         "moved as asked", worst, bound, "units", f"every centre is within {worst:.2g} units of where it was sent"
@@ -53,7 +50,7 @@ def carried_as_asked(before: Scene, after: Scene, moved: tuple[Affine, ...]) -> 
 
 
 def supported(after: Scene, moved: tuple[Affine, ...]) -> Check | None:
-    """Gap between the undersides of what was put down and the surface it was put on; None if nothing was."""
+    """Gap between the underside of each placed body and its supporting surface; None if nothing was placed."""
     up, gaps, bound = after.frame.up_vector, [], 0.0
     for body in moved:
         if body.support is None:
@@ -61,7 +58,7 @@ def supported(after: Scene, moved: tuple[Affine, ...]) -> Check | None:
         points = solid_points(after.cloud, body.rows)
         low, high = reach(points @ up)
         gaps.append(low - body.support)
-        # Two centimetres, or 3 % of its height: splats reach about that far beyond their centres.
+        # Two centimetres, or 3 % of its height: Gaussians reach about that far beyond their centres.
         bound = max(bound, 2 * centimetre(after.frame, high - low), 0.03 * (high - low))
     if not gaps:
         return None
@@ -70,7 +67,7 @@ def supported(after: Scene, moved: tuple[Affine, ...]) -> Check | None:
 
 
 def collision_free(after: Scene, moved: tuple[Affine, ...]) -> Check | None:
-    """Solid points of other things within what was put down; None if nothing was."""
+    """Number of solid points of other things inside a placed body; None if nothing was placed."""
     placed = [body for body in moved if body.support is not None]
     if not placed:
         return None
@@ -82,13 +79,16 @@ def collision_free(after: Scene, moved: tuple[Affine, ...]) -> Check | None:
         own[body.rows] = True
         others = obstacle_points(after.cloud, own)
         clear = max(0.15 * box.size[2], 1e-9)
-        worst = max(worst, hits(points, others, box, min(clear, 4 * centimetre(after.frame, max(box.size)))))
+        worst = max(worst, points_inside(points, others, box, min(clear, 4 * centimetre(after.frame, max(box.size)))))
         bound = max(bound, _TOUCHING * len(points), 3.0)
     return at_most("no collision", worst, bound, "Gaussians", f"{worst} points of other things are inside it")
 
 
-def bumps(after: Scene, groups: set[int]) -> tuple[str, ...]:
-    """Notes about objects whose boxes a freely moved thing now stands in; moving by a distance does not forbid it."""
+def overlap_notes(after: Scene, groups: set[int]) -> tuple[str, ...]:
+    """Notes that name the objects whose boxes a moved object now overlaps.
+
+    A move by a distance may end in an overlap, so this is a note and not a check.
+    """
     notes = []
     for group in sorted(g for g in groups if g >= 0):
         assert after.language is not None
@@ -99,23 +99,23 @@ def bumps(after: Scene, groups: set[int]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(notes))[:5]
 
 
-def unseen(after: Scene, moved: tuple[Affine, ...], viewer: Camera) -> tuple[str, ...]:
-    """A note if something new stands where the viewer does not look."""
+def out_of_view_note(after: Scene, moved: tuple[Affine, ...], viewer: Camera) -> tuple[str, ...]:
+    """A note with the number of new objects outside the viewer's picture; empty if all are inside."""
     centers = np.stack([after.cloud.means[body.rows].mean(dim=0, dtype=torch.float64).cpu().numpy() for body in moved])
     hidden = int((~viewer.contains(*viewer.project(centers))).sum())
     return (f"{hidden} of {len(moved)} stand outside the current view",) if hidden else ()
 
 
-def spread_of(points: Array) -> float:
+def _rms_radius(points: Array) -> float:
     """Root mean square distance of points from their mean."""
     return float(np.sqrt(((points - points.mean(axis=0)) ** 2).sum(axis=1).mean())) if len(points) else 0.0
 
 
 def size_changed(before: Scene, after: Scene, body: Affine) -> Check:
-    """The ratio of a stretched body's volume to before is that of the map; measured on its covariance of centres."""
+    """The extent of a scaled body changed by the requested map; measured as the RMS radius of its centres."""
     was = before.cloud.means[body.source].to(torch.float64).cpu().numpy()
     now = after.cloud.means[body.rows].to(torch.float64).cpu().numpy()
     if len(was) < 4:
         return report("size", float("nan"), "1", "too few Gaussians to measure a size")
-    ratio = spread_of(now) / max(spread_of(was @ body.matrix.T), 1e-30)
+    ratio = _rms_radius(now) / max(_rms_radius(was @ body.matrix.T), 1e-30)
     return at_most("size", abs(ratio - 1), 1e-4, "1", f"its extent is {ratio:.5f} times what was asked")

@@ -1,7 +1,4 @@
-"""Rows of a cloud: finding them by id, writing some of them, and proving that the others did not change.
-
-Knows columns and ids. Refuses to know why rows change.
-"""
+"""Rows of a cloud: find them by id, write some of them, and compare two clouds bit for bit."""
 
 from __future__ import annotations
 
@@ -14,8 +11,8 @@ from torch import Tensor
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.language.query.selection import Selection, mask_of
 
-_CHUNK = 1 << 13  # rows changed at a time: intermediates stay in a core's cache, whatever the cloud's size
-_CACHE = 1 << 19  # bytes compared at a time: they stay in a core's cache
+_ROWS = 1 << 13  # rows written at a time: intermediates stay in a core's cache, whatever the cloud's size
+_BYTES = 1 << 19  # bytes compared at a time: they stay in a core's cache
 
 
 def rows_of(cloud: GaussianCloud, ids: Tensor) -> Tensor:
@@ -30,12 +27,12 @@ def fresh_ids(cloud: GaussianCloud, count: int) -> Tensor:
 
 
 def selection_of(selection: Selection, ids: Tensor, groups: tuple[int, ...], reason: str) -> Selection:
-    """A found selection of other rows that keeps the query of `selection`."""
+    """A selection of other Gaussians with the verdict "found" that keeps the query of `selection`."""
     return Selection(selection.query, "found", ids.sort().values, groups, (), reason)
 
 
 def joined(cloud: GaussianCloud, without: Tensor | None, added: list[GaussianCloud]) -> GaussianCloud:
-    """The rows of a cloud but for the mask `without` `[N]`, then the added clouds; each column is written once.
+    """The rows of a cloud outside the mask `without` `[N]`, then the added clouds; each column is written once.
 
     The added clouds have the cloud's degree and ids above its own (see `fresh_ids`).
     """
@@ -54,7 +51,7 @@ def joined(cloud: GaussianCloud, without: Tensor | None, added: list[GaussianClo
 
 
 class Draft:
-    """A cloud being edited: columns are copied the first time they are written and shared otherwise.
+    """A cloud being edited, copy on write: a column is copied the first time it is written and shared otherwise.
 
     The cloud it was made from is never written to.
     """
@@ -75,7 +72,7 @@ class Draft:
 
     def map(self, name: str, rows: Tensor, change: Callable[[Tensor], Tensor]) -> None:
         """Replace rows of a column by `change` of them, a block at a time so that intermediates stay small."""
-        for block in torch.split(rows, _CHUNK):
+        for block in torch.split(rows, _ROWS):
             self.write(name, block, change(self.read(name, block)))
 
     def done(self) -> GaussianCloud:
@@ -92,22 +89,22 @@ class Difference:
     """How a cloud differs from the one before, row by row.
 
     Attributes:
-        outside: rows that were not allowed to change and did, in any bit of any column, or are gone.
-        columns: columns in which some surviving row changed.
-        strangers: added rows whose id is not above every earlier id, or is not unique.
+        outside: number of rows that were not allowed to change and changed in any bit of any column, or were removed.
+        columns: columns in which some remaining row changed.
+        bad_ids: number of added rows whose id is not above every earlier id, or is not unique.
     """
 
     outside: int
     columns: tuple[str, ...]
-    strangers: int
+    bad_ids: int
 
 
 def difference(before: GaussianCloud, after: GaussianCloud, allowed: Tensor, removed: Tensor) -> Difference:
-    """Compare bit for bit. Rows that stay must keep their order; added rows must stand at the end.
+    """Compare two clouds bit for bit. Remaining rows must keep their order; added rows must come last.
 
     Args:
-        allowed: `[N]` bool over `before`, rows that may change or go.
-        removed: ids that are gone.
+        allowed: `[N]` bool over `before`, rows that may change or be removed.
+        removed: ids that were removed.
     """
     gone = mask_of(before, removed)
     kept = None if not bool(gone.any()) else (~gone).nonzero().squeeze(1)
@@ -119,21 +116,21 @@ def difference(before: GaussianCloud, after: GaussianCloud, allowed: Tensor, rem
     columns = []
     for name, column in before.columns():
         other = getattr(after, name)
-        if column is not other and _mark(column, other, kept, differs):
+        if column is not other and _mark_changed(column, other, kept, differs):
             columns.append(name)
     lost = int((gone & ~allowed).sum())
     added = after.ids[n:]
     top = int(before.ids.max()) if len(before) else -1
-    strangers = int((added <= top).sum()) + len(added) - len(torch.unique(added))
-    return Difference(lost + int((differs & outside).sum()), tuple(columns), strangers)
+    bad_ids = int((added <= top).sum()) + len(added) - len(torch.unique(added))
+    return Difference(lost + int((differs & outside).sum()), tuple(columns), bad_ids)
 
 
-def _mark(column: Tensor, other: Tensor, kept: Tensor | None, differs: Tensor) -> bool:
-    """Set `differs` where rows of two columns are not the same bits; whether any is."""
+def _mark_changed(column: Tensor, other: Tensor, kept: Tensor | None, differs: Tensor) -> bool:
+    """Set `differs` where the rows of two columns differ in any bit; return whether any does."""
     if column.shape[1:] != other.shape[1:]:
         differs.fill_(True)
         return True
-    found, step = False, max(1, _CACHE // (column.element_size() * max(1, column[0].numel() if len(column) else 1)))
+    found, step = False, max(1, _BYTES // (column.element_size() * max(1, column[0].numel() if len(column) else 1)))
     for start in range(0, len(differs), step):
         end = min(start + step, len(differs))
         a = column[start:end] if kept is None else column.index_select(0, kept[start:end])

@@ -1,7 +1,7 @@
-"""Carry out one operation: resolve, apply, check, and either hand over the new scene or leave the old one standing.
+"""Carry out one operation: resolve its target, apply it, check the result and write the receipt.
 
-Knows the order of these stages and what a receipt holds. Refuses to know what any operation does. Scenes are values:
-nothing here undoes anything, a failed edit simply is not returned.
+Scenes are values: the old scene is never changed, and a scene that fails a check is not returned, so nothing has to be
+undone.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ from ..gaussians.language.query.selection import Selection, mask_of
 from ..gaussians.scene import Scene
 from ..gaussians.timing import timed
 from . import pixel_diff
-from .carried_objects import left_hanging
+from .carried_objects import unsupported_note
 from .cloud_diff import Difference, difference
 from .operation import Context, EditOp, Outcome
 from .receipt import Check, Pixels, Receipt, SelectionSummary, at_most
 
 
 class Done(NamedTuple):
-    """A carried-out operation.
+    """The result of an operation.
 
     Attributes:
         scene: the new scene (the old one itself if nothing changed).
         receipt: what was done and measured.
-        selection: what "it" means next.
+        selection: what "it" means in the next instruction.
     """
 
     scene: Scene
@@ -45,23 +45,23 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
         selection: what to apply it to, instead of resolving the operation's own query.
 
     Raises:
-        AbsentError, AmbiguousError: the target (or an anchor) is not there or not unique.
-        InstructionError: it cannot be done as said.
-        CheckFailedError: it was done and failed a post-condition; the message names it and what was measured.
-        UserError: a word in it (colour, asset) is unknown.
+        AbsentError, AmbiguousError: the target (or an anchor) is not in the scene or not unique.
+        InstructionError: the operation cannot be done as said.
+        CheckFailedError: the result fails a post-condition; the message names it and what was measured.
+        UserError: a name in the operation (colour, asset) is unknown.
     """
     seconds: dict[str, float] = {}
     with timed(seconds, "resolve"):
         chosen = (_resolve(scene, op, context) if selection is None else selection).require()
         if op.query() is not None:
-            chosen = _living(scene, chosen)
+            chosen = _remaining(scene, chosen)
     with timed(seconds, "apply"):
         outcome = op.apply(scene, chosen, context)
-        bereft = left_hanging(scene, outcome.scene, chosen.groups)
-        outcome = replace(outcome, notes=(*outcome.notes, *bereft))
+        unsupported = unsupported_note(scene, outcome.scene, chosen.groups)
+        outcome = replace(outcome, notes=(*outcome.notes, *unsupported))
     with timed(seconds, "check"):
         changed = difference(scene.cloud, outcome.scene.cloud, op.may_change(scene, chosen), outcome.removed)
-        checks = [*_always(op, changed, chosen), *op.check(scene, outcome, chosen, context)]
+        checks = [*_common_checks(op, changed, chosen), *op.check(scene, outcome, chosen, context)]
     compared: Pixels | None = None
     if context.pixel_checks:
         with timed(seconds, "pixels"):
@@ -70,12 +70,12 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
     receipt = _receipt(op, chosen, outcome, changed, tuple(checks), context)
     receipt = receipt.model_copy(update={"pixels": compared, "seconds": seconds})
     if not receipt.passed:
-        raise CheckFailedError(_why(receipt))
+        raise CheckFailedError(_failure_message(receipt))
     return Done(outcome.scene, receipt, chosen if outcome.focus is None else outcome.focus)
 
 
 def preview(scene: Scene, op: EditOp, context: Context, selection: Selection | None = None) -> Receipt:
-    """What `carry_out` would do, as a receipt marked `dry_run`; the edited scene is dropped.
+    """The receipt of `carry_out`, marked `dry_run`; the edited scene is dropped.
 
     Raises:
         As `carry_out`.
@@ -85,26 +85,26 @@ def preview(scene: Scene, op: EditOp, context: Context, selection: Selection | N
 
 def _resolve(scene: Scene, op: EditOp, context: Context) -> Selection:
     query = op.query()
-    if query is None:  # an operation that makes its own target
+    if query is None:  # an operation without a target, such as insert
         return Selection(Query(), "found", torch.zeros(0, dtype=torch.int64))
     return context.resolve(scene, query)
 
 
-def _living(scene: Scene, selection: Selection) -> Selection:
-    """The selection without Gaussians that are gone since ("it" after a deletion).
+def _remaining(scene: Scene, selection: Selection) -> Selection:
+    """The selection without Gaussians that were deleted since it was made ("it" after a deletion).
 
     Raises:
         AbsentError: none is left.
     """
-    there = mask_of(scene.cloud, selection.ids)
-    left = int(there.sum())
+    present = mask_of(scene.cloud, selection.ids)
+    left = int(present.sum())
     if left == 0:
         raise AbsentError(f"nothing is left of {selection.query.describe()}: select something that is in the scene")
-    return selection if left == len(selection) else replace(selection, ids=scene.cloud.ids[there].sort().values)
+    return selection if left == len(selection) else replace(selection, ids=scene.cloud.ids[present].sort().values)
 
 
-def _always(op: EditOp, changed: Difference, selection: Selection) -> list[Check]:
-    """The checks of every operation."""
+def _common_checks(op: EditOp, changed: Difference, selection: Selection) -> list[Check]:
+    """The checks that every operation has."""
     checks = []
     if op.query() is not None:
         had = len(selection)
@@ -116,15 +116,15 @@ def _always(op: EditOp, changed: Difference, selection: Selection) -> list[Check
         )  # fmt: skip
     said = f"{changed.outside} Gaussians outside the target changed in any bit"
     checks.append(at_most("outside unchanged", changed.outside, 0, "Gaussians", said))
-    checks.append(at_most("new ids", changed.strangers, 0, "Gaussians", "added Gaussians have ids of their own"))
+    checks.append(at_most("new ids", changed.bad_ids, 0, "Gaussians", "added Gaussians have ids of their own"))
     return checks
 
 
 def _compare(scene: Scene, outcome: Outcome, context: Context) -> Pixels:
     touched = torch.cat([outcome.touched, outcome.removed])
-    before = pixel_diff.Stage(scene.cloud, mask_of(scene.cloud, touched))
+    before = pixel_diff.TargetedCloud(scene.cloud, mask_of(scene.cloud, touched))
     cloud = outcome.scene.cloud
-    after = pixel_diff.Stage(cloud, mask_of(cloud, torch.cat([outcome.touched, outcome.added])))
+    after = pixel_diff.TargetedCloud(cloud, mask_of(cloud, torch.cat([outcome.touched, outcome.added])))
     return pixel_diff.compare(before, after, context.viewer, context.pixel_width, context.renderer)
 
 
@@ -159,7 +159,7 @@ def _receipt(
     )
 
 
-def _why(receipt: Receipt) -> str:
+def _failure_message(receipt: Receipt) -> str:
     failed = [c for c in receipt.checks if not c.passed]
     told = "; ".join(
         f"{c.name}: measured {c.value:.4g} {c.unit}, {'at least' if c.at_least else 'at most'} {c.bound:.4g} allowed"

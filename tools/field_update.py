@@ -1,7 +1,7 @@
-"""Keeping the language field true after an edit, without embedding again.
+"""Update the language field after an edit, without embedding the scene again.
 
-Knows the table of groups and which rows changed. Refuses to know why. Row `i` of the table keeps id `i` for ever: a
-deleted group stays as a row with count 0 (selection passes over it), new objects are appended.
+Row `i` of the group table always has id `i`: a deleted group stays as a row with count 0, which selection skips, and
+new objects are appended.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from .placement.bodies import turned_axes
 
 
 def recount(field: LanguageField | None, cloud: GaussianCloud) -> LanguageField | None:
-    """The table with the counts of `cloud`; objects count their parts too."""
+    """The table with the counts of `cloud`; an object's count includes its parts."""
     if field is None:
         return None
     own = _counts(cloud, len(field.groups))
@@ -33,20 +33,20 @@ def recount(field: LanguageField | None, cloud: GaussianCloud) -> LanguageField 
     for group in field.groups:
         if group.parent >= 0:
             total[group.parent] += own[group.id]
-    return _with(field, {g.id: replace(g, count=total[g.id]) for g in field.groups if g.count != total[g.id]})
+    return _with_groups(field, {g.id: replace(g, count=total[g.id]) for g in field.groups if g.count != total[g.id]})
 
 
 def _counts(cloud: GaussianCloud, groups: int) -> list[int]:
-    # Row 0 collects the Gaussians of no group.
-    filed = torch.bincount((cloud.group + 1).clamp(min=0), minlength=groups + 1)
-    return [int(n) for n in filed[1 : groups + 1]]
+    # Row 0 counts the Gaussians of no group.
+    counts = torch.bincount((cloud.group + 1).clamp(min=0), minlength=groups + 1)
+    return [int(n) for n in counts[1 : groups + 1]]
 
 
-def remeasured(scene: Scene, ids: Tensor, axes: Mapping[int, Axes] | None = None) -> LanguageField | None:
-    """The table with every group that holds one of the Gaussians `ids` measured anew, as embedding measures it.
+def with_measures(scene: Scene, ids: Tensor, axes: Mapping[int, Axes] | None = None) -> LanguageField | None:
+    """The table with every group that holds one of the Gaussians `ids` measured again, as embedding measures it.
 
     Args:
-        axes: of the boxes of groups that turned, by group id. All others keep theirs, which embedding found.
+        axes: of the boxes of rotated groups, by group id. All others keep the axes that embedding found.
     """
     field = scene.language
     if field is None:
@@ -56,84 +56,84 @@ def remeasured(scene: Scene, ids: Tensor, axes: Mapping[int, Axes] | None = None
         if len(rows):
             box = box_of(scene.cloud, scene.frame, rows, (axes or {}).get(group.id, group.box.axes))
             changed[group.id] = replace(group, box=box, lab=lab_of_cloud(scene.cloud, rows))
-    return _with(field, changed)
+    return _with_groups(field, changed)
 
 
-def recolored(scene: Scene, ids: Tensor) -> LanguageField | None:
-    """The table after Gaussians `ids` changed their colour and nothing else: boxes stay, colours are measured."""
+def after_recolor(scene: Scene, ids: Tensor) -> LanguageField | None:
+    """The table after only the colours of Gaussians `ids` changed: boxes stay, group colours are measured again."""
     field = scene.language
     if field is None:
         return None
     held = _holders(field, scene.cloud, ids)
-    return _with(field, {g.id: replace(g, lab=lab_of_cloud(scene.cloud, rows)) for g, rows in held if len(rows)})
+    return _with_groups(field, {g.id: replace(g, lab=lab_of_cloud(scene.cloud, rows)) for g, rows in held if len(rows)})
 
 
-def carried(before: Scene, cloud: GaussianCloud, moved: Sequence[Affine]) -> LanguageField | None:
-    """The table after bodies moved: boxes of groups that moved as a whole turn along; all that moved are measured."""
+def after_move(before: Scene, cloud: GaussianCloud, moved: Sequence[Affine]) -> LanguageField | None:
+    """The table after bodies moved: their groups are measured again, with turned axes where a whole group moved."""
     field = before.language
     if field is None:
         return None
     turned: dict[int, Axes] = {}
     sizes = _counts(before.cloud, len(field.groups))
     for body in moved:
-        filed = torch.bincount((before.cloud.group[body.source] + 1).clamp(min=0), minlength=len(sizes) + 1)[1:]
-        for group in _touched(field, filed):
+        counts = torch.bincount((before.cloud.group[body.source] + 1).clamp(min=0), minlength=len(sizes) + 1)[1:]
+        for group in _holding(field, counts):
             leaves = field.leaves(group.id)
-            if sum(int(filed[i]) for i in leaves) == sum(sizes[i] for i in leaves):
+            if sum(int(counts[i]) for i in leaves) == sum(sizes[i] for i in leaves):
                 turned[group.id] = turned_axes(group.box.axes, body.matrix, before.frame)
     ids = torch.cat([before.cloud.ids[body.source] for body in moved])
-    return remeasured(before.replace(cloud=cloud), ids, turned)
+    return with_measures(before.replace(cloud=cloud), ids, turned)
 
 
-def thinned(before: Scene, cloud: GaussianCloud, removed: Tensor) -> LanguageField | None:
-    """The table after Gaussians went: counts anew, and groups that lost only some of theirs measured.
+def after_removal(before: Scene, cloud: GaussianCloud, removed: Tensor) -> LanguageField | None:
+    """The table after Gaussians were removed: new counts; groups that lost only a part of theirs are measured again.
 
     Args:
-        cloud: what is left.
-        removed: ids that went.
+        cloud: the remaining Gaussians.
+        removed: ids of the removed Gaussians.
     """
     field = before.language
     if field is None:
         return None
     lost = before.cloud.group[mask_of(before.cloud, removed)]
-    filed = torch.bincount((lost + 1).clamp(min=0), minlength=len(field.groups) + 1)[1:]
-    # A part that went leaves none of its own rows to be found by: its object is measured by what the others hold.
-    leaves = sorted({leaf for g in _touched(field, filed) for leaf in field.leaves(g.id)})
-    hurt = torch.tensor(leaves, dtype=torch.int32, device=cloud.device)
+    counts = torch.bincount((lost + 1).clamp(min=0), minlength=len(field.groups) + 1)[1:]
+    # A removed part has no rows left, so its object is found through the object's other parts.
+    leaves = sorted({leaf for g in _holding(field, counts) for leaf in field.leaves(g.id)})
+    affected = torch.tensor(leaves, dtype=torch.int32, device=cloud.device)
     after = before.replace(cloud=cloud, language=recount(field, cloud))
-    return remeasured(after, cloud.ids[torch.isin(cloud.group, hurt)])
+    return with_measures(after, cloud.ids[torch.isin(cloud.group, affected)])
 
 
-def _touched(field: LanguageField, filed: Tensor) -> list[Group]:
-    """Groups with a Gaussian among those counted in `filed` `[G]`, and the objects above them."""
-    leaves = {int(i) for i in filed.nonzero().squeeze(1)}
+def _holding(field: LanguageField, counts: Tensor) -> list[Group]:
+    """Groups whose entry in `counts` `[G]` is not 0, and their parent objects."""
+    leaves = {int(i) for i in counts.nonzero().squeeze(1)}
     ids = leaves | {field.groups[i].parent for i in leaves} - {-1}
     return [field.groups[i] for i in sorted(ids) if i < len(field.groups)]
 
 
 def _holders(field: LanguageField, cloud: GaussianCloud, ids: Tensor) -> list[tuple[Group, Tensor]]:
-    """Groups that hold one of the Gaussians, each with all its rows."""
-    filed = torch.bincount((cloud.group[mask_of(cloud, ids)] + 1).clamp(min=0), minlength=len(field.groups) + 1)[1:]
-    return [(group, rows_in(cloud, field, group.id)) for group in _touched(field, filed)]
+    """Groups that hold one of the Gaussians `ids`, each with all its rows."""
+    counts = torch.bincount((cloud.group[mask_of(cloud, ids)] + 1).clamp(min=0), minlength=len(field.groups) + 1)[1:]
+    return [(group, rows_in(cloud, field, group.id)) for group in _holding(field, counts)]
 
 
 def rows_in(cloud: GaussianCloud, field: LanguageField, group: int) -> Tensor:
     """Rows of a group and its parts."""
-    # A table of flags, one a group, is ten times faster than looking each Gaussian's group up among the leaves.
+    # A table with one flag for each group is ten times faster than searching each Gaussian's group among the leaves.
     leaf = torch.zeros(len(field.groups) + 1, dtype=torch.bool, device=cloud.device)
     leaf[list(field.leaves(group))] = True
     return leaf[cloud.group].nonzero().squeeze(1)
 
 
 @dataclass(frozen=True, eq=False)
-class Newcomer:
-    """A new object to be entered in the table.
+class NewObject:
+    """A new object for the group table.
 
     Attributes:
-        cloud: its Gaussians, in place.
-        label: what it is.
+        cloud: its Gaussians, in their final place.
+        label: its name.
         axes: of its box, its front along -y; None finds the smallest box.
-        like: the group it is a copy of, or None.
+        like: id of the group that it is a copy of, or None.
     """
 
     cloud: GaussianCloud
@@ -142,27 +142,27 @@ class Newcomer:
     like: int | None = None
 
 
-def enter(
-    field: LanguageField | None, newcomers: Sequence[Newcomer], frame: Frame, encoder: Encoder | None
+def append_objects(
+    field: LanguageField | None, objects: Sequence[NewObject], frame: Frame, encoder: Encoder | None
 ) -> tuple[LanguageField | None, list[int]]:
-    """Append one object a newcomer; the group id each got (-1 where the scene has no table).
+    """Append new objects; return the table and the group id of each object (-1 where the scene has no table).
 
-    A copy takes the vector of its original. Other objects get the encoder's vector of their name if it is the
-    encoder of the table and knows every word of it, otherwise a zero row, which selection treats as "name known, looks
+    A copy gets the vector of its original. Other objects get the encoder's vector of their name if the encoder is that
+    of the table and knows every word of the name, otherwise a zero row, which selection treats as "name known, looks
     not encoded".
     """
     if field is None:
-        return None, [-1] * len(newcomers)
+        return None, [-1] * len(objects)
     groups, rows = list(field.groups), [field.embeddings]
     ids = []
-    for new in newcomers:
+    for new in objects:
         ids.append(len(groups))
-        groups.append(_row(field, new, len(groups), frame))
-        rows.append(_vector(field, new, encoder)[None])
+        groups.append(_new_group(field, new, len(groups), frame))
+        rows.append(_embedding_of(field, new, encoder)[None])
     return replace(field, groups=tuple(groups), embeddings=np.concatenate(rows).astype(np.float32)), ids
 
 
-def _row(field: LanguageField, new: Newcomer, index: int, frame: Frame) -> Group:
+def _new_group(field: LanguageField, new: NewObject, index: int, frame: Frame) -> Group:
     box, lab = box_of(new.cloud, frame, axes=new.axes), lab_of_cloud(new.cloud)
     if new.like is not None:
         original = field.groups[new.like]
@@ -170,7 +170,7 @@ def _row(field: LanguageField, new: Newcomer, index: int, frame: Frame) -> Group
     return Group(index, "object", -1, new.label, 1.0, box, lab, len(new.cloud), 0, 1.0)
 
 
-def _vector(field: LanguageField, new: Newcomer, encoder: Encoder | None) -> NDArray[np.float32]:
+def _embedding_of(field: LanguageField, new: NewObject, encoder: Encoder | None) -> NDArray[np.float32]:
     if new.like is not None:
         copied: NDArray[np.float32] = field.embeddings[new.like]
         return copied
@@ -180,8 +180,8 @@ def _vector(field: LanguageField, new: Newcomer, encoder: Encoder | None) -> NDA
     return np.zeros(field.embeddings.shape[1], dtype=np.float32)
 
 
-def _with(field: LanguageField, changed: dict[int, Group]) -> LanguageField:
-    """The table with some rows exchanged; itself if there are none."""
+def _with_groups(field: LanguageField, changed: dict[int, Group]) -> LanguageField:
+    """The table with some rows replaced; the same object if there are none."""
     if not changed:
         return field
     return replace(field, groups=tuple(changed.get(g.id, g) for g in field.groups))

@@ -1,7 +1,6 @@
-"""The types every operation is made of: lengths, placements, the operation itself, its context and its outcome.
+"""The types that operations are made of: lengths, placements, the operation's base class, its context and its outcome.
 
-Knows what an operation may say and what it must give back. Refuses to know which operations exist (see registry),
-how words become selections (see gaussians.language) and where an operation came from.
+`registry` lists the operations; `gaussians.language` turns words into selections.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ Direction = Literal["left", "right", "forward", "backward", "up", "down"]
 ColorName = Annotated[str, Field(min_length=1, max_length=40)]
 AssetName = Annotated[str, Field(min_length=1, max_length=60)]
 
-Way = Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False)]
+Metres = Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False)]
 
 _KINDS = [kind for kind in relations.KINDS if kind.used("placement")]
 _RELATIVE = [k.name for k in _KINDS if not k.default and k.anchors == 1]
@@ -59,7 +58,7 @@ class Length(BaseModel):
         return in_metres(self.value, self.unit) / (frame.metres_per_unit or 1.0)
 
     def assumption(self, frame: Frame) -> tuple[str, ...]:
-        """What had to be assumed to convert it, as notes for the receipt; empty if nothing."""
+        """The assumptions that converting it took, as notes for the receipt; empty if there were none."""
         if self.unit == "units" or frame.metres_per_unit is not None:
             return ()
         return (f"the scene's scale is unknown: {self.describe()} was read with one scene unit as one metre",)
@@ -92,7 +91,7 @@ class Placement(BaseModel):
 
     relation: relations.PlacementName
     anchors: Annotated[tuple[Query, ...], Field(max_length=2)] = ()
-    offset: tuple[Way, Way] | None = None
+    offset: tuple[Metres, Metres] | None = None
     """With "on", or "against" a wall: near which point, metres along the scene graph's x and y from the middle of the
     anchor or of the floor."""
 
@@ -114,7 +113,7 @@ class Placement(BaseModel):
 
 
 class Encoder(Protocol):
-    """The part of a text encoder that operations use: new objects get a vector from their name."""
+    """The part of a text encoder that operations use: it gives new objects a vector from their name."""
 
     @property
     def fingerprint(self) -> str: ...
@@ -133,14 +132,14 @@ Resolver = Callable[..., Selection]  # resolve(scene, query, viewer, encoder=Non
 
 @dataclass(frozen=True, eq=False)
 class Context:
-    """What an operation may look at besides the scene.
+    """What an operation may use besides the scene.
 
     Attributes:
-        viewer: whose left, right, in front and behind are meant; pixel checks look through it.
-        last: the selection of the instruction before ("it").
-        encoder: for words and for naming new objects; None works with measured attributes only.
-        seed: what varies between two inserted chairs; same seed, same bytes.
-        pixel_checks: whether to render before and after from the viewer (slower; never needed for correctness).
+        viewer: camera that defines left, right, in front and behind; pixel checks render from it.
+        last: the selection of the previous instruction ("it").
+        encoder: encodes words and the names of new objects; None works with measured attributes only.
+        seed: selects the design of inserted assets; the same seed gives the same bytes.
+        pixel_checks: whether to render before and after from the viewer (slower; not needed for correctness).
         pixel_width: width of these pictures, pixels.
         resolver: how queries become selections; None means `scenewright.gaussians.language.query.resolve`.
         renderer: back end of pixel checks, as `gaussians.render.render` takes it.
@@ -156,7 +155,7 @@ class Context:
     renderer: str = "auto"
 
     def resolve(self, scene: Scene, query: Query) -> Selection:
-        """What `query` means in `scene`; the verdict is not judged here (see `Selection.require`)."""
+        """What `query` means in `scene`; whatever its verdict is (see `Selection.require`)."""
         from ..gaussians.language.query.resolve import resolve
 
         resolver: Resolver = self.resolver or resolve
@@ -165,13 +164,13 @@ class Context:
 
 @dataclass(frozen=True, eq=False)
 class Affine:
-    """What was asked of one body: `x -> matrix @ x + offset` on its centres.
+    """The map that was requested for one body: `x -> matrix @ x + offset` on its centres.
 
     Attributes:
         rows: `[M]` int64 rows of the new cloud that were to move.
         matrix: `[3, 3]` float64.
         offset: `[3]` float64, scene units.
-        source: `[M]` int64 rows of the old cloud they come from; none for what was not there before.
+        source: `[M]` int64 rows of the old cloud they come from; empty for new objects.
         support: height along up of the surface it was put on, scene units; None if it was not put anywhere.
     """
 
@@ -187,17 +186,17 @@ _NONE = torch.zeros(0, dtype=torch.int64)
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What `EditOp.apply` gives back.
+    """The result of `EditOp.apply`.
 
-    Rows that stay keep their order; added rows stand at the end.
+    Remaining rows keep their order; added rows come last.
 
     Attributes:
         scene: the new scene; shares every column that did not change.
-        touched: `[M]` int64 ids of Gaussians that stayed and changed.
+        touched: `[M]` int64 ids of Gaussians that remained and changed.
         added, removed: `[M]` int64 ids.
-        moved: what was asked of each body, for the checks.
+        moved: the map requested for each body, for the checks.
         notes: for the receipt.
-        focus: what "it" means next; None keeps the operation's own selection.
+        focus: what "it" means in the next instruction; None keeps the operation's own selection.
     """
 
     scene: Scene
@@ -210,10 +209,10 @@ class Outcome:
 
 
 class EditOp(BaseModel):
-    """One atomic operation: data that says what to do, and the code that does and checks it.
+    """One atomic operation: data that say what to do, and the code that does and checks it.
 
-    A subclass in `tools/ops/` sets `op: Literal["name"] = "name"`, documents itself for a model in its docstring, gives
-    an `example` (words and the JSON they mean) and implements `apply` and `check`.
+    A subclass in `tools/ops/` sets `op: Literal["name"] = "name"`, has a docstring that describes it to a language
+    model, gives an `example` (words and the JSON they mean) and implements `apply` and `check`.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
@@ -222,24 +221,24 @@ class EditOp(BaseModel):
     example: ClassVar[tuple[str, dict[str, Any]]]
 
     def query(self) -> Query | None:
-        """What the operation is about, or None if it needs no target."""
+        """The query of its target, or None if it has no target."""
         return None
 
     def subject(self) -> str:
-        """What it is about, in words: "the red chair"."""
+        """Its target in words: "the red chair"."""
         query = self.query()
         return query.describe() if query is not None else ""
 
     def may_change(self, scene: Scene, selection: Selection) -> Tensor:
-        """`[N]` bool: the Gaussians that may change or go; the others must come out bit for bit."""
+        """`[N]` bool: the Gaussians that may change or be removed; the others must stay the same bit for bit."""
         return mask_of(scene.cloud, selection.ids)
 
     @abstractmethod
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
-        """The edited scene; never touches `scene` in place.
+        """The edited scene; `scene` itself is not changed.
 
         Raises:
-            InstructionError: it cannot be done as said.
+            InstructionError: the operation cannot be done as said.
         """
 
     @abstractmethod

@@ -1,7 +1,4 @@
-"""What an edit did, as data: checks with measured values, counts, pixels, seconds and back ends.
-
-Knows numbers and sentences that survive a trip through JSON. Refuses to know tensors and how the edit was made.
-"""
+"""The receipt of an edit: checks with measured values, counts, pixels, seconds and back ends, as JSON data."""
 
 from __future__ import annotations
 
@@ -11,14 +8,14 @@ from pydantic import BaseModel, ConfigDict, Field
 
 
 class Check(BaseModel):
-    """One post-condition with what was measured.
+    """One post-condition and its measured value.
 
     Attributes:
         name: short and stable, e.g. "outside unchanged".
         passed: whether the measured value keeps the bound; a check without a bound only reports.
         value: what was measured.
         bound: the largest (or, with `at_least`, the smallest) value that passes; None if it only reports.
-        at_least: the bound is a lower one.
+        at_least: whether the bound is a lower one.
         unit: of value and bound: "Gaussians", "ΔE", "m", "units", "px", "1".
         sentence: the check in words, for a person.
     """
@@ -47,12 +44,12 @@ def at_least(name: str, value: float, bound: float, unit: str, sentence: str) ->
 
 
 def report(name: str, value: float, unit: str, sentence: str) -> Check:
-    """A measured value without a bound."""
+    """A check that only reports a measured value; it always passes."""
     return Check(name=name, passed=True, value=value, unit=unit, sentence=sentence)
 
 
 class SelectionSummary(BaseModel):
-    """The selection an operation worked on, without its rows."""
+    """The selection that an operation worked on, without its Gaussians' ids."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -65,7 +62,7 @@ class SelectionSummary(BaseModel):
 
 
 class Pixels(BaseModel):
-    """What changed in the viewer's picture.
+    """Changed pixels in the viewer's picture.
 
     Attributes:
         width, height: of the compared pictures, pixels.
@@ -98,7 +95,7 @@ class Receipt(BaseModel):
         pixels: what changed in the viewer's picture, if it was compared.
         checks: every post-condition.
         notes: what the user should know: assumptions taken, defaults used, neighbours touched.
-        seconds: wall time a stage: "resolve", "apply", "check", "pixels".
+        seconds: wall time of each stage: "resolve", "apply", "check", "pixels".
         backends: what was used, by role: "resolver", "encoder", "renderer".
         dry_run: True if nothing was kept.
     """
@@ -137,7 +134,7 @@ class Receipt(BaseModel):
         return f"{self.op.get('op', '?')} {self.selection.asked}: {', '.join(counts)}; {verdict}"
 
     def _found(self) -> str:
-        """What an edit that changed nothing was about."""
+        """What to say of an operation that changed nothing: what it selected, or "nothing changed"."""
         groups = len(self.selection.groups)
         things = f" in {groups:,} thing{'s' if groups > 1 else ''}" if groups else ""
         said = f"{self.selection.gaussians:,} Gaussian{'s' if self.selection.gaussians != 1 else ''}"

@@ -1,7 +1,4 @@
-"""Which operations exist: found by scanning `tools/ops`, never listed by hand.
-
-Knows names, schemas and examples. Refuses to know what an operation does. Adding an operation is adding a file there.
-"""
+"""The registry of operations: it scans `tools/ops`, so adding an operation means adding a file there."""
 
 from __future__ import annotations
 
@@ -54,7 +51,7 @@ def parse(data: dict[str, Any] | str | bytes) -> EditOp:
     """An operation from a JSON object or its text.
 
     Raises:
-        UserError: it is no valid operation; the message names the field and what it allows.
+        UserError: the data are no valid operation; the message names the field and what it allows.
     """
     try:
         return _ONE.validate_json(data) if isinstance(data, str | bytes) else _ONE.validate_python(data)

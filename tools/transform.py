@@ -1,7 +1,4 @@
-"""Moving, turning and stretching Gaussians: centres, orientations, extents and harmonics together.
-
-Knows linear algebra on rows. Refuses to know words, groups and where things should go.
-"""
+"""Translate, rotate and scale Gaussians: centres, orientations, extents and harmonics together."""
 
 from __future__ import annotations
 
@@ -52,7 +49,8 @@ def turn(draft: Draft, rows: Tensor, rotation: Array, offset: Array) -> None:
 def stretch(draft: Draft, rows: Tensor, matrix: Array, offset: Array) -> None:
     """`x -> matrix @ x + offset` for centres; each covariance becomes `matrix Σ matrixᵀ`.
 
-    A multiple of the identity only scales; any other matrix is decomposed anew (see `stretched`). Colours stay.
+    A multiple of the identity only scales the extents; for any other matrix the covariances are decomposed again (see
+    `stretched`). Colours stay.
     """
     draft.map("means", rows, lambda means: affine(means, matrix, offset))
     factor = float(matrix[0, 0])
@@ -85,8 +83,8 @@ def stretched(quats: Tensor, scales: Tensor, matrix: Array) -> tuple[Tensor, Ten
     """Orientations `[M, 4]` and extents `[M, 3]` of Gaussians under a linear map.
 
     With Σ = R S² Rᵀ, the new covariance is (A R S)(A R S)ᵀ; the singular vectors and values of A R S are wanted.
-    One-sided Jacobi rotations (Hestenes 1958) make the columns of A R S orthogonal without ever squaring them, so the
-    thin axis of a flat Gaussian keeps its digits, which the eigenvalues of A Σ Aᵀ in float32 would lose.
+    One-sided Jacobi rotations (Hestenes 1958) make the columns of A R S orthogonal without squaring them, so the thin
+    axis of a flat Gaussian keeps its precision, which the eigenvalues of A Σ Aᵀ in float32 would lose.
     """
     a = torch.from_numpy(np.asarray(matrix)).to(quats.device, torch.float32)
     # Component-major, so that every operation below runs over contiguous rows: three columns [3, M].
@@ -102,7 +100,7 @@ def stretched(quats: Tensor, scales: Tensor, matrix: Array) -> tuple[Tensor, Ten
     lengths = torch.linalg.vector_norm(stacked, dim=1).clamp(min=1e-20)
     order = lengths.argsort(dim=0, descending=True)
     big, mid = (stacked.gather(0, order[k].expand(1, 3, -1)).squeeze(0) for k in range(2))
-    # The two longest columns are the best known; the third direction follows and is right-handed by construction.
+    # The two longest columns are the most accurate; the third direction follows and is right-handed by construction.
     first = big / torch.linalg.vector_norm(big, dim=0).clamp(min=1e-20)
     third = torch.linalg.cross(first, mid, dim=0)
     third = third / torch.linalg.vector_norm(third, dim=0).clamp(min=1e-20)
@@ -111,7 +109,7 @@ def stretched(quats: Tensor, scales: Tensor, matrix: Array) -> tuple[Tensor, Ten
 
 
 def _orthogonalize(x: Tensor, y: Tensor) -> tuple[Tensor, Tensor, float]:
-    """Turn columns `[3, M]` in their plane until they are orthogonal; with the largest cosine found before."""
+    """Rotate columns `[3, M]` in their plane until they are orthogonal; also the largest cosine between them before."""
     xx, yy, xy = (p[0] * q[0] + p[1] * q[1] + p[2] * q[2] for p, q in ((x, x), (y, y), (x, y)))
     cosine = float((xy.abs() * (xx * yy).clamp(min=1e-38).rsqrt()).max()) if x.shape[1] else 0.0
     apart = xy == 0

@@ -31,7 +31,7 @@ from ...gaussians.language.query.terms import STRUCTURE
 from ...gaussians.scene import Frame, Scene
 from ...gaussians.timing import timed
 from ...gaussians.world.box import Box
-from ...tools.field_update import Newcomer, enter
+from ...tools.field_update import NewObject, append_objects
 from .asset_folder import Shelf
 from .designs import Workshop
 from .node import Drawn, Node, NodeId
@@ -197,9 +197,9 @@ def _with_table(
         encoder = encoders.load()
     frame = Frame((0.0, 0.0, 1.0), 0.0, 1.0, "given", "given")
     owner = room.owner.long()
-    newcomers = [Newcomer(room.cloud[owner == i], n.label, boxes[n.id].axes) for i, n in enumerate(drawn)]
+    new_objects = [NewObject(room.cloud[owner == i], n.label, boxes[n.id].axes) for i, n in enumerate(drawn)]
     empty = LanguageField((), np.zeros((0, encoder.dim), dtype=np.float32), encoder.fingerprint, notes)
-    table, _ = enter(empty, newcomers, frame, encoder)
+    table, _ = append_objects(empty, new_objects, frame, encoder)
     assert table is not None
     faces = list(dict.fromkeys(room.faces.tolist()))
     top = max(rows.values(), default=-1) + 1

@@ -19,7 +19,7 @@ from scenewright.gaussians.scene import Frame, Scene
 from scenewright.gaussians.world.box import Box, overlap
 from scenewright.gaussians.world.support import standing_on
 from scenewright.tools import execute
-from scenewright.tools.carried_objects import riders_of
+from scenewright.tools.carried_objects import carried_by
 from scenewright.tools.execute import Done, carry_out, preview
 from scenewright.tools.operation import Context
 from scenewright.tools.ops.opacity import Opacity
@@ -352,7 +352,7 @@ def test_what_stands_on_a_thing_goes_along(corner: Scene, context: Context, data
 
 def test_a_rug_is_pulled_away_from_under_what_stands_on_it() -> None:
     scene = build([Thing("rug", "red", (0.0, 0.0, 0.0)), Thing("stool", "brown", (0.0, 0.0, 0.0))])
-    assert scene.language is not None and riders_of(scene, [0]) == ()
+    assert scene.language is not None and carried_by(scene, [0]) == ()
     assert standing_on(scene.language, scene.frame, scene.language.groups[0]) == ()
 
 

@@ -19,7 +19,7 @@ from scenewright.gaussians.scene import Scene
 from scenewright.gaussians.world.box import Box
 from scenewright.tools.execute import Done, carry_out
 from scenewright.tools.operation import Context
-from scenewright.tools.placement.walls import free_way
+from scenewright.tools.placement.walls import free_share
 from scenewright.tools.registry import parse
 
 CHAIR, WALL = 1, 5  # as the `corner` fixture numbers them; the wall is added to it
@@ -94,7 +94,7 @@ def test_the_free_way_is_that_of_small_steps(seed: int) -> None:
         inside = (np.abs(box.local(points - share * offset)) <= half).all(axis=1)
         entered = np.where(inside & np.isinf(entered), share, entered)
     met = entered[(entered > 0) & np.isfinite(entered)]
-    free = free_way(box, points, offset)
+    free = free_share(box, points, offset)
     # Small steps miss what a corner of the box passes between two of them: a point or two of hundreds.
     if free is None:
         assert len(met) < 8

@@ -1,1 +1,1 @@
-"""One file per operation; each defines one `EditOp` subclass, found by scanning this package."""
+"""The operations, one file each: a file defines one `EditOp` subclass, which the registry finds by a scan."""

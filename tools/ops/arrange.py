@@ -1,4 +1,4 @@
-"""arrange: by an exact way and turn, as a layout asks for."""
+"""The operation arrange: move the target by exact distances along the axes and turn it, as a layout states them."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from ...gaussians.errors import InstructionError
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import either, nonzero
-from ..carried_objects import loaded, rows_along, went_along
-from ..checks import carried_as_asked, collision_free, counted, supported
+from ..carried_objects import carried_note, rows_with_carried, with_carried
+from ..checks import collision_free, count_matches, moved_as_asked, supported
 from ..cloud_diff import Draft
-from ..field_update import carried
-from ..operation import Affine, Context, Outcome, TargetedOp, Way
+from ..field_update import after_move
+from ..operation import Affine, Context, Metres, Outcome, TargetedOp
 from ..placement.bodies import Array, Body, bodies_of
 from ..placement.surroundings import support_height
 from ..receipt import Check
@@ -42,9 +42,9 @@ class Arrange(TargetedOp):
         {"op": "arrange", "target": {"text": "armchair"}, "x": 0.4, "y": -1.2, "turn": 90},
     )
     op: Literal["arrange"] = "arrange"
-    x: Way = 0.0
-    y: Way = 0.0
-    z: Way = 0.0
+    x: Metres = 0.0
+    y: Metres = 0.0
+    z: Metres = 0.0
     turn: Annotated[float, Field(ge=-360, le=360, allow_inf_nan=False)] = 0.0
 
     @model_validator(mode="after")
@@ -54,10 +54,10 @@ class Arrange(TargetedOp):
         return self
 
     def may_change(self, scene: Scene, selection: Selection) -> Tensor:
-        return rows_along(scene, selection)
+        return rows_with_carried(scene, selection)
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
-        bodies = loaded(scene, bodies_of(scene, selection))
+        bodies = with_carried(scene, bodies_of(scene, selection))
         matrix = axis_rotation(scene.frame.up_vector, self.turn)
         draft, offsets = Draft(scene.cloud), list[Array]()
         for body in bodies:
@@ -65,24 +65,24 @@ class Arrange(TargetedOp):
             turn(draft, body.rows, matrix, offsets[-1])
         cloud = draft.done()
         asked = [Affine(b.rows, matrix, offset, b.rows) for b, offset in zip(bodies, offsets, strict=True)]
-        after = scene.replace(cloud=cloud, language=carried(scene, cloud, asked))
+        after = scene.replace(cloud=cloud, language=after_move(scene, cloud, asked))
         moved = tuple(self._put_down(scene, after, b, o, matrix, context) for b, o in zip(bodies, offsets, strict=True))
         touched = cloud.ids[torch.cat([body.rows for body in bodies])].sort().values
         scale = () if scene.frame.metres_per_unit is not None else ("one scene unit was taken for a metre",)
-        return Outcome(after, touched=touched, moved=moved, notes=(*scale, *went_along(scene, bodies)))
+        return Outcome(after, touched=touched, moved=moved, notes=(*scale, *carried_note(scene, bodies)))
 
     def _way(self, scene: Scene) -> Array:
-        """`[3]` what is added to a body's centre, world frame, scene units."""
+        """`[3]` offset of a body's centre, world frame, scene units."""
         way = np.array([self.x, self.y, self.z]) / (scene.frame.metres_per_unit or 1.0)
         return np.asarray(way @ scene.frame.basis())
 
     def _put_down(
         self, before: Scene, after: Scene, body: Body, offset: Array, matrix: Array, context: Context
     ) -> Affine:
-        """What was asked of a body, with what it now stands on.
+        """The map requested for a body, with the height of its new support.
 
         Raises:
-            InstructionError: it stood on something, and nothing would carry it there.
+            InstructionError: the body had a support and has none at the new position.
         """
         now = support_height(after, body, context)
         if now is None and support_height(before, body, context) is not None:
@@ -91,6 +91,6 @@ class Arrange(TargetedOp):
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         after = outcome.scene
-        checks = [carried_as_asked(before, after, outcome.moved), counted(before, after, outcome)]
+        checks = [moved_as_asked(before, after, outcome.moved), count_matches(before, after, outcome)]
         checks += [c for c in (supported(after, outcome.moved), collision_free(after, outcome.moved)) if c is not None]
         return tuple(checks)

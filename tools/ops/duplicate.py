@@ -1,4 +1,4 @@
-"""duplicate: more of the same."""
+"""The operation duplicate: add copies of the target."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from ...gaussians.language.field.measure import solid_points
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
-from ..checks import bumps, carried_as_asked, collision_free, counted, supported
+from ..checks import collision_free, count_matches, moved_as_asked, overlap_notes, supported
 from ..cloud_diff import Draft, selection_of
-from ..new_objects import Arrivals
+from ..new_objects import NewObjects
 from ..operation import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
 from ..placement.bodies import Array, Body, bodies_of, centimetre, heading
 from ..placement.place import free_spot, spot_beside
@@ -59,25 +59,25 @@ class Duplicate(TargetedOp):
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         bodies = bodies_of(scene, selection)
-        arrivals, moved = Arrivals(scene), []
+        objects, moved = NewObjects(scene), []
         notes = self.distance.assumption(scene.frame) if self.distance is not None else ()
         for body, offset, support in self._copies(scene, bodies, context):
             original = scene.cloud[body.rows]
             draft = Draft(original)
             shift(draft, torch.arange(len(original), device=original.device), offset)
             like = body.group if scene.language is not None and body.group >= 0 else None
-            rows = arrivals.add(draft.done(), body.label, body.box.axes, like)
+            rows = objects.add(draft.done(), body.label, body.box.axes, like)
             moved.append(Affine(rows, np.eye(3), offset, body.rows, support))
-        after, groups = arrivals.enter(context)
-        added = arrivals.ids()
+        after, groups = objects.build_scene(context)
+        added = objects.ids()
         if self.direction is not None:
-            notes += bumps(after, set(groups))
+            notes += overlap_notes(after, set(groups))
         said = f"{len(moved)} new of {self.target.describe()}"
         focus = selection_of(selection, added, groups, said)
         return Outcome(after, added=added, moved=tuple(moved), notes=notes, focus=focus)
 
     def _copies(self, scene: Scene, bodies: list[Body], context: Context) -> list[tuple[Body, Array, float | None]]:
-        """For each copy its original, its offset, and the height it stands on if it was placed."""
+        """For each copy its original, its offset, and the height of its support (None if it was not placed)."""
         if self.direction is not None:
             way = heading(context.viewer, scene.frame, self.direction)
             step = self._step(scene, bodies, way)
@@ -90,12 +90,12 @@ class Duplicate(TargetedOp):
             else:
                 spot = spot_beside(around, body)
             offset = spot.foot - body.foot(up)
-            around.take(solid_points(scene.cloud, body.rows) + offset, body.box.shifted(offset))
+            around.add_obstacle(solid_points(scene.cloud, body.rows) + offset, body.box.shifted(offset))
             found.append((body, offset, spot.support))
         return [(body, offset, support) for body, offset, support in found]
 
     def _step(self, scene: Scene, bodies: list[Body], way: Array) -> float:
-        """From one copy to the next: as said, or the extent of all originals together and a hand's breadth."""
+        """Step from one copy to the next: as given, or the extent of all originals together plus 8 cm."""
         if self.distance is not None:
             return self.distance.in_units(scene.frame)
         corners = np.concatenate([b.box.corners() for b in bodies]) @ way
@@ -104,6 +104,6 @@ class Duplicate(TargetedOp):
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         after = outcome.scene
-        checks = [carried_as_asked(before, after, outcome.moved), counted(before, after, outcome)]
+        checks = [moved_as_asked(before, after, outcome.moved), count_matches(before, after, outcome)]
         checks += [c for c in (supported(after, outcome.moved), collision_free(after, outcome.moved)) if c is not None]
         return tuple(checks)

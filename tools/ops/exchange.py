@@ -1,4 +1,4 @@
-"""exchange: two things change places."""
+"""The operation exchange: swap the positions of two things."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from ...gaussians.errors import InstructionError
 from ...gaussians.language.field.measure import solid_points
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
-from ..carried_objects import loaded, riders_of, rows_along, went_along
-from ..checks import carried_as_asked, collision_free, counted, supported
+from ..carried_objects import carried_by, carried_note, rows_with_carried, with_carried
+from ..checks import collision_free, count_matches, moved_as_asked, supported
 from ..cloud_diff import Draft
-from ..field_update import carried
+from ..field_update import after_move
 from ..operation import Affine, Context, Outcome, TargetedOp
 from ..placement.bodies import (
     Body,
@@ -46,7 +46,7 @@ class Exchange(TargetedOp):
     op: Literal["exchange"] = "exchange"
 
     def may_change(self, scene: Scene, selection: Selection) -> Tensor:
-        return rows_along(scene, selection)
+        return rows_with_carried(scene, selection)
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         bodies = self._two(scene, selection)
@@ -56,9 +56,9 @@ class Exchange(TargetedOp):
         for asked in moved:
             turn(draft, asked.rows, asked.matrix, asked.offset)
         cloud = draft.done()
-        after = scene.replace(cloud=cloud, language=carried(scene, cloud, moved))
+        after = scene.replace(cloud=cloud, language=after_move(scene, cloud, moved))
         touched = cloud.ids[torch.cat([body.rows for body in bodies])].sort().values
-        return Outcome(after, touched=touched, moved=tuple(moved), notes=went_along(scene, bodies))
+        return Outcome(after, touched=touched, moved=tuple(moved), notes=carried_note(scene, bodies))
 
     def _two(self, scene: Scene, selection: Selection) -> list[Body]:
         """The two bodies.
@@ -69,13 +69,13 @@ class Exchange(TargetedOp):
         bodies = bodies_of(scene, selection)
         if len(bodies) != 2:
             raise InstructionError(f"two things change places; {selection.query.describe()} means {len(bodies)}")
-        riders = [set(riders_of(scene, [body.group])) for body in bodies]
-        if bodies[0].group in riders[1] or bodies[1].group in riders[0]:
+        carried = [set(carried_by(scene, [body.group])) for body in bodies]
+        if bodies[0].group in carried[1] or bodies[1].group in carried[0]:
             raise InstructionError("a thing cannot change places with what stands on it: say where each should go")
-        return loaded(scene, bodies)
+        return with_carried(scene, bodies)
 
     def _to(self, scene: Scene, around: Surroundings, one: Body, other: Body) -> Affine:
-        """Where one thing goes when it takes the other's place.
+        """The map that brings one thing to the other's place.
 
         Raises:
             InstructionError: one stands and the other hangs, or there is no room.
@@ -92,11 +92,11 @@ class Exchange(TargetedOp):
             foot, support = spot.foot, spot.support
         offset = foot - matrix @ one.foot(up)
         points = solid_points(scene.cloud, one.rows) @ matrix.T + offset
-        around.take(points, contact_box(points, scene.frame))
+        around.add_obstacle(points, contact_box(points, scene.frame))
         return Affine(one.rows, matrix, np.asarray(offset), one.rows, support)
 
     def _turn(self, scene: Scene, one: Body, other: Body) -> float:
-        """Degrees by which a thing must turn to face as the other does; 0 where one of them faces nowhere."""
+        """Degrees by which a thing must turn to face as the other does; 0 where the front of either is unknown."""
         mine, yours = front_of(scene, one), front_of(scene, other)
         if mine is None or yours is None:
             return 0.0
@@ -104,6 +104,6 @@ class Exchange(TargetedOp):
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         after = outcome.scene
-        checks = [carried_as_asked(before, after, outcome.moved), counted(before, after, outcome)]
+        checks = [moved_as_asked(before, after, outcome.moved), count_matches(before, after, outcome)]
         checks += [c for c in (supported(after, outcome.moved), collision_free(after, outcome.moved)) if c is not None]
         return tuple(checks)

@@ -1,4 +1,4 @@
-"""insert: a new object from the asset library."""
+"""The operation insert: add new objects from the asset library."""
 
 from __future__ import annotations
 
@@ -11,9 +11,19 @@ from torch import Tensor
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
-from ..checks import collision_free, counted, supported, unseen
+from ..checks import collision_free, count_matches, out_of_view_note, supported
 from ..cloud_diff import rows_of
-from ..new_objects import Arrivals, Wish, as_moved, fetch, find_spot, gaze, metre, set_down, taken_by
+from ..new_objects import (
+    AssetRequest,
+    NewObjects,
+    add_obstacle,
+    affine_of,
+    find_spot,
+    make_asset,
+    scene_scale,
+    set_down,
+    viewed_point,
+)
 from ..operation import AssetName, ColorName, Context, EditOp, Length, Outcome, Placement
 from ..placement.place import anchors_of
 from ..placement.surroundings import Surroundings
@@ -43,30 +53,30 @@ class Insert(EditOp):
         return f"{self.count} {self.asset}" if self.count > 1 else self.asset
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
-        around, arrivals, moved = Surroundings(scene, context), Arrivals(scene), []
+        around, objects, moved = Surroundings(scene, context), NewObjects(scene), []
         anchors = anchors_of(around, self.place) if self.place is not None else []
-        scale, start, notes = metre(scene, anchors), gaze(around), dict[str, None]()
+        scale, start, notes = scene_scale(scene, anchors), viewed_point(around), dict[str, None]()
         for index in range(self.count):
-            wish = Wish(self.asset, self.color, context.seed + index, scale, self.height)
-            piece = fetch(scene, wish)
-            spot = find_spot(around, piece, self.place, start)
-            cloud = set_down(piece, spot.foot, spot.axes)
-            taken_by(cloud, scene, around)
-            hangs = self.place is None and piece.support in ("wall", "ceiling")
-            moved.append(as_moved(arrivals.add(cloud, piece.label, spot.axes), None if hangs else spot.support))
-            notes |= dict.fromkeys(piece.notes)
-        after, groups = arrivals.enter(context)
-        added = arrivals.ids()
-        query = Query(text=moved_label(arrivals), groups=groups)
+            request = AssetRequest(self.asset, self.color, context.seed + index, scale, self.height)
+            asset = make_asset(scene, request)
+            spot = find_spot(around, asset, self.place, start)
+            cloud = set_down(asset, spot.foot, spot.axes)
+            add_obstacle(cloud, scene, around)
+            hangs = self.place is None and asset.support in ("wall", "ceiling")
+            moved.append(affine_of(objects.add(cloud, asset.label, spot.axes), None if hangs else spot.support))
+            notes |= dict.fromkeys(asset.notes)
+        after, groups = objects.build_scene(context)
+        added = objects.ids()
+        query = Query(text=objects.entries[0].label, groups=groups)
         focus = Selection(query, "found", added, groups, (), f"{self.subject()}, just inserted")
-        said = (*notes, *unseen(after, tuple(moved), context.viewer))
+        said = (*notes, *out_of_view_note(after, tuple(moved), context.viewer))
         return Outcome(after, added=added, moved=tuple(moved), notes=said, focus=focus)
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         after = outcome.scene
         there = len(rows_of(after.cloud, outcome.added))
         checks = [at_least("inserted", there, 1, "Gaussians", f"{there:,} Gaussians of {self.subject()} are there")]
-        checks.append(counted(before, after, outcome))
+        checks.append(count_matches(before, after, outcome))
         checks += [c for c in (supported(after, outcome.moved), collision_free(after, outcome.moved)) if c is not None]
         return tuple(checks)
 
@@ -74,6 +84,6 @@ class Insert(EditOp):
         return torch.zeros(len(scene.cloud), dtype=torch.bool, device=scene.cloud.device)
 
 
-def moved_label(arrivals: Arrivals) -> str:
+def _label(objects: NewObjects) -> str:
     """What the new things are called."""
-    return arrivals.newcomers[0].label
+    return objects.entries[0].label

@@ -1,4 +1,4 @@
-"""isolate: keep the target, remove everything else."""
+"""The operation isolate: keep the target and remove everything else."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from torch import Tensor
 
 from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.scene import Scene
-from ..checks import counted, gone
-from ..field_update import thinned
+from ..checks import count_matches, none_left
+from ..field_update import after_removal
 from ..operation import Context, Outcome, TargetedOp
 from ..receipt import Check
 
@@ -29,8 +29,8 @@ class Isolate(TargetedOp):
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         keep = mask_of(scene.cloud, selection.ids)
         cloud, removed = scene.cloud[keep], scene.cloud.ids[~keep]
-        after = scene.replace(cloud=cloud, language=thinned(scene, cloud, removed))
+        after = scene.replace(cloud=cloud, language=after_removal(scene, cloud, removed))
         return Outcome(after, removed=removed)
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
-        return gone(outcome.scene, outcome), counted(before, outcome.scene, outcome)
+        return none_left(outcome.scene, outcome), count_matches(before, outcome.scene, outcome)

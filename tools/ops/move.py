@@ -1,4 +1,4 @@
-"""move: by a distance, toward something, or to a place."""
+"""The operation move: move the target by a distance, toward something, or to a place."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
-from ..carried_objects import loaded, rows_along, went_along
-from ..checks import bumps, carried_as_asked, collision_free, counted, supported
+from ..carried_objects import carried_note, rows_with_carried, with_carried
+from ..checks import collision_free, count_matches, moved_as_asked, overlap_notes, supported
 from ..cloud_diff import Draft
-from ..field_update import carried
+from ..field_update import after_move
 from ..operation import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
 from ..placement.bodies import (
     Array,
@@ -30,10 +30,10 @@ from ..placement.bodies import (
     heading,
     mask_of_bodies,
 )
-from ..placement.overhead import hung_over
+from ..placement.overhead import place_above
 from ..placement.place import free_spot
 from ..placement.surroundings import Surroundings
-from ..placement.walls import keep_inside
+from ..placement.walls import require_clear_path
 from ..receipt import Check, at_most
 from ..transform import shift, turn
 
@@ -74,28 +74,28 @@ class Move(TargetedOp):
         return self
 
     def may_change(self, scene: Scene, selection: Selection) -> Tensor:
-        return rows_along(scene, selection)
+        return rows_with_carried(scene, selection)
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
-        bodies = loaded(scene, bodies_of(scene, selection))
+        bodies = with_carried(scene, bodies_of(scene, selection))
         moved, notes = self._moves(scene, bodies, context)
         if self.place is None:
-            keep_inside(scene, bodies, [asked.offset for asked in moved])
+            require_clear_path(scene, bodies, [asked.offset for asked in moved])
         draft = Draft(scene.cloud)
         for asked in moved:
             if np.array_equal(asked.matrix, np.eye(3)):
                 shift(draft, asked.rows, asked.offset)
-            else:  # what goes to another wall turns its back to it
+            else:  # an object that moves to another wall turns its back to that wall
                 turn(draft, asked.rows, asked.matrix, asked.offset)
         cloud = draft.done()
-        after = scene.replace(cloud=cloud, language=carried(scene, cloud, moved))
+        after = scene.replace(cloud=cloud, language=after_move(scene, cloud, moved))
         if self.place is None:
-            notes += bumps(after, groups_of(bodies))
+            notes += overlap_notes(after, groups_of(bodies))
         touched = scene.cloud.ids[torch.cat([body.rows for body in bodies])].sort().values
-        return Outcome(after, touched=touched, moved=tuple(moved), notes=(*notes, *went_along(scene, bodies)))
+        return Outcome(after, touched=touched, moved=tuple(moved), notes=(*notes, *carried_note(scene, bodies)))
 
     def _moves(self, scene: Scene, bodies: list[Body], context: Context) -> tuple[list[Affine], tuple[str, ...]]:
-        """What is asked of each body, and notes."""
+        """The map requested for each body, and notes."""
         said = self.distance.assumption(scene.frame) if self.distance is not None else ()
         if self.place is not None:
             return self._placed(scene, bodies, context, self.place), said
@@ -112,7 +112,7 @@ class Move(TargetedOp):
         return [self._asked(b, way * step) for b in bodies], said
 
     def _approach(self, scene: Scene, body: Body, goals: list[Body]) -> Array:
-        """Level offset toward the nearest of the goals, by the distance asked or until just before it."""
+        """Horizontal offset toward the nearest of the goals, by the given distance or until 3 cm before it."""
         up = scene.frame.up_vector
         ways = [g.center - body.center for g in goals]
         ways = [w - up * (w @ up) for w in ways]
@@ -130,18 +130,18 @@ class Move(TargetedOp):
         return np.asarray(way * room)
 
     def _placed(self, scene: Scene, bodies: list[Body], context: Context, place: Placement) -> list[Affine]:
-        """Each body on a free spot of its own."""
+        """The map that puts each body on a free spot of its own."""
         up = scene.frame.up_vector
         around = Surroundings(scene, context, mask_of_bodies(scene, bodies), frozenset(groups_of(bodies)))
         moved = []
         for body in bodies:
             if place.relation == "above":
-                matrix, spot = hung_over(around, body, place)
+                matrix, spot = place_above(around, body, place)
             else:
                 matrix, spot = np.eye(3), free_spot(around, body.box.size, body.box.axes, place, body.foot(up))
             offset = spot.foot - matrix @ body.foot(up)
             points = solid_points(scene.cloud, body.rows) @ matrix.T + offset
-            around.take(points, contact_box(points, scene.frame, spot.axes))
+            around.add_obstacle(points, contact_box(points, scene.frame, spot.axes))
             moved.append(Affine(body.rows, matrix, offset, body.rows, spot.support))
         return moved
 
@@ -150,21 +150,21 @@ class Move(TargetedOp):
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         after = outcome.scene
-        checks = [carried_as_asked(before, after, outcome.moved), counted(before, after, outcome)]
+        checks = [moved_as_asked(before, after, outcome.moved), count_matches(before, after, outcome)]
         if self.distance is not None:
             checks.append(self._distance_kept(before, outcome))
         checks += [c for c in (supported(after, outcome.moved), collision_free(after, outcome.moved)) if c is not None]
         return tuple(checks)
 
     def _distance_kept(self, before: Scene, outcome: Outcome) -> Check:
-        """The mean of the centres went as far as was said."""
+        """The mean of the centres moved by the given distance."""
         assert self.distance is not None
         asked, rows = self.distance.in_units(before.frame), torch.cat([body.rows for body in outcome.moved])
         was, now = (s.cloud.means[rows] for s in (before, outcome.scene))
         measured = float(torch.linalg.vector_norm((now - was).mean(dim=0, dtype=torch.float64)))
-        if len(outcome.moved) > 1 and self.toward is not None:  # each thing went its own way
+        if len(outcome.moved) > 1 and self.toward is not None:  # each thing moved in its own direction
             measured = float(torch.linalg.vector_norm(now - was, dim=1).mean(dtype=torch.float64))
-        # float32 centres: a few millionths of the coordinates, which may be far larger than the step.
+        # float32 centres: rounding is a few millionths of the coordinates, which may be far larger than the step.
         bound = 1e-5 * max(1.0, asked, float(was.abs().max()))
         said = f"it moved {measured:.4g} of {asked:.4g} units"
         return at_most("distance", abs(measured - asked), bound, "units", said)

@@ -1,4 +1,4 @@
-"""recolor: a new colour that keeps shading and texture."""
+"""The operation recolor: give the target a new colour and keep its shading and texture."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from ...gaussians.language.field.measure import Sample, lightness_spread, lit_la
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
-from ..checks import counted
+from ..checks import count_matches
 from ..cloud_diff import Draft, rows_of
 from ..color_map import NEAR, ColorMap, distance, saturation, toward_color, warmth
-from ..field_update import recolored
+from ..field_update import after_recolor
 from ..operation import ColorName, Context, Outcome, TargetedOp
 from ..placement.bodies import rows_by_thing
 from ..receipt import Check, at_least, at_most, report
 
 Adjust = Literal["darker", "lighter", "more_saturated", "less_saturated", "warmer", "cooler", "toward"]
-ALIKE = 20.0  # Lab distance, lightness counted half, below which things share a coat of paint
+SAME_COLOR = 20.0  # Lab distance, lightness weighted by half, below which things share one colour map
 
 
 class Recolor(TargetedOp):
@@ -65,31 +65,31 @@ class Recolor(TargetedOp):
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         asked = self._asked()
         draft = Draft(scene.cloud)
-        for rows in coats(scene, selection):
+        for rows in color_groups(scene, selection):
             change = self._map(sample(scene.cloud, rows), asked)
             draft.map("sh", rows, change.on_harmonics)
         after = scene.replace(cloud=draft.done())
-        return Outcome(after.replace(language=recolored(after, selection.ids)), touched=selection.ids)
+        return Outcome(after.replace(language=after_recolor(after, selection.ids)), touched=selection.ids)
 
     def _asked(self) -> Tensor | None:
-        """Lab of the named colour, as people picture it."""
+        """Lab of the named colour (see `gaussians.color.shade_of`)."""
         if self.color is None:
             return None
         return rgb_to_lab(torch.tensor(shade_of(self.color), dtype=torch.float64))
 
-    def _map(self, taken: Sample, asked: Tensor | None) -> ColorMap:
-        """The map for one coat of paint."""
+    def _map(self, colors: Sample, asked: Tensor | None) -> ColorMap:
+        """The map for the things of one colour."""
         if self.adjust is None:
             assert asked is not None
-            return toward_color(taken, asked)
+            return toward_color(colors, asked)
         if self.adjust in ("more_saturated", "less_saturated"):
             return saturation(1 + 1.5 * self.amount if self.adjust == "more_saturated" else 1 - self.amount)
         if self.adjust in ("warmer", "cooler"):
             return warmth(self.amount if self.adjust == "warmer" else -self.amount)
-        return toward_color(taken, self._shifted(lit_lab(taken), asked), keep_pattern=True)
+        return toward_color(colors, self._shifted(lit_lab(colors), asked), keep_pattern=True)
 
     def _shifted(self, lit: Tensor, asked: Tensor | None) -> Tensor:
-        """The colour for its lit faces: along lightness at constant hue and chroma, or part of the way to a colour."""
+        """The new colour of the lit faces: darker or lighter at constant hue, or part of the way to a colour."""
         if asked is not None:
             return lit + self.amount * (asked - lit)
         lightness = float(lit[0])
@@ -98,7 +98,7 @@ class Recolor(TargetedOp):
             if self.adjust == "darker"
             else (lightness + 0.75 * self.amount * (100 - lightness))
         )
-        # Chroma follows a darkening as it does in shadow; a display has no room for it in very light colours either.
+        # Chroma shrinks with lightness as it does in shadow, and a display has little chroma in very light colours.
         chroma = (
             min(1.0, new / max(lightness, 1.0))
             if self.adjust == "darker"
@@ -108,18 +108,18 @@ class Recolor(TargetedOp):
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         was, now = (sample(s.cloud, rows_of(s.cloud, selection.ids)) for s in (before, outcome.scene))
-        checks = [self._arrived(was, now), counted(before, outcome.scene, outcome)]
+        checks = [self._arrived(was, now), count_matches(before, outcome.scene, outcome)]
         if self.adjust is None:
             texture, kept = lightness_spread(was), lightness_spread(now)
             said = f"spread of lightness (shading, texture) went from {texture:.1f} to {kept:.1f}"
-            if texture > 2:  # a twentieth of it is left even of a pure colour at the end of the display's range
+            if texture > 2:  # even a pure colour at the end of the display's range keeps a twentieth of it
                 checks.append(at_least("texture kept", kept / texture, 0.05, "1", said))
             else:
                 checks.append(report("texture kept", kept / max(texture, 1e-9), "1", said))
         return tuple(checks)
 
     def _arrived(self, was: Sample, now: Sample) -> Check:
-        """Its lit faces have the asked colour, or it moved the asked way."""
+        """The lit faces have the requested colour, or the colour changed in the requested direction."""
         if self.adjust is None:
             asked = self._asked()
             assert asked is not None
@@ -130,9 +130,10 @@ class Recolor(TargetedOp):
         return at_least(f"{self.adjust.replace('_', ' ')}", step, 0.2, "ΔE", said)
 
     def _progress(self, was: Sample, now: Sample) -> float:
-        """How far it moved the asked way, in Lab: its lit faces, or for saturation and warmth its mean.
+        """How far the colour moved in the requested direction, in Lab: of the lit faces, or for saturation and warmth
+        of the mean.
 
-        These two change chroma only, and the median of a striped thing's chroma may stay with its white stripes.
+        These two change chroma only, and the median chroma of a striped thing may be that of its white stripes.
         """
         old, new = mean_lab(was), mean_lab(now)
         if self.adjust in ("more_saturated", "less_saturated"):
@@ -148,16 +149,16 @@ class Recolor(TargetedOp):
         return float(torch.linalg.vector_norm(old - asked) - torch.linalg.vector_norm(new - asked))
 
 
-def coats(scene: Scene, selection: Selection) -> list[Tensor]:
-    """Rows that share one map: things of nearly one colour are painted alike, others against their own mean.
+def color_groups(scene: Scene, selection: Selection) -> list[Tensor]:
+    """Rows that share one colour map: one group for things of nearly the same colour, else one for each thing.
 
-    So patches of one cloth keep their shading against each other, while a white and a black chair both turn red.
+    So patches of one cloth keep their shading relative to each other, while a white and a black chair both turn red.
     """
     found: list[tuple[Tensor, list[Tensor]]] = []
     for _, rows in rows_by_thing(scene, selection):
         mean = mean_lab(sample(scene.cloud, rows, 2048))
         for other, alike in found:
-            if float(torch.linalg.vector_norm((mean - other) * torch.tensor([0.5, 1, 1]))) < ALIKE:
+            if float(torch.linalg.vector_norm((mean - other) * torch.tensor([0.5, 1, 1]))) < SAME_COLOR:
                 alike.append(rows)
                 break
         else:

@@ -1,4 +1,4 @@
-"""rotate: turn the target on the spot."""
+"""The operation rotate: turn the target on the spot."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
-from ..carried_objects import loaded, rows_along, went_along
-from ..checks import bumps, carried_as_asked, counted
+from ..carried_objects import carried_note, rows_with_carried, with_carried
+from ..checks import count_matches, moved_as_asked, overlap_notes
 from ..cloud_diff import Draft
-from ..field_update import carried
+from ..field_update import after_move
 from ..operation import Affine, Context, Outcome, TargetedOp
 from ..placement.bodies import Array, Body, bodies_of, groups_of, heading, turn_to_face
 from ..receipt import Check
@@ -59,13 +59,13 @@ class Rotate(TargetedOp):
         return self
 
     def may_change(self, scene: Scene, selection: Selection) -> Tensor:
-        return rows_along(scene, selection) if self.axis == "up" else super().may_change(scene, selection)
+        return rows_with_carried(scene, selection) if self.axis == "up" else super().may_change(scene, selection)
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         axis = heading(context.viewer, scene.frame, self.axis)
         draft, moved, notes = Draft(scene.cloud), list[Affine](), dict[str, None]()
         bodies = bodies_of(scene, selection)
-        bodies = loaded(scene, bodies) if self.axis == "up" else bodies
+        bodies = with_carried(scene, bodies) if self.axis == "up" else bodies
         goals = [] if self.toward is None else bodies_of(scene, context.resolve(scene, self.toward).require())
         for body in bodies:
             degrees, said = self._degrees(scene, body, goals)
@@ -75,13 +75,13 @@ class Rotate(TargetedOp):
             turn(draft, body.rows, matrix, offset)
             moved.append(Affine(body.rows, matrix, offset, body.rows))
         cloud = draft.done()
-        after = scene.replace(cloud=cloud, language=carried(scene, cloud, moved))
-        told = (*notes, *bumps(after, groups_of(bodies)), *went_along(scene, bodies))
+        after = scene.replace(cloud=cloud, language=after_move(scene, cloud, moved))
+        told = (*notes, *overlap_notes(after, groups_of(bodies)), *carried_note(scene, bodies))
         touched = scene.cloud.ids[torch.cat([body.rows for body in bodies])].sort().values
         return Outcome(after, touched=touched, moved=tuple(moved), notes=told)
 
     def _degrees(self, scene: Scene, body: Body, goals: list[Body]) -> tuple[float, tuple[str, ...]]:
-        """By how much one body turns, and notes."""
+        """The angle by which one body turns, and notes."""
         more = self.degrees or 0.0
         if not goals:
             return more, ()
@@ -90,10 +90,11 @@ class Rotate(TargetedOp):
         return facing + more, notes
 
     def _offset(self, scene: Scene, body: Body, matrix: Array) -> Array:
-        """What keeps the pivot in place, and a tilted thing's underside at the height it had.
+        """The offset that keeps the pivot in place, and the underside of a tilted thing at its old height.
 
-        About up the pivot is the middle of the object's box; a box without an object behind it is measured anew
-        each time and would wander, so there, and for tilts, it is the mean of the centres.
+        For a turn about up the pivot is the middle of the object's box. The box of Gaussians without an object is
+        measured anew each time and its middle would drift, so there, and for tilts, the pivot is the mean of the
+        centres.
         """
         upright = self.axis == "up" and body.group >= 0
         pivot = body.center if upright else centroid(scene.cloud, body.rows)
@@ -105,4 +106,4 @@ class Rotate(TargetedOp):
         return np.asarray(offset + sunk * up)
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
-        return carried_as_asked(before, outcome.scene, outcome.moved), counted(before, outcome.scene, outcome)
+        return moved_as_asked(before, outcome.scene, outcome.moved), count_matches(before, outcome.scene, outcome)

@@ -1,4 +1,4 @@
-"""scale: make the target larger or smaller."""
+"""The operation scale: make the target larger or smaller."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from ...gaussians.language.field.measure import reach, solid_points
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, Given, Keywords, either, given
-from ..checks import bumps, carried_as_asked, counted, size_changed
+from ..checks import count_matches, moved_as_asked, overlap_notes, size_changed
 from ..cloud_diff import Draft
-from ..field_update import carried
+from ..field_update import after_move
 from ..operation import Affine, Context, Length, Outcome, TargetedOp
 from ..placement.bodies import Array, Body, bodies_of, heading
 from ..receipt import Check, at_most
@@ -25,7 +25,7 @@ _SIDES: tuple[Side, ...] = ("height", "width", "depth")
 
 
 def _alone(name: str, **more: Given | Keywords) -> dict[str, Given | Keywords]:
-    """One of the ways to say a size, without the others."""
+    """The schema alternative in which `name` is given and the other ways to state a size are not."""
     return {**dict.fromkeys(("factor", *_SIDES), NOT_GIVEN), name: given(), **more}
 
 
@@ -61,7 +61,7 @@ class Scale(TargetedOp):
 
     @property
     def length(self) -> tuple[Side, Length] | None:
-        """The dimension and the length it is to have, None where a factor was said."""
+        """The dimension and its requested length; None if a factor was given."""
         return next(((side, size) for side in _SIDES if (size := getattr(self, side)) is not None), None)
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
@@ -75,22 +75,22 @@ class Scale(TargetedOp):
             stretch(draft, body.rows, matrix, offset)
             moved.append(Affine(body.rows, matrix, offset, body.rows))
         cloud = draft.done()
-        after = scene.replace(cloud=cloud, language=carried(scene, cloud, moved))
+        after = scene.replace(cloud=cloud, language=after_move(scene, cloud, moved))
         larger = any(float(np.linalg.det(m.matrix)) > 1 for m in moved)
-        notes = bumps(after, {b.group for b in bodies}) if larger else ()
+        notes = overlap_notes(after, {b.group for b in bodies}) if larger else ()
         if self.length is not None:
             notes = (*self.length[1].assumption(scene.frame), *notes)
         return Outcome(after, touched=selection.ids, moved=tuple(moved), notes=notes)
 
     def _axis(self, body: Body, across: Array) -> Array | None:
-        """The box axis that is stretched; None for all."""
+        """The box axis along which the body is stretched; None for all."""
         return None if self.axis == "all" else np.array(body.box.axes[_side(body, self.axis, across)])
 
     def _factor(self, scene: Scene, body: Body, across: Array) -> float:
-        """By how much this body grows.
+        """The factor by which this body is scaled.
 
         Raises:
-            InstructionError: its length would change by more than a hundred times.
+            InstructionError: its length would change by more than a factor of a hundred.
         """
         if self.length is None:
             return self.factor or 1.0
@@ -107,7 +107,7 @@ class Scale(TargetedOp):
         return factor
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
-        checks = [carried_as_asked(before, outcome.scene, outcome.moved), counted(before, outcome.scene, outcome)]
+        checks = [moved_as_asked(before, outcome.scene, outcome.moved), count_matches(before, outcome.scene, outcome)]
         checks += [size_changed(before, outcome.scene, body) for body in outcome.moved[:4]]
         if self.length is not None:
             checks.append(self._length_reached(before, outcome, selection, context, *self.length))
@@ -116,20 +116,20 @@ class Scale(TargetedOp):
     def _length_reached(
         self, before: Scene, outcome: Outcome, selection: Selection, context: Context, side: str, length: Length
     ) -> Check:
-        """How far the measured dimension is from what was asked, over all bodies."""
+        """The largest difference between the measured and the requested length over all bodies."""
         across = heading(context.viewer, before.frame, "right")
         asked, off = length.in_units(before.frame), 0.0
         for body, moved in zip(bodies_of(before, selection), outcome.moved, strict=True):
             axis = np.array(body.box.axes[_side(body, side, across)])
             low, high = reach(solid_points(outcome.scene.cloud, moved.rows) @ axis)
             off = max(off, abs(high - low - asked))
-        # float32 centres: a few millionths of the coordinates, which may be far larger than the thing.
+        # float32 centres: rounding is a few millionths of the coordinates, which may be far larger than the thing.
         bound = 1e-5 * max(1.0, asked, float(outcome.scene.cloud.means.abs().max()))
         return at_most("length", off, bound, "units", f"its {side} is within {off:.2g} units of {asked:.4g}")
 
 
 def _side(body: Body, side: str, across: Array) -> int:
-    """Which axis of a body's box is its height, width or depth as the viewer sees it."""
+    """Index of the axis of a body's box that is its height, width or depth as the viewer sees it."""
     if side == "height":
         return 2
     first, second = (abs(float(np.array(a) @ across)) for a in body.box.axes[:2])

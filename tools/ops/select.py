@@ -1,4 +1,4 @@
-"""select: point at something without changing it."""
+"""The operation select: select something without changing the scene."""
 
 from __future__ import annotations
 

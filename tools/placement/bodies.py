@@ -1,6 +1,6 @@
-"""Where things are and how they stand to each other: bodies, boxes, the viewer's directions, the room.
+"""Geometry of the selected things: their bodies and boxes, the viewer's directions, and which way a thing faces.
 
-Knows geometry of a scene and its groups. Refuses to know where things ought to go (see place).
+Where a thing goes is decided in place.py.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from ..cloud_diff import rows_of
 from ..operation import Direction
 
 Array = NDArray[np.float64]
-_CALIPERS = 1500  # points the footprint's orientation is found on; more do not change it
+_CALIPERS = 1500  # points from which the footprint's orientation is found; more do not change it
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,15 +37,15 @@ class Body:
         rows: `[M]` int64 rows of the scene's cloud.
         group: id of its object (or of a part selected alone), -1 if the Gaussians belong to none.
         box: upright oriented box of its solid Gaussians, scene units.
-        label: what it is called, "" if unknown.
-        riders: ids of the objects on it whose Gaussians are among `rows`; `box` leaves them out.
+        label: its name, "" if unknown.
+        carried: ids of the objects on it whose Gaussians are among `rows`; `box` leaves them out.
     """
 
     rows: Tensor
     group: int
     box: Box
     label: str = ""
-    riders: tuple[int, ...] = ()
+    carried: tuple[int, ...] = ()
 
     @property
     def center(self) -> Array:
@@ -79,7 +79,7 @@ def _in_order(owners: Tensor) -> list[int]:
 
 
 def _owners(scene: Scene, selection: Selection) -> dict[int, int]:
-    """Which thing each leaf belongs to: the selected group that holds it, or its object."""
+    """Group id of the thing that each leaf group belongs to: the selected group that holds it, or its object."""
     if scene.language is None:
         return {}
     asked = set(selection.groups)
@@ -93,14 +93,14 @@ def _owners(scene: Scene, selection: Selection) -> dict[int, int]:
 def _body(scene: Scene, rows: Tensor, group: int) -> Body:
     known = scene.language.groups[group] if scene.language is not None and group >= 0 else None
     points = solid_points(scene.cloud, rows)
-    # The field's box was oriented with care when the scene was embedded; its axes are kept, its extents measured anew.
+    # Embedding found good axes for the field's box: they are kept, and the extents are measured again.
     axes = known.box.axes if known is not None else None
     return Body(rows, group, contact_box(points, scene.frame, axes), known.label if known is not None else "")
 
 
 def groups_of(bodies: Sequence[Body]) -> set[int]:
     """Ids of the bodies' objects and of those on them."""
-    return {g for body in bodies for g in (body.group, *body.riders)}
+    return {g for body in bodies for g in (body.group, *body.carried)}
 
 
 def mask_of_bodies(scene: Scene, bodies: Sequence[Body]) -> Tensor:
@@ -112,10 +112,10 @@ def mask_of_bodies(scene: Scene, bodies: Sequence[Body]) -> Tensor:
 
 
 def contact_box(points: Array, frame: Frame, axes: Axes | None = None) -> Box:
-    """Upright box around points `[M, 3]`, along `axes` or with the smallest footprint: where a thing meets others.
+    """Upright box around points `[M, 3]`, along `axes` or with the smallest footprint, for contact with other things.
 
-    The box of the language field leaves out a hundredth at each end, as stray splats would widen it; the foot of a
-    chair is less than that, and it is what stands on the floor, so here almost every solid point counts.
+    The box of the language field leaves out a hundredth of the points at each end, because stray Gaussians would widen
+    it. The feet of a chair are less than that and yet touch the floor, so this box holds almost every solid point.
 
     Raises:
         InstructionError: there are no points.
@@ -125,8 +125,8 @@ def contact_box(points: Array, frame: Frame, axes: Axes | None = None) -> Box:
     if axes is None:
         axes = level_axes(points[:: max(1, len(points) // _CALIPERS)], frame)
     low, high = np.array([reach(points @ a) for a in np.array(axes)]).T
-    thin = np.maximum(1e-9 - (high - low), 0.0)
-    return box_along(axes, low, high + thin)
+    missing = np.maximum(1e-9 - (high - low), 0.0)
+    return box_along(axes, low, high + missing)
 
 
 def as_vec(values: Array) -> Vec3:
@@ -136,7 +136,7 @@ def as_vec(values: Array) -> Vec3:
 
 
 def heading(viewer: Camera, frame: Frame, direction: Direction) -> Array:
-    """`[3]` unit vector of a direction as the viewer says it, levelled to the ground; up and down are the scene's."""
+    """`[3]` unit vector of one of the viewer's directions, made horizontal; up and down are the scene's."""
     up = frame.up_vector
     stand = viewer_stand(viewer, up, 1.0)
     table = {"right": stand.right, "forward": stand.forward, "up": up}
@@ -145,7 +145,8 @@ def heading(viewer: Camera, frame: Frame, direction: Direction) -> Array:
 
 
 def turned_axes(axes: Axes, matrix: Array, frame: Frame) -> Axes:
-    """Axes of an upright box after `x -> matrix @ x`: its first level axis, or the second if that now stands up."""
+    """Upright axes of a box after `x -> matrix @ x`, from its first horizontal axis, or the second if that is vertical
+    now."""
     first, second, up = *(np.array(axes)[:2] @ matrix.T), frame.up_vector
     level = first - up * (first @ up)
     if np.linalg.norm(level) < 1e-6:
@@ -155,7 +156,7 @@ def turned_axes(axes: Axes, matrix: Array, frame: Frame) -> Axes:
 
 
 def neighbours(scene: Scene, but: set[int]) -> list[tuple[str, Box]]:
-    """Label and box of each object of the field that still has Gaussians, apart from some group ids."""
+    """Label and box of each object of the field that still has Gaussians, without the group ids `but`."""
     if scene.language is None:
         return []
     return [(g.label, g.box) for g in scene.language.objects() if g.count and g.id not in but]
@@ -167,14 +168,14 @@ def centimetre(frame: Frame, extent: float) -> float:
 
 
 def front_of(scene: Scene, body: Body) -> Array | None:
-    """`[3]` level unit vector out of a body's front, None where neither its shape nor a wall tells."""
+    """`[3]` horizontal unit vector out of a body's front; None where neither its shape nor a wall tells it."""
     field = scene.language
     if field is None or body.group < 0:
         return None
     rows = body.rows.cpu().numpy()
-    if body.riders:  # what stands on it says nothing about its back
-        riders = [leaf for g in body.riders for leaf in field.leaves(g)]
-        rows = rows[~np.isin(scene.cloud.group.cpu().numpy()[rows], riders)]
+    if body.carried:  # objects on it say nothing about its front
+        carried = [leaf for g in body.carried for leaf in field.leaves(g)]
+        rows = rows[~np.isin(scene.cloud.group.cpu().numpy()[rows], carried)]
     return facing_in(field, scene.cloud, rows, field.groups[body.group]).front
 
 
@@ -182,7 +183,7 @@ def turn_to_face(scene: Scene, body: Body, goal: Array) -> tuple[float, tuple[st
     """Degrees about up by which a body must turn so that its front points at `goal` `[3]`, and notes.
 
     Raises:
-        InstructionError: the goal is right above or below it.
+        InstructionError: the goal is directly above or below the body.
     """
     up = scene.frame.up_vector
     way = goal - body.center
@@ -198,5 +199,5 @@ def turn_to_face(scene: Scene, body: Body, goal: Array) -> tuple[float, tuple[st
 
 
 def angle_between(start: Array, end: Array, up: Array) -> float:
-    """Degrees counter-clockwise about `up` from one level vector `[3]` to another, in (-180, 180]."""
+    """Degrees counter-clockwise about `up` from one horizontal vector `[3]` to another, in (-180, 180]."""
     return math.degrees(math.atan2(float(np.cross(start, end) @ up), float(start @ end)))

@@ -1,7 +1,4 @@
-"""Solid points and grids of them: what is in the way, what carries, and sums over windows.
-
-Knows arrays. Refuses to know placements and words.
-"""
+"""Solid points and 2D grids of them: obstacles, supporting surfaces, and sums over windows of cells."""
 
 from __future__ import annotations
 
@@ -19,11 +16,11 @@ from ...gaussians.world.box import Box
 
 Array = NDArray[np.float64]
 Bool = NDArray[np.bool_]
-_LEVELS = 4  # heights tried on a thing with several (a shelf, a chair)
+_LEVELS = 4  # most surface heights of one thing (a shelf and a chair have several)
 
 
 def obstacle_points(cloud: GaussianCloud, without: Tensor | None = None) -> NDArray[np.float32]:
-    """`[M, 3]` float32 centres of the opaque Gaussians, and points spread over the large ones along their long axes."""
+    """`[M, 3]` float32 centres of the opaque Gaussians, and further points along the two long axes of large ones."""
     solid = cloud.opacities >= OPAQUE
     if without is not None:
         solid = solid & ~without
@@ -38,7 +35,7 @@ def obstacle_points(cloud: GaussianCloud, without: Tensor | None = None) -> NDAr
 
 
 def _spread(cloud: GaussianCloud, rows: Tensor) -> NDArray[np.float32]:
-    """Points at half and one deviation along the two long axes of some Gaussians, `[20 M, 3]`."""
+    """`[24 M, 3]` points at 0, half and one deviation along the two long axes of Gaussians, without the centres."""
     if not len(rows):
         return np.zeros((0, 3), dtype=np.float32)
     scales, order = cloud.scales[rows].sort(dim=1, descending=True)
@@ -49,10 +46,10 @@ def _spread(cloud: GaussianCloud, rows: Tensor) -> NDArray[np.float32]:
     return spread
 
 
-def levels(heights: Array, local: Array, tolerance: float) -> list[tuple[float, Bool]]:
-    """Heights at which a thing offers surface to something from above, the broadest first, with the points there.
+def surface_heights(heights: Array, local: Array, tolerance: float) -> list[tuple[float, Bool]]:
+    """Heights of a thing's surfaces that are open from above, the broadest first, with a mask of the points there.
 
-    Only what is seen from above counts: the highest point of each cell of a 40x40 grid over the thing.
+    Only the highest point in each cell of a 40x40 grid over the thing counts as open from above.
     """
     low, high = local.min(axis=0), local.max(axis=0)
     cells = np.minimum(((local - low) / np.maximum(high - low, 1e-9) * 40).astype(np.int64), 39)
@@ -76,17 +73,17 @@ def levels(heights: Array, local: Array, tolerance: float) -> list[tuple[float, 
 
 
 def histogram(points: Array, origin: Array, cell: float, shape: NDArray[np.int_]) -> NDArray[np.int64]:
-    """Points a cell, `[shape]`; points outside are left out."""
+    """Number of points in each cell, `[shape]`; points outside the grid are left out."""
     index = np.floor((points - origin) / cell).astype(np.int64)
     inside = ((index >= 0) & (index < shape)).all(axis=1)
     flat = index[inside, 0] * int(shape[1]) + index[inside, 1]
     return np.bincount(flat, minlength=int(shape[0] * shape[1])).reshape(shape)
 
 
-def grown(mask: Bool, by: int) -> Bool:
-    """A mask grown by some cells: surfaces are sampled by points, not cells."""
-    grown: Bool = window_sum(np.pad(mask, by).astype(np.int64), np.array([2 * by + 1] * 2), list(mask.shape)) > 0
-    return grown
+def dilated(mask: Bool, by: int) -> Bool:
+    """A mask dilated by `by` cells, which closes the gaps between sampled points."""
+    result: Bool = window_sum(np.pad(mask, by).astype(np.int64), np.array([2 * by + 1] * 2), list(mask.shape)) > 0
+    return result
 
 
 def window_sum(values: NDArray[np.int64], window: NDArray[np.int_], counts: Sequence[int]) -> NDArray[np.int64]:
@@ -98,10 +95,10 @@ def window_sum(values: NDArray[np.int64], window: NDArray[np.int_], counts: Sequ
     return sums
 
 
-def hits(placed: Array, others: NDArray[np.float32], box: Box, clear: float) -> int:
-    """How many solid points of other things lie where a placed thing has points of its own, above `clear`.
+def points_inside(placed: Array, others: NDArray[np.float32], box: Box, clear: float) -> int:
+    """Number of solid points of other things that share a voxel with a placed thing's points, above height `clear`.
 
-    Boxes first: only points within the thing's box are looked at; then both go into voxels a 16th of its size.
+    Only points within the thing's box are compared, in voxels of a sixteenth of its size.
     """
     half = np.array(box.size) / 2
     near = (np.abs(others - np.array(box.center, dtype=np.float32)) <= np.linalg.norm(half)).all(axis=1)

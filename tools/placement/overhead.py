@@ -1,6 +1,6 @@
-"""Over something: on the wall behind it, or from the ceiling above it, for things that hang.
+"""Placement above an anchor, for things that hang: on the wall behind the anchor, or from the ceiling over it.
 
-Knows walls, the ceiling and what stands below. Refuses to hang what stands: a chair goes on something, not above it.
+Things that stand are refused: a chair goes on something, not above it.
 """
 
 from __future__ import annotations
@@ -18,35 +18,35 @@ from ...gaussians.world.person import HUNG_AT
 from ..operation import Context, Placement
 from ..transform import axis_rotation
 from .bodies import Array, Body, angle_between, as_vec, centimetre, front_of
-from .place import Spot, anchors_of, spot_to_hang
-from .regions import Region, far
+from .place import Spot, anchors_of, hanging_spot
+from .regions import Region, distance_to
 from .surroundings import Surroundings, support_height
 
-Hung = Literal["wall", "ceiling"]
-GAP = 15.0  # centimetres between a thing and what hangs on the wall above it, at least
-_BEHIND = 100.0  # centimetres from a thing to the wall behind it, at most
-_NEAR = 0.9  # of the room's height: what hangs from the ceiling has its top above that
+Mount = Literal["wall", "ceiling"]
+_GAP_ABOVE = 15.0  # centimetres between an anchor and the thing that hangs on the wall above it, at least
+_MAX_WALL_DISTANCE = 100.0  # centimetres from an anchor to the wall behind it, at most
+_NEAR = 0.9  # of the room's height: the top of a thing that hangs from the ceiling is above that
 
 
-def hung_over(around: Surroundings, body: Body, place: Placement) -> tuple[Array, Spot]:
-    """How a body that hangs turns, `[3, 3]`, and where it goes, to hang above the anchor of a placement.
+def place_above(around: Surroundings, body: Body, place: Placement) -> tuple[Array, Spot]:
+    """The rotation `[3, 3]` and the spot of a hanging body that goes above the anchor of a placement.
 
     Raises:
-        InstructionError: it does not hang, no wall is there, or no room.
-        AbsentError, AmbiguousError: the anchor is not there or not unique.
+        InstructionError: the body does not hang, there is no wall, or there is no room.
+        AbsentError, AmbiguousError: the anchor is not in the scene or not unique.
     """
     (anchor, *_), scene = anchors_of(around, place), around.scene
-    hung = how_it_hangs(scene, body, around.context)
-    if hung == "ceiling":
-        region, axes = over(around, body.box.size, anchor, hung)
-        return np.eye(3), spot_to_hang(around, body.box.size, place, region, axes)
-    matrix, size = turned_to(scene, body, wall_axes(around, anchor))
-    region, axes = over(around, size, anchor, hung)
-    return matrix, spot_to_hang(around, size, place, region, axes)
+    mount = mount_of(scene, body, around.context)
+    if mount == "ceiling":
+        region, axes = region_above(around, body.box.size, anchor, mount)
+        return np.eye(3), hanging_spot(around, body.box.size, place, region, axes)
+    matrix, size = turned_to_wall(scene, body, wall_axes(around, anchor))
+    region, axes = region_above(around, size, anchor, mount)
+    return matrix, hanging_spot(around, size, place, region, axes)
 
 
-def how_it_hangs(scene: Scene, body: Body, context: Context) -> Hung:
-    """Whether a body hangs on a wall or from the ceiling, by what it is or by where it is.
+def mount_of(scene: Scene, body: Body, context: Context) -> Mount:
+    """Whether a body hangs on a wall or from the ceiling, decided by its kind, else by its position.
 
     Raises:
         InstructionError: it does neither.
@@ -60,41 +60,41 @@ def how_it_hangs(scene: Scene, body: Body, context: Context) -> Hung:
     return "ceiling" if body.box.top(rooms.up) > rooms.floor + _NEAR * (rooms.ceiling - rooms.floor) else "wall"
 
 
-def over(around: Surroundings, size: Vec3, anchor: Body, hung: Hung) -> tuple[Region, Axes]:
-    """Where a thing of `size` hangs above an anchor, and the axes of its box there, its back to the wall.
+def region_above(around: Surroundings, size: Vec3, anchor: Body, mount: Mount) -> tuple[Region, Axes]:
+    """The region where a thing of `size` hangs above an anchor, and the axes of its box there, its back to the wall.
 
     Raises:
         InstructionError: no wall is behind the anchor, or there is no height left above it.
     """
     cm = centimetre(around.frame, max(anchor.box.size))
-    bottom = anchor.box.top(around.up) + GAP * cm
-    if hung == "ceiling":
+    bottom = anchor.box.top(around.up) + _GAP_ABOVE * cm
+    if mount == "ceiling":
         axes = around.room_axes
         height = around.ceiling - size[2]
     else:
         axes = wall_axes(around, anchor)
         height = min(max(bottom, around.floor + 100 * HUNG_AT * cm - size[2] / 2), around.ceiling - size[2])
-    if height < (anchor.box.top(around.up) if hung == "ceiling" else bottom - GAP * cm / 2):
+    if height < (anchor.box.top(around.up) if mount == "ceiling" else bottom - _GAP_ABOVE * cm / 2):
         raise InstructionError(f"there is no room between the {anchor.label or 'thing'} and the ceiling")
     plan = np.array(axes[:2])
     middle = plan @ anchor.center
-    if hung == "ceiling":
+    if mount == "ceiling":
         reach = np.array([anchor.box.extent(a) for a in plan]) / 2
-        return Region(middle - reach, middle + reach, lambda p: far(p, middle), height, None), axes
+        return Region(middle - reach, middle + reach, lambda p: distance_to(p, middle), height, None), axes
     low, high = around.bounds_for(size, plan)
     back = np.array(around.room_axes[:2]) @ plan[1]  # the room's axis that points into the wall, with its sign
     wanted = np.array([middle[0], float(np.where(back > 0, high, low) @ back)])
     aside = np.array([anchor.box.extent(plan[0]) / 2, 2 * cm])
-    return Region(wanted - aside, wanted + aside, lambda p: far(p, wanted), height, None), axes
+    return Region(wanted - aside, wanted + aside, lambda p: distance_to(p, wanted), height, None), axes
 
 
 def wall_axes(around: Surroundings, anchor: Body) -> Axes:
-    """Axes of a thing on the wall that is nearest to the anchor's side, its second axis pointing into the wall.
+    """Axes of a thing on the wall nearest to the anchor; the second axis points into the wall.
 
     Raises:
-        InstructionError: no wall is within a metre of it.
+        InstructionError: no wall is within a metre of the anchor.
     """
-    most = _BEHIND * centimetre(around.frame, max(anchor.box.size))
+    most = _MAX_WALL_DISTANCE * centimetre(around.frame, max(anchor.box.size))
     plan = np.array(around.room_axes[:2])
     low, high = around.bounds_for(anchor.box.size, np.array(anchor.box.axes[:2]))
     at = plan @ anchor.center
@@ -107,10 +107,10 @@ def wall_axes(around: Surroundings, anchor: Body) -> Axes:
     return as_vec(np.cross(back, around.up)), as_vec(back), as_vec(around.up)
 
 
-def turned_to(scene: Scene, body: Body, axes: Axes) -> tuple[Array, Vec3]:
-    """`[3, 3]`, how a body turns so that its back is along the second of the axes, and its size along them then.
+def turned_to_wall(scene: Scene, body: Body, axes: Axes) -> tuple[Array, Vec3]:
+    """The rotation `[3, 3]` that turns a body's back along the second of the axes, and its size along them then.
 
-    What faces nowhere hangs with its thin side to the wall.
+    A body whose front is unknown hangs with its thin side to the wall.
     """
     up, front = scene.frame.up_vector, front_of(scene, body)
     if front is None:

@@ -1,8 +1,7 @@
-"""Where to put something: a free, supported spot that fulfils a placement, found on a grid over the support.
+"""Find a free, supported spot that fulfils a placement, by a search over a grid on the supporting surface.
 
-One exact search over a grid replaces trial and error: a cell is possible when the thing's footprint
-around it is carried by the support, stays within the allowed region and meets no solid point up to the thing's height;
-of the possible cells the one nearest to what was asked wins.
+The search is exhaustive. A cell is possible if the thing's footprint around it lies on the support, stays within the
+allowed region and meets no solid point up to the thing's height. The possible cell of the lowest cost is chosen.
 """
 
 from __future__ import annotations
@@ -19,24 +18,24 @@ from ...gaussians.world.box import Axes
 from ...gaussians.world.relations import named
 from ..operation import Placement
 from .bodies import Array, Body, bodies_of, centimetre, neighbours
-from .occupancy import Bool, grown, histogram, window_sum
-from .regions import Region, beside_region, far, regions_of
+from .occupancy import Bool, dilated, histogram, window_sum
+from .regions import Region, beside_region, distance_to, regions_of
 from .surroundings import FLOOR_WORDS, Surroundings
 
 _CELLS = 220  # most cells along a side of the grid
-_FOOT_CELLS = 10  # cells along the shorter side of a footprint, if the region is small enough
-_CARRIED = 0.75  # share of the footprint that must lie over the support's surface
+_FOOT_CELLS = 10  # cells along the shorter side of a footprint, unless the region is too large for that
+_MIN_SUPPORTED = 0.75  # share of the footprint that must lie over the support's surface
 WALL_WORDS = frozenset({"wall", "walls"})
 
 
 @dataclass(frozen=True)
 class Spot:
-    """A solution.
+    """A free spot.
 
     Attributes:
-        foot: where the centre of the underside goes, world, scene units.
+        foot: position of the centre of the underside, world frame, scene units.
         support: height along up of the surface there.
-        axes: of the box the search assumed; level axes and up.
+        axes: of the box that the search assumed; horizontal axes and up.
         notes: for the receipt.
     """
 
@@ -47,10 +46,10 @@ class Spot:
 
 
 def anchors_of(around: Surroundings, place: Placement) -> list[Body]:
-    """The things a placement names, resolved; empty if it is about the room itaround.
+    """The things that a placement names, resolved; empty if it is relative to the room itself.
 
     Raises:
-        AbsentError, AmbiguousError: an anchor is not there or not unique.
+        AbsentError, AmbiguousError: an anchor is not in the scene or not unique.
     """
     found: list[Body] = []
     for query in place.anchors:
@@ -64,10 +63,10 @@ def anchors_of(around: Surroundings, place: Placement) -> list[Body]:
 
 
 def free_spot(around: Surroundings, size: Vec3, axes: Axes, place: Placement | None, start: Array | None) -> Spot:
-    """A spot for a box of `size` along `axes`.
+    """A free spot for a box of `size` along `axes`.
 
     Args:
-        start: where the thing is now, or where one would expect it; ties are broken toward it.
+        start: present or expected position of the thing; ties are broken toward it.
 
     Raises:
         InstructionError: there is no free spot; the message says what is in the way.
@@ -85,27 +84,27 @@ def free_spot(around: Surroundings, size: Vec3, axes: Axes, place: Placement | N
     raise InstructionError(f"there is no room {where}: {why}; make it smaller, clear a spot or name another place")
 
 
-def spot_to_hang(around: Surroundings, size: Vec3, place: Placement, region: Region, axes: Axes) -> Spot:
-    """A free spot in a region where something hangs (see overhead.py).
+def hanging_spot(around: Surroundings, size: Vec3, place: Placement, region: Region, axes: Axes) -> Spot:
+    """A free spot in a region where a thing hangs (see overhead.py).
 
     Raises:
         InstructionError: there is none.
     """
-    return _only(around, size, axes, region, place.describe())
+    return _spot_in(around, size, axes, region, place.describe())
 
 
 def spot_beside(around: Surroundings, body: Body) -> Spot:
-    """A free spot next to a thing for another like it.
+    """A free spot next to a thing for a copy of it.
 
     Raises:
         InstructionError: there is none.
     """
     region = beside_region(around, body.box.size, np.array(body.box.axes[:2]), body, named("next_to"), None)
-    return _only(around, body.box.size, body.box.axes, region, f"next to the {body.label or 'thing'}")
+    return _spot_in(around, body.box.size, body.box.axes, region, f"next to the {body.label or 'thing'}")
 
 
 def spot_near(around: Surroundings, size: Vec3, axes: Axes, body: Body) -> Spot:
-    """Where a thing that goes away stands, or the free spot nearest to it, on what it stands on.
+    """The spot of a thing that is removed, or the nearest free one on the same support.
 
     Raises:
         InstructionError: there is none within its own size.
@@ -113,16 +112,16 @@ def spot_near(around: Surroundings, size: Vec3, axes: Axes, body: Body) -> Spot:
     plan = np.array(axes[:2])
     middle, reach = plan @ body.center, 0.75 * np.array(size[:2]) + 0.5 * max(body.box.size[:2])
     height, surface = around.base_under(body, plan)
-    if surface is not None:  # what it covered carries, too, though nothing of it was ever seen
+    if surface is not None:  # the surface it covered counts as support too, though no camera saw it
         under = np.stack(np.meshgrid(*[np.linspace(-0.5, 0.5, 15)] * 2), axis=-1).reshape(-1, 2)
         extents = np.array([body.box.extent(a) for a in plan])
         covered = np.column_stack([middle + under * extents, np.full(len(under), height)])
         surface = np.concatenate([surface, covered])
-    region = Region(middle - reach, middle + reach, lambda p: far(p, middle), height, surface)
-    return _only(around, size, axes, region, f"where the {body.label or 'thing'} stands")
+    region = Region(middle - reach, middle + reach, lambda p: distance_to(p, middle), height, surface)
+    return _spot_in(around, size, axes, region, f"where the {body.label or 'thing'} stands")
 
 
-def _only(around: Surroundings, size: Vec3, axes: Axes, region: Region, where: str) -> Spot:
+def _spot_in(around: Surroundings, size: Vec3, axes: Axes, region: Region, where: str) -> Spot:
     foot, crowded = _search(around, size, axes, region, ())
     if foot is None:
         why = "everything there is taken" if crowded else "no surface there is large enough to carry it"
@@ -133,16 +132,16 @@ def _only(around: Surroundings, size: Vec3, axes: Axes, region: Region, where: s
 def _search(
     around: Surroundings, size: Vec3, axes: Axes, region: Region, anchors: Sequence[Body]
 ) -> tuple[Array | None, bool]:
-    """The best possible foot position on one support, and whether obstacles (rather than the support) ruled."""
+    """The best foot position on one support (None if there is none), and whether the support alone allowed one."""
     basis = np.array(axes)
     half = np.array(size[:2]) / 2
     span = np.maximum(region.high - region.low, 0) + 2 * half
     cell = max(float(min(size[:2])) / _FOOT_CELLS, float(span.max()) / _CELLS, 1e-9)
     shape = np.maximum(np.ceil(span / cell).astype(int) + 1, 1)
     origin = region.low - half
-    clear = _clear(around, size)
+    clear = _clearance(around, size)
     blocked = _occupied(around, basis, origin, cell, shape, (region.height + clear, region.height + size[2]))
-    blocked = grown(blocked, max(1, round(centimetre(around.frame, max(size)) / cell)))  # things do not touch
+    blocked = dilated(blocked, max(1, round(centimetre(around.frame, max(size)) / cell)))  # things do not touch
     foot = np.maximum(np.ceil(2 * half / cell).astype(int), 1)  # cells of the footprint
     counts = [np.maximum(s - f + 1, 1) for s, f in zip(shape, foot, strict=True)]
     corner = np.stack(np.meshgrid(*(np.arange(c) for c in counts), indexing="ij"), axis=-1)
@@ -150,8 +149,8 @@ def _search(
     possible = (centers >= region.low - cell).all(axis=-1) & (centers <= region.high + cell).all(axis=-1)
     if region.surface is not None:
         carried = histogram(region.surface[:, :2], origin, cell, shape) > 0
-        share = window_sum(grown(carried, _reach(region.surface, cell)).astype(np.int64), foot, counts)
-        possible &= share / float(foot.prod()) >= _CARRIED
+        share = window_sum(dilated(carried, _closing_cells(region.surface, cell)).astype(np.int64), foot, counts)
+        possible &= share / float(foot.prod()) >= _MIN_SUPPORTED
     else:
         low, high = around.bounds_for(size, basis[:2])
         placed = centers @ (np.array(around.room_axes[:2]) @ basis[:2].T).T
@@ -159,21 +158,21 @@ def _search(
     some = bool(possible.any())
     possible &= window_sum(blocked.astype(np.int64), foot, counts) == 0
     cost = np.where(possible, region.cost(centers), np.inf)
-    cost = cost + _crowding(around, size, basis, centers, region.height, clear, anchors)
+    cost = cost + _overlap_cost(around, size, basis, centers, region.height, clear, anchors)
     best = np.unravel_index(int(np.argmin(cost)), cost.shape)
     if not np.isfinite(cost[best]):
         return None, some
     return centers[best] @ basis[:2] + region.height * around.up, some
 
 
-def _reach(surface: Array, cell: float) -> int:
-    """Cells by which points of a surface are grown so that they close: their spacing, but for sparse ones."""
+def _closing_cells(surface: Array, cell: float) -> int:
+    """Cells by which a surface's points are dilated to close its gaps: their mean spacing, between 1 and 6 cells."""
     area = float(np.prod(np.ptp(surface[:, :2], axis=0))) if len(surface) > 1 else 0.0
     return int(np.clip(np.ceil((area / max(len(surface), 1)) ** 0.5 / cell), 1, 6))
 
 
-def _clear(around: Surroundings, size: Vec3) -> float:
-    """Height above the support below which points do not count: rugs, unevenness, the support's own thickness."""
+def _clearance(around: Surroundings, size: Vec3) -> float:
+    """Height above the support up to which points are ignored: rugs, unevenness, the support's own thickness."""
     cm = centimetre(around.frame, max(size))
     return float(np.clip(0.15 * size[2], 0.5 * cm, 4 * cm))
 
@@ -186,7 +185,7 @@ def _occupied(
     shape: NDArray[np.int_],
     heights: tuple[float, float],
 ) -> Bool:
-    """Cells with a solid point in the height range; single points without any neighbour are floaters."""
+    """Cells with a solid point in the height range; single points without a neighbour are ignored as floaters."""
     up = around.solid @ basis[2].astype(np.float32)
     points = around.solid[(up > heights[0]) & (up < heights[1])] @ basis[:2].T.astype(np.float32)
     counts = histogram(points.astype(np.float64), origin, cell, shape)
@@ -195,13 +194,13 @@ def _occupied(
     return occupied
 
 
-def _crowding(
+def _overlap_cost(
     around: Surroundings, size: Vec3, basis: Array, centers: Array, height: float, clear: float, anchors: Sequence[Body]
 ) -> Array:
-    """A large cost where the box would stand in another object's box, though no point is there (under a table)."""
+    """A large cost where the box would overlap another object's box, though no point is there (under a table)."""
     total = np.zeros(centers.shape[:-1])
     own = {a.group for a in anchors if a.group >= 0} | around.moving_groups
-    for box in [*(box for _, box in neighbours(around.scene, own)), *around.taken]:
+    for box in [*(box for _, box in neighbours(around.scene, own)), *around.placed]:
         middle = float(np.array(box.center) @ basis[2])
         if middle - box.size[2] / 2 > height + size[2] or middle + box.size[2] / 2 < height + clear:
             continue

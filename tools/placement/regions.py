@@ -1,7 +1,6 @@
-"""Where a placement allows the centre of a footprint, and what is best there: on, in, under, beside, between, against.
+"""The regions and costs of placements: where each relation allows the centre of a footprint, and what is best there.
 
-Knows what each relation means in numbers. Refuses to know whether a place is free (place.py), and how the things that a
-placement names are found.
+Whether a position in a region is free is decided in place.py.
 """
 
 from __future__ import annotations
@@ -18,22 +17,23 @@ from ...gaussians.world.relation_geometry import viewer_stand
 from ...gaussians.world.relations import RelationKind, named
 from ..operation import Placement
 from .bodies import Array, Body, centimetre, front_of
-from .occupancy import levels
+from .occupancy import surface_heights
 from .surroundings import Surroundings
 
 Cost = Callable[[Array], Array]  # plan positions `[..., 2]` to costs `[...]`
-_ASIDE = 1.0  # how far off the asked direction, as a share of the way along it: 45 degrees, well within its cone
+# Largest offset across the requested direction, as a share of that along it: 45 degrees, within the relation's cone.
+_MAX_LATERAL = 1.0
 
 
 @dataclass(frozen=True)
 class Region:
-    """Where the centre of the footprint may be, and what is best there, on one support.
+    """Allowed positions for the centre of a footprint on one support, and their cost.
 
     Attributes:
-        low, high: `[2]` bounds of the centre along the level axes, scene units.
+        low, high: `[2]` bounds of the centre along the horizontal axes, scene units.
         cost: `[..., 2]` plan positions to a cost `[...]`, infinite where forbidden.
-        height: of the supporting surface.
-        surface: `[M, 3]` local points of the supporting surface; None if it carries everywhere within bounds.
+        height: of the supporting surface, along up.
+        surface: `[M, 3]` local points of the supporting surface; None if all of the bounds are supported.
     """
 
     low: Array
@@ -49,7 +49,7 @@ def regions_of(
 ) -> list[Region]:  # fmt: skip
     plan = np.array(axes[:2])
     if place is not None and place.offset is not None:
-        start = _off(around, place.offset, anchors)
+        start = _offset_point(around, place.offset, anchors)
     if place is None or not anchors:
         return [_room_region(around, size, plan, place.relation if place is not None else "on", start)]
     kind, anchor = named(place.relation), anchors[0]
@@ -69,8 +69,8 @@ def regions_of(
     return [beside_region(around, size, plan, anchor, kind, start)]
 
 
-def _off(around: Surroundings, offset: tuple[float, float], anchors: Sequence[Body]) -> Array:
-    """`[3]` a point that far from the middle of an anchor, or of the floor where there is none."""
+def _offset_point(around: Surroundings, offset: tuple[float, float], anchors: Sequence[Body]) -> Array:
+    """`[3]` the point at an offset in metres from the middle of an anchor, or of the floor if there is no anchor."""
     middle = sum(around.room_bounds) / 2 @ np.array(around.room_axes[:2]) if not anchors else anchors[0].center
     way = np.array(offset) / (around.frame.metres_per_unit or 1.0)
     return np.asarray(middle + way @ around.frame.basis()[:2])
@@ -82,21 +82,23 @@ def _room_region(around: Surroundings, size: Vec3, plan: Array, relation: str, s
     middle = (low + high) / 2
     wanted = room @ start if start is not None else middle
     costs: dict[str, Cost] = {
-        "center": lambda p: far(p, middle),
-        "corner": lambda p: np.asarray(4 * np.linalg.norm(np.minimum(p - low, high - p), axis=-1) + far(p, wanted)),
-        "against": lambda p: 4 * _to_wall(around, p, low, high) + far(p, wanted),
+        "center": lambda p: distance_to(p, middle),
+        "corner": lambda p: np.asarray(
+            4 * np.linalg.norm(np.minimum(p - low, high - p), axis=-1) + distance_to(p, wanted)
+        ),
+        "against": lambda p: 4 * _wall_distance(around, p, low, high) + distance_to(p, wanted),
     }
 
     def cost(p: Array) -> Array:
         local: Array = p @ to_room.T
-        return costs[relation](local) if relation in costs else far(local, wanted)
+        return costs[relation](local) if relation in costs else distance_to(local, wanted)
 
     corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])]) @ to_room
     return Region(corners.min(axis=0), corners.max(axis=0), cost, around.floor + around.lift, None)
 
 
-def _to_wall(around: Surroundings, p: Array, low: Array, high: Array) -> Array:
-    """Distance of a footprint from the nearest wall, or from the wall behind it."""
+def _wall_distance(around: Surroundings, p: Array, low: Array, high: Array) -> Array:
+    """Distance of a footprint from the wall behind it, or from the nearest wall if its back is not known."""
     if around.back is None:
         return np.asarray(np.minimum(p - low, high - p).min(axis=-1))
     way = np.array(around.room_axes[:2]) @ around.back
@@ -118,10 +120,10 @@ def _top_regions(
     def cost(p: Array) -> Array:
         if relation == "corner":
             return np.asarray(np.linalg.norm(np.minimum(p - low - half, high - half - p), axis=-1))
-        return far(p, target)
+        return distance_to(p, target)
 
     regions = []
-    for level, near in levels(points @ around.up, local, around.tolerance(anchor)):
+    for level, near in surface_heights(points @ around.up, local, around.tolerance(anchor)):
         surface = np.column_stack([local[near], np.full(int(near.sum()), level)])
         regions.append(Region(low, high, _within(anchor, plan, cost), level, surface))
     return regions
@@ -145,7 +147,7 @@ def _inner_regions(around: Surroundings, size: Vec3, plan: Array, anchor: Body) 
         near = (heights >= edges[i]) & (heights <= edges[i + 1])
         level = float(np.quantile(heights[near], 0.9)) if near.any() else anchor.box.bottom(around.up)
         surface = np.column_stack([local[near], np.full(int(near.sum()), level)])
-        cost = _within(anchor, plan, lambda p: far(p, middle))
+        cost = _within(anchor, plan, lambda p: distance_to(p, middle))
         regions.append(Region(low, high, cost, level, surface))
     return regions
 
@@ -155,11 +157,11 @@ def _under_region(around: Surroundings, plan: Array, anchor: Body) -> Region:
     low, high = np.quantile(local, [0.01, 0.99], axis=0)
     middle = (low + high) / 2
     height, surface = around.base_under(anchor, plan)
-    return Region(low, high, _within(anchor, plan, lambda p: far(p, middle)), height, surface)
+    return Region(low, high, _within(anchor, plan, lambda p: distance_to(p, middle)), height, surface)
 
 
 def _within(anchor: Body, plan: Array, cost: Cost) -> Cost:
-    """A cost that forbids what is outside the anchor's own footprint (which need not run along `plan`)."""
+    """The cost, infinite outside the anchor's own footprint (whose axes may differ from `plan`)."""
     axes, half = np.array(anchor.box.axes[:2]), np.array(anchor.box.size[:2]) / 2
     turn, middle = axes @ plan.T, axes @ anchor.center
 
@@ -175,7 +177,7 @@ def _between_region(around: Surroundings, size: Vec3, plan: Array, first: Body, 
     middle, reach = (a + b) / 2, max(float(np.linalg.norm(b - a)) / 2, max(size[:2]))
     lower = min(first, second, key=lambda body: body.box.bottom(around.up))
     height, surface = around.base_under(lower, plan)
-    return Region(middle - reach, middle + reach, lambda p: far(p, middle), height, surface)
+    return Region(middle - reach, middle + reach, lambda p: distance_to(p, middle), height, surface)
 
 
 def beside_region(
@@ -198,16 +200,16 @@ def beside_region(
         along = offset @ wanted
         across = np.linalg.norm(offset - along[..., None] * wanted, axis=-1)
         if kind.aim:
-            return np.where(across > _ASIDE * along, np.inf, total + across)
+            return np.where(across > _MAX_LATERAL * along, np.inf, total + across)
         return np.asarray(total + 0.3 * (np.linalg.norm(offset, axis=-1) - along))
 
     return Region(center - reach, center + reach, cost, height, surface)
 
 
 def _wanted_side(around: Surroundings, anchor: Body, plan: Array, kind: RelationKind, start: Array | None) -> Array:
-    """`[2]` unit: the side that was asked for, or the side the thing is on, or the viewer's right.
+    """`[2]` unit vector to the requested side, else to the side the thing is on now, else to the viewer's right.
 
-    Opposite a thing that faces nowhere is on the viewer's side of it.
+    "Opposite" a thing whose front is unknown is on the viewer's side of it.
     """
     front = front_of(around.scene, anchor) if kind.own_frame else None
     viewer = viewer_stand(around.context.viewer, around.frame.up_vector, 1.0)
@@ -219,5 +221,5 @@ def _wanted_side(around: Surroundings, anchor: Body, plan: Array, kind: Relation
     return level / length if length > 1e-9 else np.array([1.0, 0.0])
 
 
-def far(p: Array, wanted: Array) -> Array:
+def distance_to(p: Array, wanted: Array) -> Array:
     return np.asarray(np.linalg.norm(p - wanted, axis=-1))

@@ -1,7 +1,7 @@
-"""Walls as limits of a free move: how far a thing can go before it meets one, and whether it leaves the room.
+"""Limits of a move by a distance: how far a thing can go before it meets a wall, and whether it leaves the room.
 
-Knows the structure that the language field found, and points. Refuses to know operations, and floors as obstacles:
-things stand on them, and pushing one down through the floor is what was said.
+Walls and ceilings come from the language field. Floors are no obstacles: things touch them, and an instruction may
+push a thing down through the floor.
 """
 
 from __future__ import annotations
@@ -17,51 +17,51 @@ from .bodies import Array, Body, centimetre
 from .occupancy import obstacle_points
 
 _FLOORS = frozenset({"floor", "ground"})
-_FEW = 8  # points in the way; fewer are floaters
-_FIRST = 0.02  # share of the points in the way that may lie before the wall: its roughness
-_SLACK = 0.25  # share of a thin side that may reach into what it hangs on, at each end
+_MIN_POINTS = 8  # points in the way; fewer are floaters
+_QUANTILE = 0.02  # share of the points in the way that may lie before the wall, because walls are rough
+_SLACK = 0.25  # share of a thin side that may reach into the wall it hangs on, at each end
 
 
-def keep_inside(scene: Scene, bodies: list[Body], offsets: list[Array]) -> None:
-    """Nothing if the bodies can go by `offsets` `[3]` each without meeting a wall or leaving the room.
+def require_clear_path(scene: Scene, bodies: list[Body], offsets: list[Array]) -> None:
+    """Check that the bodies can move by `offsets` `[3]` each without meeting a wall or leaving the room.
 
     Raises:
         InstructionError: one cannot; the message says how far it can go.
     """
-    barrier = _barrier(scene)
+    barrier = _wall_points(scene)
     for body, offset in zip(bodies, offsets, strict=True):
         length = float(np.linalg.norm(offset))
         if length < 1e-9 or scene.language is None or _is_structure(scene, body):
             continue
         name = body.label or "thing"
         cm = centimetre(scene.frame, max(body.box.size))
-        free = free_way(_slimmer(body.box, cm), barrier, offset)
+        free = free_share(_shrunk(body.box, cm), barrier, offset)
         if free is not None and (1 - free) * length > cm:
             units = "m" if scene.frame.metres_per_unit is not None else "units"
-            left = np.floor(100 * free * length * (scene.frame.metres_per_unit or 1.0)) / 100  # what can be asked for
+            left = np.floor(100 * free * length * (scene.frame.metres_per_unit or 1.0)) / 100  # a distance that works
             raise InstructionError(f"the {name} would go through a wall: it can move {left:.2f} {units} that way")
         if _leaves_room(scene, body, offset):
             raise InstructionError(f"the {name} would leave the room: give a shorter distance")
 
 
-def free_way(box: Box, points: NDArray[np.float32], offset: Array) -> float | None:
-    """Share of the way `offset` `[3]` that a box can go before it meets the surface `points` `[M, 3]`; None if all.
+def free_share(box: Box, points: NDArray[np.float32], offset: Array) -> float | None:
+    """Share of `offset` `[3]` by which a box can move before it meets the surface `points` `[M, 3]`; None if all of it.
 
-    Points that lie in the box from the start are not in the way. Each other point is seen from the box: it comes
-    along a straight line, and where that enters the box is found side by side (the slab method, Kay & Kajiya 1986).
+    Points inside the box at the start are ignored. In the box's frame every other point moves along a straight line,
+    and the slab method (Kay & Kajiya 1986) finds where that line enters the box.
     """
     if not len(points):
         return None
-    start, step = box.local(points), -np.array(box.axes) @ offset  # the points' way, in the box's frame
+    start, step = box.local(points), -np.array(box.axes) @ offset  # the points' motion in the box's frame
     half = np.array(box.size) / 2
     safe = np.where(np.abs(step) < 1e-12, 1e-12, step)
     near, far = (-np.sign(safe) * half - start) / safe, (np.sign(safe) * half - start) / safe
     enter, leave = near.max(axis=1), far.min(axis=1)
     met = enter[(enter > 0) & (enter < 1) & (enter < leave)]
-    return float(np.quantile(met, _FIRST)) if len(met) >= _FEW else None
+    return float(np.quantile(met, _QUANTILE)) if len(met) >= _MIN_POINTS else None
 
 
-def _barrier(scene: Scene) -> NDArray[np.float32]:
+def _wall_points(scene: Scene) -> NDArray[np.float32]:
     """`[M, 3]` points of the walls and the ceiling."""
     field = scene.language
     walls = [] if field is None else [g for g in field.groups if g.level == "structure" and g.label not in _FLOORS]
@@ -74,7 +74,7 @@ def _barrier(scene: Scene) -> NDArray[np.float32]:
 
 
 def _leaves_room(scene: Scene, body: Body, offset: Array) -> bool:
-    """Whether the middle of a body goes from over the floor (or between the walls) to beyond both; no if unknown."""
+    """Whether the middle of a body leaves the plan of the floor and walls; False if no floor is known."""
     groups = () if scene.language is None else scene.language.groups
     found = [g for g in groups if g.level == "structure" and g.count]
     if not any(g.label in _FLOORS for g in found):
@@ -91,8 +91,8 @@ def _is_structure(scene: Scene, body: Body) -> bool:
     return body.group >= 0 and scene.language.groups[body.group].level == "structure"
 
 
-def _slimmer(box: Box, centimetre: float) -> Box:
-    """The box less what it may touch: three centimetres, or a quarter of a thin side, at each end."""
+def _shrunk(box: Box, centimetre: float) -> Box:
+    """The box without the margin that may touch a wall: three centimetres, or a quarter of a thin side, at each end."""
     size = np.array(box.size)
     left = size - 2 * np.minimum(3 * centimetre, _SLACK * size)
     return Box(box.center, box.axes, (float(left[0]), float(left[1]), float(left[2])))
