@@ -1,6 +1,6 @@
-"""Text and image encoders behind one protocol, one file a back end, chosen by one string.
+"""Text and image encoders behind one protocol, chosen by one string.
 
-Knows the protocol and how to find a back end. Refuses to know any back end's library: they are imported when asked for.
+The module of a back end, and the libraries it needs, are imported when that back end is loaded.
 """
 
 from __future__ import annotations
@@ -21,22 +21,20 @@ from .vocabulary import Vocabulary
 if TYPE_CHECKING:
     from .calibration import Calibration
 
-# Modules of this package that are not back ends.
-
 
 @runtime_checkable
 class Encoder(Protocol):
-    """Pictures and phrases to unit vectors that can be compared with each other.
+    """Encodes images and phrases as unit vectors in one space.
 
     Attributes:
-        fingerprint: names the weights and the preprocessing; vectors of two fingerprints must never be compared.
+        fingerprint: identifies weights and preprocessing; vectors of different fingerprints must not be compared.
         dim: D, length of the vectors.
-        image_size: side in pixels of the square pictures it likes best; others are resampled.
-        vocabulary: names to propose as labels, and what competes with a query.
-        calibration: how a similarity becomes a probability.
+        image_size: side of the square input image in pixels; other images are resampled. 0 without an image tower.
+        vocabulary: names that are proposed as labels and compete with a query.
+        calibration: maps similarities to probabilities.
 
-    One that cannot see, but holds text vectors only, has an `image_size` of 0. One that learnt from photographs may
-    have `on_background = True`, to be shown things on their own background as well as alone.
+    An encoder trained on photographs may have `on_background = True`: groups are then rendered before their own
+    background as well as alone.
     """
 
     @property
@@ -51,15 +49,15 @@ class Encoder(Protocol):
     def calibration(self) -> Calibration: ...
 
     def encode_text(self, texts: list[str]) -> NDArray[np.float32]:
-        """`[T, D]` float32, unit rows. Words the encoder does not know are left out (see `unknown_words`)."""
+        """Text vectors `[T, D]` float32, unit rows. Unknown words are left out (see `unknown_words`)."""
         ...
 
     def encode_images(self, images: NDArray[np.uint8]) -> NDArray[np.float32]:
-        """`[B, H, W, 3]` uint8, display space, to `[B, D]` float32, unit rows; B may be 0."""
+        """Image vectors `[B, D]` float32, unit rows, of images `[B, H, W, 3]` uint8 in display space; B may be 0."""
         ...
 
     def unknown_words(self, text: str) -> tuple[str, ...]:
-        """The words of `text` that the encoder never learnt, as normalised; empty for open vocabularies."""
+        """The normalised words of `text` that the encoder does not know; empty for open vocabularies."""
         ...
 
     def knows(self, text: str) -> bool:
@@ -67,24 +65,24 @@ class Encoder(Protocol):
         ...
 
 
-def looks_at_background(encoder: Encoder) -> bool:
-    """Whether an encoder is to be shown things on their own background as well as alone."""
+def uses_background(encoder: Encoder) -> bool:
+    """Whether groups are rendered before their own background as well as alone for this encoder."""
     return bool(getattr(encoder, "on_background", False))
 
 
 def names() -> tuple[str, ...]:
-    """Names of the back ends in this package, whether or not what they need is installed."""
+    """Names of all back ends, whether or not the libraries they need are installed."""
     return tuple(sorted(m.name for m in pkgutil.iter_modules(backends.__path__)))
 
 
 def load(spec: str = "auto") -> Encoder:
-    """An encoder by its specification.
+    """Load an encoder by its specification.
 
     Args:
-        spec: "auto" or "embedded" for the one that ships with the package, which is loaded once a process and shared
-            (it holds no state, its vectors are deterministic); "embedded:DIR" for another trained by
+        spec: "auto" or "embedded" for the encoder shipped with the package, which is loaded once per process and shared
+            (it has no state, its vectors are deterministic); "embedded:DIR" for another trained by
             `python -m scenewright.training`; "open_clip:MODEL/PRETRAINED" or "open_clip:DIR" for a
-            real CLIP; "onnx:FOLDER" for one as ONNX; "vectors:PATH" for text vectors made elsewhere.
+            published CLIP; "onnx:FOLDER" for one in ONNX; "vectors:PATH" for precomputed text vectors.
 
     Raises:
         BackendError: unknown back end, missing extra, missing or broken weights; the message says what to do.
@@ -92,7 +90,7 @@ def load(spec: str = "auto") -> Encoder:
     name, _, argument = spec.partition(":")
     name = {"auto": "embedded", "": "embedded"}.get(name, name)
     if name == "embedded" and not argument:
-        return _shipped()
+        return _shared_embedded()
     if name not in names():
         raise BackendError(
             f"unknown encoder {spec!r}; "
@@ -102,7 +100,7 @@ def load(spec: str = "auto") -> Encoder:
 
 
 @functools.cache
-def _shipped() -> Encoder:
+def _shared_embedded() -> Encoder:
     return _loaded("embedded", "")
 
 
@@ -115,13 +113,13 @@ def checked_images(images: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """`images` itself if it is `[B, H, W, 3]` uint8.
 
     Raises:
-        BackendError: it is not; the message says what came instead.
+        BackendError: it is not; the message says what it is.
     """
     if not isinstance(images, np.ndarray) or images.dtype != np.uint8 or images.ndim != 4 or images.shape[3] != 3:
         got = f"{images.dtype} {list(images.shape)}" if isinstance(images, np.ndarray) else type(images).__name__
-        raise BackendError(f"encode_images needs uint8 pictures of shape [B, H, W, 3], got {got}")
+        raise BackendError(f"encode_images needs uint8 images of shape [B, H, W, 3], got {got}")
     if 0 in images.shape[1:3]:
-        raise BackendError(f"encode_images needs pictures of at least one pixel, got shape {list(images.shape)}")
+        raise BackendError(f"encode_images needs images of at least one pixel, got shape {list(images.shape)}")
     return images
 
 
@@ -137,5 +135,5 @@ def checked_texts(texts: list[str]) -> list[str]:
 
 
 def weights_folder() -> Path:
-    """Where the shipped encoder lies."""
+    """The folder of the shipped encoder."""
     return Path(__file__).parent / "weights"

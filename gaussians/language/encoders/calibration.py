@@ -1,4 +1,4 @@
-"""Calibration of an encoder: the numbers that turn its similarities into probabilities, and how large each kind is.
+"""Calibration of an encoder: the parameters that map its similarities to probabilities, and size priors of kinds.
 
 `probability.py` applies them. They are fitted once, on objects that the encoder was not trained on.
 """
@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from ...errors import BackendError
 
 Array = NDArray[np.float64]
-SIZE_CAP = 4.5  # nats by which one size at most speaks against a kind: toys and giants exist
+SIZE_CAP = 4.5  # nats: largest penalty of a size, because toy and oversized objects exist
 
 
 @dataclass(frozen=True)
 class SizePrior:
-    """How large a kind is: mean and deviation of the logarithms of its extents in metres.
+    """Size of a kind: mean and standard deviation of the logarithms of its extents in metres.
 
     Attributes:
         mean: longer level side, shorter level side, height; natural logarithms of metres.
@@ -31,7 +31,7 @@ class SizePrior:
     std: tuple[float, float, float]
 
     def log_likelihood(self, sizes: Array) -> Array:
-        """`[G]` nats, at most 0, at least `-SIZE_CAP`, for extents `[G, 3]` in metres (two level sides, height)."""
+        """Log-likelihood `[G]` in nats, in [-SIZE_CAP, 0], of extents `[G, 3]` in metres (two level sides, height)."""
         level = np.sort(sizes[:, :2], axis=1)[:, ::-1]
         logs = np.log(np.maximum(np.concatenate([level, sizes[:, 2:]], axis=1), 1e-3))
         z = (logs - np.array(self.mean)) / np.array(self.std)
@@ -41,15 +41,15 @@ class SizePrior:
 
 @dataclass(frozen=True)
 class Calibration:
-    """What turns similarities of one encoder into probabilities, fitted once on objects it was not trained on.
+    """Parameters that map similarities of one encoder to probabilities.
 
     Attributes:
-        scale: cosines are multiplied by it before the softmax.
-        threshold: probability from which a thing counts as what was named.
-        size_weight: weight of the measured size where metres are known; 0 ignores it.
-        sizes: size of each kind, by its canonical name; kinds without one are neutral.
-        rivals: what all rivals of a phrase together weigh, each the same; None: each weighs one.
-        measured: error rates of this rule on objects used neither for training nor for fitting it.
+        scale: factor of the cosines before the softmax (inverse temperature).
+        threshold: probability from which a group counts as the named kind.
+        size_weight: weight of the measured size if metres are known; 0 ignores it.
+        sizes: size prior of each kind by its canonical name; kinds without one are neutral.
+        rivals: total weight of all rivals of a phrase, shared equally; None for weight 1 each.
+        measured: error rates on objects used neither for training nor for fitting.
     """
 
     scale: float
@@ -66,7 +66,7 @@ class Calibration:
             raise BackendError("broken calibration: rivals must be > 0 or null")
 
     def to_json(self) -> dict[str, Any]:
-        """Plain numbers, lists and dictionaries."""
+        """The calibration as JSON values."""
         return {
             "scale": self.scale,
             "threshold": self.threshold,
@@ -86,11 +86,11 @@ class Calibration:
         )  # fmt: skip
 
 
-# Two numbers for every published CLIP, fitted on the even half of the LVIS classes with real ViT-B/32 vectors: means
-# of five photos as the things of simulated scenes (14 and 29 things, some nameless; 40 to 1,203 names compete).
-# `rivals` makes the probability honest (least log loss), the threshold the sum of both errors least. The rates are
-# those of the odd half, scenes of 14 things; then those of household classes against the names that encoders of
-# photographs propose, and against all 1,203 names. `benchmarks/_clip.py` reproduces all of them.
+# Two parameters for all published CLIPs, fitted on the even half of the LVIS classes with real ViT-B/32 vectors: means
+# of five photos are the objects of simulated scenes (14 and 29 objects, some unnamed; 40 to 1,203 names compete).
+# `rivals` minimises the log loss, the threshold the sum of both error rates. The rates are those of the odd half in
+# scenes of 14 objects; then those of household classes against the names that encoders of photographs propose, and
+# against all 1,203 names. `benchmarks/_clip.py` reproduces all of them.
 _CLIP_SCALE = 100.0  # the temperature that CLIP training ends at (Radford et al. 2021, section 2.5)
 _CLIP_RIVALS = 47.0
 _CLIP_THRESHOLD = 0.33
@@ -101,5 +101,5 @@ _CLIP_MEASURED: Mapping[str, float] = {
 
 
 def of_clip(scale: float = _CLIP_SCALE) -> Calibration:
-    """The rule of real CLIP towers and of vectors that they made; `scale` is the model's own, as trained."""
+    """The calibration of published CLIPs and of vectors made with them; `scale` is the trained logit scale."""
     return Calibration(scale, _CLIP_THRESHOLD, measured=_CLIP_MEASURED, rivals=_CLIP_RIVALS)

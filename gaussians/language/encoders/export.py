@@ -1,9 +1,8 @@
-"""Writes an open_clip model as the folder that `onnx:FOLDER` loads:
+"""Export an open_clip model to the folder layout that `onnx:FOLDER` loads:
 
     python -m scenewright.gaussians.language.encoders.export open_clip:MODEL/PRETRAINED FOLDER
 
-Afterwards neither open_clip nor torch models are needed, only onnxruntime and tokenizers. Knows open_clip's models and
-byte-pair tokenizer, and the layout of the folder. Refuses to know what the vectors are for.
+The exported model needs neither open_clip nor torch, only onnxruntime and tokenizers.
 """
 
 from __future__ import annotations
@@ -19,15 +18,15 @@ from . import load
 from .backends.open_clip import OpenClip
 
 _OPSET = 17
-_WORDS = r"'s|'t|'re|'ve|'m|'ll|'d|[\p{L}]+|[\p{N}]|[^\s\p{L}\p{N}]+"  # how CLIP parts text before byte pairs
+_WORDS = r"'s|'t|'re|'ve|'m|'ll|'d|[\p{L}]+|[\p{N}]|[^\s\p{L}\p{N}]+"  # CLIP's pre-tokenization before byte pairs
 
 
 def export(encoder: OpenClip, folder: Path) -> None:
-    """`vision_model.onnx`, `text_model.onnx`, `tokenizer.json` and what says how to use them, in an empty folder.
+    """Write `vision_model.onnx`, `text_model.onnx`, `tokenizer.json` and the configuration files to an empty folder.
 
     Raises:
         UserError: the folder is not empty.
-        BackendError: the model has another tokenizer than open_clip's own, or a layer that ONNX does not have.
+        BackendError: the model does not use open_clip's own tokenizer, or has a layer that ONNX does not support.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise UserError(f"{folder} is not an empty folder; name another")
@@ -47,7 +46,7 @@ def _towers(encoder: OpenClip, folder: Path, length: int) -> None:
     import torch
 
     class Tower(torch.nn.Module):
-        """One side of the model."""
+        """The image tower or the text tower of the model."""
 
         def __init__(self, method: str) -> None:
             super().__init__()
@@ -67,7 +66,7 @@ def _towers(encoder: OpenClip, folder: Path, length: int) -> None:
             ("encode_text", ids, "input_ids", "text_embeds", "text_model.onnx"),
         ):
             with warnings.catch_warnings(), torch.inference_mode():
-                warnings.simplefilter("ignore")  # the exporter announces its successor, which needs one more package
+                warnings.simplefilter("ignore")  # the exporter recommends its successor, which needs one more package
                 torch.onnx.export(
                     Tower(method).eval(), (example,), str(folder / name), input_names=[given], output_names=[made],
                     dynamic_axes={given: {0: "batch"}, made: {0: "batch"}}, opset_version=_OPSET, dynamo=False,
@@ -81,8 +80,8 @@ def _towers(encoder: OpenClip, folder: Path, length: int) -> None:
 def _tokenizer(clip: Any) -> Any:
     """open_clip's byte-pair tokenizer in the file format of the `tokenizers` library.
 
-    It lower-cases and evens out white space; what open_clip does beyond that (mending broken Unicode, HTML entities)
-    does not happen in names of things.
+    It lower-cases and normalises white space. The other steps of open_clip (repair of broken Unicode, HTML entities) do
+    not matter for names of things and are left out.
     """
     from tokenizers import Regex, Tokenizer, models, normalizers, pre_tokenizers, processors
 
@@ -122,7 +121,9 @@ def main() -> None:
     try:
         encoder = load(options.model)
         if not isinstance(encoder, OpenClip):
-            raise UserError(f"{options.model} is no open_clip model; use open_clip:MODEL/PRETRAINED or open_clip:DIR")
+            raise UserError(
+                f"{options.model} is not an open_clip model; use open_clip:MODEL/PRETRAINED or open_clip:DIR"
+            )
         export(encoder, options.folder)
     except ScenewrightError as error:
         raise SystemExit(f"export: {error}") from error

@@ -1,7 +1,6 @@
-"""The picture of one thing as the encoders see it: cut to its silhouette, square, over a neutral grey.
+"""Crop a render to the square around its silhouette and composite it over neutral grey: the input of encoders.
 
-Training and embedding both go through here, so that an encoder is asked about pictures like those it learnt from.
-Knows pixels. Refuses to know cameras, Gaussians and encoders.
+Training and embedding share this module, so that an encoder gets images like those it was trained on.
 """
 
 from __future__ import annotations
@@ -12,13 +11,13 @@ from numpy.typing import NDArray
 from torch import Tensor
 from torch.nn import functional
 
-NEUTRAL = (0.5, 0.5, 0.5)  # display RGB behind the thing: as far from white furniture as from black
+NEUTRAL = (0.5, 0.5, 0.5)  # display RGB of the background: as far from white furniture as from black
 MARGIN = 0.1  # of the longer side of the silhouette, on each side
-LEVEL = 0.25  # alpha from which a pixel belongs to the silhouette
+MIN_ALPHA = 0.25  # from which a pixel belongs to the silhouette
 
 
-def silhouette_box(alpha: Tensor, level: float = LEVEL) -> tuple[int, int, int, int] | None:
-    """`(top, left, bottom, right)` in pixels, end exclusive, of what is opaque in alpha `[H, W]`; None if nothing."""
+def silhouette_box(alpha: Tensor, level: float = MIN_ALPHA) -> tuple[int, int, int, int] | None:
+    """Bounds `(top, left, bottom, right)`, end exclusive, of pixels with alpha >= `level`; None if there are none."""
     solid = alpha >= level
     rows, columns = solid.any(dim=1).nonzero(), solid.any(dim=0).nonzero()
     if not len(rows):
@@ -29,14 +28,14 @@ def silhouette_box(alpha: Tensor, level: float = LEVEL) -> tuple[int, int, int, 
 def square_rgba(
     rgb: Tensor, alpha: Tensor, size: int, margin: float = MARGIN, outline: Tensor | None = None
 ) -> Tensor | None:
-    """Cut a render to its silhouette's square and resample it.
+    """Crop a render to the square around its silhouette and resample it.
 
     Args:
         rgb: `[H, W, 3]` float, composited over black (premultiplied).
         alpha: `[H, W]` float in [0, 1].
         size: side of the result in pixels.
-        margin: free border as a share of the silhouette's longer side.
-        outline: `[H, W]` alpha of the thing alone, where `alpha` shows its background too.
+        margin: empty border as a share of the silhouette's longer side.
+        outline: `[H, W]` alpha of the object alone, if `alpha` includes its background.
 
     Returns:
         `[4, size, size]` float32, premultiplied RGB and alpha, or None if the render is empty.
@@ -53,14 +52,14 @@ def square_rgba(
     height, width = alpha.shape
     image = functional.pad(
         image, (max(0, -x0), max(0, x0 + side - width), max(0, -y0), max(0, y0 + side - height))
-    )  # beyond the picture there is nothing: alpha 0
+    )  # outside the image alpha is 0
     y0, x0 = max(0, y0), max(0, x0)
     cut = image[None, :, y0 : y0 + side, x0 : x0 + side]
     return functional.interpolate(cut, (size, size), mode="bilinear", antialias=True)[0].clamp(0, 1)
 
 
 def over_neutral(rgba: Tensor, background: tuple[float, float, float] = NEUTRAL) -> NDArray[np.uint8]:
-    """`[..., 4, S, S]` premultiplied RGBA to `[..., S, S, 3]` uint8 over a plain background."""
+    """Premultiplied RGBA `[..., 4, S, S]` composited over a uniform background, `[..., S, S, 3]` uint8."""
     behind = torch.tensor(background).reshape(3, 1, 1)
     image = rgba[..., :3, :, :] + (1 - rgba[..., 3:, :, :]) * behind
     pixels: NDArray[np.uint8] = (image.clamp(0, 1) * 255 + 0.5).to(torch.uint8).movedim(-3, -1).contiguous().numpy()
@@ -68,10 +67,10 @@ def over_neutral(rgba: Tensor, background: tuple[float, float, float] = NEUTRAL)
 
 
 def crop(rgb: Tensor, alpha: Tensor, size: int, outline: Tensor | None = None) -> NDArray[np.uint8] | None:
-    """The encoder's picture `[size, size, 3]` uint8 of a thing rendered over black; None if nothing was drawn.
+    """The encoder input `[size, size, 3]` uint8 from a render over black; None if the render is empty.
 
     Args:
-        outline: as for `square_rgba`, of a thing that is not drawn alone.
+        outline: as for `square_rgba`.
     """
     rgba = square_rgba(rgb.detach().cpu(), alpha.detach().cpu(), size, outline=outline)
     return None if rgba is None else over_neutral(rgba)

@@ -1,4 +1,4 @@
-"""How a tower that was trained on photographs wants its pixels. Knows pixels; refuses to know towers and files."""
+"""Preprocessing of images for image towers that were trained on photographs: resize and normalise."""
 
 from __future__ import annotations
 
@@ -16,10 +16,12 @@ Channels = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Pixels:
-    """Attributes:
-    size: side of the square input. Crops are square, so they are resampled to it whole and nothing is cut away.
-    mean, std: of the pixels, in [0, 1], as trained.
-    resample: how.
+    """Preprocessing of one model.
+
+    Attributes:
+        size: side of the square input. Crops are square, so they are resized without cropping.
+        mean, std: of the pixels in [0, 1] of the training.
+        resample: interpolation of the resizing.
     """
 
     size: int
@@ -28,7 +30,7 @@ class Pixels:
     resample: Literal["bicubic", "bilinear"] = "bicubic"
 
     def prepare(self, images: NDArray[np.uint8]) -> Tensor:
-        """`[B, H, W, 3]` uint8 to `[B, 3, size, size]` float32, normalised."""
+        """Images `[B, H, W, 3]` uint8 as normalised input `[B, 3, size, size]` float32."""
         x = torch.from_numpy(np.ascontiguousarray(images)).movedim(-1, 1).float() / 255
         x = functional.interpolate(x, (self.size, self.size), mode=self.resample, antialias=True).clamp(0, 1)
         mean, std = (torch.tensor(v).reshape(1, 3, 1, 1) for v in (self.mean, self.std))

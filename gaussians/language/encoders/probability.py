@@ -1,16 +1,15 @@
-"""From similarity to "how sure are we that this thing is a t": one frozen rule for every scene and every query.
+"""The probability that a group is what a phrase names, from similarities: one fixed rule for all scenes and queries.
 
-A raw cosine says little: it depends on the phrase and is never low for something absent. So a phrase competes, for each
-thing on its own, with the names of all other kinds and with captions of what is not one whole object; the share it wins
-is a probability. Nothing is normalised over the things of a scene, so an absent object scores low everywhere.
+A raw cosine is not a usable score: its level depends on the phrase and it is not low for absent objects. So the phrase
+competes, for each group separately, with the names of all other kinds and with captions of non-objects in a softmax.
+Nothing is normalised over the groups of a scene, so an absent object scores low everywhere, and nothing is fitted to
+the scene.
 
-Models that read any name have vocabularies of any length. There the rivals together weigh the same however many they
-are (`Calibration.rivals`), so that one threshold serves 40 names and 1,203: the odds are how much better the phrase
-fits than the average name does, times a fixed prior. The average over names does what canonical phrases ("object",
-"stuff") do elsewhere, and needs no text tower. A threshold well under one half leaves room for near-synonyms: "chair"
-is found though "armchair" took half of its share.
-
-Knows vectors, names and sizes. Refuses to know scenes, and never tunes itself on the scene it is asked about.
+Open-vocabulary models have vocabularies of any length. For them the total weight of the rivals is constant
+(`Calibration.rivals`), so that one threshold serves 40 names and 1,203: the odds are the ratio of the phrase's fit to
+the mean fit of the names, times a fixed prior. The mean over names replaces canonical phrases ("object", "stuff"), and
+needs no text tower. A threshold well below one half allows for near-synonyms: "chair" is found although "armchair"
+takes half of its share.
 """
 
 from __future__ import annotations
@@ -26,8 +25,8 @@ from . import Encoder
 from .calibration import SIZE_CAP, Array
 
 
-def doubt(encoder: Encoder, text: str) -> str | None:
-    """Why `probability` is 0 for this phrase whatever the scene holds, in a sentence; None if it is understood."""
+def why_unknown(encoder: Encoder, text: str) -> str | None:
+    """Why `probability` is 0 for this phrase in every scene, as a clause; None if the encoder knows the phrase."""
     unknown = encoder.unknown_words(text)
     if unknown:
         said = ", ".join(repr(w) for w in unknown)
@@ -39,24 +38,24 @@ def doubt(encoder: Encoder, text: str) -> str | None:
 def probability(
     encoder: Encoder, text: str, vectors: NDArray[np.floating], sizes: NDArray[np.floating] | None = None
 ) -> Array:
-    """How sure the encoder is that each thing is a `text`.
+    """The probability that each group is a `text`.
 
-    The phrase competes with all kinds it does not itself cover and with the captions of non-objects, in a softmax at
-    the encoder's calibrated scale, where all rivals together weigh what its calibration says. A phrase with a word the
-    encoder does not know gets 0 everywhere (`doubt` says why).
+    The phrase competes with all kinds that it does not cover and with the captions of non-objects, in a softmax at the
+    encoder's calibrated scale and with the calibrated total weight of the rivals. A phrase with a word that the encoder
+    does not know gets 0 everywhere (`why_unknown` gives the reason).
 
     Args:
-        vectors: `[G, D]` mean image vectors of things; zero rows (never seen) get 0. They need not be unit.
-        sizes: `[G, 3]` extents in metres, two level sides and the height; rows with NaN, or None, leave size out.
+        vectors: `[G, D]` mean image vectors of groups, of any norm; zero rows (not rendered) get 0.
+        sizes: `[G, 3]` extents in metres, two level sides and the height; NaN rows, or None, ignore the size.
 
     Returns:
-        `[G]` float64 in [0, 1]; compare with `encoder.calibration.threshold`.
+        `[G]` float64 in [0, 1], to be compared with `encoder.calibration.threshold`.
 
     Raises:
-        BackendError: the vectors have another width than the encoder's.
+        BackendError: the width of the vectors is not the encoder's.
     """
     units, seen = _units(encoder, vectors)
-    if doubt(encoder, text) is not None:
+    if why_unknown(encoder, text) is not None:
         return np.zeros(len(units))
     names, anchors = _anchors(encoder)  # type: ignore[arg-type]  # identity is what it is cached by
     covered = encoder.vocabulary.covered(text)
@@ -74,8 +73,10 @@ def probability(
 
 
 def distribution(encoder: Encoder, vectors: NDArray[np.floating], sizes: NDArray[np.floating] | None = None) -> Array:
-    """`[G, K + negatives]`: for each thing the share of each canonical name, kinds first, then non-objects, in the
-    vocabulary's order; rows that were never seen are 0. Arguments as for `probability`."""
+    """Probability `[G, K + negatives]` of each canonical name for each group; zero rows for groups not rendered.
+
+    Kinds come first, then non-objects, in the order of the vocabulary. Arguments as for `probability`.
+    """
     units, seen = _units(encoder, vectors)
     names, anchors = _anchors(encoder)  # type: ignore[arg-type]  # identity is what it is cached by
     evidence = _size_evidence(encoder, names, sizes, len(units))
@@ -85,9 +86,9 @@ def distribution(encoder: Encoder, vectors: NDArray[np.floating], sizes: NDArray
 def labels(
     encoder: Encoder, vectors: NDArray[np.floating], sizes: NDArray[np.floating] | None = None
 ) -> list[tuple[str, float]]:
-    """For each thing the kind it most likely is and how likely that is, among all kinds and non-objects; `[G]`.
+    """The most probable kind of each group and its probability among all kinds and non-objects, G pairs.
 
-    Rows that were never seen get `("", 0.0)`.
+    Groups that were not rendered get `("", 0.0)`.
     """
     kinds = encoder.vocabulary.names
     share = distribution(encoder, vectors, sizes)
@@ -96,7 +97,7 @@ def labels(
 
 
 def wholeness(encoder: Encoder, vectors: NDArray[np.floating]) -> Array:
-    """`[G]`: how sure the encoder is that each thing is one whole object, not a part, a merge or a piece of room."""
+    """Probability `[G]` that each group is one whole object, not a part, several objects or a piece of the room."""
     kinds = len(encoder.vocabulary.names)
     whole: Array = distribution(encoder, vectors)[:, :kinds].sum(axis=1)
     return whole
@@ -111,12 +112,12 @@ def _anchors(encoder: Encoder) -> tuple[tuple[str, ...], Array]:
 
 @lru_cache(maxsize=1024)
 def _phrase(encoder: Encoder, text: str) -> Array:
-    """Text vector `[D]` of a phrase that was asked; people ask for the same things again and again."""
+    """Text vector `[D]` of a phrase, cached because queries repeat."""
     return encoder.encode_text([text]).astype(np.float64)[0]
 
 
 def _size_evidence(encoder: Encoder, names: tuple[str, ...], sizes: NDArray[np.floating] | None, count: int) -> Array:
-    """`[G, K + negatives]` nats that the measured size adds to each name; zero where the size is not known."""
+    """Log-likelihood `[G, K + negatives]` of the measured size under each name, nats; zero where it is unknown."""
     rule = encoder.calibration
     evidence = np.zeros((count, len(names)))
     if sizes is None or rule.size_weight == 0 or not rule.sizes or not count:
@@ -129,7 +130,7 @@ def _size_evidence(encoder: Encoder, names: tuple[str, ...], sizes: NDArray[np.f
 
 @lru_cache(maxsize=8)
 def _evidence_of(encoder: Encoder, names: tuple[str, ...], sizes: bytes) -> Array:
-    """Of `[G, 3]` float64 sizes as bytes: every phrase that is asked of a scene meets the same sizes."""
+    """`_size_evidence` of sizes `[G, 3]` float64 as bytes, cached because all queries on a scene share the sizes."""
     rule = encoder.calibration
     measured = np.frombuffer(sizes).reshape(-1, 3)
     evidence = np.zeros((len(measured), len(names)))
@@ -137,13 +138,13 @@ def _evidence_of(encoder: Encoder, names: tuple[str, ...], sizes: bytes) -> Arra
     for column, name in enumerate(names):
         if name in rule.sizes:
             evidence[usable, column] = rule.sizes[name].log_likelihood(measured[usable])
-        else:  # non-objects come in every size: as likely as a kind of middling fit
+        else:  # non-objects have any size: as probable as a kind that fits moderately
             evidence[usable, column] = -SIZE_CAP / 3
     return rule.size_weight * evidence
 
 
 def _units(encoder: Encoder, vectors: NDArray[np.floating]) -> tuple[Array, NDArray[np.bool_]]:
-    """Unit rows `[G, D]` and which rows were not zero `[G]`."""
+    """Unit rows `[G, D]` and whether a row is not zero `[G]`."""
     rows = np.asarray(vectors, dtype=np.float64)
     if rows.ndim != 2 or rows.shape[1] != encoder.dim:
         raise BackendError(
@@ -155,7 +156,7 @@ def _units(encoder: Encoder, vectors: NDArray[np.floating]) -> tuple[Array, NDAr
 
 
 def _softmax(logits: Array) -> Array:
-    """Over the last axis, without overflow."""
+    """Softmax over the last axis."""
     shifted = np.exp(logits - logits.max(axis=-1, keepdims=True))
     result: Array = shifted / shifted.sum(axis=-1, keepdims=True)
     return result

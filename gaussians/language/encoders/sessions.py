@@ -1,7 +1,4 @@
-"""Opens ONNX models, and the JSON beside them, for the encoders.
-
-Knows onnxruntime. Refuses to know what a model computes.
-"""
+"""Open ONNX models and the JSON files beside them."""
 
 from __future__ import annotations
 
@@ -13,11 +10,11 @@ from ...files.foreign import read_json
 
 
 def open_session(path: Path, advice: str, threads: int = 0) -> Any:
-    """A session on the CPU with a fixed order of operations: the same input gives the same bytes.
+    """An onnxruntime session on the CPU that runs deterministically: the same input gives the same bytes.
 
     Args:
-        advice: what the user can do if the file is no usable model.
-        threads: 0 for as many as there are cores; small models lose time to more than one.
+        advice: what the user can do if the model is not usable.
+        threads: 0 for one per core; small models are faster on one.
 
     Raises:
         BackendError: the file is missing or broken.
@@ -35,13 +32,13 @@ def open_session(path: Path, advice: str, threads: int = 0) -> Any:
 
 
 def read_object(path: Path, advice: str) -> dict[str, Any]:
-    """What a JSON file beside a model says.
+    """The JSON object in a file beside a model.
 
     Args:
         advice: what the user can do if the file is broken.
 
     Raises:
-        BackendError: it cannot be read, or is no JSON object.
+        BackendError: the file cannot be read or holds no JSON object.
     """
     try:
         data = read_json(path)

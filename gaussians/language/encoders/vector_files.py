@@ -1,16 +1,16 @@
-"""Reads names and their vectors from the plain layouts that other programs write.
+"""Read names and their text vectors from files that other programs write.
 
-Knows files. Refuses to know what the vectors mean. Supported:
+Supported layouts:
 
 - a folder with `text.npy` `[T, D]` and `names.json` or `names.txt`, optionally `calibration.json`;
 - `TEXT.npy,NAMES.json` or `TEXT.npy,NAMES.txt`: the same as two files of any name;
 - one `.npz` with the arrays `names` `[T]` (strings) and `text` `[T, D]`;
 - one `.safetensors` with the tensor `text` and the names as a JSON list under `names` in its metadata.
 
-A list of names is a text file with one name a line, synonyms after commas, or a JSON list in the order of the rows. Its
-entries are strings, lists `["sofa", "couch"]` of a name and its synonyms, or objects with `name` and `synonyms`; if
+A list of names is a text file with one name per line, synonyms after commas, or a JSON list in the order of the rows.
+Its entries are strings, lists `["sofa", "couch"]` of a name and its synonyms, or objects with `name` and `synonyms`; if
 all objects have an `id`, their order is that of the ids (the category files of COCO and LVIS are such lists).
-Underscores are read as spaces; what stands in brackets only tells apart ("mouse_(computer_equipment)" is "mouse").
+Underscores are read as spaces. Text in brackets only disambiguates ("mouse_(computer_equipment)" is "mouse").
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from .calibration import Calibration
 Name = tuple[str, ...]  # a name and its synonyms
 
 _BRACKETS = re.compile(r"\([^)]*\)")
-_AFTER = re.compile(r"(?<=\))\s+")  # what stands after brackets is another name: "monitor_(computer) computer_monitor"
+_AFTER = re.compile(r"(?<=\))\s+")  # text after brackets is another name: "monitor_(computer) computer_monitor"
 
 
 def read(argument: str) -> tuple[list[Name], NDArray[np.floating]]:
@@ -60,10 +60,10 @@ def read(argument: str) -> tuple[list[Name], NDArray[np.floating]]:
 
 
 def calibration_beside(path: Path) -> Calibration | None:
-    """The rule in `calibration.json` of a folder of vectors, if there is one.
+    """The calibration in `calibration.json` of a folder of vectors, None if there is no such file.
 
     Raises:
-        BackendError: it is broken.
+        BackendError: the file is damaged.
     """
     file = path / "calibration.json"
     if not file.is_file():
@@ -71,13 +71,13 @@ def calibration_beside(path: Path) -> Calibration | None:
     try:
         return Calibration.from_json(read_json(file))
     except (FileError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise BackendError(f"{file} is no calibration ({error!r}); it needs at least scale and threshold") from error
+        raise BackendError(f"{file} is not a calibration ({error!r}); it needs at least scale and threshold") from error
 
 
-def plain(names: Sequence[Name]) -> list[Name]:
-    """Names as people say them: spaces for underscores, and no brackets unless two names would then be one.
+def spoken_names(names: Sequence[Name]) -> list[Name]:
+    """Names with spaces for underscores, and without brackets unless two names would then be equal.
 
-    Names that only brackets tell apart keep them, and get the bare word as a synonym: "bow" means either bow.
+    Names that differ only in brackets keep them and get the word without brackets as a synonym: "bow" means either bow.
     """
     names = [tuple(part for name in row for part in _AFTER.split(name)) for row in names]
     bare = [tuple(dict.fromkeys(_spoken(_BRACKETS.sub(" ", n)) or _spoken(n) for n in row)) for row in names]
@@ -103,7 +103,7 @@ def _names(path: Path) -> list[Name]:
 
 
 def _listed(entries: Any, path: Path) -> list[Name]:
-    """Names from a JSON list, see the module's docstring."""
+    """Names from a JSON list in one of the forms in the module docstring."""
     problem = BackendError(f"{path} must be a list of names, of [name, synonym, ...] or of objects with a name")
     if not isinstance(entries, list):
         raise problem
@@ -118,7 +118,7 @@ def _listed(entries: Any, path: Path) -> list[Name]:
         if not isinstance(words, list) or not words or not all(isinstance(w, str) and w.strip() for w in words):
             raise problem
         names.append(tuple(words))
-    return plain(names)
+    return spoken_names(names)
 
 
 def _array(path: Path) -> NDArray[np.floating]:

@@ -86,7 +86,7 @@ def _knows_fragments(encoder: Encoder) -> bool:
 
     An encoder trained on photographs cannot, and takes a hundred times longer; it only names the groups found.
     """
-    return bool(encoder.image_size) and not encoders.looks_at_background(encoder)
+    return bool(encoder.image_size) and not encoders.uses_background(encoder)
 
 
 def _vector(track: Track, encoder: Encoder) -> NDArray[np.float32] | None:

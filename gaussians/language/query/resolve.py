@@ -21,7 +21,7 @@ from ...scene import Scene
 from ...world import relations
 from ...world.facing import Facing, facing_in
 from ...world.relation_geometry import HOLDS, Stand, object_stand, viewer_stand
-from ..encoders.probability import doubt
+from ..encoders.probability import why_unknown
 from ..field.group_index import GroupIndex, difference, index_groups, union
 from ..field.language_field import Group, LanguageField
 from ..field.measure import box_of
@@ -281,7 +281,7 @@ class Resolver:
 
     def _lying_on(self, query: Query, owner: Relation) -> Selection | None:
         """Things of the part's name that stand or lie on the owner; None if the encoder knows none or none is there."""
-        if self.encoder is None or doubt(self.encoder, query.text) is not None:
+        if self.encoder is None or why_unknown(self.encoder, query.text) is not None:
             return None
         on = tuple(r.model_copy(update={"name": "on"}) if r is owner else r for r in query.relations)
         found = self.described(query.model_copy(update={"relations": on}))
@@ -297,7 +297,7 @@ class Resolver:
         """
         if not is_name(query.text) or self.encoder is None or not at_home(self.field):
             return True
-        return doubt(self.encoder, query.text) is not None
+        return why_unknown(self.encoder, query.text) is not None
 
     def stands(self, query: Query, thing: Group) -> bool:
         """Whether something that is no row of the table stands in every asked relation."""
@@ -316,7 +316,7 @@ class Resolver:
     # -- results ----------------------------------------------------------------------------------------------------
 
     def _why_absent(self, query: Query, near: Sequence[Candidate]) -> str:
-        if is_name(query.text) and self.encoder is not None and (why := doubt(self.encoder, query.text)):
+        if is_name(query.text) and self.encoder is not None and (why := why_unknown(self.encoder, query.text)):
             return f"{query.describe()}: {why}; describe it by colour or place, or load a larger encoder"
         if not near:
             return f"{query.describe()} is not in this scene, nor is anything that could be compared with it"

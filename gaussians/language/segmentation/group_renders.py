@@ -14,7 +14,7 @@ from ...camera import Camera
 from ...cloud import GaussianCloud, concat
 from ...render import render
 from ...scene import Frame
-from ..encoders import Encoder, cache, looks_at_background
+from ..encoders import Encoder, cache, uses_background
 from ..encoders.framing import crop
 
 F64 = NDArray[np.float64]
@@ -121,7 +121,7 @@ def mean_vectors(
     vectors = np.zeros((len(clouds), encoder.dim), np.float32)
     if not encoder.image_size:  # an encoder without an image tower
         return vectors
-    scene = around if looks_at_background(encoder) else None
+    scene = around if uses_background(encoder) else None
     images: list[NDArray[np.uint8]] = []
     owners: list[int] = []
 

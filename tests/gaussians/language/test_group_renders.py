@@ -75,16 +75,16 @@ def _pictures(count: int, seed: int = 0) -> Pictures:
 @given(st.lists(st.lists(st.integers(0, 40), max_size=30), max_size=5))
 def test_remembered_vectors_are_those_that_would_be_computed_again(calls: list[list[int]]) -> None:
     """Whatever was encoded before, in whatever company: the bytes of a picture's vector depend on its pixels alone."""
-    pictures, memory, encoder = _pictures(41), cache.Memory(), Counting("one")
+    pictures, memory, encoder = _pictures(41), cache.VectorCache(), Counting("one")
     for rows in calls:
         got = cache.images(encoder, pictures[rows], memory)
-        fresh = [cache.images(Counting("one"), pictures[[row]], cache.Memory()) for row in rows]
+        fresh = [cache.images(Counting("one"), pictures[[row]], cache.VectorCache()) for row in rows]
         assert got.tobytes() == b"".join(v.tobytes() for v in fresh)
     assert len(encoder.shown) == len({row for rows in calls for row in rows})  # each once
 
 
 def test_encoders_never_share_and_equal_ones_do() -> None:
-    pictures, memory = _pictures(5), cache.Memory()
+    pictures, memory = _pictures(5), cache.VectorCache()
     one, other, again = Counting("one"), Counting("other"), Counting("one")
     first = cache.images(one, pictures, memory)
     assert not np.allclose(cache.images(other, pictures, memory), first)
@@ -93,7 +93,7 @@ def test_encoders_never_share_and_equal_ones_do() -> None:
 
 
 def test_pictures_of_other_shapes_are_other_pictures() -> None:
-    memory, encoder = cache.Memory(), Counting("one")
+    memory, encoder = cache.VectorCache(), Counting("one")
     tall, wide = np.full((1, 8, 2, 3), 9, np.uint8), np.full((1, 2, 8, 3), 9, np.uint8)
     cache.images(encoder, tall, memory)
     cache.images(encoder, wide, memory)
@@ -102,7 +102,7 @@ def test_pictures_of_other_shapes_are_other_pictures() -> None:
 
 def test_memory_is_bounded_and_forgets_the_longest_unused() -> None:
     row = np.zeros(6, np.float32)
-    memory = cache.Memory(most_bytes=3 * row.nbytes)
+    memory = cache.VectorCache(max_bytes=3 * row.nbytes)
     for i in range(3):
         memory.put(("e", bytes([i])), row + i)
     assert memory.get(("e", b"\0")) is not None  # now the second is the longest unused
@@ -114,13 +114,13 @@ def test_memory_is_bounded_and_forgets_the_longest_unused() -> None:
         kept[0] = 1
     # One too small for a single row forgets at once, and the answers are still right.
     pictures = _pictures(20)
-    tiny = cache.images(Counting("one"), pictures, cache.Memory(most_bytes=1))
-    assert tiny.tobytes() == cache.images(Counting("one"), pictures, cache.Memory()).tobytes()
+    tiny = cache.images(Counting("one"), pictures, cache.VectorCache(max_bytes=1))
+    assert tiny.tobytes() == cache.images(Counting("one"), pictures, cache.VectorCache()).tobytes()
 
 
 def test_threads_get_the_same_bytes() -> None:
-    pictures, memory = _pictures(60), cache.Memory()
-    expected = cache.images(Counting("one"), pictures, cache.Memory()).tobytes()
+    pictures, memory = _pictures(60), cache.VectorCache()
+    expected = cache.images(Counting("one"), pictures, cache.VectorCache()).tobytes()
     with ThreadPoolExecutor(4) as pool:
         jobs = [pool.submit(cache.images, Counting("one"), pictures, memory) for _ in range(8)]
     assert all(job.result().tobytes() == expected for job in jobs)
@@ -224,9 +224,9 @@ def test_the_shipped_encoder_gives_the_same_bytes_from_the_cache() -> None:
     pictures = (
         np.random.default_rng(3).integers(0, 255, (37, encoder.image_size, encoder.image_size, 3)).astype(np.uint8)
     )
-    memory = cache.Memory()
+    memory = cache.VectorCache()
     some = cache.images(encoder, pictures[5:9], memory)
     every = cache.images(encoder, pictures, memory)
     assert some.tobytes() == every[5:9].tobytes()
-    assert every.tobytes() == cache.images(encoder, pictures, cache.Memory()).tobytes()
+    assert every.tobytes() == cache.images(encoder, pictures, cache.VectorCache()).tobytes()
     np.testing.assert_allclose(every, encoder.encode_images(pictures), atol=1e-5)  # another size of batch

@@ -1,1 +1,1 @@
-"""One module an encoder back end, found by scanning this package."""
+"""The encoder back ends, one module each; `encoders.names` lists the modules of this package."""

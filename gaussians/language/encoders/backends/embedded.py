@@ -1,8 +1,7 @@
-"""The encoder that ships with the package: a small CLIP of our own, run by onnxruntime on one CPU thread.
+"""The encoder shipped with the package: a small CLIP trained on our own renders, run by onnxruntime on one CPU thread.
 
-A folder holds it: `image.onnx` (uint8 pictures in, preprocessing inside), `text.onnx` (word numbers in), `words.json`
-(the finite word list and the vocabulary) and `calibration.json`. `python -m scenewright.training` makes
-such folders. Knows these files. Refuses to know how the vectors are used.
+Its folder holds `image.onnx` (input uint8 images, with preprocessing), `text.onnx` (input word ids), `words.json` (the
+finite word list and the vocabulary) and `calibration.json`. `python -m scenewright.training` writes such folders.
 """
 
 from __future__ import annotations
@@ -23,16 +22,16 @@ from ..calibration import Calibration
 from ..sessions import open_session, read_object
 from ..vocabulary import Vocabulary
 
-_WEIGHTS = ("image.onnx", "text.onnx", "words.json")  # what vectors depend on; the calibration is not part of it
+_WEIGHTS = ("image.onnx", "text.onnx", "words.json")  # the files that vectors depend on; the calibration is not one
 _ADVICE = "reinstall scenewright or train again"
-_BATCH = 64  # pictures at a time, so that memory stays flat
+_BATCH = 64  # images at a time, to bound memory
 
 
 def load(argument: str = "") -> Embedded:
     """The shipped encoder, or the one in folder `argument`.
 
     Raises:
-        BackendError: files are missing or broken.
+        BackendError: files are missing or damaged.
     """
     folder = Path(argument).expanduser() if argument else weights_folder()
     missing = [name for name in (*_WEIGHTS, "calibration.json") if not (folder / name).is_file()]
@@ -46,7 +45,7 @@ def load(argument: str = "") -> Embedded:
 
 @dataclass(frozen=True, eq=False)
 class Embedded:
-    """See `Encoder` for what its attributes mean; everything is read when first used."""
+    """The shipped model as an `Encoder`; files are read on first use."""
 
     folder: Path
 
@@ -120,7 +119,7 @@ class Embedded:
 
 
 def tokenise(texts: list[str], index: dict[str, int], length: int) -> NDArray[np.int64]:
-    """Word numbers `[T, length]`, padded with 0 on the left so that the head noun always stands last.
+    """Word ids `[T, length]`, padded with 0 on the left so that the head noun is always last.
 
     Unknown words are left out; of longer phrases the last `length` known words are kept.
     """
@@ -133,7 +132,7 @@ def tokenise(texts: list[str], index: dict[str, int], length: int) -> NDArray[np
 
 
 def _resampled(images: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:
-    """`[B, size, size, 3]` uint8, with antialiasing; unchanged if they already have that size."""
+    """Images `[B, size, size, 3]` uint8, resampled with antialiasing; unchanged if they have that size."""
     if images.shape[1:3] == (size, size):
         return np.ascontiguousarray(images)
     from PIL import Image

@@ -1,17 +1,17 @@
-"""A real CLIP as two ONNX graphs and a tokenizer, without torch models: `onnx:FOLDER`.
+"""CLIP models as two ONNX graphs and a tokenizer, without torch: `onnx:FOLDER`.
 
-The folder as it is commonly published (transformers.js, Hugging Face optimum), or as `export.py` makes it:
+The folder has the layout in which models are published (transformers.js, Hugging Face optimum), or that of `export.py`:
 
 - `vision_model.onnx` and `text_model.onnx` (or `image.onnx` and `text.onnx`), in the folder or in `onnx/` below it; of
-  `_fp16` and `_quantized` variants the first that is there; or one `model.onnx` that holds both towers, as
+  `_fp16` and `_quantized` variants the first that exists; or one `model.onnx` that holds both towers, as
   `optimum-cli export onnx` writes it;
 - inputs `pixel_values` `[B, 3, S, S]` and `input_ids` `[B, L]`, `attention_mask` if the graph has it;
 - outputs `image_embeds` and `text_embeds`; without them `pooler_output` (SigLIP), or the only one of rank two;
 - `tokenizer.json`, read by the `tokenizers` library; `tokenizer_config.json` for its length and padding, if present;
-- `preprocessor_config.json`: side, mean, deviation and resampling of the pictures;
-- `calibration.json`, if present, in place of the rule for published CLIPs (`calibration.of_clip`).
+- `preprocessor_config.json`: size, mean, standard deviation and resampling of the images;
+- `calibration.json`, if present, instead of the calibration of published CLIPs (`calibration.of_clip`).
 
-Knows these files. Refuses to know who trained the towers. A folder of our own training is `embedded:DIR`.
+A folder that `scenewright.training` wrote is loaded with `embedded:DIR` instead.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ from ..vocabulary import Vocabulary
 
 _IMAGE, _TEXT, _BOTH = ("vision_model", "image"), ("text_model", "text"), ("model",)
 _VARIANTS = ("", "_fp16", "_quantized", "_int8", "_uint8")
-_ADVICE = "export the model again or fetch the file again"
-_LENGTH = 77  # of CLIP's context, where neither graph nor tokenizer says another
+_ADVICE = "export the model again or download the file again"
+_CONTEXT_LENGTH = 77  # of CLIP, unless graph or tokenizer gives another
 _BATCH = 16
 _KINDS = {
     "tensor(float)": np.float32,
@@ -53,13 +53,13 @@ def load(argument: str) -> Onnx:
     """The model in folder `argument`.
 
     Raises:
-        BackendError: a file is missing, or the folder is one of our own training.
+        BackendError: a file is missing, or `scenewright.training` wrote the folder.
     """
     if not argument:
         raise BackendError("name the folder: onnx:FOLDER with vision_model.onnx, text_model.onnx and tokenizer.json")
     folder = Path(argument).expanduser()
     if (folder / "words.json").is_file():
-        raise BackendError(f"{folder} holds an encoder of our own training; use embedded:{folder}")
+        raise BackendError(f"{folder} holds an encoder of scenewright.training; use embedded:{folder}")
     both = _graph(folder, _BOTH)
     image, text = _graph(folder, _IMAGE) or both, _graph(folder, _TEXT) or both
     wanted = {"vision_model.onnx": image, "text_model.onnx": text}
@@ -75,16 +75,16 @@ def load(argument: str) -> Onnx:
 
 @dataclass(frozen=True, eq=False)
 class Onnx:
-    """See `Encoder` for what its attributes mean; everything is read when first used.
+    """An ONNX model as an `Encoder`; files are read on first use.
 
     Attributes:
-        image, text: the graphs; the same file if one holds both.
+        image, text: the files of the graphs; the same file if it holds both towers.
     """
 
     folder: Path
     image: Path
     text: Path
-    on_background: bool = True  # it learnt from photographs, see `portraits.mean_vectors`
+    on_background: bool = True  # trained on photographs, see `group_renders.mean_vectors`
 
     @cached_property
     def fingerprint(self) -> str:
@@ -116,7 +116,7 @@ class Onnx:
         if not rows:
             return np.zeros((0, self.dim), dtype=np.float32)
         feeds = self._tokens(rows)
-        if self.image == self.text:  # a graph of both towers wants a picture beside every text
+        if self.image == self.text:  # a graph of both towers needs an image with the texts
             feeds["pixel_values"] = np.zeros((1, 3, self.image_size, self.image_size), dtype=np.float32)
         return _unit(_run(self._text_session, feeds, ("text_embeds", "pooler_output")))
 
@@ -163,14 +163,14 @@ class Onnx:
             plain = said.get("do_normalize") is False
             mean = (0.0, 0.0, 0.0) if plain else tuple(map(float, said["image_mean"]))
             std = (1.0, 1.0, 1.0) if plain else tuple(map(float, said["image_std"]))
-            # PIL's numbers: 2 is bilinear, 3 bicubic; the others are not used by models of this kind.
+            # PIL's resampling numbers: 2 is bilinear, 3 bicubic; such models use no others.
             return Pixels(int(size), _three(mean), _three(std), "bilinear" if said.get("resample") == 2 else "bicubic")
         except (KeyError, TypeError, ValueError) as error:
-            raise BackendError(f"{path} does not say size, image_mean and image_std ({error!r})") from error
+            raise BackendError(f"{path} lacks a valid size, image_mean or image_std ({error!r})") from error
 
     @cached_property
     def _tokenizer(self) -> Any:
-        """Pads and cuts every text to the length that the graph takes."""
+        """The tokenizer, which pads and truncates texts to the length of the graph's input."""
         try:
             from tokenizers import Tokenizer
         except ImportError as error:
@@ -183,7 +183,9 @@ class Onnx:
         beside = self.folder / "tokenizer_config.json"
         said = read_object(beside, _ADVICE) if beside.is_file() else {}
         shape = next(i.shape for i in self._text_session.get_inputs() if i.name == "input_ids")
-        length = shape[1] if isinstance(shape[1], int) else int(min(said.get("model_max_length", _LENGTH), 1024))
+        length = (
+            shape[1] if isinstance(shape[1], int) else int(min(said.get("model_max_length", _CONTEXT_LENGTH), 1024))
+        )
         pad = said.get("pad_token", "")
         pad = pad.get("content", "") if isinstance(pad, dict) else pad or ""
         number = tokenizer.token_to_id(pad)
@@ -196,12 +198,14 @@ def _run(session: Any, feeds: dict[str, NDArray[Any]], outputs: Sequence[str]) -
     """The first of `outputs` that the graph has, `[B, D]`.
 
     Raises:
-        BackendError: the graph wants an input that is not known here, has no such output, or fails.
+        BackendError: the graph needs another input, has no such output, or fails.
     """
     given = {}
     for wanted in session.get_inputs():
         if wanted.name not in feeds:
-            raise BackendError(f"the ONNX graph wants {wanted.name!r}; export it with pixel_values and input_ids")
+            raise BackendError(
+                f"the ONNX graph needs the input {wanted.name!r}; export it with pixel_values and input_ids"
+            )
         given[wanted.name] = feeds[wanted.name].astype(_KINDS.get(wanted.type, np.float32), copy=False)
     named = {o.name: o for o in session.get_outputs()}
     flat = [name for name, o in named.items() if len(o.shape or ()) == 2]
@@ -211,7 +215,9 @@ def _run(session: Any, feeds: dict[str, NDArray[Any]], outputs: Sequence[str]) -
     try:
         result: NDArray[np.float32] = session.run([chosen], given)[0]
     except Exception as error:  # onnxruntime raises its own classes, which share no public base
-        raise BackendError(f"the ONNX graph failed: {error}; its tokenizer or side may be of another model") from error
+        raise BackendError(
+            f"the ONNX graph failed: {error}; its tokenizer or image size may be of another model"
+        ) from error
     return result
 
 

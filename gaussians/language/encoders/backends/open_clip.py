@@ -1,8 +1,8 @@
-"""A real CLIP through open_clip: `open_clip:MODEL/PRETRAINED`, or `open_clip:DIR` for a saved one.
+"""Published CLIP models through open_clip: `open_clip:MODEL/PRETRAINED`, or `open_clip:DIR` for a saved model.
 
 A folder holds `open_clip_config.json` (`{"model_cfg": {...}, "preprocess_cfg": {...}}`) and
-`open_clip_model.safetensors`, as open_clip's `push_to_hub` writes them. Before open_clip may fetch published weights, a
-line on stderr says so. Knows open_clip. Refuses to know what the vectors are for.
+`open_clip_model.safetensors`, as open_clip's `push_to_hub` writes them. Before open_clip may download weights, a line
+on stderr says so.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def load(argument: str) -> OpenClip:
     """The model named by `MODEL/PRETRAINED`, or the one saved in a folder.
 
     Raises:
-        BackendError: open_clip is missing, the model is unknown, its weights are not here, or the folder is broken.
+        BackendError: open_clip is not installed, or the model, its weights or its folder are missing or damaged.
     """
     open_clip = _library()
     if not argument:
@@ -47,12 +47,12 @@ def load(argument: str) -> OpenClip:
 
 @dataclass(frozen=True, eq=False)
 class OpenClip:
-    """See `Encoder` for what its attributes mean.
+    """An open_clip model as an `Encoder`.
 
     Attributes:
         model: the open_clip model, in evaluation mode.
-        tokenizer: texts to token numbers.
-        mean, std: of the pixels, as trained.
+        tokenizer: maps texts to token ids.
+        mean, std: of the pixels in training.
     """
 
     model: Any
@@ -60,7 +60,7 @@ class OpenClip:
     mean: tuple[float, float, float]
     std: tuple[float, float, float]
     name: str
-    on_background: bool = True  # it learnt from photographs, see `portraits.mean_vectors`
+    on_background: bool = True  # trained on photographs, see `group_renders.mean_vectors`
 
     @cached_property
     def fingerprint(self) -> str:
@@ -81,7 +81,7 @@ class OpenClip:
 
     @cached_property
     def vocabulary(self) -> Vocabulary:
-        """Household kinds with synonyms, other everyday names, and captions of what is not a whole object."""
+        """Household kinds with synonyms, other everyday names, and captions of non-objects."""
         return Vocabulary.everyday()
 
     @cached_property
@@ -126,11 +126,11 @@ def wrap(model: Any, tokenizer: Any, name: str) -> OpenClip:
 
 
 def _from_folder(open_clip: Any, folder: Path) -> OpenClip:
-    """A saved model with its tokenizer, through open_clip's own reader of folders."""
+    """A saved model with its tokenizer, by open_clip's loader of local folders."""
     name = f"local-dir:{folder.resolve()}"
     try:
         return wrap(open_clip.create_model(name, require_pretrained=True), open_clip.get_tokenizer(name), str(folder))
-    except Exception as error:  # open_clip raises what its parts raise
+    except Exception as error:  # open_clip passes on the errors of its dependencies
         raise BackendError(
             f"{folder} is not a saved open_clip model ({type(error).__name__}: {error}); "
             f"it needs {_CONFIG} and {_WEIGHTS} as open_clip's push_to_hub writes them"
@@ -138,7 +138,7 @@ def _from_folder(open_clip: Any, folder: Path) -> OpenClip:
 
 
 def _from_name(open_clip: Any, argument: str) -> OpenClip:
-    """A published model from open_clip's own list; says that weights may be fetched before they are."""
+    """A published model from the list of open_clip; announces a possible download of its weights."""
     model_name, _, tag = argument.partition("/")
     if model_name not in open_clip.list_models():
         raise BackendError(
@@ -152,7 +152,7 @@ def _from_name(open_clip: Any, argument: str) -> OpenClip:
         print(f"open_clip: weights {tag} of {model_name} are downloaded unless they are in its cache", file=sys.stderr)
     try:
         model = open_clip.create_model(model_name, pretrained=tag)
-    except Exception as error:  # the download client raises many kinds
+    except Exception as error:  # the download client raises many types
         raise BackendError(
             f"open_clip:{argument} could not be loaded ({error}); without a network, copy the weights here and use "
             f"open_clip:{model_name}/FILE or open_clip:DIR"
@@ -161,7 +161,7 @@ def _from_name(open_clip: Any, argument: str) -> OpenClip:
 
 
 def _library() -> Any:
-    """The open_clip module, with torchvision cured first."""
+    """The open_clip module, imported after the fix for torchvision."""
     try:
         import_torchvision()
         import open_clip

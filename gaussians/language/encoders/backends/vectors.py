@@ -1,12 +1,12 @@
-"""Text vectors that another program made: `vectors:PATH`, names with one vector each and no tower at all.
+"""Precomputed text vectors: `vectors:PATH`, names with one vector each and no model.
 
 Layouts (see `vector_files`): `vectors:FOLDER` with `text.npy` and `names.json` or `names.txt`;
-`vectors:TEXT.npy,NAMES.json`; `vectors:FILE.npz` or `vectors:FILE.safetensors` with both inside. Pictures cannot be
-encoded, so the vectors of a scene must come from masks that carry vectors, or labels which are encoded as texts.
+`vectors:TEXT.npy,NAMES.json`; `vectors:FILE.npz` or `vectors:FILE.safetensors` with both inside. Images cannot be
+encoded, so the vectors of a scene must come from masks with vectors, or with labels, which are encoded as texts.
 
-A phrase is known if its head is one of the names ("the small bikes": bicycle, where bicycle is a name) and what stands
-before it is a colour, a material or another word that does not change what a thing is. Names compete with each other;
-captions of non-objects do not exist here. Knows names and rows. Refuses to know which model made them.
+A phrase is known if its head noun is one of the names ("the small bikes": bicycle, if bicycle is a name) and the words
+before it are colours, materials or other modifiers that do not change the kind. Names compete with each other; there
+are no captions of non-objects.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ from ..vocabulary import Vocabulary
 
 
 def load(argument: str) -> Vectors:
-    """The vectors in a folder, a file, or a pair of files.
+    """Load the vectors of a folder, a file, or a pair of files.
 
     Raises:
-        BackendError: nothing is there, or names and vectors do not fit each other.
+        BackendError: no vectors are found, or names and vectors do not match.
     """
     if not argument:
         raise BackendError("name the vectors: vectors:FOLDER, vectors:FILE.npz or vectors:TEXT.npy,NAMES.json")
@@ -46,7 +46,7 @@ def wrap(names: Sequence[Name], text: NDArray[np.floating], calibration: Calibra
     """An encoder around names and their text vectors `[T, D]` that are already in memory; rows need not be unit.
 
     Raises:
-        BackendError: counts differ, two names are spelt alike, or a row is zero or not finite.
+        BackendError: counts differ, a name occurs twice, or a row is zero or not finite.
     """
     rows = np.asarray(text)
     if rows.ndim != 2 or len(rows) != len(names) or not len(names):
@@ -60,7 +60,7 @@ def wrap(names: Sequence[Name], text: NDArray[np.floating], calibration: Calibra
 
 @dataclass(frozen=True, eq=False)
 class Vectors:
-    """See `Encoder` for what its attributes mean.
+    """Text vectors as an `Encoder`.
 
     Attributes:
         rows: `[T, D]` unit text vectors of the vocabulary's names, in their order.
@@ -85,10 +85,10 @@ class Vectors:
         return 0  # there is no image tower
 
     def encode_text(self, texts: list[str]) -> NDArray[np.float32]:
-        """As in `Encoder`; a phrase that means several names gets the mean of their vectors.
+        """As in `Encoder`; a phrase that covers several names gets the mean of their vectors.
 
         Raises:
-            BackendError: the head of a phrase is none of the names (`knows` tells beforehand).
+            BackendError: the head noun of a phrase is not a name (`knows` is False then).
         """
         found = np.zeros((len(checked_texts(texts)), self.dim), dtype=np.float32)
         for row, phrase in zip(found, texts, strict=True):
@@ -130,10 +130,10 @@ def vocabulary_of(names: Sequence[Name]) -> Vocabulary:
     kinds = {name: synonyms for name, *synonyms in names}
     if len(kinds) < len(names):
         twice = next(n for i, (n, *_) in enumerate(names) if n in [m for m, *_ in names[:i]])
-        raise BackendError(f"the name {twice!r} stands twice among the names of the vectors; name each thing once")
+        raise BackendError(f"the name {twice!r} occurs twice among the names of the vectors; list each name once")
     own = {normalise(phrase): name for name, *synonyms in reversed(names) for phrase in (*synonyms, name)}
     own |= {normalise(name): name for name, *_ in names}
-    target = {}  # household kind to the name that means it, if there is one
+    target = {}  # household kind to the name with the same meaning
     for kind, synonyms in household.kinds.items():
         meant = next((own[p] for p in map(normalise, (kind, *synonyms)) if p in own), None)
         if meant is not None:

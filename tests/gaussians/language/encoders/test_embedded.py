@@ -11,7 +11,7 @@ import pytest
 
 from scenewright.gaussians.errors import BackendError
 from scenewright.gaussians.language import encoders
-from scenewright.gaussians.language.encoders.probability import doubt, labels, probability, wholeness
+from scenewright.gaussians.language.encoders.probability import labels, probability, wholeness, why_unknown
 from scenewright.training import renders
 
 FRESH_SEED = 31_000  # beyond the seeds of training (0...), calibration (10,000...) and measurement (20,000...)
@@ -83,8 +83,8 @@ def test_unknown_words_are_reported_not_guessed(encoder: encoders.Encoder) -> No
     assert not encoder.knows("zyzzyva") and not encoder.knows("") and encoder.knows("the red sofas")
     vectors = np.eye(encoder.dim, dtype=np.float32)[:4]
     assert (probability(encoder, "zyzzyva", vectors) == 0).all()
-    assert "zyzzyva" in (doubt(encoder, "zyzzyva") or "")
-    assert doubt(encoder, "the") is not None and doubt(encoder, "red sofa") is None
+    assert "zyzzyva" in (why_unknown(encoder, "zyzzyva") or "")
+    assert why_unknown(encoder, "the") is not None and why_unknown(encoder, "red sofa") is None
 
 
 def test_new_designs_are_recognised(encoder: encoders.Encoder, fresh: tuple[list[str], np.ndarray, np.ndarray]) -> None:

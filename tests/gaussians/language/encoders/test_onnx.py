@@ -196,7 +196,7 @@ def test_what_cannot_be_loaded_is_said(exported_clip: Path, tmp_path: Path, copy
     with pytest.raises(BackendError, match="not a tokenizer"):
         encoders.load(f"onnx:{copy}").encode_text(["chair"])
     (copy / "preprocessor_config.json").write_text("{}")
-    with pytest.raises(BackendError, match="does not say size"):
+    with pytest.raises(BackendError, match="lacks a valid size"):
         encoders.load(f"onnx:{copy}").encode_images(_noise(1))
     (copy / "preprocessor_config.json").write_text("[")
     with pytest.raises(BackendError, match="is not valid JSON"):
@@ -209,7 +209,10 @@ def test_what_cannot_be_loaded_is_said(exported_clip: Path, tmp_path: Path, copy
 
 @pytest.mark.parametrize(
     ("given", "made", "said"),
-    [("images", "image_embeds", "wants 'images'"), ("pixel_values", "last_hidden_state", "with the projection")],
+    [
+        ("images", "image_embeds", "needs the input 'images'"),
+        ("pixel_values", "last_hidden_state", "with the projection"),
+    ],
 )
 def test_foreign_graphs_are_said(copy: Path, given: str, made: str, said: str) -> None:
     class Patches(torch.nn.Module):
@@ -263,7 +266,7 @@ def test_the_command_exports_into_empty_folders_only(
     assert encoders.load(f"onnx:{tmp_path / 'new'}").encode_text(["chair"]).shape == (1, 16)
     with pytest.raises(SystemExit, match="not an empty folder"):
         run(f"open_clip:{saved_clip}", str(tmp_path / "new"))
-    with pytest.raises(SystemExit, match="is no open_clip model"):
+    with pytest.raises(SystemExit, match="is not an open_clip model"):
         run("embedded", str(tmp_path / "other"))
     assert not (tmp_path / "other").exists()
 

@@ -14,7 +14,7 @@ from safetensors.numpy import save_file
 from scenewright.gaussians.errors import BackendError
 from scenewright.gaussians.language import encoders
 from scenewright.gaussians.language.encoders.calibration import Calibration
-from scenewright.gaussians.language.encoders.probability import doubt, labels, probability
+from scenewright.gaussians.language.encoders.probability import labels, probability, why_unknown
 
 _NAMES = ["bicycle", "potted_plant", "couch", "cat"]
 _ROWS = np.random.default_rng(5).normal(0, 3, (4, 8)).astype(np.float16)  # as published: half precision, not unit
@@ -82,7 +82,7 @@ def test_a_phrase_is_known_by_its_head(vectors: encoders.Encoder) -> None:
     assert vectors.unknown_words("purple cloth") == ("cloth",)
     assert vectors.unknown_words("bicycle helmet") == ("bicycle", "helmet")  # its head is the helmet
     for phrase in ("cloth", "", "the", "quixotic cat", "couch with wheels", "red"):
-        assert not vectors.knows(phrase) and doubt(vectors, phrase) is not None, phrase
+        assert not vectors.knows(phrase) and why_unknown(vectors, phrase) is not None, phrase
         assert (probability(vectors, phrase, _ROWS) == 0).all(), phrase
     with pytest.raises(BackendError, match=r"no vector for 'bicicle'.*did you mean bicycle"):
         vectors.encode_text(["bicicle"])
@@ -116,7 +116,7 @@ def test_a_rule_beside_the_vectors_is_used(tmp_path: Path) -> None:
     (tmp_path / "calibration.json").write_text(json.dumps({"scale": 17.0, "threshold": 0.4}))
     assert encoders.load(f"vectors:{argument}").calibration == Calibration(17.0, 0.4)
     (tmp_path / "calibration.json").write_text("{}")
-    with pytest.raises(BackendError, match="no calibration"):
+    with pytest.raises(BackendError, match="is not a calibration"):
         encoders.load(f"vectors:{argument}")
 
 
@@ -133,7 +133,7 @@ def _write(path: Path, names: str, rows: NDArray[np.floating] = _ROWS) -> str:
         ('{"a": 1}', _ROWS, "must be a list"),
         ('["a", 3, "b", "c"]', _ROWS, "must be a list"),
         ('["a", "b", "c"]', _ROWS, "need as many"),
-        ('["a", "b", "c", "a"]', _ROWS, "'a' stands twice"),
+        ('["a", "b", "c", "a"]', _ROWS, "'a' occurs twice"),
         (json.dumps(_NAMES), _ROWS * 0, "zero or not finite"),
         (json.dumps(_NAMES), _ROWS[0], "need as many"),
     ],
