@@ -1,1 +1,1 @@
-"""The session: plan, do, check, undo; chat and command line. Knows no tensor arithmetic."""
+"""Sessions on a scene, the chat, the command line, the pictures that both show, and the demo."""

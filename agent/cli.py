@@ -15,7 +15,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from ..gaussians.errors import ScenewrightError
-from .terminal.output import explain, terminal
+from .terminal.output import error_json, terminal
 
 VERBS = (
     "demo", "info", "embed", "select", "plan", "schema", "check", "compose", "edit", "chat", "render", "convert",
@@ -69,7 +69,7 @@ def main(arguments: list[str] | None = None) -> NoReturn:
     except ScenewrightError as error:
         if terminal.debug:
             raise
-        _report(explain(error))
+        _report(error_json(error))
         sys.exit(error.exit_code)
     except (KeyboardInterrupt, typer.Abort):
         terminal.say("interrupted")

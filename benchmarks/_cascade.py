@@ -14,7 +14,7 @@ from typing import get_args
 from ..gaussians.errors import BackendError
 from ..planners import load
 from ..planners.cascade import Cascade
-from ..planners.plan import EditPlan, Planner, Sight
+from ..planners.plan import EditPlan, Observation, Planner
 from ..planners.wishes import WishPlanner
 from . import _scripted, _written
 from ._written import Judged
@@ -33,9 +33,9 @@ class _Patient:
     def __init__(self, model: Planner) -> None:
         self.name, self._model = model.name, model
 
-    def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
+    def plan(self, text: str, *, previous: str | None = None, observation: Observation | None = None) -> EditPlan:
         try:
-            return self._model.plan(text, previous=previous, sight=sight)
+            return self._model.plan(text, previous=previous, observation=observation)
         except BackendError as error:
             reason = str(error)[:2000]
             return EditPlan(instruction=text, planner=self.name, verdict="not_understood", reason=reason)

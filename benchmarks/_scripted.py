@@ -13,10 +13,10 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any
 
-from ..agent.session.sight import StageSight
+from ..agent.session.observation import GraphObservation
 from ..gaussians.errors import UserError
 from ..planners import load
-from ..planners.plan import EditPlan, Sight, Usage
+from ..planners.plan import EditPlan, Observation, Usage
 from ..planners.rooms.graph import SceneGraph
 from ..planners.rooms.graph_scene import Stage
 from ..tools.operation import EditOp
@@ -47,9 +47,9 @@ class Scripted:
         self._grammar = load("grammar")
         self._cases = {(c["room"], c["text"], c.get("context")): c for c in _written.cases()}
 
-    def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
+    def plan(self, text: str, *, previous: str | None = None, observation: Observation | None = None) -> EditPlan:
         """The plan that was written down, or a wrong one; see `Planner.plan`."""
-        room = rooms().get(_key(sight.graph())) if sight is not None else None
+        room = rooms().get(_key(observation.graph())) if observation is not None else None
         case = self._cases.get((room or "", text, previous))
         if case is None:
             return self._grammar.plan(text, previous=previous)
@@ -65,8 +65,10 @@ class Scripted:
 
 @cache
 def rooms() -> dict[str, str]:
-    """The written rooms by what is seen of them."""
-    return {_key(StageSight(_written.stage(room)).graph()): room for room in {c["room"] for c in _written.cases()}}
+    """The names of the written rooms by the JSON of the graph that a planner sees."""
+    return {
+        _key(GraphObservation(_written.stage(room)).graph()): room for room in {c["room"] for c in _written.cases()}
+    }
 
 
 def _key(graph: SceneGraph) -> str:

@@ -16,7 +16,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Literal
 
-from ..agent.session.sight import StageSight
+from ..agent.session.observation import GraphObservation
 from ..planners.impossible import Step
 from ..planners.plan import Planner
 from ..planners.rooms.graph import SceneGraph
@@ -131,7 +131,7 @@ def measure(planner: Planner, todo: Iterable[dict[str, Any]], accounted: bool = 
     for case in todo:
         room = stage(case["room"])
         started = time.perf_counter()
-        found = resolve_text(room, planner, case["text"], case.get("context"), StageSight(room))
+        found = resolve_text(room, planner, case["text"], case.get("context"), GraphObservation(room))
         seconds = time.perf_counter() - started
         usage = found.plan.usage
         seconds += usage.seconds if accounted and usage is not None else 0.0

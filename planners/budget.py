@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from ..gaussians.errors import BackendError, ScenewrightError, UserError
-from .plan import EditPlan, NoPlanError, Planner, Sight, Usage
+from .plan import EditPlan, NoPlanError, Observation, Planner, Usage
 
 Progress = Callable[[str, float], None]  # called with the stage in words and the share done in [0, 1]
 
@@ -118,7 +118,7 @@ class Metered:
     def _planner(self) -> Planner:
         return self._make(self._report)
 
-    def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
+    def plan(self, text: str, *, previous: str | None = None, observation: Observation | None = None) -> EditPlan:
         """The plan for an instruction; see `Planner.plan`.
 
         Raises:
@@ -126,13 +126,13 @@ class Metered:
             BackendError: the planner cannot be loaded or reached, or gave no plan.
         """
         self._ledger.require()
-        if sight is not None:  # embed the scene before the clock starts: it may take longer than a model
+        if observation is not None:  # embed the scene before the clock starts: it may take longer than a model
             with suppress(ScenewrightError):
-                sight.graph()
+                observation.graph()
         stage, self._since = f"asking {self.name}", time.monotonic()
         self._progress(stage, 0.0)
         try:
-            plan = self._planner.plan(text, previous=previous, sight=sight)
+            plan = self._planner.plan(text, previous=previous, observation=observation)
         except NoPlanError as error:
             self._ledger.add(error.usage)
             raise

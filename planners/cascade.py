@@ -18,7 +18,7 @@ from ..gaussians.errors import BackendError, UserError
 from .budget import OverBudgetError
 from .grammar.meaning.changes import TO_A_LENGTH
 from .grammar.vocabulary.verbs import TO_ALIGN
-from .plan import EditPlan, NoPlanError, Planner, Sight
+from .plan import EditPlan, NoPlanError, Observation, Planner
 
 NAME = "auto"
 ABSTAINS = ("not_understood", "impossible")  # verdicts of the grammar that another planner may improve on
@@ -60,7 +60,7 @@ class Cascade:
     def _wish_planner(self) -> WishReader | None:
         return self._wishes() if self._wishes is not None else None
 
-    def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
+    def plan(self, text: str, *, previous: str | None = None, observation: Observation | None = None) -> EditPlan:
         """The plan for an instruction; see `Planner.plan`. Its `planner` names the planner that made it.
 
         If a model cannot be asked or gives no plan, no error is raised: the result is the grammar's abstention, and
@@ -73,25 +73,27 @@ class Cascade:
         plan = self.grammar.plan(text, previous=previous)
         if plan.verdict == "unsafe":
             return plan
-        wish = self._plan_wish(text, previous, sight)
+        wish = self._plan_wish(text, previous, observation)
         if wish is not None and wish.verdict != "not_understood":
             return _with_total_time(wish, started)
         if plan.verdict not in ABSTAINS:
             return plan
-        return _with_total_time(self._ask_model(wish or plan, text, previous, sight), started)
+        return _with_total_time(self._ask_model(wish or plan, text, previous, observation), started)
 
-    def _plan_wish(self, text: str, previous: str | None, sight: Sight | None) -> EditPlan | None:
+    def _plan_wish(self, text: str, previous: str | None, observation: Observation | None) -> EditPlan | None:
         """The plan of the wish planner; None if the text is not a wish for the whole room."""
         if self._wish_planner is None or not self._wish_planner.reads(text):
             return None
-        return self._wish_planner.plan(text, previous=previous, sight=sight)
+        return self._wish_planner.plan(text, previous=previous, observation=observation)
 
-    def _ask_model(self, abstained: EditPlan, text: str, previous: str | None, sight: Sight | None) -> EditPlan:
+    def _ask_model(
+        self, abstained: EditPlan, text: str, previous: str | None, observation: Observation | None
+    ) -> EditPlan:
         """The plan of the model, or the abstention, with the reason why the model gave no plan."""
-        if self.model is None or not may_ask(abstained, sight):
+        if self.model is None or not may_ask(abstained, observation):
             return abstained
         try:
-            plan = self.model.plan(text, previous=previous, sight=sight)
+            plan = self.model.plan(text, previous=previous, observation=observation)
         except (BackendError, UserError) as error:  # UserError: the model's name is wrong
             usage = error.usage if isinstance(error, NoPlanError) else None
             how = "was not asked" if isinstance(error, OverBudgetError) else "gave no plan"
@@ -109,10 +111,10 @@ def _with_total_time(plan: EditPlan, started: float) -> EditPlan:
     return plan.model_copy(update={"seconds": time.perf_counter() - started})
 
 
-def may_ask(abstained: EditPlan, sight: Sight | None) -> bool:
+def may_ask(abstained: EditPlan, observation: Observation | None) -> bool:
     """Whether a model may plan what another planner abstained on."""
     if abstained.verdict == "impossible":
-        return sight is not None and any(reason in abstained.reason for reason in MEASURABLE)
+        return observation is not None and any(reason in abstained.reason for reason in MEASURABLE)
     return abstained.verdict == "not_understood"
 
 

@@ -116,7 +116,7 @@ class EditPlan(BaseModel):
         return (self.verdict, self.ops) == (other.verdict, other.ops)
 
 
-class Sight(Protocol):
+class Observation(Protocol):
     """The scene as planners see it; each part is computed when it is first asked for."""
 
     def graph(self) -> SceneGraph:
@@ -140,13 +140,13 @@ class Planner(Protocol):
         """Name of the planner in plans and receipts."""
         ...
 
-    def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
+    def plan(self, text: str, *, previous: str | None = None, observation: Observation | None = None) -> EditPlan:
         """The plan for an instruction.
 
         Args:
             text: the instruction.
             previous: the previous instruction, for "the red one" and "a bit more".
-            sight: the scene, for planners that see it.
+            observation: the scene, for planners that see it.
 
         Raises:
             UserError: the instruction is too long.

@@ -21,11 +21,11 @@ def command(
     debug: Debug = False,
 ) -> None:
     """Talk to a scene: instructions in words, /help for the rest. With --json, one JSON object for each line said."""
-    from ..session.opening import Opening, open_session
+    from ..session.opening import SessionOptions, open_session
     from ..terminal.chat import Chat
 
     session, _ = open_session(
-        Opening(
+        SessionOptions(
             scene, planner, encoder, view, log=log, seed=seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
             picture=picture,
         )

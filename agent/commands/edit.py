@@ -28,7 +28,7 @@ from ..options import (
     Up,
     View,
 )
-from ..terminal.output import explain, terminal
+from ..terminal.output import error_json, terminal
 
 if TYPE_CHECKING:
     from ..session.result import Result
@@ -77,8 +77,7 @@ def command(
     A language field saved beside SCENE (see `embed`) is used, and the edited scene gets one too.
     """
     from ...gaussians.errors import UserError
-    from ..session.model_usage import asked
-    from ..session.opening import Opening, open_session
+    from ..session.opening import SessionOptions, open_session
 
     if (text is None) == (replay is None):
         raise UserError('give either TEXT or --replay LOG: scenewright edit SCENE "make the sofa teal" -o out.ply')
@@ -87,10 +86,11 @@ def command(
     _check_targets(None if dry_run else output, pictures, force)
     started = time.perf_counter()
     seconds: dict[str, float] = {}
-    kept_log = None if dry_run else log
-    opening = Opening(scene, planner, encoder, view, size, kept_log, seed, True, up, metres_per_unit, budget, picture)
+    options = SessionOptions(
+        scene, planner, encoder, view, size, None if dry_run else log, seed, True, up, metres_per_unit, budget, picture
+    )
     with timed(seconds, "open"):
-        session, had_field = open_session(opening)
+        session, had_field = open_session(options)
     targets = _Targets(None if dry_run else output, pictures, force, had_field)
     results = [_instruct(session, str(text), dry_run)] if replay is None else _replay(session, replay)
     lines, data = _told(results, replay is not None, dry_run)
@@ -103,7 +103,9 @@ def command(
     lines += [f"wrote {path}" for path in data.get("pictures", ())]
     terminal.result("\n".join(lines), data)
     if not as_json:
-        for line in asked(session.planned):
+        from ..session.plan_report import usage_lines
+
+        for line in usage_lines(session.planned):
             terminal.say(line)
         terminal.say("seconds: " + ", ".join(f"{stage} {value:.2f}" for stage, value in data["seconds"].items()))
 
@@ -126,19 +128,18 @@ def _check_targets(output: Path | None, pictures: Path | None, force: bool) -> N
 def _instruct(session: Session, text: str, dry_run: bool) -> Result:
     """Do what was said, or say why not, what it hesitated between, and what asking a model took all the same."""
     from ...gaussians.errors import ScenewrightError
-    from ..session.model_usage import asked
-    from ..session.resolved_plan import candidate_json, refusal_json
+    from ..session.plan_report import candidate_json, refusal_json, usage_lines
 
     try:
         return session.preview(text) if dry_run else session.do(text)
     except ScenewrightError as error:
-        for line in asked(session.planned):
+        for line in usage_lines(session.planned):
             terminal.say(line)
         if terminal.debug:
             raise
         candidates = session.question.candidates if session.question else ()
         told = {"candidates": [candidate_json(c) for c in candidates], **refusal_json(error, session.planned)}
-        terminal.refuse(error, {**explain(error), **told}, [c.describe() for c in candidates])
+        terminal.refuse(error, {**error_json(error), **told}, [c.describe() for c in candidates])
 
 
 def _replay(session: Session, log: Path) -> list[Result]:
@@ -162,7 +163,7 @@ def _told(results: Sequence[Result], replayed: bool, dry_run: bool) -> tuple[lis
 
 def _lines(result: Result, dry_run: bool) -> list[str]:
     """What was done; in a dry run the plan, and what it would do."""
-    from ..session.resolved_plan import plan_lines
+    from ..session.plan_report import plan_lines
 
     if not dry_run or result.plan is None:
         return list(result.sentences())

@@ -31,7 +31,7 @@ def command(
     from ...gaussians.language.field.embed import embed
     from ...gaussians.language.field.store import load_field, mismatch, save_field
     from ..pictures.named_cameras import with_frame
-    from ..terminal.thing_names import told
+    from ..terminal.thing_names import describe_things
 
     started = time.perf_counter()
     loaded, chosen = load(scene), encoders.load(encoder)
@@ -64,4 +64,4 @@ def command(
         "was_there": known is not None,
     }
     done = "was embedded already (--force does it again)" if known else f"embedded in {seconds} s, saved as {path}"
-    terminal.result("\n".join([f"{scene}: {done}", told(language.objects()), *language.notes]), data)
+    terminal.result("\n".join([f"{scene}: {done}", describe_things(language.objects()), *language.notes]), data)

@@ -22,7 +22,7 @@ def command(
     """Tell what a scene file holds: format, Gaussians, frame, cameras, repairs, and its things if it was embedded."""
     from ...gaussians.files import load_with_report
     from ...gaussians.language.field.store import load_field
-    from ..terminal.thing_names import told
+    from ..terminal.thing_names import describe_things
 
     loaded, report = load_with_report(scene)
     loaded = load_field(loaded, scene) or loaded
@@ -53,7 +53,7 @@ def command(
         shown = [g for g in language.objects() if g.count]
         things = [{"group": g.id, "label": g.label, "sure": round(g.label_score, 3), "count": g.count} for g in shown]
         data["language"] = {"encoder": language.encoder, "things": things, "notes": list(language.notes)}
-        told_things = f"  {told(shown)}\n  embedded with {language.encoder}"
+        told_things = f"  {describe_things(shown)}\n  embedded with {language.encoder}"
     terminal.result("\n".join([*_lines(data), told_things]), data)
 
 

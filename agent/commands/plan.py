@@ -13,7 +13,7 @@ from ..options import Batch, Budget, Debug, Encoder, Json, Picture, Planner, Vie
 from ..terminal.output import read_batch, terminal
 
 if TYPE_CHECKING:
-    from ..session.opening import Opening
+    from ..session.opening import SessionOptions
 
 Answer = Callable[[str, str | None], dict[str, Any]]  # instruction, the one before
 
@@ -49,7 +49,7 @@ def command(
     also tried on a copy, so that the answer is what `edit` would do.
     """
     from ...gaussians.errors import UserError
-    from ..session.opening import Opening
+    from ..session.opening import SessionOptions
 
     given = arguments or []
     if len(given) > (1 if batch else 2) or (not given and batch is None):
@@ -63,7 +63,7 @@ def command(
         raise UserError('--resolve needs a scene or a graph: scenewright plan "TEXT" --graph ROOM.json --resolve')
     rows = read_batch(str(batch)) if batch else [{"text": given[-1]}]
     if path is not None:
-        answer = _in_scene(Opening(path, planner, encoder, view, budget=budget, picture=picture))
+        answer = _in_scene(SessionOptions(path, planner, encoder, view, budget=budget, picture=picture))
     else:
         answer = _without_scene(graph, planner, budget)
     for row in rows:
@@ -79,19 +79,19 @@ def command(
 def _told(answer: Answer, row: dict[str, Any]) -> dict[str, Any]:
     """The answer to one line of a batch; a line that cannot be an instruction does not stop the others."""
     from ...gaussians.errors import UserError
-    from ..session.resolved_plan import unread
+    from ..session.plan_report import rejected_json
 
     try:
         return answer(row["text"], row.get("context"))
     except UserError as error:
-        return unread(str(error))
+        return rejected_json(str(error))
 
 
-def _in_scene(opening: Opening) -> Answer:
+def _in_scene(options: SessionOptions) -> Answer:
     from ..session.opening import open_session
-    from ..session.resolved_plan import resolved_plan
+    from ..session.plan_report import resolved_plan
 
-    session, _ = open_session(opening)
+    session, _ = open_session(options)
     return lambda text, context: resolved_plan(session, text, context)
 
 
@@ -99,7 +99,7 @@ def _without_scene(graph: Path | None, planner: str, budget: str | None) -> Answ
     """On a graph, or in words alone."""
     from ...planners import load as load_planner
     from ...planners.budget import Budget, Ledger
-    from ..session.resolved_plan import graph_plan, plan_json
+    from ..session.plan_report import graph_plan, plan_json
 
     ledger = Ledger(Budget.parse(budget) if budget is not None else None)
     reader = load_planner(planner, ledger=ledger, progress=terminal.progress)

@@ -52,7 +52,7 @@ def command(
     """Find what a phrase means: found, ambiguous (with the candidates) or absent (with the nearest)."""
     from ...gaussians.errors import UserError
     from ..output_files import make_folder
-    from ..session.opening import Opening, open_session
+    from ..session.opening import SessionOptions, open_session
 
     if (text is None) == (batch is None):
         raise UserError('give either TEXT or --batch FILE: scenewright select SCENE "the red chair"')
@@ -62,7 +62,7 @@ def command(
     if ids is not None and batch is not None:
         make_folder(ids)
     asked = Asked(_steps(grow, shrink, invert), explain)
-    session, _ = open_session(Opening(scene, planner, encoder, view))
+    session, _ = open_session(SessionOptions(scene, planner, encoder, view))
     if batch is None:
         _one(session, str(text), asked, targets[0], force)
         return
@@ -140,7 +140,7 @@ def _one(session: Session, text: str, asked: Asked, target: Path | None, force: 
 def _answer(session: Session, text: str, asked: Asked) -> tuple[Selection | None, dict[str, Any]]:
     """The selection, None if the words were not understood, and the answer as data."""
     from ...gaussians.errors import UserError
-    from ..session.resolved_plan import selection_json
+    from ..session.plan_report import selection_json
 
     started = time.perf_counter()
     try:

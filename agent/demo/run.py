@@ -25,7 +25,7 @@ from ..pictures.image_files import Tile, contact_sheet, save_png
 from ..pictures.scene_pictures import Picture, after, numbered, picture
 from ..session.result import Result
 from ..session.session import Session
-from ..terminal.thing_names import told
+from ..terminal.thing_names import describe_things
 from .demo_targets import Ids, agreement, cast_of, tried
 from .script import SCRIPT, Cast, Role, Turn
 
@@ -135,7 +135,7 @@ class Demo:
     def _tell_things(self, session: Session) -> None:
         language = session.scene.language
         assert language is not None
-        self.say(f"embedded in {self.seconds['embed']:.1f} s; it sees {told(language.objects())}")
+        self.say(f"embedded in {self.seconds['embed']:.1f} s; it sees {describe_things(language.objects())}")
 
     def _sheet(self) -> None:
         heading = f"Scenewright demo, seed {self.seed}: {len(self.steps)} instructions"

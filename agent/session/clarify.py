@@ -1,6 +1,6 @@
-"""Which of several things was meant: the question a plan raises in a scene, and the plan that an answer makes of it.
+"""Clarification: finds the query of a plan that is ambiguous or absent, and puts the user's answer into the plan.
 
-Knows plans and queries as data. Refuses to know how a query is resolved, and never picks for the user.
+It never picks a candidate for the user.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ _SIDES = {"left": "leftmost", "right": "rightmost", "near": "nearest", "closest"
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """A query of a plan that was not found as one thing.
+    """A query of a plan that did not resolve to one thing.
 
     Attributes:
-        plan: the plan that could not be carried out.
-        step: position of the operation in it.
-        path: where in the operation the query stands.
+        plan: the plan that failed.
+        step: index of the failed operation in the plan.
+        path: where in the operation the query is.
         selection: its verdict ("ambiguous" or "absent"), reason and candidates.
-        resolve: what another query would find where this one was asked.
+        resolve: resolves another query in the same state of the scene.
     """
 
     plan: EditPlan
@@ -55,7 +55,7 @@ class Question:
 def find_question(plan: EditPlan, step: int, verdict: str, resolve: Callable[[Query], Selection]) -> Question | None:
     """The innermost query of a step that resolves to `verdict`; None if there is none."""
     for path, query in queries(plan.ops[step]):
-        # What is left out of a selection is left out in the plural: "all chairs but the green one".
+        # An excluded query may match several things: "all chairs but the green one".
         plural = "exclude" in path and query.pick == "one"
         found = resolve(query.model_copy(update={"pick": "all"}) if plural else query)
         if found.verdict == verdict:
@@ -63,14 +63,14 @@ def find_question(plan: EditPlan, step: int, verdict: str, resolve: Callable[[Qu
     return None
 
 
-def answered(question: Question, answer: str, parse: Callable[[str], Query | None]) -> EditPlan:
+def plan_with_answer(question: Question, answer: str, parse: Callable[[str], Query | None]) -> EditPlan:
     """The plan with the user's answer in it: a number of the list, "all", or words ("the left one", "the red one").
 
     Args:
-        parse: reads a noun phrase as a query, or None if it cannot.
+        parse: reads a noun phrase as a query; returns None if it cannot.
 
     Raises:
-        UserError: the answer is no choice; the message says what would be one.
+        UserError: the answer does not choose a candidate; the message shows valid answers.
     """
     query = question.selection.query
     chosen = _choice(question.candidates, query, answer.strip().rstrip(".!").lower(), parse)
@@ -86,10 +86,10 @@ def answered(question: Question, answer: str, parse: Callable[[str], Query | Non
 
 
 def _require_choice(question: Question, chosen: Query, answer: str) -> None:
-    """An answer settles what was asked; words that fit something else are no answer to it.
+    """Check that the answer selects only candidates of the question.
 
     Raises:
-        UserError: the query finds what is not among the candidates.
+        UserError: the query finds nothing, or something that is not a candidate.
     """
     if question.selection.verdict != "ambiguous":
         return
@@ -97,7 +97,7 @@ def _require_choice(question: Question, chosen: Query, answer: str) -> None:
     if found.verdict == "absent" or not set(found.groups) <= {c.group for c in question.candidates}:
         raise UserError(
             f"{answer!r} is none of the {len(question.candidates)} that match; answer with a number from 1 to "
-            f"{len(question.candidates)}, 'all', or words that fit one of them"
+            f"{len(question.candidates)}, 'all', or words that describe one of them"
         )
 
 
@@ -119,18 +119,18 @@ def _choice(
 
 
 def _picked(query: Query, candidate: Candidate) -> Query:
-    """The candidate itself; the words stay for messages only.
+    """A query for the candidate's group; the words are kept for messages only.
 
     Raises:
-        UserError: it is a place or a part that the table of groups does not know, so it cannot be picked by number.
+        UserError: the candidate is a place or a part without a row in the table of groups, so a number cannot pick it.
     """
     if candidate.group < 0:
-        raise UserError("that one has no number of its own; say where it is ('the left one'), or 'all'")
+        raise UserError("that one cannot be picked by number; say where it is ('the left one'), or 'all'")
     return Query(text=query.text, colors=query.colors, size=query.size, groups=(candidate.group,))
 
 
 def merge(query: Query, said: Query) -> Query:
-    """The query narrowed by what was said about it: "the chair", then "the red one next to the sofa"."""
+    """The query narrowed by an answer: "the chair", then "the red one next to the sofa"."""
     generic = said.text in ("", "one", "ones", "thing")
     return query.model_copy(
         update={

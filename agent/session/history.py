@@ -1,7 +1,6 @@
-"""Undo and redo: a line of frozen states and a place on it.
+"""Undo and redo: the past, present and future states of a session.
 
-Knows that a state is a value that shares what did not change, so that going back is taking the old reference. Refuses
-to know how one state came from another.
+A state is frozen and shares its unchanged columns with its neighbours, so undo only restores an old reference.
 """
 
 from __future__ import annotations
@@ -14,51 +13,51 @@ from ...gaussians.errors import UserError
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 
-DEPTH = 200  # states kept; each holds only the columns that its edit changed
+DEPTH = 200  # states kept for undo; each holds only the columns that its edit changed
 
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """What the session is in between two instructions.
+    """The state of a session between two instructions.
 
     Attributes:
         scene: the scene.
-        last: what "it" means, None at first.
+        last: the selection that "it" refers to; None at first.
         text: the instruction that led here, "" for the first state.
-        spoken: the instruction before, for "a bit more" and "the red one".
+        context: the previous instruction, for "a bit more" and "the red one".
     """
 
     scene: Scene
     last: Selection | None = None
     text: str = ""
-    spoken: str = ""
+    context: str = ""
 
     @cached_property
     def digest(self) -> str:
-        """Of the cloud; computed once, when a log asks for it."""
+        """SHA-256 digest of the cloud; computed once, when a log needs it."""
         return self.scene.cloud.digest()
 
 
 @dataclass
 class History:
-    """The states behind, the present one, and those taken back."""
+    """The past states, the present one, and those that were undone."""
 
     present: State
     past: deque[State] = field(default_factory=lambda: deque(maxlen=DEPTH))
     future: list[State] = field(default_factory=list)
 
     def advance(self, state: State) -> None:
-        """A new present; what had been taken back is forgotten."""
+        """Add a new present state and drop the states that were undone."""
         self.past.append(self.present)
         self.present = state
         self.future.clear()
 
     def amend(self, state: State) -> None:
-        """Another present that is no step of its own (the same Gaussians, now embedded)."""
+        """Replace the present state without an undo step (the same Gaussians, now embedded)."""
         self.present = state
 
-    def behind(self) -> State:
-        """The state an undo leads to.
+    def undo_target(self) -> State:
+        """The state that an undo restores.
 
         Raises:
             UserError: there is none.
@@ -67,8 +66,8 @@ class History:
             raise UserError("there is nothing to undo")
         return self.past[-1]
 
-    def ahead(self) -> State:
-        """The state a redo leads to.
+    def redo_target(self) -> State:
+        """The state that a redo restores.
 
         Raises:
             UserError: there is none.
@@ -77,17 +76,17 @@ class History:
             raise UserError("there is nothing to redo")
         return self.future[-1]
 
-    def back(self) -> State:
+    def undo(self) -> State:
         """Go one step back; returns the new present."""
-        state = self.behind()
+        state = self.undo_target()
         self.future.append(self.present)
         self.past.pop()
         self.present = state
         return state
 
-    def forth(self) -> State:
+    def redo(self) -> State:
         """Go one step forward again; returns the new present."""
-        state = self.ahead()
+        state = self.redo_target()
         self.past.append(self.present)
         self.future.pop()
         self.present = state

@@ -1,19 +1,21 @@
 """The session log: one JSON object a line, appended and never rewritten.
 
-Knows how to make a record durable (one write, then fsync) and how to read a log that a crash cut short. Refuses to know
-what a plan or a receipt means: it stores what it is given as plain JSON. Secrets never reach the disk: see `scrub`.
+`SessionLog` writes each record durably (one write, then fsync); `read_log` also reads a log that a crash cut short.
+Secrets are removed before anything is written: see `scrub`.
 
 Schema version 1. Every record has `v`, `seq` (1, 2, ... through the file), `time` (UTC, ISO 8601) and `kind`:
 
-    open    scenewright, scene (path or null), gaussians, digest     a session begins; undo never crosses it
-    embed   encoder, things, before, after                           language was laid over the scene; no edit
+    open    scenewright, scene (path or null), gaussians, digest     a session begins; undo never goes back before it
+    embed   encoder, things, before, after                           a language field was added to the scene; no edit
     do      text, plan, receipts, before, after, seconds             an instruction was carried out
     failed  text, plan (or null), error, message, before             an instruction was refused; nothing was changed
-    undo    text, before, after                                      the last `do` was taken back
-    redo    text, before, after                                      and done again
+    undo    text, before, after                                      the last `do` was undone
+    redo    text, before, after                                      the last `undo` was redone
     save    path, digest                                             the scene was written to a file
 
-`before` and `after` are SHA-256 digests of the cloud, so that a reader can check that the records form a chain.
+`before` and `after` are SHA-256 digests of the cloud, so that a reader can check that the records form a chain. The
+functions `*_fields` give the fields of a record. A session without a log does not call them, as digests of large clouds
+take time.
 """
 
 from __future__ import annotations
@@ -27,9 +29,14 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
-from ...gaussians.errors import FileError
+from ...gaussians.errors import FileError, ScenewrightError
+
+if TYPE_CHECKING:
+    from ...planners.plan import EditPlan
+    from .history import State
+    from .result import Result
 
 SCHEMA_VERSION = 1
 Record = dict[str, Any]
@@ -62,10 +69,10 @@ class LogContent:
 
 
 class SessionLog:
-    """An append-only log file. Each `append` is on the disk when it returns.
+    """An append-only log file. Each record is on the disk when `append` returns.
 
-    An existing log is continued: its records stay, numbering goes on. A last line that a crash cut short is left as it
-    is and closed with a line break, so that it can never swallow the record written after it.
+    An existing log is continued: its records stay and the numbering goes on. If a crash cut the last line short, the
+    next record begins on a new line, so that the damaged line does not spoil it.
 
     Raises:
         FileError: the file cannot be opened or written.
@@ -91,7 +98,7 @@ class SessionLog:
         record = _clean(record)
         line = json.dumps(record, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
         data = (b"\n" if self._torn else b"") + line.encode() + b"\n"
-        self._torn = True  # until every byte is out
+        self._torn = True  # until every byte is written
         try:
             while data:
                 data = data[os.write(self._fd, data) :]
@@ -141,7 +148,7 @@ def read_log(path: str | os.PathLike[str]) -> LogContent:
 
 
 def scrub(text: str) -> str:
-    """`text` without anything that looks like a key or equals a secret of the environment.
+    """`text` without anything that looks like an API key or equals a secret in an environment variable.
 
     >>> scrub("use sk-abcdefghijklmnopqrstuvwx please")
     'use [secret removed] please'
@@ -152,8 +159,62 @@ def scrub(text: str) -> str:
     return _SECRET_SHAPE.sub(_HIDDEN, text)
 
 
+def open_fields(state: State) -> dict[str, Any]:
+    """Fields of `open`."""
+    from ... import __version__
+
+    scene = state.scene
+    return {
+        "scenewright": __version__,
+        "scene": str(scene.path) if scene.path else None,
+        "gaussians": len(scene.cloud),
+        "digest": state.digest,
+    }
+
+
+def embed_fields(before: State, after: State) -> dict[str, Any]:
+    """Fields of `embed`; the scene of `after` has a language field."""
+    language = after.scene.language
+    assert language is not None
+    things = len(language.objects())
+    return {"encoder": language.encoder, "things": things, "before": before.digest, "after": after.digest}
+
+
+def do_fields(result: Result, before: State, after: State) -> dict[str, Any]:
+    """Fields of `do`. The plan holds its planner, prompt hash and model usage."""
+    return {
+        "text": result.text,
+        "plan": result.plan.model_dump(mode="json") if result.plan is not None else None,
+        "receipts": [r.model_dump(mode="json") for r in result.receipts],
+        "before": before.digest,
+        "after": after.digest,
+        "seconds": dict(result.seconds),
+    }
+
+
+def failed_fields(text: str, plan: EditPlan | None, error: ScenewrightError, state: State) -> dict[str, Any]:
+    """Fields of `failed`."""
+    return {
+        "text": text,
+        "plan": plan.model_dump(mode="json") if plan else None,
+        "error": type(error).__name__,
+        "message": str(error),
+        "before": state.digest,
+    }
+
+
+def step_fields(text: str, before: State, after: State) -> dict[str, Any]:
+    """Fields of `undo` and `redo`."""
+    return {"text": text, "before": before.digest, "after": after.digest}
+
+
+def save_fields(path: str | Path, state: State) -> dict[str, Any]:
+    """Fields of `save`."""
+    return {"path": str(path), "digest": state.digest}
+
+
 def _clean(value: Any) -> Any:
-    """Plain JSON of `value`: secrets removed, NaN and infinities as null (JSON has no word for them)."""
+    """Plain JSON of `value`: secrets removed, NaN and infinities as null (JSON cannot represent them)."""
     if isinstance(value, str):
         return scrub(value)
     if isinstance(value, float):

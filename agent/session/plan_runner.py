@@ -1,8 +1,4 @@
-"""A plan carried out on a state, operation by operation: the state it leads to, or where and why it stopped.
-
-Knows the order of a plan and what only a session can tell a receipt. Refuses to keep anything: a plan that stops
-halfway leaves the state that it began from.
-"""
+"""Runs a plan on a state, operation by operation, and returns the new state; a failed plan changes nothing."""
 
 from __future__ import annotations
 
@@ -15,7 +11,7 @@ from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from .clarify import Question, find_question
 from .history import State
-from .refusal import retold
+from .refusal import with_message
 
 if TYPE_CHECKING:
     from ...planners.plan import EditPlan
@@ -23,8 +19,13 @@ if TYPE_CHECKING:
     from ...tools.receipt import Receipt
 
 
-class Stopped(Exception):  # no error of its own: it carries one, and what can be asked about it
-    """An operation failed, and with it the plan; `question` is what an answer would settle, None if none would."""
+class PlanFailed(Exception):
+    """An operation failed, and with it the plan.
+
+    Attributes:
+        error: the operation's error.
+        question: the query that an answer of the user would settle; None if there is none.
+    """
 
     def __init__(self, error: ScenewrightError, question: Question | None) -> None:
         super().__init__(str(error))
@@ -32,22 +33,22 @@ class Stopped(Exception):  # no error of its own: it carries one, and what can b
         self.question = question
 
 
-def names_things(plan: EditPlan) -> bool:
-    """Whether any operation is about something that has to be found in the scene."""
+def has_queries(plan: EditPlan) -> bool:
+    """Whether any operation has a query that must be resolved in the scene."""
     return any(True for op in plan.ops for _ in queries(op))
 
 
-def carry_out(
+def run_plan(
     plan: EditPlan, start: State, context_of: Callable[[Selection | None], Context], *, dry_run: bool
 ) -> tuple[State, tuple[Receipt, ...]]:
-    """The state that a plan leads to, and a receipt for each operation.
+    """The state after a plan, and a receipt for each operation.
 
     Args:
-        context_of: what an operation is given where "it" means the selection.
-        dry_run: receipts say that nothing was kept.
+        context_of: makes the context of an operation from the selection that "it" refers to.
+        dry_run: mark the receipts as a dry run.
 
     Raises:
-        Stopped: an operation cannot be done, or failed its own check.
+        PlanFailed: an operation cannot be done, or failed its own check.
     """
     from ...tools import execute
 
@@ -58,8 +59,8 @@ def carry_out(
         try:
             scene, receipt, last = execute.carry_out(scene, op, context)
         except ScenewrightError as error:
-            raise Stopped(_in_plan(error, plan, step), _question(plan, step, error, scene, context)) from error
-        receipts.append(_signed(receipt, plan, dry_run))
+            raise PlanFailed(_in_plan(error, plan, step), _question(plan, step, error, scene, context)) from error
+        receipts.append(_completed(receipt, plan, dry_run))
     return State(scene, last, plan.instruction, plan.instruction), tuple(receipts)
 
 
@@ -70,14 +71,14 @@ def _question(plan: EditPlan, step: int, error: ScenewrightError, scene: Scene, 
     return find_question(plan, step, verdict, lambda query: context.resolve(scene, query))
 
 
-def _signed(receipt: Receipt, plan: EditPlan, dry_run: bool) -> Receipt:
-    """The receipt with what only the session knows: who planned it, and whether anything was kept."""
+def _completed(receipt: Receipt, plan: EditPlan, dry_run: bool) -> Receipt:
+    """The receipt with the fields that only the session knows: the planner, and whether this is a dry run."""
     return receipt.model_copy(update={"backends": {**receipt.backends, "planner": plan.planner}, "dry_run": dry_run})
 
 
 def _in_plan(error: ScenewrightError, plan: EditPlan, step: int) -> ScenewrightError:
-    """The error, saying where in a compound instruction it arose and that the whole of it was rolled back."""
+    """The error; of a compound plan, with the failed step and the statement that nothing was changed."""
     if len(plan.ops) == 1:
         return error
     where = f"step {step + 1} of {len(plan.ops)} ({plan.ops[step].op}) failed, nothing was changed"
-    return retold(error, f"{where}: {error}")
+    return with_message(error, f"{where}: {error}")

@@ -1,6 +1,6 @@
-"""Who reads instructions for a session: a planner that can be exchanged, what it may look at, and what it has cost.
+"""The session's planner: turns words into plans and queries, can be exchanged, and accounts for what models cost.
 
-Knows planners, budgets and which words are no text. Refuses to know what becomes of a plan.
+Undo, redo and dismissals ("never mind") are recognised here without a planner.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from ...gaussians.language.query.query import Query
 
 if TYPE_CHECKING:
     from ...planners.budget import Budget, Progress
-    from ...planners.plan import EditPlan, Planner, Sight, Usage
+    from ...planners.plan import EditPlan, Observation, Planner, Usage
 
 _STEPS: tuple[tuple[Literal["undo", "redo"], re.Pattern[str]], ...] = (
     (
@@ -26,8 +26,8 @@ _STEPS: tuple[tuple[Literal["undo", "redo"], re.Pattern[str]], ...] = (
 )
 
 
-def step_meant(text: str) -> Literal["undo", "redo"] | None:
-    """Whether words ask to go a step back or forward; None if they ask for something else."""
+def undo_or_redo(text: str) -> Literal["undo", "redo"] | None:
+    """Which of the two an instruction asks for; None if it asks for something else."""
     said = text.strip().rstrip(".!")
     return next((step for step, words in _STEPS if words.fullmatch(said)), None)
 
@@ -37,40 +37,45 @@ _DISMISSED = re.compile(
 )
 
 
-def dismisses(text: str) -> bool:
-    """Whether words say that a question need not be answered."""
+def is_dismissal(text: str) -> bool:
+    """Whether the text drops an open question ("never mind") instead of answering it."""
     return _DISMISSED.fullmatch(text.strip().rstrip(".!")) is not None
 
 
-class Reader:
-    """Reads for one session. `last` is the plan that was made last, whatever came of it.
+class PlannerClient:
+    """Plans the instructions of one session. `last` is the latest plan, even if it was refused.
 
     Args:
-        planner: as `planners.load` takes it, or a planner.
-        sight: the session's scene, for planners that look at it.
+        planner: a name for `planners.load`, or a planner.
+        observation: the session's scene, for planners that look at it.
         budget: what language models may cost, as `Budget.parse` takes it; seconds for one instruction, dollars for the
-            session, whatever planner it changes to.
-        pictures: let models see the viewer's picture.
-        progress: told while a model plans.
+            session. A change of planner does not reset it.
+        pictures: send the viewer's picture to models.
+        progress: called while a model plans.
 
     Raises:
-        UserError: no such planner, or the budget is none.
-        BackendError: what the planner needs is not there.
+        UserError: no such planner, or the budget cannot be parsed.
+        BackendError: a package, key or file that the planner needs is missing.
     """
 
     def __init__(
-        self, planner: str | Planner, sight: Sight, budget: str | Budget | None, pictures: bool, progress: Progress
+        self,
+        planner: str | Planner,
+        observation: Observation,
+        budget: str | Budget | None,
+        pictures: bool,
+        progress: Progress,
     ) -> None:
         from ...planners.budget import Budget, Ledger
 
-        self._sight, self._pictures, self._progress = sight, pictures, progress
+        self._observation, self._pictures, self._progress = observation, pictures, progress
         self.last: EditPlan | None = None
         self._ledger = Ledger(Budget.parse(budget) if isinstance(budget, str) else budget)
         self.use(planner)
 
     @property
     def name(self) -> str:
-        """The planner's own name, and behind it the model that it may ask."""
+        """The planner's name; of a cascade, with the model that it may ask: "auto:MODEL"."""
         from ...planners.cascade import Cascade
 
         model = self._planner.model if isinstance(self._planner, Cascade) else None
@@ -78,16 +83,16 @@ class Reader:
 
     @property
     def spent(self) -> Usage | None:
-        """What language models were asked for in this session; None if none was."""
+        """Usage of language models in this session; None if no model was asked."""
         return self._ledger.spent
 
     @property
     def budget(self) -> Budget:
-        """What they may cost."""
+        """What language models may cost."""
         return self._ledger.budget
 
     def use(self, planner: str | Planner) -> None:
-        """Let another planner read from now on; raises as the constructor, and then the old one stays."""
+        """Change to another planner; raises as the constructor, and then keeps the old one."""
         from ...planners import load
 
         if isinstance(planner, str):
@@ -98,35 +103,35 @@ class Reader:
         """The plan for an instruction; see `Planner.plan`.
 
         Raises:
-            UserError: too long to be an instruction, or no text.
-            BackendError: a model that was named alone gave no plan.
+            UserError: the text is too long or is not valid Unicode.
+            BackendError: a model that was chosen as the only planner gave no plan.
         """
         if not text.isprintable() and any("\ud800" <= c <= "\udfff" for c in text):
             raise UserError("the text is not UTF-8; type it again, or set the terminal to UTF-8")
         self.last = None
-        self.last = self._planner.plan(text, previous=previous, sight=self._sight)
+        self.last = self._planner.plan(text, previous=previous, observation=self._observation)
         return self.last
 
     def noun_phrase(self, text: str) -> Query | None:
-        """The query of a noun phrase, read without a language model; None if it is not a noun phrase."""
+        """A short noun phrase as a query, without asking the model of a cascade; None if it cannot be read."""
         from ...planners.cascade import without_model
 
-        return _query(without_model(self._planner).plan(f"select {text}", sight=self._sight))
+        return _query(without_model(self._planner).plan(f"select {text}", observation=self._observation))
 
     def query(self, phrase: str | Query) -> Query:
-        """What is described: by a phrase, as what an instruction is about, or by a query itself.
+        """The query for a noun phrase, or for the target of an instruction; a query is returned as it is.
 
         Raises:
-            UserError: the words do neither.
+            UserError: the words cannot be read as either.
             BackendError: as `plan`.
         """
         query = phrase if isinstance(phrase, Query) else self._described(phrase)
         if query is None:
-            raise UserError(f"{phrase!r} is no description of things; say for example 'the red chair'")
+            raise UserError(f"{phrase!r} does not describe things; say for example 'the red chair'")
         return query
 
     def subject(self, text: str) -> Query | None:
-        """What an instruction is about in the end, None if it is not understood; raises as `plan`."""
+        """The target of the last operation of an instruction; None if it is not understood. Raises as `plan`."""
         about = [query for op in self.plan(text).ops if (query := op.query()) is not None]
         return about[-1] if about else None
 
@@ -135,11 +140,11 @@ class Reader:
 
         quick = without_model(self._planner)
         for words in (f"select {text}", text):
-            if (query := _query(quick.plan(words, sight=self._sight))) is not None:
+            if (query := _query(quick.plan(words, observation=self._observation))) is not None:
                 return query
         return _query(self.plan(f"select {text}")) if quick is not self._planner else None
 
 
 def _query(plan: EditPlan) -> Query | None:
-    """What a plan of one operation is about."""
+    """The target of a plan of one operation."""
     return plan.ops[0].query() if len(plan.ops) == 1 else None

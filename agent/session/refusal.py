@@ -1,7 +1,4 @@
-"""A planner's verdict as an error: the words were not understood, or no operation does what they ask.
-
-Knows verdicts. Refuses to know grammar.
-"""
+"""Errors for plans without operations, and the verdict of an error."""
 
 from __future__ import annotations
 
@@ -14,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class NotUnderstoodError(UserError):
-    """The words are no instruction that the planner can read; `verdict` is its own word for why."""
+    """The planner cannot read the instruction; `verdict` is the plan's verdict."""
 
     def __init__(self, message: str, verdict: str) -> None:
         super().__init__(message)
@@ -22,22 +19,22 @@ class NotUnderstoodError(UserError):
 
 
 class ImpossibleError(InstructionError):
-    """Understood, but no operation does it; `verdict` is the planner's word for why."""
+    """The instruction was understood, but no operation does it; `verdict` is the plan's verdict."""
 
     def __init__(self, message: str, verdict: str) -> None:
         super().__init__(message)
         self.verdict = verdict
 
 
-def retold(error: ScenewrightError, message: str) -> ScenewrightError:
-    """The same error, of the same kind and with what else it carries, in other words."""
-    other = type(error).__new__(type(error), message)  # kinds differ in what they are made of
+def with_message(error: ScenewrightError, message: str) -> ScenewrightError:
+    """A copy of the error, of the same class and with the same attributes, with another message."""
+    other = type(error).__new__(type(error), message)  # __new__, as the constructors take different arguments
     other.__dict__.update(error.__dict__)
     return other
 
 
 def refusal(plan: EditPlan) -> ScenewrightError:
-    """The error that a plan without operations stands for."""
+    """The error for a plan without operations, by its verdict."""
     reason = plan.reason or "this was not understood; say it in other words"
     if plan.verdict == "absent":
         return AbsentError(reason)
@@ -49,7 +46,7 @@ def refusal(plan: EditPlan) -> ScenewrightError:
 
 
 def verdict_of(error: ScenewrightError) -> str:
-    """The one word for why an instruction was not carried out; "failed" for files and back ends."""
+    """The verdict that says why an instruction was not carried out; "failed" for files and back ends."""
     if isinstance(error, NotUnderstoodError | ImpossibleError):
         return error.verdict
     for kind, verdict in ((AbsentError, "absent"), (AmbiguousError, "ambiguous"), (InstructionError, "impossible")):

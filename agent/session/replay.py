@@ -1,6 +1,6 @@
-"""What a session log asks to be done again: the instructions that stood in the end, as plans that fit another scene.
+"""Reads the edits of a logged session that were not undone, as plans that can be run on another scene.
 
-Knows records and plans. Refuses to know how a plan is carried out. All of a session is read before any of it is done.
+The whole session is read before the first plan is run.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Replayed:
-    """One instruction of a replay: what it did here, or why it could not be done."""
+    """One instruction of a replay: its result on this scene, or the error."""
 
     text: str
     result: Result | None
@@ -28,20 +28,20 @@ class Replayed:
 
 
 @dataclass(frozen=True)
-class Deed:
-    """What was done in a session: its words, its plan, and the digest of the cloud that it was done to."""
+class LoggedEdit:
+    """An edit of a logged session: its words, its plan, and the digest of the cloud before it."""
 
     text: str
     plan: EditPlan
     before: str | None
 
-    def on(self, digest: str) -> EditPlan:
-        """The plan for the cloud of this digest; in another than its own, ids of groups mean nothing."""
+    def plan_for(self, digest: str) -> EditPlan:
+        """The plan for the cloud with this digest; on another cloud than the logged one, without group ids."""
         return self.plan if self.before == digest else portable(self.plan)
 
 
-def deeds(log: str | Path, session: int) -> list[Deed]:
-    """What stood in the end of a session, oldest first.
+def logged_edits(log: str | Path, session: int) -> list[LoggedEdit]:
+    """The edits of a session that were not undone, oldest first.
 
     Args:
         session: which of the sessions in the log, counted from the first (0) or the last (-1).
@@ -54,12 +54,12 @@ def deeds(log: str | Path, session: int) -> list[Deed]:
     if not sessions:
         raise UserError(f"{log} holds no session; give a log written with --log")
     if not -len(sessions) <= session < len(sessions):
-        raise UserError(f"{log} holds {len(sessions)} sessions; there is none number {session}")
-    return [Deed(str(r["text"]), read_plan(r, log), r.get("before")) for r in standing(sessions[session])]
+        raise UserError(f"{log} holds {len(sessions)} sessions; there is no session {session}")
+    return [LoggedEdit(str(r["text"]), read_plan(r, log), r.get("before")) for r in not_undone(sessions[session])]
 
 
-def standing(records: list[Record]) -> list[Record]:
-    """The `do` records of a session that were not undone in the end."""
+def not_undone(records: list[Record]) -> list[Record]:
+    """The `do` records of a session that were not undone, or were redone."""
     done: list[Record] = []
     undone: list[Record] = []
     for record in records:
@@ -77,7 +77,7 @@ def read_plan(record: Record, source: str | Path) -> EditPlan:
     """The plan of a `do` record.
 
     Raises:
-        FileError: there is none that this version can read.
+        FileError: the record has no plan that this version can read.
     """
     from pydantic import ValidationError
 
@@ -90,7 +90,7 @@ def read_plan(record: Record, source: str | Path) -> EditPlan:
 
 
 def portable(plan: EditPlan) -> EditPlan:
-    """The plan without ids of groups, which mean nothing in another scene; its words stay."""
+    """The plan without group ids, which are valid in one scene only; its words are resolved again."""
     ops = []
     for op in plan.ops:
         for path, query in list(queries(op)):

@@ -1,7 +1,4 @@
-"""What one instruction did: its plan, a receipt for each operation, and the scenes before and after.
-
-Knows values. Refuses to know how they came about.
-"""
+"""The result of one instruction: its plan, a receipt for each operation, and the scenes before and after."""
 
 from __future__ import annotations
 
@@ -23,14 +20,14 @@ class Result:
     """The outcome of `Session.do`.
 
     Attributes:
-        text: the instruction as said.
-        plan: what it was taken to mean; None for undo and redo.
+        text: the instruction as given.
+        plan: its plan; None for undo and redo.
         receipts: one for each operation of the plan, in order.
         before, scene: the scene before and after; they share every column that did not change.
-        viewer: the camera whose left and right were meant.
-        selection: what "it" means next, None if nothing was selected.
-        seconds: wall time a stage: "plan", "embed", "edit", "log".
-        dry_run: nothing was kept; `scene` shows what would be.
+        viewer: the camera in whose frame left and right were resolved.
+        selection: what "it" refers to in the next instruction, None if nothing was selected.
+        seconds: wall time of each stage: "plan", "embed", "edit", "log".
+        dry_run: the session's scene was not changed; `scene` is what the edit would give.
     """
 
     text: str
@@ -50,13 +47,14 @@ class Result:
         return render(self.scene.cloud, camera or self.viewer, background)
 
     def sentences(self) -> tuple[str, ...]:
-        """What was done, a sentence for each operation, with the notes a person should read: first what was read
-        otherwise than it was written, if anything was."""
-        read = (f"note: {self.plan.reason}",) if self.plan is not None and self.plan.reason else ()
-        return read + tuple(line for r in self.receipts for line in (r.sentence(), *(f"note: {n}" for n in r.notes)))
+        """A sentence for each operation, each followed by its notes; first a note on words that the planner corrected,
+        if there are any."""
+        corrected = (f"note: {self.plan.reason}",) if self.plan is not None and self.plan.reason else ()
+        lines = tuple(line for r in self.receipts for line in (r.sentence(), *(f"note: {n}" for n in r.notes)))
+        return corrected + lines
 
     def to_json(self) -> dict[str, Any]:
-        """Plain data for `--json`; the plan tells who planned it, by which prompt, and what asking a model took."""
+        """Plain data for `--json`; the plan holds its planner, prompt hash and model usage."""
         return {
             "verdict": "ok",
             "text": self.text,

@@ -2,7 +2,7 @@
 
     do(text) -> planner.plan -> EditPlan -> for each operation: resolve, apply, check -> Receipt -> log -> Result
 
-An instruction is carried out whole or not at all, and its record is on the disk before the session moves on.
+An instruction is carried out completely or not at all, and its record is on the disk before the state changes.
 """
 
 from __future__ import annotations
@@ -19,16 +19,15 @@ from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ...gaussians.timing import timed
-from . import log_records
-from .clarify import Question, answered
+from . import log as session_log
+from .clarify import Question, plan_with_answer
 from .history import History, State
-from .log import SessionLog
-from .plan_runner import Stopped, carry_out, names_things
-from .planner_client import Reader, step_meant
-from .refusal import refusal, retold
-from .replay import Replayed, deeds
+from .observation import graph_of, picture_of
+from .plan_runner import PlanFailed, has_queries, run_plan
+from .planner_client import PlannerClient, undo_or_redo
+from .refusal import refusal, with_message
+from .replay import Replayed, logged_edits
 from .result import Result
-from .sight import graph_of, picture_of
 
 if TYPE_CHECKING:
     from ...gaussians.language.encoders import Encoder
@@ -46,28 +45,28 @@ class Session:
     """A conversation about one scene.
 
     Args:
-        scene: where it starts; never changed in place.
-        planner: who reads instructions: a name that `planners.load` takes, or a planner. "auto": the grammar, and where
-            it abstains a language model, if `SCENEWRIGHT_MODEL` names one.
-        encoder: which encoder words are compared with: a name that `gaussians.language.encoders.load` takes, or one.
+        scene: the initial scene; never changed in place.
+        planner: turns instructions into plans: a name that `planners.load` takes, or a planner. "auto": the grammar,
+            and where it abstains a language model, if `SCENEWRIGHT_MODEL` names one.
+        encoder: text and image encoder: a name that `gaussians.language.encoders.load` takes, or an encoder.
         log: path of a session log to append to, or None.
-        viewer: whose left and right are meant, and what `Result.render` shows; by default the scene's first camera,
-            or a view chosen from the scene.
-        progress: told how far long work is.
-        seed: what varies between two inserted things of a kind.
+        viewer: the camera that defines left and right, and that `Result.render` uses; by default the scene's first
+            camera, or a view chosen from the scene.
+        progress: called with the stage and the share done during long work.
+        seed: varies the assets that are inserted.
         pixel_checks: also compare the viewer's picture before and after each operation.
         budget: what language models may cost: "20s" for each instruction, "0.05usd" for the whole session, or both,
-            "20s,0.05usd". Used up, "auto" leaves them out, and says so.
-        pictures: let models see the viewer's picture, where they can.
+            "20s,0.05usd". When it is used up, "auto" goes on without a model, and says so.
+        pictures: send the viewer's picture to models that take pictures.
 
     Attributes:
-        question: which of several things is meant, or what is nearest to one that is not there; None if nothing is
-            open.
+        question: the open question: an ambiguous query with its candidates, or an absent one with the nearest things;
+            None if there is none.
         pixel_checks: also compare the viewer's picture before and after each operation.
 
     Raises:
-        UserError: no such planner, or the budget is none.
-        BackendError: the planner that was named lacks something.
+        UserError: no such planner, or the budget cannot be parsed.
+        BackendError: a package, key or file that the planner needs is missing.
         FileError: the log cannot be opened.
     """
 
@@ -86,27 +85,27 @@ class Session:
         pictures: bool = False,
     ) -> None:
         self._progress = progress or (lambda stage, fraction: None)
-        # The planner first: a name that is none leaves no log behind.
-        self._reader = Reader(planner, self, budget, pictures, self._progress)
+        # The planner comes first, so that an unknown name creates no log file.
+        self._planner = PlannerClient(planner, self, budget, pictures, self._progress)
         self._encoder = encoder
         self._viewer = viewer
         self._seed = seed
         self.pixel_checks = pixel_checks
         self.question: Question | None = None
         self._history = History(State(scene))
-        self._log = SessionLog(log) if log is not None else None
-        self._record("open", log_records.opened, self._history.present)
+        self._log = session_log.SessionLog(log) if log is not None else None
+        self._record("open", session_log.open_fields, self._history.present)
 
-    # -- what it is now ---------------------------------------------------------------------------------------------
+    # -- state ------------------------------------------------------------------------------------------------------
 
     @property
     def scene(self) -> Scene:
-        """The scene as it stands."""
+        """The present scene."""
         return self._history.present.scene
 
     @property
     def last(self) -> Selection | None:
-        """What "it" means."""
+        """The selection that "it" refers to."""
         return self._history.present.last
 
     @property
@@ -117,7 +116,7 @@ class Session:
 
     @property
     def viewer(self) -> Camera:
-        """Whose left and right are meant."""
+        """The camera that defines left and right."""
         if self._viewer is None:
             from ..pictures.named_cameras import default_view
 
@@ -144,12 +143,12 @@ class Session:
 
             present = self._history.present
             state = replace(present, scene=embed(present.scene, self.encoder, progress=self._progress))
-            self._record("embed", log_records.embedded, present, state)
+            self._record("embed", session_log.embed_fields, present, state)
             self._history.amend(state)
         return self.scene
 
     def graph(self) -> SceneGraph:
-        """What stands where, and where the viewer stands; ids are groups. Embeds the scene, as a query would.
+        """The scene graph with the viewer in it; ids are group ids. Embeds the scene if it is not embedded yet.
 
         Raises:
             ScenewrightError: the scene could not be embedded.
@@ -158,116 +157,116 @@ class Session:
         return graph_of(self.embed(), self.viewer)
 
     def picture(self) -> bytes:
-        """The viewer's view as PNG, as planners see it."""
+        """The viewer's view as PNG, as it is sent to planners."""
         return picture_of(self.scene, self.viewer)
 
     def _context(self, last: Selection | None) -> Context:
-        """What an operation is given besides the scene, where "it" means `last`."""
+        """The context of an operation, where "it" refers to `last`."""
         from ...tools.operation import Context
 
         encoder = self.encoder if self.scene.language is not None else None
         return Context(viewer=self.viewer, last=last, encoder=encoder, seed=self._seed, pixel_checks=self.pixel_checks)
 
-    # -- who reads --------------------------------------------------------------------------------------------------
+    # -- planner ----------------------------------------------------------------------------------------------------
 
     @property
     def planner(self) -> str:
-        """Who reads instructions, as receipts call it; for "auto" with the model that it may ask."""
-        return self._reader.name
+        """Name of the planner, as in receipts; for "auto" with the model that it may ask."""
+        return self._planner.name
 
     @planner.setter
     def planner(self, planner: str | Planner) -> None:
-        self._reader.use(planner)
+        self._planner.use(planner)
 
     @property
     def budget(self) -> Budget:
         """What language models may cost: seconds for an instruction, dollars for the session."""
-        return self._reader.budget
+        return self._planner.budget
 
     @property
     def spent(self) -> Usage | None:
-        """What language models were asked for in this session, whatever came of it; None if none was."""
-        return self._reader.spent
+        """Usage of language models in this session, refused instructions included; None if no model was asked."""
+        return self._planner.spent
 
     @property
     def planned(self) -> EditPlan | None:
-        """The plan that was made last, whatever came of it."""
-        return self._reader.last
+        """The latest plan, even if it was refused."""
+        return self._planner.last
 
     # -- one instruction --------------------------------------------------------------------------------------------
 
     def do(self, text: str) -> Result:
-        """Carry out an instruction, whole or not at all. "undo" and "redo" in words are understood too.
+        """Carry out an instruction completely or not at all. "undo" and "redo" in words are understood too.
 
         Raises:
-            NotUnderstoodError: the words were not understood; the message says which. (A UserError.)
+            NotUnderstoodError: some words were not understood; the message names them. (A UserError.)
             ImpossibleError: understood, but there is no operation for it. (An InstructionError.)
-            AbsentError: what is named is not there. `question` holds the nearest things.
-            AmbiguousError: several things match. `question` holds them; `answer` says which.
+            AbsentError: a thing that is named is not there. `question` holds the nearest things.
+            AmbiguousError: several things match. `question` holds them; `answer` chooses among them.
             CheckFailedError: an operation failed its own check and everything was rolled back.
             InstructionError: it cannot be done as said.
-            BackendError: a language model that was named as the only planner gave no plan.
+            BackendError: a language model that was chosen as the only planner gave no plan.
         """
-        if (step := step_meant(text)) is not None:
+        if (step := undo_or_redo(text)) is not None:
             return self.undo() if step == "undo" else self.redo()
         started = time.perf_counter()
         try:
             plan = self.plan(text)
         except ScenewrightError as error:
-            self._record("failed", log_records.refused, text, None, error, self._history.present)
+            self._record("failed", session_log.failed_fields, text, None, error, self._history.present)
             raise
         return self.apply(plan, planned_in=time.perf_counter() - started)
 
     def plan(self, text: str) -> EditPlan:
-        """What an instruction is taken to mean; nothing changes. Planners that look at the scene embed it.
+        """The plan of an instruction; nothing is edited. Planners that look at the scene embed it.
 
-        Words that were not understood give a plan without operations; its `reason` says which.
+        An instruction that is not understood gives a plan without operations; its `reason` names the words.
 
         Raises:
-            UserError: the text is too long to be an instruction, or no text.
-            BackendError: a language model that was named as the only planner gave no plan.
+            UserError: the text is too long or is not valid Unicode.
+            BackendError: a language model that was chosen as the only planner gave no plan.
         """
-        return self._reader.plan(text, self._history.present.spoken or None)
+        return self._planner.plan(text, self._history.present.context or None)
 
     def preview(self, instruction: str | EditPlan) -> Result:
-        """A dry run: the result as it would be. Nothing is edited and no edit logged; the scene may become embedded."""
+        """A dry run: the result as it would be. Nothing is edited or logged, but the scene may become embedded."""
         plan = self.plan(instruction) if isinstance(instruction, str) else instruction
         return self._carry_out(plan, {}, dry_run=True)[0]
 
     def apply(self, plan: EditPlan, *, planned_in: float = 0.0) -> Result:
-        """Carry out a plan that was made before, whole or not at all; raises as `do`."""
+        """Carry out a plan completely or not at all; raises as `do`. `planned_in`: seconds that planning took."""
         seconds = {"plan": planned_in}
         try:
             result, state = self._carry_out(plan, seconds, dry_run=False)
         except ScenewrightError as error:
-            self._record("failed", log_records.refused, plan.instruction, plan, error, self._history.present)
+            self._record("failed", session_log.failed_fields, plan.instruction, plan, error, self._history.present)
             raise
         with timed(seconds, "log"):
-            self._record("do", log_records.done, result, self._history.present, state)
+            self._record("do", session_log.do_fields, result, self._history.present, state)
         self._history.advance(state)
         return result
 
     def answer(self, text: str) -> Result:
-        """Say which of the things in `question` was meant: a number, "all", "the left one", "the red one".
+        """Choose among the candidates of `question`: by a number, "all", "the left one", "the red one".
 
         Raises:
-            UserError: nothing was asked, or the answer is no choice. The question then stands.
+            UserError: there is no open question, or the answer does not choose. The question then stays open.
         """
         return self.apply(self.answered(text))
 
     def answered(self, text: str) -> EditPlan:
-        """The plan that an answer to `question` makes of the one it was asked about; raises as `answer`."""
+        """The plan of `question` with the answer in it; raises as `answer`."""
         if self.question is None or not self.question.candidates:
             raise UserError("there is no open question; give an instruction")
-        return answered(self.question, text, self._reader.noun_phrase)
+        return plan_with_answer(self.question, text, self._planner.noun_phrase)
 
     def select(self, phrase: str | Query) -> Selection:
-        """What a phrase means here, whatever the verdict; the scene does not change, and "it" means what was found.
+        """Resolve a phrase, whatever the verdict; the scene does not change, and "it" refers to what was found.
 
         Raises:
             UserError: the phrase was not understood.
         """
-        query = self._reader.query(phrase)
+        query = self._planner.query(phrase)
         self.embed()
         found = self._context(self.last).resolve(self.scene, query)
         if found.verdict == "found":
@@ -275,11 +274,11 @@ class Session:
         return found
 
     def adjust(self, *, grow: float | None = None, invert: bool = False) -> Result:
-        """Grow what is selected by metres (negative shrinks it), or turn it inside out; a step that can be undone.
+        """Grow the selection by metres (negative shrinks it), or invert it; a step that can be undone.
 
         Raises:
             AbsentError: nothing is selected, or nothing would be left.
-            UserError: the distance is no number or too large.
+            UserError: the distance is not a number, or is too large.
         """
         from pydantic import ValidationError
 
@@ -293,7 +292,7 @@ class Session:
         return self.apply(EditPlan(instruction=query.describe(), ops=(Select(target=query),), planner="said"))
 
     def explain(self, phrase: str | Query) -> Explanation:
-        """Why a phrase means what it means here, term by term; nothing changes, not even what "it" means.
+        """Explain how a phrase resolves, term by term; nothing changes, not even what "it" refers to.
 
         Raises:
             UserError: the phrase was not understood.
@@ -301,72 +300,73 @@ class Session:
         from ...gaussians.language.query.explain import explain
         from ...gaussians.language.query.resolve import Resolver
 
-        query = self._reader.query(phrase)
+        query = self._planner.query(phrase)
         return explain(Resolver(self.embed(), self.viewer, self.encoder, self.last), query)
 
     def recall(self, text: str | None) -> None:
-        """Let "it" mean what an earlier instruction was about, without carrying that out; None forgets.
+        """Let "it" refer to the target of an earlier instruction, without carrying that out; None clears it.
 
-        An instruction that cannot be read or found leaves "it" without a meaning.
+        After an instruction that cannot be read or whose target is not found, "it" refers to nothing.
         """
         last: Selection | None = None
-        if text and (about := self._reader.subject(text)) is not None:
+        if text and (about := self._planner.subject(text)) is not None:
             scene = self.embed()
             found = self._context(None).resolve(scene, about)
             last = found if found.verdict == "found" else None
-        self._history.amend(replace(self._history.present, last=last, spoken=text or ""))
+        self._history.amend(replace(self._history.present, last=last, context=text or ""))
 
     def replay(self, log: str | Path, *, session: int = -1, skip_failed: bool = False) -> list[Replayed]:
-        """Carry out what another session did, here: words are resolved again, ids only where the scene is the same.
+        """Carry out the edits of a logged session on this scene.
 
-        Instructions that were undone there are left out. Each becomes a step of its own that can be undone.
+        Words are resolved again; group ids are used only where the cloud is the same. Instructions that were undone are
+        left out. Each edit is a step that can be undone.
 
         Args:
             log: a session log.
             session: which of the sessions in it, counted from the first (0) or the last (-1).
-            skip_failed: go on after an instruction that cannot be carried out here and report it; without it the
-                session is put back to where it was and the error is raised.
+            skip_failed: report an instruction that cannot be carried out here and go on; without it the replayed edits
+                are undone and the error is raised.
 
         Raises:
             FileError: the log cannot be read.
             UserError: it holds no such session.
         """
         outcome: list[Replayed] = []
-        for deed in deeds(log, session):
+        for edit in logged_edits(log, session):
             try:
-                result = self.apply(deed.on(self._history.present.digest))
-                outcome.append(Replayed(deed.text, result, None))
+                result = self.apply(edit.plan_for(self._history.present.digest))
+                outcome.append(Replayed(edit.text, result, None))
             except ScenewrightError as error:
                 if not skip_failed:
                     for _ in outcome:
                         self.undo()
-                    told = f"replay stopped at {deed.text!r}, all of it was taken back: {error}"
-                    raise retold(error, told) from error
-                outcome.append(Replayed(deed.text, None, error))
+                    message = f"replay stopped at {edit.text!r}, all of it was undone: {error}"
+                    raise with_message(error, message) from error
+                outcome.append(Replayed(edit.text, None, error))
         return outcome
 
-    # -- back and forth ---------------------------------------------------------------------------------------------
+    # -- undo and redo ----------------------------------------------------------------------------------------------
 
     def undo(self) -> Result:
-        """Take the last instruction back: the scene is again the very value it was.
+        """Undo the last instruction: the scene is again the same object as before it.
 
         Raises:
             UserError: there is nothing to undo.
         """
-        return self._step("undo", self._history.behind(), self._history.present.text, self._history.back)
+        return self._step("undo", self._history.undo_target(), self._history.present.text, self._history.undo)
 
     def redo(self) -> Result:
-        """Do again what was taken back.
+        """Redo the instruction that was undone last.
 
         Raises:
             UserError: there is nothing to redo.
         """
-        ahead = self._history.ahead()
-        return self._step("redo", ahead, ahead.text, self._history.forth)
+        target = self._history.redo_target()
+        return self._step("redo", target, target.text, self._history.redo)
 
     def _step(self, kind: str, to: State, text: str, move: Callable[[], State]) -> Result:
         before = self._history.present
-        self._record(kind, log_records.moved, text, before, to)
+        self._record(kind, session_log.step_fields, text, before, to)
         move()
         self.question = None
         return Result(f"{kind}: {text}", None, (), before.scene, to.scene, self.viewer, to.last)
@@ -377,40 +377,40 @@ class Session:
         """Write the scene to a file; an existing one only with `force`.
 
         Raises:
-            UserError: the file exists, or no format is written under its name.
+            UserError: the file exists, or its suffix is of no format that can be written.
             FileError: it cannot be written.
         """
         from ...gaussians.files import save
 
         save(self.scene, path, force=force)
-        self._record("save", log_records.saved, path, self._history.present)
+        self._record("save", session_log.save_fields, path, self._history.present)
 
     def close(self) -> None:
         """Close the log; closing twice is harmless."""
         if self._log is not None:
             self._log.close()
 
-    # -- inside -----------------------------------------------------------------------------------------------------
+    # -- private ----------------------------------------------------------------------------------------------------
 
-    def _record(self, kind: str, fields: Callable[P, dict[str, Any]], *said: P.args, **named: P.kwargs) -> None:
-        """Write a record into the log if there is one; `fields` of it are worked out only then."""
+    def _record(self, kind: str, fields: Callable[P, dict[str, Any]], *args: P.args, **kwargs: P.kwargs) -> None:
+        """Write a record into the log, if there is one; `fields` is called only then."""
         if self._log is not None:
-            self._log.append(kind, fields(*said, **named))
+            self._log.append(kind, fields(*args, **kwargs))
 
     def _carry_out(self, plan: EditPlan, seconds: dict[str, float], *, dry_run: bool) -> tuple[Result, State]:
         self.question = None
         if not plan.ops:
             raise refusal(plan)
-        if names_things(plan):
+        if has_queries(plan):
             with timed(seconds, "embed"):
                 self.embed()
         before = self._history.present
         with timed(seconds, "edit"):
             try:
-                state, receipts = carry_out(plan, before, self._context, dry_run=dry_run)
-            except Stopped as stopped:
-                self.question = stopped.question
-                raise stopped.error from stopped.__cause__
+                state, receipts = run_plan(plan, before, self._context, dry_run=dry_run)
+            except PlanFailed as failure:
+                self.question = failure.question
+                raise failure.error from failure.__cause__
         viewer, last = self.viewer, state.last
         result = Result(plan.instruction, plan, receipts, before.scene, state.scene, viewer, last, seconds, dry_run)
         return result, state

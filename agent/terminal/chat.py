@@ -1,8 +1,7 @@
-"""The conversation: a line in, an edit and a picture out.
+"""The chat: passes each line to the session or to a slash command, and shows the result.
 
-Knows what is an instruction, an answer or a command, how to ask back, and what to show. Refuses to know how an
-instruction is carried out (the session does), what the commands do (`slashes.py`) and where lines come from
-(`lines.py`).
+A line is a command (`slash_commands.py`), an answer to an open question, or an instruction. Lines come from
+`input_lines.py`.
 """
 
 from __future__ import annotations
@@ -12,13 +11,12 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from ...gaussians.errors import AbsentError, InstructionError, ScenewrightError, UserError
-from ..session.model_usage import asked
-from ..session.planner_client import dismisses, step_meant
+from ..session.plan_report import candidate_json, planner_json, refusal_json, usage_lines
+from ..session.planner_client import is_dismissal, undo_or_redo
 from ..session.refusal import verdict_of
-from ..session.resolved_plan import candidate_json, planner_json, refusal_json
 from . import slash_commands
 from .halfblocks import depth_of, draw
-from .input_lines import Lines
+from .input_lines import InputLines
 from .tables import coloured
 
 if TYPE_CHECKING:
@@ -30,22 +28,22 @@ if TYPE_CHECKING:
     from ..session.session import Session
     from .output import Terminal
 
-COMMANDS = tuple(slash_commands.SLASHES)
-ENDS = ("/quit", "/exit", "quit", "exit")  # with and without the stroke: nothing else can be meant
+COMMANDS = tuple(slash_commands.SLASH_COMMANDS)
+END_COMMANDS = ("/quit", "/exit", "quit", "exit")  # with and without the slash
 
 
 class Chat:
-    """One conversation.
+    """One chat on a session.
 
     Args:
-        session: what is talked about.
-        terminal: where answers go.
+        session: the session to edit.
+        terminal: where answers are printed.
         input, output: prompt_toolkit's, for tests; by default the process's terminal, or its pipe.
 
     Attributes:
         planned: the last plan that was carried out.
-        saved: whether the scene is as it was written last.
-        over: whether somebody ended it.
+        saved: whether the scene has not changed since it was saved.
+        ended: whether the user ended the chat.
     """
 
     def __init__(
@@ -55,32 +53,32 @@ class Chat:
         self.terminal = terminal
         self.planned: EditPlan | None = None
         self.saved = True
-        self.over = False
-        self._lines = Lines(COMMANDS, self._words, terminal.as_json, input, output)
-        self._before: EditPlan | None = None
+        self.ended = False
+        self._lines = InputLines(COMMANDS, self._words, terminal.as_json, input, output)
+        self._previous_plan: EditPlan | None = None
 
     # -- the loop ---------------------------------------------------------------------------------------------------
 
     def run(self) -> None:
-        """Read lines until one of `ENDS` or the end of input. Ctrl-C ends the instruction, not the conversation."""
-        if self._lines.typed:
+        """Read lines until one of `END_COMMANDS` or the end of input. Ctrl-C ends the instruction, not the chat."""
+        if self._lines.interactive:
             self._greet()
         for line in self._lines:
-            if line.strip().lower() in ENDS:
+            if line.strip().lower() in END_COMMANDS:
                 break
             if line.strip():
                 self.say(line.strip())
-            if self.over:
+            if self.ended:
                 break
         if not self.saved:
             self.terminal.say("the edited scene was not saved")
 
     def say(self, line: str) -> None:
-        """One line: a command, an answer to an open question, or an instruction. Errors become one sentence."""
-        self._before = self.session.planned
+        """Handle one line: a command, an answer to an open question, or an instruction. Errors become one sentence."""
+        self._previous_plan = self.session.planned
         try:
             with self.terminal.interruptible():
-                slash_commands.carry_out(self, line) if line.startswith("/") else self._instruction(line)
+                slash_commands.run_command(self, line) if line.startswith("/") else self._instruction(line)
         except KeyboardInterrupt:
             self.tell("cancelled; nothing was changed", {"verdict": "cancelled"})
         except InstructionError as error:
@@ -88,10 +86,10 @@ class Chat:
         except ScenewrightError as error:
             if self.terminal.debug:
                 raise
-            said = "\n".join([str(error), *asked(self._fresh)])
-            data = {"verdict": verdict_of(error), "reason": str(error), **refusal_json(error, self._fresh)}
-            self.tell(said, data, "red")
-        except Exception as error:  # a mistake of ours must not cost the user what was not saved yet
+            text = "\n".join([str(error), *usage_lines(self._new_plan)])
+            data = {"verdict": verdict_of(error), "reason": str(error), **refusal_json(error, self._new_plan)}
+            self.tell(text, data, "red")
+        except Exception as error:  # after a bug of ours the user must still be able to save
             if self.terminal.debug:
                 raise
             reason = f"internal error ({type(error).__name__}: {error}); the scene is as it was. Please report it"
@@ -99,8 +97,8 @@ class Chat:
 
     def _instruction(self, text: str) -> None:
         question = self.session.question
-        if question is not None and question.selection.verdict == "ambiguous" and step_meant(text) is None:
-            if dismisses(text):
+        if question is not None and question.selection.verdict == "ambiguous" and undo_or_redo(text) is None:
+            if is_dismissal(text):
                 self.session.question = None
                 self.tell("nothing was changed", {"verdict": "cancelled"})
                 return
@@ -109,27 +107,27 @@ class Chat:
             except UserError:
                 plan = self.session.plan(text)
                 if not plan.ops:
-                    raise  # neither an answer nor an instruction: the question stands
-                result = self.session.apply(plan, planned_in=plan.seconds)  # which drops the question
+                    raise  # neither an answer nor an instruction: the question stays open
+                result = self.session.apply(plan, planned_in=plan.seconds)  # closes the question
         else:
             result = self.session.do(text)
         self.show_result(result)
 
     def show_result(self, result: Result) -> None:
-        """What was done, in words and, for who sees it, as a picture."""
+        """Print the result and, on an interactive terminal, a picture."""
         self.planned, self.saved = result.plan or self.planned, False
         lines = list(result.sentences()) or [result.text]
-        lines += asked(result.plan)
+        lines += usage_lines(result.plan)
         if sum(result.seconds.values()) > 0:
             lines.append(f"({sum(result.seconds.values()):.2f} s)")
         self.tell("\n".join(lines), result.to_json(), "green")
-        if self._lines.typed:
+        if self._lines.interactive:
             self.show_picture()
 
     @property
-    def _fresh(self) -> EditPlan | None:
-        """The plan that was made of this line, though nothing may have come of it; None if none was."""
-        return self.session.planned if self.session.planned is not self._before else None
+    def _new_plan(self) -> EditPlan | None:
+        """The plan that was made for the present line, even if it was refused; None if there is none."""
+        return self.session.planned if self.session.planned is not self._previous_plan else None
 
     def _ask_back(self, error: InstructionError) -> None:
         question = self.session.question
@@ -144,18 +142,18 @@ class Chat:
             "verdict": verdict_of(error),
             "reason": str(error),
             "candidates": [candidate_json(c) for c in candidates],
-            **planner_json(question.plan if question else self._fresh),
+            **planner_json(question.plan if question else self._new_plan),
         }
-        self.tell("\n".join([*lines, *asked(self._fresh)]), data, "yellow")
+        self.tell("\n".join([*lines, *usage_lines(self._new_plan)]), data, "yellow")
 
-    # -- what the user sees -----------------------------------------------------------------------------------------
+    # -- output -----------------------------------------------------------------------------------------------------
 
     def tell(self, text: str, data: dict[str, Any], style: str = "default") -> None:
-        """An answer, its first line in a colour that says how it went."""
+        """Print an answer, its first line in the colour `style`."""
         self.terminal.result(coloured(text, style, self.terminal.out), data)
 
     def show_picture(self) -> None:
-        """The current view, as large as the terminal allows and the eye needs."""
+        """Print the current view, at most 100 columns by 40 rows and no larger than the terminal."""
         from ...gaussians.render import render
         from ...gaussians.viewpoints.coverage import fit_camera
 
@@ -173,7 +171,7 @@ class Chat:
         self.show_picture()
 
     def _words(self) -> Iterable[str]:
-        """What may be completed in an instruction: operations, and the names of things in the scene."""
+        """Words for completion in an instruction: operations, and the labels of things in the scene."""
         from ...tools.registry import OPS
 
         language = self.session.scene.language

@@ -1,7 +1,4 @@
-"""Completion of a chat line: commands after a slash, else the operations and the things in the scene.
-
-Knows prompt_toolkit. Refuses to know sessions: it is given words.
-"""
+"""Completion of a chat line: commands after a slash, file paths after /save, else given words and phrases."""
 
 from __future__ import annotations
 
@@ -16,7 +13,7 @@ class ChatCompleter(Completer):
 
     Args:
         commands: names that begin a line, with their slash.
-        words: asked at each key for what else can be said; phrases of several words are completed as one.
+        words: gives the other completions; called at each key. A phrase of several words is completed as a whole.
     """
 
     def __init__(self, commands: tuple[str, ...], words: Callable[[], Iterable[str]]) -> None:
@@ -35,7 +32,7 @@ class ChatCompleter(Completer):
             yield from self._phrases(text)
 
     def _phrases(self, text: str) -> Iterable[Completion]:
-        """Words and phrases that continue the longest tail of the line that begins one of them."""
+        """Words and phrases that begin with the longest possible end of the line."""
         words = tuple(self._words())
         starts = [0, *(i + 1 for i, c in enumerate(text) if c == " ")]
         for start in starts:

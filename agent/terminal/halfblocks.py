@@ -1,7 +1,4 @@
-"""A picture in a terminal: two pixels a character cell, by upper half blocks.
-
-Knows escape sequences and what a terminal can show. Refuses to know where the picture came from.
-"""
+"""Draws a picture in a terminal: two pixels in each character cell, as upper half blocks with escape sequences."""
 
 from __future__ import annotations
 
@@ -15,13 +12,13 @@ from numpy.typing import NDArray
 Depth = Literal["truecolor", "256", "ascii"]
 Picture = NDArray[np.uint8]  # [H, W, 3], display space
 
-_RAMP = " .:-=+*#%@"  # dark to light, even steps of ink
+_RAMP = " .:-=+*#%@"  # dark to light, in even steps
 _RESET = "\x1b[0m"
 _CUBE = np.array([0, 95, 135, 175, 215, 255])  # channel levels of xterm's 6x6x6 colour cube, colours 16 to 231
 
 
 class Stream(Protocol):
-    """What matters of an output stream."""
+    """The part of an output stream that `depth_of` needs."""
 
     @property
     def encoding(self) -> str | None: ...
@@ -29,7 +26,7 @@ class Stream(Protocol):
 
 
 def depth_of(stream: Stream, env: Mapping[str, str] | None = None) -> Depth:
-    """The best a stream can show: a pipe, a dumb terminal or NO_COLOR gets letters."""
+    """The best colour depth of a stream; a pipe, a dumb terminal or NO_COLOR gives "ascii"."""
     env = os.environ if env is None else env
     encodes = (stream.encoding or "").lower().replace("-", "").startswith("utf8")
     if not stream.isatty() or env.get("TERM", "") in ("", "dumb") or "NO_COLOR" in env or not encodes:
@@ -42,7 +39,7 @@ def depth_of(stream: Stream, env: Mapping[str, str] | None = None) -> Depth:
 def draw(image: Picture, columns: int, rows: int, depth: Depth = "truecolor") -> str:
     """Text of at most `columns` x `rows` cells showing `image [H, W, 3]` with its aspect kept.
 
-    Every line ends in a reset, so that the picture never colours what follows. A cell is twice as high as wide.
+    Every line ends with a reset, so that the colours do not spread to later text. A cell is twice as high as wide.
     """
     height, width = image.shape[:2]
     shrink = min(columns / width, 2 * rows / height)
@@ -65,7 +62,7 @@ def draw(image: Picture, columns: int, rows: int, depth: Depth = "truecolor") ->
 
 
 def _shrink(image: Picture, width: int, height: int) -> Picture:
-    """The picture at another size, each pixel the mean of what it covers (box filter)."""
+    """The picture at another size, each pixel the mean of those that it covers (box filter)."""
     from PIL import Image
 
     return np.asarray(Image.fromarray(np.ascontiguousarray(image)).resize((width, height), Image.Resampling.BOX))
@@ -80,7 +77,7 @@ def _palette(top: Picture, bottom: Picture) -> str:
 
 
 def _nearest_256(color: Picture) -> int:
-    """The closest of xterm's colour cube and its 24 greys (232 to 255, levels 8, 18, ... 238)."""
+    """The closest colour of xterm's colour cube and its 24 greys (232 to 255, levels 8, 18, ... 238)."""
     rgb = color.astype(int)
     cube = np.abs(rgb[:, None] - _CUBE).argmin(axis=1)
     grey = int(np.clip(round((rgb.mean() - 8) / 10), 0, 23))
@@ -90,7 +87,7 @@ def _nearest_256(color: Picture) -> int:
 
 
 def _letters(upper: Picture, lower: Picture) -> list[list[str]]:
-    """One letter a cell by its luminance (Rec. 709 weights)."""
+    """One character for each cell by its luminance (Rec. 709 weights)."""
     light = (upper.astype(float) + lower) / 2 @ np.array([0.2126, 0.7152, 0.0722])
     index = np.clip((light / 256 * len(_RAMP)).astype(int), 0, len(_RAMP) - 1)
     return [[_RAMP[i] for i in line] for line in index]

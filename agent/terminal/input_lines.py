@@ -1,6 +1,6 @@
-"""Where the lines of a conversation come from: a terminal with history and completion, or a pipe.
+"""Reads the lines of a chat from a terminal with history and completion, or from a pipe.
 
-Knows prompt_toolkit, and imports it only for a person. Refuses to know what is said.
+prompt_toolkit is imported only for an interactive terminal.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 PROMPT = "› "
 
 
-class Lines:
-    """The lines that are said, in order; iterating ends with the input.
+class InputLines:
+    """The lines of the input in order; the iteration ends with the input.
 
     Args:
         commands: names that begin a line, for completion.
-        words: asked at each key for what else can be completed.
-        bare: read line by line even from a terminal, as answers are for a program.
+        words: gives the other completions; called at each key.
+        plain: read without prompt and completion even from a terminal, as the answers are for a program.
         input, output: prompt_toolkit's, for tests; by default the process's terminal, or its pipe.
     """
 
@@ -33,21 +33,21 @@ class Lines:
         self,
         commands: tuple[str, ...],
         words: Callable[[], Iterable[str]],
-        bare: bool = False,
+        plain: bool = False,
         input: Input | None = None,
         output: Output | None = None,
     ) -> None:
         self._commands, self._words = commands, words
-        self._bare, self._input, self._output = bare, input, output
+        self._plain, self._input, self._output = plain, input, output
 
     @property
-    def typed(self) -> bool:
-        """Whether a person types them, who also sees the answers."""
-        return not self._bare and (self._input is not None or (sys.stdin.isatty() and sys.stdout.isatty()))
+    def interactive(self) -> bool:
+        """Whether a person types the lines and sees the answers."""
+        return not self._plain and (self._input is not None or (sys.stdin.isatty() and sys.stdout.isatty()))
 
     def __iter__(self) -> Iterator[str]:
-        """Ctrl-C drops the line that is being typed, Ctrl-D ends them."""
-        if not self.typed:
+        """Ctrl-C drops the line that is being typed; Ctrl-D ends the input."""
+        if not self.interactive:
             for line in sys.stdin:
                 yield line.rstrip("\n")
             return
@@ -81,7 +81,7 @@ class Lines:
 
 
 def history_file() -> Path | None:
-    """Where typed lines are kept between conversations; None if that folder cannot be made."""
+    """The file that keeps typed lines between chats; None if its folder cannot be made or written."""
     root = Path(os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state") / "scenewright"
     try:
         root.mkdir(parents=True, exist_ok=True)

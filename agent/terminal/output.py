@@ -1,7 +1,4 @@
-"""Where output goes: results on stdout, talk and progress on stderr, JSON when asked for.
-
-Knows streams. Refuses to know what a result means.
-"""
+"""Output of commands: results on stdout (as JSON on request), messages and progress on stderr; batch input files."""
 
 from __future__ import annotations
 
@@ -27,7 +24,7 @@ class Terminal:
 
     Attributes:
         as_json: print the result as one JSON object instead of text.
-        debug: let errors through with their traceback.
+        debug: show errors with their traceback.
     """
 
     def __init__(self, out: TextIO | None = None, err: TextIO | None = None) -> None:
@@ -47,31 +44,31 @@ class Terminal:
         return self._err or sys.stderr
 
     def result(self, text: str, data: Mapping[str, Any]) -> None:
-        """The command's answer: `data` as JSON where asked for, else `text`."""
+        """Print the command's result: `data` if JSON was requested, else `text`."""
         self.row(data) if self.as_json else self._write(self.out, text)
 
     def row(self, data: Mapping[str, Any]) -> None:
-        """One JSON object on one line of stdout."""
+        """Print one JSON object on one line of stdout."""
         self._write(self.out, json.dumps(data, ensure_ascii=False, default=str))
 
     def line(self, text: str) -> None:
-        """A line of a result that grows."""
+        """Print a line of a result on stdout while the work goes on."""
         self._write(self.out, text)
 
     def say(self, text: str) -> None:
-        """A remark for a person; what could steer a terminal, in names that others wrote, is left out."""
+        """Print a message on stderr, without control characters, which names in a scene file might contain."""
         self._write(self.err, "".join(c for c in text if c in "\n\t" or unicodedata.category(c) != "Cc"))
 
     def picture(self, drawn: str) -> None:
-        """A picture in text; left out where the output is for a program."""
+        """Print a picture drawn as text; nothing if the output is JSON."""
         if not self.as_json:
             self._write(self.out, drawn)
 
     def progress(self, stage: str, fraction: float) -> None:
-        """How far long work is, `fraction` in [0, 1]; drawn on a terminal only, at most ten times a second.
+        """Draw the progress of long work, `fraction` in [0, 1]; on a terminal only, at most ten times a second.
 
         Raises:
-            KeyboardInterrupt: the user interrupted, and Python lost it (see `interruptible`).
+            KeyboardInterrupt: the user interrupted, and Python lost the interrupt (see `interruptible`).
         """
         if self._interrupted:
             raise KeyboardInterrupt
@@ -83,7 +80,7 @@ class Terminal:
         self._last_progress = now
         filled = round(24 * min(max(fraction, 0.0), 1.0))
         line = f"{'━' * filled}{'╌' * (24 - filled)} {stage}"
-        # A line that wraps could not be taken back.
+        # The line is cut to the width of the terminal: a wrapped line could not be erased.
         self.err.write(f"\r\x1b[K{line[: shutil.get_terminal_size((80, 24)).columns - 1]}")
         self._line_open = True
         if fraction >= 1:
@@ -92,13 +89,13 @@ class Terminal:
 
     @contextmanager
     def interruptible(self) -> Iterator[None]:
-        """Long work that one Ctrl-C ends.
+        """A context for long work that one Ctrl-C ends.
 
-        Python drops an interrupt that arrives while a weak reference dies, which they do all the time while the
-        libraries of language models are imported; the next sign of progress then passes it on.
+        Python drops an interrupt that arrives in the callback of a dying weak reference, and many die while the
+        libraries of language models are imported. The next call of `progress` then raises it.
         """
         if threading.current_thread() is not threading.main_thread():
-            yield  # where no signals arrive
+            yield  # only the main thread receives signals
             return
 
         def note(number: int, frame: FrameType | None) -> None:
@@ -125,7 +122,7 @@ class Terminal:
         stream.flush()
 
     def refuse(self, error: ScenewrightError, data: Mapping[str, Any], choices: Sequence[str] = ()) -> NoReturn:
-        """An instruction that was not carried out: the reason, what it hesitated between, and the error's exit code."""
+        """Report an instruction that was not carried out, with its candidates, and exit with the error's code."""
         if self.as_json:
             self.row(data)
         self.say(f"scenewright: {error}")
@@ -136,20 +133,20 @@ class Terminal:
         raise typer.Exit(error.exit_code)
 
 
-terminal = Terminal()  # the process has one standard output; options set its flags, commands write to it
+terminal = Terminal()  # one for the process; options set its flags, commands write to it
 
 
-def explain(error: ScenewrightError) -> dict[str, Any]:
-    """An error as data: its verdict, what to do, the exit code, and what a model cost that was asked in vain."""
+def error_json(error: ScenewrightError) -> dict[str, Any]:
+    """An error as data: verdict, reason, exit code, and the usage of a model that gave no plan."""
     name = type(error).__name__.removesuffix("Error")
     verdict = "".join(f"_{c.lower()}" if c.isupper() else c for c in name).lstrip("_")
-    told = {"verdict": verdict, "reason": str(error), "exit_code": error.exit_code}
+    data = {"verdict": verdict, "reason": str(error), "exit_code": error.exit_code}
     usage = getattr(error, "usage", None)
-    return told if usage is None else {**told, "usage": usage.model_dump(mode="json")}
+    return data if usage is None else {**data, "usage": usage.model_dump(mode="json")}
 
 
 def read_batch(path: str) -> list[dict[str, Any]]:
-    """The rows of a batch file: one JSON object a line with `id`, `text` and perhaps `context`; "-" is stdin.
+    """The rows of a batch file: one JSON object a line with `id`, `text` and optionally `context`; "-" is stdin.
 
     Raises:
         UserError: a line is not such an object; the message names it.

@@ -1,8 +1,4 @@
-"""What begins with a slash in a conversation: each command, what it does in a line, and what it answers.
-
-Knows what a session can be asked besides instructions. Refuses to know where lines come from, and how an answer gets to
-the eye: that is the chat's.
-"""
+"""The slash commands of the chat: `SLASH_COMMANDS` has each command's help line and the function that runs it."""
 
 from __future__ import annotations
 
@@ -11,8 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from ...gaussians.errors import UserError
-from ..session.model_usage import asked, took
-from ..session.resolved_plan import plan_lines, selection_json
+from ..session.plan_report import format_usage, plan_lines, selection_json, usage_lines
 from .tables import table
 
 if TYPE_CHECKING:
@@ -20,7 +15,7 @@ if TYPE_CHECKING:
     from ..session.result import Result
     from ..session.session import Session
 
-STEP = 0.05  # metres by which a selection grows or shrinks if nothing is said
+STEP = 0.05  # metres, default distance by which a selection grows or shrinks
 _EXAMPLES = (
     "make the armchair teal and remove the coffee table",
     "move the plant 50 cm to the left",
@@ -29,46 +24,46 @@ _EXAMPLES = (
 
 
 class Conversation(Protocol):
-    """What a command may use of the chat that it is given in; see `chat.Chat`."""
+    """The part of `chat.Chat` that commands use."""
 
     session: Session
     planned: EditPlan | None
     saved: bool
-    over: bool
+    ended: bool
 
     def tell(self, text: str, data: dict[str, Any], style: str = "default") -> None: ...
     def show_result(self, result: Result) -> None: ...
     def show_picture(self) -> None: ...
 
 
-class Slash(NamedTuple):
-    """A command: what `/help` says of it, and what it does with the rest of its line."""
+class SlashCommand(NamedTuple):
+    """A command: its line in `/help`, and the function that runs it with the rest of the input line."""
 
-    says: str
-    do: Callable[[Conversation, str], None]
+    help: str
+    run: Callable[[Conversation, str], None]
 
 
-def carry_out(chat: Conversation, line: str) -> None:
-    """Do what a line that begins with a slash asks.
+def run_command(chat: Conversation, line: str) -> None:
+    """Run a line that begins with a slash.
 
     Raises:
-        UserError: there is no such command, or what follows it is not what it takes.
-        ScenewrightError: it cannot be done.
+        UserError: there is no such command, or its arguments are not valid.
+        ScenewrightError: the command failed.
     """
     name, _, rest = line.partition(" ")
-    if (slash := SLASHES.get(name.lower())) is None:
+    if (command := SLASH_COMMANDS.get(name.lower())) is None:
         raise UserError(f"there is no command {name}; /help lists them")
-    slash.do(chat, rest.strip())
+    command.run(chat, rest.strip())
 
 
 def _help(chat: Conversation, _: str) -> None:
     from ...tools.registry import describe
 
-    says = {name: slash.says for name, slash in SLASHES.items()}
+    help_lines = {name: command.help for name, command in SLASH_COMMANDS.items()}
     operations = table(("operation", "for example"), [(name, words) for name, _, words, _ in describe()])
-    commands = table(("command", "does"), list(says.items()))
-    said = "\n".join(["Say what to do, for example:", *(f"  {e}" for e in _EXAMPLES)])
-    chat.tell(f"{said}\n\n{operations}\n\n{commands}", {"commands": says})
+    commands = table(("command", "does"), list(help_lines.items()))
+    examples = "\n".join(["Say what to do, for example:", *(f"  {e}" for e in _EXAMPLES)])
+    chat.tell(f"{examples}\n\n{operations}\n\n{commands}", {"commands": help_lines})
 
 
 def _undo(chat: Conversation, _: str) -> None:
@@ -83,7 +78,7 @@ def _plan(chat: Conversation, text: str) -> None:
     if text:
         result = chat.session.preview(text)
         planned = plan_lines(result.plan) if result.plan is not None else []
-        lines = [*planned, *result.sentences(), *asked(result.plan), "(not done)"]
+        lines = [*planned, *result.sentences(), *usage_lines(result.plan), "(not done)"]
         chat.tell("\n".join(lines), result.to_json())
         return
     if chat.planned is None:
@@ -119,15 +114,15 @@ def _shrink(chat: Conversation, text: str) -> None:
 
 
 def _metres(text: str) -> float:
-    """How far a selection is to grow or shrink.
+    """The distance of /grow and /shrink; `STEP` if the text is empty.
 
     Raises:
-        UserError: the text is no such distance.
+        UserError: the text is not a distance above 0 and up to 100 m.
     """
     try:
         by = float(text.removesuffix("m").strip() or STEP)
     except ValueError as error:
-        raise UserError(f"{text!r} is no distance; say metres, for example /grow 0.05") from error
+        raise UserError(f"{text!r} is not a distance; give metres, for example /grow 0.05") from error
     if not 0 < by <= 100:
         raise UserError(f"a selection grows by metres above 0 and up to 100, not by {by:g}")
     return by
@@ -165,7 +160,7 @@ def _planner(chat: Conversation, spec: str) -> None:
     lines = [
         f"planner: {chat.session.planner}",
         f"models may take {budget.seconds:g} s an instruction{dollars}",
-        f"spent so far: {took(spent).removeprefix('in ')}" if spent else "no model was asked so far",
+        f"spent so far: {format_usage(spent).removeprefix('in ')}" if spent else "no model was asked so far",
     ]
     data = {
         "planner": chat.session.planner,
@@ -187,32 +182,30 @@ def _save(chat: Conversation, arguments: str) -> None:
         raise UserError("a quotation mark is open; write for example /save 'my room.ply'") from error
     names = [w for w in words if w != "--force"]
     if len(names) != 1:
-        raise UserError("say where to: /save out.ply (add --force to overwrite)")
+        raise UserError("give a file: /save out.ply (add --force to overwrite)")
     chat.session.save(names[0], force="--force" in words)
     chat.saved = True
     chat.tell(f"wrote {names[0]}", {"verdict": "ok", "path": names[0]})
 
 
 def _quit(chat: Conversation, _: str) -> None:
-    chat.over = True
+    chat.ended = True
 
 
-SLASHES: dict[str, Slash] = {
-    "/help": Slash("what can be said", _help),
-    "/undo": Slash("take the last instruction back", _undo),
-    "/redo": Slash("do again what was taken back", _redo),
-    "/plan": Slash("TEXT: what an instruction would do, without doing it; alone: the last plan", _plan),
-    "/select": Slash("TEXT: what a phrase means; 'it' then means that", _select),
-    "/why": Slash("TEXT: why a phrase means what it means, term by term", _why),
-    "/grow": Slash("[METRES]: take in what lies around the selection (0.05 m if not said)", _grow),
-    "/shrink": Slash("[METRES]: draw the selection back from what lies around it", _shrink),
-    "/invert": Slash("select everything but what is selected", _invert),
-    "/show": Slash("a picture of the current view; /show 2 looks through the scene's camera 2", _show),
-    "/things": Slash("what is in the scene", _things),
-    "/planner": Slash(
-        "[NAME]: who reads what is said, and what that cost; with a name, another one from now on", _planner
-    ),
-    "/history": Slash("the instructions that led here", _history),
-    "/save": Slash("FILE [--force]: write the scene", _save),
-    "/quit": Slash("end the conversation", _quit),
+SLASH_COMMANDS: dict[str, SlashCommand] = {
+    "/help": SlashCommand("list the operations and the commands", _help),
+    "/undo": SlashCommand("undo the last instruction", _undo),
+    "/redo": SlashCommand("redo what was undone last", _redo),
+    "/plan": SlashCommand("TEXT: what an instruction would do, without doing it; alone: the last plan", _plan),
+    "/select": SlashCommand("TEXT: select the things that a phrase describes; 'it' then refers to them", _select),
+    "/why": SlashCommand("TEXT: explain what a phrase selects, with the score of each term", _why),
+    "/grow": SlashCommand("[METRES]: add the Gaussians around the selection (default 0.05 m)", _grow),
+    "/shrink": SlashCommand("[METRES]: remove the Gaussians at the border of the selection", _shrink),
+    "/invert": SlashCommand("select everything that is not selected", _invert),
+    "/show": SlashCommand("a picture of the current view; /show 2 changes to the scene's camera 2", _show),
+    "/things": SlashCommand("list the things in the scene", _things),
+    "/planner": SlashCommand("[NAME]: the planner and what its models cost; with a name, change the planner", _planner),
+    "/history": SlashCommand("list the instructions that led to this scene", _history),
+    "/save": SlashCommand("FILE [--force]: write the scene", _save),
+    "/quit": SlashCommand("end the chat", _quit),
 }

@@ -1,7 +1,4 @@
-"""Tables and coloured lines for a person, by rich; plain text where the stream is no terminal.
-
-Knows layout. Refuses to know what is in the cells.
-"""
+"""Tables and coloured lines by rich; plain text where the stream is not a terminal."""
 
 from __future__ import annotations
 
@@ -11,7 +8,7 @@ from typing import TextIO
 
 
 def table(columns: Sequence[str], rows: Sequence[Sequence[object]], width: int = 100) -> str:
-    """Rows under headings, columns aligned, long cells wrapped; plain text without colour."""
+    """A table in plain text, `width` characters wide, with aligned columns and long cells wrapped."""
     from rich.box import SIMPLE_HEAD
     from rich.console import Console
     from rich.table import Table

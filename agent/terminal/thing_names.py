@@ -1,7 +1,4 @@
-"""The things of a scene as a person is told of them: by name where the name is likely right, counted where not.
-
-Knows the table of groups. Refuses to know how a name was found.
-"""
+"""Describes the things of a scene: by name where the name is likely right, else only as a number."""
 
 from __future__ import annotations
 
@@ -12,16 +9,16 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ...gaussians.language.field.language_field import Group
 
-SURE = 0.5  # calibrated probability from which a name is more often right than wrong
+NAME_THRESHOLD = 0.5  # calibrated probability from which a name is more often right than wrong
 
 
 def name_of_thing(group: Group) -> str:
-    """The thing's name, or that it has none that is likely right."""
-    return group.label if group.label and group.label_score >= SURE else "unnamed thing"
+    """The thing's label if it is likely right, else "unnamed thing"."""
+    return group.label if group.label and group.label_score >= NAME_THRESHOLD else "unnamed thing"
 
 
-def told(groups: Iterable[Group]) -> str:
-    """How many things there are and what they are called, e.g. "3 things: box ×2, lamp; 4 more without a sure name"."""
+def describe_things(groups: Iterable[Group]) -> str:
+    """How many things there are and their names, e.g. "3 things: box ×2, lamp; 4 more without a sure name"."""
     names = [name_of_thing(g) for g in groups]
     counts = Counter(names)
     nameless = counts.pop("unnamed thing", 0)

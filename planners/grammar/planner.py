@@ -32,7 +32,7 @@ from .vocabulary import lexicon
 from .vocabulary.unsafe import unsafe_words
 
 if TYPE_CHECKING:
-    from ..plan import Sight
+    from ..plan import Observation
 
 NAME = "grammar"
 
@@ -64,8 +64,8 @@ class GrammarPlanner:
     def __init__(self) -> None:
         _make_tables()
 
-    def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
-        """The plan for an instruction; see `Planner.plan`. The scene (`sight`) is ignored.
+    def plan(self, text: str, *, previous: str | None = None, observation: Observation | None = None) -> EditPlan:
+        """The plan for an instruction; see `Planner.plan`. The scene (`observation`) is ignored.
 
         Raises:
             UserError: the text is too long.

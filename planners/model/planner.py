@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 from ...gaussians.errors import ScenewrightError, UserError
 from ...tools.operation import EditOp
-from ..plan import EditPlan, NoPlanError, Planner, Sight, Usage, Verdict
+from ..plan import EditPlan, NoPlanError, Observation, Planner, Usage, Verdict
 from .backend import Answer, Message, ModelBackend, UnreachableError
 from .prompt.labels import sanitize
 from .prompt.messages import Request, messages, prompt_hash, repaired
@@ -62,7 +62,7 @@ class ModelPlanner:
         """The back end's name."""
         return self.backend.name
 
-    def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
+    def plan(self, text: str, *, previous: str | None = None, observation: Observation | None = None) -> EditPlan:
         """The plan for an instruction; see `Planner.plan`.
 
         A scene whose graph cannot be read is left out of the prompt; if that matters, the execution of the plan fails.
@@ -74,7 +74,7 @@ class ModelPlanner:
         """
         _require_words(text)
         started = time.monotonic()
-        request = self._request(text, previous, sight)
+        request = self._request(text, previous, observation)
         guard = Guard(text, request.previous, request.graph, _grammar())
         first = messages(request, self.backend.window)
         conversation = _Conversation(self.backend, first, started + self._seconds, self._progress)
@@ -92,14 +92,14 @@ class ModelPlanner:
             return self._made(outcome, text, conversation.usage, time.monotonic() - started)
         raise self._no_plan(review.wrong, conversation)
 
-    def _request(self, text: str, previous: str | None, sight: Sight | None) -> Request:
+    def _request(self, text: str, previous: str | None, observation: Observation | None) -> Request:
         """Input of the prompt. Labels are sanitised here, before anything else uses them."""
         graph, picture = None, None
-        if sight is not None:
+        if observation is not None:
             with suppress(ScenewrightError):
-                graph = sanitize(sight.graph())
+                graph = sanitize(observation.graph())
             with suppress(ScenewrightError):
-                picture = sight.picture() if self._pictures and self.backend.sees else None
+                picture = observation.picture() if self._pictures and self.backend.sees else None
         before = (previous or "").encode(errors="replace").decode()[:MAX_CHARS]
         return Request(text, before or None, graph, picture)
 

@@ -15,7 +15,7 @@ from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...tools.operation import EditOp
 from ..impossible import Step, StepRefused, metres, refuse_above, refuse_impossible
-from ..plan import EditPlan, Planner, Sight, Verdict
+from ..plan import EditPlan, Observation, Planner, Verdict
 from .graph_scene import Id, Stage
 
 _NEW = "new"  # ids of what a plan adds begin so
@@ -41,19 +41,19 @@ class Resolved:
 
 
 def resolve_text(
-    stage: Stage, planner: Planner, text: str, context: str | None = None, sight: Sight | None = None
+    stage: Stage, planner: Planner, text: str, context: str | None = None, observation: Observation | None = None
 ) -> Resolved:
     """What an instruction would touch; "it" is what the instruction before (`context`) was about on the same graph.
 
     Args:
-        sight: the graph as planners may look at it; its ids are the stage's rows.
+        observation: the graph as planners may look at it; its ids are the stage's rows.
 
     Raises:
         UserError: a text is too long to be an instruction.
         BackendError: a language model cannot be reached.
     """
-    last = recalled(stage, planner.plan(context, sight=sight)) if context else None
-    return resolve_plan(stage, planner.plan(text, previous=context, sight=sight), last)
+    last = recalled(stage, planner.plan(context, observation=observation)) if context else None
+    return resolve_plan(stage, planner.plan(text, previous=context, observation=observation), last)
 
 
 def resolve_plan(stage: Stage, plan: EditPlan, last: Selection | None = None) -> Resolved:

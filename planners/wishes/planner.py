@@ -18,7 +18,7 @@ from .reading import Reader, Reading, Unread
 from .room import CannotError, Room, copied
 
 if TYPE_CHECKING:
-    from ..plan import Sight
+    from ..plan import Observation
     from ..rooms.check import Violation
 
 NAME = "wishes"
@@ -43,7 +43,7 @@ class WishPlanner:
         except Unread:
             return False
 
-    def plan(self, text: str, *, previous: str | None = None, sight: Sight | None = None) -> EditPlan:
+    def plan(self, text: str, *, previous: str | None = None, observation: Observation | None = None) -> EditPlan:
         """The plan for a wish; see `Planner.plan`. `previous` is not looked at: a wish says what it is about.
 
         Raises:
@@ -52,7 +52,7 @@ class WishPlanner:
         started = time.perf_counter()
         told: dict[str, Any]
         try:
-            told = self._planned(self._reader.read(text), sight)
+            told = self._planned(self._reader.read(text), observation)
         except Unread as unread:
             unknown = tuple(w[:200] for w in unread.words)[:64]
             told = {"verdict": "not_understood", "reason": str(unread), "unknown": unknown}
@@ -60,7 +60,7 @@ class WishPlanner:
             told = {"verdict": error.verdict, "reason": str(error)[:2000]}
         return EditPlan(instruction=text, planner=NAME, seconds=time.perf_counter() - started, **told)
 
-    def _planned(self, reading: Reading, sight: Sight | None) -> dict[str, Any]:
+    def _planned(self, reading: Reading, observation: Observation | None) -> dict[str, Any]:
         """Operations and reason, or another verdict.
 
         Raises:
@@ -70,10 +70,10 @@ class WishPlanner:
         from . import fulfilling
         from .steps import moves
 
-        if sight is None:
+        if observation is None:
             return {"verdict": "not_understood", "reason": "a wish for a room needs the scene: open one first"}
         try:
-            graph = sight.graph()
+            graph = observation.graph()
         except ScenewrightError as error:
             return {"verdict": "not_understood", "reason": f"a wish for a room needs the scene: {error}"}
         start = Room.of(graph)

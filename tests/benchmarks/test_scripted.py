@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from scenewright.agent.session.sight import StageSight
+from scenewright.agent.session.observation import GraphObservation
 from scenewright.benchmarks import _cascade, _scripted, _written
 from scenewright.gaussians.errors import BackendError
 from scenewright.planners.cascade import Cascade
@@ -33,10 +33,10 @@ def test_it_errs_as_often_as_it_is_told() -> None:
 
 def test_its_latency_is_accounted_and_its_own() -> None:
     case = CASES[0]
-    sight = StageSight(_written.stage(case["room"]))
-    first, again = (_scripted.Scripted(0.0, 1).plan(case["text"], sight=sight) for _ in range(2))
+    observation = GraphObservation(_written.stage(case["room"]))
+    first, again = (_scripted.Scripted(0.0, 1).plan(case["text"], observation=observation) for _ in range(2))
     assert first.usage == again.usage and first.usage is not None
-    other = _scripted.Scripted(0.0, 2).plan(case["text"], sight=sight)
+    other = _scripted.Scripted(0.0, 2).plan(case["text"], observation=observation)
     assert other.usage is not None and other.usage.seconds != first.usage.seconds
     (plain,) = _written.measure(_scripted.Scripted(0.0, 1), [case])
     (told,) = _written.measure(_scripted.Scripted(0.0, 1), [case], accounted=True)
@@ -45,7 +45,9 @@ def test_its_latency_is_accounted_and_its_own() -> None:
 
 
 def test_what_it_has_no_script_for_is_read_as_the_grammar_does() -> None:
-    plan = _scripted.Scripted(1.0, 1).plan("delete the unicorn", sight=StageSight(_written.stage("kitchen")))
+    plan = _scripted.Scripted(1.0, 1).plan(
+        "delete the unicorn", observation=GraphObservation(_written.stage("kitchen"))
+    )
     assert plan.planner == "grammar" and plan.usage is None
     assert _scripted.Scripted(1.0, 1).plan(CASES[0]["text"]).planner == "grammar"  # it did not see the room
 

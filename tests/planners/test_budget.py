@@ -103,7 +103,7 @@ def test_a_scene_is_looked_at_before_the_clock_runs() -> None:
             return None
 
     planner = Metered("fake:1", lambda _: Fake(), Ledger(), lambda stage, share: order.append(stage))
-    planner.plan("a", sight=Slow())  # type: ignore[arg-type]
+    planner.plan("a", observation=Slow())  # type: ignore[arg-type]
     assert order == ["embedded", "asking fake:1", "asking fake:1"]
 
 

@@ -29,8 +29,8 @@ class Fake:
         self.verdict, self.error, self.name = verdict, error, name
         self.asked: list[tuple[str, Any, Any]] = []
 
-    def plan(self, text: str, *, previous: str | None = None, sight: Any = None) -> EditPlan:
-        self.asked.append((text, previous, sight))
+    def plan(self, text: str, *, previous: str | None = None, observation: Any = None) -> EditPlan:
+        self.asked.append((text, previous, observation))
         if self.error is not None:
             raise self.error
         ops = (parse({"op": "delete", "target": {"text": "chair"}}),) if self.verdict == "ok" else ()
@@ -50,7 +50,7 @@ class Wishes(Fake):
 
 
 class Blind:
-    """A sight that nobody may use."""
+    """An observation that must not be used."""
 
     def graph(self) -> Any:
         raise AssertionError("the grammar looks at nothing")
@@ -64,7 +64,7 @@ def test_where_the_grammar_answers_nobody_else_is_asked() -> None:
         alone = GRAMMAR.plan(case["text"], previous=case.get("context"))
         wishes, model = Wishes(reading=False), Fake()
         plan = Cascade(GRAMMAR, lambda w=wishes: w, model).plan(
-            case["text"], previous=case.get("context"), sight=Blind()
+            case["text"], previous=case.get("context"), observation=Blind()
         )
         if alone.verdict in ("not_understood", "impossible"):
             assert model.asked or alone.verdict == "impossible", case["id"]
@@ -82,21 +82,21 @@ def test_where_the_grammar_answers_nobody_else_is_asked() -> None:
 )  # fmt: skip
 def test_what_is_unsafe_or_no_edit_never_reaches_a_model(text: str) -> None:
     model = Fake()
-    plan = Cascade(GRAMMAR, lambda: Wishes(reading=False), model).plan(text, sight=Blind())
+    plan = Cascade(GRAMMAR, lambda: Wishes(reading=False), model).plan(text, observation=Blind())
     assert plan.verdict in ("unsafe", "not_an_edit") and model.asked == [] and plan.planner == "grammar"
 
 
 def test_a_model_is_asked_with_everything_that_the_cascade_was_told() -> None:
-    model, sight = Fake(), Blind()
-    plan = Cascade(GRAMMAR, None, model).plan(HARD, previous="select the chair", sight=sight)
-    assert model.asked == [(HARD, "select the chair", sight)]
+    model, observation = Fake(), Blind()
+    plan = Cascade(GRAMMAR, None, model).plan(HARD, previous="select the chair", observation=observation)
+    assert model.asked == [(HARD, "select the chair", observation)]
     assert plan.ok and plan.planner == "fake:1" and plan.usage == USAGE
 
 
 def test_what_no_operation_does_is_not_asked_unless_seeing_helps() -> None:
     model = Fake()
     for text in ("turn on the television", "scale the sofa by 0", "rename the printer to copier"):
-        plan = Cascade(GRAMMAR, None, model).plan(text, sight=Blind())
+        plan = Cascade(GRAMMAR, None, model).plan(text, observation=Blind())
         assert plan.verdict == "impossible" and model.asked == []
 
     class Unseeing:
@@ -107,14 +107,14 @@ def test_what_no_operation_does_is_not_asked_unless_seeing_helps() -> None:
             return EditPlan(instruction=text, planner=self.name, verdict="impossible", reason=reason)
 
     assert Cascade(Unseeing(), None, model).plan("face it").verdict == "impossible" and model.asked == []
-    assert Cascade(Unseeing(), None, model).plan("face it", sight=Blind()).ok and len(model.asked) == 1
+    assert Cascade(Unseeing(), None, model).plan("face it", observation=Blind()).ok and len(model.asked) == 1
 
 
 @pytest.mark.parametrize("verdict", ["ok", "impossible", "absent", "ambiguous", "not_an_edit"])
 @pytest.mark.parametrize("text", [HARD, "delete the chair", "it is a pity about the chair"])
 def test_a_wish_is_answered_without_a_model_whatever_the_grammar_makes_of_it(verdict: str, text: str) -> None:
     model = Fake()
-    plan = Cascade(GRAMMAR, lambda: Wishes(verdict), model).plan(text, sight=Blind())
+    plan = Cascade(GRAMMAR, lambda: Wishes(verdict), model).plan(text, observation=Blind())
     assert (plan.verdict, plan.planner, model.asked) == (verdict, "wishes", [])
 
 
@@ -203,13 +203,16 @@ def test_auto_takes_the_model_of_the_environment(monkeypatch: pytest.MonkeyPatch
 
 
 def test_auto_knows_wishes_for_the_whole_room() -> None:
-    from scenewright.agent.session.sight import StageSight
+    from scenewright.agent.session.observation import GraphObservation
 
-    sight = StageSight(_written.stage("living_room"))
-    plan = load("auto").plan("push the furniture to the walls and clear a dance floor in the middle", sight=sight)
+    observation = GraphObservation(_written.stage("living_room"))
+    plan = load("auto").plan(
+        "push the furniture to the walls and clear a dance floor in the middle", observation=observation
+    )
     assert plan.planner == "wishes" and plan.ok and len(plan.ops) > 1
     assert (
-        load("grammar").plan("push the furniture to the walls and clear a dance floor", sight=sight).planner != "wishes"
+        load("grammar").plan("push the furniture to the walls and clear a dance floor", observation=observation).planner
+        != "wishes"
     )
 
 

@@ -85,7 +85,7 @@ DINING = hall(
 
 
 def plan(text: str, graph: SceneGraph = ROOM) -> EditPlan:
-    return PLANNER.plan(text, sight=Seen(graph))
+    return PLANNER.plan(text, observation=Seen(graph))
 
 
 def played(plan: EditPlan, graph: SceneGraph) -> dict[Any, Node]:

@@ -41,12 +41,12 @@ class Fake:
         self.asked: list[str] = []
         self.saw: Any = None
 
-    def plan(self, text: str, *, previous: str | None = None, sight: Any = None) -> EditPlan:
+    def plan(self, text: str, *, previous: str | None = None, observation: Any = None) -> EditPlan:
         self.asked.append(text)
         if self.error is not None:
             raise self.error
-        graph = sight.graph()
-        self.saw = sight.picture() if self.pictures else None
+        graph = observation.graph()
+        self.saw = observation.picture() if self.pictures else None
         self.progress("planning", 0.0)
         usage = Usage(model=SPEC, requests=2, input_tokens=1800, output_tokens=30, dollars=0.004, seconds=1.2)
         op = dict(self.op)
@@ -130,7 +130,7 @@ def test_a_used_up_budget_is_said(boxes: Scene, encoder: Any, fake: list[Fake]) 
     session.planner = SPEC  # the account is the session's, whoever plans
     with pytest.raises(BackendError, match="used up"):
         session.do(HARD)
-    with pytest.raises(UserError, match="no budget"):
+    with pytest.raises(UserError, match="not a budget"):
         Session(boxes, budget="much")
 
 
@@ -165,7 +165,7 @@ def test_a_session_shows_its_present_scene_from_its_viewer(boxes: Scene, encoder
 
 
 def test_a_large_view_is_drawn_smaller_for_a_model(boxes: Scene, encoder: Any) -> None:
-    from scenewright.agent.session.sight import WIDTH
+    from scenewright.agent.session.observation import WIDTH
     from scenewright.gaussians.viewpoints.coverage import fit_camera
 
     session = Session(boxes, "grammar", encoder, viewer=fit_camera(boxes.cameras[0], 1536, 1024))
@@ -199,8 +199,8 @@ def test_pictures_are_shown_where_asked_for(boxes: Scene, encoder: Any, fake: li
 
 
 def test_a_written_graph_is_seen_with_rows_for_ids() -> None:
-    from scenewright.agent.session.resolved_plan import graph_plan
-    from scenewright.agent.session.sight import StageSight
+    from scenewright.agent.session.observation import GraphObservation
+    from scenewright.agent.session.plan_report import graph_plan
     from scenewright.planners.rooms.graph import SceneGraph
     from scenewright.planners.rooms.graph_scene import Stage
 
@@ -216,9 +216,9 @@ def test_a_written_graph_is_seen_with_rows_for_ids() -> None:
         }
     )  # fmt: skip
     stage = Stage.of(written)
-    seen = StageSight(stage).graph()
+    seen = GraphObservation(stage).graph()
     assert [(n.id, n.support) for n in seen.nodes] == [(0, "floor"), (1, 0)] and seen.relations == ((1, "on", 0),)
-    assert SceneGraph.model_validate(seen.model_dump()) == seen and StageSight(stage).picture() is None
+    assert SceneGraph.model_validate(seen.model_dump()) == seen and GraphObservation(stage).picture() is None
     told = graph_plan(stage, Fake(progress=lambda stage, share: None), HARD)
     assert told["verdict"] == "ok" and told["steps"][0]["targets"] == [40]
     assert told["planner"] == SPEC and told["prompt_hash"] == "abc123" and told["usage"]["requests"] == 2
@@ -274,10 +274,10 @@ def test_an_interrupt_that_python_lost_is_passed_on(
     terminal = Terminal(io.StringIO(), io.StringIO())
 
     class Busy(Fake):
-        def plan(self, text: str, *, previous: str | None = None, sight: Any = None) -> EditPlan:
+        def plan(self, text: str, *, previous: str | None = None, observation: Any = None) -> EditPlan:
             with suppress(KeyboardInterrupt):  # as a weak reference's callback does
                 signal.raise_signal(signal.SIGINT)
-            return super().plan(text, previous=previous, sight=sight)
+            return super().plan(text, previous=previous, observation=observation)
 
     handler = signal.getsignal(signal.SIGINT)
     session = Session(boxes, Busy(progress=terminal.progress), encoder, viewer=boxes.cameras[0])
@@ -351,7 +351,7 @@ def test_edit_and_plan_tell_of_the_model(room: Path, fake: list[Fake], command: 
 def test_a_refused_edit_tells_of_the_model_too(
     room: Path, fake: list[Fake], command: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(Fake, "plan", lambda self, text, previous=None, sight=None: EditPlan(
+    monkeypatch.setattr(Fake, "plan", lambda self, text, previous=None, observation=None: EditPlan(
         instruction=text, planner=SPEC, verdict="absent", reason="there is no widget",
         usage=Usage(model=SPEC, requests=1, seconds=2.0),
     ))  # fmt: skip
@@ -366,7 +366,7 @@ def test_whatever_is_refused_has_its_cost_in_the_answer(
     room: Path, boxes: Scene, encoder: Any, fake: list[Fake], command: Any,
     monkeypatch: pytest.MonkeyPatch, verdict: str, code: int,
 ) -> None:  # fmt: skip
-    monkeypatch.setattr(Fake, "plan", lambda self, text, previous=None, sight=None: EditPlan(
+    monkeypatch.setattr(Fake, "plan", lambda self, text, previous=None, observation=None: EditPlan(
         instruction=text, planner=SPEC, verdict=verdict, reason="as said", usage=Usage(model=SPEC, requests=3),
     ))  # fmt: skip
     left, out, err = command("edit", room, HARD, "--dry-run", "--json", "--planner", f"auto:{SPEC}")
@@ -399,4 +399,4 @@ def test_a_model_that_is_lost_has_cost_what_it_answered_before(
 def test_a_budget_that_is_none_is_refused(room: Path, command: Any, verb: str, fake: list[Fake]) -> None:
     words = {"edit": ["delete the green thing", "--dry-run"], "plan": ["delete the green thing"], "chat": []}[verb]
     code, _, err = command(verb, room, *words, "--budget", "a lot")
-    assert code == 2 and "is no budget" in err
+    assert code == 2 and "is not a budget" in err

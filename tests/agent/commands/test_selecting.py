@@ -84,7 +84,7 @@ def test_in_the_chat(boxes: Scene, encoder: Any) -> None:
     assert "grown by 0.05 m" in said and "grown by 0.3 m" in said and "shrunk by 0.1 m" in said
     assert "everything but it" in said
     assert "ambiguous" in said and "rival: red box (group 0): color red" in said and "color red" in said
-    assert "is no distance" in _chat(session, "/grow far") and "metres above 0" in _chat(session, "/shrink -1")
+    assert "is not a distance" in _chat(session, "/grow far") and "metres above 0" in _chat(session, "/shrink -1")
 
 
 def test_an_explanation_names_every_term_and_threshold(boxes: Scene, encoder: Any) -> None:

@@ -45,7 +45,7 @@ def living() -> Scene:
     ],
 )
 def test_a_wish_is_carried_out_with_every_check_and_undone(living: Scene, wish: str) -> None:
-    plan = WishPlanner().plan(wish, sight=Looking(living))
+    plan = WishPlanner().plan(wish, observation=Looking(living))
     assert plan.ok and len(plan.ops) >= 2, plan.reason
     session = Session(living, planner="grammar")
     result = session.apply(plan)

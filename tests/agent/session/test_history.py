@@ -26,10 +26,10 @@ def test_any_walk_agrees_with_a_list_and_an_index(walk: list[str]) -> None:
             history.advance(state)
             model, at = [*model[: at + 1], state], at + 1
         elif step == "u" and at > 0:
-            assert history.back() is model[at - 1]
+            assert history.undo() is model[at - 1]
             at -= 1
         elif step == "r" and at < len(model) - 1:
-            assert history.forth() is model[at + 1]
+            assert history.redo() is model[at + 1]
             at += 1
         assert history.present is model[at]
 
@@ -37,9 +37,9 @@ def test_any_walk_agrees_with_a_list_and_an_index(walk: list[str]) -> None:
 def test_there_is_nothing_beyond_the_ends() -> None:
     history = History(_state())
     with pytest.raises(UserError, match="nothing to undo"):
-        history.back()
+        history.undo()
     with pytest.raises(UserError, match="nothing to redo"):
-        history.forth()
+        history.redo()
 
 
 def test_old_states_are_let_go() -> None:

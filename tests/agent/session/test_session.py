@@ -233,7 +233,7 @@ def test_replay_elsewhere_resolves_the_words_again(boxes: Scene, encoder: Any, t
     cloud = boxes.cloud
     other = boxes.replace(cloud=cloud.replace(opacities=cloud.opacities * 0.9))
     elsewhere = Session(other, encoder=encoder)
-    with pytest.raises(AmbiguousError, match="all of it was taken back"):
+    with pytest.raises(AmbiguousError, match="all of it was undone"):
         elsewhere.replay(tmp_path / "log.jsonl")
     assert elsewhere.scene is other
     outcome = elsewhere.replay(tmp_path / "log.jsonl", skip_failed=True)

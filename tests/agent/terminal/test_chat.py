@@ -17,7 +17,7 @@ from prompt_toolkit.output import DummyOutput
 from scenewright.agent.session.session import Session
 from scenewright.agent.terminal.chat import COMMANDS, Chat
 from scenewright.agent.terminal.completion import ChatCompleter
-from scenewright.agent.terminal.input_lines import Lines
+from scenewright.agent.terminal.input_lines import InputLines
 from scenewright.agent.terminal.output import Terminal
 from scenewright.gaussians.scene import Scene
 
@@ -128,7 +128,7 @@ def test_ctrl_c_cancels_the_instruction_not_the_program(
 def test_ctrl_c_at_the_prompt_and_ctrl_d() -> None:
     with create_pipe_input() as pipe:
         pipe.send_text("half a line\x03\x04")
-        assert list(Lines(COMMANDS, tuple, input=pipe, output=DummyOutput())) == []
+        assert list(InputLines(COMMANDS, tuple, input=pipe, output=DummyOutput())) == []
 
 
 @pytest.mark.parametrize(

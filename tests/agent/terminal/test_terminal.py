@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from scenewright.agent.terminal.output import Terminal, explain, read_batch
+from scenewright.agent.terminal.output import Terminal, error_json, read_batch
 from scenewright.gaussians.errors import AbsentError, CheckFailedError, FileError, UserError
 
 
@@ -54,7 +54,7 @@ def test_progress_never_wraps(monkeypatch: pytest.MonkeyPatch) -> None:
      (UserError("x"), "user", 2)],
 )  # fmt: skip
 def test_errors_as_data(error: AbsentError, verdict: str, code: int) -> None:
-    assert explain(error) == {"verdict": verdict, "reason": "x", "exit_code": code}
+    assert error_json(error) == {"verdict": verdict, "reason": "x", "exit_code": code}
 
 
 def test_batch_rows(tmp_path: Path) -> None:

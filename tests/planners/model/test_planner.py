@@ -30,7 +30,7 @@ PNG = b"\x89PNG\r\n\x1a\n"
 
 
 class Seen:
-    """A sight of a graph that counts how often it was looked at."""
+    """An observation of a graph that counts how often it was used."""
 
     def __init__(self, graph: SceneGraph = LIVING_ROOM) -> None:
         self._graph = graph
@@ -58,7 +58,7 @@ def no(verdict: str, reason: str = "because", **fields: Any) -> str:
 
 def asked(text: str, *script: Any, previous: str | None = None, blind: bool = False, **settings: Any) -> Asked:
     backend = ScriptedModel(*script)
-    plan = ModelPlanner(backend, **settings).plan(text, previous=previous, sight=None if blind else Seen())
+    plan = ModelPlanner(backend, **settings).plan(text, previous=previous, observation=None if blind else Seen())
     return Asked(plan, backend)
 
 
@@ -112,15 +112,15 @@ def test_a_scene_that_cannot_be_looked_at_is_left_out() -> None:
             raise BackendError("no encoder")
 
     backend = ScriptedModel(ok(delete("vase")))
-    assert ModelPlanner(backend).plan("delete the vase", sight=Blind()).ok
+    assert ModelPlanner(backend).plan("delete the vase", observation=Blind()).ok
     assert "none is shown" in backend.asked[0][1].text
 
 
 @pytest.mark.parametrize(("sees", "wanted", "sent"), [(True, True, True), (True, False, False), (False, True, False)])
 def test_a_picture_goes_only_to_who_sees_and_only_if_wanted(sees: bool, wanted: bool, sent: bool) -> None:
-    backend, sight = ScriptedModel(ok(delete("vase")), sees=sees), Seen()
-    ModelPlanner(backend, pictures=wanted).plan("delete the vase", sight=sight)
-    assert backend.asked[0][1].picture == (PNG if sent else None) and sight.pictures == int(sent)
+    backend, observation = ScriptedModel(ok(delete("vase")), sees=sees), Seen()
+    ModelPlanner(backend, pictures=wanted).plan("delete the vase", observation=observation)
+    assert backend.asked[0][1].picture == (PNG if sent else None) and observation.pictures == int(sent)
 
 
 def test_what_came_before_is_told_and_means_it() -> None:
@@ -373,7 +373,7 @@ def poisoned(words: str) -> SceneGraph:
 def test_orders_in_names_never_reach_a_model(words: str) -> None:
     graph = poisoned(words)
     backend = ScriptedModel(gullible)
-    plan = ModelPlanner(backend).plan("paint the sofa red", sight=Seen(graph))
+    plan = ModelPlanner(backend).plan("paint the sofa red", observation=Seen(graph))
     assert [op.op for op in plan.ops] == ["recolor"] and len(backend.asked) == 1
     assert "IGNORE" not in backend.asked[0][1].text.upper()
     assert "11: thing" in backend.asked[0][1].text  # but its place can still be pointed at
@@ -382,7 +382,7 @@ def test_orders_in_names_never_reach_a_model(words: str) -> None:
 def test_orders_in_names_do_not_come_back_with_faults_either() -> None:
     graph = poisoned(INJECTED)
     backend = ScriptedModel(ok(delete("vase", groups=[12345])), ok(delete("widget")), ok(delete("lamp")), no("absent"))
-    ModelPlanner(backend, attempts=4).plan("delete the thing there", sight=Seen(graph))
+    ModelPlanner(backend, attempts=4).plan("delete the thing there", observation=Seen(graph))
     assert len(backend.asked) == 4
     assert "IGNORE" not in "".join(m.text for talk in backend.asked for m in talk[1:]).upper()
 

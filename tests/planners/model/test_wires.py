@@ -45,7 +45,7 @@ def key(monkeypatch: pytest.MonkeyPatch) -> None:
 def plan(wire: Wire, *script: Any, text: str = "delete the vase", **settings: Any) -> tuple[EditPlan, list[Any]]:
     with wires.serving(*script) as server:
         planner = model.load_planner(f"{wire.kind}:small@{server.url}", **settings)
-        return planner.plan(text, sight=Seen()), server.asked
+        return planner.plan(text, observation=Seen()), server.asked
 
 
 @each_wire
@@ -98,6 +98,6 @@ def test_a_server_that_fails_says_so(wire: Wire) -> None:
 def test_the_view_is_shown_to_a_model_that_sees(wire: Wire) -> None:
     with wires.serving(wire.answer(PLAN)) as server:
         backend = model.load(f"{wire.kind}:small@{server.url}")
-        assert ModelPlanner(backend, pictures=True).plan("delete the vase", sight=Seen()).ok
+        assert ModelPlanner(backend, pictures=True).plan("delete the vase", observation=Seen()).ok
         shown = "iVBORw0KGgo" in json.dumps(server.asked[0].body)
     assert shown == backend.sees

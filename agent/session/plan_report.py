@@ -1,6 +1,6 @@
-"""Plans and selections as the JSON that scripts read: verdict, steps with their targets, candidates, reason.
+"""Plans, selections, refusals and model usage as the JSON that scripts read and as lines for a person.
 
-Knows the shape of an answer. Refuses to know how it is printed.
+`resolved_plan` and `graph_plan` also resolve the targets of a plan, in a scene or on a scene graph.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from .refusal import NotUnderstoodError, verdict_of
 
 if TYPE_CHECKING:
     from ...planners.impossible import Step
-    from ...planners.plan import EditPlan, Planner
+    from ...planners.plan import EditPlan, Planner, Usage
     from ...planners.rooms.graph_scene import Stage
     from .session import Session
 
@@ -35,7 +35,7 @@ def candidate_json(candidate: Candidate) -> dict[str, Any]:
 
 
 def selection_json(selection: Selection) -> dict[str, Any]:
-    """A selection without its rows."""
+    """A selection without the rows of its Gaussians."""
     return {
         "verdict": selection.verdict,
         "asked": selection.query.describe(),
@@ -47,10 +47,10 @@ def selection_json(selection: Selection) -> dict[str, Any]:
 
 
 def resolved_plan(session: Session, text: str, context: str | None = None) -> dict[str, Any]:
-    """What an instruction would do in the session's scene; nothing is changed.
+    """The plan of an instruction with its targets resolved in the session's scene; nothing is edited.
 
     Args:
-        context: the instruction before, which says what "it" means.
+        context: the previous instruction, whose target "it" refers to.
     """
     started = time.perf_counter()
     session.recall(context)
@@ -76,7 +76,7 @@ def resolved_plan(session: Session, text: str, context: str | None = None) -> di
 
 
 def planner_json(plan: EditPlan | None) -> dict[str, Any]:
-    """Who planned, by which prompt, and what language models were asked for: `usage` is null if none was."""
+    """The planner, its prompt hash and the usage of language models; `usage` is null if no model was asked."""
     if plan is None:
         return {"planner": "", "prompt_hash": "", "usage": None}
     usage = plan.usage.model_dump(mode="json") if plan.usage is not None else None
@@ -84,32 +84,32 @@ def planner_json(plan: EditPlan | None) -> dict[str, Any]:
 
 
 def refusal_json(error: ScenewrightError, plan: EditPlan | None) -> dict[str, Any]:
-    """Who planned what was refused, what that took, and the verdict of an instruction that was read.
+    """The planner and usage of a refused instruction, and the verdict if the instruction could be read.
 
     Args:
-        plan: what was planned; None if nothing was, though asking in vain may have cost something.
+        plan: the plan; None if there is none. The usage of a model that gave no plan is then taken from the error.
     """
     from ...planners.plan import NoPlanError
 
     read = isinstance(error, InstructionError | NotUnderstoodError)
-    told = {**planner_json(plan), **({"verdict": verdict_of(error)} if read else {})}
+    data = {**planner_json(plan), **({"verdict": verdict_of(error)} if read else {})}
     if isinstance(error, NoPlanError) and error.usage is not None:
-        told["usage"] = error.usage.model_dump(mode="json")
-    return told
+        data["usage"] = error.usage.model_dump(mode="json")
+    return data
 
 
 def graph_plan(stage: Stage, planner: Planner, text: str, context: str | None = None) -> dict[str, Any]:
-    """What an instruction would touch on a scene graph, in the shape of `resolved_plan`; ids are the graph's own.
+    """The plan of an instruction with its targets resolved on a scene graph, in the format of `resolved_plan`.
 
-    A step also has `anchors`, the ids that its place or direction refers to, and `metres` where a distance is said.
-    Where a planner that looked at the graph names `groups` in a query, those are rows of the stage (see `StageSight`);
-    `targets` and `anchors` are the graph's own ids.
+    A step also has `anchors`, the ids that its place or direction refers to, and `metres` where a distance is given.
+    Where a planner that looked at the graph names `groups` in a query, those are rows of the stage (see
+    `GraphObservation`); `targets` and `anchors` are the graph's own ids.
     """
     from ...planners.rooms.plan_on_graph import resolve_text
-    from .sight import StageSight
+    from .observation import GraphObservation
 
     started = time.perf_counter()
-    found = resolve_text(stage, planner, text, context, StageSight(stage))
+    found = resolve_text(stage, planner, text, context, GraphObservation(stage))
     nodes = {n.id: n for n in stage.graph.nodes}
     known = [nodes[i] for i in found.candidates if i in nodes]
     return {
@@ -131,7 +131,7 @@ def _graph_step(step: Step) -> dict[str, Any]:
 
 
 def plan_json(plan: EditPlan) -> dict[str, Any]:
-    """A plan of words alone, before any scene was looked at: targets are phrases."""
+    """A plan made without a scene: its targets are queries that are not resolved."""
     return {
         "verdict": plan.verdict,
         "steps": [op.model_dump(mode="json", exclude_none=True) for op in plan.ops],
@@ -143,8 +143,8 @@ def plan_json(plan: EditPlan) -> dict[str, Any]:
     }
 
 
-def unread(reason: str) -> dict[str, Any]:
-    """The answer to words that no planner looked at: too long to be an instruction, or no text."""
+def rejected_json(reason: str) -> dict[str, Any]:
+    """The answer to a text that was rejected before planning: too long, or not valid Unicode."""
     return {
         "verdict": "not_understood", "steps": [], "candidates": [], "reason": reason, "unknown": [],
         **planner_json(None), "seconds": 0.0,
@@ -152,9 +152,29 @@ def unread(reason: str) -> dict[str, Any]:
 
 
 def plan_lines(plan: EditPlan) -> list[str]:
-    """A plan for a person: one operation a line, without what is left at its default."""
+    """A plan for a person: one operation a line, without fields at their default."""
     rows = [{"op": op.op, **op.model_dump(mode="json", exclude_defaults=True)} for op in plan.ops]
     return [json.dumps(row, ensure_ascii=False) for row in rows]
+
+
+def usage_lines(plan: EditPlan | None) -> tuple[str, ...]:
+    """One line such as "planned by openai:gpt-5 in 1.2 s, 1,830 tokens, $0.0040"; none if no model was asked."""
+    if plan is None or plan.usage is None:
+        return ()
+    verb = "planned by" if plan.planner == plan.usage.model else "asked"
+    return (f"{verb} {plan.usage.model} {format_usage(plan.usage)}",)
+
+
+def format_usage(usage: Usage) -> str:
+    """ "in 1.2 s, 1,830 tokens, $0.0040"; dollars where a price is known."""
+    parts = [f"in {usage.seconds:.1f} s"]
+    if usage.requests > 1:
+        parts.append(f"{usage.requests} requests")
+    if tokens := usage.input_tokens + usage.output_tokens:
+        parts.append(f"{tokens:,} tokens")
+    if usage.dollars is not None:
+        parts.append(f"${usage.dollars:.4f}")
+    return ", ".join(parts)
 
 
 def _step(op: Any, targets: Sequence[int | str]) -> dict[str, Any]:

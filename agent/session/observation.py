@@ -1,4 +1,4 @@
-"""What planners may look at: the graph and the picture of a scene, and a written graph as a `Sight` of its own."""
+"""What planners may look at: the graph and the picture of a scene, and a written scene graph as an `Observation`."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from ...planners.rooms.graph import SceneGraph
     from ...planners.rooms.graph_scene import Stage
 
-WIDTH = 768  # pixels of the picture that a model sees: vision models scale down what is much larger
+WIDTH = 768  # pixels, of the picture sent to a model: vision models scale down much larger pictures
 
 
 def graph_of(scene: Scene, viewer: Camera) -> SceneGraph:
-    """What stands where in an embedded scene, and where the viewer stands; ids are groups, as `Query.groups` has them.
+    """The scene graph of an embedded scene with the viewer in it; ids are group ids, as in `Query.groups`.
 
     Raises:
         UserError: the scene is larger than a graph may be.
@@ -50,19 +50,19 @@ def picture_of(scene: Scene, camera: Camera) -> bytes:
     return drawn.getvalue()
 
 
-class StageSight:
-    """A written graph, with its ids turned into the rows of its stage.
+class GraphObservation:
+    """A written scene graph as an `Observation`, with its ids replaced by the rows of its stage.
 
-    A graph that somebody wrote may call its nodes "kettle"; a query names groups by number, and on a stage these are
-    the rows (`Stage.ids[row]` is the graph's own id). Planners therefore see row numbers, and `Stage.names` turns what
-    they chose back.
+    A written graph may have an id such as "kettle"; a query names groups by number, and on a stage these are the rows
+    (`Stage.ids[row]` is the graph's own id). Planners therefore see row numbers, and `Stage.names` maps the chosen rows
+    back to ids.
     """
 
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
 
     def graph(self) -> SceneGraph:
-        """The graph with node `i` called `i`: in supports and relations too."""
+        """The graph with the row of each node as its id, in supports and relations too."""
         graph = self._stage.graph
         row = {node.id: i for i, node in enumerate(graph.nodes)}
         nodes = tuple(
@@ -72,5 +72,5 @@ class StageSight:
         return graph.model_copy(update={"nodes": nodes, "relations": relations})
 
     def picture(self) -> None:
-        """There are no pixels of a written graph."""
+        """None: a written graph has no pixels."""
         return None
