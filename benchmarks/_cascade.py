@@ -89,12 +89,13 @@ def _point(method: str, setting: str, judged: Sequence[Judged], default: bool = 
 
 def _note(spec: str, count: int) -> str:
     if spec:
-        return f"grammar, cascade, model: {count} written instructions, both halves; the model is {spec}, really asked."
+        return f"grammar, cascade, model: {count} written instructions, both halves; the real model {spec} was asked."
     return (
-        f"grammar, cascade, stand_in: {count} written instructions, both halves, mean seconds of an instruction. No "
-        f"model was asked. The {_scripted.NAME}, knows the right answers and errs at the stated rate (half not "
-        f"understood, half done to the wrong thing; figures at {USUAL:.0%}); its latency is drawn from a log-normal "
-        f"distribution of median {_scripted.MEDIAN:g} s and sigma {_scripted.SPREAD:g} and accounted, not slept. The "
-        "chart shows what asking only where the grammar abstains saves, not how good a model is, and the grammar's "
-        f"author wrote the set: of other people's words more would be asked. {VARIABLE}=openai:… measures a real model."
+        f"grammar, cascade, stand_in: {count} written instructions, both halves; times are means over the "
+        f"instructions. No model was asked. The {_scripted.NAME}, knows the right answers and errs at the stated rate "
+        f"(half of the errors: not understood; half: the wrong object; figures at {USUAL:.0%}). Its latency is drawn "
+        f"from a log-normal distribution of median {_scripted.MEDIAN:g} s and sigma {_scripted.SPREAD:g}; it is added "
+        "to the times without waiting. The chart shows how much time is saved by asking a model only where the "
+        "grammar abstains, not how good a model is. The author of the grammar wrote the set; for instructions of "
+        f"other people the model would be asked more often. {VARIABLE}=openai:… measures a real model."
     )

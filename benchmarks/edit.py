@@ -118,9 +118,11 @@ def run(quick: bool) -> Result:
         metrics=tuple(metrics),
         points=tuple(points),
         notes=(
-            "Selection by group id, edit, bookkeeping and all checks on Gaussians are timed; words and pixels are not.",
+            "Times include selection by group id, edit, field update and all checks on Gaussians, but no words and "
+            "no pixels.",
             f"Goals on 1,000,000: {GOAL_SECONDS} s and less than {GOAL_MEMORY:g} times the cloud, itself included.",
-            "Undo takes neither time nor memory: the scene before is still there and shares what did not change.",
+            "Undo takes neither time nor memory: the previous scene is kept, and both share the columns that did not "
+            "change.",
         ),
         seeds=(SEED,),
     )

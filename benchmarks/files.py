@@ -76,10 +76,10 @@ def run(quick: bool) -> Result:
         metrics += _million(Path(place), QUICK_LARGE if quick else LARGE)
     notes += [
         f"loss: mean over {VIEWS} views of {VIEW_SIZE}x{VIEW_SIZE} that see most of the scene; 120 dB is equality",
-        f"points: bytes summed over {', '.join(case.name for case in cases)}, PSNR and reading time their means; more "
-        f"than {CHART_TOP:.0f} dB of a scene counts as that",
-        "guitar and playbot come from compressed files: what their own format rounded before is not lost again",
-        "half, quarter: of the Gaussians, by what they add to other views than the measured ones",
+        f"points: bytes summed over {', '.join(case.name for case in cases)}, PSNR and reading time their means; a "
+        f"PSNR of more than {CHART_TOP:.0f} dB of a scene counts as that",
+        "guitar and playbot come from compressed files: the loss of their own format does not occur again",
+        "half, quarter: of the Gaussians, by their contribution to other views than the measured ones",
     ]
     title = "bytes against loss of file formats"
     return Result(title, "PSNR to the scene, dB", tuple(metrics), tuple(points), tuple(notes), (SEED,), cost="bytes")

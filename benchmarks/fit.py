@@ -26,13 +26,13 @@ NOISE = 0.02  # of a PSNR: half a decibel, as other seeds give
 TITLE = "seconds of training against likeness to photographs that were held out"
 ACCURACY = f"PSNR on {EVAL_PHOTOS} held-out photographs, dB"
 NOTES = (
-    "time: of training only; looking at held-out photographs, checkpoints and the reading of the capture do not count",
+    "time: training only, without the evaluation on held-out photographs, checkpoints and loading of the capture",
     f"points: on the first {EVAL_PHOTOS} held-out photographs; figures: on all of them, at the end",
-    "memory: the most that the process of a training held at once, photographs and all",
-    "plain: the recipe as published (Kerbl et al. 2023), gradients by torch through the readable renderer; the same "
-    "photographs, start, rates, optimiser and growth as classic, which goes through the compiled path",
-    "left_out: Gaussians that held-out photographs did not miss at four fifths of the training",
-    "the rate of means falls over the time that a training has, so that 5 minutes are no part of 15",
+    "memory: peak of the training's process, with the photographs",
+    "plain: the recipe as published (Kerbl et al. 2023), gradients by torch through the reference renderer; the same "
+    "photographs, initialization, learning rates, optimizer and densification as classic, which uses the compiled path",
+    "left_out: Gaussians dropped at four fifths of the training, since held-out photographs did not need them",
+    "the learning rate of means decays over the whole training, so that 5 minutes are not the first third of 15",
 )
 
 

@@ -28,10 +28,10 @@ NOISE = 0.01  # of a PSNR: a quarter of a decibel, as other seeds give
 TITLE = "bytes of trained scenes against likeness to photographs that were held out"
 ACCURACY = "PSNR on all held-out photographs, dB"
 NOTES = (
-    f"each degree trained for {SECONDS:.0f} s with at most {MOST:,} Gaussians: more bands take more time a step, so "
-    "that there are fewer steps; nothing is chosen by gain",
-    "8 bits: each band of harmonics on 256 even steps over its range; 16 bits: each axis on 65,536 over the box of all "
-    "Gaussians; the rest stays as in the .ply, three unused normals included",
+    f"each degree trained for {SECONDS:.0f} s with at most {MOST:,} Gaussians. More SH bands take more time a "
+    "step, so that there are fewer steps. No band is dropped",
+    "8 bits: each SH band in 256 uniform steps over its range. 16 bits: each axis in 65,536 steps over the box of all "
+    "Gaussians. The rest stays as in the .ply, with three unused normals",
 )
 
 

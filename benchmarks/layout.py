@@ -121,17 +121,17 @@ def run(quick: bool = False) -> Result:
         tuple(_curve(quick)),
         (
             f"composed: {len(rooms)} rooms of {len({j.kind for j in rooms})} kinds from planners.compose, 8 to 30 "
-            "objects. relations are hard wishes (as if said by a user), habits are soft ones.",
-            f"witnessed: {len(stated)} rooms of 12 kinds with half as many hard viewer relations as things, "
-            "read off a random arrangement, so that they can hold together; some contradict habits.",
-            "tasks: the 11 LayoutVLM tasks with plausible things of our own in place of their assets, whose geometry "
-            "is not included: figures published for that benchmark are not comparable."
+            "objects. relations are hard wishes (as if a user had stated them), habits are soft wishes.",
+            f"witnessed: {len(stated)} rooms of 12 kinds with half as many hard viewer relations as objects. The "
+            "relations are read from a random arrangement, so that they can hold together; some contradict habits.",
+            "tasks: the 11 LayoutVLM tasks with plausible objects of our own in place of their assets, whose geometry "
+            "is not included. Figures published for that benchmark are not comparable."
             if tasks
             else _data.missing("layout_tasks"),
-            "Colliding, out of bounds, unsupported, unreached: the neutral checker's words (`scenewright check`); a "
-            "wish counts as kept where the checker confirms it, or, of those that a graph cannot state, the solver.",
+            "Colliding, out of bounds, unsupported, unreached: found by the checker (`scenewright check`). A wish "
+            "counts as kept if the checker confirms it; if a graph cannot state the wish, the solver decides.",
             "seconds: processor time of one solve, explanation of conflicts included (run it with OMP_NUM_THREADS=1).",
-            "points: the effort of the solver on composed and witnessed rooms.",
+            "points: composed and witnessed rooms at several efforts of the solver.",
         ),
         (SEED,),
     )

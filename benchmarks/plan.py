@@ -114,12 +114,12 @@ def run(quick: bool = False) -> Result:
     alone = Metric("right.without_context", share(untold, "right"), "share", "higher")
     start = Metric("ms.loading", 1e3 * min(loading() for _ in range(repeat)), "ms", "lower", 0.5)
     notes = (
-        f"{len(todo)} instructions written by the planner's own author: a regression set, not an estimate of how it "
-        "does on other people's words. Right means the very same operations, or the expected kind of refusal; no "
-        "scene is looked at.",
+        f"right: {len(todo)} instructions written by the author of the planner. They are a regression set, not an "
+        "estimate for instructions of other people. An answer is right if it has the same operations, or is the "
+        "expected kind of refusal. No scene is used.",
         f"written.dev, written.held: {len(_written.cases())} instructions over six hand-written rooms, by the same "
-        "author, right only with the very nodes, operations and amounts; written before the grammar was tuned for "
-        "them, and the answers to the held half were never looked at one by one.",
+        "author. A plan is right only with the same nodes, operations and amounts. The instructions were written "
+        "before the grammar was tuned for them; the answers to the held half were never inspected one by one.",
         *how,
         *nouns.notes,
     )
@@ -168,8 +168,9 @@ def _of_people(planner: Planner, quick: bool) -> _Part:
         found,
         notes=(
             f"nouns: {nouns.sentences} sentences of Nr3D. right: the head noun is the labelled class or a listed "
-            "synonym; right_of_named: among the sentences that name it at all; answered, right_of_answered: the "
-            "planner's own reading as a selection; relations: a relation is recognised where one is named.",
-            f"nouns, the 20 commonest failures: {failed}.",
+            "synonym. right_of_named: the same, among the sentences that name the class. answered, "
+            "right_of_answered: the sentences that the planner plans as a selection. relations: a relation is "
+            "recognised where one is named.",
+            f"nouns, the 20 most frequent failures: {failed}.",
         ),
     )

@@ -96,8 +96,9 @@ def run(quick: bool) -> Result:
                 for way, value in _dial(case, truth, repeats).items():
                     found.setdefault(way, []).append(value)
     notes += [
-        f"times: least of {repeats} runs; of the reference, one run",
-        f"points: means over {', '.join(scenes)} at {sizes[0][0]}x{sizes[0][1]}, without what a scene can prepare once",
+        f"times: minimum of {repeats} runs; one run of the reference",
+        f"points: means over {', '.join(scenes)} at {sizes[0][0]}x{sizes[0][1]}, without work that is done once for a "
+        "scene",
     ]
     points = tuple(_point(way, values) for way, values in found.items())
     title = "one picture with colour, alpha, depth and group"

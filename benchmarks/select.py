@@ -78,7 +78,7 @@ def run(quick: bool) -> Result:
         *curves.measure([rooms[s] for s in plan.chart], encoder, grouped, quick),
     ]
     return Result(
-        title="selection by words in rooms that were never seen",
+        title="selection by words in held-out rooms",
         accuracy="mIoU of names",
         metrics=tuple(m for part in parts for m in part.metrics),
         points=tuple(p for part in parts for p in part.points),
@@ -110,13 +110,14 @@ def _real_vectors(quick: bool) -> Part:
 def _real_room(quick: bool) -> Part:
     """A captured room with a detector's masks, where it is to be found."""
     if quick:
-        return Part(notes=("bonsai: the real room is left out of quick runs",))
+        return Part(notes=("bonsai: quick runs leave out the real room",))
     wanted = ("captures/bonsai_room", "scenes", "clip_vectors")
     found = [_data.folder(name) for name in wanted]
     if found[0] is None or None in found:
         return Part(notes=(_data.missing(" and ".join(wanted)),))
     note = (
-        "bonsai: a trained scene of a real room, the capture's cameras, coarse masks of a small detector and real CLIP "
-        "vectors of their labels; silhouettes of the selection against 4 hand-drawn photos at 800 x 533"
+        "bonsai: a trained scene of a real room with the capture's cameras, coarse masks of a small detector and "
+        "real CLIP vectors of their labels. The silhouette of the selection is compared with hand-drawn masks of 4 "
+        "photographs at 800 x 533"
     )
     return Part(tuple(_bonsai.figures(found[0].parents[1])), notes=(note,))

@@ -15,62 +15,65 @@ from ..gaussians.language.encoders.vocabulary import Vocabulary
 
 _INTRO = """# Encoder card
 
-The embedded encoder is a small CLIP of our own: a residual convnet over {image_size}-pixel pictures and one attention
-layer over words, sharing vectors of {dim} numbers. It ships with the package as ONNX and needs neither network nor GPU.
-This page is generated from what training measured: `python -m scenewright.training.card`.
+The embedded encoder is a small CLIP of our own. Its image tower is a residual convnet over {image_size}-pixel
+pictures; its text tower is one attention layer over words. Both map to vectors of {dim} numbers. It ships with the
+package as ONNX and needs no network and no GPU. This page is generated from the figures that training measured:
+`python -m scenewright.training.card` (from a checkout).
 
 | | |
 | --- | --- |
 | fingerprint | `{fingerprint}` |
 | files | image tower {image_kb} kB, text tower {text_kb} kB, words {words_kb} kB |
 | speed, one thread | {milliseconds_per_image} ms a picture, {milliseconds_per_phrase} ms a phrase |
-| learnt from | {pictures:,} pictures of {things:,} things: {designs_per_kind} designs of each of {kinds:.0f} kinds |
+| training set | {pictures:,} pictures of {things:,} things: {designs_per_kind} designs of each of {kinds:.0f} kinds |
 | training | {steps:,} steps in {training_minutes:g} minutes on {cores} shared cores, rendering {render_seconds:.0f} s |
 
     python -m scenewright.training --out FOLDER --assets {designs_per_kind}
 
-makes such a folder on a processor; `embedded:FOLDER` is then the encoder. Training goes by wall time (`--minutes`), so
-a rerun on another machine does more or fewer steps and gives other bytes; `--steps {steps} --seed {seed}` fixes their
-number, with a learning rate that follows steps instead of minutes.
+trains such an encoder on a CPU, from a checkout with the extra `train`; `embedded:FOLDER` then selects it. The
+length of the training is wall time (`--minutes`), so that another machine makes more or fewer steps and gives other
+bytes. `--steps {steps} --seed {seed}` fixes the number of steps; the learning rate then follows steps instead of
+minutes.
 """
 
 _DATA = """
-## What it learnt from
+## Training set
 
-Our own procedural assets only, rendered alone by our own renderer from the sides such a thing is seen from, cut
-to the silhouette and laid over neutral grey: the picture that embedding a scene makes. Half of the things are
-damaged as segmentation damages them: a side cut off, the back never seen, the underside lost, thinned and
-blurred like a trained scene, with floor residue or a neighbour's fragment attached. Pieces of things, heaps of
-several things, and patches of wall and floor are taught as what they are, so that a wrong segment is not called
-an object. Light, hue, saturation, resolution, framing and backgrounds vary at training time. Colour words stand
-before names at random: the vectors ignore colour, which is measured on the Gaussians instead.
+The training set consists of our own procedural assets only. Our own renderer renders each asset alone, from the
+sides from which such a thing is usually seen. The picture is cut to the silhouette and laid over neutral grey, as
+in the embedding of a scene. Half of the things are damaged as segmentation damages them: a side is cut off, the
+back is never seen, the underside is lost, the Gaussians are thinned and blurred as in a trained scene, or residue
+of the floor or a fragment of a neighbour is attached. Pieces of things, heaps of several things, and patches of
+wall and floor are classes of their own, so that a wrong segment is not called an object. Light, hue, saturation,
+resolution, framing and backgrounds vary during training. Random colour words stand before names: the vectors ignore
+colour, which is measured on the Gaussians instead.
 
-## How good it is
+## Accuracy
 
-Designs with seeds never trained on; calibration was fitted on yet other seeds.
+Measured on designs whose seeds were not used in training; the calibration was fitted on a third set of seeds.
 """
 
 _RULE = """
 ## From similarity to probability
 
-A phrase competes, for each thing on its own, with the names of all kinds it does not itself mean and with the
-captions of non-objects, in a softmax at scale {scale:.1f}; where metres are known, the measured size counts
-with weight {size_weight:g}. From {threshold:.2f} on, a thing counts as what was named. Scale, weight and
-threshold were fitted once, on {rooms} simulated rooms of {room} things and {merges} wrong segments, and are
-never tuned on a scene. A phrase with a word outside the vocabulary gets probability 0 and a reason.
+For each thing, a phrase competes with the names of all kinds that it does not mean and with the captions of
+non-objects, in a softmax at scale {scale:.1f}. If the scene's scale in metres is known, the measured size counts
+with weight {size_weight:g}. A thing with a probability of at least {threshold:.2f} counts as named. Scale, weight
+and threshold were fitted once, on {rooms} simulated rooms of {room} things and {merges} wrong segments. They are
+not tuned to a scene. A phrase with a word outside the vocabulary gets probability 0 and a reason.
 """
 
 _LIMITS = """
-## What it cannot do
+## Limits
 
-- It knows the kinds below and no others: a thing of another kind is given its nearest look-alike or refused. For open
-  vocabularies use another encoder, see the end of this page.
-- It learnt from our assets' style. Objects by others, real captures above all, are recognised less often: the row on
-  meshes by others is the honest figure for strangers.
-- It sees shape at {image_size} pixels. Kinds that differ by size alone (a coffee table, a table; a mug, a bin) need the
-  measured size, hence metres.
-- It ignores colour, material, number, negation and relations by design. Those are measured or resolved elsewhere.
-- It reads English household words.
+- It knows only the kinds below. A thing of another kind gets the name of the most similar kind or is refused. For
+  open vocabularies use another encoder, see the end of this page.
+- It learnt the style of our assets. It recognises other objects less often, above all in real captures. The figures
+  on meshes by others show how much.
+- It sees shape at {image_size} pixels. Kinds that differ by size alone (a coffee table, a table; a mug, a bin) need
+  the measured size, hence metres.
+- It ignores colour, material, number, negation and relations by design. Other parts measure or resolve them.
+- It reads English words for household objects.
 """
 
 _OTHERS = """
@@ -82,18 +85,20 @@ _OTHERS = """
 | `onnx:FOLDER` | the same as two ONNX graphs and a tokenizer, as published for transformers.js or by optimum |
 | `vectors:PATH` | text vectors with their names, made elsewhere; scenes get theirs from masks with labels or vectors |
 
-`python -m scenewright.gaussians.language.encoders.export open_clip:MODEL/PRETRAINED FOLDER` writes the second from the
-first. On a processor without a GPU, ViT-B/32 takes a tenth of a second and more a picture: embedding takes minutes.
+`python -m scenewright.gaussians.language.encoders.export open_clip:MODEL/PRETRAINED FOLDER` converts the first into
+the second. Without a GPU, ViT-B/32 takes a tenth of a second or more a picture, so that embedding a scene takes
+minutes.
 
-They share one rule that was never tuned on a scene: the odds that a thing is what was named are how much better the
-phrase fits than the average name does, at the model's own scale, over {rivals:g}; from a probability of
-{threshold:g} on it counts. Both numbers were fitted with real ViT-B/32 vectors on half of the LVIS classes
-(photographs as things, 40 to 1,203 names). On the other half, in simulated scenes of 14 things: the right thing is the
-likeliest for {present_right:.0%} of the names, {present_refused:.1%} of the present are refused, {absent_refused:.1%}
-of the absent. Household things only, against the 140 names that such encoders propose: {household_present_refused:.1%}
-of the present and {household_absent_refused:.1%} of the absent. Look-alikes are its limit: 29 kinds of furniture and
-the like, half of them there, against all 1,203 names: {alike_absent_refused:.0%} of the absent are refused, as the
-wardrobe that is asked for is taken for the cabinet that is there. With real towers in real scenes nothing was measured.
+They share one rule that is not tuned to a scene. The odds that a thing is the named one are the ratio by which the
+phrase fits better than the average name, at the model's own scale, divided by {rivals:g}. A thing with a
+probability of at least {threshold:g} counts. Both numbers were fitted with real ViT-B/32 vectors on half of the
+LVIS classes (photographs as things, 40 to 1,203 names). On the other half, in simulated scenes of 14 things, the
+right thing has the highest probability for {present_right:.0%} of the names; {present_refused:.1%} of the present
+names and {absent_refused:.1%} of the absent names are refused. With household things only, against the 140 names
+that such encoders propose, {household_present_refused:.1%} of the present and {household_absent_refused:.1%} of the
+absent names are refused. Similar kinds are the limit: with 29 kinds of furniture and the like, half of them
+present, against all 1,203 names, only {alike_absent_refused:.0%} of the absent names are refused: a cabinet that is
+present is taken for the wardrobe that is asked for. Nothing was measured with real towers in real scenes.
 """
 
 _ROWS = (
@@ -103,12 +108,12 @@ _ROWS = (
     ("mean of four crops, damaged thing, top-1", "top1_mean_damaged"),
     ("the same, whole, with its size known", "top1_mean_size_whole"),
     ("the same, damaged, with its size known", "top1_mean_size_damaged"),
-    ("whole or damaged thing taken for one whole object", "whole_called_whole"),
-    ("piece, heap, wall or floor taken for one whole object", "not_object_called_whole"),
+    ("whole or damaged thing classified as one whole object", "whole_called_whole"),
+    ("piece, heap, wall or floor classified as one whole object", "not_object_called_whole"),
     ("whole-object score, area under the curve", "wholeness_auc"),
-    ("named thing missed at the threshold", "miss"),
+    ("named thing below the threshold", "miss"),
     ("the same with size", "miss_with_sizes"),
-    ("other thing over the threshold, a thing and a name", "false_alarm_per_thing"),
+    ("other thing over the threshold, for each pair of thing and name", "false_alarm_per_thing"),
     ("the same with size", "false_alarm_per_thing_with_sizes"),
     ("simulated room: present kind answered with the right thing", "room_present_right"),
     ("the same with size", "room_present_right_with_sizes"),
@@ -145,10 +150,10 @@ def _rooms(found: dict[str, float]) -> str:
     """The paragraph on furnished rooms."""
     share = {key: f"{100 * value:.1f} %" for key, value in found.items()}
     return (
-        f"\nIn {found['rooms']:.0f} furnished rooms, segmented perfectly ({found['things']:.0f} objects): top-1 "
-        f"{share['top1']}, with true sizes {share['top1_with_size']}; present kinds answered right "
+        f"\nIn {found['rooms']:.0f} furnished rooms with true segments ({found['things']:.0f} objects): top-1 "
+        f"{share['top1']}, with true sizes {share['top1_with_size']}; present kinds answered correctly "
         f"{share['present_right']}, absent kinds refused {share['absent_refused']}.\n"
-        "This is the ceiling that the encoder sets; what is lost below it is lost by the segmentation.\n"
+        "This is the upper bound that the encoder sets; segmentation causes any further loss.\n"
     )
 
 
@@ -161,9 +166,9 @@ def _strangers(found: dict[str, Any] | None) -> str:
     right, sized = (round(named * found[key]) for key in ("top1", "top1_with_size"))
     refused = f" ({round(nameless * found['refused'])} of them refused)" if nameless else ""
     return (
-        f"\nOn {named + nameless} low-poly meshes made by others (Kenney Furniture Kit), which served for\n"
+        f"\nOn {named + nameless} low-poly meshes made by others (Kenney Furniture Kit), which were used for\n"
         f"nothing else: {named} have a name in its vocabulary, {nameless} have none{refused}.\n"
-        f"It names {right} rightly and {sized} with their sizes: top-1 {100 * found['top1']:.0f} % and "
+        f"It names {right} correctly, and {sized} with their sizes: top-1 {100 * found['top1']:.0f} % and "
         f"{100 * found['top1_with_size']:.0f} % of those with a name,\n{100 * right / (named + nameless):.0f} % and "
         f"{100 * sized / (named + nameless):.0f} % of all. Asked by name, {100 * found['found']:.0f} % are over the "
         f"threshold.\nMistaken: {wrong}.\n"

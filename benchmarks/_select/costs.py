@@ -78,8 +78,9 @@ def measure(room: Case, encoder: Encoder, grouped: Callable[[Case], Case], quick
     metrics += _queries(resized(known, ASKED), encoder, QUICK_REPEATS if quick else REPEATS)
     metrics += _memory(known)
     note = (
-        f"costs: one furnished room brought to {EMBEDDED:,} Gaussians, with its field to {ASKED:,}; a query is timed "
-        "after its text is encoded, to the ids of the Gaussians; the column of groups is int32, saved as it is held"
+        f"costs: one furnished room resampled to {EMBEDDED:,} Gaussians, for queries with its field to {ASKED:,}. The "
+        "time of a query runs from the encoded text to the ids of the Gaussians. The column of groups is int32, in "
+        "memory and in the file"
     )
     return Part(tuple(metrics), notes=(note,))
 

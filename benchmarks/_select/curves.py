@@ -134,10 +134,11 @@ def _why(found: dict[tuple[str, str], list[Outcome]]) -> tuple[str, ...]:
         worst = ", ".join(f"{name} {value:.2f}" for value, name in lost[:5])
         gain = vectors.miou(flawless) - vectors.miou(rivals[best])
         notes.append(
-            f"{method}: groups lose {loss:.3f} mIoU to {best}, most at {worst}; association loses it (masks of one "
-            f"thing in two groups, or outvoted): with masks grouped by the truth groups win by {gain:.3f}"
+            f"{method}: groups lose {loss:.3f} mIoU to {best}, most at {worst}; the loss comes from the "
+            "association of masks (masks of one object in two groups, or discarded): with masks grouped by the true "
+            f"objects, groups are better by {gain:.3f}"
             if gain > 0
             else f"{method}: groups lose {loss:.3f} mIoU to {best}, most at {worst}, {-gain:.3f} of it even with masks "
-            "grouped by the truth: a group's one vector is refused where some of its Gaussians' are not"
+            "grouped by the true objects: a group's single vector is refused where some of its Gaussians' are not"
         )
     return tuple(notes)

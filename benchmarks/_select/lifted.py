@@ -111,9 +111,9 @@ def points(rooms: Sequence[Case], encoder: Encoder, quick: bool) -> Part:
         if not quick:
             found.append(point("masks guide the default", draw, guiding, VIEWS, SIZE, name))
     note = (
-        "lifted: groups from masks of rendered views alone, named by portraits; true masks are the objects' own with "
-        f"outlines that wander by {pictures.SHAKE:.1%} of the picture; patches are the embedded source's; "
-        f"{VIEWS} views of {SIZE} x {SIZE} where not said"
+        "lifted: groups from masks of rendered views alone; renders of each group (portraits) give its name. True "
+        f"masks are those of the objects, with noise of {pictures.SHAKE:.1%} of the picture on their outlines. "
+        f"Patches are the masks of the embedded source. {VIEWS} views of {SIZE} x {SIZE} unless stated"
     )
     return Part(points=tuple(found), notes=(note,))
 
@@ -132,4 +132,4 @@ def fewer_views(rooms: Sequence[Case], encoder: Encoder) -> Part:
                 known = made(room, [own[i] for i in sorted(left.tolist())], true_masks, how, encoder)
                 found += names_miou(known, encoder)
             metrics.append(Metric(f"views.{way}.without_{share:.0%}.miou", fmean(found), "IoU", "higher", 0.05))
-    return Part(tuple(metrics), notes=(f"views: of {VIEWS} pictures with true masks a share is dropped at random",))
+    return Part(tuple(metrics), notes=(f"views: a random share of {VIEWS} pictures with true masks is dropped",))

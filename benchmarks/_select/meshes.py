@@ -150,8 +150,8 @@ def measure(folder: Path, seed: int, encoder: Encoder, grouped: Callable[[Case],
     )
     lost = ", ".join(f"{stem} {value:.2f}" for stem, value in sorted(found.items()) if value < 0.5)
     notes = (
-        f"meshes: {len(found)} of {len(NAMES)} low-poly objects by others in {most} rooms; top-1 over "
-        f"all their names by the best group's vector, with its measured size beside; every mesh counts; no words for "
-        f"{', '.join(unknown) or 'none'}; found with less than half: {lost or 'none'}",
+        f"meshes: {len(found)} of {len(NAMES)} low-poly objects by others in {most} rooms. top1 is over all their "
+        "names, by the vector and the measured size of the best group; every mesh counts. Without a name in the "
+        f"vocabulary: {', '.join(unknown) or 'none'}. IoU below 0.5: {lost or 'none'}",
     )
     return Part(metrics, notes=notes)

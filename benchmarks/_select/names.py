@@ -137,13 +137,13 @@ def measure(rooms: Sequence[Asked], seconds: Sequence[float]) -> Part:
         Metric("embed.room.seconds", fmean(seconds), "s", "lower", 0.3),
     )
     notes = (
-        f"names: {len(rooms)} furnished rooms from unseen seeds; kinds that a room holds once are asked by name, kinds "
-        f"that it holds more often must be reported ambiguous; right is an IoU of Gaussians of {RIGHT} or more",
-        f"absent: {ABSENT} kinds of ours a room does not hold; strange: {len(STRANGE)} things of no kind of ours, "
-        "which an encoder of a finite vocabulary refuses for their words alone",
-        "boundary IoU (Cheng et al. 2021): of the silhouettes' rims, 2 % of the picture's diagonal wide, the true and "
-        "the chosen Gaussians each drawn alone from the room's cameras; at 3 and 10 cm: the same in 3D, of the members "
-        "that near to a non-member, where the splats of floor and walls are 4 to 6 cm wide; trimap IoU: of truth and "
-        "answer among all Gaussians within 3 cm of the true border, on both sides",
+        f"names: {len(rooms)} furnished rooms from held-out seeds. A kind that a room holds once is asked by name; a "
+        f"kind that it holds several times must be reported ambiguous. right: an IoU of Gaussians of {RIGHT} or more",
+        f"absent: {ABSENT} of our kinds that a room does not hold. strange: {len(STRANGE)} names outside our kinds, "
+        "which an encoder with a finite vocabulary refuses by the words alone",
+        "boundary IoU (Cheng et al. 2021): of the rims of silhouettes, 2 % of the picture's diagonal wide; the true "
+        "and the selected Gaussians are rendered alone from the room's cameras. At 3 and 10 cm: the same in 3D, of "
+        "the members within that distance of a non-member; the splats of floor and walls are 4 to 6 cm wide. Trimap "
+        "IoU: of truth and answer among all Gaussians within 3 cm of the true border, on both sides",
     )
     return Part(metrics, notes=notes)

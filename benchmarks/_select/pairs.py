@@ -130,7 +130,5 @@ def measure(attributes: Sequence[int], swaps: Sequence[int], encoder: Encoder, g
     for key, values in kinds.items():
         metrics.append(Metric(f"attribute.{key}.right", sum(values) / len(values), "share", "higher", 0.03))
         metrics.append(Metric(f"attribute.{key}.asked", len(values), "count"))
-    note = (
-        "attributes: pairs of a kind in two colours of the basic terms or two sizes, and two kinds whose colours swap"
-    )
+    note = "attributes: two objects of a kind in two basic colours or two sizes, and two kinds with swapped colours"
     return Part(tuple(metrics), notes=(note, *([f"attributes wrong: {'; '.join(wrong)}"] if wrong else [])))

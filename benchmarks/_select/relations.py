@@ -181,7 +181,8 @@ def measure(
         if not key.startswith("true_groups"):
             metrics.append(Metric(f"relation.{key}.asked", len(values), "count"))
     note = (
-        "relations: from the boxes of the truth by a definition of their own, clear cases only, one in four of them "
-        f"where nothing stands so; {EYES} eyes a room, each room also in the mirror; true_groups: over the true objects"
+        "relations: the benchmark's own definition over the true boxes, clear cases only; in one of four no object "
+        f"satisfies the relation. {EYES} viewpoints a room, each room also mirrored. true_groups: with the true "
+        "objects as groups"
     )
     return Part(tuple(metrics), notes=(note,))

@@ -75,8 +75,8 @@ def floaters(
         metrics.append(Metric(f"floaters.{share:.0%}.miou", fmean(found), "IoU", "higher", 0.03))
         metrics.append(Metric(f"floaters.{share:.0%}.joined", fmean(joined), "share", "lower", 0.2))
     note = (
-        f"floaters: faint splats ({FAINT:g} to {DENSE:g} opaque) of {LEAST:g} to {MOST:g} m anywhere in the room; "
-        "joined: share of them that ends up in an object of other Gaussians"
+        f"floaters: faint splats ({FAINT:g} to {DENSE:g} opaque) of {LEAST:g} to {MOST:g} m at random places of the "
+        "room; joined: share of them that becomes part of a group of other Gaussians"
     )
     return Part(tuple(metrics), notes=(note,))
 
