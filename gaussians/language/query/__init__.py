@@ -1,1 +1,1 @@
-"""From a query to a selection: terms, thresholds, picks, parts and colour fallback."""
+"""Resolve queries to selections: terms, thresholds, picks, parts and the colour fallback."""

@@ -1,6 +1,6 @@
-"""Measured attributes as terms of a query: colour and relative size. Each returns scores in [0, 1], one a group.
+"""Measured attributes as terms of a query: colour and relative size, with a score in [0, 1] for each group.
 
-Knows the table of groups. Refuses to know the text encoder: a colour word is compared with what was measured.
+Colour words are compared with measured colours; they never go to the text encoder.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from ..field.language_field import Group, LanguageField
 
 F64 = NDArray[np.float64]
 
-COLOR_SPREAD = 9.0  # how far (naming space) one colour word reaches before its neighbours take over
-COLOR_LIMIT = 36.0  # farther than this it is not that colour, whatever the other names are
+COLOR_SPREAD = 9.0  # in naming space: width of the transition between neighbouring colour words
+COLOR_LIMIT = 36.0  # distance from which a colour does not match, whatever the other terms are
 NEUTRAL = 9.0  # chroma below which a colour word means black, gray or white
-DISTINCT = 9.0  # colour words closer than this to the asked one do not compete with it
-COLOR_HOLDS = 0.3  # smallest score at which a colour word counts as true: in 24 rooms 95 % of things answer to their
-# clear colour and 0.3 % to a clearly different one; at 0.4 it is 90 % and 0.3 %
-PART_DISCOUNT = 0.9  # the whole thing's colour comes before that of one of its parts
-PART_SHARE = 0.25  # a part this large may give its colour to the object ("the white lamp" by its shade)
-HUE_SHARE = 0.5  # of all the chroma of a thing, from which a colour is its hue ("the red bicycle", black tyres and all)
+DISTINCT = 9.0  # basic terms closer than this to the given word do not compete with it
+COLOR_HOLDS = 0.3  # score from which a colour word matches: in 24 rooms 95 % of things match their clear colour and
+# 0.3 % a clearly different one; at 0.4 it is 90 % and 0.3 %
+PART_DISCOUNT = 0.9  # factor of the score of a part, so that the colour of the whole object takes precedence
+PART_SHARE = 0.25  # share of an object from which the colour of a part counts ("the white lamp" by its shade)
+HUE_SHARE = 0.5  # share of the chroma of an object from which a colour is its hue (a red bicycle with black tyres)
 
 
 def color_scores(word: str, lab: NDArray[np.floating]) -> F64:
-    """How well measured Lab values `[..., 3]` answer to a colour word, against the basic terms that compete; `[...]`.
+    """Score `[...]` of a colour word for Lab values `[..., 3]`, in competition with the basic colour terms.
 
     Raises:
         UserError: unknown colour.
@@ -46,14 +46,14 @@ def color_scores(word: str, lab: NDArray[np.floating]) -> F64:
 
 @cache
 def _terms(word: str) -> tuple[F64, F64]:
-    """The asked colour `[3]` and the basic terms that compete with it `[R, 3]`, in naming space."""
+    """The colour of a word `[3]` and of the basic terms that compete with it `[R, 3]`, in naming space."""
     asked = naming_space(rgb_to_lab(torch.tensor(shade_of(word), dtype=torch.float64))).numpy()
     basic = naming_space(rgb_to_lab(torch.tensor([shade_of(v) for v in BASIC], dtype=torch.float64))).numpy()
     return asked, basic[np.linalg.norm(basic - asked, axis=1) > DISTINCT]
 
 
 def group_color_scores(field: LanguageField, word: str) -> F64:
-    """`[G]` colour score of every group: its own, or at a small discount that of a part that makes up much of it.
+    """Colour score `[G]` of every group: its own, or that of a large part with a small discount.
 
     Raises:
         UserError: unknown colour.
@@ -68,8 +68,9 @@ def group_color_scores(field: LanguageField, word: str) -> F64:
 
 
 def hue_shares(field: LanguageField, word: str) -> F64:
-    """`[G]` how much of all the chroma of a group's parts, weighted by their counts, is of parts that answer to a
-    colour word: black tyres and white spokes have none to speak of. Zero for black, gray and white.
+    """Share `[G]` of each group's chroma, weighted by counts, that lies in parts matching a colour word.
+
+    Black tyres and white spokes contribute almost no chroma. It is zero for the words black, gray and white.
 
     Raises:
         UserError: unknown colour.
@@ -86,7 +87,7 @@ def hue_shares(field: LanguageField, word: str) -> F64:
 
 
 def extent(group: Group, measure: str) -> float:
-    """A group's size under the measure a size word speaks of, scene units (or cubed for small and large)."""
+    """Size of a group in the measure of a size word, scene units (cubed for small and large)."""
     width, depth, height = group.box.size
     if measure in ("tall", "short"):
         return height
@@ -96,9 +97,9 @@ def extent(group: Group, measure: str) -> float:
 
 
 def size_scores(groups: Sequence[Group], word: str) -> list[float]:
-    """Relative size among `groups`: 1 for those on the asked side of the widest gap in (log) size, 0 for the others.
+    """Relative size among `groups`: 1 on the side of the word of the widest gap in log size, 0 on the other.
 
-    One group alone satisfies any size word; groups within 12 % of each other cannot be told apart by size.
+    A single group matches any size word; sizes within 12 % of each other are not distinguished, so all match.
     """
     if len(groups) < 2:
         return [1.0] * len(groups)

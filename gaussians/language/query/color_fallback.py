@@ -1,7 +1,7 @@
-"""A colour where the noun fails: "the purple cloth" to an encoder that does not know cloth, "the orange parts".
+"""Select by colour where the noun cannot be resolved: "the purple cloth" for an encoder that does not know cloth.
 
-Knows measured colours, Gaussian by Gaussian, and the table of groups. Refuses to know the text encoder; every answer
-says that the name was not confirmed.
+It also selects "the orange parts". The text encoder is not used; every selection of a named thing says that the name
+was not confirmed.
 """
 
 from __future__ import annotations
@@ -26,31 +26,31 @@ from .query import Query
 from .selection import Candidate, Selection, nothing
 
 PARTS = frozenset({"part", "piece", "bit", "area", "region", "patch", "spot"})
-SURE = 0.6  # a label this probable forbids reading the group as something else because of its colour
-PART_TAKEN = 0.25  # of a part: a place that holds this much of it takes it whole if its colour fits
-DARK = 28.0  # Lab lightness below which a Gaussian among coloured ones is their shadow
+SURE_LABEL = 0.6  # probability from which a label rules out that the group is something else of that colour
+PART_TAKEN = 0.25  # share of a part inside a patch from which all of the part is taken if its colour matches
+DARK = 28.0  # Lab lightness below which a Gaussian among coloured ones counts as shadow
 NEIGHBOURS = 16
-AMONG = 0.45  # share of its neighbours that must have been chosen
-HOME = 0.7  # of a place: an object that holds this much of it is what the place belongs to
-RIVAL = 0.4  # a second place of the colour with at least this share of the first's weight is a rival
+SHADOW_SHARE = 0.45  # share of the neighbours of a dark Gaussian that must be selected
+OWNER_SHARE = 0.7  # share of a patch inside an object from which the patch belongs to the object
+RIVAL = 0.4  # share of the first patch's weight from which another patch is a rival
 
 
 def by_color(scene: Scene, field: LanguageField, query: Query, stands: Callable[[Tensor], bool]) -> Selection | None:
-    """The one place (or all, if asked) that has the query's colours; None where colour cannot answer.
+    """The one patch (or all, with pick "all") of the query's colours; None if colour cannot resolve the query.
 
-    Objects whose own name the encoder is sure of are left out (a red armchair is not a red bicycle), and so are floor
-    and walls. "Parts" may belong to anything but those.
+    Floor and walls are excluded, and so are objects with a sure label (a red armchair is not a red bicycle), unless the
+    query asks for "parts".
 
     Args:
-        stands: whether some rows stand in the query's relations.
+        stands: whether some rows satisfy the query's relations.
 
     Raises:
         UserError: a colour word is unknown.
     """
-    if not _simple(query):
+    if not _is_simple(query):
         return None
     generic = query.text in PARTS
-    barred = _barred(field, named=not generic and at_home(field))
+    barred = _excluded(field, named=not generic and is_reliable(field))
     free = ~torch.isin(scene.cloud.group, torch.tensor(sorted(barred), dtype=torch.int32)).numpy()
     places = [p for p in patches(scene.cloud, query.colors, free) if stands(torch.from_numpy(p.rows))]
     if not places:
@@ -69,13 +69,14 @@ def by_color(scene: Scene, field: LanguageField, query: Query, stands: Callable[
 def by_hue(
     scene: Scene, field: LanguageField, query: Query, stands: Callable[[Tensor], bool], named: frozenset[int]
 ) -> Selection | None:
-    """Those of the `named` objects, whole, that have a place of the query's colours which is their hue: "the red
-    bicycle" by its frame, though tyres and saddle make most of it black. None where there is none.
+    """The `named` objects whose hue is the query's colour, as whole objects; None if there are none.
+
+    "The red bicycle" is found by its frame, although tyres and saddle make most of it black.
 
     Raises:
         UserError: a colour word is unknown.
     """
-    if not _simple(query) or not named:
+    if not _is_simple(query) or not named:
         return None
     members = index_groups(scene.cloud)
     own = np.zeros(len(scene.cloud), bool)
@@ -83,9 +84,9 @@ def by_hue(
     places = [p for p in patches(scene.cloud, query.colors, own) if stands(torch.from_numpy(p.rows))]
     first: dict[int, Patch] = {}
     for place in places:
-        home = _home(scene, field, query, place.rows, frozenset())
-        if home in named and place.weight > RIVAL * places[0].weight:
-            first.setdefault(home, place)
+        owner = _owner_of(scene, field, query, place.rows, frozenset())
+        if owner in named and place.weight > RIVAL * places[0].weight:
+            first.setdefault(owner, place)
     color = query.colors[0]
     told = tuple(
         Candidate(g, field.groups[g].label, color, p.center, p.size, p.score, {f"color {color}": p.score})
@@ -99,28 +100,28 @@ def by_hue(
     return Selection(query, "found", ids, tuple(c.group for c in chosen), chosen, f"{color} in hue, not as a whole")
 
 
-def _simple(query: Query) -> bool:
-    """Whether colour can answer at all: no sizes, counts and orders."""
+def _is_simple(query: Query) -> bool:
+    """Whether a query has no size, count, excluded colour or order, so that colour can resolve it."""
     simple = query.size is None and query.count is None and not query.not_colors
     return query.pick in ("one", "any", "all") and simple and bool(query.text)
 
 
-def at_home(field: LanguageField) -> bool:
-    """Whether the encoder is sure of the names of most of the scene's objects, counted by Gaussians.
+def is_reliable(field: LanguageField) -> bool:
+    """Whether most objects of the scene, counted by Gaussians, have a sure label.
 
-    Where it is not (a capture unlike what it was trained on), a sure name is as likely a look-alike's.
+    Otherwise (a capture unlike the training data of the encoder) single sure labels are not reliable either.
     """
     objects = [g for g in field.objects() if g.count]
-    sure = sum(g.count for g in objects if g.label_score >= SURE)
+    sure = sum(g.count for g in objects if g.label_score >= SURE_LABEL)
     return sure >= 0.5 * sum(g.count for g in objects)
 
 
-def _barred(field: LanguageField, named: bool) -> frozenset[int]:
-    """Leaves that may not be taken by colour: structure, and if `named` objects with a sure name."""
+def _excluded(field: LanguageField, named: bool) -> frozenset[int]:
+    """Leaves that are not selected by colour: structure, and if `named` objects with a sure label."""
     return frozenset(
         leaf
         for g in field.groups
-        if g.level == "structure" or (named and g.level == "object" and g.label_score >= SURE)
+        if g.level == "structure" or (named and g.level == "object" and g.label_score >= SURE_LABEL)
         for leaf in field.leaves(g.id)
     )
 
@@ -128,18 +129,18 @@ def _barred(field: LanguageField, named: bool) -> frozenset[int]:
 def _taken(
     scene: Scene, field: LanguageField, query: Query, places: Sequence[Patch], barred: frozenset[int]
 ) -> Selection:
-    """A found selection of the places: of each the thing that has the colour by it, or what else it stands for."""
+    """The selection of some patches: for each the object whose hue it is, else the patch with its parts and shadows."""
     color = query.colors[0]
     candidates = tuple(
         Candidate(-1, "region", color, p.center, p.size, p.score, {f"color {color}": p.score}) for p in places[:6]
     )
     whole, loose = [], []
     for place in places:
-        home = None if query.text in PARTS else _home(scene, field, query, place.rows, barred)
-        if home is None:
+        owner = None if query.text in PARTS else _owner_of(scene, field, query, place.rows, barred)
+        if owner is None:
             loose.append(place.rows)
         else:
-            whole.append(_of_color(scene, field, query, home))
+            whole.append(_rows_of_hue(scene, field, query, owner))
     if loose:
         rows = _with_whole_parts(scene, field, query, np.unique(np.concatenate(loose)), barred)
         whole.append(_with_shadows(scene, rows, barred))
@@ -147,29 +148,29 @@ def _taken(
     return Selection(query, "found", scene.cloud.ids[torch.from_numpy(rows)].sort().values, (), candidates)
 
 
-def _home(
+def _owner_of(
     scene: Scene, field: LanguageField, query: Query, rows: NDArray[np.int64], barred: frozenset[int]
 ) -> int | None:
-    """The object that most of a place lies in, if the object's hue is the colour asked for."""
+    """The object that contains most of a patch, if its hue is the colour of the query."""
     column = scene.cloud.group.numpy()[rows]
     of = np.array([g.parent if g.parent >= 0 else g.id for g in field.groups] + [NO_GROUP])[column]
     homes, counts = np.unique(of[of >= 0], return_counts=True)
-    if not len(homes) or counts.max() < HOME * len(rows):
+    if not len(homes) or counts.max() < OWNER_SHARE * len(rows):
         return None
-    home = int(homes[counts.argmax()])
-    if field.groups[home].level != "object" or barred & set(field.leaves(home)):
+    owner = int(homes[counts.argmax()])
+    if field.groups[owner].level != "object" or barred & set(field.leaves(owner)):
         return None
-    hue = min(float(attributes.hue_shares(field, word)[home]) for word in query.colors)
-    return home if hue >= attributes.HUE_SHARE else None
+    hue = min(float(attributes.hue_shares(field, word)[owner]) for word in query.colors)
+    return owner if hue >= attributes.HUE_SHARE else None
 
 
-def _of_color(scene: Scene, field: LanguageField, query: Query, home: int) -> NDArray[np.int64]:
-    """The rows of an object that have its hue, without what else it holds (the stand on the cloth).
+def _rows_of_hue(scene: Scene, field: LanguageField, query: Query, owner: int) -> NDArray[np.int64]:
+    """The rows of an object that have its hue, without other things in it (the stand on the cloth).
 
-    Trained scenes paint folds and threads with nearly black Gaussians between coloured ones, so that no hue of their
-    own tells whose they are: every row goes with most of its nearest neighbours in parts that are not dark.
+    Trained scenes represent folds and threads by nearly black Gaussians between coloured ones, which have no hue of
+    their own. So each row is decided by the majority of its nearest neighbours in parts that are not dark.
     """
-    leaves = np.array(field.leaves(home))
+    leaves = np.array(field.leaves(owner))
     lab = np.array([field.groups[leaf].lab for leaf in leaves])
     fits = np.min([attributes.color_scores(w, lab) for w in query.colors], axis=0) >= attributes.COLOR_HOLDS
     column = scene.cloud.group.numpy()
@@ -185,8 +186,10 @@ def _of_color(scene: Scene, field: LanguageField, query: Query, home: int) -> ND
 
 
 def _with_shadows(scene: Scene, rows: NDArray[np.int64], barred: frozenset[int]) -> NDArray[np.int64]:
-    """The rows, and the dark Gaussians among them: trained scenes paint folds with coloured over nearly black ones,
-    which have no hue of their own to be found by."""
+    """The rows and the dark Gaussians among them.
+
+    Trained scenes represent folds by coloured Gaussians over nearly black ones, which have no hue of their own.
+    """
     cloud = scene.cloud
     chosen = np.zeros(len(cloud), bool)
     chosen[rows] = True
@@ -197,19 +200,19 @@ def _with_shadows(scene: Scene, rows: NDArray[np.int64], barred: frozenset[int])
     dark = near[(base_lab(cloud[torch.from_numpy(near)])[:, 0] < DARK).numpy() & free[near] & ~chosen[near]]
     if not len(dark):
         return rows
-    for _ in range(2):  # the second time reaches those behind the first
+    for _ in range(2):  # the second pass reaches those behind the first
         _, around = cKDTree(points[near]).query(points[dark], k=min(NEIGHBOURS, len(near)), workers=-1)
         share = chosen[near][around.reshape(len(dark), -1)].mean(axis=1)
-        chosen[dark[share > AMONG]] = True
+        chosen[dark[share > SHADOW_SHARE]] = True
     return np.flatnonzero(chosen)
 
 
 def _with_whole_parts(
     scene: Scene, field: LanguageField, query: Query, rows: NDArray[np.int64], barred: frozenset[int]
 ) -> NDArray[np.int64]:
-    """The rows, and all of each part that they hold a good share of and that has the colour as a whole.
+    """The rows, and each part of the query's colour of which they contain at least PART_TAKEN.
 
-    Threads and folds of one cloth may be too dark to have its colour one by one; the segmentation knows better.
+    Single threads and folds of a cloth may be too dark to have its colour; the segmentation has them in its parts.
     """
     column = scene.cloud.group.numpy()
     held = np.bincount(column[rows] + 1, minlength=len(field.groups) + 1)[1:]

@@ -1,7 +1,4 @@
-"""Places of one colour, Gaussian by Gaussian: what a colour word finds where no group answers to the noun.
-
-Knows clouds and measured colours. Refuses to know nouns and groups.
-"""
+"""Find patches of one colour in a cloud, by the colours of single Gaussians and without groups."""
 
 from __future__ import annotations
 
@@ -21,22 +18,22 @@ from .attributes import color_scores
 
 F64 = NDArray[np.float64]
 
-CELLS = 260  # voxels along the scene's robust diagonal: the grain at which colour is averaged
-CERTAIN = 0.5  # colour score of the cells a place starts from: no other basic term is nearer
-LIKELY = 0.08  # score down to which it grows into the cells beside it: folds and shadows of the same stuff
-TOGETHER = 0.012  # of the diagonal: cells this near each other are one place
-APART = 3.0  # standard deviations of a typical Gaussian that a coarsely sampled surface's cells may lie apart
-EDGE = 0.03  # score of a Gaussian's own colour below which it is something else that shares the cell
+CELLS = 260  # voxels along the robust diagonal of the scene, in which colour is averaged
+SEED_SCORE = 0.5  # colour score of seed cells: no other basic term is nearer
+GROW_SCORE = 0.08  # score down to which a patch grows into adjacent cells: folds and shadows of one material
+LINK_DISTANCE = 0.012  # of the diagonal: cells this near each other are linked
+LINK_SIGMAS = 3.0  # standard deviations of a typical Gaussian, likewise for coarsely sampled surfaces
+MIN_SCORE = 0.03  # of a Gaussian: below it the Gaussian only shares the cell
 
 
 @dataclass(frozen=True)
 class Patch:
-    """One place of a colour.
+    """One connected region of a colour.
 
     Attributes:
         rows: `[M]` int64, ascending.
-        weight: geometric mean of its shares of the scene's Gaussians and of their footprint, times its score: captures
-            spend small Gaussians on what was looked at and a few giant ones on the background.
+        weight: geometric mean of its shares of the scene's Gaussians and of their footprint, times its score. Captures
+            have many small Gaussians in the centre of attention and a few very large ones in the background.
         score: mean colour score, weighted by footprint.
         center, size: `[3]` median and robust extent of its Gaussians, world axes, scene units.
     """
@@ -49,11 +46,11 @@ class Patch:
 
 
 def patches(cloud: GaussianCloud, words: tuple[str, ...], among: NDArray[np.bool_]) -> list[Patch]:
-    """The places where every colour word holds, largest first.
+    """The patches that match all colour words, largest weight first.
 
     Args:
-        words: colour words; the lowest of their scores counts.
-        among: `[N]` bool, rows that may be taken.
+        words: colour words; the minimum of their scores counts.
+        among: `[N]` bool, rows that may be selected.
 
     Raises:
         UserError: a colour word is unknown.
@@ -71,10 +68,10 @@ def patches(cloud: GaussianCloud, words: tuple[str, ...], among: NDArray[np.bool
     cell, place, mean = _cells(points, lab, weight, diagonal / CELLS)
     score = np.min([color_scores(w, mean) for w in words], axis=0)
     own = np.min([color_scores(w, lab) for w in words], axis=0)
-    reach = max(TOGETHER * diagonal, APART * float(ordered[:, 0].median()))
+    reach = max(LINK_DISTANCE * diagonal, LINK_SIGMAS * float(ordered[:, 0].median()))
     of_cell = _places(place, score, reach)
-    of_row = np.where(own >= EDGE, of_cell[cell], -1)
-    order = np.argsort(of_row, kind="stable")  # rows stay ascending within a place
+    of_row = np.where(own >= MIN_SCORE, of_cell[cell], -1)
+    order = np.argsort(of_row, kind="stable")  # rows ascend within a patch
     found = np.split(order, np.searchsorted(of_row[order], np.arange(int(of_cell.max(initial=-1)) + 2)))[1:-1]
     total = float(weight.sum()) + 1e-20
     made = [_patch(rows[k], points[k], own[k], weight[k], total, len(cloud)) for k in found if len(k)]
@@ -82,7 +79,7 @@ def patches(cloud: GaussianCloud, words: tuple[str, ...], among: NDArray[np.bool
 
 
 def _diagonal(cloud: GaussianCloud) -> float:
-    """Of the box that holds the scene but for the outermost 2 % on each side, scene units."""
+    """Diagonal of the bounds of the scene without the outermost 2 % on each side, scene units."""
     sample = cloud.means[:: max(1, len(cloud) // 50_000)].double().numpy()
     low, high = np.quantile(sample, [0.02, 0.98], axis=0)
     return float(np.linalg.norm(high - low)) + 1e-12
@@ -116,14 +113,14 @@ def _cells(points: F64, lab: F64, weight: F64, side: float) -> tuple[NDArray[np.
 
 
 def _places(centers: F64, score: F64, reach: float) -> NDArray[np.int64]:
-    """Place of each cell `[C]`, -1 for none: certain cells linked within `reach`, likely cells grown into from them."""
+    """Patch of each cell `[C]`, -1 for none: seed cells linked within `reach`, then grown into adjacent cells."""
     place = np.full(len(centers), -1)
-    certain = np.flatnonzero(score >= CERTAIN)
-    if not len(certain):
+    seeds = np.flatnonzero(score >= SEED_SCORE)
+    if not len(seeds):
         return place
-    place[certain] = _joined(centers[certain], reach)
-    border = certain
-    waiting = np.flatnonzero((score >= LIKELY) & (place < 0))
+    place[seeds] = _components(centers[seeds], reach)
+    border = seeds
+    waiting = np.flatnonzero((score >= GROW_SCORE) & (place < 0))
     while len(waiting) and len(border):
         distance, nearest = cKDTree(centers[border]).query(centers[waiting], distance_upper_bound=0.6 * reach)
         near = np.isfinite(distance)
@@ -132,8 +129,8 @@ def _places(centers: F64, score: F64, reach: float) -> NDArray[np.int64]:
     return place
 
 
-def _joined(points: F64, reach: float) -> NDArray[np.int64]:
-    """Component of each point when those within `reach` are linked, `[M]`."""
+def _components(points: F64, reach: float) -> NDArray[np.int64]:
+    """Connected component `[M]` of each point, with links between points within `reach`."""
     if not len(points):
         return np.zeros(0, np.int64)
     pairs = cKDTree(points).query_pairs(reach, output_type="ndarray")

@@ -1,6 +1,6 @@
-"""Why a query was answered as it was: every candidate with each term, what it is held against, and whether it holds.
+"""Explain how a query was resolved: each candidate with the score and threshold of every term.
 
-Knows the terms of a query. Refuses to decide anything: it asks the resolver again and tells what that saw.
+The resolver is run again; nothing is decided here.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ class Term:
     """One term of one candidate.
 
     Attributes:
-        score: in [0, 1]; None where it was not asked, because another term already fails.
-        threshold: the score from which it holds.
+        score: in [0, 1]; None if it was not computed, because another term already fails.
+        threshold: the score from which the term holds.
     """
 
     name: str
@@ -40,8 +40,8 @@ class Explained:
     """A candidate with its terms.
 
     Attributes:
-        outcome: "selected"; "rival" of one that could be meant as well; "matches" if all terms hold and yet it was not
-            taken; "fails" otherwise.
+        outcome: "selected"; "rival" if it could be meant as well; "matches" if all terms hold but it was not selected;
+            "fails" otherwise.
     """
 
     candidate: Candidate
@@ -51,7 +51,7 @@ class Explained:
 
 @dataclass(frozen=True)
 class Explanation:
-    """A query, its verdict, its candidates best first, and the same of each query inside it, by its role in words."""
+    """A query, its verdict, its candidates (best first), and the explanations of its inner queries by role."""
 
     asked: str
     verdict: Verdict
@@ -60,7 +60,7 @@ class Explanation:
     inside: tuple[tuple[str, Explanation], ...]
 
     def to_json(self) -> dict[str, Any]:
-        """Plain numbers, lists and dictionaries."""
+        """The explanation as JSON values."""
         return {
             "asked": self.asked,
             "verdict": self.verdict,
@@ -86,20 +86,20 @@ class Explanation:
         }  # fmt: skip
 
     def lines(self, most: int = 6, indent: str = "") -> list[str]:
-        """For a person: the verdict, the first `most` candidates, then what is inside."""
-        told = [f"{indent}{self.asked}: {self.verdict}{f' ({self.reason})' if self.reason else ''}"]
+        """The explanation as text: the verdict, the first `most` candidates, then the inner queries."""
+        lines = [f"{indent}{self.asked}: {self.verdict}{f' ({self.reason})' if self.reason else ''}"]
         for e in self.candidates[:most]:
-            terms = ", ".join(_told(t) for t in e.terms) or "no terms"
-            told.append(f"{indent}  {e.outcome}: {e.candidate.describe()}: {terms}")
+            terms = ", ".join(_term_text(t) for t in e.terms) or "no terms"
+            lines.append(f"{indent}  {e.outcome}: {e.candidate.describe()}: {terms}")
         if len(self.candidates) > most:
-            told.append(f"{indent}  and {len(self.candidates) - most} more that fit less")
+            lines.append(f"{indent}  and {len(self.candidates) - most} more that fit less")
         for role, inner in self.inside:
-            told += [f"{indent}  {role}:", *inner.lines(most, indent + "    ")]
-        return told
+            lines += [f"{indent}  {role}:", *inner.lines(most, indent + "    ")]
+        return lines
 
 
 def explain(resolver: Resolver, query: Query) -> Explanation:
-    """What was seen when a query was answered.
+    """The explanation of a query.
 
     Raises:
         BackendError, UserError: as `resolve`.
@@ -136,7 +136,7 @@ def _candidates(resolver: Resolver, query: Query, selected: set[int]) -> tuple[E
     return tuple(Explained(rank.candidate(i), terms(i), outcome(i)) for i in order)
 
 
-def _told(term: Term) -> str:
+def _term_text(term: Term) -> str:
     if term.score is None:
         return f"{term.name} not asked"
     sign = ">=" if term.holds else "<"

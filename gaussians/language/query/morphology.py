@@ -1,14 +1,14 @@
-"""Growing and shrinking a selection by a distance: the morphology of point sets.
+"""Grow and shrink a selection by a distance: morphology of point sets.
 
-Knows where Gaussians are. Refuses to know what they belong to: grown by 5 cm, a chair takes 5 cm of floor along.
+Groups are not considered: a chair grown by 5 cm includes 5 cm of the floor.
 
 With `S` a set of Gaussians, `-S` all others and `d` the distance of centres (Serra 1982, on a finite set):
 
     grow(S, r) = {x : d(x, S) <= r}        shrink(S, r) = {x in S : d(x, -S) > r} = -grow(-S, r)
 
 so that for every r > 0: shrink(S) <= S <= grow(S); both keep the order of sets; grow(A) <= B exactly if A <= shrink(B);
-S <= shrink(grow(S)) (filled holes stay filled) and grow(shrink(S)) <= S (specks stay gone), and doing either pair twice
-changes nothing more. The complement `-S` is `members.difference` from all ids.
+S <= shrink(grow(S)) (closing fills holes) and grow(shrink(S)) <= S (opening removes specks), both idempotent. The
+complement `-S` is `group_index.difference` from all ids.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Rows = NDArray[np.int64]
 
 
 def grown(cloud: GaussianCloud, ids: Tensor, by: float) -> Tensor:
-    """Ascending ids of the Gaussians within `by` scene units of one of `ids`, themselves included.
+    """Ascending ids of the Gaussians within `by` scene units of any of `ids`, including these.
 
     Raises:
         UserError: the distance is not positive.
@@ -58,10 +58,9 @@ def _ids(cloud: GaussianCloud, flags: NDArray[np.bool_]) -> Tensor:
 
 
 def _near(cloud: GaussianCloud, source: NDArray[np.bool_], among: NDArray[np.bool_], by: float) -> NDArray[np.bool_]:
-    """`[N]` which rows of `among` lie within `by` of a row of `source`.
+    """Whether each row `[N]` is in `among` and within `by` of a row of `source`.
 
-    Only what lies around the smaller of both is looked at, and of it only cells beside a cell of the other: the rest
-    of a large scene costs a comparison of coordinates.
+    Only rows near the smaller set are searched, by cells: the rest of a large scene costs a comparison of coordinates.
     """
     from scipy.spatial import cKDTree
 
@@ -76,14 +75,14 @@ def _near(cloud: GaussianCloud, source: NDArray[np.bool_], among: NDArray[np.boo
         other = _around(points, other, own, by)
     if not len(own) or not len(other):
         return found
-    # The search ends a little beyond `by`; the comparison itself is exact, and the same whichever set is asked.
+    # The search radius is slightly larger than `by`; the comparison is exact and symmetric in both sets.
     distance, _ = cKDTree(points[own]).query(points[other], distance_upper_bound=by * (1 + 1e-6) + 1e-12)
     found[other[distance <= by]] = True
     return found
 
 
 def _around(points: NDArray[np.float32], rows: Rows, target: Rows, by: float) -> Rows:
-    """Those of `rows` whose cell of side `by` is one of `target`'s or beside it; at least all within `by` of it."""
+    """The `rows` in cells of `target` or adjacent ones, with cells of side `by`: a superset of those within `by`."""
     if not len(target) or not len(rows):
         return rows[:0]
     reach = by * (1 + 1e-5) + 1e-6 * float(np.abs(points[target]).max())  # coordinates are single precision
@@ -94,7 +93,7 @@ def _around(points: NDArray[np.float32], rows: Rows, target: Rows, by: float) ->
     table = np.zeros(tuple(shape), bool)
     x, y, z = (np.floor((points[target] - low) / side).astype(np.int64) + 1).T
     table[x, y, z] = True
-    for axis in range(3):  # each cell and those beside it
+    for axis in range(3):  # each cell and its neighbours
         ahead, behind = np.roll(table, 1, axis), np.roll(table, -1, axis)
         table = table | ahead | behind
     x, y, z = (np.floor((points[rows] - low) / side).astype(np.int64) + 1).T

@@ -1,6 +1,6 @@
-"""The pieces of a thing that are its named part: "the legs of the table", "the left armrest".
+"""Find the named part of an object in a scene, as one or more pieces: "the legs of the table", "the left armrest".
 
-Takes the owner's shape from a scene; `parts.py` tells the part by its shape.
+`parts.py` recognises the part from the shape of the object.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ F64 = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A part of a thing: its rows in the cloud, and what relations and superlatives can be asked of."""
+    """A piece of an object: its rows in the cloud, and a group for relations and superlatives."""
 
     rows: NDArray[np.int64]
     group: Group
@@ -31,11 +31,11 @@ class Piece:
 def pieces_of(
     scene: Scene, rows: NDArray[np.int64], owner: Group, front: F64 | None, name: str
 ) -> tuple[list[Piece], str]:
-    """The pieces of an owner that are its part of this name, or none and a sentence why that cannot be told.
+    """The pieces of an object that form its part of this name, or none and the reason.
 
     Args:
-        rows: the owner's in the scene's cloud; none for what is known by its colour only.
-        front: `[3]` where the owner faces, world frame; None where that is not known.
+        rows: rows of the object in the cloud; empty for an anchor that was selected by colour.
+        front: `[3]` direction the object faces, world frame; None if unknown.
     """
     if not len(rows):
         return [], "it is known by its colour only, and a colour has no parts"
@@ -49,7 +49,7 @@ def pieces_of(
 
 
 def shape_in(scene: Scene, rows: NDArray[np.int64], group: Group, front: F64 | None) -> parts.Shape:
-    """The shape of a group that owns some rows of a scene, facing `front` (`[3]`, world) or nowhere."""
+    """The shape of a group with some rows of a scene, with the direction `front` (`[3]`, world) it faces or None."""
     cloud = scene.cloud[torch.from_numpy(rows)]
     axes = to_matrix(cloud.quats)
     thin = axes[torch.arange(len(cloud)), :, cloud.scales.argmin(dim=1)]

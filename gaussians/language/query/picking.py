@@ -1,6 +1,6 @@
-"""Choosing among what matches: the one, all, as many as were counted, the largest, the second from the left.
+"""Choose among the matches of a query by its `pick`: the only one, all, a count, the largest, the second from the left.
 
-Knows candidates and where the viewer stands. Refuses to guess: several that match equally well are an ambiguity.
+Several matches of equal quality for pick "one" are an ambiguity; none of them is chosen.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ from .query import Query
 from .selection import Candidate, Selection, Verdict, nothing
 from .terms import Scored
 
-CLEAR_LEAD = 0.55  # among equals in name and colour, a match is a rival from this share of the best one's score
-NAME_LEAD = 0.35  # of equals in name, those less sure than this share of the surest are rather a piece or a look-alike
-LISTED = 6  # candidates told in a sentence
+CLEAR_LEAD = 0.55  # share of the best score from which a match of the same name and colour is a rival
+NAME_LEAD = 0.35  # share of the best name score below which a match is rather a fragment or a similar object
+MAX_LISTED = 6  # candidates listed in a sentence
 
 
 @dataclass(frozen=True)
 class Choice:
-    """What was chosen, or why nothing was.
+    """The chosen matches, or a selection that says why none is chosen.
 
     Attributes:
-        chosen: positions in the `Scored`, best first; empty unless found.
-        refusal: the selection to answer with instead, or None.
+        chosen: positions in `Scored`, best first; empty with a refusal.
+        refusal: the selection to return instead, or None.
     """
 
     chosen: list[int]
@@ -37,16 +37,16 @@ class Choice:
 
 
 def pick(query: Query, scored: Scored, stand: Stand) -> Choice:
-    """Which of the matches a query means, by its `pick`. There is at least one match."""
+    """The matches that a query refers to, by its `pick`. There must be at least one match."""
     matches = scored.matches()
     if query.pick == "one":
-        return _only_one(query, scored, matches)
+        return _unique(query, scored, matches)
     if query.pick in ("all", "rest"):
         return _counted(query, scored, matches)
     if query.pick == "any":
         return Choice(matches[:1])
     key = _keys(stand)[query.pick]
-    ordered = sorted(_meant(scored, matches), key=lambda i: (key(scored.groups[i]), scored.groups[i].id))
+    ordered = sorted(_preferred(scored, matches), key=lambda i: (key(scored.groups[i]), scored.groups[i].id))
     told = tuple(scored.candidate(i) for i in ordered)
     if query.pick == "middle" and len(ordered) % 2 == 0:
         reason = f"{query.describe()}: of {len(ordered)} none is in the middle ({listing(told)}); say which one"
@@ -58,9 +58,9 @@ def pick(query: Query, scored: Scored, stand: Stand) -> Choice:
 
 
 def by_distance(query: Query, scored: Scored, anchors: Sequence[Group], nearest: bool) -> Choice:
-    """The match nearest to the anchors, or the farthest from them; none of them is itself meant."""
+    """The match nearest to the anchors, or the farthest from them; the anchors themselves are excluded."""
     ids = {a.id for a in anchors if a.id >= 0}
-    matches = _meant(scored, [i for i in scored.matches() if scored.groups[i].id not in ids])
+    matches = _preferred(scored, [i for i in scored.matches() if scored.groups[i].id not in ids])
     if not matches:
         return Choice([], nothing(query, f"{query.describe()}: there is nothing but what it is compared with"))
     boxes = Boxes.of([scored.groups[i].box for i in matches])
@@ -69,10 +69,11 @@ def by_distance(query: Query, scored: Scored, anchors: Sequence[Group], nearest:
 
 
 def rivals(scored: Scored, matches: list[int]) -> list[int]:
-    """The matches that a person could mean as well as the best.
+    """The matches that the query could refer to as well as to the best one.
 
-    What goes by the asked name and colour itself leaves no room for what only comes near to them: beside a red chair
-    an orange one is not "the red chair". Among equals the relations decide, unless they decide too narrowly.
+    A match that has exactly the name and colour of the query excludes those that only come close: beside a red chair
+    an orange one is not "the red chair". Among matches of equal name and colour the relations decide, unless their
+    scores are too close.
     """
     own = [i for i in matches if scored.own[i]]
     if "text" in scored.terms and own:
@@ -80,28 +81,28 @@ def rivals(scored: Scored, matches: list[int]) -> list[int]:
         own = [i for i in own if sure[i] >= NAME_LEAD * max(sure[own])]
     if not own:
         return [i for i in matches if scored.score[i] >= CLEAR_LEAD * scored.score[matches[0]]]
-    placed = {i: _placed(scored, i) for i in own}
+    placed = {i: _other_terms(scored, i) for i in own}
     best = max(placed.values())
     return [i for i in own if placed[i] >= CLEAR_LEAD * best]
 
 
-def _meant(scored: Scored, matches: list[int]) -> list[int]:
-    """The matches that go by the asked name and colour themselves if there are any, else all."""
+def _preferred(scored: Scored, matches: list[int]) -> list[int]:
+    """The matches that have exactly the name and colour of the query if there are any, else all."""
     return [i for i in matches if scored.own[i]] or matches
 
 
-def _placed(scored: Scored, index: int) -> float:
-    """Product of the terms that are neither name nor colour."""
+def _other_terms(scored: Scored, index: int) -> float:
+    """Product of the terms other than name and colour."""
     held = [v[index] for name, v in scored.terms.items() if name != "text" and not name.startswith(("color ", "not "))]
     return float(np.prod(held)) if held else 1.0
 
 
 def listing(candidates: Sequence[Candidate]) -> str:
-    """The first few, in words."""
-    return ", ".join(c.describe() for c in candidates[:LISTED])
+    """The first candidates in words."""
+    return ", ".join(c.describe() for c in candidates[:MAX_LISTED])
 
 
-def _only_one(query: Query, scored: Scored, matches: list[int]) -> Choice:
+def _unique(query: Query, scored: Scored, matches: list[int]) -> Choice:
     left = rivals(scored, matches)
     if len(left) == 1:
         return Choice(left)
@@ -113,7 +114,7 @@ def _only_one(query: Query, scored: Scored, matches: list[int]) -> Choice:
 def _counted(query: Query, scored: Scored, matches: list[int]) -> Choice:
     if query.pick == "rest" or query.count is None:
         return Choice(matches)
-    for counted in (matches, _meant(scored, matches)):
+    for counted in (matches, _preferred(scored, matches)):
         if query.count == len(counted):
             return Choice(counted)
     told = tuple(scored.candidate(i) for i in matches)
@@ -127,7 +128,7 @@ def _refused(query: Query, reason: str, told: tuple[Candidate, ...], verdict: Ve
 
 
 def _keys(stand: Stand) -> dict[str, Callable[[Group], float]]:
-    """What each superlative sorts by, smallest first."""
+    """The sort key of each superlative, smallest first."""
 
     def rightward(g: Group) -> float:
         return float(np.array(g.box.center) @ stand.right)

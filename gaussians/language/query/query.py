@@ -1,4 +1,4 @@
-"""What a phrase means, as data. Knows nothing of the sentence it came from nor of the scene it will meet.
+"""`Query`: the meaning of a noun phrase as data, independent of the sentence and of the scene.
 
 Text similarity, measured attributes and geometry stay separate terms: a colour word never goes to the text encoder,
 and negation is a set difference, because encoders are near bag-of-words on both (see FIELD figures in docs).

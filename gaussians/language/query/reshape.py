@@ -1,7 +1,4 @@
-"""A selection after its query asked for more or less of it: grown, shrunk, turned inside out.
-
-Knows selections and the table of groups. Refuses to know what was asked for before that.
-"""
+"""Apply the `grow` and `invert` of a query to its selection."""
 
 from __future__ import annotations
 
@@ -15,11 +12,11 @@ from ..field.group_index import GroupIndex, difference
 from . import morphology
 from .query import Query
 from .selection import Selection, mask_of, nothing
-from .terms import alive
+from .terms import present_groups
 
 
 def reshaped(scene: Scene, members: GroupIndex, found: Selection, query: Query) -> Selection:
-    """What was found, grown or shrunk by `query.grow` metres and then inverted if the query says so."""
+    """The selection grown or shrunk by `query.grow` metres, then inverted if `query.invert`."""
     ids, change = found.ids, ""
     if query.grow:
         by = abs(query.grow) / (scene.frame.metres_per_unit or 1.0)
@@ -31,17 +28,17 @@ def reshaped(scene: Scene, members: GroupIndex, found: Selection, query: Query) 
         return nothing(query, f"nothing is left of {query.describe()}", found.candidates)
     told = () if query.invert else found.candidates
     reason = "; ".join(r for r in (found.reason, change) if r)
-    return replace(found, ids=ids, groups=_whole(scene, ids), candidates=told, reason=reason)
+    return replace(found, ids=ids, groups=_whole_groups(scene, ids), candidates=told, reason=reason)
 
 
-def _whole(scene: Scene, ids: torch.Tensor) -> tuple[int, ...]:
-    """Groups of which every Gaussian is among some ids."""
+def _whole_groups(scene: Scene, ids: torch.Tensor) -> tuple[int, ...]:
+    """The groups whose Gaussians are all among some ids."""
     field = scene.language
     assert field is not None
     column = scene.cloud.group[mask_of(scene.cloud, ids)].cpu().numpy()
     held = np.bincount(column + 1, minlength=len(field.groups) + 1)[1:]
     return tuple(
         g.id
-        for g in alive(field, "all")
+        for g in present_groups(field, "all")
         if g.parent < 0 and sum(int(held[leaf]) for leaf in field.leaves(g.id)) == g.count
     )

@@ -1,7 +1,7 @@
-"""From a query to a selection: text, measured attributes and geometry as separate terms, and one verdict.
+"""Resolve a query to a selection in a scene, with one verdict.
 
-Knows the order of things: set algebra, anchors, terms (`terms.py`), choice (`picking.py`). Refuses to guess: several
-matches are "ambiguous", none is "absent", and every candidate carries the score of each of its terms.
+The steps are set algebra, anchors, terms (`terms.py`) and choice (`picking.py`). Several matches are "ambiguous", none
+is "absent"; every candidate carries the score of each of its terms.
 """
 
 from __future__ import annotations
@@ -26,27 +26,39 @@ from ..field.group_index import GroupIndex, difference, index_groups, union
 from ..field.language_field import Group, LanguageField
 from ..field.measure import box_of
 from .attributes import COLOR_HOLDS, color_scores
-from .color_fallback import PARTS, at_home, by_color, by_hue
+from .color_fallback import PARTS, by_color, by_hue, is_reliable
 from .part_query import Piece, pieces_of
 from .picking import by_distance, pick
 from .query import Query, Relation
 from .reshape import reshaped
 from .selection import Candidate, Selection, nothing
-from .terms import ALL, FLOATERS, ORDERING, STRUCTURE, Anchor, Scored, alive, candidate_of, is_name, related, scored
+from .terms import (
+    ALL,
+    FLOATERS,
+    ORDERING,
+    STRUCTURE,
+    Anchor,
+    Scored,
+    candidate_of,
+    is_name,
+    present_groups,
+    related,
+    scored,
+)
 
 if TYPE_CHECKING:
     from ..encoders import Encoder
 
-__all__ = ["STRUCTURE", "Resolver", "resolve"]  # who builds scenes from words needs to know which words are walls
+__all__ = ["STRUCTURE", "Resolver", "resolve"]  # builders of scenes need the words for structure
 
 
 def resolve(
     scene: Scene, query: Query, viewer: Camera, encoder: Encoder | None = None, last: Selection | None = None
 ) -> Selection:
-    """What `query` means in `scene` for someone at `viewer`.
+    """The selection of `query` in `scene` as seen by `viewer`.
 
     Args:
-        encoder: the encoder the scene was embedded with; needed only where the query names a kind of thing.
+        encoder: the encoder the scene was embedded with; needed only if the query names a kind of thing.
         last: the selection that "it" refers to.
 
     Raises:
@@ -56,8 +68,8 @@ def resolve(
     return Resolver(scene, viewer, encoder, last).select(query)
 
 
-class Unresolved(Exception):  # no error: an anchor's verdict is the answer
-    """An anchor was not found as one thing; its selection is the answer to the whole query."""
+class Unresolved(Exception):  # not an error: the verdict of an anchor is the result
+    """An anchor could not be resolved; its selection is the result of the whole query."""
 
     def __init__(self, selection: Selection) -> None:
         super().__init__(selection.reason)
@@ -66,7 +78,7 @@ class Unresolved(Exception):  # no error: an anchor's verdict is the answer
 
 @dataclass(frozen=True)
 class Resolver:
-    """One scene, one viewer, one encoder: asks of any number of queries. See `resolve`."""
+    """Resolves any number of queries for one scene, viewer and encoder. See `resolve`."""
 
     scene: Scene
     viewer: Camera
@@ -88,17 +100,17 @@ class Resolver:
     def members(self) -> GroupIndex:
         return index_groups(self.scene.cloud)
 
-    # -- the line from query to selection ---------------------------------------------------------------------------
+    # -- from query to selection -----------------------------------------------------------------------------------
 
     def select(self, query: Query) -> Selection:
-        """What a query means, set algebra, growing and all."""
+        """The selection of a query, with set algebra, growing and inversion."""
         found = self._combined(query)
         if found.verdict != "found" or not (query.grow or query.invert):
             return found
         return reshaped(self.scene, self.members, found, query)
 
     def _combined(self, query: Query) -> Selection:
-        """What a query means with its set algebra."""
+        """The selection of a query with its set algebra, without growing and inversion."""
         outs = []
         for other in query.exclude:
             out = self.select(other.model_copy(update={"pick": "all"}) if other.pick == "one" else other)
@@ -121,14 +133,14 @@ class Resolver:
         return own
 
     def _own(self, query: Query, out: frozenset[int]) -> Selection:
-        """The query without its set algebra; groups in `out` cannot be the one that is meant."""
+        """The selection of a query without its set algebra; groups in `out` are excluded."""
         if query.last:
-            return self._again(query)
+            return self._last_selection(query)
         if query.groups:
             return self._explicit(query)
         if query.text in ALL and not query.colors:
-            groups = tuple(g for g in alive(self.field, "all") if g.parent < 0)
-            told = tuple(candidate_of(g) for g in groups)  # with what belongs to no group
+            groups = tuple(g for g in present_groups(self.field, "all") if g.parent < 0)
+            told = tuple(candidate_of(g) for g in groups)  # every_id includes Gaussians without a group
             return Selection(query, "found", self.members.every_id, tuple(g.id for g in groups), told)
         if query.text in FLOATERS and not query.colors:
             return self._floaters(query)
@@ -140,7 +152,7 @@ class Resolver:
         return replace(found, reason="; ".join(r for r in (found.reason, fronts) if r)) if fronts else found
 
     def described(self, query: Query, out: frozenset[int] = frozenset()) -> Selection:
-        """A query that says what a thing is like."""
+        """The selection of a query by name, attributes and relations."""
         owner = next((r for r in query.relations if r.name == "part_of"), None)
         if owner is not None and is_name(query.text):
             return self._part(query, owner)
@@ -171,22 +183,22 @@ class Resolver:
             return self._rest(query, rank, choice.chosen)
         return self._take(query, tuple(rank.candidate(i) for i in choice.chosen))
 
-    def _again(self, query: Query) -> Selection:
-        """ "it": what was selected last, as far as it is still there."""
+    def _last_selection(self, query: Query) -> Selection:
+        """The Gaussians of the last selection that still exist, for "it"."""
         there = self.members.present(self.last.ids) if self.last is not None else torch.zeros(0)
         if self.last is None or not len(there):
             return nothing(query, "there is nothing that 'it' could mean (any more); name the object")
         return replace(self.last, query=query, verdict="found", ids=there)
 
     def _floaters(self, query: Query) -> Selection:
-        """What belongs to no group: haze and strays off every surface."""
+        """The Gaussians without a group: haze and floaters."""
         ids = self.members.ids_of([NO_GROUP])
         if not len(ids):
             return nothing(query, "every Gaussian of this scene belongs to something; there are no floaters")
         return Selection(query, "found", ids, (), (), f"{len(ids)} Gaussians that belong to no group")
 
     def _explicit(self, query: Query) -> Selection:
-        known = {g.id: g for g in alive(self.field, "all")}
+        known = {g.id: g for g in present_groups(self.field, "all")}
         lost = [i for i in query.groups if i not in known]
         if lost:
             return nothing(query, f"group {lost[0]} is not in this scene (any more)")
@@ -195,12 +207,12 @@ class Resolver:
     # -- terms ------------------------------------------------------------------------------------------------------
 
     def scored(self, query: Query) -> Scored:
-        """The candidates of a query and their terms, without its set algebra."""
+        """The candidates of a query with their terms, without its set algebra."""
         placed = [(r, self.anchors(r)) for r in query.relations if r.name not in ORDERING]
         return scored(query, self.field, self.encoder, self.scene.frame.metres_per_unit, placed)
 
     def anchors(self, relation: Relation) -> list[Anchor]:
-        """What a relation relates to, each with the stand it is told from.
+        """The anchors of a relation, each with its frame of reference.
 
         Raises:
             Unresolved: one of them is absent or ambiguous.
@@ -210,7 +222,7 @@ class Resolver:
             found = self.select(query.model_copy(update={"pick": "all"}) if query.text in STRUCTURE else query)
             if found.verdict != "found":
                 raise Unresolved(found)
-            # Found by colour alone, it has no group.
+            # A selection by colour alone has no group.
             own = [self.field.groups[i] for i in found.groups]
             groups.extend(own or [self._stand_in(found.mask(self.scene.cloud))])
         if relations.named(relation.name).anchors == 2 and len(groups) < 2:
@@ -218,19 +230,19 @@ class Resolver:
         return [Anchor(g, self._stand_at(g, relation)) for g in groups]
 
     def _stand_at(self, group: Group, relation: Relation) -> Stand:
-        """The viewer's, or for a relation in the anchor's own frame the anchor's where it faces somewhere."""
+        """The frame of the viewer, or of the anchor if the relation is in its own frame and its front is known."""
         front = self.facing(group).front if relation.frame == "object" else None
         return self.stand if front is None else object_stand(group, front, self.stand)
 
     def facing(self, group: Group) -> Facing:
-        """Which way a group faces."""
+        """The direction that a group faces."""
         if group.id < 0:
             return Facing(None, "nothing")
         rows = self.members.rows(self.field.leaves(group.id))
         return facing_in(self.field, self.scene.cloud, rows, group)
 
     def _frames_told(self, query: Query) -> str:
-        """How the front of each anchor was told where a relation is in its own frame; "" where none is."""
+        """How the front of each anchor was determined, for relations in the frame of the anchor; "" without any."""
         told = []
         for relation in query.relations:
             if relation.frame == "object" and relations.named(relation.name).aim:
@@ -246,8 +258,7 @@ class Resolver:
     # -- parts of things --------------------------------------------------------------------------------------------
 
     def _part(self, query: Query, owner: Relation) -> Selection:
-        """What a query with a "part of" relation and a noun of its own means: pieces told by their shape; where that
-        cannot be done, things of that name that lie on the owner."""
+        """A named part of an object: pieces recognised by shape, else things of that name on the object."""
         made: list[Piece] = []
         refusals: list[str] = []
         for anchor in self.anchors(owner):
@@ -272,7 +283,7 @@ class Resolver:
         return Selection(query, "found", self.members.ids_at(rows), (), told, "told by its shape")
 
     def _fits(self, query: Query, piece: Group) -> bool:
-        """Whether a piece has the asked colours and stands in every other relation."""
+        """Whether a piece has the colours of the query and satisfies its other relations."""
         lab = np.array(piece.lab)
         painted = all(float(color_scores(w, lab)) >= COLOR_HOLDS for w in query.colors)
         barred = any(float(color_scores(w, lab)) > COLOR_HOLDS for w in query.not_colors)
@@ -280,27 +291,27 @@ class Resolver:
         return painted and not barred and self.stands(query.model_copy(update={"relations": others}), piece)
 
     def _lying_on(self, query: Query, owner: Relation) -> Selection | None:
-        """Things of the part's name that stand or lie on the owner; None if the encoder knows none or none is there."""
+        """Things of the name of the part that are on the object; None if the name is unknown or there are none."""
         if self.encoder is None or why_unknown(self.encoder, query.text) is not None:
             return None
         on = tuple(r.model_copy(update={"name": "on"}) if r is owner else r for r in query.relations)
         found = self.described(query.model_copy(update={"relations": on}))
         return replace(found, query=query) if found.verdict != "absent" else None
 
-    # -- colour where words fail ------------------------------------------------------------------------------------
+    # -- colour fallback -------------------------------------------------------------------------------------------
 
     def _goes_by_color(self, query: Query) -> bool:
-        """Whether a colour may stand in for a name that nothing answers to.
+        """Whether a query whose name matches nothing may be resolved by its colour alone.
 
-        It may where the encoder has no say: a word it never learnt, or a scene unlike what it was trained on. Where it
-        knows the scene's things and the word, what it does not find is not there.
+        It may if the encoder is not reliable: for a word that it does not know, or a scene unlike its training data.
+        Otherwise what it does not find is absent.
         """
-        if not is_name(query.text) or self.encoder is None or not at_home(self.field):
+        if not is_name(query.text) or self.encoder is None or not is_reliable(self.field):
             return True
         return why_unknown(self.encoder, query.text) is not None
 
     def stands(self, query: Query, thing: Group) -> bool:
-        """Whether something that is no row of the table stands in every asked relation."""
+        """Whether a group outside the table satisfies every relation of the query."""
         return all(
             related(r, [thing], self.field, self.anchors(r))[0] >= HOLDS
             for r in query.relations
@@ -308,7 +319,7 @@ class Resolver:
         )
 
     def _stand_in(self, rows: torch.Tensor) -> Group:
-        """Some Gaussians (mask or indices of rows) as something that relations can be asked of."""
+        """A group outside the table for some Gaussians (mask or row indices), to evaluate relations on."""
         part = self.scene.cloud[rows]
         box = box_of(part, self.scene.frame)
         return Group(-1, "part", -1, "", 0.0, box, (0.0, 0.0, 0.0), len(part), 0, 0.0)
@@ -323,10 +334,10 @@ class Resolver:
         return f"{query.describe()} is not in this scene; the nearest match is {near[0].describe()}"
 
     def _rest(self, query: Query, rank: Scored, chosen: Sequence[int]) -> Selection:
-        """Every Gaussian that does not belong to a match, floor and walls and unassigned ones included."""
+        """All Gaussians that do not belong to a match, including structure and those without a group."""
         matched = {rank.groups[i].id for i in chosen}
         kept = self.members.ids_but(leaf for g in matched for leaf in self.field.leaves(g))
-        groups = tuple(g.id for g in alive(self.field, "all") if g.parent < 0 and g.id not in matched)
+        groups = tuple(g.id for g in present_groups(self.field, "all") if g.parent < 0 and g.id not in matched)
         told = tuple(rank.candidate(i) for i in chosen)
         return Selection(query, "found", kept, groups, told, f"everything but {len(matched)} thing(s)")
 

@@ -1,4 +1,4 @@
-"""What a query found: rows by stable id, the groups behind them, every term's score, and one verdict."""
+"""`Selection`, the result of a query: ids of Gaussians, their groups, the score of every term, and a verdict."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from ...errors import AbsentError, AmbiguousError
 from .query import Query
 
 Verdict = Literal["found", "ambiguous", "absent"]
-_DENSE = 8  # ids spread over at most this many times the rows are looked up in a table
+_DENSE = 8  # ids in a range of at most this many times the rows are looked up in a table
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """One thing a query might mean.
+    """One possible referent of a query.
 
     Attributes:
-        group: id of its group; -1 for a place or a part that is no row of the table.
-        label: what the encoder calls it, e.g. "armchair".
+        group: id of its group; -1 for a colour patch or a part that is not in the table.
+        label: its label, e.g. "armchair".
         color: nearest basic colour name of its measured colour.
         center: `[3]` of its box, world frame, scene units.
         size: `[3]` extents of its oriented box, scene units: two level sides, then height.
         score: product of the terms, in [0, 1].
-        terms: each term's own score in [0, 1]: "text", "color", "size", one a relation.
+        terms: score of each term in [0, 1]: "text", each colour, the size word, each relation.
     """
 
     group: int
@@ -46,15 +46,15 @@ class Candidate:
 
 @dataclass(frozen=True, eq=False)
 class Selection:
-    """The answer to a query.
+    """The result of a query.
 
     Attributes:
-        query: what was asked.
+        query: the resolved query.
         verdict: "found", "ambiguous" (see `candidates`) or "absent" (`candidates` holds the nearest).
         ids: `[M]` int64 sorted stable ids of the selected Gaussians; empty unless found.
         groups: ids of the selected groups.
-        candidates: best first; what was selected, what it hesitated between, or the nearest miss.
-        reason: one sentence for a person.
+        candidates: best first; those selected, those that are ambiguous, or the nearest ones.
+        reason: one sentence for the user.
     """
 
     query: Query
@@ -68,11 +68,11 @@ class Selection:
         return int(self.ids.shape[0])
 
     def mask(self, cloud: GaussianCloud) -> Tensor:
-        """`[N]` bool over the rows of `cloud`: which of its Gaussians are selected (ids gone since are ignored)."""
+        """Whether each row `[N]` of `cloud` is selected; ids that it no longer contains are ignored."""
         return mask_of(cloud, self.ids)
 
     def require(self) -> Selection:
-        """Itself if found.
+        """This selection, if the verdict is "found".
 
         Raises:
             AbsentError: nothing matches; the message names the nearest candidates.
@@ -86,19 +86,19 @@ class Selection:
 
 
 def nothing(query: Query, reason: str, candidates: tuple[Candidate, ...] = ()) -> Selection:
-    """An empty selection with the verdict absent."""
+    """An empty selection with the verdict "absent"."""
     return Selection(query, "absent", torch.zeros(0, dtype=torch.int64), (), candidates, reason)
 
 
 def mask_of(cloud: GaussianCloud, ids: Tensor) -> Tensor:
-    """`[N]` bool: which rows of `cloud` have one of these ids."""
+    """Whether each row `[N]` of `cloud` has one of these ids."""
     if not len(ids) or not len(cloud):
         return torch.zeros(len(cloud), dtype=torch.bool, device=cloud.device)
     ids = ids.to(cloud.device)
     low, high = (int(v) for v in torch.aminmax(cloud.ids))
     if high - low >= _DENSE * len(cloud):
         return torch.isin(cloud.ids, ids, assume_unique=True)
-    # Ids are row numbers of a file, nearly always; a table of flags is then 15 times faster than sorting them.
+    # Ids are nearly always row numbers of a file; a table of flags is then 15 times faster than sorting.
     flags = torch.zeros(high - low + 1, dtype=torch.bool, device=cloud.device)
     flags[ids[(ids >= low) & (ids <= high)] - low] = True
     return flags[cloud.ids - low]

@@ -1,11 +1,9 @@
-"""The terms of a query, each scored for every candidate on its own: name, colours, size, relations.
+"""The terms of a query (name, colours, size, relations), each scored separately for every candidate.
 
-Knows the table of groups and what each term is held against. Refuses to choose among what matches.
-
-A name is held against its encoder's one threshold, fitted on other rooms and kinds (`Calibration.measured` has its
-error rates). Asked for all 81 names in each of 12 embedded rooms, 0.21 found 96.3 % of what was there and refused
-96.4 % of what was not; from 0.1 to 0.6 neither falls below 95 %, and the threshold that is best for eleven rooms does
-no better than 0.3 points on the twelfth: it is nothing that wants tuning to a scene.
+The threshold of a name is that of its encoder, fitted on other rooms and kinds (`Calibration.measured` has its error
+rates). With all 81 names queried in each of 12 embedded rooms, 0.21 found 96.3 % of what was present and refused 96.4 %
+of what was absent; from 0.1 to 0.6 neither falls below 95 %. The best threshold for eleven rooms gains at most 0.3
+points on the twelfth, so it need not be tuned to a scene.
 """
 
 from __future__ import annotations
@@ -46,14 +44,14 @@ STRUCTURE = {
 }  # fmt: skip
 FLOATERS = frozenset({"floater", "noise", "floating bit", "stray"})
 ORDERING = frozenset(k.name for k in relations.KINDS if k.orders)
-KEPT = 4096  # phrases and colours whose answers a table remembers
-NAMED = 0.25  # a label less probable than this is not worth telling
+MAX_CACHED = 4096  # phrases and colours whose scores a field caches
+MIN_LABEL_SCORE = 0.25  # labels less probable than this are not shown
 OWN_COLOR = 0.5  # colour score from which no other basic colour is nearer
 
 
 @dataclass(frozen=True, eq=False)
 class Anchor:
-    """What a relation relates to, and where one stands when saying so."""
+    """The object that a relation refers to, and the frame in which the relation is evaluated."""
 
     group: Group
     stand: Stand
@@ -64,10 +62,10 @@ class Scored:
     """Candidates of one query with their terms.
 
     Attributes:
-        groups: `[C]`, the candidates.
-        terms: `[C]` shares in [0, 1] a term; NaN where a term was not asked because another already fails.
-        limits: the score from which each term holds.
-        own: `[C]`, whether the name and the colours asked for are the ones the candidate itself would be given.
+        groups: the C candidates.
+        terms: `[C]` scores in [0, 1] of each term; NaN where one was not computed because another already fails.
+        limits: threshold of each term.
+        own: `[C]`, whether the candidate's own label and colour are exactly those of the query.
     """
 
     groups: tuple[Group, ...]
@@ -77,7 +75,7 @@ class Scored:
 
     @cached_property
     def score(self) -> F64:
-        """`[C]` product of the terms."""
+        """Product `[C]` of the terms."""
         score = np.ones(len(self.groups))
         for values in self.terms.values():
             score = score * np.where(np.isnan(values), 1.0, values)
@@ -85,7 +83,7 @@ class Scored:
 
     @cached_property
     def holds(self) -> Flags:
-        """`[C]` whether every term holds."""
+        """Whether every term holds `[C]`."""
         held = np.ones(len(self.groups), bool)
         for name, values in self.terms.items():
             held &= values >= self.limits[name]
@@ -93,14 +91,14 @@ class Scored:
 
     @cached_property
     def named(self) -> frozenset[int]:
-        """Groups that have the name asked for, whatever else fails; none if no name was asked."""
+        """Groups whose name term holds, whatever the other terms; none without a name term."""
         if "text" not in self.terms:
             return frozenset()
         held = self.terms["text"] >= self.limits["text"]
         return frozenset(g.id for g, holds in zip(self.groups, held, strict=True) if holds)
 
     def without(self, ids: frozenset[int]) -> Scored:
-        """The candidates that are none of these groups."""
+        """The candidates without these groups."""
         if ids.isdisjoint(g.id for g in self.groups):
             return self
         keep = np.array([g.id not in ids for g in self.groups], dtype=bool)
@@ -112,14 +110,14 @@ class Scored:
         return [int(i) for i in self._ordered() if self.holds[i]]
 
     def nearest(self) -> list[int]:
-        """Positions of all candidates: by name where it was asked and holds, by how many terms hold, by score."""
+        """Positions of all candidates, ordered by whether the name holds, how many terms hold, and the score."""
         held = [values >= self.limits[name] for name, values in self.terms.items()]
         name = self.terms["text"] >= self.limits["text"] if "text" in self.terms else np.zeros(len(self.groups), bool)
         count = np.sum(held, axis=0) if held else np.zeros(len(self.groups))
         return sorted((int(i) for i in self._ordered()), key=lambda i: (-int(name[i]), -int(count[i])))
 
     def candidate(self, index: int) -> Candidate:
-        """One of them as a person is told of it."""
+        """One of the groups as a `Candidate`."""
         terms = {name: float(v[index]) for name, v in self.terms.items() if not np.isnan(v[index])}
         return candidate_of(self.groups[index], float(self.score[index]), terms)
 
@@ -128,8 +126,8 @@ class Scored:
 
 
 def candidate_of(group: Group, score: float = 1.0, terms: dict[str, float] | None = None) -> Candidate:
-    """A group as a candidate; its label only where it is worth telling."""
-    label = group.label if group.label_score >= NAMED else "object"
+    """A group as a `Candidate`, labelled "object" if its label is too improbable."""
+    label = group.label if group.label_score >= MIN_LABEL_SCORE else "object"
     return Candidate(group.id, label, _color_name(group.lab), group.box.center, group.box.size, score, terms or {})
 
 
@@ -138,8 +136,8 @@ def _color_name(lab: Vec3) -> str:
     return name_of(lab)
 
 
-def alive(field: LanguageField, level: str) -> tuple[Group, ...]:
-    """Groups that still have Gaussians: objects, structure, the leaves of the objects ("parts"), or all."""
+def present_groups(field: LanguageField, level: str) -> tuple[Group, ...]:
+    """Groups that still have Gaussians, of one level: objects, structure, leaves of objects ("parts"), or all."""
     rows = (g for g in field.groups if g.count > 0)
     if level == "all":
         return tuple(rows)
@@ -149,27 +147,27 @@ def alive(field: LanguageField, level: str) -> tuple[Group, ...]:
     return tuple(g for g in rows if g.level == level)
 
 
-def pool(field: LanguageField, text: str) -> tuple[Group, ...]:
-    """What a noun may mean at all."""
+def candidate_groups(field: LanguageField, text: str) -> tuple[Group, ...]:
+    """The groups that a noun may refer to."""
     if text in PARTS:
-        return alive(field, "parts")
+        return present_groups(field, "parts")
     if text in STRUCTURE:
-        return tuple(g for g in alive(field, "structure") if g.label == STRUCTURE[text])
-    return alive(field, "object")
+        return tuple(g for g in present_groups(field, "structure") if g.label == STRUCTURE[text])
+    return present_groups(field, "object")
 
 
 def is_name(text: str) -> bool:
-    """Whether a noun names a kind of thing, so that the encoder must be asked."""
+    """Whether a noun names a kind of thing, so that the encoder is needed."""
     return text not in ANYTHING and text not in PARTS and text not in STRUCTURE
 
 
-def likeness(field: LanguageField, encoder: Encoder | None, text: str, metres_per_unit: float | None) -> F64:
-    """`[G]` how sure the encoder is that each group is a `text`; worked out once a phrase and table.
+def name_scores(field: LanguageField, encoder: Encoder | None, text: str, metres_per_unit: float | None) -> F64:
+    """Probability `[G]` that each group is a `text`, cached per phrase and field.
 
-    A thing whose name is known but whose looks were never encoded (an insertion under another encoder) has it or not.
+    A group with a label but without an embedding (inserted under another encoder) scores 1 or 0 by its label.
 
     Raises:
-        BackendError: no encoder, or another than the table's.
+        BackendError: there is no encoder, or it is not that of the field.
     """
     if encoder is None:
         raise BackendError(f"finding {text!r} needs a text encoder; pass encoder='auto'")
@@ -180,40 +178,42 @@ def likeness(field: LanguageField, encoder: Encoder | None, text: str, metres_pe
         sure = probability(encoder, text, field.embeddings, sizes)
         meant = kinds_meant(encoder, text)
         unseen = ~field.embeddings.any(axis=1)
-        named = [g.label_score >= OWN_COLOR and (g.label in meant or called(g.label, text)) for g in field.groups]
+        named = [
+            g.label_score >= OWN_COLOR and (g.label in meant or label_matches(g.label, text)) for g in field.groups
+        ]
         known = np.array(named, dtype=bool)
-        _make_room(field)
+        _limit_cache(field)
         field.answers[key] = np.where(unseen, known.astype(np.float64), sure)
     return field.answers[key]
 
 
-def called(label: str, text: str) -> bool:
-    """Whether a thing with this label is called so: "pastry display case" is a display case, and a case."""
+def label_matches(label: str, text: str) -> bool:
+    """Whether a label ends in the words of `text`: "pastry display case" is a display case, and a case."""
     asked, name = normalise(text), normalise(label)
     return bool(asked) and name[-len(asked) :] == asked
 
 
-def paintedness(field: LanguageField, word: str) -> F64:
-    """`[G]` how well every group answers to a colour word; worked out once a word and table.
+def color_term(field: LanguageField, word: str) -> F64:
+    """Score `[G]` of a colour word for every group, cached per word and field.
 
     Raises:
         UserError: unknown colour.
     """
     key = ("color", word)
     if key not in field.answers:
-        _make_room(field)
+        _limit_cache(field)
         field.answers[key] = attributes.group_color_scores(field, word)
     return field.answers[key]
 
 
-def _make_room(field: LanguageField) -> None:
-    """Forget everything when much was asked: a batch of a million phrases must not fill the memory."""
-    if len(field.answers) >= KEPT:
+def _limit_cache(field: LanguageField) -> None:
+    """Empty the cache when it is full: a batch of a million phrases must not fill the memory."""
+    if len(field.answers) >= MAX_CACHED:
         field.answers.clear()
 
 
 def kinds_meant(encoder: Encoder | None, text: str) -> frozenset[str]:
-    """Names the encoder would give to what is asked for; empty where it has none, as for an open vocabulary."""
+    """The labels of the encoder's vocabulary that a phrase covers; empty for a phrase outside the vocabulary."""
     return _covered(encoder, text) if encoder is not None and is_name(text) else frozenset()  # type: ignore[arg-type]
 
 
@@ -229,17 +229,17 @@ def scored(
     metres_per_unit: float | None,
     placed: Sequence[tuple[Relation, Sequence[Anchor]]],
 ) -> Scored:
-    """Every candidate of a query with its terms.
+    """The candidates of a query with their terms.
 
     Args:
         metres_per_unit: of the scene, None if unknown.
-        placed: the query's relations that are true or false, each with what it relates to.
+        placed: the query's relations, except orderings, each with its anchors.
 
     Raises:
-        BackendError: the name needs an encoder that is not there.
+        BackendError: the name needs an encoder and there is none.
         UserError: a colour word is unknown.
     """
-    groups = pool(field, query.text)
+    groups = candidate_groups(field, query.text)
     rows = np.array([g.id for g in groups], dtype=np.intp)
     terms: dict[str, F64] = {}
     limits: dict[str, float] = {}
@@ -247,16 +247,16 @@ def scored(
     if query.text in STRUCTURE:
         terms["text"], limits["text"] = np.ones(len(groups)), 0.5
     elif is_name(query.text) and groups:
-        terms["text"] = likeness(field, encoder, query.text, metres_per_unit)[rows]
+        terms["text"] = name_scores(field, encoder, query.text, metres_per_unit)[rows]
         limits["text"] = encoder.calibration.threshold if encoder is not None else 0.5
         meant = kinds_meant(encoder, query.text)
         own &= np.array([g.label in meant for g in groups], dtype=bool) if meant else True
     for word in query.colors:
-        terms[f"color {word}"] = paintedness(field, word)[rows]
+        terms[f"color {word}"] = color_term(field, word)[rows]
         limits[f"color {word}"] = attributes.COLOR_HOLDS
         own &= terms[f"color {word}"] >= OWN_COLOR
     for word in query.not_colors:
-        terms[f"not {word}"] = 1 - paintedness(field, word)[rows]
+        terms[f"not {word}"] = 1 - color_term(field, word)[rows]
         limits[f"not {word}"] = 1 - attributes.COLOR_HOLDS
     for relation, anchors in placed:
         name = relation.name if relation.name not in terms else f"{relation.name} {len(terms)}"
@@ -271,7 +271,7 @@ def scored(
 
 
 def related(relation: Relation, groups: Sequence[Group], field: LanguageField, anchors: Sequence[Anchor]) -> F64:
-    """`[C]` how well each group stands in a relation to the anchors, to the one it fits best; 0 for the anchors."""
+    """Score `[C]` of a relation between each group and its best-fitting anchor; 0 for the anchors themselves."""
     ids = {a.group.id for a in anchors if a.group.id >= 0}
     if relation.name == "part_of":
         return np.array([float(g.parent >= 0 and g.parent in ids) for g in groups])

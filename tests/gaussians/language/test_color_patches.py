@@ -1,4 +1,4 @@
-"""Places of a colour, Gaussian by Gaussian, against pieces whose paint is known."""
+"""Colour patches, against pieces of known colour."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Growing, shrinking and inverting: the laws of the morphology of point sets, and a slow reference."""
+"""Growing, shrinking and inverting selections: laws of morphology on point sets, and a slow reference."""
 
 from __future__ import annotations
 

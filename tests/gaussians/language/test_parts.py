@@ -1,4 +1,4 @@
-"""Parts by shape: furniture whose builders say what is a leg, and shapes that have no such part."""
+"""Parts by shape: furniture with labelled parts, and shapes without the part."""
 
 from __future__ import annotations
 

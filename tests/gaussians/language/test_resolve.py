@@ -1,4 +1,4 @@
-"""From query to selection over a table made by hand, with an encoder whose vectors are exact."""
+"""Resolving queries on a hand-made table, with an encoder of exact vectors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What must not matter to a query, and what must: the order of the table, mirrors, who looks, negation, swaps."""
+"""Invariances of queries: order of the table, mirrored scenes, viewers, negation, swapped anchors."""
 
 from __future__ import annotations
 
