@@ -1,4 +1,4 @@
-"""Wishes for a whole room: many moves at once, found by the layout solver and said as atomic operations."""
+"""Plans wishes for a whole room: the layout solver finds the moves, which become single edit operations."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Figures of things: in a circle, on an arc, in rows, around a table, mirrored about the room's middle.
+"""Goals that arrange things in figures: a circle, an arc, rows, around a table, or mirrored pairs.
 
-Knows where each figure puts its things. Refuses to know the solver: a figure is exact, so it is moved about as a whole
-until nothing is in its way.
+The slots of a figure are exact, so the layout solver does not place them: the figure is tried as a whole at many places
+until nothing is in its way. Only chairs around a table are placed by the solver.
 """
 
 from __future__ import annotations
@@ -14,83 +14,85 @@ from scipy.optimize import linear_sum_assignment
 
 from ..layout import Wish as LayoutWish
 from ..rooms.node import Node
-from . import solving
-from .floor import clear
+from . import rearrange
+from .floor import clear_floor
 from .goals import Clear, Formation, Where
-from .room import CannotError, Room, copied, toward, wrapped
+from .room import Room, WishError, copy_of, toward, wrapped
 
 Slot = tuple[float, float, float]  # x, y, yaw
 Slots = list[Slot]
 
-_ELBOW = 0.15  # metres between neighbours
-_SMALLEST = 0.6  # metres, radius of a circle of people who talk
-_LATTICE = 0.2  # metres between places where a figure is tried
-_TURNS = 12  # ways to turn a circle that are tried
-_LIKE = 0.3  # difference in size within which two things of a name are a pair
+_NEIGHBOUR_GAP = 0.15  # metres between neighbours in a figure
+_MIN_RADIUS = 0.6  # metres, smallest radius of a circle
+_LATTICE = 0.2  # metres between the places at which a figure is tried
+_TURNS = 12  # number of rotations of a circle that are tried
+_SIZE_TOLERANCE = 0.3  # relative difference in size within which two things of one label are a pair
 
 
 def form(room: Room, goal: Formation) -> None:
-    """Put things into a figure.
+    """Arrange things in a figure.
 
     Raises:
-        CannotError: they are too few, are not there, or there is no room.
+        WishError: there are too few of them, or there is no room.
     """
-    things = [n for n in room.find(goal.things) if room.moves(n)]
+    things = [n for n in room.find(goal.things) if room.is_movable(n)]
     about = room.one(goal.about) if goal.about is not None else None
     things = [n for n in things if about is None or n.id != about.id]
     if len(things) < (1 if goal.shape == "around" else 2):
-        raise CannotError(f"{goal.things.describe()}: there are not enough that can be moved")
+        raise WishError(f"{goal.things.describe()}: there are not enough that can be moved")
     if goal.shape == "around" and about is not None and about.label.split()[-1:] in (["table"], ["desk"]):
         _at_table(room, things, about)
     else:
-        slots = _placed(room, goal, things, about)
+        slots = _find_place(room, goal, things, about)
         _assign(room, things, slots)
     where = f" around the {about.label}" if about is not None and goal.shape == "around" else ""
     shape = {"circle": " in a circle", "arc": " on an arc", "row": f" in {goal.rows} row{'s' * (goal.rows > 1)}"}
-    room.told.append(f"{len(things)} things{shape.get(goal.shape, '')}{where}")
+    room.done.append(f"{len(things)} things{shape.get(goal.shape, '')}{where}")
 
 
 def _at_table(room: Room, things: Sequence[Node], table: Node) -> None:
-    """Chairs at the free sides of a table, turned to it.
+    """Place chairs at the free sides of a table, facing it.
 
     Raises:
-        CannotError: there is no room for them.
+        WishError: there is no room for them.
     """
     wishes = [LayoutWish(subject=n.id, name="around", objects=(table.id,)) for n in things]
     own = frozenset(n.id for n in things)
-    movable = frozenset(n.id for n in room.nodes.values() if room.moves(n))
+    movable = frozenset(n.id for n in room.nodes.values() if room.is_movable(n))
     complaint = f"not all of them find room around the {table.label}"
-    solving.eased(room, [own, own | {table.id}, movable | own], wishes, [], complaint)
+    rearrange.rearrange_stepwise(room, [own, own | {table.id}, movable | own], wishes, [], complaint)
 
 
-def _placed(room: Room, goal: Formation, things: Sequence[Node], about: Node | None) -> Slots:
-    """The figure where it fits and the way to it is short; where it fits nowhere, floor is cleared for it.
+def _find_place(room: Room, goal: Formation, things: Sequence[Node], about: Node | None) -> Slots:
+    """The slots of the figure at the best place where it fits; if it fits nowhere, floor is cleared for it first.
 
     Raises:
-        CannotError: there is no room for it, whatever is moved.
+        WishError: there is no room for it even then.
     """
-    if found := _best(room, goal, things, about):
+    if found := _shortest_free(room, goal, things, about):
         return found
-    reach = max(math.hypot(x, y) for x, y, _ in _figure(goal, things, None, (0.0, 0.0), 0.0))
+    reach = max(math.hypot(x, y) for x, y, _ in _slots(goal, things, None, (0.0, 0.0), 0.0))
     width = 2 * reach + 1.5 * max(max(n.size[:2]) for n in things)
-    trial = copied(room)
-    for node in things:  # they make way for themselves
+    trial = copy_of(room)
+    for node in things:  # the things themselves do not block the figure
         del trial.nodes[node.id]
     try:
-        clear(trial, Clear(goal.where or Where(), width, f"the {goal.shape}"))
-    except CannotError as error:
-        raise CannotError(f"there is no room for that figure: {error}") from error
+        clear_floor(trial, Clear(goal.where or Where(), width, f"the {goal.shape}"))
+    except WishError as error:
+        raise WishError(f"there is no room for that figure: {error}") from error
     kept = {n.id: room.nodes[n.id] for n in things}
     room.nodes = {**trial.nodes, **kept}
-    if found := _best(room, goal, things, about):
+    if found := _shortest_free(room, goal, things, about):
         return found
-    raise CannotError("there is no room for that figure")
+    raise WishError("there is no room for that figure")
 
 
-def _best(room: Room, goal: Formation, things: Sequence[Node], about: Node | None) -> Slots:
-    """The free figure with the shortest ways; empty if there is none."""
+def _shortest_free(room: Room, goal: Formation, things: Sequence[Node], about: Node | None) -> Slots:
+    """The free figure with the shortest total distance to move; empty if there is none."""
     ids = [n.id for n in things]
-    tried = [(slots, _matched(things, slots)) for slots in _tried(room, goal, things, about) if _within(room, slots)]
+    tried = [
+        (slots, _assignment(things, slots)) for slots in _candidates(room, goal, things, about) if _within(room, slots)
+    ]
     tried.sort(key=lambda t: sum(math.dist(things[i].position[:2], t[0][j][:2]) for i, j in t[1]))
     for slots, order in tried:
         if all(room.fits(things[i].id, *slots[j], but=ids) for i, j in order):
@@ -102,8 +104,8 @@ def _within(room: Room, slots: Slots) -> bool:
     return all(abs(x) < room.size[0] / 2 and abs(y) < room.size[1] / 2 for x, y, _ in slots)
 
 
-def _tried(room: Room, goal: Formation, things: Sequence[Node], about: Node | None) -> Iterator[Slots]:
-    """The figure at every place of the floor, or about what it is about, turned every way."""
+def _candidates(room: Room, goal: Formation, things: Sequence[Node], about: Node | None) -> Iterator[Slots]:
+    """The figure at every place of the floor, or around its subject, in every rotation."""
     turns = (
         [360.0 / _TURNS * k for k in range(_TURNS)] if goal.shape in ("circle", "around") else [0.0, 90.0, 180.0, 270.0]
     )
@@ -118,10 +120,10 @@ def _tried(room: Room, goal: Formation, things: Sequence[Node], about: Node | No
         places = _floor(room)
     if goal.shape == "circle" and about is None:
         for table in (n for n in room.nodes.values() if n.label.split()[-1:] == ["table"] and n not in things):
-            yield from (_figure(goal, things, table, table.position[:2], turn) for turn in turns)
+            yield from (_slots(goal, things, table, table.position[:2], turn) for turn in turns)
     for place in places:
         for turn in turns:
-            yield _figure(goal, things, about, place, turn)
+            yield _slots(goal, things, about, place, turn)
 
 
 def _floor(room: Room) -> list[tuple[float, float]]:
@@ -131,19 +133,19 @@ def _floor(room: Room) -> list[tuple[float, float]]:
     return [(float(x), float(y)) for x in xs for y in ys]
 
 
-def _figure(
+def _slots(
     goal: Formation, things: Sequence[Node], about: Node | None, place: tuple[float, float], turn: float
 ) -> Slots:
-    """Slots of a figure with its middle at a place."""
+    """The slots of a figure centred at a place and turned by `turn` degrees."""
     if goal.shape == "row":
         return _rows(goal, things, about, place, turn)
     span = 180.0 if goal.shape == "arc" else 360.0
     count = len(things)
-    need = sum(n.size[0] + _ELBOW for n in things) / math.radians(span)
+    need = sum(n.size[0] + _NEIGHBOUR_GAP for n in things) / math.radians(span)
     inner = 0.0 if about is None else math.hypot(*about.size[:2]) / 2 + 0.1
     if goal.shape == "arc" and about is not None:
         inner = max(inner, 1.4)
-    radius = max(need, _SMALLEST, inner) + max(n.size[1] for n in things) / 2
+    radius = max(need, _MIN_RADIUS, inner) + max(n.size[1] for n in things) / 2
     step = span / max(count - 1, 1) if goal.shape == "arc" else span / count
     slots = Slots()
     for k in range(count):
@@ -156,12 +158,12 @@ def _figure(
 def _rows(
     goal: Formation, things: Sequence[Node], about: Node | None, place: tuple[float, float], turn: float
 ) -> Slots:
-    """Rows side by side, one behind the other, all turned the same way."""
+    """The slots of rows, one behind the other, all with the same yaw."""
     yaw = turn
     if about is not None:
         yaw = 90.0 * round(toward(place, about.position[:2]) / 90.0)
     each = math.ceil(len(things) / goal.rows)
-    pitch = max(n.size[0] for n in things) + _ELBOW
+    pitch = max(n.size[0] for n in things) + _NEIGHBOUR_GAP
     behind = max(n.size[1] for n in things) + 0.4
     c, s = math.cos(math.radians(yaw)), math.sin(math.radians(yaw))
     slots = Slots()
@@ -173,27 +175,27 @@ def _rows(
     return slots
 
 
-def _matched(things: Sequence[Node], slots: Slots) -> list[tuple[int, int]]:
-    """Who goes where, so that the ways are short together (Kuhn 1955)."""
+def _assignment(things: Sequence[Node], slots: Slots) -> list[tuple[int, int]]:
+    """Pairs (thing, slot) with the smallest total distance: a linear assignment (Kuhn 1955)."""
     away = [[math.dist(n.position[:2], s[:2]) for s in slots] for n in things]
     rows, columns = linear_sum_assignment(np.array(away))
     return [(int(i), int(j)) for i, j in zip(rows, columns, strict=True)]
 
 
 def _assign(room: Room, things: Sequence[Node], slots: Slots) -> None:
-    for i, j in _matched(things, slots):
-        room.put(things[i].id, *slots[j])
+    for i, j in _assignment(things, slots):
+        room.move_to(things[i].id, *slots[j])
 
 
 def mirror(room: Room) -> None:
-    """Every two things of a kind mirrored about the axis of the largest thing that faces the room.
+    """Mirror every two alike things about the axis of the largest movable thing.
 
     Raises:
-        CannotError: no two things are alike, or there is no room.
+        WishError: no two things are alike, or there is no room.
     """
-    movable = [n for n in room.nodes.values() if room.moves(n)]
+    movable = [n for n in room.nodes.values() if room.is_movable(n)]
     if len(movable) < 3:
-        raise CannotError("there is nothing to mirror")
+        raise WishError("there is nothing to mirror")
     axis = max(movable, key=lambda n: n.size[0] * n.size[1])
     c, s = math.cos(math.radians(axis.yaw)), math.sin(math.radians(axis.yaw))
     done = 0
@@ -206,12 +208,12 @@ def mirror(room: Room) -> None:
             yaw = yaw if node is left else -_local_yaw(room, left, axis)
             px, py = axis.position[0] + c * x - s * along, axis.position[1] + s * x + c * along
             if not room.fits(node.id, px, py, wrapped(axis.yaw + yaw), but=(one.id, other.id)):
-                raise CannotError(f"the {node.label} has no room where its mirror image would be")
-            room.put(node.id, px, py, wrapped(axis.yaw + yaw))
+                raise WishError(f"the {node.label} has no room where its mirror image would be")
+            room.move_to(node.id, px, py, wrapped(axis.yaw + yaw))
         done += 1
     if not done:
-        raise CannotError("no two things here are alike, so nothing can be mirrored")
-    room.told.append(f"{done} pair{'s' if done > 1 else ''} mirrored about the {axis.label}")
+        raise WishError("no two things here are alike, so nothing can be mirrored")
+    room.done.append(f"{done} pair{'s' if done > 1 else ''} mirrored about the {axis.label}")
 
 
 def _local(node: Node, axis: Node, c: float, s: float) -> tuple[float, float]:
@@ -224,7 +226,7 @@ def _local_yaw(room: Room, node: Node, axis: Node) -> float:
 
 
 def _pairs(nodes: Sequence[Node]) -> Iterator[tuple[Node, Node]]:
-    """Things of one name and size, two and two, those that are alone left out."""
+    """Pairs of things of one label and similar size."""
     left = list(nodes)
     while left:
         one = left.pop(0)
@@ -235,4 +237,4 @@ def _pairs(nodes: Sequence[Node]) -> Iterator[tuple[Node, Node]]:
 
 
 def _is_like(a: Node, b: Node) -> bool:
-    return all(abs(x - y) <= _LIKE * max(x, y) for x, y in zip(sorted(a.size), sorted(b.size), strict=True))
+    return all(abs(x - y) <= _SIZE_TOLERANCE * max(x, y) for x, y in zip(sorted(a.size), sorted(b.size), strict=True))

@@ -1,7 +1,4 @@
-"""What is wished of a room, as data: a floor to keep free, things at the walls, chairs in a circle.
-
-Knows the kinds of goals and what each is about. Refuses to know which words say them and how they are reached.
-"""
+"""The goals of wishes as data types: floor to keep free, things along the walls, chairs in a circle."""
 
 from __future__ import annotations
 
@@ -11,20 +8,20 @@ from typing import Literal
 from ...gaussians.language.query.query import Query
 from ...tools.operation import EditOp
 
-Relation = Literal["center", "next_to", "in_front_of"]
+FloorRelation = Literal["center", "next_to", "in_front_of"]
 
 
 @dataclass(frozen=True)
 class Where:
-    """A part of the floor: the middle of the room, or beside or before something."""
+    """A part of the floor: the middle of the room, or next to or in front of `anchor`."""
 
-    relation: Relation = "center"
+    relation: FloorRelation = "center"
     anchor: Query | None = None
 
 
 @dataclass(frozen=True)
 class Clear:
-    """Floor to be kept free; `width` metres across, None: as large as people need for what it is called."""
+    """Keep floor free, `width` metres across; None: a width that fits the purpose `called`."""
 
     where: Where = Where()
     width: float | None = None
@@ -33,14 +30,14 @@ class Clear:
 
 @dataclass(frozen=True)
 class Walls:
-    """Things to be pushed to the walls; None: all furniture."""
+    """Push things to the walls; None: all furniture."""
 
     things: Query | None = None
 
 
 @dataclass(frozen=True)
 class Formation:
-    """Things in a figure; `around` or `facing` names what it is about, `rows` how many."""
+    """Arrange things in a figure, `about` something (around or facing it) or at `where`; `rows` is for rows."""
 
     shape: Literal["circle", "arc", "row", "around"]
     things: Query
@@ -51,19 +48,19 @@ class Formation:
 
 @dataclass(frozen=True)
 class Tidy:
-    """Everything straight, furniture flush with walls, small things off the floor."""
+    """Straighten furniture, align it with the walls, and put small things from the floor onto furniture."""
 
 
 @dataclass(frozen=True)
 class Declutter:
-    """What stands on something goes elsewhere."""
+    """Move what stands on a surface elsewhere."""
 
     surface: Query
 
 
 @dataclass(frozen=True)
 class SetTable:
-    """A table laid for some people; None: for as many as sit at it."""
+    """Set a table for a number of people; None: for as many as there are seats at it."""
 
     table: Query
     people: int | None = None
@@ -71,7 +68,7 @@ class SetTable:
 
 @dataclass(frozen=True)
 class See:
-    """Seats turned to something, with nothing between."""
+    """Turn seats to something; None: all seats."""
 
     things: Query | None
     goal: Query
@@ -79,43 +76,43 @@ class See:
 
 @dataclass(frozen=True)
 class Spread:
-    """Things far from each other, all over the room."""
+    """Spread things out over the room, far from each other."""
 
     things: Query
 
 
 @dataclass(frozen=True)
 class ReadingCorner:
-    """A seat, a lamp and something to read in a corner, or at something."""
+    """A seat with a lamp and a side table in a corner, or next to something."""
 
     where: Where | None = None
 
 
 @dataclass(frozen=True)
 class Symmetric:
-    """Things of a kind mirrored to each other about the room's middle."""
+    """Mirror pairs of things of a kind about the axis of the largest thing."""
 
 
 @dataclass(frozen=True)
 class Become:
-    """A room of another kind."""
+    """Turn the room into a room of another kind."""
 
     kind: str
 
 
 @dataclass(frozen=True)
 class Party:
-    """A room ready for a party: what that takes, unless it is said."""
+    """Prepare the room for a party; what that includes, unless other goals say so, is in achieve.py."""
 
 
 @dataclass(frozen=True)
-class Plain:
-    """What the grammar understands by itself."""
+class PlainEdit:
+    """A clause that the grammar planned: plain edit operations."""
 
     ops: tuple[EditOp, ...]
 
 
 Goal = (
     Clear | Walls | Formation | Tidy | Declutter | SetTable | See | Spread | ReadingCorner | Symmetric | Become | Party
-    | Plain
+    | PlainEdit
 )  # fmt: skip

@@ -1,7 +1,6 @@
-"""The planner of wishes: from a wish in words, over goals and a layout, to atomic operations that lead there.
+"""The wish planner: parses a wish into goals, rearranges the room to reach them, and plans the operations for that.
 
-Knows the order of the work. Refuses to do half of it: if one of several wishes cannot come true nothing is planned, and
-the reason says which and why.
+If one of several wishes cannot be fulfilled, nothing is planned, and the reason says which one and why.
 """
 
 from __future__ import annotations
@@ -13,9 +12,9 @@ from ...gaussians.errors import ScenewrightError
 from ...tools.operation import EditOp
 from ..plan import MAX_OPS, EditPlan
 from ..rooms.graph import SceneGraph
-from .goals import Plain
-from .reading import Reader, Reading, Unread
-from .room import CannotError, Room, copied
+from .goals import PlainEdit
+from .parsing import NotAWish, ParsedInstruction, WishParser
+from .room import Room, WishError, copy_of
 
 if TYPE_CHECKING:
     from ..plan import Observation
@@ -25,50 +24,50 @@ NAME = "wishes"
 
 
 class WishPlanner:
-    """Plans wishes for a whole room. Stateless; one instance serves all threads."""
+    """Plans wishes for a whole room. Stateless and thread-safe."""
 
     name = NAME
 
     def __init__(self) -> None:
-        self._reader = Reader()
+        self._parser = WishParser()
 
     def reads(self, text: str) -> bool:
-        """Whether a text is a wish for a room, as far as its words go; no scene is looked at.
+        """Whether the words of a text are a wish for a room; needs no scene.
 
         Raises:
-            UserError: the text is too long to be an instruction.
+            UserError: the text is too long.
         """
         try:
-            return self._reader.may_wish(text) and self._reader.read(text).wished
-        except Unread:
+            return self._parser.may_be_wish(text) and self._parser.parse(text).wished
+        except NotAWish:
             return False
 
     def plan(self, text: str, *, previous: str | None = None, observation: Observation | None = None) -> EditPlan:
-        """The plan for a wish; see `Planner.plan`. `previous` is not looked at: a wish says what it is about.
+        """The plan for a wish; see `Planner.plan`. `previous` is ignored: a wish names what it is about.
 
         Raises:
-            UserError: the text is too long to be an instruction.
+            UserError: the text is too long.
         """
         started = time.perf_counter()
         told: dict[str, Any]
         try:
-            told = self._planned(self._reader.read(text), observation)
-        except Unread as unread:
+            told = self._planned(self._parser.parse(text), observation)
+        except NotAWish as unread:
             unknown = tuple(w[:200] for w in unread.words)[:64]
             told = {"verdict": "not_understood", "reason": str(unread), "unknown": unknown}
-        except CannotError as error:
+        except WishError as error:
             told = {"verdict": error.verdict, "reason": str(error)[:2000]}
         return EditPlan(instruction=text, planner=NAME, seconds=time.perf_counter() - started, **told)
 
-    def _planned(self, reading: Reading, observation: Observation | None) -> dict[str, Any]:
-        """Operations and reason, or another verdict.
+    def _planned(self, reading: ParsedInstruction, observation: Observation | None) -> dict[str, Any]:
+        """The fields of the plan: operations and reason, or a verdict and reason.
 
         Raises:
-            CannotError: a wish cannot come true.
+            WishError: a wish cannot be fulfilled.
         """
-        # The solver takes half a second to import; every instruction is read, and few are wishes.
-        from . import fulfilling
-        from .steps import moves
+        # Imported here because the solver takes half a second to import and few instructions are wishes.
+        from . import achieve
+        from .move_order import ordered_moves
 
         if observation is None:
             return {"verdict": "not_understood", "reason": "a wish for a room needs the scene: open one first"}
@@ -77,30 +76,30 @@ class WishPlanner:
         except ScenewrightError as error:
             return {"verdict": "not_understood", "reason": f"a wish for a room needs the scene: {error}"}
         start = Room.of(graph)
-        goal = copied(start)
-        fulfilling.fulfil(goal, reading.goals)
+        goal = copy_of(start)
+        achieve.achieve(goal, reading.goals)
         _refuse_worse(graph, goal.after())
-        plain = [op for g in reading.goals if isinstance(g, Plain) for op in g.ops]
-        ops: list[EditOp] = [*moves(start, goal), *goal.ops, *plain]
+        plain = [op for g in reading.goals if isinstance(g, PlainEdit) for op in g.ops]
+        ops: list[EditOp] = [*ordered_moves(start, goal), *goal.ops, *plain]
         if not ops:
-            return {"verdict": "not_an_edit", "reason": "it is so already: nothing has to move"}
+            return {"verdict": "not_an_edit", "reason": "the room is like that already: nothing has to move"}
         if len(ops) > MAX_OPS:
-            raise CannotError(f"that takes {len(ops)} steps, at most {MAX_OPS} are planned at once; wish for less")
-        return {"ops": tuple(ops), "reason": "; ".join(goal.told)[:2000]}
+            raise WishError(f"that takes {len(ops)} steps, at most {MAX_OPS} are planned at once; ask for less")
+        return {"ops": tuple(ops), "reason": "; ".join(goal.done)[:2000]}
 
 
 def _refuse_worse(before: SceneGraph, after: SceneGraph) -> None:
-    """Raise if things would stand in each other, out of the room or in the air that did not before.
+    """Raise if the change causes violations (overlaps, things outside the room or in the air) that were not there.
 
     Raises:
-        CannotError: they would.
+        WishError: it does.
     """
     from ..rooms.check import check
 
     known = {_key(v) for v in check(before.model_copy(update={"relations": ()})).violations}
     fresh = [v for v in check(after).violations if v.kind != "reach" and _key(v) not in known]
     if fresh:
-        raise CannotError(f"that would not do: {fresh[0].sentence}")
+        raise WishError(f"that would cause a new problem: {fresh[0].sentence}")
 
 
 def _key(violation: Violation) -> tuple[str, frozenset[int | str]]:

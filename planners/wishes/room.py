@@ -1,7 +1,6 @@
-"""A room as something to be rearranged: what may move, what stays, what goes along; and where things are by now.
+"""The state of a room while it is rearranged: where things are, which may move, what they carry, what fits where.
 
-Knows a graph's nodes and which of them a person would push about. Refuses to know wishes, and to move what it does not
-believe: a thing far larger or smaller than its name allows was probably named wrongly, and stays where it is.
+Things far larger or smaller than their kind allows do not move: their label is probably wrong.
 """
 
 from __future__ import annotations
@@ -22,13 +21,15 @@ from ..rooms.graph_scene import Stage
 from ..rooms.node import Node
 
 Id = int | str
-SMALL = 0.4  # metres; what is smaller in every direction is a thing and no furniture
-TOUCHING = 0.01  # metres that boxes may be in each other
-_BUILDING = bag("column pillar wall railing fence tree")  # what stays and is no kind of thing
+SMALL = 0.4  # metres; a thing that is smaller in every direction is not furniture
+TOUCHING = 0.01  # metres by which boxes may overlap
+_BUILDING = bag(
+    "column pillar wall railing fence tree"
+)  # fixed parts of buildings and gardens that are not in the table of kinds
 
 
-class CannotError(Exception):
-    """A wish cannot come true; the message says why.
+class WishError(Exception):
+    """A wish cannot be fulfilled; the message says why.
 
     Attributes:
         verdict: of the plan.
@@ -41,28 +42,28 @@ class CannotError(Exception):
 
 @dataclass
 class Room:
-    """The graph while a wish is being worked out.
+    """A scene graph while a wish is being planned.
 
     Attributes:
-        stage: the graph as it was, for finding what words mean.
-        nodes: where everything is by now, by id.
-        ops: operations that follow the moves: what is put on something, added or taken away.
-        told: what was done, for the plan's reason.
+        stage: the original graph, in which queries are resolved.
+        nodes: the nodes at their present places, by id.
+        ops: operations that follow the moves: things put on others, added or removed.
+        done: what was done, for the plan's reason.
     """
 
     stage: Stage
     nodes: dict[Id, Node]
     ops: list[EditOp] = field(default_factory=list)
-    told: list[str] = field(default_factory=list)
+    done: list[str] = field(default_factory=list)
 
     @classmethod
     def of(cls, graph: SceneGraph) -> Room:
-        """A room as it stands."""
+        """The state of a graph before any change."""
         return cls(Stage.of(graph), {n.id: n for n in graph.nodes})
 
     @property
     def graph(self) -> SceneGraph:
-        """As it was."""
+        """The original graph."""
         return self.stage.graph
 
     @property
@@ -70,17 +71,17 @@ class Room:
         return self.graph.room.size
 
     def after(self) -> SceneGraph:
-        """As it is by now, without relations: moving things about may well end them."""
+        """The graph in its present state, without relations, because moves may break them."""
         return self.graph.model_copy(update={"nodes": tuple(self.nodes.values()), "relations": ()})
 
     def find(self, query: Query | None, several: bool = True) -> list[Node]:
-        """What a phrase means; None means all furniture.
+        """The nodes that a query selects; None selects all movable furniture.
 
         Raises:
-            CannotError: there is nothing of that kind, or it is not clear which is meant.
+            WishError: there is nothing of that kind, or the query is ambiguous.
         """
         if query is None:
-            return [n for n in self.nodes.values() if self.moves(n) and max(n.size) >= SMALL]
+            return [n for n in self.nodes.values() if self.is_movable(n) and max(n.size) >= SMALL]
         if query.text in ("seat", "seating") and not query.relations:
             found = [n for n in self.nodes.values() if is_seat(n)]
             if found:
@@ -90,29 +91,28 @@ class Room:
         try:
             meant = self.stage.find(query)
         except UserError as error:
-            raise CannotError(str(error)) from error
+            raise WishError(str(error)) from error
         if meant.verdict != "found" or (not several and len(meant.groups) > 1):
             verdict = "ambiguous" if meant.verdict != "absent" else "absent"
-            raise CannotError(self.stage.told(meant.reason) or f"{query.describe()} is not here", verdict)  # type: ignore[arg-type]
+            raise WishError(self.stage.told(meant.reason) or f"{query.describe()} is not here", verdict)  # type: ignore[arg-type]
         named = self.stage.names(meant.groups)
         return [self.nodes[i] for i in named if i in self.nodes]
 
     def one(self, query: Query) -> Node | None:
-        """What a phrase means, if it is one thing; None for a wall, the floor or the ceiling."""
+        """The first node that a query selects; None for a wall, the floor or the ceiling."""
         found = self.find(query, several=query.pick not in ("one", "any"))
         return found[0] if found else None
 
-    def moves(self, node: Node) -> bool:
-        """Whether a person would push a thing about: it stands on the floor, is no part of the house, and is what it
-        is called."""
+    def is_movable(self, node: Node) -> bool:
+        """Whether a thing may be moved: it stands on the floor, is not fixed, and its size fits its label."""
         words, kind = node.label.lower().split(), kinds.of(node.label)
         if node.support != "floor" or node.is_stepped_on or not words:
             return False
         stays = words[-1] in _BUILDING if kind is None else kind.fixed
         return not stays and is_likely(node)
 
-    def riders(self, id: Id) -> list[Id]:
-        """Ids of what stands on a thing, and on that."""
+    def carried_by(self, id: Id) -> list[Id]:
+        """Ids of everything that stands on a thing, directly or indirectly."""
         found, todo = list[Id](), [id]
         while todo:
             at = todo.pop()
@@ -121,13 +121,13 @@ class Room:
             todo += fresh
         return found
 
-    def put(self, id: Id, x: float, y: float, yaw: float) -> None:
+    def move_to(self, id: Id, x: float, y: float, yaw: float) -> None:
         """Move a thing, with what stands on it."""
-        moved = carried(self.nodes[id], [self.nodes[i] for i in self.riders(id)], x, y, yaw)
+        moved = move_carrying(self.nodes[id], [self.nodes[i] for i in self.carried_by(id)], x, y, yaw)
         self.nodes |= {n.id: n for n in moved}
 
-    def taken(self, box: Node, but: Iterable[Id] = ()) -> list[Node]:
-        """What a thing would stand in; rugs are stood upon."""
+    def overlapping(self, box: Node, but: Iterable[Id] = ()) -> list[Node]:
+        """The things that a box overlaps, except rugs, its support, what it carries, and the ids in `but`."""
         own, (x, y, _), reach = {box.id, *but}, box.position, math.hypot(*box.size[:2])
         around = (
             n
@@ -144,14 +144,14 @@ class Room:
         return bool(corners[0] <= self.size[0] / 2 + TOUCHING and corners[1] <= self.size[1] / 2 + TOUCHING)
 
     def fits(self, id: Id, x: float, y: float, yaw: float, but: Iterable[Id] = ()) -> bool:
-        """Whether a thing can stand somewhere."""
+        """Whether a thing can stand at a place: inside the walls and without overlaps."""
         node = self.nodes[id]
         there = node.model_copy(update={"position": (x, y, node.position[2]), "yaw": yaw})
-        return self.inside(there) and not self.taken(there, (*but, *self.riders(id)))
+        return self.inside(there) and not self.overlapping(there, (*but, *self.carried_by(id)))
 
 
 def is_likely(node: Node) -> bool:
-    """Whether a thing is about as large as things of its name are; what nobody knows the size of is."""
+    """Whether a thing's size fits its label; True for labels without a known size."""
     kind = kinds.find(node.label)
     if kind is None:
         return True
@@ -168,12 +168,12 @@ def is_seat(node: Node) -> bool:
     return kind is not None and kind.seats > 0
 
 
-def carried(node: Node, riders: Sequence[Node], x: float, y: float, yaw: float) -> list[Node]:
-    """A thing at another place, turned, and what stands on it where it then is."""
+def move_carrying(node: Node, on_it: Sequence[Node], x: float, y: float, yaw: float) -> list[Node]:
+    """A thing at another place and yaw (degrees), followed by the things on it, moved along."""
     turn = math.radians(yaw - node.yaw)
     c, s = math.cos(turn), math.sin(turn)
     moved = []
-    for one in (node, *riders):
+    for one in (node, *on_it):
         dx, dy = one.position[0] - node.position[0], one.position[1] - node.position[1]
         position = (x + c * dx - s * dy, y + s * dx + c * dy, one.position[2])
         moved.append(one.model_copy(update={"position": position, "yaw": wrapped(one.yaw + yaw - node.yaw)}))
@@ -192,6 +192,6 @@ def toward(node: Node | tuple[float, float], goal: tuple[float, float]) -> float
     return wrapped(math.degrees(math.atan2(goal[0] - x, y - goal[1])))
 
 
-def copied(room: Room) -> Room:
-    """The same room, to try something in."""
-    return replace(room, nodes=dict(room.nodes), ops=list(room.ops), told=list(room.told))
+def copy_of(room: Room) -> Room:
+    """A copy of a state, for trying something."""
+    return replace(room, nodes=dict(room.nodes), ops=list(room.ops), done=list(room.done))

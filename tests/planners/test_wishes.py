@@ -19,10 +19,10 @@ from scenewright.planners.rooms.graph import SceneGraph
 from scenewright.planners.rooms.node import Node
 from scenewright.planners.wishes import WishPlanner
 from scenewright.planners.wishes import goals as kinds
-from scenewright.planners.wishes.reading import Reader, Unread
-from scenewright.planners.wishes.room import Room, carried, toward
-from scenewright.planners.wishes.solving import in_disc
-from scenewright.planners.wishes.steps import moves
+from scenewright.planners.wishes.move_order import ordered_moves
+from scenewright.planners.wishes.parsing import NotAWish, WishParser
+from scenewright.planners.wishes.rearrange import in_disc
+from scenewright.planners.wishes.room import Room, move_carrying, toward
 from scenewright.tools.ops.arrange import Arrange
 from scenewright.tools.ops.insert import Insert
 from scenewright.tools.ops.move import Move
@@ -34,9 +34,9 @@ CASES: list[dict[str, Any]] = [
 NAMES = {
     kinds.Clear: "clear", kinds.Walls: "walls", kinds.Tidy: "tidy", kinds.Declutter: "declutter",
     kinds.SetTable: "table", kinds.See: "see", kinds.Spread: "spread", kinds.ReadingCorner: "corner",
-    kinds.Symmetric: "symmetric", kinds.Become: "become", kinds.Party: "party", kinds.Plain: "add",
+    kinds.Symmetric: "symmetric", kinds.Become: "become", kinds.Party: "party", kinds.PlainEdit: "add",
 }  # fmt: skip
-PLANNER, READER = WishPlanner(), Reader()
+PLANNER, PARSER = WishPlanner(), WishParser()
 
 
 class Seen:
@@ -91,16 +91,16 @@ def plan(text: str, graph: SceneGraph = ROOM) -> EditPlan:
 def played(plan: EditPlan, graph: SceneGraph) -> dict[Any, Node]:
     """Where things are after the moves of a plan; each step is checked: nothing stands in anything on the way."""
     room = Room.of(graph)
-    known = {frozenset((n.id, m.id)) for n in room.nodes.values() for m in room.taken(n)}
+    known = {frozenset((n.id, m.id)) for n in room.nodes.values() for m in room.overlapping(n)}
     for op in plan.ops:
         if not isinstance(op, Arrange):
             continue
         (id,) = op.target.groups
         node = room.nodes[id]
-        for one in carried(node, [room.nodes[i] for i in room.riders(id)], node.position[0] + op.x,
+        for one in move_carrying(node, [room.nodes[i] for i in room.carried_by(id)], node.position[0] + op.x,
                            node.position[1] + op.y, node.yaw + op.turn):  # fmt: skip
             room.nodes[one.id] = one
-        met = {frozenset((id, n.id)) for n in room.taken(room.nodes[id], room.riders(id))}
+        met = {frozenset((id, n.id)) for n in room.overlapping(room.nodes[id], room.carried_by(id))}
         assert met <= known, (op, met)
     return room.nodes
 
@@ -114,8 +114,8 @@ def unharmed(before: SceneGraph, nodes: dict[Any, Node]) -> bool:
 
 def read(text: str) -> list[str]:
     try:
-        found = READER.read(text).goals
-    except Unread:
+        found = PARSER.parse(text).goals
+    except NotAWish:
         return []
     return [g.shape if isinstance(g, kinds.Formation) else NAMES[type(g)] for g in found]
 
@@ -239,9 +239,9 @@ def test_everybody_sees_the_television_and_the_plants_are_apart() -> None:
 def test_things_that_wait_for_each_other_are_set_aside() -> None:
     graph = hall(thing(0, "table", (-1.5, 0), TABLE), thing(1, "table", (1.5, 0), TABLE))
     start, goal = Room.of(graph), Room.of(graph)
-    goal.put(0, 1.5, 0, 0)
-    goal.put(1, -1.5, 0, 0)
-    found = moves(start, goal)
+    goal.move_to(0, 1.5, 0, 0)
+    goal.move_to(1, -1.5, 0, 0)
+    found = ordered_moves(start, goal)
     assert len(found) == 3
     nodes = played(EditPlan(instruction="swap", ops=tuple(found), planner="test"), graph)
     assert nodes[0].position[0] == pytest.approx(1.5, abs=1e-3)

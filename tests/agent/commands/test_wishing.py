@@ -12,7 +12,7 @@ from scenewright.planners.rooms.build import build
 from scenewright.planners.rooms.check import check
 from scenewright.planners.rooms.graph import SceneGraph
 from scenewright.planners.wishes import WishPlanner
-from scenewright.planners.wishes.solving import in_disc
+from scenewright.planners.wishes.rearrange import in_disc
 
 LIVING = Path(__file__).parents[2] / "planners" / "written" / "living_room.json"
 

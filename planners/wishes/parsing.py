@@ -1,7 +1,7 @@
-"""Words to goals: the clauses of an instruction, each a wish or something the grammar understands.
+"""Parses an instruction into goals: each clause is a wish or an edit that the grammar understands.
 
-Knows politeness, where clauses may be parted, and how the parts of a pattern become a goal. Refuses to know any scene,
-and to guess: an instruction of which any clause is not understood is not read at all.
+Skips polite phrases, splits the instruction into clauses and builds goals from the parts of matched patterns. If any
+clause is not understood, the whole instruction is refused. No scene is needed.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from .goals import (
     Become,
     Clear,
     Declutter,
+    FloorRelation,
     Formation,
     Goal,
     Party,
-    Plain,
+    PlainEdit,
     ReadingCorner,
-    Relation,
     See,
     SetTable,
     Spread,
@@ -35,12 +35,12 @@ from .goals import (
     Walls,
     Where,
 )
-from .phrases import COMPILED
+from .patterns import COMPILED
 
 Parts = dict[str, str]
 
 _JOINTS = frozenset({",", "and", "then", "&", "but", "also", "plus"})
-_JOINED = 4  # what a joint inside a clause costs: more than any clause
+_JOINED = 4  # cost of a joint inside a clause: more than that of any clause
 _ONES = frozenset({"one", "ones", "other", "others"})
 _EVERYTHING = frozenset({"everything", "furniture", "the furniture", "all furniture", "all the furniture", "all"})
 _COUNTS = {"a": 1, "couple": 2, "both": 2, "us": 2}
@@ -50,8 +50,8 @@ _POLITE = tuple(sorted((*lexicon.POLITE, *lexicon.FILLER), key=len, reverse=True
 _KEPT = frozenset({"i want", "i need"})  # openers that some wishes begin with
 
 
-class Unread(Exception):
-    """The words are no wish; `words` are those to blame."""
+class NotAWish(Exception):
+    """The instruction is not a wish; `words` are the ones that caused this."""
 
     def __init__(self, reason: str, *words: str) -> None:
         super().__init__(reason)
@@ -59,48 +59,48 @@ class Unread(Exception):
 
 
 @dataclass(frozen=True)
-class Reading:
-    """What an instruction comes to.
+class ParsedInstruction:
+    """A parsed instruction.
 
     Attributes:
-        goals: in the order in which they were said.
-        wished: whether one of them is a wish for the room, and not all were for the grammar.
+        goals: the goals in the order of their clauses.
+        wished: whether at least one of them is a wish for the room that the grammar cannot plan as well.
     """
 
     goals: tuple[Goal, ...]
     wished: bool
 
 
-class Reader:
-    """Reads instructions; one serves all threads."""
+class WishParser:
+    """Parses instructions into goals; thread-safe."""
 
     def __init__(self) -> None:
         self.grammar = GrammarPlanner()
 
-    def read(self, text: str) -> Reading:
+    def parse(self, text: str) -> ParsedInstruction:
         """The goals of an instruction.
 
         Raises:
-            Unread: a part of it is neither a wish nor understood by the grammar, or none is a wish.
-            UserError: it is too long to be an instruction.
+            NotAWish: a clause is neither a wish nor understood by the grammar, or no clause is a wish.
+            UserError: the instruction is too long.
         """
         goals: list[Goal] = []
         wished = False
         for words in _sentences(text):
             found = self._clauses(words)
             if found is None:
-                raise Unread("this is no wish for a room that is understood", *self._blamed(words))
+                raise NotAWish("this is not understood as a wish for a room", *self._blamed(words))
             goals += [goal for goal, _ in found]
             wished |= any(mine and not _is_plain_enough(goal) for goal, mine in found)
         if not goals or not wished:
-            raise Unread("this is no wish for a room", *(text.split()[:1]))
-        return Reading(tuple(goals), wished)
+            raise NotAWish("this is not a wish for a room", *(text.split()[:1]))
+        return ParsedInstruction(tuple(goals), wished)
 
-    def may_wish(self, text: str) -> bool:
-        """Whether any part of an instruction between joints has the form of a wish; False settles that it is none.
+    def may_be_wish(self, text: str) -> bool:
+        """Whether any part between joints matches a wish pattern; if not, the instruction is certainly not a wish.
 
         Raises:
-            UserError: it is too long to be an instruction.
+            UserError: the instruction is too long.
         """
         for words in _sentences(text):
             joints = [i for i, word in enumerate(words) if word in _JOINTS]
@@ -110,10 +110,11 @@ class Reader:
         return False
 
     def _clauses(self, words: tuple[str, ...]) -> list[tuple[Goal, bool]] | None:
-        """A sentence as clauses, wishes rather than plain edits; None if that is not possible.
+        """The goals of a sentence's clauses, and whether each is a wish; None if it cannot be split into clauses.
 
-        Parted wherever both sides can be read, so that no clause is swallowed by a phrase of another ("make room for a
-        piano and add one") and a wish beside an edit is read as what it is; otherwise as few clauses as possible.
+        The sentence is split wherever both sides can be parsed, so that no clause becomes part of a phrase of another
+        ("make room for a piano and add one"). Otherwise as few clauses as possible are made, and a clause is parsed as
+        a wish rather than as a plain edit.
         """
 
         @cache
@@ -128,7 +129,7 @@ class Reader:
                     continue
                 if (goal := self._clause(words[start:end])) is None or (after := rest(end)) is None:
                     continue
-                mine = not isinstance(goal, Plain)
+                mine = not isinstance(goal, PlainEdit)
                 cost = after[0] + (2 if mine else 3) + _JOINED * sum(w in _JOINTS for w in words[start:end])
                 if best is None or cost < best[0]:
                     best = (cost, ((goal, mine), *after[1]))
@@ -138,7 +139,7 @@ class Reader:
         return None if found is None else list(found[1])
 
     def _clause(self, words: tuple[str, ...]) -> Goal | None:
-        """One clause as a goal, None if it is not understood."""
+        """The goal of one clause, None if it is not understood."""
         said = " ".join(_plain(words))
         for kind, pattern in COMPILED:
             matched = pattern.fullmatch(said)
@@ -146,48 +147,48 @@ class Reader:
             if goal is not None:
                 return goal
         plan = self.grammar.plan(" ".join(words)) if said else None
-        return Plain(plan.ops) if plan is not None and plan.ok and not _refers_back(words, plan.ops) else None
+        return PlainEdit(plan.ops) if plan is not None and plan.ok and not _refers_back(words, plan.ops) else None
 
     def _goal(self, kind: str, parts: Parts) -> Goal | None:
-        """The goal of a matched pattern; None if its noun phrases are none."""
+        """The goal of a matched pattern; None if one of its parts is not understood."""
         try:
             return _BUILDERS[kind](self, parts)
-        except Unread:
+        except NotAWish:
             return None
 
     def things(self, parts: Parts) -> Query | None:
-        """What is to be arranged; None for all furniture."""
+        """The query for what is to be arranged; None for all furniture."""
         said = parts.get("things", "")
         return None if said in _EVERYTHING else self.noun(said, every=True)
 
     def noun(self, said: str, every: bool = False) -> Query:
-        """A noun phrase as a query.
+        """The query of a noun phrase.
 
         Raises:
-            Unread: it is none.
+            NotAWish: the text is not a noun phrase.
         """
         plan = self.grammar.plan(f"select {said}")
         if len(plan.ops) != 1 or (query := plan.ops[0].query()) is None or query.last:
-            raise Unread(f"“{said}” is not understood", said)
+            raise NotAWish(f"“{said}” is not understood", said)
         if not query.text and not query.colors:
-            raise Unread(f"“{said}” is not understood", said)
+            raise NotAWish(f"“{said}” is not understood", said)
         return query.model_copy(update={"pick": "all"}) if every and query.pick in ("one", "any") else query
 
     def where(self, parts: Parts) -> Where | None:
-        """The place that was said, None if none was."""
+        """The given place, None if there is none."""
         if "anchor" in parts:
-            relation: Relation = "in_front_of" if parts["near"] in _BEFORE else "next_to"
+            relation: FloorRelation = "in_front_of" if parts["near"] in _BEFORE else "next_to"
             return Where(relation, self.noun(parts["anchor"]))
         return Where() if "middle" in parts else None
 
     def _blamed(self, words: Sequence[str]) -> tuple[str, ...]:
-        """The words of a sentence that no way of saying a wish has, else all of it."""
+        """The words of a sentence that are unknown and in no wish pattern; the whole sentence if there are none."""
         strange = [w for w in _plain(words) if w not in _vocabulary() and not nouns.is_known(w) and w not in _JOINTS]
         return tuple(strange) or (" ".join(words),)
 
 
 def _sentences(text: str) -> Iterator[tuple[str, ...]]:
-    """The words of each sentence; a colon parts a headline from what it means."""
+    """The words of each sentence; a colon ends a sentence as well."""
     words: list[str] = []
     for word in (*(w.text for w in split(clean(text))), "."):
         if word in _MARKS or word == "?":
@@ -199,7 +200,7 @@ def _sentences(text: str) -> Iterator[tuple[str, ...]]:
 
 
 def _plain(words: Sequence[str]) -> list[str]:
-    """The words of a clause without politeness before and filler in and behind it."""
+    """The words of a clause without polite phrases before it and filler in and behind it."""
     kept = [w for w in words if w not in (",", '"')]
     while found := next((p for p in _POLITE if tuple(kept[: len(p)]) == p and " ".join(p) not in _KEPT), None):
         kept = kept[len(found) :]
@@ -209,8 +210,10 @@ def _plain(words: Sequence[str]) -> list[str]:
 
 
 def _refers_back(words: Sequence[str], ops: Sequence[EditOp]) -> bool:
-    """Whether a clause speaks of what another named: "it", "the red ones". Beside a wish, which moves many things,
-    nobody can tell what that is."""
+    """Whether a clause refers to a thing that another clause names ("it", "the red ones").
+
+    Next to a wish, which moves many things, such a reference is ambiguous.
+    """
     nameless = any(query is not None and not query.text for query in (op.query() for op in ops))
     return '"last":true' in ops[0].model_dump_json() or (nameless and bool(_ONES & set(words)))
 
@@ -221,98 +224,98 @@ def _vocabulary() -> frozenset[str]:
 
 
 def _people(said: str) -> int:
-    """A number of people.
+    """A number of people in words or digits.
 
     Raises:
-        Unread: it is none from 1 to 20.
+        NotAWish: it is not a number from 1 to 20.
     """
     read = quantities.read((said,))
     number = read.value if read is not None and read.kind == "NUMBER" else _COUNTS.get(said, 0)
     if number != int(number) or not 1 <= number <= 20:
-        raise Unread(f"“{said}” is no number of people", said)
+        raise NotAWish(f"“{said}” is not a number of people", said)
     return int(number)
 
 
 def _width(said: str) -> float:
-    """Metres of a length in words.
+    """A width in metres.
 
     Raises:
-        Unread: it is none.
+        NotAWish: it is not a length of at least 0.2 m.
     """
     words = tuple(w.text for w in split(said))
     read = quantities.read(words)
     if read is None or read.kind != "LENGTH" or read.taken < len(words) or not in_metres(read.value, read.unit) >= 0.2:
-        raise Unread(f"“{said}” is no width", said)
+        raise NotAWish(f"“{said}” is not a width", said)
     return in_metres(read.value, read.unit)
 
 
-def _clear(reader: Reader, parts: Parts) -> Goal:
+def _clear(parser: WishParser, parts: Parts) -> Goal:
     purpose = parts.get("why", "").split()
     if any(w in _JOINTS and len(purpose) - i > 3 for i, w in enumerate(purpose)):
-        raise Unread("what it is for goes on too long", *purpose)  # into another clause: "for a piano, then add one"
+        raise NotAWish("the purpose is too long", *purpose)  # includes another clause: "for a piano, then add one"
     called = parts.get("why") or {"area": "free area", "spot": "free spot"}.get(parts.get("called", ""), "")
     called = called or ("dance floor" if "danc" in parts.get("called", "") else "free floor")
     width = _width(parts["size"]) if "size" in parts else None
-    return Clear(reader.where(parts) or Where(), width, called[:60])
+    return Clear(parser.where(parts) or Where(), width, called[:60])
 
 
-def _formation(shape: str) -> Callable[[Reader, Parts], Goal]:
-    def build(reader: Reader, parts: Parts) -> Goal:
-        about = reader.noun(parts["goal"]) if "goal" in parts else None
+def _formation(shape: str) -> Callable[[WishParser, Parts], Goal]:
+    def build(parser: WishParser, parts: Parts) -> Goal:
+        about = parser.noun(parts["goal"]) if "goal" in parts else None
         rows = {"two": 2, "three": 3, "four": 4}.get(parts.get("rows", ""), 1)
-        things = reader.things(parts)
+        things = parser.things(parts)
         if things is None:
-            raise Unread("say which things", parts.get("things", ""))
-        return Formation(shape, things, about, reader.where(parts), rows)  # type: ignore[arg-type]
+            raise NotAWish("say which things", parts.get("things", ""))
+        return Formation(shape, things, about, parser.where(parts), rows)  # type: ignore[arg-type]
 
     return build
 
 
-def _declutter(reader: Reader, parts: Parts) -> Goal:
-    surface = reader.noun(parts["goal"])
+def _declutter(parser: WishParser, parts: Parts) -> Goal:
+    surface = parser.noun(parts["goal"])
     name = surface.text
     if not (nouns.is_surface(name) or nouns.is_container(name) or nouns.is_furniture(name)):
-        raise Unread(f"nothing stands on {parts['goal']}", parts["goal"])
+        raise NotAWish(f"nothing stands on {parts['goal']}", parts["goal"])
     return Declutter(surface)
 
 
-def _walls(reader: Reader, parts: Parts) -> Goal:
+def _walls(parser: WishParser, parts: Parts) -> Goal:
     said = parts.get("things", "")
-    return Walls(None if said in _EVERYTHING else reader.noun(said))
+    return Walls(None if said in _EVERYTHING else parser.noun(said))
 
 
 def _is_plain_enough(goal: Goal) -> bool:
-    """Whether the grammar does as well: one thing to the wall is one move."""
+    """Whether the grammar can plan a goal as well: one thing to the wall is one move."""
     return isinstance(goal, Walls) and goal.things is not None and goal.things.pick == "one" and not goal.things.also
 
 
-def _spread(reader: Reader, parts: Parts) -> Goal:
-    if (things := reader.things(parts)) is None:
-        raise Unread("say which things", parts["things"])
+def _spread(parser: WishParser, parts: Parts) -> Goal:
+    if (things := parser.things(parts)) is None:
+        raise NotAWish("say which things", parts["things"])
     return Spread(things)
 
 
-def _watch(_reader: Reader, _parts: Parts) -> Goal:
+def _watch(_parser: WishParser, _parts: Parts) -> Goal:
     return See(None, Query(text="television"))
 
 
-_BUILDERS: dict[str, Callable[[Reader, Parts], Goal]] = {
+_BUILDERS: dict[str, Callable[[WishParser, Parts], Goal]] = {
     "clear": _clear,
     "walls": _walls,
     "circle": _formation("circle"),
     "arc": _formation("arc"),
     "row": _formation("row"),
     "around": _formation("around"),
-    "tidy": lambda _reader, _parts: Tidy(),
+    "tidy": lambda _parser, _parts: Tidy(),
     "declutter": _declutter,
-    "set_table": lambda reader, parts: SetTable(
-        reader.noun(parts["goal"]), _people(parts["people"]) if "people" in parts else None
+    "set_table": lambda parser, parts: SetTable(
+        parser.noun(parts["goal"]), _people(parts["people"]) if "people" in parts else None
     ),
-    "see": lambda reader, parts: See(reader.things(parts), reader.noun(parts["goal"])),
+    "see": lambda parser, parts: See(parser.things(parts), parser.noun(parts["goal"])),
     "watch": _watch,
     "spread": _spread,
-    "reading_corner": lambda reader, parts: ReadingCorner(reader.where(parts)),
-    "symmetric": lambda _reader, _parts: Symmetric(),
-    "become": lambda _reader, parts: Become(parts["kind"].strip()),
-    "party": lambda _reader, _parts: Party(),
+    "reading_corner": lambda parser, parts: ReadingCorner(parser.where(parts)),
+    "symmetric": lambda _parser, _parts: Symmetric(),
+    "become": lambda _parser, parts: Become(parts["kind"].strip()),
+    "party": lambda _parser, _parts: Party(),
 }

@@ -1,7 +1,4 @@
-"""Goals to the room as it should be: which is worked out by what, and which belong together.
-
-Knows the kinds of goals. Refuses to know how any of them is reached.
-"""
+"""Brings a room to a state in which all goals hold: dispatches each goal to its function, some of them together."""
 
 from __future__ import annotations
 
@@ -16,7 +13,7 @@ from .goals import (
     Formation,
     Goal,
     Party,
-    Plain,
+    PlainEdit,
     ReadingCorner,
     See,
     SetTable,
@@ -26,43 +23,43 @@ from .goals import (
     Walls,
     Where,
 )
-from .room import CannotError, Room
+from .room import Room, WishError
 
-_BALLOONS = 2  # bunches at a party that nobody described
+_BALLOONS = 2  # bunches of balloons for a party without details
 
 
-def fulfil(room: Room, goals: Sequence[Goal]) -> None:
-    """Bring a room to where every goal holds.
+def achieve(room: Room, goals: Sequence[Goal]) -> None:
+    """Change a room so that every goal holds.
 
     Raises:
-        CannotError: one cannot.
+        WishError: a goal cannot be reached.
     """
-    todo: list[Goal] = [g for g in goals if not isinstance(g, Plain)]
+    todo: list[Goal] = [g for g in goals if not isinstance(g, PlainEdit)]
     if any(isinstance(g, Party) for g in todo):
         rest = [g for g in goals if not isinstance(g, Party)]
         todo = [g for g in todo if not isinstance(g, Party)] if rest else _party(room)
     walls = [g for g in todo if isinstance(g, Walls)]
     floors = [g for g in todo if isinstance(g, Clear)]
     if walls:
-        floor.push(room, walls, floors[0] if floors else None)
+        floor.push_to_walls(room, walls, floors[0] if floors else None)
         floors = floors[1:]
     for wish in floors:
-        floor.clear(room, wish)
+        floor.clear_floor(room, wish)
     for goal in todo:
-        _fulfil_one(room, goal)
+        _achieve_one(room, goal)
 
 
 def _party(room: Room) -> list[Goal]:
-    """What a party takes that nobody described."""
+    """Add decorations; the goals of a party without details: furniture at the walls and a dance floor."""
     lamps = any(n.support == "ceiling" for n in room.nodes.values())
-    if not lamps:  # they would hang in each other
+    if not lamps:  # streamers would overlap ceiling lamps
         room.ops.append(Insert(asset="streamers"))
     room.ops.append(Insert(asset="balloons", count=_BALLOONS))
-    room.told.append(f"{'' if lamps else 'streamers and '}{_BALLOONS} bunches of balloons put up")
+    room.done.append(f"{'' if lamps else 'streamers and '}{_BALLOONS} bunches of balloons put up")
     return [Walls(), Clear(Where(), called="dance floor")]
 
 
-def _fulfil_one(room: Room, goal: Goal) -> None:
+def _achieve_one(room: Room, goal: Goal) -> None:
     match goal:
         case Formation():
             formations.form(room, goal)
@@ -73,7 +70,7 @@ def _fulfil_one(room: Room, goal: Goal) -> None:
         case SetTable():
             surfaces.set_table(room, goal)
         case See():
-            floor.see(room, goal)
+            floor.turn_seats(room, goal)
         case Spread():
             floor.spread(room, goal)
         case ReadingCorner():
@@ -81,6 +78,6 @@ def _fulfil_one(room: Room, goal: Goal) -> None:
         case Symmetric():
             formations.mirror(room)
         case Become():
-            raise CannotError(f"making a room a {goal.kind} takes other furniture: compose one, or say what to add")
+            raise WishError(f"a {goal.kind} needs other furniture: compose such a room, or say what to add")
         case _:
             return

@@ -1,8 +1,7 @@
-"""How wishes are said: one pattern a way of saying it, over plain lower-case words with single blanks between them.
+"""Regular expressions for wishes, over lower-case words with single blanks between them.
 
-Knows spellings. Refuses to know what a wish means: every pattern names a kind and its parts, reading.py makes goals of
-them. Parts: `things` and `goal` are noun phrases, `middle` or `near` with `anchor` a place, `size` a length, `people` a
-number, `why` what for.
+Each pattern belongs to a kind of wish and captures its parts, from which parsing.py builds a goal: `things` and `goal`
+are noun phrases, `middle` or `near` with `anchor` give a place, `size` a length, `people` a number, `why` a purpose.
 """
 
 from __future__ import annotations

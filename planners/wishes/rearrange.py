@@ -1,8 +1,7 @@
-"""Wishes that the layout solver fulfils: floor kept free, things at walls, seats that see, a corner to read in.
+"""Rearranges a room with the layout solver: some things may move, all others keep their places.
 
-Knows how a room becomes a problem: what may move where it was, all else with its stand. Refuses to know how problems
-are solved. Few things are let go at first, and all only where few do not help: who asks for some floor does not ask
-for another room.
+Callers first let few things move, and all movable things only if that fails, so that a room changes as little as
+possible.
 """
 
 from __future__ import annotations
@@ -17,79 +16,81 @@ from ...gaussians.world.box import overlap
 from ..layout import Item, Keepout, Layout, Problem, Stand, solve
 from ..layout import Wish as LayoutWish
 from ..rooms.node import Node
-from .room import CannotError, Id, Room, copied, is_seat, wrapped
+from .room import Id, Room, WishError, copy_of, is_seat, wrapped
 
-MARGIN = 0.05  # metres from the measured walls: a room's size is that of its shell
-GAP = 0.03  # metres by which things are taken for larger, so that they stand apart
+MARGIN = 0.05  # metres kept from the walls, because a room's size is that of its shell
+GAP = 0.03  # metres added to sizes, so that things stand apart
 AT_WALL = 0.3  # metres from a wall within which a thing counts as standing at it
-_LEAF = 0.7  # metres before a door that are nobody's place
-_PULLED_UP = 0.3  # metres between a table and who sits at it
+_LEAF = 0.7  # metres in front of a door that stay free
+_PULLED_UP = 0.3  # metres from a table within which a seat is pulled up to it
 _CHAIR = 0.75  # metres; larger seats are not pulled up to a table
 
 
-def rearranged(
+def rearrange(
     room: Room, free: Collection[Id], wishes: Sequence[LayoutWish], discs: Sequence[Keepout], seed: int = 0
 ) -> None:
-    """Move the free things so that wishes and discs hold; the room is then as found.
+    """Move the free things so that the wishes hold and the discs are empty; updates the room.
 
     Raises:
-        CannotError: that cannot be; the message says what conflicts.
+        WishError: there is no such layout; the message names the conflict.
     """
     layout = solve(_problem(room, free, wishes, discs), seed)
     if not layout.ok or layout.left_out:
-        raise CannotError(conflict(layout))
+        raise WishError(conflict(layout))
     for node in layout.graph.nodes:
         if node.id in free:
-            room.put(node.id, node.position[0], node.position[1], _original(room, node))
+            room.move_to(node.id, node.position[0], node.position[1], _yaw_of_thing(room, node))
 
 
-def eased(
+def rearrange_stepwise(
     room: Room,
     tries: Sequence[frozenset[Id]],
     wishes: Sequence[LayoutWish],
     discs: Sequence[Keepout],
     complaint: str,
 ) -> None:
-    """Rearrange with few things let go, or more where that does not do.
+    """Rearrange with the first set of movable things in `tries` that has a solution and blocks no door.
+
+    If every solution blocks a door, the first solution is used.
 
     Raises:
-        CannotError: it does not do with any; the message is the complaint and why the last try failed.
+        WishError: no set has a solution; the message is the complaint and why the last try failed.
     """
     reason, least = "", None
     for loose in dict.fromkeys(tries):
-        trial = copied(room)
+        trial = copy_of(room)
         try:
-            rearranged(trial, loose, wishes, discs)
-        except CannotError as error:
+            rearrange(trial, loose, wishes, discs)
+        except WishError as error:
             reason = str(error)
             continue
-        if not _barred(trial, loose):
+        if not _blocks_a_door(trial, loose):
             room.nodes = trial.nodes
             return
         least = least or trial
     if least is None:
-        raise CannotError(f"{complaint}: {reason}")
+        raise WishError(f"{complaint}: {reason}")
     room.nodes = least.nodes
 
 
-def _barred(room: Room, moved: Collection[Id]) -> bool:
-    """Whether one of the things that moved stands before a door."""
+def _blocks_a_door(room: Room, moved: Collection[Id]) -> bool:
+    """Whether a moved thing stands in front of a door."""
     doors = [n for n in room.nodes.values() if n.label.split()[-1:] == ["door"]]
     leaves = [d.model_copy(update={"size": (d.size[0], d.size[1] + 2 * _LEAF, d.size[2])}) for d in doors]
     return any(overlap(leaf.box, room.nodes[i].box) > GAP for leaf in leaves for i in moved if i in room.nodes)
 
 
-def seated(room: Room, free: Collection[Id]) -> tuple[set[Id], list[LayoutWish]]:
-    """Who sits at a table that may move, with the wish to stay at it: chairs go where their table goes."""
+def chairs_at_tables(room: Room, free: Collection[Id]) -> tuple[set[Id], list[LayoutWish]]:
+    """Seats at tables of which a part may move, and soft wishes that the chairs stay at their table."""
     along, wishes = set[Id](), list[LayoutWish]()
     for table in (n for n in room.nodes.values() if n.label.split()[-1:] == ["table"]):
         chairs = [n for n in room.nodes.values() if is_seat(n) and _sits(n, table)]
         if table.id in free or any(n.id in free for n in chairs):
-            along |= {n.id for n in chairs if room.moves(n)}
+            along |= {n.id for n in chairs if room.is_movable(n)}
             wishes += [
                 LayoutWish(subject=n.id, name="around", objects=(table.id,), hard=False)
                 for n in chairs
-                if room.moves(n) and max(n.size[:2]) < _CHAIR
+                if room.is_movable(n) and max(n.size[:2]) < _CHAIR
             ]
     return along, wishes
 
@@ -100,10 +101,10 @@ def _sits(node: Node, table: Node) -> bool:
     return float(np.linalg.norm(np.maximum(aside, 0.0))) < max(node.size[:2]) / 2 + _PULLED_UP
 
 
-def _original(room: Room, node: Node) -> float:
-    """The yaw of the thing itself, of which the problem may have had the long side across.
+def _yaw_of_thing(room: Room, node: Node) -> float:
+    """The yaw of a thing in degrees, from that of its item in the problem, which may be turned by 90 degrees.
 
-    What has no front turns no farther than its footprint asks for.
+    A thing without a front is turned as little as its footprint allows.
     """
     was = room.nodes[node.id]
     yaw = wrapped(node.yaw - 90.0) if is_crosswise(was) else node.yaw
@@ -114,7 +115,7 @@ def _original(room: Room, node: Node) -> float:
 
 
 def is_crosswise(node: Node) -> bool:
-    """Whether a thing is deeper than wide though its long side belongs along a wall."""
+    """Whether a thing is deeper than wide although things of its kind have their long side at the wall."""
     return node.size[1] > 1.2 * node.size[0] and not _is_long(node)
 
 
@@ -131,7 +132,7 @@ def _is_long(node: Node) -> bool:
 
 
 def conflict(layout: Layout) -> str:
-    """Why a layout does not hold, in a sentence."""
+    """Why a layout has conflicts, in one sentence."""
     told = [" and ".join(c.statements) for c in layout.conflicts[:2]]
     return "these cannot all be: " + "; ".join(told) if told else "there is no room for that"
 
@@ -140,8 +141,8 @@ def _problem(room: Room, free: Collection[Id], wishes: Sequence[LayoutWish], dis
     width, depth, height = room.size
     walled = {w.subject for w in wishes if w.name in ("against_wall", "in_corner")}
     walled |= {id for id in free if at_wall(room, room.nodes[id])}
-    riders = {r for id in free for r in room.riders(id)}
-    items = [_item(room, n, n.id in free, n.id in walled) for n in room.nodes.values() if n.id not in riders]
+    carried_by = {r for id in free for r in room.carried_by(id)}
+    items = [_item(room, n, n.id in free, n.id in walled) for n in room.nodes.values() if n.id not in carried_by]
     return Problem(
         size=(width - 2 * MARGIN, depth - 2 * MARGIN, height),
         items=tuple(items),
@@ -152,7 +153,7 @@ def _problem(room: Room, free: Collection[Id], wishes: Sequence[LayoutWish], dis
 
 
 def _item(room: Room, node: Node, free: bool, walled: bool) -> Item:
-    """A thing of the room as the solver knows things; one whose carrier moves is not among them."""
+    """The item of the layout problem for a thing."""
     stand = Stand(position=node.position, yaw=node.yaw)
     known = {"id": node.id, "label": node.label, "color": node.color, "support": node.support}
     if not free:
@@ -174,6 +175,6 @@ def in_disc(node: Node, disc: tuple[float, float, float]) -> bool:
 
 
 def at_wall(room: Room, node: Node) -> bool:
-    """Whether a thing stands at a wall already."""
+    """Whether a thing stands within `AT_WALL` of a wall."""
     corners = abs(node.box.corners()[:, :2]).max(axis=0)
     return bool(min(room.size[0] / 2 - corners[0], room.size[1] / 2 - corners[1]) < AT_WALL)
