@@ -221,8 +221,8 @@ def _other(asked: Phrase) -> bool:
 
 @cache
 def _own_names() -> frozenset[Phrase]:
-    """The names of kinds."""
-    return frozenset(normalise(name) for name in kinds.table().kinds)
+    """The names of kinds that looks tell apart. A "wall cabinet" or "round table" may be labelled by its plain name."""
+    return frozenset(normalise(kind.name) for kind in kinds.table().kinds.values() if kind.shown)
 
 
 @cache

@@ -16,6 +16,7 @@ from scenewright.planners.grammar.tagging.spelling import correct_spelling, miss
 from scenewright.planners.grammar.tagging.words import split
 from scenewright.planners.grammar.vocabulary import lexicon
 from scenewright.planners.grammar.vocabulary.unsafe import unsafe_words
+from scenewright.planners.rooms.label_encoder import THRESHOLD, agreement
 
 PLANNER = load("grammar")
 
@@ -129,6 +130,18 @@ def test_relations_are_named_in_order() -> None:
 @given(st.text(max_size=300))
 def test_any_text_has_a_noun_or_none(text: str) -> None:
     assert isinstance(head_noun(text), str) and isinstance(relations_named(text), tuple)
+
+
+@pytest.mark.parametrize(
+    ("asked", "label", "same"),
+    [
+        ("round table", "table", True), ("wall cabinet", "cabinet", True), ("rattan chair", "chair", True),
+        ("wall shelf", "shelf", True), ("round table", "square table", False),
+        ("office chair", "chair", False), ("floor lamp", "lamp", False), ("folding screen", "screen", False),
+    ],
+)  # fmt: skip
+def test_a_label_may_leave_out_a_modifier_but_not_the_kind(asked: str, label: str, same: bool) -> None:
+    assert (agreement(asked, (label,))[0] >= THRESHOLD) == same
 
 
 def test_synonyms_are_mutual() -> None:
