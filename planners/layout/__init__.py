@@ -1,4 +1,4 @@
-"""The layout solver: things with sizes and wishes to a scene graph. `solve` is its one door."""
+"""The layout solver: it turns things with sizes and wishes into a scene graph. Callers use `solve`."""
 
 from __future__ import annotations
 

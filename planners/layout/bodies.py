@@ -1,6 +1,6 @@
-"""A problem prepared for the search: what carries what, what moves as one, how much floor each thing wants.
+"""A layout problem prepared for the search: what carries what, what moves as one body, how much floor each thing needs.
 
-Knows items, supports and the slots around a table. Refuses to know where anything goes.
+Positions are chosen by the search, except for seats: those are fixed relative to their table here.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ...gaussians.world.support import SHELL
 from .lattice import EPSILON
 from .problem import Item, Problem, Wall
 
-TUCKED = 0.03  # metres between a table and what stands around it
+TABLE_GAP = 0.03  # metres between a table and what stands around it
 _ELBOW = 0.08  # metres between neighbours at a table
 _SWING = 0.9  # metres before a door that its leaf takes at most
 _BEFORE = tuple(k.name for k in relations.KINDS if k.enters == "before")
@@ -27,7 +27,7 @@ _BESIDE_WALL = tuple(k.name for k in relations.KINDS if k.at_wall)
 
 
 class Member(NamedTuple):
-    """One thing of a body: its item's index, and where it stands in the axes of the body's first thing."""
+    """One thing of a body: its item's index, and its position and yaw in the axes of the body's first thing."""
 
     item: int
     x: float = 0.0
@@ -36,7 +36,7 @@ class Member(NamedTuple):
 
 
 class Body(NamedTuple):
-    """Things that move as one; the first gives the axes."""
+    """Things that move as one; the first defines the axes."""
 
     members: tuple[Member, ...]
 
@@ -47,11 +47,11 @@ class Body(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Prepared:
-    """A problem by indices.
+    """A problem with ids replaced by indices.
 
     Attributes:
         problem: as stated.
-        items: its items, with supports that wishes imply.
+        items: its items, with the supports that wishes imply.
         index: row of each id.
     """
 
@@ -66,7 +66,7 @@ class Prepared:
 
     @cached_property
     def carriers(self) -> tuple[tuple[int, ...], ...]:
-        """For each item what it stands on, and what that stands on, from near to far; it may end in a circle."""
+        """For each item what it stands on, what that stands on, and so on; the chain may end in a cycle."""
         found = []
         for item in self.items:
             chain: list[int] = []
@@ -79,16 +79,16 @@ class Prepared:
 
     @cached_property
     def roots(self) -> tuple[int, ...]:
-        """For each item the one at the end of its carriers: where it goes, the item goes."""
+        """For each item the last of its carriers, with which it moves; the item itself if it has none."""
         return tuple(chain[-1] if chain else i for i, chain in enumerate(self.carriers))
 
     def is_circular(self, i: int) -> bool:
-        """Whether an item ends up standing on itself or on things that do."""
+        """Whether an item's chain of carriers ends in a cycle."""
         return self.items[self.roots[i]].support not in SHELL
 
     @cached_property
     def wishes_of(self) -> tuple[tuple[int, ...], ...]:
-        """For each item the rows of the wishes that it, or something it carries, takes part in."""
+        """For each item the rows of the wishes that name it or something it carries."""
         found: list[dict[int, None]] = [{} for _ in self.items]
         for row, wish in enumerate(self.problem.wishes):
             for name in (wish.subject, *wish.objects):
@@ -97,31 +97,31 @@ class Prepared:
         return tuple(tuple(rows) for rows in found)
 
     @cached_property
-    def parties(self) -> tuple[tuple[int, ...], ...]:
+    def participants(self) -> tuple[tuple[int, ...], ...]:
         """For each wish its subject and objects as indices."""
         return tuple(tuple(self.index[n] for n in (w.subject, *w.objects)) for w in self.problem.wishes)
 
     @cached_property
-    def tied(self) -> frozenset[tuple[int, int]]:
-        """Pairs of items that a wish brings together: one may stand in the other's free space, but before it."""
+    def related(self) -> frozenset[tuple[int, int]]:
+        """Pairs of items that a wish puts close together: one may stand in the other's free space, except its front."""
         return self._pairs((*_BESIDE, *_BEFORE))
 
     @cached_property
-    def joined(self) -> frozenset[tuple[int, int]]:
-        """Pairs of which one may stand before the other as well: a stool at a piano, not a side table at a sofa."""
+    def related_in_front(self) -> frozenset[tuple[int, int]]:
+        """Pairs of which one may also stand before the other's front: a stool at a piano, no side table at a sofa."""
         return self._pairs(_BEFORE)
 
     def _pairs(self, names: tuple[str, ...]) -> frozenset[tuple[int, int]]:
         pairs = set[tuple[int, int]]()
-        for wish, (one, *others) in zip(self.problem.wishes, self.parties, strict=True):
+        for wish, (one, *others) in zip(self.problem.wishes, self.participants, strict=True):
             if wish.name in names:
                 pairs |= {p for o in others for p in ((one, o), (o, one))}
         return frozenset(pairs)
 
     def may_enter(self, one: int, zone: YawBox, other: int) -> bool:
-        """Whether something may stand in a zone, given in its owner's axes, of what it has to do with."""
+        """Whether `other` may stand in a use zone of `one`, given in the axes of `one`, because a wish relates them."""
         before = zone.y < 0 and zone.x == 0
-        return (one, other) in (self.joined if before else self.tied)
+        return (one, other) in (self.related_in_front if before else self.related)
 
     def wants_wall(self, i: int) -> bool:
         """Whether an item's back belongs against a wall."""
@@ -133,8 +133,8 @@ class Prepared:
         return frozenset(wished | {i for i, item in enumerate(self.items) if item.backed})
 
     @cached_property
-    def named(self) -> dict[int, frozenset[Wall]]:
-        """The walls that were named for an item."""
+    def named_walls(self) -> dict[int, frozenset[Wall]]:
+        """For each item the walls that wishes name for it."""
         found = defaultdict[int, set[Wall]](set)
         for wish in self.problem.wishes:
             if wish.wall:
@@ -143,11 +143,11 @@ class Prepared:
 
     @cached_property
     def zones_of(self) -> tuple[tuple[YawBox, ...], ...]:
-        """For each item the room that using it takes, in its own axes."""
+        """For each item its use zones in its own axes: the space that must stay free to use it."""
         return tuple(tuple(self.zones(i)) for i in range(len(self.items)))
 
     def zones(self, i: int) -> tuple[YawBox, ...]:
-        """The room that using an item takes, in its own axes; before a door its leaf swings."""
+        """The use zones of an item in its own axes; for a door, the space in which its leaf swings."""
         item = self.items[i]
         width, deep, height = item.size
         before, behind, left, right = item.clear
@@ -167,23 +167,26 @@ class Prepared:
         )
 
     def area(self, i: int) -> float:
-        """Floor that an item and its use take, square metres."""
+        """Floor area of an item and its use zones, square metres."""
         width, deep, _ = self.items[i].size
         return width * deep + sum(z.w * z.d for z in self.zones(i))
 
     @cached_property
     def bodies(self) -> tuple[Body, ...]:
-        """What moves as one: every free root item, tables with what stands around them; what cannot stand is absent."""
+        """The bodies: every free root item, a table together with what stands around it.
+
+        Things that do not fit around their table become bodies of their own.
+        """
         around = defaultdict[int, list[int]](list)
         taken = set[int]()
-        for wish, parts in zip(self.problem.wishes, self.parties, strict=True):
-            if wish.name == "around" and self._joins(*parts) and parts[0] not in taken:
+        for wish, parts in zip(self.problem.wishes, self.participants, strict=True):
+            if wish.name == "around" and self._can_join(*parts) and parts[0] not in taken:
                 around[parts[1]].append(parts[0])
                 taken.add(parts[0])
         found = []
         for i, item in enumerate(self.items):
             if item.stand is None and item.support in SHELL and i not in taken:
-                found.append(Body(self._apart((Member(i), *self._seats(i, around[i])))))
+                found.append(Body(self._without_overlaps((Member(i), *self._seats(i, around[i])))))
         seated = {m.item for b in found for m in b.members}
         found += [Body((Member(i),)) for i in sorted(taken - seated)]
         return tuple(found)
@@ -193,35 +196,36 @@ class Prepared:
         w, d, h = self.items[member.item].size
         return YawBox(member.x, member.y, 0.0, w, d, h, member.yaw)
 
-    def _apart(self, members: tuple[Member, ...]) -> tuple[Member, ...]:
-        """The members that do not meet one before them."""
+    def _without_overlaps(self, members: tuple[Member, ...]) -> tuple[Member, ...]:
+        """The members that do not overlap an earlier one."""
         kept: list[Member] = []
         for member in members:
             if not any(plan_penetration(self.box(member), self.box(other)) > EPSILON for other in kept):
                 kept.append(member)
         return tuple(kept)
 
-    def exchanged(self, members: tuple[Member, ...], i: int, j: int) -> tuple[Member, ...] | None:
-        """Members with two of them in each other's seats, as close to the table; None if they do not fit."""
+    def swapped(self, members: tuple[Member, ...], i: int, j: int) -> tuple[Member, ...] | None:
+        """Members with two of them in each other's seats, at the same distance from the table; None if they overlap."""
         a, b = members[i], members[j]
         deep_a, deep_b = self.items[a.item].size[1], self.items[b.item].size[1]
         ax, ay = to_world(a.x, a.y, a.yaw, 0.0, (deep_b - deep_a) / 2)
         bx, by = to_world(b.x, b.y, b.yaw, 0.0, (deep_a - deep_b) / 2)
         trial = list(members)
         trial[i], trial[j] = Member(b.item, ax, ay, a.yaw), Member(a.item, bx, by, b.yaw)
-        return tuple(trial) if len(self._apart(tuple(trial))) == len(members) else None
+        return tuple(trial) if len(self._without_overlaps(tuple(trial))) == len(members) else None
 
-    def _joins(self, one: int, table: int) -> bool:
-        """Whether a thing may move together with what it stands around."""
+    def _can_join(self, one: int, table: int) -> bool:
+        """Whether a thing may form one body with the table it stands around."""
         a, b = self.items[one], self.items[table]
         grounded = a.support == b.support == "floor" and a.stand is None and b.stand is None
-        parts = {p[0] for w, p in zip(self.problem.wishes, self.parties, strict=True) if w.name == "around"}
+        parts = {p[0] for w, p in zip(self.problem.wishes, self.participants, strict=True) if w.name == "around"}
         return grounded and table not in parts
 
     def _seats(self, table: int, seated: list[int]) -> Iterator[Member]:
-        """Places around a table, in its axes, evenly on its sides; a side at a wall stays empty.
+        """Seats around a table, in its axes, spread evenly over its sides; a side at a wall stays empty.
 
-        Of a thing with an aisle behind it: there if more is kept free there than before it, as at a teacher's desk.
+        A table with an aisle behind it has its seats there if more space is kept free there than before it, as at a
+        teacher's desk.
         """
         width, deep, _ = self.items[table].size
         sides = {"front": width, "back": width, "left": deep, "right": deep}
@@ -242,21 +246,21 @@ class Prepared:
             yield from self._row(side, here, sides[side], (width, deep))
 
     def _row(self, side: str, here: list[int], length: float, table: tuple[float, float]) -> Iterator[Member]:
-        """The things at one side of a table, spread evenly along it and turned to it."""
+        """The seats at one side of a table, spread evenly along it and turned to it."""
         pitch = length / max(len(here), 1)
         yaw = {"front": 180.0, "back": 0.0, "left": 90.0, "right": -90.0}[side]
         half = (table[1] if side in ("front", "back") else table[0]) / 2
         for k, i in enumerate(here):
             along = (k + 0.5) * pitch - length / 2
-            away = half + TUCKED + self.items[i].size[1] / 2
+            away = half + TABLE_GAP + self.items[i].size[1] / 2
             x, y = to_world(0.0, 0.0, yaw, -along if side == "back" else along, away)
             yield Member(i, x, y, yaw)
 
 
 def _supported(problem: Problem) -> Iterator[Item]:
-    """The items; one that is said to be on or in another, and stands on the floor, stands on that one.
+    """The items, where a hard wish "on" or "inside" changes the support from the floor to the other item.
 
-    What carries something that must be there must be there itself.
+    The carrier of a required item becomes required too.
     """
     onto = {w.subject: w.objects[0] for w in reversed(problem.wishes) if w.hard and w.name in ("on", "inside")}
     items: dict[int | str, Item] = {}
@@ -264,9 +268,9 @@ def _supported(problem: Problem) -> Iterator[Item]:
         moved = item.id in onto and item.support == "floor" and item.stand is None and item.size[2] > STEP
         items[item.id] = item.model_copy(update={"support": onto[item.id]}) if moved else item
     for item in list(items.values()):
-        seen = {item.id}
-        while not item.optional and item.support in items and item.support not in seen:
+        known_spot = {item.id}
+        while not item.optional and item.support in items and item.support not in known_spot:
             item = items[item.support].model_copy(update={"optional": False})
             items[item.id] = item
-            seen.add(item.id)
+            known_spot.add(item.id)
     yield from items.values()

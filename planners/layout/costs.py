@@ -1,6 +1,6 @@
-"""What a position costs: wishes not kept, room for use taken, a wall stared at, things crowded.
+"""Costs of positions: broken wishes, blocked use zones, fronts close to walls, crowding. The unit is about a metre.
 
-Knows prices, in about metres off. Refuses to know which positions are free and which is taken.
+Which positions are free is computed in candidate_positions.py.
 """
 
 from __future__ import annotations
@@ -14,27 +14,27 @@ from ...gaussians.world.person import HUNG_AT, STEP
 from ...gaussians.world.support import SHELL
 from .bodies import Body, Member
 from .candidate_surfaces import FLOOR, extents_of
-from .lattice import F64, Lattice, meetings
+from .lattice import F64, Lattice, overlap_windows
 from .measures import WALLS, behind_gap, measure, walls_gaps
-from .state import BACKED, HARD, SOFT, USED, WALLED, State, placed
+from .state import BLOCKED_USE, BROKEN_HARD, BROKEN_SOFT, MAX_BACK_GAP, NOT_AT_WALL, State, placed
 
-_MOVED, _TURNED = 3.0, 1.0  # price of a metre away from where a thing was, and metres that a quarter turn is worth
-_CROWDED = 0.3  # share of a top from which things are put close together
-_FREE = 0.55  # metres; what is larger and wants no wall stands free, with room around it
+_MOVED, _TURNED = 3.0, 1.0  # cost of a metre away from the old position, and metres that count like a quarter turn
+_CROWDED = 0.3  # covered share of a top above which things are put close together
+_FREE = 0.55  # metres; a larger thing that does not belong at a wall gets space around it
 
 
-class Place(NamedTuple):
-    """Positions of a body's first thing, one price each: world x and y `[M]`, yaw, underside."""
+class Positions(NamedTuple):
+    """Positions of a body's first thing: world x and y `[M]`, one yaw, one underside height, and costs `[M]`."""
 
     body: Body
     x: F64
     y: F64
     yaw: float
     low: float
-    price: F64
+    cost: F64
 
 
-def moved(state: State, member: Member, place: Place) -> YawBox:
+def at_positions(state: State, member: Member, place: Positions) -> YawBox:
     x, y = to_world(place.x, place.y, place.yaw, member.x, member.y)
     w, d, h = state.prepared.items[member.item].size
     return YawBox(x, y, place.low, w, d, h, place.yaw + member.yaw)
@@ -47,13 +47,13 @@ def in_frame(spot: YawBox, frame: YawBox) -> YawBox:
     return spot._replace(x=u, y=v, yaw=spot.yaw - frame.yaw)
 
 
-def crowding(state: State, body: Body, lattice: Lattice, solids: list[tuple[int, YawBox]], price: F64) -> None:
-    """Add the price of crowding what one has nothing to do with; rugs keep off rugs, and from under other things."""
-    item, tied = state.prepared.items[body.first], state.prepared.tied
+def add_crowding_cost(state: State, body: Body, lattice: Lattice, solids: list[tuple[int, YawBox]], cost: F64) -> None:
+    """Add the cost of standing close to unrelated things; rugs also avoid other rugs and the floor under things."""
+    item, related = state.prepared.items[body.first], state.prepared.related
     if item.support not in SHELL:
         return
     x0, x1, y0, y1 = extents_of(state, body, lattice.yaw)
-    others = [s for j, s in solids if not any((m.item, j) in tied for m in body.members)]
+    others = [s for j, s in solids if not any((m.item, j) in related for m in body.members)]
     box = YawBox((x0 + x1) / 2, (y0 + y1) / 2, 0.06, x1 - x0, y1 - y0, item.size[2] - 0.06)
     if item.support == "wall":
         low = item.height if item.height is not None else HUNG_AT - item.size[2] / 2
@@ -73,14 +73,14 @@ def crowding(state: State, body: Body, lattice: Lattice, solids: list[tuple[int,
             np.minimum(lattice.xs + x0, -lattice.xs - x1)[:, None] + state.size[0] / 2,
             np.minimum(lattice.ys + y0, -lattice.ys - y1)[None, :] + state.size[1] / 2,
         )
-        price += 2.0 * (walls < 0.5)
+        cost += 2.0 * (walls < 0.5)
     for margin, each, those, own in levels:
         wide = own._replace(w=own.w + 2 * margin, d=own.d + 2 * margin)
-        for window, meets in meetings(lattice, wide, those):
-            price[window] += each * np.asarray(meets)
+        for window, meets in overlap_windows(lattice, wide, those):
+            cost[window] += each * np.asarray(meets)
 
 
-def use(
+def use_cost(
     state: State,
     lattice: Lattice,
     member: Member,
@@ -88,19 +88,19 @@ def use(
     solids: list[tuple[int, YawBox]],
     frame: YawBox,
 ) -> F64:
-    """The price of standing in the room that another needs for its use, or of having too little oneself."""
-    price = np.zeros((len(lattice.xs), len(lattice.ys)))
+    """The cost of standing in another thing's use zone, or of having a blocked use zone."""
+    cost = np.zeros((len(lattice.xs), len(lattice.ys)))
     prepared, i = state.prepared, member.item
     for zone in prepared.zones_of[i]:
         room = placed(zone, moving)
         others = [s for j, s in solids if not prepared.may_enter(i, zone, j) and i not in prepared.carriers[j]]
-        for window, meets in meetings(lattice, room, others):
-            price[window] = np.maximum(price[window], USED * np.asarray(meets))
+        for window, meets in overlap_windows(lattice, room, others):
+            cost[window] = np.maximum(cost[window], BLOCKED_USE * np.asarray(meets))
         if frame is FLOOR:
             here = room._replace(x=lattice.xs[:, None] + room.x, y=lattice.ys[None, :] + room.y)
             left, right, front, back = walls_gaps(here, state.size)
             short = np.minimum(np.minimum(left, right), np.minimum(front, back))
-            price += USED * (short < -0.05)
+            cost += BLOCKED_USE * (short < -0.05)
     if not state.is_flat(i):
         zones = [
             in_frame(z, frame)
@@ -109,18 +109,18 @@ def use(
             for local, z in zip(prepared.zones_of[j], zs, strict=False)
             if not prepared.may_enter(j, local, i)
         ]
-        for window, meets in meetings(lattice, moving, zones):
-            price[window] += USED * np.asarray(meets)
-    return price
+        for window, meets in overlap_windows(lattice, moving, zones):
+            cost[window] += BLOCKED_USE * np.asarray(meets)
+    return cost
 
 
-def wished(state: State, body: Body, place: Place) -> F64:
-    """The price of the wishes that the body's things, and what they will carry, take part in."""
+def wish_cost(state: State, body: Body, place: Positions) -> F64:
+    """The cost of the wishes about the body's things and about the things they will carry."""
     prepared = state.prepared
-    moving = {m.item: moved(state, m, place) for m in body.members}
-    total = np.zeros(len(place.price))
+    moving = {m.item: at_positions(state, m, place) for m in body.members}
+    total = np.zeros(len(place.cost))
     for row in sorted({r for i in moving for r in prepared.wishes_of[i]}):
-        wish, parts = prepared.problem.wishes[row], prepared.parties[row]
+        wish, parts = prepared.problem.wishes[row], prepared.participants[row]
         spots, proxied = [], False
         for p in parts:
             at = next((k for k in (p, *prepared.carriers[p]) if k in moving or state.spots[k] is not None), None)
@@ -134,19 +134,20 @@ def wished(state: State, body: Body, place: Place) -> F64:
             continue
         one, *others = (s for s in spots if s is not None)
         kept, cost = measure(wish.name, state.size, one, others, state.windows, wish.wall)
-        missed = (HARD if wish.hard else SOFT) * (0.3 if proxied else 1.0)
+        missed = (BROKEN_HARD if wish.hard else BROKEN_SOFT) * (0.3 if proxied else 1.0)
         total += np.where(kept, 0.0, missed) + (2.0 if wish.hard else 1.5) * np.minimum(cost, 10.0)
     return total
 
 
-def habits(state: State, body: Body, place: Place) -> F64:
-    """The price of looking at a wall, of a back that is not at one, and of standing about in the middle."""
+def habit_cost(state: State, body: Body, place: Positions) -> F64:
+    """The cost of unusual positions: a front close to a wall, a back away from it, a free thing far from all walls."""
     prepared, item = state.prepared, state.prepared.items[body.first]
-    here = moved(state, body.members[0], place)
-    total = np.zeros(len(place.price))
+    here = at_positions(state, body.members[0], place)
+    total = np.zeros(len(place.cost))
     if prepared.problem.open:
         total += sum(
-            state.exposure(m.item) * np.asarray(state.hides(m.item, moved(state, m, place))) for m in body.members
+            state.view_cost(m.item) * np.asarray(state.blocks_view(m.item, at_positions(state, m, place)))
+            for m in body.members
         )
     if item.was is not None:
         turned = abs((place.yaw - item.was.yaw + 180.0) % 360.0 - 180.0) / 90.0
@@ -159,7 +160,7 @@ def habits(state: State, body: Body, place: Place) -> F64:
     if item.support != "floor":
         if item.support == "ceiling":
             return total + 0.3 * np.hypot(here.x, here.y)
-        return total + _upon(state, body.first, here)
+        return total + _on_top_cost(state, body.first, here)
     fx, fy = here.front
     ahead = np.minimum(
         np.inf if abs(fx) < 1e-6 else (state.size[0] / 2 - np.sign(fx) * here.x) / abs(fx),
@@ -168,7 +169,7 @@ def habits(state: State, body: Body, place: Place) -> F64:
     total += 2.0 * np.maximum(1.2 - (ahead - here.d / 2), 0.0)
     if prepared.wants_wall(body.first):
         gap = np.abs(np.minimum(behind_gap(here, state.size), 3.0) - item.aisle)
-        total += np.where(gap > BACKED, WALLED + 4.0 * gap, 0.0)
+        total += np.where(gap > MAX_BACK_GAP, NOT_AT_WALL + 4.0 * gap, 0.0)
     elif item.size[2] <= STEP:
         total += 0.3 * np.hypot(here.x, here.y)
     elif len(body.members) == 1 and not prepared.wishes_of[body.first] and item.was is None:
@@ -177,11 +178,11 @@ def habits(state: State, body: Body, place: Place) -> F64:
     return total
 
 
-def _upon(state: State, i: int, here: YawBox) -> F64:
-    """On a thing: turned as it is turned, near its middle and rather to the back; where it is crowded, in a corner."""
+def _on_top_cost(state: State, i: int, here: YawBox) -> F64:
+    """The cost of positions on a carrier: best at its yaw, near its middle and to the back; if crowded, in a corner."""
     above = state.prepared.carriers[i][0]
     carrier = state.spots[above]
-    assert carrier is not None  # places were found on it
+    assert carrier is not None  # the positions are on it
     u, v = carrier.local(here.x, here.y)
     same = abs((here.yaw - carrier.yaw + 180.0) % 360.0 - 180.0) < 1.0
     taken = sum(

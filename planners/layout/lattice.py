@@ -1,4 +1,4 @@
-"""Lattices of positions for the middle of a box, and at which of them the box keeps clear of others."""
+"""Lattices of positions for the middle of a box, and a test at which of them the box overlaps others."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TURNS = (0.0, 90.0, 180.0, -90.0)
 
 
 class Lattice(NamedTuple):
-    """Positions `xs[i], ys[j]`, both ascending, for the middle of something that stands turned by `yaw`."""
+    """Positions `xs[i], ys[j]`, both ascending, for the middle of a thing turned by `yaw` degrees."""
 
     xs: F64
     ys: F64
@@ -25,16 +25,16 @@ class Lattice(NamedTuple):
 
 
 def blocked(lattice: Lattice, moving: YawBox, fixed: Sequence[YawBox], into: Flags) -> None:
-    """Mark in `into` `[X, Y]` where `moving`, whose x and y are offsets to the lattice, would be in any of `fixed`.
+    """Mark in `into` `[X, Y]` where `moving`, whose x and y are offsets to the lattice, would overlap any of `fixed`.
 
     A box along the axes forbids exactly a rectangle of middles (its Minkowski sum with the moving one).
     """
-    for window, meets in meetings(lattice, moving, fixed):
+    for window, meets in overlap_windows(lattice, moving, fixed):
         into[window] |= meets
 
 
-def meetings(lattice: Lattice, moving: YawBox, fixed: Sequence[YawBox]) -> list[tuple[tuple[slice, slice], Any]]:
-    """For each of `fixed` that is in reach: the window of the lattice, and where in it the two are in each other."""
+def overlap_windows(lattice: Lattice, moving: YawBox, fixed: Sequence[YawBox]) -> list[tuple[tuple[slice, slice], Any]]:
+    """For each box of `fixed` within reach: a window of the lattice, and where in it the two boxes overlap."""
     others = [f for f in fixed if shared_height(f, moving) > EPSILON]
     if not others:
         return []

@@ -1,8 +1,8 @@
-"""How well each kind of wish is fulfilled by boxes, at one place or at many places at once.
+"""Measures of wishes: whether each kind of wish holds between boxes, and its cost, at one position or many at once.
 
-What queries know too is measured here by fewer operations than in `gaussians.world.relation_geometry`, with the same
-tolerances less a margin, because the checker of scene graphs has the last word; a test holds the two together. A
-relation without such a measure is judged by that geometry itself.
+Relations that queries share are measured here with fewer operations than in `gaussians.world.relation_geometry`. The
+tolerances are the same less a margin, because the checker of scene graphs decides in the end; a test compares the two.
+A relation without a measure here is judged by that geometry itself.
 """
 
 from __future__ import annotations
@@ -17,24 +17,27 @@ from ...gaussians.world.box import Boxes, YawBox, plan_gap, plan_share, to_world
 from ...gaussians.world.relation_geometry import CLOSE, ENDS, FACES, FOOTPRINT, HOLDS, Stand, Things
 
 Measured = tuple[Any, Any]  # whether it holds; how far it is from ideal, about 0 to 4
-# What the solver keeps away from where a relation begins to hold for the checker.
+# Margins to the limits at which a relation begins to hold for the checker.
 _CONE = HOLDS + 0.03  # cosine
-_OVER = HOLDS + 0.12  # share of the smaller footprint; the checker counts points of it
+_MIN_SHARE = HOLDS + 0.12  # share of the smaller footprint; the checker counts points of it
 _CLOSE = CLOSE - 0.01
 _FACES = FACES - 2.0  # degrees
 _ENDS, _BULGE = ENDS + 0.05, 0.35  # the latter of the way between two things; "between" ends at 0.42 of it
-_INSIDE, _SUNK = 0.98, 0.75  # shares of a thing's footprint and of its height that are in what it is inside of
-_RESTS = 0.02  # metres of air under what is on a thing, as much as the checker allows under what stands
-_SPARE = 0.05  # of the score of what has no measure of its own here
-NEAR_WALL = 0.1  # metres between a thing and the wall it is against
-CORNER = 0.25  # metres to either wall of the corner that a thing is in
-IN_REACH = 0.6  # metres from a window: what is at it
-AT_TABLE = 0.4  # metres between a thing and what it stands around
+_INSIDE, _MIN_HEIGHT_SHARE = (
+    0.98,
+    0.75,
+)  # shares of a thing's footprint and of its height that are in what it is inside of
+_MAX_AIR = 0.02  # metres of air under a thing on another, as the checker allows for support
+_MARGIN = 0.05  # added to the least score of relations without a measure here
+NEAR_WALL = 0.1  # metres: largest gap of a thing "against" a wall
+CORNER = 0.25  # metres: largest gap to either wall of a thing in their corner
+IN_REACH = 0.6  # metres: largest gap of a thing "at" a window
+AT_TABLE = 0.4  # metres: largest gap between a thing and the table it stands around
 WALLS = ("west", "east", "south", "north")
-_INWARD = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))  # from each of them
-IN_LINE = 0.05  # metres between the middles of aligned things
-_ROW = np.unique(FOOTPRINT[:, 0])  # one row of the points by which the checker counts footprints
-# A room is looked at along +y; one box is one thing of usual size.
+_INWARD = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))  # direction from each wall into the room
+IN_LINE = 0.05  # metres: largest offset between the middles of aligned things
+_ROW = np.unique(FOOTPRINT[:, 0])  # one row of the points with which the checker samples footprints
+# The viewer looks along +y.
 _STAND = Stand(np.eye(3)[0], np.eye(3)[1], np.eye(3)[2], np.array([0.0, -100.0, 1.6]), 1.0)
 
 
@@ -48,7 +51,7 @@ def measure(
 ) -> Measured:
     """Whether "one name others" holds in a room of `size`, and a cost that grows with the distance from ideal.
 
-    Coordinates of each box may be numbers or arrays of one length. `wall`: the one that is meant, if one is.
+    Coordinates of each box may be numbers or arrays of one length. `wall`: the wall that the wish names, if any.
     """
     if wall is not None:
         row = WALLS.index(wall)
@@ -59,8 +62,8 @@ def measure(
         turned = one.front[0] * _INWARD[row][0] + one.front[1] * _INWARD[row][1]
         return kept & (gap <= (CORNER if name == "in_corner" else NEAR_WALL)), cost + gap + 0.5 * (1.0 - turned)
     if aim := relations.named(name).aim:
-        kept, cost = _beside(aim, one, others[0])
-        return kept, cost + _before(one, others[0]) if name == "in_front_of" else cost
+        kept, cost = _in_direction(aim, one, others[0])
+        return kept, cost + _off_front(one, others[0]) if name == "in_front_of" else cost
     if name in _PAIRS:
         return _PAIRS[name](one, others[0])
     if name in _ROOM:
@@ -80,14 +83,14 @@ def measure(
 
 
 def _scored(name: str, one: YawBox, others: Sequence[YawBox]) -> Measured:
-    """By the geometry that queries and the checker use, for relations without a faster measure here."""
+    """The measure by the geometry of queries and the checker, for relations without a faster measure here."""
     score = relations.named(name).score
     if score is None:
         raise ValueError(f"nothing measures the wish {name}")
     count = max(np.size(v) for s in (one, *others) for v in (s.x, s.y))
     held = score(_things(one, count), [_things(o, count) for o in others], _STAND)
     held = held.reshape(np.broadcast_shapes(*(np.shape(v) for s in (one, *others) for v in (s.x, s.y))))
-    return held >= HOLDS + _SPARE, 4.0 * (1.0 - held)
+    return held >= HOLDS + _MARGIN, 4.0 * (1.0 - held)
 
 
 def _things(spot: YawBox, count: int) -> Things:
@@ -100,16 +103,16 @@ def _things(spot: YawBox, count: int) -> Things:
     return Things(Boxes(centers, axes, sizes), np.zeros(count, bool))
 
 
-def _beside(aim: tuple[float, float], one: YawBox, other: YawBox) -> Measured:
-    """As the viewer sees it, who looks along +y: a cone of 60 degrees to each side."""
+def _in_direction(aim: tuple[float, float], one: YawBox, other: YawBox) -> Measured:
+    """Left, right, in front or behind for a viewer who looks along +y: a cone of 60 degrees to each side."""
     dx, dy = one.x - other.x, one.y - other.y
     reach = np.hypot(dx, dy)
     cosine = (dx * aim[0] + dy * aim[1]) / np.maximum(reach, 1e-9)
     return cosine >= _CONE, 1.0 - cosine + 0.12 * reach
 
 
-def _before(one: YawBox, other: YawBox) -> Any:
-    """How far one is from being before the other's own front too: best is what both viewer and thing call in front."""
+def _off_front(one: YawBox, other: YawBox) -> Any:
+    """How far one is from the direction of the other's own front (1 - cosine), added to the viewer's "in front"."""
     dx, dy = one.x - other.x, one.y - other.y
     fx, fy = other.front
     return 1.0 - (dx * fx + dy * fy) / np.maximum(np.hypot(dx, dy), 1e-9)
@@ -122,7 +125,7 @@ def _next_to(one: YawBox, other: YawBox) -> Measured:
 
 
 def _around(one: YawBox, other: YawBox) -> Measured:
-    """At a free side, close, turned to it, and square before that side."""
+    """One is close to a side of the other, turned to it, and within the length of that side."""
     u, v = other.local(one.x, one.y)
     beyond_u, beyond_v = np.abs(u) - other.w / 2, np.abs(v) - other.d / 2
     su, sv = np.where(beyond_u >= beyond_v, np.sign(u), 0.0), np.where(beyond_u >= beyond_v, 0.0, np.sign(v))
@@ -135,14 +138,14 @@ def _around(one: YawBox, other: YawBox) -> Measured:
 
 
 def is_turned(one: YawBox, other: YawBox, degrees: float) -> Any:
-    """Whether the front of one looks at the middle of another, within some degrees."""
+    """Whether the front of one points at the middle of another, within some degrees."""
     dx, dy = other.x - one.x, other.y - one.y
     fx, fy = one.front
     return dx * fx + dy * fy >= np.cos(np.radians(degrees)) * np.hypot(dx, dy) - 1e-9
 
 
 def _facing(one: YawBox, other: YawBox) -> Measured:
-    """The middle within 45 degrees of the front; best straight ahead, looked back at, and not across a hall."""
+    """The other's middle is within 45 degrees of the front; best straight ahead, facing back, and within 3 m."""
     dx, dy = other.x - one.x, other.y - one.y
     fx, fy = one.front
     reach = np.hypot(dx, dy)
@@ -160,29 +163,29 @@ def _over(upper: YawBox, lower: YawBox) -> Measured:
 
 def _on(upper: YawBox, lower: YawBox) -> Measured:
     held, cost = _over(upper, lower)
-    return held & (upper.low <= lower.high + _RESTS) & (_covered(upper, lower) >= _OVER), cost
+    return held & (upper.low <= lower.high + _MAX_AIR) & (_covered(upper, lower) >= _MIN_SHARE), cost
 
 
 def _inside(one: YawBox, other: YawBox) -> Measured:
     within = min(one.high, other.high) - max(one.low, other.low)
-    held = (within >= _SUNK * one.h) & (other.low <= one.low + one.h / 2 <= other.high)
+    held = (within >= _MIN_HEIGHT_SHARE * one.h) & (other.low <= one.low + one.h / 2 <= other.high)
     return (_covered(one, other) >= _INSIDE) & held, 1.0 - plan_share(one, other)
 
 
 def _covered(one: YawBox, other: YawBox) -> Any:
-    """Share of one's own footprint over another; both are taken along the axes."""
+    """Share of one's own footprint over another; both are taken as boxes along the axes."""
     (ow, od), (w, d) = one.half, other.half
     return plan_share(one, other) * min(1.0, w * d / max(ow * od, 1e-9))
 
 
 def _overlaps(one: YawBox, other: YawBox) -> Any:
-    """Whether two footprints have enough in common by area, and by points as the checker counts them."""
-    points = np.maximum(_points(one, other), _points(other, one))
-    return (plan_share(one, other) >= _OVER) & (points >= HOLDS)
+    """Whether two footprints overlap enough by area, and by sampled points as the checker counts them."""
+    points = np.maximum(_point_share(one, other), _point_share(other, one))
+    return (plan_share(one, other) >= _MIN_SHARE) & (points >= HOLDS)
 
 
-def _points(of: YawBox, over: YawBox) -> Any:
-    """Share of the points of one footprint that lie over another; both are taken along the axes."""
+def _point_share(of: YawBox, over: YawBox) -> Any:
+    """Share of the sampled points of one footprint that lie over another; both are taken as boxes along the axes."""
     counted: Any = 1.0
     for offset, half, reach in zip((of.x - over.x, of.y - over.y), of.half, over.half, strict=True):
         counted = counted * (np.abs(np.asarray(offset)[..., None] + 2 * half * _ROW) <= reach + 1e-9).mean(axis=-1)
@@ -196,7 +199,7 @@ def _under(one: YawBox, other: YawBox) -> Measured:
 
 
 def _aligned(one: YawBox, other: YawBox) -> Measured:
-    """In one line, along either of the other's axes, and turned the same way."""
+    """The middles are in one line along either of the other's axes, and the yaws are equal."""
     u, v = other.local(one.x, one.y)
     off = np.minimum(np.abs(u), np.abs(v))
     same = abs((one.yaw - other.yaw + 180.0) % 360.0 - 180.0) < 1.0
@@ -204,7 +207,7 @@ def _aligned(one: YawBox, other: YawBox) -> Measured:
 
 
 def _between(one: YawBox, a: YawBox, b: YawBox) -> Measured:
-    """In the middle part of the way from one to the other, not far off it; heights count as the checker's do not."""
+    """One is in the middle part of the line from one thing to the other and close to it, seen from above."""
     sx, sy = b.x - a.x, b.y - a.y
     length = np.maximum(np.hypot(sx, sy), 1e-9)
     t = ((one.x - a.x) * sx + (one.y - a.y) * sy) / length**2
@@ -229,7 +232,7 @@ def _wall_of(one: YawBox, size: Sequence[float]) -> int:
 
 
 def behind_gap(one: YawBox, size: Sequence[float]) -> Any:
-    """Metres from a thing's back to the wall behind it; infinite where no wall is square behind."""
+    """Metres from a thing's back to the wall behind it; infinite if its back is not parallel to a wall."""
     fx, fy = one.front
     left, right, front, back = walls_gaps(one, size)
     for along, gap in ((fx, left), (-fx, right), (fy, front), (-fy, back)):
@@ -250,7 +253,7 @@ def _in_corner(one: YawBox, size: Sequence[float]) -> Measured:
 
 
 def _in_center(one: YawBox, size: Sequence[float]) -> Measured:
-    """Within a sixth of the room's width and depth of its middle."""
+    """The middle is within a sixth of the room's width and depth of the room's middle."""
     off = np.hypot(one.x, one.y)
     return (np.abs(one.x) <= size[0] / 6) & (np.abs(one.y) <= size[1] / 6), 1.5 * off
 

@@ -1,6 +1,5 @@
-"""What a layout has to fulfil, as data: a room, things with sizes, and what is wished of them. And what came of it.
+"""The solver's input and output as data: a `Problem` (room, things with sizes, wishes) and the `Layout` found for it.
 
-Knows boxes and wishes. Refuses to know how they are fulfilled (the solver), and where they come from (compose, wishes).
 Frames are the scene graph's: z up, metres, degrees, the origin at the centre of the floor; a thing's front is its -y
 side at yaw 0.
 """
@@ -22,7 +21,7 @@ Wall = Literal["north", "east", "south", "west"]
 
 
 class Stand(BaseModel):
-    """Where something is: the centre of its box, metres, and its yaw, degrees."""
+    """The pose of a thing: the centre of its box, metres, and its yaw, degrees."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -36,13 +35,13 @@ class Item(BaseModel):
     Attributes:
         id, label, color, size: as a node of a scene graph has them.
         support: what carries it: "floor", "wall", "ceiling" or the id of another item.
-        stand: where it is and stays; None lets the solver choose. Doors and windows always have one.
-        was: where it stands now, of what may move: of places that are as good, the nearest to that is taken.
-        height: of its underside over the floor, for what hangs on a wall; None leaves it to the solver.
-        clear: metres kept free before, behind, left and right of it for using it: a drawer, a chair, a way through.
-        backed: its back belongs against a wall.
+        stand: its fixed pose; None lets the solver choose. Doors and windows always have one.
+        was: its present pose if it may move; the solver prefers positions near it.
+        height: of its underside over the floor, for things that hang on a wall; None leaves it to the solver.
+        clear: metres kept free before, behind, left and right of it for use: a drawer, a chair, a passage.
+        backed: whether its back belongs against a wall.
         aisle: metres between its back and that wall, where somebody works behind it: a counter.
-        optional: may be left out where there is no room.
+        optional: whether it may be left out if there is no room.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -62,13 +61,13 @@ class Item(BaseModel):
 
 
 class Wish(BaseModel):
-    """A relation that is wanted: "subject name objects". `hard` ones were said by the user; others are habits.
+    """A wanted relation: "subject name objects". `hard` ones were stated by the user; the others are usual practice.
 
     Names shared with the scene graph's relations mean exactly what the checker means by them. "facing": the subject's
     front is turned to the object. "around": the subject stands at a free side of the object, turned to it.
     "aligned_with": in one line, turned the same way. "far_from": at least half the room's diagonal away.
-    `wall` says which one "against_wall", "in_corner" or "at_window" means: north is at positive y, behind; east at
-    positive x, on the right; a corner of two walls is two wishes. None leaves it open.
+    `wall` names the wall for "against_wall", "in_corner" or "at_window": north is at positive y, behind; east at
+    positive x, on the right. A corner of two named walls is two wishes. None allows any wall.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -100,15 +99,16 @@ class Keepout(BaseModel):
 
 
 class Problem(BaseModel):
-    """A room and all that is wanted in it.
+    """A room, its things and the wishes about them.
 
     Attributes:
         size: width (x), depth (y), height (z) of the room.
-        items: things, those that stay where they are included.
-        wishes: what is wanted of them.
-        free: floor to be kept free.
-        walkway: metres between things that a person passes, where there is a choice.
-        open: walls that the room is looked at through: nothing hangs there or turns a tall back to them unless wished.
+        items: all things, including those with a fixed pose.
+        wishes: wanted relations.
+        free: discs of floor to be kept free.
+        walkway: preferred width of passages for a person, metres.
+        open: walls through which the viewer looks into the room: unless wished, nothing hangs there and no tall thing
+            turns its back to them.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -135,7 +135,7 @@ class Problem(BaseModel):
 
 
 class Conflict(BaseModel):
-    """A smallest set of statements that cannot all hold: with any one of them taken away the others can.
+    """A smallest set of statements that cannot all hold; without any one of them the others can.
 
     Attributes:
         statements: sentences for a person: "the bed (3) is against a wall", "the room is 1 m wide".
@@ -149,15 +149,15 @@ class Conflict(BaseModel):
 
 
 class Layout(BaseModel):
-    """What the solver found.
+    """The result of the solver.
 
     Attributes:
-        graph: the placed things with every kept wish that a scene graph can state; always free of collisions, inside
-            the room and supported, if need be with fewer things.
-        kept, broken: the wishes.
-        left_out: ids of items there was no room for.
-        conflicts: why hard wishes are broken or things that are not optional left out; empty if neither is so.
-        seconds: how long it took.
+        graph: the placed things with every kept wish that a scene graph can state. It is free of collisions, inside
+            the room and supported; things that cannot be placed so are left out.
+        kept, broken: the wishes that hold, and those that do not.
+        left_out: ids of items without a place.
+        conflicts: why hard wishes are broken or required things are left out; empty if neither is the case.
+        seconds: wall time.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -171,5 +171,5 @@ class Layout(BaseModel):
 
     @property
     def ok(self) -> bool:
-        """Whether everything that was asked for holds; broken habits and optional things do not count."""
+        """Whether all hard wishes hold and all required things are placed."""
         return not self.conflicts

@@ -1,8 +1,8 @@
-"""The search: things one after another at the cheapest place, those that fared badly sooner the next time.
+"""The search for a layout: greedy construction with squeaky-wheel restarts (Joslin and Clements 1999).
 
-Knows an order, restarts and second looks. Refuses to know what a place costs (places) and why nothing fits (conflicts).
-Greedy construction with squeaky-wheel restarts (Joslin and Clements 1999), then every body in turn is taken up and
-put where it is best given all others. Work is counted, not timed, so that the same problem ends the same everywhere.
+Each start places the bodies one after another at their cheapest positions, then moves every body in turn to the best
+position given all others. Bodies that failed are placed sooner in the next start. Work is counted, not timed, so the
+same problem gives the same layout on every machine.
 """
 
 from __future__ import annotations
@@ -13,83 +13,85 @@ from ...gaussians.world.box import YawBox
 from ...gaussians.world.person import HEADROOM, STEP
 from ...gaussians.world.support import SHELL
 from .bodies import Body, Member, Prepared
-from .costs import Place
+from .candidate_positions import candidate_positions
+from .costs import Positions
 from .lattice import F64, Flags
-from .places import places
 from .state import State
 
-_TRIES = 6  # places that are looked at for a way to everything, before the best of them is taken
-_SEEK = 30  # such places where all of the first shut something off
-_APART = 0.35  # metres between such places
-_IDLE = 4  # starts without a better layout, after which no more are made
-_IDLE_TIDY = 2  # the same where only habits are at stake
-_WORK = 150  # times that something is placed, at usual effort, after which no new start is made
-_FIRST = 3.0  # urgency, in square metres, of what shut others off: it is placed before them the next time
-_WORTH = 0.05  # price by which a second look must better the layout to be worth another
+_MAX_TRIALS = 6  # positions of a body that are tested for access to all things; the best of them is taken
+_MAX_TRIALS_BLOCKED = 30  # the same if each of the first ones makes something inaccessible
+_MIN_SPACING = 0.35  # metres between these positions
+_PATIENCE = 4  # starts without a better layout, after which the search ends
+_PATIENCE_SOFT = 2  # the same if only soft wishes, backs and use zones are imperfect
+_MAX_PLACED = 150  # placements, at usual effort, after which no new start is made
+_BLOCKING_URGENCY = 3.0  # urgency, square metres, added to things that made others inaccessible: they go before them
+_MIN_GAIN = 0.05  # decrease in cost by an improvement pass that makes another pass worthwhile
 
 
 class Search:
-    """One problem being solved.
+    """The search for a layout of one problem.
 
     Args:
         prepared: the problem.
-        seed: of the noise on prices from the second start on.
-        effort: 1 is usual; scales starts and second looks.
+        seed: of the noise on costs.
+        effort: 1 is usual; scales the number of starts and improvement passes.
     """
 
     def __init__(self, prepared: Prepared, seed: int, effort: float) -> None:
         self.prepared, self.effort = prepared, effort
         self.rng = np.random.default_rng(seed)
-        self.loose = set[int]()
-        self.placed = 0  # how often something was placed: the work done so far
-        self.blocking = set[int]()  # what shut others off, wherever it was put
+        self.split = set[int]()
+        self.placed = 0  # number of placements: the work done so far
+        self.blocking = set[int]()  # things that made others inaccessible at every position tried
         self.urgent = [0.0] * len(prepared.items)
         things = max(len(prepared.items), 1)
         self.starts = max(1, min(round(12 * effort), round(effort * 200 / things)))
-        self.looks = max(0, min(round(3 * effort), round(effort * 100 / things)))
+        self.passes = max(0, min(round(3 * effort), round(effort * 100 / things)))
 
     def run(self) -> State:
         """The best layout of all starts."""
         state = State(self.prepared)
-        empty, best, least = state.copy(), state.copy(), np.inf
+        empty, best, lowest = state.copy(), state.copy(), np.inf
         raw, idle = np.inf, 0
         for start in range(self.starts):
             state.restore(empty)
-            bodies = self._fill(state, 0.15 if start == 0 else 0.8)
-            rough = state.price()
+            bodies = self._construct(state, 0.15 if start == 0 else 0.8)
+            rough = state.cost()
             if rough < raw:
                 raw = rough
-                self._better(state, bodies)
-            self._load(state, 0.0 if start == 0 else 0.4)
-            price = state.price()
-            idle = 0 if price < least else idle + 1
-            if price < least:
-                best, least = state.copy(), price
-            patience = _IDLE if self._blame(state) else _IDLE_TIDY if self._tidy(state) else 0
-            if idle >= patience * max(self.effort, 1.0) or self.placed >= _WORK * self.effort:
+                self._improve(state, bodies)
+            self._place_carried(state, 0.0 if start == 0 else 0.4)
+            cost = state.cost()
+            idle = 0 if cost < lowest else idle + 1
+            if cost < lowest:
+                best, lowest = state.copy(), cost
+            patience = (
+                _PATIENCE if self._raise_urgency(state) else _PATIENCE_SOFT if self._raise_soft_urgency(state) else 0
+            )
+            if idle >= patience * max(self.effort, 1.0) or self.placed >= _MAX_PLACED * self.effort:
                 break
         state.restore(best)
         return state
 
-    def _fill(self, state: State, noise: float) -> list[Body]:
-        """Keep discs free, then place the bodies one after another."""
+    def _construct(self, state: State, noise: float) -> list[Body]:
+        """Choose the free discs, then place the bodies one after another."""
         self._clear_discs(state)
         placed = list[Body]()
         for body in sorted(self._bodies(), key=self._rank):
-            placed += self._settle(state, body, noise)
+            placed += self._place_or_split(state, body, noise)
         return placed
 
     def _bodies(self) -> list[Body]:
-        """What moves as one, without those that could not keep their wishes that way."""
+        """The bodies, without the members that were split off because their wishes failed."""
         found = list[Body]()
         for body in self.prepared.bodies:
             first, *others = body.members
-            found.append(Body((first, *(m for m in others if m.item not in self.loose))))
-            found += [Body((Member(m.item),)) for m in others if m.item in self.loose]
+            found.append(Body((first, *(m for m in others if m.item not in self.split))))
+            found += [Body((Member(m.item),)) for m in others if m.item in self.split]
         return found
 
-    def _load(self, state: State, noise: float) -> None:
-        """Place what stands on other things."""
+    def _place_carried(self, state: State, noise: float) -> None:
+        """Place the things that stand on other things."""
         carried = [i for i, item in enumerate(self.prepared.items) if item.support not in SHELL and item.stand is None]
         for i in sorted(carried, key=lambda i: (len(self.prepared.carriers[i]), -self.urgent[i], -self._size(i), i)):
             if not self.prepared.is_circular(i):
@@ -99,7 +101,7 @@ class Search:
         return self.prepared.items[i].size[0] * self.prepared.items[i].size[1]
 
     def _rank(self, body: Body) -> tuple[float, ...]:
-        """What is placed first: what failed before, what is large or wants a wall, rugs and hung things last."""
+        """Sort key of the placing order: failed, large and wall things first, rugs and hanging things last."""
         item = self.prepared.items[body.first]
         late = {"floor": 0.0, "wall": 1.0, "ceiling": 2.0}[str(item.support)]
         if item.support == "wall" and (item.height or 0.0) + item.size[2] < 1.0:
@@ -109,18 +111,18 @@ class Search:
         if item.support == "floor" and item.size[2] <= STEP:
             late = 1.5
         area = sum(self.prepared.area(m.item) for m in body.members)
-        bound = self._bound(body.first)
+        bound = self._hard_wishes(body.first)
         urgent = max(self.urgent[m.item] for m in body.members)
         walled = 0.5 if self.prepared.wants_wall(body.first) else 0.0
         return late, float(item.optional), -(urgent + area + 0.2 * min(bound, 5) + walled), float(body.first)
 
     def _faced(self, i: int) -> bool:
-        """Whether others are to look at an item: a whiteboard is hung before the desks are set out."""
-        rows = ((r, self.prepared.parties[r]) for r in self.prepared.wishes_of[i])
+        """Whether other things are to face an item: a whiteboard is placed before the desks."""
+        rows = ((r, self.prepared.participants[r]) for r in self.prepared.wishes_of[i])
         return any(self.prepared.problem.wishes[r].name == "facing" and i in parts[1:] for r, parts in rows)
 
-    def _settle(self, state: State, body: Body, noise: float) -> list[Body]:
-        """Place a body; if there is no room for all of it at once, its things one by one."""
+    def _place_or_split(self, state: State, body: Body, noise: float) -> list[Body]:
+        """Place a body; if there is no room for all of it, place its things one by one."""
         if self._put(state, body, noise) or len(body.members) == 1:
             return [body]
         singles = [Body((Member(m.item),)) for m in body.members]
@@ -129,14 +131,14 @@ class Search:
         return singles
 
     def _put(self, state: State, body: Body, noise: float) -> bool:
-        """Put a body at the cheapest place from which everything can still be walked up to."""
-        found = places(state, body, self.rng, noise)
+        """Put a body at the cheapest position that keeps all things accessible; return whether it was placed."""
+        found = candidate_positions(state, body, self.rng, noise)
         if not found:
             return False
         self.placed += 1
-        before = state.lost()
-        state.place(*self._reachable(state, found, before))
-        if state.lost() <= before:
+        before = state.unreached_count()
+        state.place(*self._cheapest_accessible(state, found, before))
+        if state.unreached_count() <= before:
             return True
         self.blocking |= {m.item for m in body.members}
         if all(self.prepared.items[m.item].optional for m in body.members):
@@ -144,50 +146,52 @@ class Search:
             return False
         return True
 
-    def _reachable(self, state: State, found: list[Place], before: int) -> tuple[Body, float, float, float, float]:
-        """The cheapest place, with what it shuts off counted in; `before` so many things were shut off already."""
-        price = np.concatenate([p.price for p in found])
+    def _cheapest_accessible(
+        self, state: State, found: list[Positions], before: int
+    ) -> tuple[Body, float, float, float, float]:
+        """The cheapest position including the cost of inaccessible things; `before`: how many there were already."""
+        cost = np.concatenate([p.cost for p in found])
         x, y = np.concatenate([p.x for p in found]), np.concatenate([p.y for p in found])
-        which = np.repeat(np.arange(len(found)), [len(p.price) for p in found])
+        which = np.repeat(np.arange(len(found)), [len(p.cost) for p in found])
         best: tuple[Body, float, float, float, float] | None = None
-        least, open_way = np.inf, False
-        for tried in range(_SEEK):
-            if tried >= _TRIES and open_way:
+        lowest, accessible = np.inf, False
+        for tried in range(_MAX_TRIALS_BLOCKED):
+            if tried >= _MAX_TRIALS and accessible:
                 break
-            self.placed += tried > 0 and tried % _TRIES == 0
-            k = int(price.argmin())
-            if not price[k] < least:
+            self.placed += tried > 0 and tried % _MAX_TRIALS == 0
+            k = int(cost.argmin())
+            if not cost[k] < lowest:
                 break
             place = found[which[k]]
             here = (place.body, float(x[k]), float(y[k]), place.yaw, place.low)
             state.place(*here)
-            total = float(price[k]) + state.crowded()
-            open_way = open_way or state.lost() <= before
+            total = float(cost[k]) + state.access_cost()
+            accessible = accessible or state.unreached_count() <= before
             state.remove(place.body)
-            if total < least:
-                best, least = here, total
-            price[(np.hypot(x - x[k], y - y[k]) < _APART) & (which == which[k])] = np.inf
+            if total < lowest:
+                best, lowest = here, total
+            cost[(np.hypot(x - x[k], y - y[k]) < _MIN_SPACING) & (which == which[k])] = np.inf
         assert best is not None
         return best
 
-    def _better(self, state: State, bodies: list[Body]) -> None:
-        """Take up every body and put it where it is best now, as long as that is worth it."""
-        price = state.price()
-        for _ in range(self.looks):
-            before = price
+    def _improve(self, state: State, bodies: list[Body]) -> None:
+        """Move every body to its best position given all others, in passes, until a pass gains too little."""
+        cost = state.cost()
+        for _ in range(self.passes):
+            before = cost
             for body in bodies:
                 kept = state.copy()
                 state.remove(body)
-                now = state.price() if self._put(state, body, 0.0) else np.inf
-                if now > price:
+                now = state.cost() if self._put(state, body, 0.0) else np.inf
+                if now > cost:
                     state.restore(kept)
                 else:
-                    price = now
-            if price > before - _WORTH:
+                    cost = now
+            if cost > before - _MIN_GAIN:
                 return
 
     def _clear_discs(self, state: State) -> None:
-        """A place for every disc that the solver may choose: as near to the middle of the room as it fits."""
+        """Place every disc without a given centre as near to the middle of the room as it fits."""
         width, deep, _ = state.size
         for k, keepout in enumerate(self.prepared.problem.free):
             if keepout.center is not None or state.discs[k] is not None:
@@ -204,47 +208,50 @@ class Search:
             if np.isfinite(away.flat[best]):
                 state.discs[k] = (float(xs[best // 41]), float(ys[best % 41]), r)
 
-    def _blame(self, state: State) -> bool:
-        """Make what has no place, or breaks a hard wish, more urgent; whether there was any such thing."""
-        guilty = {i for i, spot in enumerate(state.spots) if spot is None}
+    def _raise_urgency(self, state: State) -> bool:
+        """Raise the urgency of things without a place or with a broken hard wish; return whether there were any."""
+        failing = {i for i, spot in enumerate(state.spots) if spot is None}
         for row, wish in enumerate(self.prepared.problem.wishes):
             if wish.hard and not state.holds(row)[0]:
-                guilty |= set(self.prepared.parties[row])
-                self._loosen(set(self.prepared.parties[row]))
+                failing |= set(self.prepared.participants[row])
+                self._split_bodies(set(self.prepared.participants[row]))
         for i in self.blocking:
-            self.urgent[i] += _FIRST
+            self.urgent[i] += _BLOCKING_URGENCY
         self.blocking = set()
-        lost = state.ways[-1].unreached()
-        guilty |= {i for i in lost if isinstance(i, int)}
-        for i in guilty:
+        unreached = state.grids[-1].unreached()
+        failing |= {i for i in unreached if isinstance(i, int)}
+        for i in failing:
             for k in (i, *self.prepared.carriers[i]):
                 self.urgent[k] += 1.0
-        return bool(guilty)
+        return bool(failing)
 
-    def _tidy(self, state: State) -> bool:
-        """Make what has no wall behind it, no room, or breaks a habit, more urgent; whether there was any such."""
-        untidy = {*state.unbacked(), *state.used()}
+    def _raise_soft_urgency(self, state: State) -> bool:
+        """Raise the urgency of things away from their wall, with a blocked use zone or a broken soft wish.
+
+        Returns whether there were any.
+        """
+        imperfect = {*state.away_from_wall(), *state.blocked_use()}
         for row, wish in enumerate(self.prepared.problem.wishes):
             if not wish.hard and not state.holds(row)[0]:
-                untidy |= set(self.prepared.parties[row])
-        for i in untidy:
+                imperfect |= set(self.prepared.participants[row])
+        for i in imperfect:
             for k in (i, *self.prepared.carriers[i]):
                 self.urgent[k] += 0.5
-        return bool(untidy)
+        return bool(imperfect)
 
-    def _loosen(self, parts: set[int]) -> None:
-        """Part bodies over a wish that is not kept: its own things, and those of one body with it that are bound."""
-        self.loose |= parts
+    def _split_bodies(self, parts: set[int]) -> None:
+        """Split things with a broken wish off their bodies, and other members of these bodies that have hard wishes."""
+        self.split |= parts
         for body in self.prepared.bodies:
             if body.first in parts:
-                self.loose |= {m.item for m in body.members if self._bound(m.item)}
+                self.split |= {m.item for m in body.members if self._hard_wishes(m.item)}
 
-    def _bound(self, i: int) -> int:
-        """How many hard wishes an item takes part in."""
+    def _hard_wishes(self, i: int) -> int:
+        """Number of hard wishes that name an item."""
         return sum(self.prepared.problem.wishes[r].hard for r in self.prepared.wishes_of[i])
 
 
 def _meets_disc(xs: F64, ys: F64, spot: YawBox, radius: float) -> Flags:
-    """`[X, Y]` middles at which a disc would reach into a box."""
+    """`[X, Y]` middles at which a disc would overlap a box."""
     meets: Flags = spot.distance_to(xs[:, None], ys[None, :]) < radius
     return meets

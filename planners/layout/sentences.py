@@ -9,23 +9,23 @@ from ..rooms.node import NodeId
 from .problem import Item, Keepout, Wish
 
 
-def said_item(item: Item) -> str:
-    """A thing by its label and id."""
+def describe_item(item: Item) -> str:
+    """A thing by its label and id: "the bed (3)"."""
     return f"the {item.label or 'thing'} ({item.id})"
 
 
-def said_room(size: Sequence[float]) -> str:
-    """The size of the room."""
+def describe_room(size: Sequence[float]) -> str:
+    """The size of the room in words."""
     return "the room is {:g} m wide, {:g} m deep and {:g} m high".format(*size)
 
 
-def said_wish(wish: Wish, item: Callable[[NodeId], Item]) -> str:
-    """A wish: "the bed (3) is against a wall"."""
+def describe_wish(wish: Wish, item: Callable[[NodeId], Item]) -> str:
+    """A wish in words: "the bed (3) is against a wall"."""
     kind = relations.named(wish.name)
-    words = kind.at_wall.format(wish.wall) if wish.wall else kind.says(*(said_item(item(o)) for o in wish.objects))
-    return f"{said_item(item(wish.subject))} {words}"
+    words = kind.at_wall.format(wish.wall) if wish.wall else kind.says(*(describe_item(item(o)) for o in wish.objects))
+    return f"{describe_item(item(wish.subject))} {words}"
 
 
-def said_keepout(keepout: Keepout) -> str:
-    """A disc that is kept free."""
+def describe_keepout(keepout: Keepout) -> str:
+    """A disc that is kept free, in words."""
     return f"{keepout.radius:g} m around a point are kept free: {keepout.name}"

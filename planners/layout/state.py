@@ -1,7 +1,4 @@
-"""A layout in the making: what stands where, and what that takes of the floor.
-
-Knows spots and obstacles. Refuses to know how a place is chosen.
-"""
+"""The state of the search: a partial layout with its boxes, use zones, walkable floor and total cost."""
 
 from __future__ import annotations
 
@@ -19,29 +16,29 @@ from .bodies import Body, Member, Prepared
 from .lattice import EPSILON
 from .measures import behind_gap, measure, walls_gaps
 from .problem import Keepout, Stand
-from .walkable_grid import floors
+from .walkable_grid import walkable_grids
 
-HARD, SOFT, USED, WALLED, OPEN, HUNG, LOST = (
-    1000.0,
-    12.0,
-    60.0,
-    60.0,
-    45.0,
-    250.0,
-    400.0,
-)  # prices; the unit is about a metre off
-LEFT_OUT, SPARED = 4000.0, 300.0  # of leaving out what must be there, and what may be absent
-BACKED = 0.02  # metres between a back and the wall behind it
-_LOW, _HIDING, _NEAR = 0.4, 1.4, 0.6  # metres: what hides no room, what does however it is turned, and how near
-_TIGHT = 25.0  # price of a thing that one gets to only by squeezing through
+# Costs; the unit is about a metre away from the ideal.
+MISSING_REQUIRED, MISSING_OPTIONAL = 4000.0, 300.0  # a required or an optional thing is left out
+BROKEN_HARD, BROKEN_SOFT = 1000.0, 12.0  # a hard or a soft wish does not hold
+UNREACHED = 400.0  # nobody can walk up to a thing
+BLOCKED_USE = 60.0  # something stands in a use zone
+NOT_AT_WALL = 60.0  # a back that belongs at a wall is away from it
+AT_OPEN_WALL, HUNG_AT_OPEN_WALL = 45.0, 250.0  # a thing stands before an open wall, or hangs on it
+MAX_BACK_GAP = 0.02  # metres between a back and the wall behind it
+# Metres: lower things never block the view into the room, taller ones block it at any yaw, within this distance.
+_LOW_THING, _TALL, _NEAR = 0.4, 1.4, 0.6
+_NARROW_ACCESS = 25.0  # cost of a thing that is accessible only by a passage narrower than the walkway
 
 
 class State:
-    """Spots of all items, None for what has none yet; grows and shrinks by bodies.
+    """A partial layout, to which bodies are added and from which they are removed.
 
     Attributes:
-        spots: of each item.
-        discs: x, y and radius of the floor that is kept free, None where there was no room for it.
+        spots: box of each item in the room; None if it is not placed.
+        zones: use zones of each placed item, in the room.
+        grids: the walkable floor, for the walkway's width and for the checker's.
+        discs: x, y and radius of each disc of floor that is kept free, None if it has no place.
     """
 
     def __init__(self, prepared: Prepared) -> None:
@@ -50,7 +47,7 @@ class State:
         self.size = problem.size
         self.spots: list[YawBox | None] = [None] * len(prepared.items)
         self.zones: list[tuple[YawBox, ...]] = [()] * len(prepared.items)
-        self.ways = floors((self.size[0], self.size[1]), (problem.walkway, 0.0))
+        self.grids = walkable_grids((self.size[0], self.size[1]), (problem.walkway, 0.0))
         self.windows = [
             self._fixed(i) for i, item in enumerate(prepared.items) if item.stand and "window" in item.label.lower()
         ]
@@ -66,7 +63,7 @@ class State:
         return YawBox(x, y, z - item.size[2] / 2, *item.size, yaw)
 
     def spot(self, member: Member, x: float, y: float, yaw: float, low: float) -> YawBox:
-        """Where a member of a body stands when the body's first thing stands so."""
+        """Box of a member of a body whose first thing is at (x, y), yaw and underside height `low`."""
         mx, my = to_world(x, y, yaw, member.x, member.y)
         w, d, h = self.prepared.items[member.item].size
         return YawBox(mx, my, low, w, d, h, yaw + member.yaw)
@@ -76,15 +73,15 @@ class State:
         item = self.prepared.items[i]
         self.spots[i] = spot
         self.zones[i] = tuple(placed(z, spot) for z in self.prepared.zones_of[i])
-        for floor in self.ways:
+        for floor in self.grids:
             solid = item.support == "floor" and item.size[2] > STEP
-            floor.put(i, spot, asked=solid, door=kinds.is_door(item.label))
+            floor.put(i, spot, required=solid, door=kinds.is_door(item.label))
 
     def take(self, i: int) -> None:
         """Remove one item."""
         if self.spots[i] is not None:
             self.spots[i], self.zones[i] = None, ()
-            for floor in self.ways:
+            for floor in self.grids:
                 floor.take(i)
 
     def place(self, body: Body, x: float, y: float, yaw: float, low: float) -> None:
@@ -98,34 +95,34 @@ class State:
             self.take(member.item)
 
     def is_flat(self, i: int) -> bool:
-        """Whether an item is stood upon: it meets nothing."""
+        """Whether other things may stand on an item as on a rug; such an item collides with nothing."""
         item = self.prepared.items[i]
         return is_stepped_on(item.support, item.size[2])
 
     def solids(self, but: set[int]) -> Iterator[tuple[int, YawBox]]:
-        """What is placed and meets others, apart from some items."""
+        """The placed items that can collide, without `but`, and their boxes."""
         for i, spot in enumerate(self.spots):
             if spot is not None and i not in but and not self.is_flat(i):
                 yield i, spot
 
-    def crowded(self) -> float:
-        """Price of what cannot be walked up to."""
-        wide = self.ways[0].unreached()
+    def access_cost(self) -> float:
+        """Cost of the things that are not accessible, or only by a narrow passage."""
+        wide = self.grids[0].unreached()
         if not wide:
             return 0.0
-        slim = self.ways[-1].unreached() if len(self.ways) > 1 else wide
-        return _TIGHT * len(wide) + LOST * len(slim)
+        slim = self.grids[-1].unreached() if len(self.grids) > 1 else wide
+        return _NARROW_ACCESS * len(wide) + UNREACHED * len(slim)
 
-    def seen(self, i: int) -> YawBox | None:
-        """Where an item is, or where the thing is that will carry it."""
+    def known_spot(self, i: int) -> YawBox | None:
+        """Box of an item, or else of the thing that will carry it; None if neither is placed."""
         for k in (i, *self.prepared.carriers[i]):
             if (spot := self.spots[k]) is not None:
                 return spot
         return None
 
     def holds(self, row: int) -> tuple[bool, float]:
-        """Whether a wish holds, and how far it is from ideal; nothing holds of what is not there."""
-        wish, parts = self.prepared.problem.wishes[row], self.prepared.parties[row]
+        """Whether a wish holds, and its distance from ideal; a wish about a thing without a place does not hold."""
+        wish, parts = self.prepared.problem.wishes[row], self.prepared.participants[row]
         spots = [self.spots[p] for p in parts]
         if any(s is None for s in spots):
             return False, 4.0
@@ -135,65 +132,65 @@ class State:
         kept, cost = measure(wish.name, self.size, one, others, self.windows, wish.wall)
         return bool(kept), float(cost)
 
-    def price(self) -> float:
-        """What is wrong with the layout as a whole: left out, unreached, wishes not kept, room for use taken."""
-        total = self.crowded() + sum(HARD for d in self.discs if d is None)
+    def cost(self) -> float:
+        """Total cost: missing and inaccessible things, broken wishes, blocked use zones and views, backs off walls."""
+        total = self.access_cost() + sum(BROKEN_HARD for d in self.discs if d is None)
         for i, item in enumerate(self.prepared.items):
             if self.spots[i] is None:
-                total += SPARED if item.optional else LEFT_OUT
+                total += MISSING_OPTIONAL if item.optional else MISSING_REQUIRED
         for row, wish in enumerate(self.prepared.problem.wishes):
             kept, cost = self.holds(row)
             total += (2.0 if wish.hard else 1.5) * min(cost, 10.0)
-            total += 0.0 if kept else (HARD if wish.hard else SOFT)
+            total += 0.0 if kept else (BROKEN_HARD if wish.hard else BROKEN_SOFT)
         return (
             total
-            + USED * len(self.used())
-            + WALLED * len(self.unbacked())
-            + sum(self.exposure(i) for i in self.hiding())
+            + BLOCKED_USE * len(self.blocked_use())
+            + NOT_AT_WALL * len(self.away_from_wall())
+            + sum(self.view_cost(i) for i in self.blocking_view())
         )
 
-    def lost(self) -> int:
-        """How many things nobody gets to."""
-        return len(self.ways[-1].unreached())
+    def unreached_count(self) -> int:
+        """Number of things that are not accessible."""
+        return len(self.grids[-1].unreached())
 
-    def hiding(self) -> list[int]:
-        """What the solver hung on, or turned with a tall back to, a wall that the room is looked at through."""
+    def blocking_view(self) -> list[int]:
+        """Items that the solver placed so that they block the view through an open wall (`Problem.open`)."""
         return [
             i
             for i, (item, spot) in enumerate(zip(self.prepared.items, self.spots, strict=True))
-            if spot is not None and item.stand is None and bool(self.hides(i, spot))
+            if spot is not None and item.stand is None and bool(self.blocks_view(i, spot))
         ]
 
-    def exposure(self, i: int) -> float:
-        """Price of an item at a wall that the room is looked at through: what hangs there hangs in the air."""
-        return HUNG if self.prepared.items[i].support == "wall" else OPEN
+    def view_cost(self, i: int) -> float:
+        """Cost of an item that blocks the view through an open wall; higher if it hangs, as no wall is built there."""
+        return HUNG_AT_OPEN_WALL if self.prepared.items[i].support == "wall" else AT_OPEN_WALL
 
-    def hides(self, i: int, spot: YawBox) -> Any:
-        """Whether an item would hide the room from who looks in, at one place or at many."""
+    def blocks_view(self, i: int, spot: YawBox) -> Any:
+        """Whether an item blocks the view through an open wall, at one position or at many."""
         item, hidden = self.prepared.items[i], np.zeros(np.shape(spot.x), bool)
-        if item.support not in ("floor", "wall") or (item.support == "floor" and item.size[2] < _LOW):
+        if item.support not in ("floor", "wall") or (item.support == "floor" and item.size[2] < _LOW_THING):
             return hidden
         backed = item.support == "wall" or self.prepared.wants_wall(i)
         fx, fy = spot.front
         back = (("west", fx), ("east", -fx), ("south", fy), ("north", -fy))
         gaps = dict(zip(("west", "east", "south", "north"), walls_gaps(spot, self.size), strict=True))
         for wall, along in back:
-            if wall in self.prepared.problem.open and wall not in self.prepared.named.get(i, ()):
-                turned = (along > 0.7 and backed) or item.size[2] > _HIDING
+            if wall in self.prepared.problem.open and wall not in self.prepared.named_walls.get(i, ()):
+                turned = (along > 0.7 and backed) or item.size[2] > _TALL
                 hidden = hidden | (np.asarray(gaps[wall] < _NEAR + item.aisle) & turned)
         return hidden
 
-    def unbacked(self) -> list[int]:
-        """Free things on the floor that want a wall behind them and have none."""
+    def away_from_wall(self) -> list[int]:
+        """Free things on the floor that belong at a wall and are not at one."""
         return [
             i
             for i, (item, spot) in enumerate(zip(self.prepared.items, self.spots, strict=True))
             if spot is not None and item.stand is None and item.support == "floor" and self.prepared.wants_wall(i)
-            if not abs(behind_gap(spot, self.size) - item.aisle) <= BACKED
+            if not abs(behind_gap(spot, self.size) - item.aisle) <= MAX_BACK_GAP
         ]
 
-    def used(self) -> list[int]:
-        """Whose room for use something stands in: an item for each such zone."""
+    def blocked_use(self) -> list[int]:
+        """The item of each use zone that something stands in."""
         chains = self.prepared.carriers
         found, solids = list[int](), list(self.solids(set()))
         for i, zones in enumerate(self.zones):
@@ -211,7 +208,7 @@ class State:
         return found
 
     def stand(self, i: int) -> Stand | None:
-        """Where an item is, as the problem says it: to a tenth of a millimetre."""
+        """Pose of an item, rounded to a tenth of a millimetre; a fixed one as given. None if it is not placed."""
         spot = self.spots[i]
         if spot is None:
             return None
@@ -222,11 +219,11 @@ class State:
         return Stand(position=(x, y, z), yaw=wrapped(round(spot.yaw, 4)))
 
     def copy(self) -> tuple[list[YawBox | None], list[tuple[float, float, float] | None]]:
-        """What is needed to come back here."""
+        """A copy of the placed boxes and discs, for `restore`."""
         return list(self.spots), list(self.discs)
 
     def restore(self, kept: tuple[list[YawBox | None], list[tuple[float, float, float] | None]]) -> None:
-        """Come back to a copy."""
+        """Return to the state of a copy."""
         spots, self.discs = list(kept[0]), list(kept[1])
         for i, spot in enumerate(spots):
             if spot is not self.spots[i]:
@@ -236,7 +233,7 @@ class State:
 
 
 def placed(zone: YawBox, spot: YawBox) -> YawBox:
-    """A box given in the axes of another, in the world."""
+    """A box given in the axes of another, in the room's frame."""
     x, y = to_world(spot.x, spot.y, spot.yaw, zone.x, zone.y)
     return zone._replace(x=x, y=y, yaw=spot.yaw + zone.yaw)
 

@@ -1,7 +1,6 @@
-"""Whether a person can still walk up to everything: the checker's flood fill, kept up to date thing by thing.
+"""A grid of the walkable floor, updated with each added or removed thing: which things can a person still walk up to?
 
-Knows a grid of the floor and a person's width. Refuses to know what is placed and why. Cells are those of
-`planners.walking`, so that what is reached here is reached there.
+The cells are those of `planners.rooms.reachability`, so that this test and the checker's give the same result.
 """
 
 from __future__ import annotations
@@ -18,77 +17,77 @@ from ...gaussians.world.person import ARM, HEADROOM, SHOULDERS, STEP
 from ..rooms.reachability import CELL
 from .lattice import EPSILON
 
-_MOST = 400  # cells along a side; the cells of larger halls grow
+_MAX_CELLS = 400  # cells along a side; the cells of larger halls grow
 _ALL_AROUND = np.ones((3, 3))
 
 
 class _Stamp(NamedTuple):
-    """Cells that a thing takes (None: it is walked over or under), and cells from which it is within reach."""
+    """Cells that a thing blocks (None: people walk over or under it), and cells from which it is within reach."""
 
     window: tuple[slice, slice]
     taken: NDArray[np.int16] | None
     near: NDArray[np.bool_]
 
 
-class Ways:
-    """The floor, and the things on it that are to be reached.
+class WalkableGrid:
+    """The floor as cells, the things that block them, and the things that must be accessible.
 
     Args:
-        size: width and depth of the room.
+        size: width and depth of the room, metres.
         width: of the person, metres.
     """
 
     def __init__(self, size: tuple[float, float], width: float) -> None:
-        cell = max(CELL, max(size) / _MOST)
+        cell = max(CELL, max(size) / _MAX_CELLS)
         self.half = width / 2 - 1e-9
         self.xs, self.ys = ((np.arange(n) - (n - 1) / 2) * cell for n in (max(int(s / cell), 1) for s in size))
         inside = (np.abs(self.xs) <= size[0] / 2 - self.half)[:, None] & (np.abs(self.ys) <= size[1] / 2 - self.half)
         self.taken = np.where(inside, 0, 1).astype(np.int16)
         self.stamps: dict[Hashable, _Stamp] = {}
-        self.asked: set[Hashable] = set()
+        self.required: set[Hashable] = set()
         self.doors: set[Hashable] = set()
         self.width = width
 
-    def put(self, name: Hashable, spot: YawBox, asked: bool, door: bool = False) -> None:
-        """Add a thing; `asked`: it is to be reached, `door`: one comes in by it."""
+    def put(self, name: Hashable, spot: YawBox, required: bool, door: bool = False) -> None:
+        """Add a thing. `required`: it must be accessible; `door`: people enter by it."""
         stamp = self._stamp(spot, SHOULDERS + ARM if door else self.width / 2 + ARM)
         self.stamps[name] = stamp
         if stamp.taken is not None:
             self.taken[stamp.window] += stamp.taken
         if door:
             self.doors.add(name)
-        elif asked:
-            self.asked.add(name)
+        elif required:
+            self.required.add(name)
 
     def take(self, name: Hashable) -> None:
         """Remove a thing."""
         stamp = self.stamps.pop(name)
         if stamp.taken is not None:
             self.taken[stamp.window] -= stamp.taken
-        self.asked.discard(name)
+        self.required.discard(name)
         self.doors.discard(name)
 
     def unreached(self) -> set[Hashable]:
-        """Things that nobody gets to."""
-        if not self.asked:
+        """Things that must be accessible and are not."""
+        if not self.required:
             return set()
         areas, count = ndimage.label(self.taken == 0, structure=_ALL_AROUND)
         if not count:
-            return set(self.asked)
+            return set(self.required)
         if self.doors:
             entered = {int(a) for d in self.doors for a in self._beside(areas, d)[:1]}
             lost: set[Hashable] = {d for d in self.doors if not self._beside(areas, d)}
         else:
             lost, entered = set(), {int(np.bincount(areas.ravel())[1:].argmax()) + 1}
         walkable = np.isin(areas, sorted(entered)) if count > 1 else areas > 0
-        for name in self.asked:
+        for name in self.required:
             stamp = self.stamps[name]
             if not (walkable[stamp.window] & stamp.near).any():
                 lost.add(name)
         return lost
 
     def _beside(self, areas: NDArray[np.int32], name: Hashable) -> list[int]:
-        """Areas within reach of a thing, the one with the most cells there first."""
+        """Connected areas within reach of a thing, the one with the most cells there first."""
         stamp = self.stamps[name]
         here = np.bincount(areas[stamp.window][stamp.near])
         here[:1] = 0
@@ -105,6 +104,6 @@ class Ways:
         return _Stamp((x, y), (gap < self.half).astype(np.int16) if solid else None, gap <= arm - EPSILON)
 
 
-def floors(size: tuple[float, float], widths: Iterable[float]) -> tuple[Ways, ...]:
-    """The floor for people of several widths, the widest first; none is narrower than the checker's."""
-    return tuple(Ways(size, width) for width in sorted({max(w, SHOULDERS) for w in widths}, reverse=True))
+def walkable_grids(size: tuple[float, float], widths: Iterable[float]) -> tuple[WalkableGrid, ...]:
+    """One grid for each width of a person, the widest first; no width is below the checker's."""
+    return tuple(WalkableGrid(size, width) for width in sorted({max(w, SHOULDERS) for w in widths}, reverse=True))

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from scenewright.gaussians.world.support import SHELL
 from scenewright.planners.layout import Conflict, Item, Keepout, Layout, Problem, Stand, Wish, solve
-from scenewright.planners.layout.judging import STATED
+from scenewright.planners.layout.verify import STATED
 from scenewright.planners.rooms.check import check
 
 UNSOUND = {"collision", "bounds", "support"}

@@ -1,4 +1,4 @@
-"""The parts of the layout solver against the slow and neutral ones: overlaps, ways, relations."""
+"""The parts of the layout solver against the slow and neutral ones: overlaps, the walkable grid, relations."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scenewright.gaussians.world.person import SHOULDERS
 from scenewright.gaussians.world.relations import KINDS, names
 from scenewright.planners.layout.lattice import Lattice, blocked, in_disc
 from scenewright.planners.layout.measures import measure
-from scenewright.planners.layout.walkable_grid import Ways
+from scenewright.planners.layout.walkable_grid import WalkableGrid
 from scenewright.planners.rooms.check import check
 from scenewright.planners.rooms.graph import SceneGraph
 from scenewright.planners.rooms.node import Node, RoomShape
@@ -79,21 +79,21 @@ def test_gaps_are_symmetric_and_tell_overlaps(one: YawBox, other: YawBox) -> Non
 
 @settings(max_examples=60, deadline=None)
 @given(st.lists(spots(on_floor=True), min_size=1, max_size=5))
-def test_ways_find_what_the_checker_finds(things: list[YawBox]) -> None:
-    ways = Ways((SIZE[0], SIZE[1]), SHOULDERS)
+def test_the_walkable_grid_finds_what_the_checker_finds(things: list[YawBox]) -> None:
+    grid = WalkableGrid((SIZE[0], SIZE[1]), SHOULDERS)
     for k, spot in enumerate(things):
-        ways.put(f"t{k}", spot, asked=spot.high > 0.05)
+        grid.put(f"t{k}", spot, required=spot.high > 0.05)
     scene = graph(*(node(f"t{k}", spot) for k, spot in enumerate(things)))
-    assert ways.unreached() == {n.id for n, _ in unreached(scene)}
+    assert grid.unreached() == {n.id for n, _ in unreached(scene)}
 
 
 def test_what_is_taken_away_leaves_no_trace() -> None:
-    ways = Ways((SIZE[0], SIZE[1]), SHOULDERS)
-    before = ways.taken.copy()
-    ways.put("a", YawBox(0.5, 0.5, 0.0, 1.0, 2.0, 1.0, 30.0), asked=True)
-    assert (ways.taken != before).any()
-    ways.take("a")
-    assert (ways.taken == before).all() and not ways.unreached()
+    grid = WalkableGrid((SIZE[0], SIZE[1]), SHOULDERS)
+    before = grid.taken.copy()
+    grid.put("a", YawBox(0.5, 0.5, 0.0, 1.0, 2.0, 1.0, 30.0), required=True)
+    assert (grid.taken != before).any()
+    grid.take("a")
+    assert (grid.taken == before).all() and not grid.unreached()
 
 
 @settings(max_examples=150, deadline=None)

@@ -1,6 +1,6 @@
-"""What a finished layout is worth: the checker's word on everything that a scene graph can state, ours on the rest.
+"""Verify a finished layout with the checker of scene graphs: remove what it rejects, find out which wishes are kept.
 
-Knows both. Refuses to place anything; what the checker rejects is taken out.
+Wishes that a scene graph cannot state are judged by the solver's own measures.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ _UNSOUND = ("collision", "bounds", "support")
 Relations = tuple[tuple[NodeId, str, NodeId], ...]
 
 
-def judged(prepared: Prepared, state: State) -> tuple[SceneGraph, tuple[Wish, ...]]:
-    """The graph of a layout, sound as far as things could be placed, with the relations it keeps; all kept wishes."""
+def verified(prepared: Prepared, state: State) -> tuple[SceneGraph, tuple[Wish, ...]]:
+    """The graph of a layout without rejected things, with the relations that hold; and all kept wishes."""
     while True:
         graph = _graph(prepared, state)
         asked = tuple(dict.fromkeys((w.subject, w.name, w.objects[0]) for w in _statable(prepared, state)))
@@ -43,12 +43,12 @@ def _statable(prepared: Prepared, state: State) -> list[Wish]:
 
 
 def _holds(graph: SceneGraph, relation: tuple[NodeId, str, NodeId]) -> bool:
-    """Whether the checker accepts one relation: two may be stated of a pair of which one holds."""
+    """Whether the checker accepts one relation; needed where a pair has several relations and not all of them hold."""
     return not any(v.kind == "relation" for v in check(graph.model_copy(update={"relations": (relation,)})).violations)
 
 
 def _take_out(prepared: Prepared, state: State, ids: tuple[NodeId, ...]) -> bool:
-    """Leave out one of these things that the solver placed, and what it carries; whether there is one."""
+    """Remove one of these things, if the solver placed any of them, with what it carries; return whether it did."""
     free = [i for i in (prepared.index[n] for n in ids) if prepared.items[i].stand is None and state.spots[i]]
     if not free:
         return False
@@ -66,7 +66,7 @@ def _graph(prepared: Prepared, state: State) -> SceneGraph:
             known = item.model_dump(include={"id", "label", "color", "size", "support"})
             nodes.append(Node(**known, position=stand.position, yaw=stand.yaw))
     there = {n.id for n in nodes}
-    # What stays although its carrier found no place hangs in the air; a graph cannot name a carrier it does not have.
+    # A fixed thing whose carrier was not placed hangs in the air: a graph cannot name a carrier that it does not have.
     grounded = [
         n if n.support in ("floor", "wall", "ceiling", *there) else n.model_copy(update={"support": "floor"})
         for n in nodes
