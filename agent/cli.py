@@ -1,6 +1,6 @@
-"""The command line: which verbs there are, and how errors become exit codes and one line.
+"""The command line: the list of verbs, and how errors become exit codes and one line of text.
 
-Knows no verb's work. Nothing heavy is imported here, nor by the verbs' modules at module level.
+Heavy packages are imported neither here nor at module level in the modules of the verbs.
 
 Exit codes: 0 done; 2 the command was wrong; 3 the instruction could not be carried out as said and nothing was changed;
 4 a file or back end failed; 130 interrupted.
@@ -75,12 +75,12 @@ def main(arguments: list[str] | None = None) -> NoReturn:
         terminal.say("interrupted")
         sys.exit(130)
     except BrokenPipeError:
-        sys.stderr.close()  # whoever read our output has gone; nothing is left to say, not even at exit
+        sys.stderr.close()  # the reader of our output has gone; this keeps Python from reporting it at exit
         sys.exit(0)
     except Exception as error:
-        if hasattr(error, "format_message"):  # the command was written wrongly
+        if hasattr(error, "format_message"):  # a usage error of typer
             terminal.as_json = "--json" in given
-            _misused(error)
+            _usage_error(error)
         if terminal.debug:
             raise
         note = f"internal error ({type(error).__name__}: {error}); run again with --debug and report it"
@@ -91,19 +91,19 @@ def main(arguments: list[str] | None = None) -> NoReturn:
     sys.exit(code if isinstance(code, int) else 0)
 
 
-def _misused(error: Any) -> NoReturn:
-    """A command line that cannot be read: one line that says what is wrong and where help is, and exit code 2."""
-    said = str(error.format_message()).strip()
-    if "\n" in said:  # no arguments at all: the help itself
-        terminal.say(said)
+def _usage_error(error: Any) -> NoReturn:
+    """Report a command line that cannot be parsed in one line that names the help, and exit with code 2."""
+    message = str(error.format_message()).strip()
+    if "\n" in message:  # without arguments the message is the help itself
+        terminal.say(message)
         sys.exit(2)
     path = error.ctx.command_path if getattr(error, "ctx", None) else "scenewright"
-    _report({"verdict": "user", "reason": f"{said.rstrip('.')}; see {path} --help", "exit_code": 2})
+    _report({"verdict": "user", "reason": f"{message.rstrip('.')}; see {path} --help", "exit_code": 2})
     sys.exit(2)
 
 
-def _report(told: dict[str, Any]) -> None:
-    """The error as one line on stderr and, with --json, as an object on stdout."""
+def _report(data: dict[str, Any]) -> None:
+    """Print an error as one line on stderr and, with --json, as an object on stdout."""
     if terminal.as_json:
-        terminal.row(told)
-    terminal.say(f"scenewright: {told['reason']}")
+        terminal.row(data)
+    terminal.say(f"scenewright: {data['reason']}")

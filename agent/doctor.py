@@ -1,7 +1,7 @@
 """Finds which back ends are usable on this machine, and what to install for the rest.
 
-It reads the metadata of installed distributions, and imports a package only where nothing else tells whether it works
-(torchvision beside a CPU build of torch, in a process of its own). It changes nothing and fetches nothing.
+It reads the metadata of installed distributions, and imports a package only where nothing else shows whether it works
+(torchvision beside a CPU build of torch, in a separate process). It changes nothing and downloads nothing.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ class Finding:
     """One back end.
 
     Attributes:
-        name: what it is called on the command line or in `pip install`.
-        serves: what it is for.
+        name: its name on the command line or in `pip install`.
+        serves: its purpose.
         usable: whether it would work now.
-        needed: without it the program does not run.
+        needed: whether the program does not run without it.
         version: of the installed distribution, "" if there is none.
         detail: what was found, one sentence.
         fix: what to do if it is not usable, "" if it is.
@@ -64,7 +64,7 @@ NEEDED = {
 
 
 def examine() -> list[Finding]:
-    """Every finding, the needed ones first."""
+    """The findings of all back ends, the needed ones first."""
     needed = [_distribution(name, serves, needed=True, fix=_REINSTALL) for name, serves in NEEDED.items()]
     return [
         *needed,
@@ -76,7 +76,7 @@ def examine() -> list[Finding]:
 
 
 def machine() -> dict[str, Any]:
-    """What this runs on."""
+    """Python version, system, usable cores and path of the interpreter."""
     return {
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.machine()}",
@@ -85,8 +85,8 @@ def machine() -> dict[str, Any]:
     }
 
 
-# Language models behind an address: provider, client library, variables that may hold the key. The planners' own
-# table is not asked: importing it imports torch, and the doctor must speak where torch does not.
+# Hosted language models: provider, client library, environment variables that may hold the key. The planners' own table
+# is not used: importing it imports torch, and the doctor must also run where torch cannot be imported.
 PLANNERS = {
     "openai": ("OpenAI", "openai", ("OPENAI_API_KEY",)),
     "anthropic": ("Anthropic", "anthropic", ("ANTHROPIC_API_KEY",)),
@@ -113,7 +113,7 @@ def _distribution(name: str, serves: str, *, needed: bool, fix: str) -> Finding:
 
 
 def _cuda() -> Finding:
-    """CUDA needs a CUDA build of torch and a driver; torch is asked only if both seem to be there."""
+    """CUDA needs a CUDA build of torch and a driver; torch is imported only if both seem to be there."""
     version = _version("torch")
     if not version or version.endswith("+cpu"):
         detail, usable = ("this torch is a CPU build" if version else "torch is not installed"), False
@@ -129,8 +129,8 @@ def _cuda() -> Finding:
 
 
 def _gsplat() -> Finding:
-    """Its wheels on PyPI hold sources, compiled on first use by nvcc; wheels that are compiled name their torch in the
-    version."""
+    """gsplat's wheels on PyPI hold sources that nvcc compiles on first use; compiled wheels name their torch version
+    after a "+" in their own."""
     version, serves = _version("gsplat"), "rendering and fitting on a GPU (render --backend cuda, fit --device cuda)"
     if not version:
         fix = 'not needed; with an NVIDIA GPU: pip install "scenewright[cuda]" beside a CUDA build of torch'
@@ -146,7 +146,7 @@ def _gsplat() -> Finding:
 
 
 def _encoder() -> Finding:
-    """The encoder of our own ships as a file inside the package; a broken installation may lack it."""
+    """The embedded encoder ships as .onnx files in the package, which a broken installation may lack."""
     home = Path(__file__).resolve().parent.parent / "gaussians" / "language"
     weights = sorted(home.rglob("*.onnx"))
     usable = bool(weights) and bool(_version("onnxruntime"))
@@ -160,7 +160,7 @@ def _encoder() -> Finding:
 
 
 def _torchvision() -> Finding:
-    """torchvision on PyPI is a CUDA build; beside a CPU torch its import fails, and takes others with it."""
+    """torchvision on PyPI is a CUDA build; beside a CPU build of torch its import fails, and with it other imports."""
     serves, version, torch = "transforms of open_clip and transformers", _version("torchvision"), _version("torch")
     if not version:
         return Finding("torchvision", serves, False, False, "", "not installed", _MODELS)
@@ -168,11 +168,11 @@ def _torchvision() -> Finding:
         return Finding("torchvision", serves, True, False, version, f"matches torch {torch}", "")
     said, problem = _interpreter(_IMPORT_TORCHVISION)
     if not problem:
-        cured, imports = (
-            f"a CUDA build beside torch {torch}: Scenewright cures its import",
+        repaired, imports = (
+            f"a CUDA build beside torch {torch}: Scenewright repairs its import",
             f"imports beside torch {torch}",
         )
-        return Finding("torchvision", serves, True, False, version, cured if said == "cured" else imports, "")
+        return Finding("torchvision", serves, True, False, version, repaired if said == "repaired" else imports, "")
     fix = f"pip install torchvision=={version.split('+')[0]}+cpu --index-url https://download.pytorch.org/whl/cpu"
     return Finding("torchvision", serves, False, False, version, problem, fix)
 
@@ -183,7 +183,7 @@ try:
 except Exception:
     from scenewright.gaussians.torchvision_fix import import_torchvision
     import_torchvision()
-    print("cured")
+    print("repaired")
 """
 
 
@@ -202,7 +202,7 @@ def _open_clip() -> Finding:
 
 
 def _onnx() -> Finding:
-    """The towers run on what the embedded encoder needs anyway; texts need the tokenizer's own library."""
+    """The towers run on onnxruntime, which is installed in any case; texts also need the `tokenizers` package."""
     version, serves = _version("tokenizers"), "real CLIP towers without torch models (embed --encoder onnx:FOLDER)"
     detail = "tokenizers is installed" if version else "tokenizers is not installed"
     return Finding("onnx:FOLDER", serves, bool(version), False, version, detail, "" if version else _MODELS)
@@ -258,7 +258,7 @@ def _ffmpeg() -> Finding:
 
 
 def _planner(kind: str) -> Finding:
-    """A provider's models: its client must be there, and a key; whether there is one is told, never which."""
+    """A provider's models need its client library and a key; the report names the variable, never the key."""
     label, package, keys = PLANNERS[kind]
     version, missing = _version(package), [p for p in ("pydantic-ai-slim", package) if not _version(p)]
     held = next((name for name in (ANY_KEY, *keys) if os.environ.get(name, "").strip()), "")
@@ -282,7 +282,7 @@ def _planner_here() -> Finding:
 
 
 def _planner_of_auto() -> Finding:
-    """Whom `auto` asks where the grammar abstains."""
+    """The model that `auto` asks where the grammar abstains."""
     variable, serves = "SCENEWRIGHT_MODEL", "the model that planner auto asks"
     named = scrub(re.sub(r"//[^/@\s]*@", "//", os.environ.get(variable, "").strip()))
     if named:

@@ -1,4 +1,4 @@
-"""Options that several verbs share, declared once. Knows names and help texts; nothing else."""
+"""Command-line options that several verbs share: their names, types and help texts."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def _debug(value: bool) -> bool:
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="A scene file or folder (see `convert --help`).")]
 Output = Annotated[
     Path | None,
-    typer.Option("--output", "-o", metavar="FILE", help="Where to write the scene; its suffix says the format."),
+    typer.Option("--output", "-o", metavar="FILE", help="File for the scene; its suffix selects the format."),
 ]
 Json = Annotated[bool, typer.Option("--json", callback=_json, is_eager=True, help="Print the result as JSON.")]
 Debug = Annotated[
-    bool, typer.Option("--debug", callback=_debug, is_eager=True, help="Let errors through with their traceback.")
+    bool, typer.Option("--debug", callback=_debug, is_eager=True, help="Show errors with their traceback.")
 ]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite files that exist.")]
 Encoder = Annotated[
@@ -41,18 +41,18 @@ Masks = Annotated[
     str | None,
     typer.Option(
         "--masks", metavar="SOURCE",
-        help="Masks of some views: 'folder:PATH' of another program's, 'sam:PATH-or-NAME', or 'embedded'.",
+        help="Masks of views: 'folder:PATH' (made by another program), 'sam:PATH-or-NAME', or 'embedded'.",
     ),
 ]  # fmt: skip
 Capture = Annotated[
     Path | None,
-    typer.Option("--capture", metavar="FILE", help="Where photographs were taken: a transforms.json or its folder."),
+    typer.Option("--capture", metavar="FILE", help="Camera poses of photographs: a transforms.json or its folder."),
 ]
 Planner = Annotated[
     str,
     typer.Option(
         "--planner", metavar="NAME",
-        help="Who reads instructions: 'auto' (the grammar, then the model that SCENEWRIGHT_MODEL names), 'grammar', "
+        help="Planner: 'auto' (the grammar, then the model that SCENEWRIGHT_MODEL names), 'grammar', "
         "'openai:MODEL[@URL]', 'anthropic:MODEL', 'google:MODEL', 'transformers:FOLDER', or 'auto:' before a model.",
     ),
 ]  # fmt: skip
@@ -60,16 +60,16 @@ Budget = Annotated[
     str | None,
     typer.Option(
         "--budget", metavar="LIMITS",
-        help="What language models may cost: seconds an instruction and dollars a session, '20s', '0.05usd' or both.",
+        help="Limit for language models: seconds per instruction, dollars per session: '20s', '0.05usd' or both.",
     ),
 ]  # fmt: skip
 Picture = Annotated[
-    bool, typer.Option("--picture", help="Let a language model that sees look at the viewer's picture.")
+    bool, typer.Option("--picture", help="Send the viewer's picture to a language model that takes pictures.")
 ]
 Batch = Annotated[
     Path | None,
     typer.Option(
-        "--batch", metavar="FILE", help='JSON Lines of {"id", "text", "context"?}; one answer a line. - is stdin.'
+        "--batch", metavar="FILE", help='JSON Lines of {"id", "text", "context"?}; one answer per line. - is stdin.'
     ),
 ]
 Log = Annotated[Path | None, typer.Option("--log", metavar="FILE", help="Session log to append to (JSON Lines).")]
@@ -77,14 +77,12 @@ View = Annotated[
     str,
     typer.Option(
         "--view", metavar="VIEW",
-        help="The viewer: a camera of the scene by number or name, or 'EYE:TARGET' as 'x,y,z:x,y,z'; 'auto' chooses.",
+        help="Viewer: a camera of the scene by number or name, 'x,y,z:x,y,z' as eye and target, or 'auto'.",
     ),
 ]  # fmt: skip
 Size = Annotated[str | None, typer.Option("--size", metavar="WxH", help="Size of pictures in pixels, e.g. 1280x720.")]
-Up = Annotated[str | None, typer.Option("--up", metavar="X,Y,Z", help="Which way is up, if it is guessed wrongly.")]
+Up = Annotated[str | None, typer.Option("--up", metavar="X,Y,Z", help="Up direction, if the estimated one is wrong.")]
 Scale = Annotated[
-    float | None, typer.Option("--metres-per-unit", metavar="M", help="The scene's scale, where its file says nothing.")
+    float | None, typer.Option("--metres-per-unit", metavar="M", help="Scale of the scene, if its file has none.")
 ]
-Seed = Annotated[
-    int, typer.Option("--seed", min=0, help="What varies between two runs; the same seed gives the same bytes.")
-]
+Seed = Annotated[int, typer.Option("--seed", min=0, help="Random seed; the same seed gives the same bytes.")]

@@ -1,7 +1,4 @@
-"""Files that a command is going to leave behind: whether they may be written, asked before the work and not after it.
-
-Knows paths. Refuses to know what is written.
-"""
+"""Checks of output paths, made before the work: overwriting, missing folders, suffixes."""
 
 from __future__ import annotations
 
@@ -12,7 +9,7 @@ from ..gaussians.errors import FileError, UserError
 
 
 def refuse_existing(paths: Iterable[Path], force: bool) -> None:
-    """Say at once that a file would be overwritten.
+    """Check that no file would be overwritten.
 
     Raises:
         UserError: one of the paths exists and `force` is not set.
@@ -23,35 +20,35 @@ def refuse_existing(paths: Iterable[Path], force: bool) -> None:
 
 
 def require_folder(path: Path) -> None:
-    """Say at once that there is no folder for a file.
+    """Check that the folder of a file exists.
 
     Raises:
-        FileError: there is none.
+        FileError: it does not.
     """
     if not path.absolute().parent.is_dir():
         raise FileError(f"the folder {path.absolute().parent} does not exist; create it first")
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder, and those above it, if it is not there.
+    """Make a folder and its parents, if it does not exist.
 
     Raises:
         UserError: there is a file of that name.
-        FileError: the system refuses.
+        FileError: the system does not allow it.
     """
     try:
         path.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError) as error:
-        raise UserError(f"{path} is to be a folder, but a file stands in its way; choose another name") from error
+        raise UserError(f"{path} cannot be made as a folder: a file has that name; choose another name") from error
     except OSError as error:
         raise FileError(f"cannot make the folder {path}: {error.strerror}; choose one that you may write to") from error
 
 
 def require_png(path: Path) -> None:
-    """Pictures are written as PNG; another suffix would lie.
+    """Check that the name of a picture ends in .png.
 
     Raises:
-        UserError: the name ends otherwise.
+        UserError: it does not.
     """
     if path.suffix.lower() != ".png":
         raise UserError(f"cannot write {path}: pictures are written as .png")

@@ -1,4 +1,4 @@
-"""The verbs of the command line, one small file each: `command` takes what was typed and prints what came of it.
+"""The verbs of the command line, one module each: `command` takes the arguments and prints the result.
 
-A verb's module imports nothing heavy at module level, so that `scenewright --help` is instant.
+These modules import nothing heavy at module level, so that `scenewright --help` stays fast.
 """

@@ -1,4 +1,4 @@
-"""`scenewright bench NAME`: measure."""
+"""`scenewright bench NAME`: run a benchmark and compare it with an earlier result."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from ..terminal.output import terminal
 
 
 def command(
-    name: Annotated[str | None, typer.Argument(metavar="NAME", help="What to measure; without it, the list.")] = None,
-    quick: Annotated[bool, typer.Option("--quick", help="Rougher, and much sooner.")] = False,
+    name: Annotated[str | None, typer.Argument(metavar="NAME", help="Benchmark; without it, list them.")] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Much faster and less precise.")] = False,
     chart: Annotated[
         Path | None, typer.Option("--chart", metavar="FILE", help="Draw time against accuracy (.png, .svg, .pdf).")
     ] = None,
     against: Annotated[
-        Path | None, typer.Option("--against", metavar="FILE", help="An earlier --json result; exit 3 if worse.")
+        Path | None, typer.Option("--against", metavar="FILE", help="Earlier --json result; exit code 3 if worse.")
     ] = None,
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Measure something and tell it as a table (Markdown) or, with --json, as data.
+    """Run a benchmark and print its figures as a table (Markdown) or, with --json, as data.
 
     Times do not carry over to other machines; ratios and accuracies do.
     """

@@ -1,4 +1,4 @@
-"""`scenewright chat SCENE`: a conversation about one scene."""
+"""`scenewright chat SCENE`: edit one scene interactively."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def command(
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Talk to a scene: instructions in words, /help for the rest. With --json, one JSON object for each line said."""
+    """Edit a scene interactively: instructions in words, /help lists commands. --json: one JSON object per line."""
     from ..session.opening import SessionOptions, open_session
     from ..terminal.chat import Chat
 

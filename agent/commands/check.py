@@ -1,4 +1,4 @@
-"""`scenewright check GRAPH.json`: does a scene graph fit, stand, hold what it states and leave room to walk?"""
+"""`scenewright check GRAPH.json`: check a scene graph for collisions, bounds, support, relations and reachability."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ def command(
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Check anybody's scene graph: collisions, bounds, support, stated relations, reachability. Exit code 3 if not."""
+    """Check a scene graph: collisions, bounds, support, stated relations, reachability. Exit code 3 on a violation."""
     from ...planners.rooms.check import check, sentences
     from ...planners.rooms.graph import SceneGraph
 
     report = check(SceneGraph.read(graph))
-    told = sentences(report.violations) or [f"{graph}: nothing is wrong"]
-    told += [f"not checked: {line}" for line in report.unchecked]
-    terminal.result("\n".join(told), {"ok": report.ok, **asdict(report)})
+    lines = sentences(report.violations) or [f"{graph}: nothing is wrong"]
+    lines += [f"not checked: {line}" for line in report.unchecked]
+    terminal.result("\n".join(lines), {"ok": report.ok, **asdict(report)})
     if not report.ok:
         raise typer.Exit(3)

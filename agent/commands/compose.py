@@ -1,4 +1,4 @@
-"""`scenewright compose "TEXT" -o graph.json --scene shop.ply`: from a sentence, or a scene graph, to a scene."""
+"""`scenewright compose "TEXT" -o graph.json --scene shop.ply`: make a scene from a sentence or a scene graph."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from ...planners.rooms.build import Built
     from ...planners.rooms.graph import SceneGraph
 
-_MOST_TOLD = 12  # complaints of the checker on stderr; more are counted
+_MAX_VIOLATIONS = 12  # violations printed on stderr; further ones are only counted
 
 
 @dataclass(frozen=True)
 class _Targets:
-    """Files that are asked for, and how the picture is taken."""
+    """The files to write, and the view and size of the picture."""
 
     graph: Path | None
     scene: Path | None
@@ -37,24 +37,22 @@ class _Targets:
 def command(
     wish: Annotated[
         str,
-        typer.Argument(
-            metavar="TEXT|GRAPH.json", help="What the room is to be, or a scene graph to be built as it is."
-        ),
+        typer.Argument(metavar="TEXT|GRAPH.json", help="Description of the room, or a scene graph to build unchanged."),
     ],
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to write the scene graph (.json).")
+        Path | None, typer.Option("--output", "-o", metavar="FILE", help="File for the scene graph (.json).")
     ] = None,
     scene: Annotated[
-        Path | None, typer.Option("--scene", metavar="FILE", help="Where to write the scene (.ply), embedded already.")
+        Path | None, typer.Option("--scene", metavar="FILE", help="File for the scene (.ply); its field is saved too.")
     ] = None,
     picture: Annotated[
-        Path | None, typer.Option("--picture", metavar="FILE", help="Where to write a picture of it (.png).")
+        Path | None, typer.Option("--picture", metavar="FILE", help="File for a picture of the scene (.png).")
     ] = None,
     assets: Annotated[
-        Path | None, typer.Option("--assets", metavar="FOLDER", help="Take things from .glb and .ply files there.")
+        Path | None, typer.Option("--assets", metavar="FOLDER", help="Use the .glb and .ply files in this folder.")
     ] = None,
     best: Annotated[
-        bool, typer.Option("--best", help="Write the best plausible scene even where wishes conflict.")
+        bool, typer.Option("--best", help="Write the best plausible scene even if wishes conflict.")
     ] = False,
     detail: Annotated[float, typer.Option("--detail", help="Factor on the number of Gaussians, 0.05 to 8.")] = 1.0,
     planner: Planner = "auto",
@@ -65,26 +63,26 @@ def command(
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Compose a room: things, sizes and relations from words, places from a layout solver, Gaussians from assets.
+    """Compose a room: things, sizes and relations from words, positions from a layout solver, Gaussians from assets.
 
-    With --json the scene graph goes to stdout. Wishes that cannot all be met end with exit code 3 and their smallest
-    conflict; --best then takes what can be.
+    With --json the scene graph goes to stdout. If the wishes cannot all be met, the smallest conflict is printed and
+    the exit code is 3; --best writes the scene that meets as many as possible.
     """
     targets = _Targets(output, scene, picture, force, view, size)
-    _refuse_early(targets, assets)
+    _check_paths(targets, assets)
     seconds: dict[str, float] = {}
     started = time.perf_counter()
     with timed(seconds, "compose"):
         graph = _graph(wish, seed, planner, best)
     with timed(seconds, "check"):
-        _tell_check(graph)
+        _print_violations(graph)
     built = None
     if targets.scene is not None or targets.picture is not None:
         from ...planners.rooms.build import construct
 
         built = construct(graph, seed=seed, assets=assets, detail=detail)
         seconds |= built.seconds
-        _tell_built(built)
+        _print_built(built)
     with timed(seconds, "write"):
         _write(graph, built, targets)
     seconds["total"] = time.perf_counter() - started
@@ -92,11 +90,11 @@ def command(
     terminal.say("seconds: " + ", ".join(f"{stage} {value:.2f}" for stage, value in seconds.items()))
 
 
-def _refuse_early(targets: _Targets, assets: Path | None) -> None:
-    """Say before the work what cannot be written or read.
+def _check_paths(targets: _Targets, assets: Path | None) -> None:
+    """Check before the work that all files can be written and the folder of assets exists.
 
     Raises:
-        UserError: a file would be overwritten, a picture is none, or there is no folder of assets.
+        UserError: a file would be overwritten, has the wrong suffix or no folder; or there is no folder of assets.
     """
     from ...gaussians.errors import UserError
     from ..output_files import refuse_existing, require_png
@@ -106,16 +104,16 @@ def _refuse_early(targets: _Targets, assets: Path | None) -> None:
     if targets.picture is not None:
         require_png(targets.picture)
     if targets.graph is not None and targets.graph.suffix.lower() != ".json":
-        raise UserError(f"{targets.graph} is where the scene graph goes, as .json; a scene is written with --scene")
+        raise UserError(f"{targets.graph}: -o writes the scene graph as .json; a scene is written with --scene")
     for path in wanted:
         if not path.absolute().parent.is_dir():
             raise UserError(f"there is no folder {path.parent}; make it, or write {path.name} elsewhere")
     if assets is not None and not assets.is_dir():
-        raise UserError(f"{assets} is no folder; give one that holds .glb or .ply files")
+        raise UserError(f"{assets} is not a folder; give one that holds .glb or .ply files")
 
 
 def _graph(wish: str, seed: int, planner: str, best: bool) -> SceneGraph:
-    """The graph that was given, or one composed of the words; what was left out and assumed is told."""
+    """The given graph, or one composed from the words; prints what was assumed and left out."""
     from ...planners.rooms.graph import SceneGraph
 
     if wish.lower().endswith(".json"):
@@ -137,12 +135,12 @@ def _graph(wish: str, seed: int, planner: str, best: bool) -> SceneGraph:
 
 
 def _refuse_conflict(conflicts: Any, graph: SceneGraph) -> None:
-    """Wishes that cannot all be met: the smallest set of them, and what could be had."""
+    """Report wishes that cannot all be met: their smallest conflict and the best plausible scene; exit code 3."""
     from ...gaussians.errors import InstructionError
 
     smallest = min(conflicts, key=lambda conflict: len(conflict.statements))
-    said = "; ".join(smallest.statements)
-    error = InstructionError(f"not all of this is possible together: {said}")
+    statements = "; ".join(smallest.statements)
+    error = InstructionError(f"not all of this is possible together: {statements}")
     data = {
         "verdict": "impossible",
         "reason": str(error),
@@ -151,32 +149,32 @@ def _refuse_conflict(conflicts: Any, graph: SceneGraph) -> None:
         "best": graph.model_dump(mode="json", exclude_none=True),
     }
     if not terminal.as_json:
-        terminal.say(f"the best plausible scene has {_counted(graph)}; --best takes it")
+        terminal.say(f"the best plausible scene has {_counted(graph)}; --best writes it")
     terminal.refuse(error, data)
 
 
-def _tell_check(graph: SceneGraph) -> None:
-    """The neutral checker's verdict."""
+def _print_violations(graph: SceneGraph) -> None:
+    """Print the violations that the checker finds in the graph."""
     from ...planners.rooms.check import check, sentences
 
     report = check(graph)
-    told = sentences(report.violations)
-    for line in told[:_MOST_TOLD]:
+    lines = sentences(report.violations)
+    for line in lines[:_MAX_VIOLATIONS]:
         terminal.say(f"check: {line}")
-    more = f" ({len(told) - _MOST_TOLD} more are not shown)" if len(told) > _MOST_TOLD else ""
+    more = f" ({len(lines) - _MAX_VIOLATIONS} more are not shown)" if len(lines) > _MAX_VIOLATIONS else ""
     terminal.say(
-        f"check: {len(told)} things are wrong{more}" if told else f"check: {_counted(graph)}; nothing is wrong"
+        f"check: {len(lines)} things are wrong{more}" if lines else f"check: {_counted(graph)}; nothing is wrong"
     )
 
 
-def _tell_built(built: Built) -> None:
+def _print_built(built: Built) -> None:
     for note in built.notes:
         terminal.say(f"note: {note}")
     terminal.say(f"built {len(built.ids)} things of {len(built.scene.cloud):,} Gaussians")
 
 
 def _write(graph: SceneGraph, built: Built | None, targets: _Targets) -> None:
-    """Everything that was asked for, each file whole or not at all."""
+    """Write the requested files, each completely or not at all."""
     from ...gaussians.files import save, writing
 
     if targets.graph is not None:
@@ -214,7 +212,7 @@ def _counted(graph: SceneGraph) -> str:
 
 
 def _summary(graph: SceneGraph) -> str:
-    """Who stands where, a line each."""
+    """The size of the room, then one line for each thing: id, size, position, yaw and support."""
     lines = [_counted(graph)]
     for node in graph.nodes:
         what = " ".join(word for word in (node.color, node.label or "thing") if word)

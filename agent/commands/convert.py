@@ -1,4 +1,4 @@
-"""`scenewright convert IN OUT`: the same scene in another format, smaller if asked for, and what that costs."""
+"""`scenewright convert IN OUT`: write a scene in another format, optionally reduced, and measure the loss."""
 
 from __future__ import annotations
 
@@ -23,31 +23,31 @@ PRUNE_VIEWS = 64
 
 def command(
     scene: SceneFile,
-    output: Annotated[Path, typer.Argument(metavar="OUT", help="Where to write; its suffix says the format.")],
+    output: Annotated[Path, typer.Argument(metavar="OUT", help="File to write; its suffix selects the format.")],
     sh_degree: Annotated[
-        int | None, typer.Option("--sh-degree", min=0, max=3, metavar="N", help="Cut harmonics to this degree.")
+        int | None, typer.Option("--sh-degree", min=0, max=3, metavar="N", help="Reduce harmonics to this degree.")
     ] = None,
     max_gaussians: Annotated[
         int | None,
-        typer.Option("--max-gaussians", min=1, metavar="N", help="Keep the N that matter most to what can be seen."),
+        typer.Option("--max-gaussians", min=1, metavar="N", help="Keep the N that contribute most to rendered views."),
     ] = None,
     crop: Annotated[
-        str | None, typer.Option("--crop", metavar="x0,y0,z0,x1,y1,z1", help="Keep what lies in this box.")
+        str | None, typer.Option("--crop", metavar="x0,y0,z0,x1,y1,z1", help="Keep the Gaussians in this box.")
     ] = None,
     crop_sphere: Annotated[
-        str | None, typer.Option("--crop-sphere", metavar="x,y,z,r", help="Keep what lies in this sphere.")
+        str | None, typer.Option("--crop-sphere", metavar="x,y,z,r", help="Keep the Gaussians in this sphere.")
     ] = None,
     views: Annotated[
-        int, typer.Option("--views", min=0, max=24, help="Views to measure the loss from; 0 measures nothing.")
+        int, typer.Option("--views", min=0, max=24, help="Number of views to measure the loss from; 0 for none.")
     ] = 4,
     spz_version: Annotated[
-        int, typer.Option("--spz-version", min=2, max=4, help="Version of .spz, for readers that lag behind.")
+        int, typer.Option("--spz-version", min=2, max=4, help="Version of .spz, for older readers.")
     ] = 4,
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Write a scene in another format, and tell what that saves and loses.
+    """Write a scene in another format, and report its size and the loss.
 
     Read and written: INRIA .ply, PlayCanvas .compressed.ply and SOG (.sog; read from a folder with meta.json as well),
     Niantic .spz (version 1 is read only), antimatter15 .splat (which holds no harmonics above the constant colour).
@@ -56,7 +56,7 @@ def command(
     from ..output_files import refuse_existing
 
     refuse_existing([output], force)
-    writer(output)  # refuses a name that no format has
+    writer(output)  # raises if the suffix belongs to no format
     box, ball = _numbers(crop, 6, "--crop"), _numbers(crop_sphere, 4, "--crop-sphere")
     start = time.perf_counter()
     loaded, report = load_with_report(scene)
@@ -67,18 +67,17 @@ def command(
     start = time.perf_counter()
     _save(smaller, output, force, spz_version)
     wrote = time.perf_counter() - start
-    told = _Told(output, report.format, (report.rows, size), (len(smaller.cloud), _size(output)), (read, wrote))
-    told.notes += report.notes
-    told.measure(cut, smaller, cameras)
-    for note in told.notes:
+    done = _Report(output, report.format, (report.rows, size), (len(smaller.cloud), _size(output)), (read, wrote))
+    done.notes += report.notes
+    done.measure(cut, smaller, cameras)
+    for note in done.notes:
         terminal.say(f"note: {note}")
-    terminal.result(told.text(), told.data())
+    terminal.result(done.text(), done.data())
 
 
 @dataclass
-class _Told:
-    """What a conversion did, for people and programs: Gaussians and bytes before and after, seconds of reading and
-    writing."""
+class _Report:
+    """The report of a conversion: `before` and `after` as (Gaussians, bytes), `seconds` of reading and writing."""
 
     output: Path
     format: str
@@ -89,7 +88,7 @@ class _Told:
     psnr: tuple[float, ...] = ()
 
     def measure(self, truth: Scene, written: Scene, cameras: tuple[Camera, ...]) -> None:
-        """Read back what was written, compare pictures, and note what the format has no place for."""
+        """Read the written file, compare rendered views, and note what the format cannot store."""
         from ...gaussians.files import load
         from ...gaussians.reduce import psnr
 
@@ -132,7 +131,7 @@ class _Told:
 
 
 def _numbers(text: str | None, count: int, option: str) -> list[float] | None:
-    """`count` finite numbers between commas."""
+    """`count` finite numbers separated by commas; None if the option was not given."""
     import math
 
     from ...gaussians.errors import UserError
@@ -159,7 +158,7 @@ def _cut(scene: Scene, box: list[float] | None, ball: list[float] | None) -> Sce
 
 
 def _views(scene: Scene, count: int) -> tuple[Camera, ...]:
-    """Where the loss is measured: the scene's own cameras if it has any, evenly; else the views that see most."""
+    """Cameras to measure the loss from: evenly chosen from the scene's own, else the views that see most of it."""
     from ...gaussians.viewpoints.coverage import choose_views, fit_camera
 
     own = scene.cameras
@@ -168,17 +167,17 @@ def _views(scene: Scene, count: int) -> tuple[Camera, ...]:
     return tuple(camera.resized(VIEW_SIZE, VIEW_SIZE) for camera in choose_views(scene, count).cameras)
 
 
-def _smaller(scene: Scene, degree: int | None, most: int | None, measured: tuple[Camera, ...]) -> Scene:
-    """Fewer Gaussians as other views than the measured ones see them, and fewer harmonics."""
+def _smaller(scene: Scene, degree: int | None, max_gaussians: int | None, measured: tuple[Camera, ...]) -> Scene:
+    """The scene pruned by contributions to views other than the `measured` ones, and with fewer harmonics."""
     from ...gaussians.reduce import prune
     from ...gaussians.viewpoints.coverage import candidates, fit_camera
 
-    if most is not None and most < len(scene.cloud):
+    if max_gaussians is not None and max_gaussians < len(scene.cloud):
         own = scene.cameras[:: -(-len(scene.cameras) // PRUNE_VIEWS) or 1]
         pool = [fit_camera(camera, PRUNE_SIZE, PRUNE_SIZE) for camera in own]
         pool += candidates(scene.cloud, scene.frame, PRUNE_SIZE)
         poses = {camera.world_to_camera.tobytes() for camera in measured}
-        scene = prune(scene, most, [c for c in pool if c.world_to_camera.tobytes() not in poses] or pool)
+        scene = prune(scene, max_gaussians, [c for c in pool if c.world_to_camera.tobytes() not in poses] or pool)
     if degree is not None and degree < scene.cloud.degree:
         scene = scene.replace(cloud=scene.cloud.with_degree(degree))
     return scene

@@ -1,4 +1,4 @@
-"""`scenewright demo -o demo/`: the main job from end to end."""
+"""`scenewright demo -o demo/`: furnish a room, embed it and edit it with ten instructions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..terminal.output import terminal
 
 
 def command(
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="Where to leave everything.")] = Path(
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="Folder for all files.")] = Path(
         "demo"
     ),
     seed: Seed = 0,
@@ -22,9 +22,9 @@ def command(
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Furnish a room, embed it, and hold a conversation with it.
+    """Furnish a room, embed it, and edit it with ten instructions.
 
-    Leaves before and after pictures of each step, the room before and after (.ply), the session log, a contact sheet.
+    Writes pictures before and after each step, the room before and after (.ply), the session log and a contact sheet.
     """
     from ..demo.run import Demo
     from ..pictures.named_cameras import parse_size

@@ -7,7 +7,7 @@ from ..terminal.output import terminal
 
 
 def command(as_json: Json = False, debug: Debug = False) -> None:
-    """Tell which back ends are usable on this machine and what to install for the rest."""
+    """List which back ends are usable on this machine and what to install for the others."""
     from ..doctor import examine, machine
 
     where, findings = machine(), examine()

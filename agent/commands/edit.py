@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Targets:
-    """Files that an edit leaves behind."""
+    """The files that an edit writes."""
 
     output: Path | None
     pictures: Path | None
@@ -50,14 +50,14 @@ def command(
     text: Annotated[str | None, typer.Argument(metavar="TEXT", help="What to do, e.g. 'make the sofa teal'.")] = None,
     output: Output = None,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Show the plan and what would change; write no scene.")
+        bool, typer.Option("--dry-run", help="Show the plan and what it would change; write no scene.")
     ] = False,
     pictures: Annotated[
-        Path | None, typer.Option("--pictures", metavar="FOLDER", help="Leave before.png and after.png there.")
+        Path | None, typer.Option("--pictures", metavar="FOLDER", help="Write before.png and after.png there.")
     ] = None,
     log: Log = None,
     replay: Annotated[
-        Path | None, typer.Option("--replay", metavar="LOG", help="Carry out what the last session in a log did.")
+        Path | None, typer.Option("--replay", metavar="LOG", help="Repeat the edits of the last session in a log.")
     ] = None,
     up: Up = None,
     metres_per_unit: Scale = None,
@@ -72,9 +72,9 @@ def command(
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Edit a scene in words. An instruction is carried out whole or not at all, and checked.
+    """Edit a scene in words. An instruction is carried out completely or not at all, and checked.
 
-    A language field saved beside SCENE (see `embed`) is used, and the edited scene gets one too.
+    A language field saved beside SCENE (see `embed`) is used, and then saved beside the edited scene too.
     """
     from ...gaussians.errors import UserError
     from ..session.opening import SessionOptions, open_session
@@ -82,7 +82,7 @@ def command(
     if (text is None) == (replay is None):
         raise UserError('give either TEXT or --replay LOG: scenewright edit SCENE "make the sofa teal" -o out.ply')
     if output is None and not dry_run:
-        raise UserError("say where to write the edited scene: -o out.ply (or look first with --dry-run)")
+        raise UserError("say where to write the edited scene: -o out.ply (or try it first with --dry-run)")
     _check_targets(None if dry_run else output, pictures, force)
     started = time.perf_counter()
     seconds: dict[str, float] = {}
@@ -93,7 +93,7 @@ def command(
         session, had_field = open_session(options)
     targets = _Targets(None if dry_run else output, pictures, force, had_field)
     results = [_instruct(session, str(text), dry_run)] if replay is None else _replay(session, replay)
-    lines, data = _told(results, replay is not None, dry_run)
+    lines, data = _report(results, replay is not None, dry_run)
     with timed(seconds, "write"):
         _write(session, results, targets, data)
     session.close()
@@ -111,7 +111,7 @@ def command(
 
 
 def _check_targets(output: Path | None, pictures: Path | None, force: bool) -> None:
-    """Say at once, not after the work, that a file would be overwritten, cannot be there or has no format."""
+    """Check before the work that the files can be written: no overwriting, existing folders, known formats."""
     from ...gaussians.files import writer
     from ..output_files import make_folder, refuse_existing, require_folder
 
@@ -126,7 +126,7 @@ def _check_targets(output: Path | None, pictures: Path | None, force: bool) -> N
 
 
 def _instruct(session: Session, text: str, dry_run: bool) -> Result:
-    """Do what was said, or say why not, what it hesitated between, and what asking a model took all the same."""
+    """Carry out the instruction; if it is refused, report the reason, the candidates and the model usage, and exit."""
     from ...gaussians.errors import ScenewrightError
     from ..session.plan_report import candidate_json, refusal_json, usage_lines
 
@@ -138,12 +138,12 @@ def _instruct(session: Session, text: str, dry_run: bool) -> Result:
         if terminal.debug:
             raise
         candidates = session.question.candidates if session.question else ()
-        told = {"candidates": [candidate_json(c) for c in candidates], **refusal_json(error, session.planned)}
-        terminal.refuse(error, {**error_json(error), **told}, [c.describe() for c in candidates])
+        data = {"candidates": [candidate_json(c) for c in candidates], **refusal_json(error, session.planned)}
+        terminal.refuse(error, {**error_json(error), **data}, [c.describe() for c in candidates])
 
 
 def _replay(session: Session, log: Path) -> list[Result]:
-    """What the last session in a log did, done here; a dry run simply writes nothing of it."""
+    """The edits of the last session in a log, carried out on this session; in a dry run nothing is written."""
     from ...gaussians.errors import UserError
 
     results = [r.result for r in session.replay(log) if r.result is not None]
@@ -152,8 +152,8 @@ def _replay(session: Session, log: Path) -> list[Result]:
     return results
 
 
-def _told(results: Sequence[Result], replayed: bool, dry_run: bool) -> tuple[list[str], dict[str, Any]]:
-    """What was done, as lines and as data."""
+def _report(results: Sequence[Result], replayed: bool, dry_run: bool) -> tuple[list[str], dict[str, Any]]:
+    """The results as lines and as data."""
     if not replayed:
         return _lines(results[0], dry_run), results[0].to_json()
     lines = [line for result in results for line in (f"> {result.text}", *_lines(result, dry_run))]
@@ -162,7 +162,7 @@ def _told(results: Sequence[Result], replayed: bool, dry_run: bool) -> tuple[lis
 
 
 def _lines(result: Result, dry_run: bool) -> list[str]:
-    """What was done; in a dry run the plan, and what it would do."""
+    """The sentences of a result; in a dry run its plan, and what it would do."""
     from ..session.plan_report import plan_lines
 
     if not dry_run or result.plan is None:
@@ -172,7 +172,7 @@ def _lines(result: Result, dry_run: bool) -> list[str]:
 
 
 def _write(session: Session, results: Sequence[Result], targets: _Targets, data: dict[str, Any]) -> None:
-    """Write what was asked for, and note it in `data`."""
+    """Write the requested files, and add their paths to `data`."""
     from ...gaussians.language.field.store import save_field
 
     if targets.output is not None:
@@ -185,7 +185,7 @@ def _write(session: Session, results: Sequence[Result], targets: _Targets, data:
 
 
 def _draw(session: Session, results: Sequence[Result], folder: Path, force: bool) -> list[str]:
-    """before.png and after.png, as the viewer sees them."""
+    """Write before.png and after.png from the viewer's camera; returns their paths."""
     from ..pictures.image_files import save_png
     from ..pictures.scene_pictures import after, picture
 

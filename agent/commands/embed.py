@@ -1,4 +1,4 @@
-"""`scenewright embed SCENE`: lay language over a scene and keep it beside the file."""
+"""`scenewright embed SCENE`: make the language field of a scene and save it beside the file."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def command(
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Embed language in a scene and save the field beside it, so that later commands start at once.
+    """Make the language field of a scene and save it beside the file, so that later commands need not embed again.
 
-    A saved field is used as long as the scene file is the very one it was made for. --force embeds again, and so do
-    --masks and --capture, and --up and --metres-per-unit, which are kept with the field.
+    A saved field is used as long as the scene file has not changed. --force embeds again, and so do --masks and
+    --capture, and --up and --metres-per-unit, which are saved with the field.
     """
     from ...gaussians.files import load
     from ...gaussians.files.captures.capture import read_capture
@@ -41,7 +41,7 @@ def command(
     if taken is not None and not loaded.cameras:
         loaded = loaded.replace(cameras=taken.cameras)
     elif taken is not None and masks is None:
-        terminal.say(f"note: {scene} has cameras of its own; --capture is of use with --masks only")
+        terminal.say(f"note: {scene} has cameras of its own; --capture is used with --masks only")
     source = maskers.load(masks, capture) if masks is not None else None
     known = None if again else load_field(loaded, scene, chosen.fingerprint)
     if known is None and not again and (why := mismatch(scene, chosen.fingerprint)) is not None:

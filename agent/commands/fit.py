@@ -1,4 +1,4 @@
-"""`scenewright fit CAPTURE -o scene.ply`: photographs, with poses or without, to a trained scene."""
+"""`scenewright fit CAPTURE -o scene.ply`: train a scene on photographs, with or without camera poses."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..terminal.output import terminal
 if TYPE_CHECKING:
     from ...gaussians.fit import Fitted, Photos, Settings, Status
 
-NAMED = 8  # photographs in a warning
+MAX_NAMED = 8  # photographs named in a warning
 
 
 def command(
@@ -25,37 +25,41 @@ def command(
             metavar="CAPTURE", help="A folder with transforms.json or COLMAP's sparse/0, or of photographs."
         ),
     ],
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="Where to write the scene (.ply).")],
-    minutes: Annotated[float | None, typer.Option("--minutes", help="How long to train (5 unless --steps).")] = None,
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="File for the scene (.ply).")],
+    minutes: Annotated[float | None, typer.Option("--minutes", help="Training time (5 unless --steps).")] = None,
     steps: Annotated[
-        int | None, typer.Option("--steps", help="How many steps instead: the same bytes every time (on the CPU).")
+        int | None, typer.Option("--steps", help="Number of steps instead of a time: same bytes every run on the CPU.")
     ] = None,
-    most: Annotated[int, typer.Option("--max-gaussians", metavar="N", help="The budget of Gaussians.")] = 200_000,
+    max_gaussians: Annotated[
+        int, typer.Option("--max-gaussians", metavar="N", help="Greatest number of Gaussians.")
+    ] = 200_000,
     degree: Annotated[
         Literal["auto", "0", "1", "2", "3"],
-        typer.Option("--sh-degree", help="Degree of the harmonics (how colour changes with the view), or by its gain."),
+        typer.Option("--sh-degree", help="Degree of the spherical harmonics; auto: chosen by the gain in PSNR."),
     ] = "auto",
     gain: Annotated[
         float,
-        typer.Option("--gain", metavar="DB", help="What a band, or the last tenth of the Gaussians, must be worth."),
+        typer.Option(
+            "--gain", metavar="DB", help="Gain for which a band, or the last tenth of the Gaussians, is kept."
+        ),
     ] = 0.05,
     coarse: Annotated[
-        float, typer.Option("--coarse", metavar="SHARE", help="Share of the training at half the size, from 0 to 1.")
+        float, typer.Option("--coarse", metavar="SHARE", help="Share of the training at half resolution, 0 to 1.")
     ] = 0.0,
     scale: Annotated[
-        float | None, typer.Option("--scale", help="Learn from photographs so many times their size; 1 is whole.")
+        float | None, typer.Option("--scale", help="Factor on the size of the photographs; 1 is full resolution.")
     ] = None,
     growth: Annotated[
         Literal["budgeted", "classic"],
-        typer.Option("--growth", help="How Gaussians come and go: to a number, or as first published."),
+        typer.Option("--growth", help="Densification: up to a given number, or as first published."),
     ] = "budgeted",
     device: Annotated[
         Literal["auto", "cpu", "cuda"],
-        typer.Option("--device", help="Where to train; auto: on an NVIDIA GPU if gsplat and one are there."),
+        typer.Option("--device", help="Where to train; auto: an NVIDIA GPU if there is one and gsplat is installed."),
     ] = "auto",
     report: Annotated[
         Path | None,
-        typer.Option("--report", metavar="FOLDER", help="Write report.json and pictures beside held-out photographs."),
+        typer.Option("--report", metavar="FOLDER", help="Write report.json and comparisons with held-out photographs."),
     ] = None,
     seed: Seed = 0,
     force: Force = False,
@@ -64,9 +68,9 @@ def command(
 ) -> None:
     """Train a scene on photographs, on the CPU or a GPU.
 
-    Every eighth photograph is held out and measured with. Training goes on from its last checkpoint
-    (OUTPUT.checkpoint) if it was ended before its time. Photographs without poses are given them first (extra sfm);
-    they are kept in OUTPUT.poses, and estimated again only if the photographs change.
+    Every eighth photograph is held out to measure the quality. An interrupted training resumes from its last checkpoint
+    (OUTPUT.checkpoint). If the photographs have no poses, these are estimated first (extra sfm) and kept in
+    OUTPUT.poses; they are estimated again only if the photographs change.
     """
     from ...gaussians.errors import FileError, UserError
     from ...gaussians.files import save
@@ -81,25 +85,25 @@ def command(
     _check_targets(output, report, force)
     seconds = None if steps is not None else 60 * (5.0 if minutes is None else minutes)
     settings = Settings(
-        seconds, steps, most, "auto" if degree == "auto" else int(degree), gain, growth, coarse, seed, where
+        seconds, steps, max_gaussians, "auto" if degree == "auto" else int(degree), gain, growth, coarse, seed, where
     )
     poses = output.with_name(output.name + ".poses")
     if unposed_photos(capture) and not poses.exists():
         terminal.say(f"the photographs have no poses: estimating them first, on the CPU, to be kept in {poses}")
     photos = load_photos(capture, scale, terminal.progress, poses)
-    terminal.say(_told(photos) + (", on the GPU" if where == "cuda" else ""))
+    terminal.say(_describe(photos) + (", on the GPU" if where == "cuda" else ""))
     kept = output.with_name(output.name + ".checkpoint")
     if kept.exists():
         terminal.say(f"going on from {kept}")
     try:
-        done = fit(photos, settings, checkpoint_path=kept, on_status=_tell)
+        done = fit(photos, settings, checkpoint_path=kept, on_status=_show_status)
     except KeyboardInterrupt:
-        terminal.say(_left(kept))
+        terminal.say(_resume_hint(kept))
         raise
     try:
         save(done.scene, output, force=force)
     except FileError as error:
-        raise FileError(f"{error}; {_left(kept)}") from error
+        raise FileError(f"{error}; {_resume_hint(kept)}") from error
     delete(kept)
     data = _data(done, photos, settings, output)
     if report is not None:
@@ -107,12 +111,12 @@ def command(
     terminal.result("\n".join([_summary(done, output), *_chosen(done)]), data)
 
 
-def _left(kept: Path) -> str:
+def _resume_hint(kept: Path) -> str:
     return f"the same command goes on from {kept}" if kept.exists() else "no checkpoint was kept yet"
 
 
 def _check_targets(output: Path, report: Path | None, force: bool) -> None:
-    """Say at once, not after the training, that a file would be overwritten, cannot be there or has no format."""
+    """Check before the training that the files can be written: no overwriting, existing folders, known formats."""
     from ...gaussians.errors import UserError
     from ...gaussians.files import writer
     from ..output_files import make_folder, refuse_existing, require_folder
@@ -126,24 +130,25 @@ def _check_targets(output: Path, report: Path | None, force: bool) -> None:
         make_folder(report)
 
 
-def _told(photos: Photos) -> str:
+def _describe(photos: Photos) -> str:
+    """Numbers and size of the photographs, survey points, estimated poses, and warnings."""
     from ...gaussians.fit.initialize import MIN_POINTS
 
     height, width = photos.shots[0].photo.shape[:2]
     many = len(photos.points.means)
     points = f"{many:,} surveyed points" if many else "no surveyed points, so poses cannot be checked"
-    few = "; too few to begin from, so Gaussians begin anywhere" if many < MIN_POINTS else ""
-    told = f"{len(photos.shots)} photographs at {width}x{height}, {len(photos.held_out)} held out, {points}{few}"
+    few = "; too few for initialization, so Gaussians start at random positions" if many < MIN_POINTS else ""
+    text = f"{len(photos.shots)} photographs at {width}x{height}, {len(photos.held_out)} held out, {points}{few}"
     if photos.poses_folder is not None:
-        told += f", poses estimated: {photos.poses_folder} is a capture too"
+        text += f", poses estimated: {photos.poses_folder} is a capture too"
     if photos.unplaced:
-        named = ", ".join(photos.unplaced[:NAMED]) + (", ..." if len(photos.unplaced) > NAMED else "")
+        named = ", ".join(photos.unplaced[:MAX_NAMED]) + (", ..." if len(photos.unplaced) > MAX_NAMED else "")
         every = len(photos.shots) + len(photos.held_out) + len(photos.unplaced)
-        told += f"\nwarning: {len(photos.unplaced)} of {every} photographs left out, no place was found: {named}"
-    return told if photos.warning is None else f"{told}\nwarning: {photos.warning}"
+        text += f"\nwarning: {len(photos.unplaced)} of {every} photographs left out, no pose was found: {named}"
+    return text if photos.warning is None else f"{text}\nwarning: {photos.warning}"
 
 
-def _tell(status: Status) -> None:
+def _show_status(status: Status) -> None:
     seen = "" if status.psnr != status.psnr else f", {status.psnr:.2f} dB held out"
     left = (
         f"{status.seconds_left / 60:.1f} min left" if status.seconds_left >= 60 else f"{status.seconds_left:.0f} s left"
@@ -159,20 +164,20 @@ def _summary(done: Fitted, output: Path) -> str:
 
 
 def _chosen(done: Fitted) -> list[str]:
-    """A line on the bands and one on the Gaussians that were tried."""
-    told = []
+    """A line on the harmonic bands that were tried, and one on the Gaussians."""
+    lines = []
     bands = [c for c in done.choices if c.what == "degree"]
     if bands:
         tried = ", ".join(f"without degree {c.before} {c.psnr[1] - c.psnr[0]:+.2f} dB" for c in bands)
-        told.append(f"harmonics of degree {done.scene.cloud.degree}: {tried}")
+        lines.append(f"harmonics of degree {done.scene.cloud.degree}: {tried}")
     tenths = [c for c in done.choices if c.what == "gaussians"]
     if left := [c for c in tenths if c.taken]:
         lost = left[0].psnr[0] - left[-1].psnr[1]
-        told.append(f"{left[0].before - left[-1].after:,} Gaussians left out, which cost {lost:.2f} dB at that moment")
+        lines.append(f"{left[0].before - left[-1].after:,} Gaussians left out, which cost {lost:.2f} dB at that moment")
     elif tenths:
         worth = tenths[0].psnr[0] - tenths[0].psnr[1]
-        told.append(f"the last tenth of the Gaussians is worth {worth:.2f} dB; more may gain (--max-gaussians)")
-    return told
+        lines.append(f"the last tenth of the Gaussians is worth {worth:.2f} dB; more may gain (--max-gaussians)")
+    return lines
 
 
 def _data(done: Fitted, photos: Photos, settings: Settings, output: Path) -> dict[str, Any]:
@@ -197,7 +202,7 @@ def _data(done: Fitted, photos: Photos, settings: Settings, output: Path) -> dic
 
 
 def _write_report(done: Fitted, photos: Photos, data: dict[str, Any], folder: Path, force: bool) -> None:
-    """The figures, and of each held-out photograph a picture: as taken, as rendered, their difference fourfold."""
+    """Write report.json, and a picture for each held-out photograph: photo, rendering, 4 times their difference."""
     from ...gaussians.files import writing
     from ...gaussians.fit.quality import comparison
     from ..pictures.image_files import save_png

@@ -1,4 +1,4 @@
-"""`scenewright info SCENE`: what a file holds."""
+"""`scenewright info SCENE`: print the contents of a scene file."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from ..terminal.output import terminal
 def command(
     scene: SceneFile,
     graph: Annotated[
-        bool, typer.Option("--graph", help="Print its scene graph as JSON instead, once it was embedded.")
+        bool, typer.Option("--graph", help="Print its scene graph as JSON instead; the scene must be embedded.")
     ] = False,
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Tell what a scene file holds: format, Gaussians, frame, cameras, repairs, and its things if it was embedded."""
+    """Print the contents of a scene file: format, Gaussians, frame, cameras, repairs, and things if it is embedded."""
     from ...gaussians.files import load_with_report
     from ...gaussians.language.field.store import load_field
     from ..terminal.thing_names import describe_things
@@ -48,13 +48,13 @@ def command(
         "notes": list(report.notes),
         "language": None,
     }
-    told_things = "  not embedded yet: run `scenewright embed`"
+    things_text = "  not embedded yet: run `scenewright embed`"
     if language is not None:
         shown = [g for g in language.objects() if g.count]
         things = [{"group": g.id, "label": g.label, "sure": round(g.label_score, 3), "count": g.count} for g in shown]
         data["language"] = {"encoder": language.encoder, "things": things, "notes": list(language.notes)}
-        told_things = f"  {describe_things(shown)}\n  embedded with {language.encoder}"
-    terminal.result("\n".join([*_lines(data), told_things]), data)
+        things_text = f"  {describe_things(shown)}\n  embedded with {language.encoder}"
+    terminal.result("\n".join([*_lines(data), things_text]), data)
 
 
 def _lines(data: dict[str, Any]) -> list[str]:

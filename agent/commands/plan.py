@@ -1,4 +1,4 @@
-"""`scenewright plan [SCENE] "TEXT"`: what an instruction is taken to mean, without doing it."""
+"""`scenewright plan [SCENE] "TEXT"`: print the plan of an instruction without carrying it out."""
 
 from __future__ import annotations
 
@@ -15,15 +15,13 @@ from ..terminal.output import read_batch, terminal
 if TYPE_CHECKING:
     from ..session.opening import SessionOptions
 
-Answer = Callable[[str, str | None], dict[str, Any]]  # instruction, the one before
+Answer = Callable[[str, str | None], dict[str, Any]]  # arguments: the instruction and the previous one
 
 
 def command(
     arguments: Annotated[
         list[str] | None,
-        typer.Argument(
-            metavar="[SCENE] TEXT", help="The instruction; with a scene before it, its targets are resolved."
-        ),
+        typer.Argument(metavar="[SCENE] TEXT", help="The instruction; after a scene file, its targets are resolved."),
     ] = None,
     batch: Batch = None,
     graph: Annotated[
@@ -31,7 +29,7 @@ def command(
         typer.Option("--graph", metavar="ROOM.json", help="A scene graph to resolve on instead of a scene."),
     ] = None,
     resolve: Annotated[
-        bool, typer.Option("--resolve", help="Look up every target (what a scene or a graph is given for).")
+        bool, typer.Option("--resolve", help="Resolve every target (the default with a scene or a graph).")
     ] = False,
     encoder: Encoder = "auto",
     planner: Planner = "auto",
@@ -41,12 +39,11 @@ def command(
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Tell what an instruction is taken to mean, as JSON. Nothing is changed.
+    """Print the plan of an instruction as JSON. Nothing is changed.
 
-    Without a scene the words alone are read. With one, or with a scene graph (see `scenewright schema graph`), every
-    target is looked up: {"verdict", "steps", "candidates", "reason", "planner", "seconds"}, and what asking a
-    language model took. In a scene the plan is
-    also tried on a copy, so that the answer is what `edit` would do.
+    Without a scene, targets stay queries. With a scene, or a scene graph (see `scenewright schema graph`), every target
+    is resolved: {"verdict", "steps", "candidates", "reason", "planner", "seconds"}, and the usage of a language model.
+    With a scene the plan is also run on a copy, so that the answer shows what `edit` would do.
     """
     from ...gaussians.errors import UserError
     from ..session.opening import SessionOptions
@@ -68,16 +65,16 @@ def command(
         answer = _without_scene(graph, planner, budget)
     for row in rows:
         if batch is not None:
-            terminal.row({"id": row["id"], **_told(answer, row)})
+            terminal.row({"id": row["id"], **_batch_answer(answer, row)})
             continue
-        told = answer(row["text"], row.get("context"))
-        terminal.result(json.dumps(told, indent=2, ensure_ascii=False), told)
-        if told["verdict"] != "ok":
+        data = answer(row["text"], row.get("context"))
+        terminal.result(json.dumps(data, indent=2, ensure_ascii=False), data)
+        if data["verdict"] != "ok":
             raise typer.Exit(3)
 
 
-def _told(answer: Answer, row: dict[str, Any]) -> dict[str, Any]:
-    """The answer to one line of a batch; a line that cannot be an instruction does not stop the others."""
+def _batch_answer(answer: Answer, row: dict[str, Any]) -> dict[str, Any]:
+    """The answer to one line of a batch; a rejected text does not stop the others."""
     from ...gaussians.errors import UserError
     from ..session.plan_report import rejected_json
 
@@ -96,17 +93,17 @@ def _in_scene(options: SessionOptions) -> Answer:
 
 
 def _without_scene(graph: Path | None, planner: str, budget: str | None) -> Answer:
-    """On a graph, or in words alone."""
+    """Answers that resolve targets on a graph, or, without one, leave them as queries."""
     from ...planners import load as load_planner
     from ...planners.budget import Budget, Ledger
     from ..session.plan_report import graph_plan, plan_json
 
     ledger = Ledger(Budget.parse(budget) if budget is not None else None)
-    reader = load_planner(planner, ledger=ledger, progress=terminal.progress)
+    planner_used = load_planner(planner, ledger=ledger, progress=terminal.progress)
     if graph is None:
-        return lambda text, context: plan_json(reader.plan(text, previous=context))
+        return lambda text, context: plan_json(planner_used.plan(text, previous=context))
     from ...planners.rooms.graph import SceneGraph
     from ...planners.rooms.graph_scene import Stage
 
     stage = Stage.of(SceneGraph.read(graph))
-    return lambda text, context: graph_plan(stage, reader, text, context)
+    return lambda text, context: graph_plan(stage, planner_used, text, context)

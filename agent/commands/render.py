@@ -1,4 +1,4 @@
-"""`scenewright render SCENE -o FILE`: a picture of a scene, or a film along a ring, a capture's cameras or a path."""
+"""`scenewright render SCENE -o FILE`: a picture of a scene, or a film on an orbit, a capture's cameras or a path."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from ...gaussians.scene import Scene
     from ..pictures.shots import Shots
 
-Timing = tuple[float | None, float | None]
+Timing = tuple[float | None, float | None]  # seconds of a film, pictures a second
 
-_GIF = (480, 320)  # pixels, where nothing else is asked for: a GIF grows fast
+_GIF_SIZE = (480, 320)  # pixels, by default: the files of larger GIFs grow fast
 
 
 def command(
@@ -34,44 +34,44 @@ def command(
     ],
     view: View = "auto",
     orbit: Annotated[
-        int | None, typer.Option("--orbit", metavar="N", help="N pictures once around the scene, or its middle.")
+        int | None, typer.Option("--orbit", metavar="N", help="N pictures once around the scene or its centre.")
     ] = None,
     cameras: Annotated[
         Path | None,
         typer.Option(
             "--cameras",
             metavar="SOURCE",
-            help="Every camera of a capture (transforms.json, COLMAP folder) or scene; with --orbit, the ring they "
-            "stood on.",
+            help="Every camera of a capture (transforms.json, COLMAP folder) or scene; with --orbit, the ring through "
+            "them.",
         ),
     ] = None,
     path: Annotated[
         Path | None, typer.Option("--path", metavar="FILE", help="A camera path: keyframes in JSON, or nerfstudio's.")
     ] = None,
-    seconds: Annotated[float | None, typer.Option(help="How long the film lasts.")] = None,
-    fps: Annotated[float | None, typer.Option(help="Pictures a second; 25 if nothing says otherwise.")] = None,
+    seconds: Annotated[float | None, typer.Option(help="Length of the film.")] = None,
+    fps: Annotated[float | None, typer.Option(help="Pictures a second, 25 by default.")] = None,
     size: Size = None,
-    background: Annotated[str, typer.Option(help="Colour behind everything: a CSS name or #rrggbb.")] = "black",
+    background: Annotated[str, typer.Option(help="Background colour: a CSS name or #rrggbb.")] = "black",
     alpha: Annotated[bool, typer.Option("--alpha", help="PNGs with a transparent background.")] = False,
     depth: Annotated[
-        bool, typer.Option("--depth", help="16-bit PNGs of depth: thousandths of a scene unit, 0 where nothing is.")
+        bool, typer.Option("--depth", help="16-bit PNGs of depth in thousandths of a scene unit, 0 for background.")
     ] = False,
     backend: Annotated[str, typer.Option(help="Renderer: 'auto', 'cpu', 'reference' or 'cuda'.")] = "auto",
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Draw a scene as a camera sees it, or a film: around it, from a capture's cameras, or along a path."""
+    """Render a scene from a camera, or a film: around it, from a capture's cameras, or along a path."""
     from ...gaussians.color import parse
     from ...gaussians.files import load
     from ...gaussians.render import render
     from ..pictures.film import is_film
 
     film = is_film(output)
-    wishes = {"--view": view != "auto", "--orbit": orbit is not None, "--cameras": cameras is not None}
-    wishes |= {"--path": path is not None, "--seconds": seconds is not None, "--fps": fps is not None}
-    _refuse_contradictions([wish for wish, made in wishes.items() if made], output, film)
-    _refuse_kinds(alpha, depth, output)
+    options = {"--view": view != "auto", "--orbit": orbit is not None, "--cameras": cameras is not None}
+    options |= {"--path": path is not None, "--seconds": seconds is not None, "--fps": fps is not None}
+    _check_options([option for option, given in options.items() if given], output, film)
+    _check_channels(alpha, depth, output)
     behind = (0.0, 0.0, 0.0) if alpha else parse(background)
     finish = _transparent if alpha else _thousandths if depth else _plain
 
@@ -87,29 +87,29 @@ def command(
         _still(draw, choose_view(loaded, view, size), output, force)
 
 
-def _refuse_contradictions(wishes: list[str], output: Path, film: bool) -> None:
-    """Options that cannot be had together.
+def _check_options(given: list[str], output: Path, film: bool) -> None:
+    """Check that the given options fit together and fit the output.
 
     Raises:
-        UserError: there are such; the message names them.
+        UserError: they do not; the message names them.
     """
     from ...gaussians.errors import UserError
 
-    which = [wish for wish in wishes if wish in ("--view", "--orbit", "--cameras", "--path")]
+    which = [option for option in given if option in ("--view", "--orbit", "--cameras", "--path")]
     if len(which) > 1 and which != ["--orbit", "--cameras"]:
         raise UserError(f"{' and '.join(which)} are different pictures; ask for one")
     if film and which in ([], ["--view"]):
         raise UserError(f"{output} is for many pictures; say which: --orbit 75, --cameras CAPTURE or --path FILE")
-    many = [wish for wish in wishes if wish != "--view"]
+    many = [option for option in given if option != "--view"]
     if not film and many:
         raise UserError(f"{many[0]} is for many pictures; write a .gif, an .mp4 or a folder instead of {output.name}")
 
 
-def _refuse_kinds(alpha: bool, depth: bool, output: Path) -> None:
-    """Transparency and depth go into PNGs only.
+def _check_channels(alpha: bool, depth: bool, output: Path) -> None:
+    """Check that transparency or depth is written to PNGs.
 
     Raises:
-        UserError: both are asked for, or neither can be stored there.
+        UserError: both are requested, or the output format cannot store them.
     """
     from ...gaussians.errors import UserError
 
@@ -136,14 +136,14 @@ def _shots(
     """The pictures of a film; `timing` holds its seconds and its pictures a second."""
     from ..pictures import shots
 
-    asked = None if size is None else parse_size(size)
-    usual = _GIF if to.suffix.lower() == ".gif" else PICTURE
+    given = None if size is None else parse_size(size)
+    default = _GIF_SIZE if to.suffix.lower() == ".gif" else PICTURE
     if path is not None:
-        return shots.along(scene, path, asked, usual, *timing)
+        return shots.path_shots(scene, path, given, default, *timing)
     if orbit is not None:
-        return shots.orbit(scene, cameras, orbit, asked or usual, *timing)
+        return shots.orbit_shots(scene, cameras, orbit, given or default, *timing)
     assert cameras is not None
-    return shots.own(cameras, asked, *timing)
+    return shots.capture_shots(cameras, given, *timing)
 
 
 def _film(draw: Callable[[Camera], Any], shots: Shots, output: Path, force: bool) -> None:
@@ -177,7 +177,7 @@ def _plain(drawn: Render) -> Any:
 
 
 def _transparent(drawn: Render) -> Any:
-    """`[H, W, 4]` uint8, colours as they are without the black behind them."""
+    """`[H, W, 4]` uint8 with straight alpha: colours without the black background."""
     import torch
 
     alpha = drawn.alpha[..., None]
@@ -186,7 +186,7 @@ def _transparent(drawn: Render) -> Any:
 
 
 def _thousandths(drawn: Render) -> Any:
-    """`[H, W]` uint16, depth in thousandths of a scene unit; what is too far for 16 bits is 65535."""
+    """`[H, W]` uint16, depth in thousandths of a scene unit; depths beyond 16 bits are 65535."""
     import numpy as np
 
     return (drawn.depth.cpu().numpy() * 1000 + 0.5).clip(0, 65535).astype(np.uint16)

@@ -1,4 +1,4 @@
-"""`scenewright schema NAME`: the JSON Schema of plans, graphs, operations and queries."""
+"""`scenewright schema NAME`: print the JSON Schema of plans, graphs, operations or queries."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`scenewright select SCENE "TEXT"`: which Gaussians a phrase means."""
+"""`scenewright select SCENE "TEXT"`: select the Gaussians that a phrase describes."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ Ids = Annotated[
         "--ids", metavar="FILE", help="Write the Gaussians' row numbers (.npy); with --batch a folder of <id>.npy."
     ),
 ]
-Grow = Annotated[float | None, typer.Option(metavar="METRES", help="Then take in the Gaussians within this distance.")]
+Grow = Annotated[float | None, typer.Option(metavar="METRES", help="Then add the Gaussians within this distance.")]
 Shrink = Annotated[
-    float | None, typer.Option(metavar="METRES", help="Then draw back this far from all other Gaussians.")
+    float | None, typer.Option(metavar="METRES", help="Then remove those within this distance of other Gaussians.")
 ]
-Invert = Annotated[bool, typer.Option("--invert", help="Then take everything else instead.")]
+Invert = Annotated[bool, typer.Option("--invert", help="Then select everything else instead.")]
 Explain = Annotated[
-    bool, typer.Option("--explain", help="Tell each term of every candidate, and what it is held against.")
+    bool, typer.Option("--explain", help="Print each candidate's score of each term, and its threshold or rival.")
 ]
 
 
@@ -49,7 +49,7 @@ def command(
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Find what a phrase means: found, ambiguous (with the candidates) or absent (with the nearest)."""
+    """Select what a phrase describes: found, ambiguous (with the candidates) or absent (with the nearest)."""
     from ...gaussians.errors import UserError
     from ..output_files import make_folder
     from ..session.opening import SessionOptions, open_session
@@ -61,29 +61,29 @@ def command(
     _check_targets([t for t in targets if t is not None], force)
     if ids is not None and batch is not None:
         make_folder(ids)
-    asked = Asked(_steps(grow, shrink, invert), explain)
+    changes = SelectionChanges(_steps(grow, shrink, invert), explain)
     session, _ = open_session(SessionOptions(scene, planner, encoder, view))
     if batch is None:
-        _one(session, str(text), asked, targets[0], force)
+        _one(session, str(text), changes, targets[0], force)
         return
     for row, target in zip(rows, targets, strict=True):
         session.recall(row.get("context"))
-        selection, data = _answer(session, row["text"], asked)
+        selection, data = _answer(session, row["text"], changes)
         if target is not None:
             _write_rows(selection, target, force)
         terminal.row({"id": row["id"], **data})
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What is done with a selection: queries about "it" that change it in turn, and whether it is explained."""
+class SelectionChanges:
+    """Options applied to each selection: queries on "it" that change it in turn, and whether to explain it."""
 
     steps: tuple[Query, ...]
     explain: bool
 
 
 def _steps(grow: float | None, shrink: float | None, invert: bool) -> tuple[Query, ...]:
-    """Growing, then shrinking, then inverting, as far as they were asked for."""
+    """The requested changes in the order grow, shrink, invert."""
     from ...gaussians.errors import UserError
     from ...gaussians.language.query.query import Query
 
@@ -101,7 +101,11 @@ def _steps(grow: float | None, shrink: float | None, invert: bool) -> tuple[Quer
 
 
 def _target(ids: Path | None, row: Any, batch: bool) -> Path | None:
-    """Where the rows of one answer go; an id that is no plain file name is refused."""
+    """The file for the rows of one answer.
+
+    Raises:
+        UserError: the id of a batch line cannot be a file name.
+    """
     from ...gaussians.errors import UserError
 
     if ids is None or not batch:
@@ -113,7 +117,7 @@ def _target(ids: Path | None, row: Any, batch: bool) -> Path | None:
 
 
 def _check_targets(targets: list[Path], force: bool) -> None:
-    """Say before the work that a file would be overwritten, or that two answers would go to one."""
+    """Check before the work that no file would be overwritten and no two answers go to one file."""
     from ...gaussians.errors import UserError
     from ..output_files import refuse_existing
 
@@ -123,8 +127,8 @@ def _check_targets(targets: list[Path], force: bool) -> None:
     refuse_existing(targets, force)
 
 
-def _one(session: Session, text: str, asked: Asked, target: Path | None, force: bool) -> None:
-    selection, data = _answer(session, text, asked)
+def _one(session: Session, text: str, changes: SelectionChanges, target: Path | None, force: bool) -> None:
+    selection, data = _answer(session, text, changes)
     if selection is None or selection.verdict != "found":
         terminal.result(data["reason"], data)
         for number, c in enumerate(selection.candidates if selection is not None else (), start=1):
@@ -137,22 +141,22 @@ def _one(session: Session, text: str, asked: Asked, target: Path | None, force: 
     terminal.result(f"{len(selection):,} Gaussians: {things}{note}", data)
 
 
-def _answer(session: Session, text: str, asked: Asked) -> tuple[Selection | None, dict[str, Any]]:
+def _answer(session: Session, text: str, changes: SelectionChanges) -> tuple[Selection | None, dict[str, Any]]:
     """The selection, None if the words were not understood, and the answer as data."""
     from ...gaussians.errors import UserError
     from ..session.plan_report import selection_json
 
     started = time.perf_counter()
     try:
-        explained = session.explain(text) if asked.explain else None
+        explained = session.explain(text) if changes.explain else None
         selection = session.select(text)
-        said = selection.query.describe()
-        for step in asked.steps if selection.verdict == "found" else ():
-            selection, said = session.select(step), step.describe().replace("it", said, 1)
+        words = selection.query.describe()
+        for step in changes.steps if selection.verdict == "found" else ():
+            selection, words = session.select(step), step.describe().replace("it", words, 1)
     except UserError as error:
         refused = {"verdict": "not_understood", "gaussians": 0, "groups": [], "candidates": [], "reason": str(error)}
         return None, {**refused, "seconds": round(time.perf_counter() - started, 4)}
-    data = {**selection_json(selection), "asked": said, "seconds": round(time.perf_counter() - started, 4)}
+    data = {**selection_json(selection), "asked": words, "seconds": round(time.perf_counter() - started, 4)}
     if explained is not None:
         data["explained"] = explained.to_json()
         for line in explained.lines():
@@ -161,7 +165,7 @@ def _answer(session: Session, text: str, asked: Asked) -> tuple[Selection | None
 
 
 def _write_rows(selection: Selection | None, target: Path, force: bool) -> None:
-    """Row numbers of the selected Gaussians in the loaded file, int64; none where nothing was found."""
+    """Write the row numbers of the selected Gaussians in the loaded file, int64; an empty array for no selection."""
     import numpy as np
 
     from ...gaussians.files import writing

@@ -1,1 +1,1 @@
-"""The demonstration: a furnished room, ten instructions and what they should do."""
+"""The demo: furnishes a room, edits it with ten instructions, and checks their outcome."""

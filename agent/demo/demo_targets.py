@@ -1,7 +1,6 @@
-"""Whom the demo can speak of in a room, and whether a sentence leads where it ought to.
+"""Finds the things that the demo can name in a room, and checks instructions and results against the ground truth.
 
-Knows the builder's list of things, which the selection never sees. Refuses to know what is said of them (script.py) and
-in which order (demo.py).
+The ground truth is the builder's list of things; the selection never sees it.
 """
 
 from __future__ import annotations
@@ -15,18 +14,18 @@ from ...gaussians.camera import Camera
 from ...gaussians.errors import AbsentError, AmbiguousError, ScenewrightError
 from ..session.result import Result
 from ..session.session import Session
-from .script import Cast, Thing, Turn
+from .script import Targets, Thing, Turn
 
 if TYPE_CHECKING:
     from ...gaussians.assets import Room
 
-VISIBLE = 0.002  # share of the picture from which a thing is worth speaking of
+VISIBLE = 0.002  # share of the picture that a thing must cover to be named
 
 Ids = NDArray[np.int32]
 
 
-def cast_of(room: Room, viewer: Camera) -> Cast:
-    """Who can be spoken of: things by the pixels they fill, and kinds that are not there."""
+def find_targets(room: Room, viewer: Camera) -> Targets:
+    """The visible things of a room, by the pixels that they cover, and kinds of things that it does not contain."""
     import torch
 
     from ...gaussians.assets import kinds
@@ -41,17 +40,17 @@ def cast_of(room: Room, viewer: Camera) -> Cast:
     # A "lamp" is not absent from a room with a floor lamp.
     words = {word for kind in there for word in kind.split()}
     absent = [k for k in kinds(shown=True) if k not in there and not set(k.split()) & words]
-    return Cast(sorted(visible, key=lambda t: -t.pixels), absent, set())
+    return Targets(sorted(visible, key=lambda t: -t.pixels), absent, set())
 
 
 def _seen(mask: NDArray[np.bool_]) -> tuple[int, float]:
-    """How many pixels, and their mean place from left to right."""
+    """The number of pixels of a mask, and their mean horizontal position from 0 (left) to 1 (right)."""
     columns = mask.nonzero()[1]
     return len(columns), float(columns.mean() / mask.shape[1]) if len(columns) else 0.5
 
 
-def tried(session: Session, turn: Turn) -> tuple[bool, Result | None]:
-    """Whether a sentence leads where it ought to, and the result it would have."""
+def try_turn(session: Session, turn: Turn) -> tuple[bool, Result | None]:
+    """Whether an instruction has its expected outcome, and its result, in a dry run."""
     if turn.outcome == "undo":
         return len(session.done) > 0, None
     try:
@@ -74,7 +73,10 @@ def _answer_helps(session: Session, answer: str) -> bool:
 
 
 def agreement(result: Result, turn: Turn, truth: Ids) -> float | None:
-    """How well what was chosen agrees with the builder's list, over the Gaussians the room began with."""
+    """Intersection over union of the selection with the ground truth, over the Gaussians of the unedited room.
+
+    None if the turn names no thing or the scene has no language field.
+    """
     language = result.before.language
     if not turn.about or language is None:
         return None

@@ -1,8 +1,7 @@
-"""The main job from end to end: furnish a room, embed it, hold a conversation with it, leave everything behind.
+"""Runs the demo: furnishes a room, embeds it, edits it with ten instructions, and writes all files.
 
-Knows the order of things and what to keep. Refuses to know which room it is in: what is said is derived from it (see
-script.py). The builder's own list of things is used to choose words a visitor would use and to check the answers
-afterwards; the selection never sees it.
+The instructions are derived from the room (see script.py). The builder's own list of things serves to choose the words
+and to check the results afterwards; the selection never sees it.
 """
 
 from __future__ import annotations
@@ -26,14 +25,14 @@ from ..pictures.scene_pictures import Picture, after, numbered, picture
 from ..session.result import Result
 from ..session.session import Session
 from ..terminal.thing_names import describe_things
-from .demo_targets import Ids, agreement, cast_of, tried
-from .script import SCRIPT, Cast, Role, Turn
+from .demo_targets import Ids, agreement, find_targets, try_turn
+from .script import SCRIPT, ScriptPart, Targets, Turn
 
 if TYPE_CHECKING:
     from ...gaussians.assets import Room
 
-TRIES = 40  # sentences a role may offer before it is left out
-AGREES = 0.5  # intersection over union from which a choice counts as the thing that was meant
+MAX_TRIES = 40  # instructions tried for one part of the script before it is left out
+MIN_IOU = 0.5  # intersection over union from which a selection counts as the thing that was meant
 FILES = ("room.ply", "edited.ply", "session.jsonl", "contact_sheet.png")
 
 Say = Callable[[str], None]
@@ -41,16 +40,16 @@ Say = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Step:
-    """One thing that was said and what came of it.
+    """One instruction and its outcome.
 
     Attributes:
         number: from 1.
-        text: the instruction, with the answer that was given if it was asked back.
+        text: the instruction, followed by the answer if there was a question.
         outcome: in a sentence.
-        good: whether the scene was edited (or looked at) as said.
+        good: whether the instruction was carried out.
         seconds: from the words to the new scene, without pictures.
-        overlap: intersection over union of what was chosen with what the builder calls by those words; None if there
-            is nothing to compare.
+        overlap: intersection over union of the selection with the things that were meant; None if there is nothing to
+            compare.
         files: its pictures.
     """
 
@@ -68,13 +67,13 @@ class Demo:
     """A run of the demo.
 
     Args:
-        folder: where everything is left.
+        folder: for all files.
         seed: of the room.
         size: width and height of the pictures, pixels.
-        force: overwrite what an earlier run left.
+        force: overwrite the files of an earlier run.
         encoder: text and image encoder.
-        say: told what happens, line by line.
-        progress: told how far long work is.
+        say: called with each line of the report.
+        progress: called with the stage and the share done during long work.
     """
 
     folder: Path
@@ -90,10 +89,10 @@ class Demo:
     _tiles: list[Tile] = field(default_factory=list)
 
     def run(self) -> dict[str, Any]:
-        """Do everything; what was done, as data.
+        """Run the demo and return its report as data.
 
         Raises:
-            UserError: files of an earlier run are there and `force` is not set.
+            UserError: there are files of an earlier run and `force` is not set.
         """
         started = time.perf_counter()
         self._prepare()
@@ -111,13 +110,13 @@ class Demo:
         session.viewer = _viewer(scene, self.size)
         with timed(self.seconds, "embed"):
             session.embed()
-        self._tell_things(session)
+        self._describe_scene(session)
         self._converse(session, room)
         with timed(self.seconds, "save"):
             session.save(self.folder / "edited.ply", force=self.force)
         session.close()
         if self.passed_over:
-            self.say(f"passed over, since other things would have been taken: {'; '.join(self.passed_over)}")
+            self.say(f"skipped, since they would select other things: {'; '.join(self.passed_over)}")
         self._sheet()
         self.seconds["total"] = time.perf_counter() - started
         return self._report()
@@ -132,7 +131,7 @@ class Demo:
         for old in self.folder.glob("[0-9][0-9]-*.png") if self.force else ():
             old.unlink()
 
-    def _tell_things(self, session: Session) -> None:
+    def _describe_scene(self, session: Session) -> None:
         language = session.scene.language
         assert language is not None
         self.say(f"embedded in {self.seconds['embed']:.1f} s; it sees {describe_things(language.objects())}")
@@ -156,31 +155,31 @@ class Demo:
 
     def _converse(self, session: Session, room: Room) -> None:
         truth = np.asarray(room.truth.ids)
-        cast = cast_of(room, session.viewer)
-        for name, role in SCRIPT:
+        targets = find_targets(room, session.viewer)
+        for name, part in SCRIPT:
             with timed(self.seconds, "choose what to say"):
-                turn = self._first_that_fits(session, role, cast, truth)
+                turn = self._first_that_fits(session, part, targets, truth)
             if turn is None:
                 self.say(f"-- left out: {name} (nothing in this room suits it)")
                 continue
             self._play(session, turn, truth)
-            cast.used.update(t.id for t in turn.about)
-            cast.last = turn.about[-1] if turn.about else cast.last
+            targets.used.update(t.id for t in turn.about)
+            targets.last = turn.about[-1] if turn.about else targets.last
             if turn.text.startswith("remove") and turn.outcome == "edit":
-                cast.things = [t for t in cast.things if t not in turn.about]
+                targets.things = [t for t in targets.things if t not in turn.about]
 
-    def _first_that_fits(self, session: Session, role: Role, cast: Cast, truth: Ids) -> Turn | None:
-        """The first sentence of a role from which what ought to come of it comes, tried on a copy.
+    def _first_that_fits(self, session: Session, part: ScriptPart, targets: Targets, truth: Ids) -> Turn | None:
+        """The first instruction of a part of the script that has its expected outcome in a dry run.
 
-        A sentence that would be misunderstood is passed over, and counted.
+        An instruction that would select the wrong thing is skipped and added to `passed_over`.
         """
         mistaken: set[int] = set()
-        for turn in itertools.islice(role(cast), TRIES):
+        for turn in itertools.islice(part(targets), MAX_TRIES):
             if mistaken & {t.id for t in turn.about}:
                 continue
-            fits, result = tried(session, turn)
+            fits, result = try_turn(session, turn)
             overlap = agreement(result, turn, truth) if result is not None else None
-            if fits and (overlap is None or overlap >= AGREES):
+            if fits and (overlap is None or overlap >= MIN_IOU):
                 return turn
             if fits:
                 mistaken |= {t.id for t in turn.about}
@@ -188,7 +187,7 @@ class Demo:
         return None
 
     def _play(self, session: Session, turn: Turn, truth: Ids) -> None:
-        """Say it, answer if asked back, and keep pictures of before and after."""
+        """Carry out a turn, answer its question if there is one, and save pictures before and after."""
         number = len(self.steps) + 1
         with timed(self.seconds, "pictures"):
             before = picture(session.scene, session.viewer)

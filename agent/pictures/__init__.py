@@ -1,1 +1,1 @@
-"""Pictures and films of a scene: cameras by name, shots, contact sheets and files."""
+"""Pictures and films of a scene: named cameras, the cameras of films, contact sheets and image files."""

@@ -1,6 +1,6 @@
-"""Pictures in a row on disk: a folder of PNGs, a GIF, or an MP4 that ffmpeg makes; whole or not at all.
+"""Writes films: a folder of PNGs, a GIF, or an MP4 made by ffmpeg; a film is written completely or not at all.
 
-PNG and GIF have the same bytes for the same pictures. Knows formats. Refuses to know what the pictures show.
+PNG and GIF have the same bytes for the same pictures.
 """
 
 from __future__ import annotations
@@ -30,18 +30,18 @@ from .image_files import Picture, save_png
 Draw = Callable[[int], Picture]  # the i-th picture, [H, W, 3] or, for PNGs, [H, W, 4] or 16-bit [H, W]
 
 _PATTERN = re.compile(r"%(0\d{1,2})?d")
-_GIF_FASTEST = 50.0  # pictures a second: below two hundredths of a second browsers slow a GIF down to ten a second
-_GIF_MOST = 400_000_000  # pixels of a GIF's pictures together: they are all held until it is written
-_PALETTE_FROM = 16  # pictures that a GIF's palette is made of
-_PALETTE_PIXELS = 40_000  # of each
-_PATIENCE = 60.0  # seconds without a byte taken before ffmpeg counts as hanging
+_GIF_MAX_FPS = 50.0  # browsers slow a GIF with delays below two hundredths of a second down to ten pictures a second
+_GIF_MAX_PIXELS = 400_000_000  # of all pictures of a GIF together: they are held in memory until it is written
+_PALETTE_PICTURES = 16  # pictures that a GIF's palette is computed from
+_PALETTE_PIXELS = 40_000  # of each of them
+_FFMPEG_TIMEOUT = 60.0  # seconds in which ffmpeg reads no byte, after which it counts as hanging
 
 
 def is_film(output: Path) -> bool:
     """Whether a path means more than one picture.
 
     Raises:
-        UserError: its suffix is none that can be written.
+        UserError: its suffix is of no format that can be written.
     """
     suffix = output.suffix.lower()
     if suffix == ".png":
@@ -52,25 +52,25 @@ def is_film(output: Path) -> bool:
 
 
 def picture_paths(output: Path, names: Sequence[str]) -> list[Path]:
-    """Where the pictures of a film go that is a folder or a pattern such as `frames/%04d.png`; else none.
+    """The files of a film that is a folder or a pattern such as `frames/%04d.png`; an empty list for other films.
 
     Raises:
-        UserError: the pattern is none.
+        UserError: the pattern is not valid.
     """
     if output.suffix.lower() in (".gif", ".mp4") and not output.is_dir():
         return []
     if output.suffix.lower() != ".png":
         return [output / f"{name}.png" for name in names]
-    if output.name.count("%") != 1:  # then the pattern is all that is replaced
-        raise UserError(f"{output.name} is no pattern for pictures; write for example %04d.png")
+    if output.name.count("%") != 1:  # any other "%" would be replaced too
+        raise UserError(f"{output.name} is not a pattern for pictures; write for example %04d.png")
     return [output.with_name(output.name % i) for i in range(len(names))]
 
 
 def check(output: Path, names: Sequence[str], sizes: set[tuple[int, int]], fps: float, force: bool) -> None:
-    """Whatever can be refused before a picture is drawn.
+    """Check a film before its first picture is rendered.
 
     Raises:
-        UserError: a file is in the way, or the pictures do not suit the format.
+        UserError: a file would be overwritten, or the pictures do not suit the format.
         BackendError: there is no ffmpeg for an .mp4.
     """
     pictures = picture_paths(output, names)
@@ -87,21 +87,21 @@ def check(output: Path, names: Sequence[str], sizes: set[tuple[int, int]], fps: 
                 f"an .mp4 needs even sides, not {width}x{height}; give --size {width + width % 2}x{height + height % 2}"
             )
         return
-    if fps > _GIF_FASTEST:
+    if fps > _GIF_MAX_FPS:
         raise UserError(
-            f"a .gif shows at most {_GIF_FASTEST:g} pictures a second, not {fps:g}; write .mp4 or lower --fps"
+            f"a .gif shows at most {_GIF_MAX_FPS:g} pictures a second, not {fps:g}; write .mp4 or lower --fps"
         )
-    if width * height * len(names) > _GIF_MOST:
+    if width * height * len(names) > _GIF_MAX_PIXELS:
         raise UserError(
             f"{len(names)} pictures of {width}x{height} are too much for a .gif; write .mp4 or lower --size"
         )
 
 
 def write(output: Path, names: Sequence[str], draw: Draw, fps: float, force: bool) -> int:
-    """Draw and write a film that `check` found nothing wrong with; the bytes written.
+    """Render and write a film that passed `check`; returns the bytes written.
 
     Raises:
-        UserError, FileError: the file appeared meanwhile, or the system refuses to write.
+        UserError, FileError: the file was made by others in the meantime, or cannot be written.
         BackendError: ffmpeg failed or hangs.
     """
     pictures = picture_paths(output, names)
@@ -117,7 +117,7 @@ def write(output: Path, names: Sequence[str], draw: Draw, fps: float, force: boo
 
 
 def _write_pictures(paths: Sequence[Path], draw: Draw, force: bool) -> None:
-    """All pictures into a hidden folder first; they take their places when the last is drawn."""
+    """Write all pictures into a hidden folder, and move them to their places after the last one."""
     folder = paths[0].parent
     make_folder(folder.absolute().parent)
     fresh = not folder.exists()
@@ -139,11 +139,11 @@ def _write_pictures(paths: Sequence[Path], draw: Draw, force: bool) -> None:
 
 
 def _write_gif(file: BinaryIO, count: int, draw: Draw, fps: float) -> None:
-    """A GIF that loops, with one palette for all pictures, so that nothing flickers."""
-    early = {int(i): draw(int(i)) for i in np.unique(np.linspace(0, count - 1, _PALETTE_FROM).round())}
+    """Write a looping GIF with one palette for all pictures, which avoids flicker."""
+    early = {int(i): draw(int(i)) for i in np.unique(np.linspace(0, count - 1, _PALETTE_PICTURES).round())}
     palette = _palette(list(early.values()))
     drawn = (_reduced(early.pop(i) if i in early else draw(i), palette) for i in range(count))
-    ends = [round(100 * i / fps) for i in range(count + 1)]  # hundredths of a second, so that errors do not add up
+    ends = [round(100 * i / fps) for i in range(count + 1)]  # 1/100 s; rounded ends keep errors from adding up
     delays = [10 * (b - a) for a, b in itertools.pairwise(ends)]
     first = next(drawn)
     if count == 1:
@@ -153,7 +153,7 @@ def _write_gif(file: BinaryIO, count: int, draw: Draw, fps: float) -> None:
 
 
 def _palette(pictures: Sequence[Picture]) -> Image.Image:
-    """An image whose palette suits all pictures; one colour of 256 is left for what does not change."""
+    """An image whose palette of 255 colours suits all pictures; one of 256 is left for unchanged pixels."""
     points = [p.reshape(-1, 3)[:: max(1, p.shape[0] * p.shape[1] // _PALETTE_PIXELS)] for p in pictures]
     column = np.concatenate(points)[:, None]
     return Image.fromarray(column).quantize(255, method=Image.Quantize.MEDIANCUT, kmeans=2)
@@ -164,28 +164,30 @@ def _reduced(picture: Picture, palette: Image.Image) -> Image.Image:
 
 
 def _write_mp4(file: BinaryIO, count: int, draw: Draw, fps: float) -> None:
-    """Raw pictures through a pipe into ffmpeg, which writes over the file that `writing` made."""
+    """Send raw pictures through a pipe to ffmpeg, which overwrites the file that `writing` made."""
     first = draw(0)
     height, width = first.shape[:2]
     source = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", f"{fps:g}", "-i", "pipe:0"]
     target = ["-an", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4", file.name]
     with (
-        tempfile.TemporaryFile() as said,
-        _running([_ffmpeg(), "-y", "-v", "error", *source, *target], said) as process,
+        tempfile.TemporaryFile() as messages,
+        _running([_ffmpeg(), "-y", "-v", "error", *source, *target], messages) as process,
     ):
         try:
             for i in range(count):
                 _feed(process, first if i == 0 else draw(i))
             assert process.stdin is not None
             process.stdin.close()
-            failed = process.wait(timeout=_PATIENCE) != 0
+            failed = process.wait(timeout=_FFMPEG_TIMEOUT) != 0
         except BrokenPipeError:
             failed = True
         except subprocess.TimeoutExpired as error:
-            raise BackendError(f"ffmpeg took nothing for {_PATIENCE:g} s and was ended; write .gif instead") from error
+            raise BackendError(
+                f"ffmpeg took nothing for {_FFMPEG_TIMEOUT:g} s and was ended; write .gif instead"
+            ) from error
         if failed or os.fstat(file.fileno()).st_size == 0:
-            said.seek(0)
-            last = said.read(4000).decode(errors="replace").strip().splitlines()[-1:] or ["it did not say why"]
+            messages.seek(0)
+            last = messages.read(4000).decode(errors="replace").strip().splitlines()[-1:] or ["it gave no reason"]
             raise BackendError(f"ffmpeg failed: {last[0]}; write .gif instead")
 
 
@@ -204,11 +206,11 @@ def _ffmpeg() -> str:
 
 
 @contextlib.contextmanager
-def _running(command: Sequence[str], said: IO[bytes]) -> Iterator[subprocess.Popen[bytes]]:
-    """A process in a session of its own, so that Ctrl-C reaches it through us, and ended whatever happens."""
+def _running(command: Sequence[str], messages: IO[bytes]) -> Iterator[subprocess.Popen[bytes]]:
+    """A process that is killed at the end of the context; its own session keeps Ctrl-C from reaching it directly."""
     try:
         process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=said, stderr=said, bufsize=0, start_new_session=True
+            command, stdin=subprocess.PIPE, stdout=messages, stderr=messages, bufsize=0, start_new_session=True
         )
     except OSError as error:
         raise BackendError(f"ffmpeg cannot be started: {error.strerror or error}; write .gif instead") from error
@@ -224,15 +226,15 @@ def _running(command: Sequence[str], said: IO[bytes]) -> Iterator[subprocess.Pop
 
 
 def _feed(process: subprocess.Popen[bytes], picture: NDArray[np.uint8]) -> None:
-    """Hand a picture over.
+    """Write a picture to the process.
 
     Raises:
-        BrokenPipeError: the process is gone.
-        subprocess.TimeoutExpired: it takes nothing.
+        BrokenPipeError: the process has ended.
+        subprocess.TimeoutExpired: it reads nothing for `_FFMPEG_TIMEOUT`.
     """
     assert process.stdin is not None
     left = memoryview(np.ascontiguousarray(picture).tobytes())
     while left:
-        if not select.select([], [process.stdin], [], _PATIENCE)[1]:
-            raise subprocess.TimeoutExpired(process.args, _PATIENCE)
+        if not select.select([], [process.stdin], [], _FFMPEG_TIMEOUT)[1]:
+            raise subprocess.TimeoutExpired(process.args, _FFMPEG_TIMEOUT)
         left = left[os.write(process.stdin.fileno(), left) :]

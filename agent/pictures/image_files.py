@@ -1,7 +1,4 @@
-"""Pictures on disk: a PNG, and a contact sheet of steps with words under them.
-
-Knows pixels and letters. Refuses to know what the pictures show.
-"""
+"""Writes PNG files and composes a contact sheet: pictures of steps with their instruction and outcome."""
 
 from __future__ import annotations
 
@@ -28,7 +25,7 @@ class Tile:
 
     Attributes:
         title: the instruction.
-        outcome: what came of it.
+        outcome: its outcome in a sentence.
         pictures: one or two pictures side by side, of one size.
         good: whether the outcome is an edit (green) or a refusal (red).
     """
@@ -40,7 +37,7 @@ class Tile:
 
 
 def save_png(picture: NDArray[np.uint8 | np.uint16], path: str | Path, force: bool = False) -> None:
-    """Write a picture, whole or not at all; an existing file only with `force`.
+    """Write a picture completely or not at all; an existing file is overwritten only with `force`.
 
     `[H, W, 3]` colours, `[H, W, 4]` with alpha, or `[H, W]` of up to 16 bits.
     """
@@ -49,7 +46,7 @@ def save_png(picture: NDArray[np.uint8 | np.uint16], path: str | Path, force: bo
 
 
 def beside(pictures: Sequence[Picture], gap: int = 6) -> Picture:
-    """Pictures of one height in a row, on paper."""
+    """Pictures of one height in a row, with background between them."""
     height = pictures[0].shape[0]
     bar = np.full((height, gap, 3), _PAPER, dtype=np.uint8)
     row = [p for picture in pictures for p in (bar, picture)][1:]
@@ -98,6 +95,6 @@ def _font(size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
 
 
 def _wrapped(text: str, font: ImageFont.FreeTypeFont | ImageFont.ImageFont, width: int) -> list[str]:
-    """Lines that fit into `width` pixels, by the mean width of the text's letters."""
+    """Lines that fit into `width` pixels, by the mean width of a character of the text."""
     letter = max(1.0, font.getlength(text) / max(1, len(text)))
     return textwrap.wrap(text, max(8, int(width / letter) - 1)) or [""]

@@ -1,6 +1,6 @@
-"""Cameras named in words: by number or name among those of the scene, or by eye and target; and the size of pictures.
+"""Parses cameras of the command line: a camera of the scene by number or name, or eye and target; and picture sizes.
 
-Knows how a view is written. Refuses to know how a good view is found (see gaussians.language.views).
+Views are chosen automatically in `gaussians.viewpoints.coverage`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ...gaussians.camera import Camera, Vec3
     from ...gaussians.scene import Scene
 
-PICTURE = (960, 640)  # pixels, where nothing else is asked for
+PICTURE = (960, 640)  # pixels, by default
 _FOV_Y = 55.0  # degrees, of a view given by eye and target
 
 
@@ -23,7 +23,7 @@ def choose_view(scene: Scene, view: str = "auto", size: str | None = None) -> Ca
     """The camera that `view` names, at `size` ("1280x720").
 
     Raises:
-        UserError: there is no such camera, or the words cannot be read.
+        UserError: there is no such camera, or the view or size cannot be parsed.
     """
     from ...gaussians.camera import Camera
 
@@ -49,7 +49,7 @@ def default_view(scene: Scene) -> Camera:
 
 
 def framed(scene: Scene) -> Scene:
-    """The scene with up and floor estimated, if nobody said which way is up."""
+    """The scene with up and floor estimated, if its up direction is unknown."""
     if scene.frame.up_source != "unknown":
         return scene
     from ...gaussians.language.segmentation.orient import estimate_frame
@@ -62,7 +62,7 @@ def with_frame(scene: Scene, up: str | None, metres_per_unit: float | None) -> S
     """The scene with the up direction ("0,0,1") and scale that the user gives; None leaves each as it is.
 
     Raises:
-        UserError: the direction is none, or the scale is not positive.
+        UserError: the direction is zero or cannot be parsed, or the scale is not positive.
     """
     from dataclasses import replace
 
@@ -82,12 +82,12 @@ def parse_size(text: str) -> tuple[int, int]:
     """ "1280x720" as `(1280, 720)`.
 
     Raises:
-        UserError: it is no size, or beyond 8192 pixels a side.
+        UserError: it is not a size, or larger than 8192 pixels a side.
     """
     match = re.fullmatch(r"(\d{1,5})\s*[xX×]\s*(\d{1,5})", text.strip())
     size = (int(match[1]), int(match[2])) if match else (0, 0)
     if not all(1 <= side <= 8192 for side in size):
-        raise UserError(f"{text!r} is no picture size; write for example 1280x720 (at most 8192 a side)")
+        raise UserError(f"{text!r} is not a picture size; write for example 1280x720 (at most 8192 a side)")
     return size
 
 
@@ -105,7 +105,7 @@ def _point(text: str) -> Vec3:
     try:
         x, y, z = (float(c) for c in text.split(","))
     except ValueError:
-        raise UserError(f"{text!r} is no point; write three numbers x,y,z") from None
+        raise UserError(f"{text!r} is not a point; write three numbers x,y,z") from None
     if not all(map(math.isfinite, (x, y, z))):
-        raise UserError(f"{text!r} is no point; its numbers must be finite")
+        raise UserError(f"{text!r} is not a point; its numbers must be finite")
     return (x, y, z)

@@ -1,7 +1,4 @@
-"""What the user is shown of a scene: a picture, a picture with some of it lit, a picture with numbered candidates.
-
-Knows pictures and which rows belong to what. Refuses to know how pixels are made.
-"""
+"""Pictures of a scene for the user: plain, with the selection highlighted, or with numbered candidates."""
 
 from __future__ import annotations
 
@@ -27,7 +24,7 @@ def picture(scene: Scene, camera: Camera) -> Picture:
 
 
 def spotlight(scene: Scene, camera: Camera, selection: Selection) -> Picture:
-    """The scene with the selection in full light and outlined, and everything else dimmed."""
+    """The scene with the selection outlined and everything else dimmed."""
     chosen = scene.cloud.replace(group=selection.mask(scene.cloud).int())
     drawn = render(chosen, camera)
     lit: NDArray[np.bool_] = (drawn.group == 1).cpu().numpy()
@@ -38,7 +35,7 @@ def spotlight(scene: Scene, camera: Camera, selection: Selection) -> Picture:
 
 
 def after(result: Result, camera: Camera) -> Picture:
-    """The scene after an instruction; a mere selection is lit, since nothing else would show it."""
+    """The scene after an instruction; if only the selection changed, it is highlighted."""
     if result.scene is result.before and result.selection is not None:
         return spotlight(result.scene, camera, result.selection)
     return picture(result.scene, camera)
@@ -63,7 +60,7 @@ def numbered(scene: Scene, camera: Camera, candidates: Sequence[Candidate]) -> P
 
 
 def _edge(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Pixels just outside a mask, two wide."""
+    """The two-pixel border just outside a mask."""
     grown = mask.copy()
     for _ in range(2):
         padded = np.pad(grown, 1)

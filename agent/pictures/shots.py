@@ -1,7 +1,4 @@
-"""Which pictures a film is made of: a ring around the scene, a capture's cameras, or a path, at a size and a rate.
-
-Knows how such wishes are written on the command line. Refuses to know pixels and how films are stored.
-"""
+"""The cameras of a film: on a ring around the scene, those of a capture, or along a path; and its frame rate."""
 
 from __future__ import annotations
 
@@ -19,21 +16,21 @@ if TYPE_CHECKING:
     from ...gaussians.camera import Camera
     from ...gaussians.scene import Scene
 
-MOST = 10_000  # pictures
-RATE = 25.0  # pictures a second, where nothing else is asked for; GIF counts in hundredths, so 25 is exact
-_TURN = 6.0  # seconds a turn takes at least, where nothing else is asked for: a faster one is hard to look at
-RATES = (0.1, 240.0)
+MAX_PICTURES = 10_000
+RATE = 25.0  # pictures a second, by default; GIF delays are in hundredths of a second, so 25 is exact
+_MIN_TURN = 6.0  # seconds, least duration of an orbit by default: a faster one is hard to watch
+RATES = (0.1, 240.0)  # pictures a second, least and greatest
 
 Size = tuple[int, int]
 
 
 @dataclass(frozen=True, eq=False)
 class Shots:
-    """What is to be drawn, in order.
+    """The pictures of a film in order.
 
     Attributes:
-        cameras: one a picture.
-        names: one a picture, different and fit for file names, without suffix.
+        cameras: one for each picture.
+        names: one for each picture, distinct and valid as file names, without suffix.
         fps: pictures a second.
     """
 
@@ -46,20 +43,20 @@ class Shots:
         return len(self.cameras) / self.fps
 
 
-def orbit(
+def orbit_shots(
     scene: Scene, capture: Path | None, count: int, size: Size, seconds: float | None, fps: float | None
 ) -> Shots:
     """`count` pictures once around the scene, on the ring that the cameras of `capture`, or many own ones, stood on.
 
     Raises:
-        UserError: the number of pictures or the rate is none.
+        UserError: the number of pictures or the rate is out of range.
         FileError: the capture cannot be read.
     """
     from ...gaussians.viewpoints.orbit import FEWEST, choose_ring
 
-    if not 2 <= count <= MOST:
-        raise UserError(f"an orbit has 2 to {MOST} pictures, not {count}; write for example --orbit 75")
-    turn = seconds if seconds is not None or fps is not None else max(_TURN, count / RATE)
+    if not 2 <= count <= MAX_PICTURES:
+        raise UserError(f"an orbit has 2 to {MAX_PICTURES} pictures, not {count}; write for example --orbit 75")
+    turn = seconds if seconds is not None or fps is not None else max(_MIN_TURN, count / RATE)
     rate = _rate(count, turn, fps)
     cameras = scene.cameras if len(scene.cameras) >= FEWEST else ()
     if capture is not None:
@@ -68,41 +65,45 @@ def orbit(
     return _numbered(ring.cameras(count, *size), rate)
 
 
-def own(source: Path, size: Size | None, seconds: float | None, fps: float | None) -> Shots:
+def capture_shots(source: Path, size: Size | None, seconds: float | None, fps: float | None) -> Shots:
     """A picture for every camera of a capture or scene, named as its photograph; of its own size if `size` is None.
 
     Raises:
-        UserError: the rate is none, or there are no cameras or too many.
+        UserError: the rate is out of range, or there are no cameras or too many.
         FileError: the source cannot be read.
     """
     from ...gaussians.viewpoints.coverage import fit_camera
 
     cameras = cameras_of(source)
-    if not 1 <= len(cameras) <= MOST:
-        raise UserError(f"{source} has {len(cameras)} cameras; it must have 1 to {MOST}")
+    if not 1 <= len(cameras) <= MAX_PICTURES:
+        raise UserError(f"{source} has {len(cameras)} cameras; it must have 1 to {MAX_PICTURES}")
     names = _file_names([camera.name for camera in cameras])
     if size is not None:
         cameras = tuple(fit_camera(camera, *size) for camera in cameras)
     return Shots(cameras, names, _rate(len(cameras), seconds, fps))
 
 
-def along(scene: Scene, path: Path, size: Size | None, usual: Size, seconds: float | None, fps: float | None) -> Shots:
+def path_shots(
+    scene: Scene, path: Path, size: Size | None, default: Size, seconds: float | None, fps: float | None
+) -> Shots:
     """Pictures along the camera path in a file, from its first keyframe to its last; `seconds` stretches it.
 
     Raises:
-        UserError: the rate or the length is none, or there would be too many pictures.
-        FileError: the file is no camera path.
+        UserError: the rate or the length is out of range, or there would be too many pictures.
+        FileError: the file is not a camera path.
     """
     from ...gaussians.files.captures.camera_path import read_camera_path
 
     way = read_camera_path(path, framed(scene).frame.up)
     rate = _checked_rate(fps or way.fps or RATE)
     length = way.seconds if seconds is None else _checked_seconds(seconds)
-    if length * rate > MOST - 1:
-        raise UserError(f"{length:g} seconds at {rate:g} pictures a second are too many; at most {MOST} are drawn")
+    if length * rate > MAX_PICTURES - 1:
+        raise UserError(
+            f"{length:g} seconds at {rate:g} pictures a second are too many; at most {MAX_PICTURES} are drawn"
+        )
     count = round(length * rate) + 1
     times = [way.seconds * i / max(count - 1, 1) for i in range(count)]
-    return _numbered(way.cameras(times, *(size or way.size or usual)), rate)
+    return _numbered(way.cameras(times, *(size or way.size or default)), rate)
 
 
 def cameras_of(source: Path) -> tuple[Camera, ...]:
@@ -128,7 +129,7 @@ def _rate(count: int, seconds: float | None, fps: float | None) -> float:
 
 def _checked_rate(fps: float) -> float:
     if not RATES[0] <= fps <= RATES[1]:
-        raise UserError(f"{fps:g} pictures a second cannot be had; {RATES[0]:g} to {RATES[1]:g} can")
+        raise UserError(f"{fps:g} pictures a second are not supported; give {RATES[0]:g} to {RATES[1]:g}")
     return fps
 
 
@@ -144,7 +145,7 @@ def _numbered(cameras: Sequence[Camera], fps: float) -> Shots:
 
 
 def _file_names(names: Sequence[str]) -> tuple[str, ...]:
-    """Names fit for files of one folder: no separators, none hidden, none empty, no two alike in any case."""
+    """File names for one folder: without separators, not hidden, not empty, distinct regardless of case."""
     found: list[str] = []
     taken: set[str] = set()
     for i, name in enumerate(names):

@@ -88,7 +88,7 @@ def test_an_interrupt_exits_with_130(call: Any, monkeypatch: pytest.MonkeyPatch)
 def test_what_cannot_be_written_is_said_before_the_work(call: Any, room: Path, tmp_path: Path) -> None:
     words = ("edit", room, "make the green thing blue", "-o", tmp_path / "out.ply")
     answer = call(*words, "--pictures", room)
-    assert answer.code == 2 and "is to be a folder" in answer.err
+    assert answer.code == 2 and "cannot be made as a folder" in answer.err
     assert not (tmp_path / "out.ply").exists()
     answer = call("render", room, "-o", tmp_path / "a.jpg")
     assert answer.code == 2 and "written as .png" in answer.err

@@ -123,7 +123,7 @@ def test_nothing_is_overwritten_unasked(compose: Any, given: Path, tmp_path: Pat
     [
         (["--picture", "a.jpg"], ".png"),
         (["--scene", "nowhere/a.ply"], "no folder"),
-        (["--assets", "nowhere"], "no folder"),
+        (["--assets", "nowhere"], "is not a folder"),
         (["--scene", "a.ply", "--detail", "0"], "detail"),
     ],
 )

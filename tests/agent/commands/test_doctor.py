@@ -54,7 +54,7 @@ def test_a_cpu_torch_is_not_asked_for_cuda(monkeypatch: pytest.MonkeyPatch) -> N
 
 @pytest.mark.parametrize(
     ("outcome", "usable", "told"),
-    [(("", ""), True, "imports beside"), (("cured", ""), True, "cures"), (("", "broken"), False, "broken")],
+    [(("", ""), True, "imports beside"), (("repaired", ""), True, "repairs"), (("", "broken"), False, "broken")],
 )
 def test_the_torchvision_trap(
     monkeypatch: pytest.MonkeyPatch, outcome: tuple[str, str], usable: bool, told: str

@@ -332,9 +332,13 @@ def test_photographs_of_nothing_are_refused(capture: Path, call: Call) -> None:
 @pytest.mark.parametrize(
     ("points", "told"),
     [
-        ("", "no surveyed points, so poses cannot be checked; too few to begin from, so Gaussians begin anywhere"),
+        (
+            "",
+            "no surveyed points, so poses cannot be checked; too few for initialization, "
+            "so Gaussians start at random positions",
+        ),
         ("1 nan nan nan 1 2 3 0.5\n" * 300, "no surveyed points"),
-        ("1 0.1 0.1 0.1 1 2 3 0.5\n" * 20, "20 surveyed points; too few to begin from"),
+        ("1 0.1 0.1 0.1 1 2 3 0.5\n" * 20, "20 surveyed points; too few for initialization"),
     ],
 )
 def test_a_poor_survey_is_said_and_gone_on_without(capture: Path, call: Call, points: str, told: str) -> None:

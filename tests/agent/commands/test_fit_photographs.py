@@ -49,6 +49,6 @@ def test_photographs_alone_become_a_scene(
     kept = tmp_path / "a.ply.poses"
     assert f"estimating them first, on the CPU, to be kept in {kept}" in said.err
     assert f"poses estimated: {kept} is a capture too" in said.err
-    assert "1 of 12 photographs left out, no place was found: p11.PNG" in said.err
+    assert "1 of 12 photographs left out, no pose was found: p11.PNG" in said.err
     assert json.loads(said.out)["unplaced"] == ["p11.PNG"]
     assert (tmp_path / "a.ply").is_file() and len(read_capture(kept).cameras) == 11

@@ -118,11 +118,11 @@ def test_transparency_and_depth(render: Any, tmp_path: Path) -> None:
         (["-o", "a.gif", "--orbit", "99999999"], "2 to"),
         (["-o", "a.gif", "--orbit", "9", "--seconds", "nan"], "above zero"),
         (["-o", "a.gif", "--orbit", "9", "--seconds", "1", "--fps", "9"], "leave out"),
-        (["-o", "a.gif", "--orbit", "9", "--fps", "0"], "cannot be had"),
-        (["-o", "a.gif", "--orbit", "9", "--fps", "nan"], "cannot be had"),
+        (["-o", "a.gif", "--orbit", "9", "--fps", "0"], "are not supported"),
+        (["-o", "a.gif", "--orbit", "9", "--fps", "nan"], "are not supported"),
         (["-o", "a.gif", "--orbit", "9", "--depth"], "needs PNGs"),
         (["-o", "a", "--orbit", "9", "--depth", "--alpha"], "ask for one"),
-        (["-o", "a%d%d.png", "--orbit", "9"], "no pattern"),
+        (["-o", "a%d%d.png", "--orbit", "9"], "is not a pattern"),
     ],
 )
 def test_what_makes_no_film_is_refused(render: Any, tmp_path: Path, arguments: list[str], says: str) -> None:

@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from scenewright.agent.demo.run import FILES, Demo
-from scenewright.agent.demo.script import SCRIPT, Cast, Thing
+from scenewright.agent.demo.script import SCRIPT, Targets, Thing
 from scenewright.agent.session.log import read_log
 from scenewright.gaussians import assets
 from scenewright.gaussians.errors import UserError
@@ -108,8 +108,8 @@ def test_the_demo_leaves_everything_behind(tmp_path: Path, oracle: Oracle, seed:
 def test_what_is_said_speaks_of_what_is_there() -> None:
     things = [Thing(0, "sofa", "red", 900), Thing(1, "coffee table", "brown", 500), Thing(2, "rug", "blue", 400),
               Thing(3, "chair", "green", 300), Thing(4, "chair", "gray", 200)]  # fmt: skip
-    cast = Cast(things, ["piano"], {0})
-    turns = {name: list(role(cast)) for name, role in SCRIPT}
+    targets = Targets(things, ["piano"], {0})
+    turns = {name: list(role(targets)) for name, role in SCRIPT}
     assert (
         turns["select"][0].text == "select the brown coffee table"
     )  # the sofa was spoken of, a rug is no good to move

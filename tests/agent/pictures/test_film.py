@@ -119,8 +119,8 @@ def test_a_gif_of_one_picture(tmp_path: Path) -> None:
         ("a.gif", {(W, H)}, 60.0, "at most 50"),
         ("a.gif", {(8192, 8192), (1, 1)}, 25.0, "one size"),
         ("a.gif", {(8192 * 4, 8192)}, 25.0, "too much"),
-        ("%d%d.png", {(W, H)}, 25.0, "no pattern"),
-        ("100%_%d.png", {(W, H)}, 25.0, "no pattern"),
+        ("%d%d.png", {(W, H)}, 25.0, "is not a pattern"),
+        ("100%_%d.png", {(W, H)}, 25.0, "is not a pattern"),
     ],
 )
 def test_what_does_not_suit_the_format_is_refused(
@@ -155,8 +155,8 @@ def test_an_mp4_is_what_ffmpeg_made_of_all_the_pictures(tmp_path: Path, monkeypa
     [
         ("sys.stdin.buffer.read(10); print('no such encoder', file=sys.stderr); sys.exit(1)", "no such encoder"),
         ("sys.stdin.buffer.read(); print('disk full', file=sys.stderr); sys.exit(1)", "disk full"),
-        ("sys.exit(3)", "did not say why"),
-        ("sys.stdin.buffer.read()", "did not say why"),  # it claims to have done it, and wrote nothing
+        ("sys.exit(3)", "gave no reason"),
+        ("sys.stdin.buffer.read()", "gave no reason"),  # it claims to have done it, and wrote nothing
         ("time.sleep(60)", "took nothing"),
         ("sys.stdin.buffer.read(); time.sleep(60)", "took nothing"),
     ],
@@ -165,7 +165,7 @@ def test_an_ffmpeg_that_fails_leaves_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, body: str, says: str
 ) -> None:
     ffmpeg(tmp_path, monkeypatch, body)
-    monkeypatch.setattr(film, "_PATIENCE", 0.5)
+    monkeypatch.setattr(film, "_FFMPEG_TIMEOUT", 0.5)
     big = np.zeros((300, 400, 3), np.uint8)  # more than a pipe holds
     with pytest.raises(BackendError, match=says):
         film.write(tmp_path / "a.mp4", NAMES, lambda i: big, 25.0, False)
