@@ -77,7 +77,7 @@ def test_a_real_model_is_measured_where_one_is_named(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(_cascade, "load", lambda spec: GrammarPlanner() if spec == "grammar" else _Named(spec))
     metrics, points, (note,) = _cascade.measure(quick=True)
     assert [p.method for p in points] == ["grammar", "cascade: grammar, then openai:some-model", "openai:some-model"]
-    assert "really asked" in note and "stand-in" not in note
+    assert "the real model openai:some-model was asked" in note and "stand-in" not in note
     assert {m.key.split(".")[0] for m in metrics} == {"grammar", "cascade", "model"}
 
 

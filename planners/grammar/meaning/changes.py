@@ -131,7 +131,7 @@ def sized(value: tuple[float, str], side: str, said: str, stretched: bool = Fals
     if side not in ("height", "width", "depth"):
         raise Refusal("say tall, wide or deep", said)
     if not 0 < value[0] <= 10_000:
-        raise Refusal("that is no length for things in a room", f"{value[0]:g}", verdict="impossible")
+        raise Refusal("that is not a length for things in a room", f"{value[0]:g}", verdict="impossible")
     length = {"value": value[0], "unit": value[1]}
     return {"op": "scale", side: length, **({"axis": side} if stretched else {})}
 

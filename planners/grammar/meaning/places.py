@@ -92,7 +92,7 @@ def length(value: tuple[float, str]) -> Fields:
         Refusal: it is not above 0 and at most 10,000.
     """
     if not 0 < value[0] <= 10_000:
-        raise Refusal("that is no length for things in a room", f"{value[0]:g}", verdict="impossible")
+        raise Refusal("that is not a length for things in a room", f"{value[0]:g}", verdict="impossible")
     return {"value": value[0], "unit": value[1]}
 
 
