@@ -100,7 +100,8 @@ class Table:
 
     Attributes:
         kinds: every kind by its name.
-        families: words that cover several kinds or other things ("appliance"), and what they cover.
+        families: words that cover several kinds or other things ("appliance"), and what they cover; the first is
+            what the word means where it is also a word for one kind.
         others: things that scenes show and that are no furnishings: animals, vehicles, food, clothes.
     """
 
@@ -232,19 +233,28 @@ def _alike() -> Mapping[str, tuple[Kind, ...]]:
 def same(phrase: Phrase) -> frozenset[Phrase]:
     """All phrases for the thing that a phrase names, the phrase itself among them (singular words, lower case).
 
-    A word for a family means no single kind; words for the same family mean the same. Sorts of a kind that are named by
-    a word before its name ("writing desk", "computer desk") are told apart.
+    Words for the same family mean the same. A word for a family also names a kind if it is that kind's own name, or
+    another word for the first of its members ("cupboard": cabinet, wardrobe). Sorts of a kind that are named by a word
+    before its name ("writing desk", "computer desk") are told apart.
     """
-    if members := _families().get(phrase):
-        return frozenset({phrase} | {word for word, others in _families().items() if others == members})
+    members = _families().get(phrase)
+    found = {phrase} | {word for word, others in _families().items() if others == members}
     kind = _by_phrase().get(phrase)
-    if kind is None:
-        return frozenset({phrase})
+    if kind is None or not _names_kind(phrase, kind):
+        return frozenset(found)
     own = normalise(kind.name)
-    names = (normalise(n) for k in (kind, *_alike()[kind.name]) for n in k.names)
+    names = {normalise(n) for n in kind.names if _names_kind(normalise(n), kind)}
+    if members is None:  # a word for a family does not mean kinds that are only like the one it names
+        names |= {normalise(n) for other in _alike()[kind.name] for n in other.names} - _families().keys()
     sort = len(phrase) > len(own) and phrase[-len(own) :] == own
-    kept = (n for n in names if not (sort and len(n) > len(own) and n[-len(own) :] == own))
-    return frozenset({phrase, *kept}) - _families().keys() | {phrase}
+    return frozenset(found | {n for n in names if not (sort and len(n) > len(own) and n[-len(own) :] == own)})
+
+
+def _names_kind(phrase: Phrase, kind: Kind) -> bool:
+    """Whether a word for a kind means that kind alone, and not only a family that the kind belongs to."""
+    members = _families().get(phrase)
+    own = normalise(kind.name)
+    return members is None or phrase == own or (members[0] == own and not _is_loose(phrase, kind))
 
 
 @cache

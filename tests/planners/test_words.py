@@ -144,6 +144,15 @@ def test_a_label_may_leave_out_a_modifier_but_not_the_kind(asked: str, label: st
     assert (agreement(asked, (label,))[0] >= THRESHOLD) == same
 
 
+@pytest.mark.parametrize(
+    ("kind", "word"),
+    [("cabinet", "cupboard"), ("cushion", "pillow"), ("monitor", "screen"), ("houseplant", "plant"), ("pc", "computer")],
+)
+def test_a_word_for_a_family_may_also_name_one_kind(kind: str, word: str) -> None:
+    assert min(agreement(kind, (word,))[0], agreement(word, (kind,))[0]) >= THRESHOLD
+    assert agreement("table lamp", ("lamp",))[0] < THRESHOLD  # a lamp may be any of them
+
+
 def test_synonyms_are_mutual() -> None:
     assert ("couch",) in same(("sofa",)) and ("sofa",) in same(("couch",))
     assert ("couch",) in narrower(("seat",)) and narrower(("sofa",)) == frozenset()
