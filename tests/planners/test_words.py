@@ -146,7 +146,13 @@ def test_a_label_may_leave_out_a_modifier_but_not_the_kind(asked: str, label: st
 
 @pytest.mark.parametrize(
     ("kind", "word"),
-    [("cabinet", "cupboard"), ("cushion", "pillow"), ("monitor", "screen"), ("houseplant", "plant"), ("pc", "computer")],
+    [
+        ("cabinet", "cupboard"),
+        ("cushion", "pillow"),
+        ("monitor", "screen"),
+        ("houseplant", "plant"),
+        ("pc", "computer"),
+    ],
 )
 def test_a_word_for_a_family_may_also_name_one_kind(kind: str, word: str) -> None:
     assert min(agreement(kind, (word,))[0], agreement(word, (kind,))[0]) >= THRESHOLD
