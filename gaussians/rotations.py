@@ -40,11 +40,6 @@ def multiply(left: Tensor, right: Tensor) -> Tensor:
     )
 
 
-def conjugate(quats: Tensor) -> Tensor:
-    """The inverse rotation of unit quaternions `[..., 4]`."""
-    return quats * quats.new_tensor([1.0, -1.0, -1.0, -1.0])
-
-
 def to_matrix(quats: Tensor) -> Tensor:
     """Rotation matrices `[..., 3, 3]` (column vectors: `x_world = M @ x_local`) of unit quaternions `[..., 4]`."""
     w, x, y, z = quats.unbind(-1)

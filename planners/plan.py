@@ -77,8 +77,8 @@ class EditPlan(BaseModel):
         verdict: see `Verdict`.
         reason: one sentence for a person; in a plan that is ok, the spelling corrections and what was done.
         unknown: the exact words that were not understood.
-        seconds: how long planning took; `same_as` ignores it.
-        usage: use of language models, None if none was asked; `same_as` ignores it.
+        seconds: how long planning took.
+        usage: use of language models, None if none was asked.
     """
 
     model_config = ConfigDict(
@@ -110,10 +110,6 @@ class EditPlan(BaseModel):
     def ok(self) -> bool:
         """Whether the plan has operations."""
         return self.verdict == "ok"
-
-    def same_as(self, other: EditPlan) -> bool:
-        """Whether both plans have the same verdict and operations."""
-        return (self.verdict, self.ops) == (other.verdict, other.ops)
 
 
 class Observation(Protocol):

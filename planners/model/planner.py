@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 from ...gaussians.errors import ScenewrightError, UserError
 from ...tools.operation import EditOp
-from ..plan import EditPlan, NoPlanError, Observation, Planner, Usage, Verdict
+from ..plan import EditPlan, NoPlanError, Observation, Usage, Verdict
 from .backend import Answer, Message, ModelBackend, UnreachableError
 from .prompt.labels import sanitize
 from .prompt.messages import Request, messages, prompt_hash, repaired
@@ -72,12 +72,29 @@ class ModelPlanner:
             UnreachableError: the model cannot be reached. (A NoPlanError.)
             NoPlanError: no valid plan within the attempts or the time. (A BackendError.)
         """
+        from ..grammar import GrammarPlanner  # resolves "it" in the previous instruction, without a model
+
         _require_words(text)
         started = time.monotonic()
         request = self._request(text, previous, observation)
-        guard = Guard(text, request.previous, request.graph, _grammar())
+        guard = Guard(text, request.previous, request.graph, GrammarPlanner())
         first = messages(request, self.backend.window)
         conversation = _Conversation(self.backend, first, started + self._seconds, self._progress)
+        outcome = self._outcome(conversation, guard)
+        return EditPlan(
+            instruction=text,
+            ops=outcome.ops,
+            planner=self.name[:200],
+            prompt_hash=prompt_hash(),
+            verdict=outcome.verdict,
+            reason=_plain(outcome.reason),
+            unknown=tuple(filter(None, (_plain(word)[:200] for word in outcome.unknown))),
+            seconds=time.monotonic() - started,
+            usage=conversation.usage,
+        )
+
+    def _outcome(self, conversation: _Conversation, guard: Guard) -> _Outcome:
+        """Ask until an answer decides; raises as `plan`."""
         review = _Review()
         for attempt in range(1, self._attempts + 1):
             answer = conversation.ask(attempt)
@@ -85,12 +102,15 @@ class ModelPlanner:
                 break
             outcome = review.judge(answer, guard, last=attempt == self._attempts)
             if isinstance(outcome, _Outcome):
-                return self._made(outcome, text, conversation.usage, time.monotonic() - started)
+                return outcome
             conversation.add_fault(answer.text, outcome)
         if review.standing is not None:
-            outcome = _Outcome("ok", review.standing[1])
-            return self._made(outcome, text, conversation.usage, time.monotonic() - started)
-        raise self._no_plan(review.wrong, conversation)
+            return _Outcome("ok", review.standing[1])
+        asked = conversation.usage.requests if conversation.usage is not None else 0
+        late = f" within {self._seconds:g} s (--budget gives it more)" if conversation.late else ""
+        last = f"; at last: {_plain(review.wrong)}" if review.wrong else ""
+        problem = f"{self.name} gave no valid plan in {asked} attempt(s){late}{last}"
+        raise NoPlanError(f"{problem}. Say it more simply, or use another model", conversation.usage)
 
     def _request(self, text: str, previous: str | None, observation: Observation | None) -> Request:
         """Input of the prompt. Labels are sanitised here, before anything else uses them."""
@@ -102,27 +122,6 @@ class ModelPlanner:
                 picture = observation.picture() if self._pictures and self.backend.sees else None
         before = (previous or "").encode(errors="replace").decode()[:MAX_CHARS]
         return Request(text, before or None, graph, picture)
-
-    def _made(self, outcome: _Outcome, text: str, usage: Usage | None, seconds: float) -> EditPlan:
-        return EditPlan(
-            instruction=text,
-            ops=outcome.ops,
-            planner=self.name[:200],
-            prompt_hash=prompt_hash(),
-            verdict=outcome.verdict,
-            reason=_plain(outcome.reason),
-            unknown=tuple(filter(None, (_plain(word)[:200] for word in outcome.unknown))),
-            seconds=seconds,
-            usage=usage,
-        )
-
-    def _no_plan(self, wrong: str, conversation: _Conversation) -> NoPlanError:
-        usage = conversation.usage
-        asked = usage.requests if usage is not None else 0
-        late = f" within {self._seconds:g} s (--budget gives it more)" if conversation.late else ""
-        last = f"; at last: {_plain(wrong)}" if wrong else ""
-        problem = f"{self.name} gave no valid plan in {asked} attempt(s){late}{last}"
-        return NoPlanError(f"{problem}. Say it more simply, or use another model", usage)
 
 
 @dataclass(frozen=True)
@@ -157,14 +156,22 @@ class _Conversation:
         if self.late:
             return None
         stage = f"planning with {self._backend.name}" + (f", attempt {attempt}" if attempt > 1 else "")
-        stream = _StreamProgress(self._progress, stage) if self._progress is not None else None
+        progress = self._progress or (lambda stage, share: None)
+        progress(stage, 0.0)
+        characters = 0
+
+        def on_text(piece: str) -> None:
+            nonlocal characters
+            characters += len(piece)
+            progress(stage, characters / (characters + _USUAL_ANSWER))
+
+        listener = on_text if self._progress is not None else None
         try:
-            answer = self._backend.answer(self._messages, reply.schema(), seconds=left, on_text=stream)
+            answer = self._backend.answer(self._messages, reply.schema(), seconds=left, on_text=listener)
         except UnreachableError as error:
             cost = _sum(self.usage, error.usage)  # earlier attempts count too
             raise UnreachableError(str(error), cost) from error
-        if stream is not None:
-            stream.done()
+        progress(stage, 1.0)
         self.usage = _sum(self.usage, answer.usage)
         return answer
 
@@ -175,21 +182,6 @@ class _Conversation:
 
 def _sum(before: Usage | None, after: Usage | None) -> Usage | None:
     return after if before is None else before if after is None else before.plus(after)
-
-
-class _StreamProgress:
-    """Reports progress for each piece of a streamed answer; the share is an estimate."""
-
-    def __init__(self, progress: Progress, stage: str) -> None:
-        self._progress, self._stage, self._characters = progress, stage, 0
-        progress(stage, 0.0)
-
-    def __call__(self, piece: str) -> None:
-        self._characters += len(piece)
-        self._progress(self._stage, self._characters / (self._characters + _USUAL_ANSWER))
-
-    def done(self) -> None:
-        self._progress(self._stage, 1.0)
 
 
 @dataclass
@@ -215,10 +207,9 @@ class _Review:
         if answer.end == "declined":
             return _Outcome("not_understood", reason=f"the model declined: {answer.text}")
         cut = "the answer was cut off because it is too long; answer shorter, with fewer operations"
-        if answer.end == "closed":  # valid, but incomplete
-            self.wrong = cut
-            return self.wrong
         try:
+            if answer.end == "closed":  # valid, but incomplete
+                raise reply.ReplyError(cut)
             said = reply.read(answer.text)
         except reply.ReplyError as error:
             self.wrong = cut if answer.end == "cut" else str(error)
@@ -272,10 +263,3 @@ def _plain(text: str) -> str:
     """A model's text made printable: one line, without control characters, truncated."""
     line = " ".join("".join(" " if unicodedata.category(c)[0] == "C" else c for c in text).split())
     return line if len(line) <= _REASON_CHARS else line[: _REASON_CHARS - 1] + "…"
-
-
-def _grammar() -> Planner:
-    """The planner that resolves "it" in the previous instruction, without a model."""
-    from ..grammar import GrammarPlanner
-
-    return GrammarPlanner()

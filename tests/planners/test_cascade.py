@@ -7,6 +7,7 @@ import sys
 from typing import Any
 
 import pytest
+from same_plan import same
 
 from scenewright.benchmarks import _written
 from scenewright.gaussians.errors import BackendError, UserError
@@ -69,7 +70,7 @@ def test_where_the_grammar_answers_nobody_else_is_asked() -> None:
         if alone.verdict in ("not_understood", "impossible"):
             assert model.asked or alone.verdict == "impossible", case["id"]
         else:
-            assert plan.same_as(alone) and plan.usage is None and not model.asked, case["id"]
+            assert same(plan, alone) and plan.usage is None and not model.asked, case["id"]
         assert wishes.asked == []
 
 
@@ -156,7 +157,7 @@ def test_where_both_abstain_both_are_told() -> None:
 def test_a_failing_model_leaves_the_abstention(error: Exception, usage: Usage | None) -> None:
     alone = GRAMMAR.plan(HARD)
     plan = Cascade(GRAMMAR, None, Fake(error=error)).plan(HARD)
-    assert plan.same_as(alone) and plan.planner == "grammar" and plan.unknown == alone.unknown and plan.usage == usage
+    assert same(plan, alone) and plan.planner == "grammar" and plan.unknown == alone.unknown and plan.usage == usage
     assert plan.reason == f"{alone.reason}; the model gave no plan: the server is down"
 
 

@@ -6,6 +6,7 @@ import json
 import math
 
 import pytest
+from scripted_model import ScriptedModel
 
 from scenewright.gaussians.assets import make
 from scenewright.gaussians.assets.registry import KINDS
@@ -16,7 +17,6 @@ from scenewright.planners.compose.furnishing import pairs
 from scenewright.planners.compose.proposing import REPAIRS
 from scenewright.planners.layout import solve
 from scenewright.planners.model.backend import Answer
-from scenewright.planners.model.scripted import ScriptedModel
 from scenewright.planners.plan import Usage
 from scenewright.planners.rooms.check import check
 from scenewright.planners.schemas import schema

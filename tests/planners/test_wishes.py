@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from same_plan import same
 
 from scenewright.gaussians.world.box import overlap
 from scenewright.planners.plan import EditPlan
@@ -250,5 +251,5 @@ def test_things_that_wait_for_each_other_are_set_aside() -> None:
 
 
 def test_the_same_wish_gives_the_same_plan() -> None:
-    assert plan("push everything to the walls").same_as(plan("push everything to the walls"))
+    assert same(plan("push everything to the walls"), plan("push everything to the walls"))
     assert plan("put the seats around the unicorn").verdict in ("absent", "not_understood")

@@ -19,8 +19,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 if TYPE_CHECKING:
-    import trimesh
-
     from .materials import Material
 
 Array = NDArray[np.float64]
@@ -111,27 +109,6 @@ def bounds(pieces: Sequence[Piece]) -> tuple[Array, Array]:
     flat = [s.points.reshape(-1, 3) for p in pieces for s in p.sheets]
     low = np.min([f.min(axis=0) for f in flat], axis=0)
     return low, np.max([f.max(axis=0) for f in flat], axis=0)
-
-
-def to_trimesh(pieces: Sequence[Piece]) -> trimesh.Trimesh:
-    """All grids as one triangle mesh (for other programs, and for measuring area and volume)."""
-    import trimesh
-
-    vertices, faces, count = [], [], 0
-    for s in (s for p in pieces for s in p.sheets):
-        b, u, v, _ = s.points.shape
-        at = np.arange(b * u * v).reshape(b, u, v) + count
-        a, bb, c, d = at[:, :-1, :-1], at[:, 1:, :-1], at[:, 1:, 1:], at[:, :-1, 1:]
-        faces.append(np.stack([np.stack([a, bb, c], -1), np.stack([a, c, d], -1)], 3).reshape(-1, 3))
-        vertices.append(s.points.reshape(-1, 3))
-        count += b * u * v
-    return trimesh.Trimesh(np.concatenate(vertices), np.concatenate(faces), process=False)
-
-
-def from_trimesh(mesh: trimesh.Trimesh) -> Piece:
-    """Any triangle mesh as a piece: each triangle is a 2x2 grid with one side shrunk to a point."""
-    a, b, c = (mesh.vertices[mesh.faces[:, i]] for i in range(3))
-    return Piece((Sheets(np.stack([np.stack([a, a], 1), np.stack([b, c], 1)], 1), False, False),))
 
 
 # --- flat pieces -----------------------------------------------------------------------------------------------------

@@ -44,8 +44,8 @@ class Example:
 
     def told(self) -> str:
         """The example as text of the prompt."""
-        before = f"Instruction before: {_quoted(self.previous)}\n" if self.previous else ""
-        return f"{before}Instruction: {_quoted(self.instruction)}\nAnswer: {self.answer}"
+        before = f"Instruction before: {quoted(self.previous)}\n" if self.previous else ""
+        return f"{before}Instruction: {quoted(self.instruction)}\nAnswer: {self.answer}"
 
 
 def parse(text: str) -> tuple[SceneGraph, tuple[Example, ...]]:
@@ -70,5 +70,6 @@ def _example(section: re.Match[str]) -> Example:
     return Example(section["title"].strip(), notes.get("after"), touches, answer)
 
 
-def _quoted(text: str) -> str:
+def quoted(text: str) -> str:
+    """The text as a JSON string on one line, so that its end is unambiguous."""
     return json.dumps(text, ensure_ascii=False)

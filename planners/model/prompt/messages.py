@@ -5,7 +5,6 @@ The same input gives the same bytes. The first message depends only on the token
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass
 from functools import cache
@@ -71,7 +70,7 @@ def messages(request: Request, window: int) -> tuple[Message, ...]:
         )
     asked = bare
     if request.graph is not None:
-        asked = _asked(request, described(request.graph, _said(request), min(left, MAX_TOKENS)))
+        asked = _asked(request, described(request.graph, (request.text, request.previous or ""), min(left, MAX_TOKENS)))
     return Message("system", rules), Message("user", asked, request.picture)
 
 
@@ -112,14 +111,5 @@ def _examples() -> tuple[str, tuple[str, ...]]:
 
 
 def _asked(request: Request, scene: str) -> str:
-    before = _quoted(request.previous) if request.previous else "(none)"
-    return prompts.load("plan_request").fill(scene=scene, before=before, instruction=_quoted(request.text))
-
-
-def _said(request: Request) -> tuple[str, ...]:
-    return (request.text, *([request.previous] if request.previous else []))
-
-
-def _quoted(text: str) -> str:
-    """The text as a JSON string on one line, so that its end is unambiguous."""
-    return json.dumps(text, ensure_ascii=False)
+    before = examples.quoted(request.previous) if request.previous else "(none)"
+    return prompts.load("plan_request").fill(scene=scene, before=before, instruction=examples.quoted(request.text))

@@ -46,11 +46,7 @@ def tokens(text: str) -> int:
     each two punctuation marks in a row. On our prompts and scenes this is within 7 % of CLIP's byte-pair encoding,
     mostly above it; bytes divided by three are a third too few for texts with many numbers.
     """
-    return sum(-(-len(piece) // _LETTERS.get(kind, 1)) for kind, piece in _pieces(text))
-
-
-def _pieces(text: str) -> Iterator[tuple[str, str]]:
-    return ((found.lastgroup or "", found.group()) for found in _PIECE.finditer(text))
+    return sum(-(-len(found.group()) // _LETTERS.get(found.lastgroup or "", 1)) for found in _PIECE.finditer(text))
 
 
 def line(node: Node) -> str:
@@ -79,9 +75,9 @@ def described(graph: SceneGraph, said: Sequence[str], budget: int) -> str:
     head = f"Room: {width} x {depth} x {height} m, the origin in the middle of the floor.{_viewer(graph)}"
     left = budget - tokens(head) - 60  # for the line about what was left out
     kept: dict[int, str] = {}
-    relations = _Relations(graph)
+    relations = _relations(graph)
     for index in Relevance(graph, said).order():
-        text = line(graph.nodes[index]) + relations.of(index)
+        text = line(graph.nodes[index]) + "".join(f", {told}" for told in relations.get(index, ()))
         if tokens(text) + 1 > left:
             break
         left -= tokens(text) + 1
@@ -105,19 +101,16 @@ def _left_out(missing: Counter[str]) -> list[str]:
     return [f"Not shown: {missing.total()} more things ({names}{more})."]
 
 
-class _Relations:
-    """Stated relations of nodes to others, at most two a node; "on" is covered by the support of a node."""
-
-    def __init__(self, graph: SceneGraph) -> None:
-        index = {n.id: i for i, n in enumerate(graph.nodes)}
-        self._told: dict[int, list[str]] = {}
-        for a, name, b in graph.relations:
-            told = self._told.setdefault(index[a], [])
-            if isinstance(b, int) and len(told) < 2 and (name != "on" or graph.nodes[index[a]].support != b):
-                told.append(f"{name.replace('_', ' ')} {b}")
-
-    def of(self, index: int) -> str:
-        return "".join(f", {told}" for told in self._told.get(index, ()))
+def _relations(graph: SceneGraph) -> dict[int, list[str]]:
+    """Stated relations of nodes to others by the index of the node, at most two a node; "on" is covered by the support
+    of a node."""
+    index = {n.id: i for i, n in enumerate(graph.nodes)}
+    relations: dict[int, list[str]] = {}
+    for a, name, b in graph.relations:
+        told = relations.setdefault(index[a], [])
+        if isinstance(b, int) and len(told) < 2 and (name != "on" or graph.nodes[index[a]].support != b):
+            told.append(f"{name.replace('_', ' ')} {b}")
+    return relations
 
 
 class Relevance:
@@ -172,7 +165,7 @@ class Relevance:
             seen.setdefault(i)
         for i in self._neighbours(named):
             seen.setdefault(i)
-        for i in sorted(range(len(self.graph.nodes)), key=lambda i: (-_volume(self.graph.nodes[i]), i)):
+        for i in sorted(range(len(self.graph.nodes)), key=lambda i: (-math.prod(self.graph.nodes[i].size), i)):
             seen.setdefault(i)
         return iter(seen)
 
@@ -221,7 +214,3 @@ class Relevance:
             gap = np.linalg.norm(places - places[a], axis=1)
             best = np.minimum(best, np.where(kind == kind[a], np.inf, gap) if apart else gap)
         return best
-
-
-def _volume(node: Node) -> float:
-    return math.prod(node.size)

@@ -46,7 +46,7 @@ def without_guesses(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple
     said = text.lower()
     if _OPEN_CHOICE.search(said):
         return tuple(ops)
-    used = {s for op in ops for value in _strings(op.model_dump(exclude_defaults=True)) for s in stems(value)}
+    used = _used(ops)
 
     def settled(query: Query) -> Query:
         if not query.groups or scene.lost(query) or scene.misnamed(query):
@@ -69,7 +69,7 @@ def without_inventions(ops: Sequence[EditOp], text: str, previous: str | None) -
     "my") may be the source of the colour, and then it stays.
     """
     said = stems(f"{text} {previous or ''}")
-    used = {s for op in ops for value in _strings(op.model_dump(exclude_defaults=True)) for s in stems(value)}
+    used = _used(ops)
     if not all(stems(word) <= _plain() | used for word in _WORD.findall(text.lower())):
         return tuple(ops)
 
@@ -114,8 +114,12 @@ def _plain() -> frozenset[str]:
     return frozenset(stems(_PLAIN_WORDS))
 
 
+def _used(ops: Sequence[EditOp]) -> set[str]:
+    """The words of all operations."""
+    return {s for op in ops for value in _strings(op.model_dump(exclude_defaults=True)) for s in stems(value)}
+
+
 def _strings(node: Any) -> Iterator[str]:
-    """All strings in a dumped operation."""
     if isinstance(node, str):
         yield node.replace("_", " ")
     for item in node.values() if isinstance(node, dict) else node if isinstance(node, tuple | list) else ():

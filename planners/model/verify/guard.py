@@ -103,28 +103,23 @@ class Guard:
     def _ids(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
         """Ids that do not exist, and ids whose node has another name than the query."""
         for _, query in queries(tuple(ops)):
-            if query.groups and self._scene is None:
+            if not query.groups:
+                continue
+            if self._scene is None:
                 yield Fault("ids", "no scene was shown, so groups must be left out: say in words what is meant")
-            elif query.groups and self._scene is not None:
-                yield from self._wrong_ids(self._scene, query)
-
-    def _wrong_ids(self, scene: Rehearsal, query: Query) -> Iterator[Fault]:
-        for lost in scene.lost(query):
-            near = scene.shown(n.id for n in scene.near(query, lost))
-            yield Fault("ids", f"groups: no thing has the id {lost}; near are\n{near}")
-            return
-        if (node := scene.misnamed(query)) is not None:
-            told = f'groups: {node.id} is a {node.label}, not "{query.text}"; correct the id or the text'
-            yield Fault("ids", told)
+            elif lost := self._scene.lost(query):
+                near = self._scene.shown(n.id for n in self._scene.near(query, lost[0]))
+                yield Fault("ids", f"groups: no thing has the id {lost[0]}; near are\n{near}")
+            elif (node := self._scene.misnamed(query)) is not None:
+                told = f'groups: {node.id} is a {node.label}, not "{query.text}"; correct the id or the text'
+                yield Fault("ids", told)
 
     def _colors(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
         """Words that are not colours; all colours written in the graph are valid."""
         written = {plain_color(n.color) for n in self._scene.graph.nodes} if self._scene is not None else set()
         painted = [c for op in ops if isinstance(c := getattr(op, "color", None), str)]
-        sought = [
-            c for _, q in queries(tuple(ops)) for c in (*q.colors, *q.not_colors) if plain_color(c) not in written
-        ]
-        for color in (*painted, *sought):
+        sought = (c for _, q in queries(tuple(ops)) for c in (*q.colors, *q.not_colors))
+        for color in (*painted, *(c for c in sought if plain_color(c) not in written)):
             try:
                 parse_color(color)
             except UserError as error:
@@ -137,9 +132,8 @@ class Guard:
             name = STRUCTURE.get(query.text) if query is not None and not query.groups else None
             if op.op in NOT_FOR_STRUCTURE and name:
                 reason = f"the {name} stays: {op.op} is for things in the room"
-                yield Fault(
-                    "shell", f'{reason}; if that was asked, answer with verdict "impossible"', "impossible", reason
-                )
+                told = f'{reason}; if that was asked, answer with verdict "impossible"'
+                yield Fault("shell", told, "impossible", reason)
 
     def _last(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
         """ "it" without a previous instruction."""
@@ -151,7 +145,7 @@ class Guard:
 
     def _groundless(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
         """Operations that remove something although the instruction does not ask for it."""
-        for op in _taking(ops):
+        for op in filter(_takes, ops):
             asked = any(said(g, self._text, self._before) for g in _TAKES[op.op])
             if not asked and not (op.op == "replace" and self._names(getattr(op, "asset", ""))):
                 what = f"{op.op} {op.subject()}"
@@ -165,9 +159,10 @@ class Guard:
         """Operations that remove everything, or many unnamed things, although the instruction does not say "all"."""
         if said("all", self._text, self._before):
             return
-        sweeping = [op for op in _taking(ops) if op.op != "isolate" and _is_everything(op.query())]
+        sweeping = [op for op in ops if _takes(op) and op.op != "isolate" and _is_everything(op.query())]
         unnamed = self._unnamed(played)
-        if sweeping or len(unnamed) >= max(_MANY, self._count / 2):
+        count = len(self._scene.graph.nodes) if self._scene is not None else 0
+        if sweeping or len(unnamed) >= max(_MANY, count / 2):
             what = sweeping[0].subject() if sweeping else f"{len(unnamed)} things that it does not name"
             told = f"the instruction does not say that {what} should go. Do only what it says"
             yield Fault("sweeping", told, "not_understood", f"{_REFUSED}: remove {what}. {_SAY}")
@@ -180,26 +175,19 @@ class Guard:
         commands = bool(own) and own[0] in _commands() and not _TOO.search(self._text.casefold())
         return None if commands else self._previous
 
-    @property
-    def _count(self) -> int:
-        return len(self._scene.graph.nodes) if self._scene is not None else 0
-
     def _unnamed(self, played: Resolved | None) -> set[Id]:
         """Nodes that would be removed although the instruction names neither their label nor their colour."""
         if played is None or self._scene is None:
             return set()
         gone = {i for s in played.steps if _takes(s.op) and s.op.op != "isolate" for i in s.targets}
-        return {i for i in gone if i not in self._index or not self._relevance.named(self._index[i])}
+        return gone - self._named if gone else gone
 
     @cached_property
-    def _relevance(self) -> Relevance:
+    def _named(self) -> set[Id]:
+        """Nodes that the instruction names."""
         assert self._scene is not None
-        return Relevance(self._scene.graph, [t for t in (self._text, self._previous) if t])
-
-    @cached_property
-    def _index(self) -> dict[Id, int]:
-        assert self._scene is not None
-        return {n.id: i for i, n in enumerate(self._scene.graph.nodes)}
+        relevance = Relevance(self._scene.graph, (self._text, self._previous or ""))
+        return {n.id for i, n in enumerate(self._scene.graph.nodes) if relevance.named(i)}
 
     def _names(self, asset: str) -> bool:
         """Whether the instruction names a new thing ("make the chair a sofa")."""
@@ -242,10 +230,6 @@ def _commands() -> frozenset[str]:
 
 def _takes(op: EditOp) -> bool:
     return op.op in _TAKES and (op.op != "opacity" or float(getattr(op, "value", 1.0)) <= _HIDES)
-
-
-def _taking(ops: Sequence[EditOp]) -> Iterator[EditOp]:
-    return (op for op in ops if _takes(op))
 
 
 def _is_everything(query: Query | None) -> bool:

@@ -74,15 +74,13 @@ class Rehearsal:
         """What may be meant instead of an id that is not there: things of the query's name, else those with ids next
         to it."""
         nodes = [n for n in self.graph.nodes if isinstance(n.id, int)]
-        labels = sorted({n.label for n in nodes if n.label})
-        fits = {label for label, p in zip(labels, agreement(query.text, labels), strict=True) if p >= THRESHOLD}
+        fits = _fitting(query, nodes)
         named = [n for n in nodes if n.label in fits]
         return (named or sorted(nodes, key=lambda n: (abs(int(n.id) - lost), n.id)))[:_NEAR]
 
     def misnamed(self, query: Query) -> Node | None:
         """A node that the query names by id while its text fits only other things of the scene."""
-        labels = sorted({n.label for n in self.graph.nodes if n.label})
-        fits = {label for label, p in zip(labels, agreement(query.text, labels), strict=True) if p >= THRESHOLD}
+        fits = _fitting(query, self.graph.nodes)
         named = (self.graph.nodes[self.rows[i]] for i in query.groups if i in self.rows)
         return next((n for n in named if fits and n.label and n.label not in fits), None)
 
@@ -110,3 +108,9 @@ class Rehearsal:
         if not query.groups:
             return query
         return query.model_copy(update={"groups": tuple(self.rows[i] for i in query.groups)})
+
+
+def _fitting(query: Query, nodes: Sequence[Node]) -> set[str]:
+    """Labels that the text of a query fits."""
+    labels = sorted({n.label for n in nodes if n.label})
+    return {label for label, p in zip(labels, agreement(query.text, labels), strict=True) if p >= THRESHOLD}

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scripted_model import ScriptedModel
 
 from scenewright.gaussians.errors import BackendError, UserError
 from scenewright.planners import model
@@ -19,7 +20,6 @@ from scenewright.planners.model import planner as planner_module
 from scenewright.planners.model.backend import Answer, Message, UnreachableError
 from scenewright.planners.model.planner import MAX_CHARS, ModelPlanner
 from scenewright.planners.model.prompt.messages import prompt_hash
-from scenewright.planners.model.scripted import ScriptedModel
 from scenewright.planners.plan import EditPlan, NoPlanError, Planner, Usage
 from scenewright.planners.rooms.graph import SceneGraph
 from scenewright.planners.rooms.node import Node, RoomShape

@@ -1,12 +1,12 @@
-"""A scripted language model that returns given answers and records the conversations, for tests and benchmarks."""
+"""A scripted language model that returns given answers and records the conversations."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from ..plan import Usage
-from .backend import Answer, Message, OnText
+from scenewright.planners.model.backend import Answer, Message, OnText
+from scenewright.planners.plan import Usage
 
 Turn = str | Answer | Exception
 Script = Callable[[Sequence[Message]], Turn]
