@@ -1,1 +1,1 @@
-"""Rooms as scene graphs: checked, built as Gaussians, read from scenes and used to resolve words."""
+"""Scene graphs of rooms: read them from scenes, check them, build them as Gaussians and resolve words in them."""

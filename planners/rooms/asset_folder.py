@@ -1,6 +1,6 @@
-"""A folder of other people's assets: meshes and splats, found by their names, captions and tags.
+"""A user's folder of assets: find meshes and splats by their file names, and by captions and tags in `index.json`.
 
-Knows files' names and an optional `index.json` beside them. Refuses to know what is inside a file (assets/imported.py).
+The files themselves are read by `gaussians.assets.modeling.imported`.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from ...gaussians.errors import FileError, UserError
 from .label_encoder import agreement
 
 SUFFIXES = (".glb", ".ply")
-NAMED = 0.45  # agreement (wordwise.py) from which a file's name is the asked one, or a synonym of it
-ALIKE = 0.25  # from which it may stand in for what nothing else is called: the head alone, or a wider word
+SAME_NAME = 0.45  # least agreement (label_encoder.py) of a file's name that equals the label or is a synonym of it
+SIMILAR_NAME = 0.25  # least agreement of a substitute: a name with the same head, or a broader word
 MOST_FILES = 5000
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Za-z])(?=\d)|[_\-.]+")
 
 
 class Entry(BaseModel):
-    """What an index says of a file.
+    """The entry of a file in the index.
 
     Attributes:
         caption: what it shows, in a few words.
@@ -48,20 +48,20 @@ _INDEX = TypeAdapter(dict[Annotated[str, Field(max_length=400)], Entry])
 
 
 @dataclass(frozen=True)
-class Taken:
-    """What the folder had for a name: an asset or None, and what is to be told."""
+class FolderAsset:
+    """The folder's asset for a name, or None, and notes for the user."""
 
     asset: Asset | None
     notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
-class Shelf:
+class AssetFolder:
     """The assets of a folder.
 
     Attributes:
         files: by path, sorted.
-        index: what is said of files, by their path in the folder.
+        index: entries of the index, by the file's path in the folder.
     """
 
     folder: Path
@@ -70,11 +70,11 @@ class Shelf:
 
     @classmethod
     def read(cls, folder: Path) -> Self:
-        """The assets in a folder and its subfolders; no file is opened but the index.
+        """The assets in a folder and its subfolders; only the index is opened.
 
         Raises:
             UserError: there is no such folder, or no asset in it.
-            FileError: the index is none.
+            FileError: the index is not valid.
         """
         if not folder.is_dir():
             raise UserError(f"{folder} is no folder; give one that holds .glb or .ply files")
@@ -85,7 +85,7 @@ class Shelf:
 
     @cached_property
     def _names(self) -> tuple[tuple[str, Path], ...]:
-        """Every name a file goes by, with the file."""
+        """Every name of a file (file name, caption, tags), with the file."""
         out = []
         for path in self.files:
             entry = self._entry(path)
@@ -105,20 +105,20 @@ class Shelf:
             best[path] = max(best.get(path, 0.0), score)
         return sorted((p for p, s in best.items() if s >= least), key=lambda p: (-best[p], p))
 
-    def take(self, label: str, size: Vec3, tint: Rgb | None, exact: bool) -> Taken:
-        """The asset that is called `label`, fitted to `size`; one that cannot be read gives way to the next.
+    def take(self, label: str, size: Vec3, tint: Rgb | None, exact: bool) -> FolderAsset:
+        """The asset with the name `label`, fitted to `size`; if a file cannot be read, the next best is tried.
 
         Args:
-            tint: colour to give it; None leaves its own.
-            exact: only what has this very name or a synonym, as there is another way to make one.
+            tint: its new colour; None leaves its own.
+            exact: accept only this name or a synonym, because the asset library can make the thing too.
         """
         notes: list[str] = []
-        for path in self.ranked(label, NAMED if exact else ALIKE)[:3]:
+        for path in self.ranked(label, SAME_NAME if exact else SIMILAR_NAME)[:3]:
             try:
-                return Taken(imported.read(path, size, label, self._entry(path).up, tint), tuple(notes))
+                return FolderAsset(imported.read(path, size, label, self._entry(path).up, tint), tuple(notes))
             except FileError as error:
                 notes.append(f"passed over {path.name}: {error}")
-        return Taken(None, tuple(notes))
+        return FolderAsset(None, tuple(notes))
 
 
 def _read_index(path: Path) -> dict[str, Entry]:

@@ -1,9 +1,8 @@
-"""A scene graph becomes a scene: every node Gaussians in its box, a room around them, and the truth in its table.
+"""Build a scene from a scene graph: Gaussians for every node in its box, a room around them, and the group table.
 
-Knows graphs, rooms and language fields. Refuses to know words beyond labels, how designs are made (designs.py), where
-things come to rest (settling.py) and how a graph came about. The scene's table of groups is written from the graph
-itself, so that every edit and question works at once and names are true; colours are measured, as embedding measures
-them. `SceneGraph.from_scene` reads the graph back.
+The group table is written from the graph itself, so every edit and question works at once and the names are correct;
+colours are measured, as embedding measures them. designs.py makes the things, rest_heights.py finds their heights, and
+`SceneGraph.from_scene` reads the graph back.
 """
 
 from __future__ import annotations
@@ -32,35 +31,35 @@ from ...gaussians.scene import Frame, Scene
 from ...gaussians.timing import timed
 from ...gaussians.world.box import Box
 from ...tools.field_update import NewObject, append_objects
-from .asset_folder import Shelf
-from .designs import Workshop
+from .asset_folder import AssetFolder
+from .designs import AssetMaker
 from .node import Drawn, Node, NodeId
-from .rest_heights import loads, settled
+from .rest_heights import loads, rest_boxes
 
 if TYPE_CHECKING:
     from ...gaussians.language.encoders import Encoder
 
 __all__ = ["Built", "Look", "build", "construct"]
 
-SMALLEST, LARGEST = 0.5, 60.0  # metres that a room's sides may have: below, no one stands in it; above, it is no room
+SMALLEST, LARGEST = 0.5, 60.0  # metres: limits of a room's sides; nobody can stand in a smaller one
 MOST_THINGS = 400  # each of some thousand Gaussians
 WALLS = ("north", "west", "east")  # the south is left open, for looking in
 _SPARE = 256  # ids up to this much above the number of nodes are kept as they are, with empty rows between them
 _LEVEL = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-# Composed rooms are looked at more than they are measured: no light behind their walls shines through.
+# Composed rooms are made for viewing: this cover of Gaussians lets no light from behind the walls through.
 ANY_LOOK = Look(cover=0.68)
 _SKIN = 0.001  # metres: floor, walls and ceiling are as thin in the table
 
 
 @dataclass(frozen=True, eq=False)
 class Built:
-    """A scene made of a graph.
+    """A scene built from a graph.
 
     Attributes:
         scene: with its table of groups; group `ids[n]` is node `n`.
-        ids: group of each node that was drawn. Numbers that are small enough stay; names and large numbers get one.
-        blocks: nodes that nothing could be found for, drawn as plain blocks.
-        notes: what is to be told, a sentence each.
+        ids: group of each node that was drawn. Small numbers stay; names and large numbers get a new one.
+        blocks: nodes without an asset, drawn as plain blocks.
+        notes: sentences for the user.
         seconds: by stage.
     """
 
@@ -80,7 +79,7 @@ def build(
     ceiling: bool | None = None,
     look: Look = ANY_LOOK,
 ) -> Scene:
-    """The scene that a graph describes; see `construct`, which also tells what had to be guessed."""
+    """The scene that a graph describes; see `construct`, which also returns notes on what was assumed."""
     return construct(graph, seed=seed, assets=assets, detail=detail, ceiling=ceiling, look=look).scene
 
 
@@ -94,13 +93,13 @@ def construct(
     look: Look = ANY_LOOK,
     encoder: Encoder | None = None,
 ) -> Built:
-    """The scene that a graph describes, and what is to be told of it; the same arguments give the same bytes.
+    """The scene that a graph describes, with notes; the same arguments give the same bytes.
 
     Args:
-        graph: z up, metres; need not be free of faults (`scenewright check` tells them).
+        graph: z up, metres; it may have faults (`scenewright check` reports them).
         seed: chooses designs, light, floor and paint.
-        assets: folder of .glb and .ply files. A file that is named as a node is called goes before our own kinds, one
-            that only resembles it after them.
+        assets: folder of .glb and .ply files. A file with the name of a node is preferred to the asset library; one
+            with a similar name is used only if the library has no such kind.
         detail: factor on the number of Gaussians, 0.05 to 8.
         ceiling: whether to close the room above; None closes it if something hangs from it.
         look: floor and paint.
@@ -108,15 +107,15 @@ def construct(
 
     Raises:
         UserError: the room or the graph is too large to be built, or `assets` is no folder of assets.
-        FileError: the folder's index is none.
+        FileError: the folder's index is not valid.
     """
     _refuse(graph, detail)
     seconds: dict[str, float] = {}
     drawn = [n for n in graph.nodes if n.label.lower().strip() not in STRUCTURE or n.label.lower().strip() == "wall"]
     with timed(seconds, "assets"):
-        shop = Workshop(seed, detail, Shelf.read(assets) if assets is not None else None)
+        maker = AssetMaker(seed, detail, AssetFolder.read(assets) if assets is not None else None)
         carried = loads(graph)
-        made = {n.id: shop.make(n, carried.get(n.id, ())) for n in drawn}
+        made = {n.id: maker.make(n, carried.get(n.id, ())) for n in drawn}
     things = {key: one.asset for key, one in made.items()}
     closed = any(n.support == "ceiling" for n in graph.nodes) if ceiling is None else ceiling
     with timed(seconds, "room"):
@@ -125,7 +124,7 @@ def construct(
     notes = tuple(dict.fromkeys(note for one in made.values() for note in one.notes))
     with timed(seconds, "table"):
         rows = _rows(drawn)
-        # Where things stand: measured on their Gaussians, the sides would be blurred by their extents.
+        # Boxes come from the layout: if measured on the Gaussians, their extents would blur the sides.
         boxes = {n.id: t.box.box for n, t in zip(drawn, layout.things, strict=True)}
         scene = _with_table(graph, drawn, room, rows, boxes, encoder, notes)
         cameras = (*_given(graph), overview(layout, closed), *eye_views(layout))
@@ -134,10 +133,10 @@ def construct(
 
 
 def _refuse(graph: Drawn, detail: float) -> None:
-    """Say what cannot be built before anything is.
+    """Refuse a graph that cannot be built, before anything is built.
 
     Raises:
-        UserError: it cannot.
+        UserError: the detail, the room's size or the number of nodes is out of range.
     """
     if not 0.05 <= detail <= 8:
         raise UserError(f"detail must be between 0.05 and 8, got {detail:g}")
@@ -149,11 +148,11 @@ def _refuse(graph: Drawn, detail: float) -> None:
 
 
 def _layout(graph: Drawn, drawn: Sequence[Node], things: Mapping[NodeId, Asset], seed: int) -> Layout:
-    """The things where they come to rest, in the order of `drawn`."""
+    """The things at their rest positions, in the order of `drawn`."""
     width, depth, height = graph.room.size
     names = zlib.crc32(" ".join(n.label for n in drawn).encode())  # two rooms of one seed need not share their paint
     layout = Layout(width, depth, height, WALLS, np.random.default_rng([names, seed & 0xFFFFFFFF]))
-    boxes = settled(graph, things)
+    boxes = rest_boxes(graph, things)
     number = {n.id: i for i, n in enumerate(drawn)}
     for node in drawn:
         support = number[node.support] if node.support in number else str(node.support)
@@ -220,13 +219,13 @@ def _with_table(
 
 
 def _nothing(index: int) -> Group:
-    """A row that nothing is filed under, as deleted things leave one."""
+    """An empty row of the group table, like that of a deleted thing."""
     zero: Vec3 = (0.0, 0.0, 0.0)
     return Group(index, "object", -1, "", 0.0, Box(zero, _LEVEL, zero), zero, 0, 0, 0.0)
 
 
 def _face(graph: Drawn, face: str, index: int, room: Raised, mine: Tensor) -> Group:
-    """Floor, ceiling or one wall: its measures are the room's."""
+    """The group of the floor, the ceiling or one wall, with the room's measures."""
     w, d, h = graph.room.size
     box = {
         "floor": Box((0.0, 0.0, -_SKIN / 2), _LEVEL, (w, d, _SKIN)),

@@ -1,8 +1,7 @@
-"""A neutral check of a scene graph: does it fit, does it stand, do its relations hold, can one walk about in it?
+"""The checker of scene graphs: collisions, bounds of the room, support, stated relations and reachability.
 
-Knows boxes and a person's width. Refuses to know who made the graph and for what; every complaint is a sentence with
-ids and measured numbers, and every tolerance is a constant with its reason. Boxes are solid: a chair pushed under a
-table meets it.
+It treats every graph alike, whatever made it. Each violation is a sentence with ids and measured numbers. Boxes are
+solid: a chair pushed under a table collides with it.
 """
 
 from __future__ import annotations
@@ -26,17 +25,17 @@ from .reachability import unreached
 Kind = Literal["collision", "bounds", "support", "relation", "reach"]
 Id = int | str
 
-TOUCHING = 0.01  # metres that boxes may be in each other or in a wall: what a person rounds to when writing
+TOUCHING = 0.01  # metres that boxes may overlap each other or a wall: people round to centimetres when they write
 
 
 @dataclass(frozen=True)
 class Violation:
-    """One thing that is wrong.
+    """One fault of a graph.
 
     Attributes:
         kind: what was checked.
         ids: the nodes it is about.
-        measured: how far it is off, in `unit`.
+        measured: size of the fault, in `unit`.
         unit: "m", or "1" for a share.
         sentence: for a person, with ids and numbers.
     """
@@ -50,12 +49,12 @@ class Violation:
 
 @dataclass(frozen=True)
 class Report:
-    """What a check found.
+    """The result of a check.
 
     Attributes:
         violations: in the order of the checks, then of the nodes.
-        checked: how many things each check looked at: pairs, nodes, stated relations.
-        unchecked: what was stated and cannot be checked, a sentence each.
+        checked: how many pairs, nodes or stated relations each check covered.
+        unchecked: a sentence for each statement that cannot be checked.
     """
 
     violations: tuple[Violation, ...]
@@ -88,7 +87,7 @@ def _called(node: Node) -> str:
 
 
 def _collisions(graph: SceneGraph) -> Iterator[Violation]:
-    """Pairs of boxes that are in each other, by the separating axes of their footprints and their heights."""
+    """Pairs of overlapping boxes, by the separating axes of their footprints and their heights."""
     carried = {n.id: set(_carriers(graph, n)) for n in graph.nodes}
     middles = np.array([n.position for n in graph.nodes]).reshape(-1, 3)
     reach = np.array([np.linalg.norm(n.size) / 2 for n in graph.nodes])
@@ -96,7 +95,7 @@ def _collisions(graph: SceneGraph) -> Iterator[Violation]:
         near = np.linalg.norm(middles[i + 1 :] - middles[i], axis=1) < reach[i + 1 :] + reach[i]
         for b in (graph.nodes[i + 1 + int(j)] for j in np.flatnonzero(near)):
             if b.id in carried[a.id] or a.id in carried[b.id] or a.is_stepped_on or b.is_stepped_on:
-                continue  # what stands on a shelf or a seat is within its box; rugs are stood upon
+                continue  # a thing on a shelf or a seat is inside its box; things stand on rugs
             depth = overlap(a.box, b.box)
             if depth > TOUCHING:
                 said = f"{_called(a)} and {_called(b)} are {depth:.2f} m in each other"
@@ -132,7 +131,7 @@ def _out_of_bounds(graph: SceneGraph) -> Iterator[Violation]:
 
 
 def _unsupported(graph: SceneGraph) -> Iterator[Violation]:
-    """Nodes that do not stand, lie or hang on what they are said to."""
+    """Nodes that do not stand, lie or hang on their stated support."""
     nodes = {n.id: n for n in graph.nodes}
     ground = max((n.top for n in graph.nodes if n.is_stepped_on), default=0.0)
     for node in graph.nodes:
@@ -198,7 +197,7 @@ def _relations(graph: SceneGraph) -> tuple[list[Violation], tuple[str, ...]]:
 
 
 def _score(stage: Stage, name: str, one: Node, other: Node) -> float:
-    """How well a relation holds; what the graph says stands on a thing is on it, as it is in its box at least."""
+    """Score of a relation, 0 to 1; a node on its stated support counts as "on" if the support check accepts it."""
     if name == "on" and one.support == other.id and not any(_carried(one, other)):
         return 1.0
     anchor = stage.group(stage.ids.index(other.id))
@@ -206,7 +205,7 @@ def _score(stage: Stage, name: str, one: Node, other: Node) -> float:
 
 
 def _out_of_reach(graph: SceneGraph) -> Iterator[Violation]:
-    """Things that nobody can walk up to; what stands on another is reached with it, what hangs is not asked."""
+    """Things on the floor that nobody can walk up to."""
     for node, distance in unreached(graph):
         told = f"{distance:.2f} m" if math.isfinite(distance) else "any distance"
         said = f"{_called(node)} cannot be walked up to: the nearest place one can get to is {told} away"
@@ -214,5 +213,5 @@ def _out_of_reach(graph: SceneGraph) -> Iterator[Violation]:
 
 
 def sentences(violations: Sequence[Violation]) -> list[str]:
-    """The complaints as lines."""
+    """The violations as lines of text."""
     return [f"{v.kind}: {v.sentence}" for v in violations]

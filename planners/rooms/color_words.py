@@ -13,7 +13,7 @@ from ...gaussians.errors import UserError
 from ...gaussians.language.query import attributes
 
 _FAMILY = 0.7  # a "light blue" thing answers to "blue" at least this well, to any other basic word less
-# Of a node whose colour nobody wrote or nobody knows: no word fits. By lightness, as names compress chroma.
+# Colour of a node whose colour is missing or unknown: no word fits this lightness (colour names compress chroma).
 NO_COLOR: Vec3 = (1000.0, 0.0, 0.0)
 
 
@@ -25,9 +25,9 @@ def hex_of(lab: Vec3) -> str:
 
 @cache
 def color_of(name: str) -> Vec3:
-    """Lab of a colour as written in a graph: its own, but so near to the basic word in it that this word fits best.
+    """Lab of a colour name in a graph: its own Lab, moved toward the basic colour word in it until that word fits best.
 
-    Lab of CSS names is no judge of words: light blue measures as teal, dark brown as red.
+    The Lab of CSS names alone gives wrong words: light blue measures as teal, dark brown as red.
     """
     plain = plain_color(name)
     own, family = _lab(plain), _family(plain)

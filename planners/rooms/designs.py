@@ -1,7 +1,6 @@
-"""From a node of a scene graph to a thing of that size: which kind, which design, which colour.
+"""Make the asset for a node of a scene graph: choose its kind, design and colour, and fit it to the node's size.
 
-Knows names, proportions and what stands on a thing. Refuses to know where it stands. A design is chosen by its
-proportions, so that little has to be stretched, and by whether it carries what the graph puts on it.
+Of several designs it takes the one that has to be stretched least and supports the things that the graph puts on it.
 """
 
 from __future__ import annotations
@@ -22,15 +21,15 @@ from ...gaussians.assets.modeling.shapes import Piece, bounds, box
 from ...gaussians.camera import Vec3
 from ...gaussians.color import BASIC, Rgb, parse, plain_color, shade_of
 from ...gaussians.world import kinds
-from .asset_folder import Shelf
+from .asset_folder import AssetFolder
 from .color_words import NO_COLOR, color_of, hex_of
 from .node import Node
 from .rest_heights import Load, level_error
 
 Array = NDArray[np.float64]
-TRIES = 10  # designs looked at; their proportions spread enough that the nearest is within a third of most sizes
-ENOUGH = 0.15  # a stretch of one side against another by e^0.15, 16 %, is not seen
-TOLD = 0.8  # one by e^0.8, more than twice, is told
+MAX_DESIGNS = 10  # designs looked at; their proportions spread enough that the nearest is within a third of most sizes
+GOOD_STRETCH = 0.15  # a stretch of one side against another by e^0.15, 16 %, is not seen
+REPORTED_STRETCH = 0.8  # one by e^0.8, more than twice, is told
 _SLIGHT = 0.2  # of the longest side: shorter ones are thicknesses
 _TURNED = 0.5  # a quarter turn has to save this much: it also turns the front
 _DRAFT = 0.3  # detail at which a design is asked whether it carries something
@@ -40,7 +39,7 @@ _MOST = 50.0  # metres: the longest
 
 @dataclass(frozen=True, eq=False)
 class Made:
-    """A thing, and what is to be told of it. `block`: nothing is called so, and a plain block stands for it."""
+    """An asset with notes for the user. `block`: no kind has this name, so the asset is a plain block."""
 
     asset: Asset
     notes: tuple[str, ...] = ()
@@ -48,18 +47,18 @@ class Made:
 
 
 @dataclass(eq=False)
-class Workshop:
-    """Makes the things of one scene: alike nodes get one design.
+class AssetMaker:
+    """Makes the assets of one scene; nodes with the same label, colour and size get the same design.
 
     Attributes:
         seed: what varies between two scenes of one graph.
         detail: factor on the number of Gaussians.
-        shelf: a folder of other people's assets, or None.
+        folder_assets: a user's folder of assets, or None.
     """
 
     seed: int
     detail: float
-    shelf: Shelf | None = None
+    folder_assets: AssetFolder | None = None
     _done: dict[tuple[object, ...], Made] = field(default_factory=dict)
 
     def make(self, node: Node, loads: Sequence[Load] = ()) -> Made:
@@ -78,8 +77,8 @@ class Workshop:
     def _made(self, node: Node, size: Vec3, loads: Sequence[Load]) -> Made:
         said = f"{node.label or 'thing'} ({node.id})"
         rgb, notes = _shade(node, said)
-        if self.shelf is not None:
-            taken = self.shelf.take(node.label, size, rgb, exact=kind_of(node.label) is not None)
+        if self.folder_assets is not None:
+            taken = self.folder_assets.take(node.label, size, rgb, exact=kind_of(node.label) is not None)
             notes += taken.notes
             if taken.asset is not None:
                 return Made(taken.asset, notes)
@@ -91,27 +90,27 @@ class Workshop:
         if _is_stand_in(node.label):
             notes = (*notes, f"no asset is called {node.label!r}: {said} is drawn as a {kind.name}")
         best = self._nearest(kind, size, rgb, loads, f"{node.label}{node.color}")
-        if best.stretch > TOLD:
+        if best.stretch > REPORTED_STRETCH:
             times = math.exp(best.stretch)
             notes = (*notes, f"{said} is stretched: one side {times:.1f} times as much as another of our {kind.name!r}")
         return Made(best.finished(size, kind.name, self.detail), notes)
 
     def _nearest(self, kind: registry.Kind, size: Vec3, rgb: Rgb | None, loads: Sequence[Load], salt: str) -> _Design:
-        """The design that has to be stretched least, and among those that carry what stands on it, if any does."""
+        """The design that has to be stretched least; with loads, one that supports them is preferred."""
         start = (zlib.crc32(salt.lower().encode()) + 7919 * self.seed) & 0xFFFFFF
         tried: list[_Design] = []
-        for k in range(TRIES):
+        for k in range(MAX_DESIGNS):
             tried.append(_Design.drawn(kind, start + k, size, rgb))
-            if tried[-1].stretch < ENOUGH and not loads:
+            if tried[-1].stretch < GOOD_STRETCH and not loads:
                 return tried[-1]
         tried.sort(key=lambda design: design.stretch)
         if not loads:
             return tried[0]
         judged = []
-        for design in tried[: TRIES // 2 + 1]:
+        for design in tried[: MAX_DESIGNS // 2 + 1]:
             draft = design.finished(size, kind.name, _DRAFT)
             off = max(level_error(draft, load) for load in loads)
-            if off < 0.02 and design.stretch < 2 * ENOUGH:
+            if off < 0.02 and design.stretch < 2 * GOOD_STRETCH:
                 return design
             judged.append((design.stretch + 4 * off, design))
         return min(judged, key=lambda pair: pair[0])[1]

@@ -1,7 +1,5 @@
-"""The scene graph: what stands where, as strict JSON that people, models and solvers share.
+"""The scene graph: the objects of a room with boxes and relations, as strict JSON for people, models and solvers.
 
-Knows names, boxes and relations. Refuses to know Gaussians: it is read from a scene's language field, or written by
-hand.
 World frame: right-handed, z up, metres and degrees; the origin is the centre of the floor. The viewer stands at
 negative y and looks along +y, so that left is -x and "in front" is toward -y, unless the graph has a `viewer`.
 """

@@ -1,8 +1,6 @@
-"""A scene graph as a scene that words can be resolved in: one Gaussian a node, its box, its label, its colour.
+"""A scene graph as a scene in which words can be resolved: one Gaussian for each node, with its box, label and colour.
 
-Knows how a graph's boxes and words become a language field, so that there is one resolver for scenes and for graphs.
-Refuses to resolve anything itself, to know colours by their names (colorwords.py), and to be looked at: it has no
-shape, only measurements.
+So one resolver serves scenes and graphs. The scene is not meant to be rendered. color_words.py defines the colours.
 """
 
 from __future__ import annotations
@@ -47,14 +45,14 @@ _BY_PAIR = ("on", "inside", "under", "below", "above", "next_to")
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """A graph, ready to be asked.
+    """A graph with the scene in which its words are resolved.
 
     Attributes:
         graph: as written.
         scene: its stand-in; row and group `i` is `ids[i]`.
-        ids: the graph's ids; floor, walls and ceiling that are no nodes are called by those words.
+        ids: the graph's ids; a floor, wall or ceiling without a node has its word as id.
         encoder: compares labels with phrases.
-        viewer: whose left and right are meant.
+        viewer: camera that defines left and right.
     """
 
     graph: SceneGraph
@@ -103,7 +101,7 @@ class Stage:
         return found
 
     def _beside(self, query: Query, last: Selection | None) -> Selection | None:
-        """Small things a hand's reach apart are next to each other, though many times their own size lies between."""
+        """The result for "next to" between small things less than `_REACH` apart, whatever their size; None if none."""
         beside = [r for r in query.relations if r.name == "next_to"]
         if len(beside) != 1 or query.pick != "one":
             return None
@@ -182,7 +180,7 @@ class Stage:
         )
 
     def _color(self, word: str) -> str:
-        """A colour that is written so in the graph means what stands for it here; basic words mean themselves."""
+        """A colour word that the graph uses becomes the Lab that the graph's nodes have; basic words stay."""
         plain = plain_color(word)
         written = plain not in BASIC and any(plain_color(n.color) == plain for n in self.graph.nodes)
         return hex_of(color_of(plain)) if written else word
@@ -196,8 +194,8 @@ class Stage:
 def _otherwise(query: Query, verdict: str) -> Iterator[Query]:
     """Other readings of a query that found nothing, or more than one thing.
 
-    What grows in a pot, or belongs to a sofa, stands on it as far as boxes go, and the chairs of a table beside it. And
-    "the cushion on the armchair" is said where two armchairs are and one of them has a cushion.
+    In terms of boxes a plant in a pot and a part of a sofa are "on" it, and the chairs of a table are "next to" it.
+    "The cushion on the armchair" may be said where there are two armchairs and only one of them has a cushion.
     """
     for loose in ({"inside": "on", "part_of": "on"}, {"part_of": "next_to"}):
         if verdict == "absent" and any(r.name in loose for r in query.relations):
@@ -216,7 +214,7 @@ def _to_any(relation: Relation) -> Relation:
 
 
 def _spoken(node: Node) -> str:
-    """What words are compared with: the label, and a colour that no colour table knows ("tartan blanket")."""
+    """The text that words are compared with: the label, with the colour if no table knows it ("tartan blanket")."""
     unknown = node.color and node.label and color_of(node.color) == NO_COLOR
     return f"{node.color} {node.label}" if unknown else node.label
 

@@ -1,8 +1,8 @@
-"""An encoder that compares words only: what a phrase and the labels of a scene graph have to do with each other.
+"""A text encoder that compares phrases with the labels of a scene graph by their words, without a neural network.
 
-It compares heads ("lamp" means a floor lamp), synonyms and words for families, as the table of kinds has them. It
-meets the `Encoder` protocol, so that queries on a graph go through the very resolver that scenes use; a thing's vector
-is one-hot on its label, a phrase's vector holds how well it names each.
+It compares head nouns ("lamp" means a floor lamp), synonyms and words for families from the table of kinds. It
+implements the `Encoder` protocol, so that queries on a graph use the same resolver as queries on scenes: a thing's
+vector is one-hot on its label, and a phrase's vector holds how well it names each label.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a scene graph is made of: nodes with upright boxes, the room's shape, a viewer.
+"""The parts of a scene graph: nodes with upright boxes, the room's shape and a viewer.
 
 World frame: right-handed, z up, metres and degrees; the origin is the centre of the floor.
 """
@@ -16,7 +16,7 @@ Coordinate = Annotated[float, Field(ge=-1e5, le=1e5, allow_inf_nan=False)]
 Extent = Annotated[float, Field(ge=0, le=1e5, allow_inf_nan=False)]
 Size = tuple[Extent, Extent, Extent]
 Point = tuple[Coordinate, Coordinate, Coordinate]
-# Numbers from us; people who write a graph by hand also name their nodes, and get the names back.
+# Graphs read from scenes have numbers; people who write a graph may name their nodes, and the names are kept.
 NodeId = Annotated[int, Field(ge=0, le=10**9, strict=True)] | Annotated[str, Field(min_length=1, max_length=80)]
 Support = Literal["floor", "wall", "ceiling"] | NodeId
 
@@ -97,7 +97,7 @@ class Viewpoint(BaseModel):
 
 
 class Drawn(Protocol):
-    """A graph as building reads it: what stands in which room, and who looks."""
+    """The part of a graph that building reads: the room, its nodes and the viewer."""
 
     @property
     def room(self) -> RoomShape: ...

@@ -1,7 +1,6 @@
-"""A plan on a scene graph: for every step the nodes it would touch, or the verdict that stops it. Nothing is built.
+"""Resolve a plan on a scene graph: the nodes that each step would change, or the verdict that stops it.
 
-Knows plans and the stage that a graph becomes. Refuses to know how words are read, how queries are resolved, and what
-cannot be because of sizes (impossible.py).
+No scene is built or edited. impossible.py refuses steps that sizes make impossible.
 """
 
 from __future__ import annotations
@@ -23,14 +22,14 @@ _NEW = "new"  # ids of what a plan adds begin so
 
 @dataclass(frozen=True)
 class Resolved:
-    """A plan met with a graph.
+    """A plan resolved on a graph.
 
     Attributes:
         verdict: "ok", or why nothing would be done.
-        steps: in order; those behind the one that stopped it have no targets.
-        candidates: ids: what an ambiguous phrase hesitates between, or what is nearest to an absent one.
-        reason: a sentence for a person; if ok, what was read otherwise than it was written.
-        plan: what was resolved.
+        steps: in order; those after the one that failed have no targets.
+        candidates: ids of the nodes that an ambiguous phrase may mean, or of the nearest matches of an absent one.
+        reason: a sentence for a person; if ok, the words that were read with another spelling.
+        plan: the resolved plan.
     """
 
     verdict: Verdict
@@ -80,7 +79,7 @@ def recalled(stage: Stage, plan: EditPlan) -> Selection | None:
 
 
 def _slips(stage: Stage, plan: EditPlan) -> list[str]:
-    """Remarks on nouns that were read as the one thing here that is spelt almost so."""
+    """Notes on misspelt nouns that were read as the label with the nearest spelling."""
     said = dict.fromkeys(text for op in plan.ops for text in _texts(op.model_dump()))
     read = ((text, stage.encoder.meant(text)) for text in said)
     return [f"read “{text}” as {meant}" for text, meant in read if meant]
@@ -99,7 +98,7 @@ def _texts(node: Any) -> Iterator[str]:
 
 @dataclass
 class _Play:
-    """The steps of one plan, played on the stage as far as words can tell: what is gone, what has a new colour.
+    """Applies the steps of one plan to the graph as far as later words depend on it: removed nodes and new colours.
 
     Attributes:
         stage: as it is after the steps so far.

@@ -1,7 +1,6 @@
 """Where a person can walk in a room of boxes: a flood fill over a grid of the floor.
 
-Knows footprints and one person's width. Refuses to know what things are for; a door counts as where one comes in, and
-without a door the largest free part of the floor does.
+It starts at the doors; without a door, the largest free part of the floor counts as reachable.
 """
 
 from __future__ import annotations
@@ -21,14 +20,14 @@ from .node import Node
 F64 = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-CELL = 0.05  # metres, side of a cell; a way is found or missed by this much
-_MOST = 1200  # cells along a side, for halls that would need more the cells grow
+CELL = 0.05  # metres, side of a cell and precision of the width of a passage
+_MOST = 1200  # most cells along a side; larger halls have larger cells
 
 
 def unreached(graph: SceneGraph) -> Iterator[tuple[Node, float]]:
-    """Doors that nothing can be entered by, and nodes on the floor that no walkable place is within arm's reach of.
+    """Blocked doors, and nodes on the floor that are not within arm's reach of a walkable cell.
 
-    Each with its distance to the nearest place in question, infinite where nobody can stand anywhere.
+    Each comes with its distance to the nearest such cell, infinite if there is none.
     """
     xs, ys = _axes(graph)
     areas, _ = ndimage.label(_free(graph, xs, ys), structure=np.ones((3, 3)))

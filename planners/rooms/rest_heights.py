@@ -1,7 +1,7 @@
-"""Where the things of a graph come to rest: on the floor, on what carries them, at a wall, under the ceiling.
+"""The final boxes of a graph's things: resting on the floor or on their carrier, at a wall, or under the ceiling.
 
-Knows boxes and the faces of things, measured on their Gaussians. Refuses to know names. Floor plan and facing are the
-graph's; heights are what holds: a cup stands on the plate of a table, not on the top of its box.
+Position in plan and yaw are the graph's. Heights are measured on the carrier's Gaussians: a cup stands on the top of a
+table, which may be lower than the top of the table's box.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ Array = NDArray[np.float64]
 NEAR_FLOOR = 0.1  # metres: what is said to stand on the floor and is lower than this does; higher things were meant so
 AT_WALL = 0.15  # metres between a back and a wall from which it counts as fixed to it
 FLUSH = 0.002  # metres before the wall's face, for what is let into it
-_LEVEL = 0.02  # metres: cells within it belong to one face
+_FACE_TOLERANCE = 0.02  # metres: cells within it belong to one face
 _PAD = 0.03  # metres around a footprint: half a cell of a large table, so that a cup has some under it
-_SHARE = 0.3  # of the cells of the fullest face under a footprint that another one must have to carry
+_MIN_FACE_SHARE = 0.3  # of the cells of the fullest face under a footprint that another one must have to carry
 _UPWARD = 0.7  # cosine to the vertical of what carries
 
 
 @dataclass(frozen=True)
 class Load:
-    """What stands on a thing, in that thing's frame: middle of its footprint, size, turn, and its wanted height."""
+    """A thing on a carrier, in the carrier's frame: middle of its footprint, size, yaw, and its wanted height."""
 
     x: float
     y: float
@@ -43,7 +43,7 @@ class Load:
 
 
 def loads(graph: Drawn) -> dict[int | str, list[Load]]:
-    """What each node carries, by its id."""
+    """The loads of each node that carries something, by its id."""
     nodes = {n.id: n for n in graph.nodes}
     found: dict[int | str, list[Load]] = {}
     for node in graph.nodes:
@@ -58,7 +58,7 @@ def _load(node: Node, lower: Node) -> Load:
 
 
 def level_error(asset: Asset, load: Load) -> float:
-    """How far the face that would carry a load is from where it is wanted, metres; half a metre where there is none."""
+    """Distance between the face that would carry a load and the wanted height, metres, at most (or without one) 0.5."""
     level = face_under(asset, load)
     return 0.5 if level is None else min(abs(level - load.height), 0.5)
 
@@ -75,8 +75,8 @@ def face_under(asset: Asset, load: Load) -> float | None:
     if not len(heights):
         return None
     # A face is what lies within a hand's breadth of cells below a cell: heights minus the first within reach.
-    filled = np.arange(1, len(heights) + 1) - np.searchsorted(heights, heights - _LEVEL)
-    carrying = heights[filled >= _SHARE * filled.max()]
+    filled = np.arange(1, len(heights) + 1) - np.searchsorted(heights, heights - _FACE_TOLERANCE)
+    carrying = heights[filled >= _MIN_FACE_SHARE * filled.max()]
     return float(carrying[np.argmin(np.abs(carrying - load.height))])
 
 
@@ -89,8 +89,8 @@ def _cells(asset: Asset) -> tuple[Array, NDArray[np.bool_]]:
     return means, np.ones(len(means), dtype=bool)
 
 
-def settled(graph: Drawn, assets: Mapping[int | str, Asset]) -> dict[int | str, YawBox]:
-    """Where each node that has an asset comes to stand, by id."""
+def rest_boxes(graph: Drawn, assets: Mapping[int | str, Asset]) -> dict[int | str, YawBox]:
+    """Final box of each node that has an asset, by id."""
     nodes = {n.id: n for n in graph.nodes}
     boxes: dict[int | str, YawBox] = {}
     for node in _carriers_first(graph.nodes, nodes):

@@ -19,7 +19,7 @@ from scenewright.agent.session.session import Session
 from scenewright.gaussians import assets, files
 from scenewright.gaussians.errors import FileError, UserError
 from scenewright.gaussians.language.field.store import load_field, save_field
-from scenewright.planners.rooms.asset_folder import Shelf
+from scenewright.planners.rooms.asset_folder import AssetFolder
 from scenewright.planners.rooms.build import Built, build, construct
 from scenewright.planners.rooms.designs import kind_of
 from scenewright.planners.rooms.graph import SceneGraph
@@ -209,15 +209,15 @@ def test_labels_name_kinds(label: str, kind: str | None) -> None:
 
 
 def test_a_face_is_found_by_its_height() -> None:
-    shelf = assets.make("bookshelf", 1, size=(0.9, 0.35, 1.8))
+    folder_assets = assets.make("bookshelf", 1, size=(0.9, 0.35, 1.8))
     node = Node(id=1, label="vase", size=(0.1, 0.1, 0.2), position=(0, 0, 0.9), support=0)
     lower = Node(id=0, label="bookshelf", size=(0.9, 0.35, 1.8), position=(0, 0, 0.9))
     room = SceneGraph.model_validate({"room": {"size": [3, 3, 3]}, "nodes": [lower.model_dump(), node.model_dump()]})
     load = loads(room)[0][0]
     assert load.height == pytest.approx(0.8)
-    level = face_under(shelf, load)
+    level = face_under(folder_assets, load)
     assert level is not None and 0.3 < level < 1.4  # a board of the shelf, not its top
-    assert face_under(shelf, type(load)(5.0, 5.0, 0.1, 0.1, 0.0, 0.8)) is None
+    assert face_under(folder_assets, type(load)(5.0, 5.0, 0.1, 0.1, 0.0, 0.8)) is None
 
 
 # --- edits -----------------------------------------------------------------------------------------------------------
@@ -305,11 +305,11 @@ def test_hostile_files_become_blocks_with_a_word(tmp_path: Path, content: bytes)
 
 def test_folders_and_indices_that_are_none_are_refused(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="no folder"):
-        Shelf.read(tmp_path / "nowhere")
+        AssetFolder.read(tmp_path / "nowhere")
     with pytest.raises(UserError, match=r"no \.glb"):
-        Shelf.read(tmp_path)
+        AssetFolder.read(tmp_path)
     trimesh.creation.box().export(tmp_path / "a.glb")
     for wrong in ("[]", "{", '{"a.glb": {"caption": 3}}', '{"a.glb": {"run": "rm"}}'):
         (tmp_path / "index.json").write_text(wrong)
         with pytest.raises(FileError, match="index"):
-            Shelf.read(tmp_path)
+            AssetFolder.read(tmp_path)
