@@ -20,7 +20,7 @@ from scenewright.benchmarks import structure
 
 ROOT = Path(__file__).resolve().parents[1]
 SHIPPED = ("gaussians", "tools", "planners", "agent", "prompts")
-ROOMS = (*SHIPPED, "benchmarks", "training")
+PACKAGES = (*SHIPPED, "benchmarks", "training")
 # Lower packages never import higher ones. `benchmarks` may import everything; only `scenewright bench` imports it.
 MAY_IMPORT = {
     "gaussians": {"gaussians"},
@@ -33,12 +33,12 @@ MAY_IMPORT = {
 }
 
 
-def _modules(room: str) -> list[Path]:
-    return sorted((ROOT / room).rglob("*.py"))
+def _modules(package: str) -> list[Path]:
+    return sorted((ROOT / package).rglob("*.py"))
 
 
-def _rooms_imported(path: Path) -> Iterator[tuple[str, int]]:
-    """Rooms that a module imports, absolutely or relatively, anywhere in it, with the line."""
+def _packages_imported(path: Path) -> Iterator[tuple[str, int]]:
+    """Packages that a module imports, absolutely or relatively, anywhere in it, with the line."""
     package = ("scenewright", *path.relative_to(ROOT).parent.parts)
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         names: list[tuple[str, ...]] = []
@@ -53,13 +53,13 @@ def _rooms_imported(path: Path) -> Iterator[tuple[str, int]]:
                 yield name[1], node.lineno  # type: ignore[attr-defined]
 
 
-@pytest.mark.parametrize("room", ROOMS)
-def test_rooms_import_only_downstairs(room: str) -> None:
+@pytest.mark.parametrize("package", PACKAGES)
+def test_packages_import_only_lower_ones(package: str) -> None:
     wrong = [
         f"{path.relative_to(ROOT)}:{line} imports {other}"
-        for path in _modules(room)
-        for other, line in _rooms_imported(path)
-        if other in ROOMS and other not in MAY_IMPORT[room]
+        for path in _modules(package)
+        for other, line in _packages_imported(path)
+        if other in PACKAGES and other not in MAY_IMPORT[package]
     ]
     assert not wrong
 
@@ -72,15 +72,17 @@ def test_no_module_imports_itself_through_others() -> None:
     assert not structure.cycles(modules, edges)
 
 
-@pytest.mark.parametrize("room", ROOMS)
-def test_every_file_says_what_it_knows(room: str) -> None:
-    silent = [p for p in _modules(room) if p.stat().st_size and not ast.get_docstring(ast.parse(p.read_text("utf-8")))]
+@pytest.mark.parametrize("package", PACKAGES)
+def test_every_file_says_what_it_knows(package: str) -> None:
+    silent = [
+        p for p in _modules(package) if p.stat().st_size and not ast.get_docstring(ast.parse(p.read_text("utf-8")))
+    ]
     assert not silent
 
 
-@pytest.mark.parametrize("room", ROOMS)
-def test_every_folder_of_modules_is_a_package(room: str) -> None:
-    bare = {p.parent for p in _modules(room) if not (p.parent / "__init__.py").exists()}
+@pytest.mark.parametrize("package", PACKAGES)
+def test_every_folder_of_modules_is_a_package(package: str) -> None:
+    bare = {p.parent for p in _modules(package) if not (p.parent / "__init__.py").exists()}
     assert not bare
 
 
@@ -90,8 +92,8 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     if importlib.util.find_spec("setuptools") is None:
         pytest.skip("setuptools is not installed in this environment; the wheel cannot be built")
     copy = tmp_path_factory.mktemp("build")
-    for room in ROOMS:  # all of them, so that what does not ship has a chance to slip in
-        shutil.copytree(ROOT / room, copy / room, ignore=shutil.ignore_patterns("__pycache__"))
+    for package in PACKAGES:  # all of them, so that what does not ship has a chance to slip in
+        shutil.copytree(ROOT / package, copy / package, ignore=shutil.ignore_patterns("__pycache__"))
     (copy / "src" / "scenewright").mkdir(parents=True)
     for file in (ROOT / "src" / "scenewright").iterdir():
         if not file.is_symlink() and file.is_file():
@@ -105,11 +107,11 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     return zipfile.ZipFile(built).namelist()
 
 
-def test_the_wheel_holds_every_room_with_its_data(wheel: list[str]) -> None:
+def test_the_wheel_holds_every_package_with_its_data(wheel: list[str]) -> None:
     wanted = {
         f"scenewright/{path.relative_to(ROOT).as_posix()}"
-        for room in SHIPPED
-        for path in (ROOT / room).rglob("*")
+        for package in SHIPPED
+        for path in (ROOT / package).rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
     }
     wanted |= {"scenewright/__init__.py", "scenewright/__main__.py", "scenewright/py.typed"}
@@ -126,7 +128,7 @@ def test_the_wheel_holds_nothing_else(wheel: list[str]) -> None:
     ]
 
 
-def test_no_room_is_importable_by_its_bare_name(tmp_path: Path) -> None:
+def test_no_package_is_importable_by_its_bare_name(tmp_path: Path) -> None:
     code = (
         "import importlib.util, json, sys; names = sys.argv[1:];"
         "print(json.dumps({n: str(s.origin or list(s.submodule_search_locations or [])) for n in names"
@@ -134,7 +136,12 @@ def test_no_room_is_importable_by_its_bare_name(tmp_path: Path) -> None:
     )
     env = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
     done = subprocess.run(
-        [sys.executable, "-c", code, *ROOMS, "tests"], cwd=tmp_path, env=env, capture_output=True, text=True, check=True
+        [sys.executable, "-c", code, *PACKAGES, "tests"],
+        cwd=tmp_path,
+        env=env,
+        capture_output=True,
+        text=True,
+        check=True,
     )
     # Another distribution may install a module called "tools" or "tests"; ours must not.
     ours = {name: origin for name, origin in json.loads(done.stdout).items() if str(ROOT) in origin}
