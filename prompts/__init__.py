@@ -1,7 +1,7 @@
-"""Prompts for language models, one Markdown file each, and the strict loader of them.
+"""Loads the prompts for language models, one Markdown file each, and checks and fills their placeholders.
 
-Knows files, placeholders and hashes. Refuses to know what is put into a prompt and who reads it; imports nothing of
-the project. A prompt file begins with a header, and each declared name occurs in its text as `{{name}}`:
+This package imports nothing of the project. A prompt file begins with a header, and each declared name occurs in its
+text as `{{name}}`:
 
     ---
     placeholders: operations, examples
@@ -23,7 +23,7 @@ _PLACEHOLDER = re.compile(r"\{\{(.*?)\}\}", re.DOTALL)
 
 
 class PromptError(ValueError):
-    """A prompt file, or what is to be filled into it, is not as declared: our own mistake, never a user's."""
+    """A prompt file or the values for its placeholders are not as declared: a programming error, not a user's."""
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,9 @@ class Prompt:
     """One prompt.
 
     Attributes:
-        name: the file's, without ".md".
-        text: what stands behind the header, normalised (see `normalised`).
-        placeholders: what must be filled in.
+        name: the file name without ".md".
+        text: the text after the header, normalised (see `normalised`).
+        placeholders: the names that must be filled in.
         hash: the first 16 hexadecimal digits of the SHA-256 of the whole normalised file, header included.
     """
 
@@ -43,18 +43,18 @@ class Prompt:
     hash: str
 
     def fill(self, **values: str) -> str:
-        """The text with each placeholder exchanged for its value, once: braces within a value mean nothing.
+        """The text with each placeholder replaced by its value; braces within a value are not placeholders.
 
         Raises:
             PromptError: a placeholder has no value, or a value has no placeholder.
         """
         missing, unknown = sorted(self.placeholders - values.keys()), sorted(values.keys() - self.placeholders)
         if missing or unknown:
-            told = [
+            wrong = [
                 f"{what}: {', '.join(names)}" for what, names in (("missing", missing), ("unknown", unknown)) if names
             ]
             raise PromptError(
-                f"prompt {self.name}: {'; '.join(told)}; its placeholders are {sorted(self.placeholders)}"
+                f"prompt {self.name}: {'; '.join(wrong)}; its placeholders are {sorted(self.placeholders)}"
             )
         return _PLACEHOLDER.sub(lambda found: values[found[1]], self.text)
 
@@ -67,7 +67,7 @@ def load(name: str) -> Prompt:
         PromptError: there is no such prompt, or its header and its text disagree.
     """
     if not _NAME.fullmatch(name):
-        raise PromptError(f"{name!r} is no name of a prompt; prompts are {', '.join(names())}")
+        raise PromptError(f"{name!r} is not the name of a prompt; prompts are {', '.join(names())}")
     file = resources.files(__name__).joinpath(f"{name}.md")
     if not file.is_file():
         raise PromptError(f"there is no prompt {name!r}; prompts are {', '.join(names())}")
@@ -84,7 +84,7 @@ def parse(name: str, source: str) -> Prompt:
     """A prompt from the text of its file.
 
     Raises:
-        PromptError: the header is missing or malformed, or declares other placeholders than the text has.
+        PromptError: the header is missing or malformed, or its placeholders differ from those in the text.
     """
     text = normalised(source)
     header = _HEADER.match(text)
@@ -94,19 +94,19 @@ def parse(name: str, source: str) -> Prompt:
     body = text[header.end() :].strip("\n") + "\n"
     found = frozenset(_PLACEHOLDER.findall(body))
     if wrong := sorted(n for n in {*listed, *found} if not _NAME.fullmatch(n)):
-        raise PromptError(f"prompt {name}: {wrong[0]!r} is no name of a placeholder; use letters, digits and _")
+        raise PromptError(f"prompt {name}: {wrong[0]!r} is not the name of a placeholder; use letters, digits and _")
     if len(set(listed)) != len(listed) or set(listed) != found:
         raise PromptError(f"prompt {name}: declares {sorted(listed)}, but its text has {sorted(found)}")
     return Prompt(name, body, found, short_hash(text))
 
 
 def normalised(source: str) -> str:
-    """A text that is the same whatever the editor and the system that saved it: composed characters (NFC), line feeds,
-    no spaces at line ends, no byte order mark, one line feed at the end."""
+    """The text independent of the editor and system that saved it: composed characters (NFC), line feeds as line
+    breaks, no spaces at line ends, no byte order mark, one line feed at the end."""
     text = unicodedata.normalize("NFC", source.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n"))
     return "\n".join(line.rstrip() for line in text.strip("\n").split("\n")) + "\n"
 
 
 def short_hash(*texts: str) -> str:
-    """The first 16 hexadecimal digits of the SHA-256 of texts in this order."""
+    """The first 16 hexadecimal digits of the SHA-256 of the texts in this order."""
     return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:16]

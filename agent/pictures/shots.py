@@ -52,13 +52,13 @@ def orbit_shots(
         UserError: the number of pictures or the rate is out of range.
         FileError: the capture cannot be read.
     """
-    from ...gaussians.viewpoints.orbit import FEWEST, choose_ring
+    from ...gaussians.viewpoints.orbit import MIN_CAMERAS, choose_ring
 
     if not 2 <= count <= MAX_PICTURES:
         raise UserError(f"an orbit has 2 to {MAX_PICTURES} pictures, not {count}; write for example --orbit 75")
     turn = seconds if seconds is not None or fps is not None else max(_MIN_TURN, count / RATE)
     rate = _rate(count, turn, fps)
-    cameras = scene.cameras if len(scene.cameras) >= FEWEST else ()
+    cameras = scene.cameras if len(scene.cameras) >= MIN_CAMERAS else ()
     if capture is not None:
         cameras = cameras_of(capture)
     ring = choose_ring(framed(scene.replace(cameras=cameras or scene.cameras)), cameras)

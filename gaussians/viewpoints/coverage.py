@@ -1,7 +1,4 @@
-"""Where to look from: the fewest views that see every Gaussian that can be seen, chosen from the scene itself.
-
-Knows clouds, cameras and the renderer's blending weights. Refuses to know masks and words.
-"""
+"""Chooses few cameras that together see every visible Gaussian of a scene, and a default camera for viewing it."""
 
 from __future__ import annotations
 
@@ -20,15 +17,15 @@ from ..scene import Frame, Scene
 
 F64 = NDArray[np.float64]
 
-SIZE = 160  # pixels a side while choosing
+SIZE = 160  # pixels per side of the views that are compared
 SEEN = 0.01  # summed blending weight (pixels at SIZE) from which a Gaussian counts as seen
-COVER = 0.985  # of what any candidate sees
-GAIN = 0.003  # a view that adds less than this share of all Gaussians is not worth its time
-MOST = 24
-SAMPLE = 160_000  # Gaussians looked for; more do not change the choice of views
-ABOVE = 0.12  # of the scene's height: what is lower is ground and what lies on it
-EYE_HEIGHT = 0.55  # of the scene's height, for eyes inside
-PLAN_CELLS = 24
+COVERAGE = 0.985  # share of the Gaussians that any candidate sees, at which the choice ends
+MIN_GAIN = 0.003  # share of all Gaussians that a further view must add
+MAX_VIEWS = 24
+SAMPLE = 160_000  # Gaussians considered; more do not change the choice of views
+GROUND_SHARE = 0.12  # of the scene's height, counted as the ground and what lies on it
+EYE_HEIGHT = 0.55  # share of the scene's height, for cameras inside
+PLAN_CELLS = 24  # per side of the floor plan in which free space is searched
 
 
 @dataclass(frozen=True)
@@ -37,9 +34,9 @@ class Views:
 
     Attributes:
         cameras: best first.
-        rows: `[S]` int64, the rows of the cloud that were looked for: all, or an even sample of a large cloud.
-        seen_by: `[V, S]` bool, which of them each camera sees.
-        unseen: share of them that no candidate sees.
+        rows: `[S]` int64, the rows of the cloud that were considered: all, or an even sample of a large cloud.
+        seen_by: `[V, S]` bool, which of these rows each camera sees.
+        unseen: share of these rows that no candidate sees.
     """
 
     cameras: tuple[Camera, ...]
@@ -48,28 +45,31 @@ class Views:
     unseen: float
 
     def count_of(self, rows: NDArray[np.int64]) -> int:
-        """How many views see at least a twentieth of the Gaussians at `rows [M]`."""
+        """Number of views that see more than a twentieth of the Gaussians at `rows [M]`."""
         within = np.isin(self.rows, rows, assume_unique=True, kind="table")
         return int((self.seen_by[:, within].mean(axis=1) > 0.05).sum()) if within.any() else 0
 
 
-def choose_views(scene: Scene, most: int = MOST, size: int = SIZE) -> Views:
-    """Greedy set cover over the scene's own cameras if it has enough, else over eyes around and inside it."""
+def choose_views(scene: Scene, max_views: int = MAX_VIEWS, size: int = SIZE) -> Views:
+    """Greedy set cover by at most `max_views` views of `size` pixels per side.
+
+    The candidates are the scene's own cameras, and cameras around and inside it if its own are fewer than `max_views`.
+    """
     rows, cloud = sample(scene.cloud)
-    own = [_small(c, size) for c in scene.cameras]
-    pool = own if len(own) >= most else own + candidates(scene.cloud, scene.frame, size)
+    own = [_downscaled(c, size) for c in scene.cameras]
+    pool = own if len(own) >= max_views else own + candidates(scene.cloud, scene.frame, size)
     if not len(cloud) or not pool:
         return Views((), rows, np.zeros((0, len(rows)), bool), 0.0)
-    if len(pool) > 4 * most:
-        pool = [pool[i] for i in np.linspace(0, len(pool) - 1, 4 * most).astype(int)]
+    if len(pool) > 4 * max_views:
+        pool = [pool[i] for i in np.linspace(0, len(pool) - 1, 4 * max_views).astype(int)]
     seen = np.stack([(contributions(cloud, c) > SEEN).numpy() for c in pool])
     visible = int(seen.any(axis=0).sum())
     covered = np.zeros(len(cloud), bool)
     chosen: list[int] = []
-    while len(chosen) < most and covered.sum() < COVER * visible:
+    while len(chosen) < max_views and covered.sum() < COVERAGE * visible:
         gain = (seen & ~covered).sum(axis=1)
         best = int(np.argmax(gain))
-        if chosen and gain[best] < GAIN * len(cloud):
+        if chosen and gain[best] < MIN_GAIN * len(cloud):
             break
         chosen.append(best)
         covered |= seen[best]
@@ -77,7 +77,7 @@ def choose_views(scene: Scene, most: int = MOST, size: int = SIZE) -> Views:
 
 
 def sample(cloud: GaussianCloud) -> tuple[NDArray[np.int64], GaussianCloud]:
-    """Rows and cloud of at most SAMPLE Gaussians, grown so that the fewer still cover what all covered."""
+    """Rows and cloud of at most SAMPLE Gaussians, enlarged so that they cover the same surfaces as all."""
     step = max(1, -(-len(cloud) // SAMPLE))
     rows = np.arange(0, len(cloud), step)
     part = cloud[::step]
@@ -94,13 +94,13 @@ def default_viewer(scene: Scene, width: int = 640, height: int = 480) -> Camera:
     _, cloud = sample(scene.cloud)
     heights = scene.frame.heights(cloud.means.numpy())
     low, high = np.quantile(heights, [0.02, 0.98])
-    raised = torch.from_numpy(heights > low + ABOVE * (high - low))
-    weight = [_interest(cloud, c, raised) for c in pool]
-    return fit_camera(pool[int(np.argmax(weight))], width, height)
+    raised = torch.from_numpy(heights > low + GROUND_SHARE * (high - low))
+    scores = [_score(cloud, c, raised) for c in pool]
+    return fit_camera(pool[int(np.argmax(scores))], width, height)
 
 
 def fit_camera(camera: Camera, width: int, height: int) -> Camera:
-    """The same eye and direction at another size: all that was seen, in the middle, and more at the longer sides."""
+    """The same pose at another image size: the old view stays whole and centred, the longer side shows more."""
     gain = min(width / camera.width, height / camera.height)
     cx = width / 2 + gain * (camera.cx - camera.width / 2)
     cy = height / 2 + gain * (camera.cy - camera.height / 2)
@@ -108,7 +108,7 @@ def fit_camera(camera: Camera, width: int, height: int) -> Camera:
 
 
 def candidates(cloud: GaussianCloud, frame: Frame, size: int) -> list[Camera]:
-    """Eyes on two rings around the scene, and at eye height in its free space looking all ways."""
+    """Cameras on two rings around the scene, in its free space at eye height, and around its densest detail."""
     if not len(cloud):
         return []
     solid = cloud.opacities > 0.1
@@ -135,7 +135,7 @@ def _around(low: F64, high: F64, frame: Frame, size: int) -> list[Camera]:
 
 
 def _inside(local: F64, low: F64, high: F64, frame: Frame, size: int) -> list[Camera]:
-    """Eyes over free cells of the plan, spread far apart, six directions each, a little downwards."""
+    """Cameras over free cells of the floor plan, far apart, in six directions each, tilted slightly down."""
     span = np.maximum(high - low, 1e-9)
     eye_height = low[2] + EYE_HEIGHT * span[2]
     cell = span[:2] / PLAN_CELLS
@@ -160,7 +160,7 @@ def _inside(local: F64, low: F64, high: F64, frame: Frame, size: int) -> list[Ca
 
 
 def _toward(local: F64, frame: Frame, size: int) -> list[Camera]:
-    """Eyes around where the detail is densest, for captures of one spot in a larger room."""
+    """Cameras around the densest detail, for captures of one object in a larger room."""
     above = local[local[:, 2] >= np.quantile(local[:, 2], 0.35)]
     focus = np.median(above, axis=0)
     reach = float(np.median(np.linalg.norm(above - focus, axis=1))) + 1e-9
@@ -174,14 +174,14 @@ def _toward(local: F64, frame: Frame, size: int) -> list[Camera]:
     return cameras
 
 
-def _interest(cloud: GaussianCloud, camera: Camera, raised: torch.Tensor) -> float:
-    """Share of what stands above the ground that a view sees, discounted by how much of the picture stays empty."""
+def _score(cloud: GaussianCloud, camera: Camera, raised: torch.Tensor) -> float:
+    """Share of the Gaussians above the ground that a view sees, reduced by the empty share of its image."""
     weight = contributions(cloud, camera)
     seen = float((weight[raised] > SEEN).sum()) / max(int(raised.sum()), 1)
     filled = float(weight.sum()) / (camera.width * camera.height)
     return seen * min(1.0, 0.6 + filled)
 
 
-def _small(camera: Camera, size: int) -> Camera:
+def _downscaled(camera: Camera, size: int) -> Camera:
     gain = size / max(camera.width, camera.height)
     return camera.resized(max(1, round(camera.width * gain)), max(1, round(camera.height * gain)))

@@ -139,7 +139,7 @@ class _Design:
         return cls(pieces, tone.color, seed, straight)
 
     def finished(self, size: Vec3, kind: str, detail: float) -> Asset:
-        return make.finished(make.fitted(self.pieces, size), kind, self.rgb, self.seed, detail)
+        return make.to_asset(make.fit_to_size(self.pieces, size), kind, self.rgb, self.seed, detail)
 
 
 def _stretch(span: Array, size: Vec3) -> float:
@@ -184,4 +184,4 @@ def _shade(node: Node, said: str) -> tuple[Rgb | None, tuple[str, ...]]:
 def _block(size: Vec3, rgb: Rgb, detail: float) -> Asset:
     w, d, h = size
     piece = box(w, d, h, bevel=min(0.01, 0.2 * min(size))).named("block", Material(rgb, main=True))
-    return make.finished([piece], "block", rgb, 0, detail)
+    return make.to_asset([piece], "block", rgb, 0, detail)

@@ -57,15 +57,15 @@ def test_the_same_scene_gives_the_same_views(world: type[Any]) -> None:
     assert np.array_equal(one.seen_by, two.seen_by)
 
 
-def test_most_is_a_bound_and_own_cameras_suffice_where_there_are_enough(world: type[Any]) -> None:
+def test_max_views_is_a_bound_and_own_cameras_suffice_where_there_are_enough(world: type[Any]) -> None:
     scene = crate(world)
-    assert len(choose_views(scene, most=2, size=SIZE).cameras) <= 2
+    assert len(choose_views(scene, max_views=2, size=SIZE).cameras) <= 2
     angles = np.radians(np.arange(6) * 60.0)
     own = tuple(
         Camera.look_at((3 * np.cos(a), 3 * np.sin(a), 1.5), (0, 0, 0.5), (0, 0, 1), 90, 60, name=f"mine {i}")
         for i, a in enumerate(angles)
     )
-    chosen = choose_views(scene.replace(cameras=own), most=6, size=SIZE).cameras
+    chosen = choose_views(scene.replace(cameras=own), max_views=6, size=SIZE).cameras
     assert chosen and all(c.name.startswith("mine") for c in chosen)
 
 

@@ -1,4 +1,4 @@
-"""Laws of camera paths: through every keyframe, never far off between them, at rest where keyframes rest."""
+"""Laws of camera paths: spline every keyframe, never far off between them, at rest where keyframes rest."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.errors import UserError
-from scenewright.gaussians.viewpoints.keyframes import CameraPath, Keyframe, through
+from scenewright.gaussians.viewpoints.keyframes import CameraPath, Keyframe, spline
 
 UP = (0.0, 0.0, 1.0)
 coordinate = st.floats(-10, 10).map(lambda v: round(v, 3))
@@ -34,9 +34,9 @@ def knots(draw: st.DrawFn) -> tuple[np.ndarray, np.ndarray]:
 @given(knots())
 def test_a_spline_goes_through_its_knots_and_never_far_beyond_them(given_: tuple[np.ndarray, np.ndarray]) -> None:
     times, values = given_
-    assert np.allclose(through(times, values, times), values, atol=NUMERIC)
+    assert np.allclose(spline(times, values, times), values, atol=NUMERIC)
     for i, (a, b) in enumerate(itertools.pairwise(times)):
-        between = through(times, values, np.linspace(a, b, 20))
+        between = spline(times, values, np.linspace(a, b, 20))
         chord = float(np.linalg.norm(values[i + 1] - values[i]))
         # A cubic with end speeds of at most 1.5 chords an interval strays by at most 2 * 1.5 * 4/27 of the chord.
         on = values[i] + np.linspace(0, 1, 20)[:, None] * (values[i + 1] - values[i])
@@ -50,7 +50,7 @@ def test_where_two_knots_are_equal_the_spline_rests(given_: tuple[np.ndarray, np
     times = np.append(times, times[-1] + 1)
     values = np.append(values, values[-1:], axis=0)
     times, values = np.append(times, times[-1] + 1), np.append(values, [[more, 0, 0]], axis=0)
-    resting = through(times, values, np.linspace(times[-3], times[-2], 9))
+    resting = spline(times, values, np.linspace(times[-3], times[-2], 9))
     assert np.allclose(resting, values[-2], atol=NUMERIC)
 
 
@@ -58,7 +58,7 @@ def test_where_two_knots_are_equal_the_spline_rests(given_: tuple[np.ndarray, np
 def test_every_keyframe_is_passed_as_it_was_given(
     eyes: list[tuple[float, float, float]], gaps: list[float], aimed: bool
 ) -> None:
-    eyes = [(x, y - 20, z) for x, y, z in eyes]  # all in front of the target, so that it is never flown through
+    eyes = [(x, y - 20, z) for x, y, z in eyes]  # all in front of the target, so that it is never flown spline
     times = np.concatenate([[3.0], 3.0 + np.cumsum((gaps * 5)[: len(eyes) - 1])])
     path = CameraPath(tuple(keyframe(t, eye, aimed) for t, eye in zip(times.tolist(), eyes, strict=True)))
     cameras = path.cameras((times - 3.0).tolist(), 120, 80)

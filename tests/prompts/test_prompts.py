@@ -43,8 +43,8 @@ def test_missing_and_unknown_values_are_refused(values: dict[str, str]) -> None:
         ("---\nplaceholders: thing\n---\nPut it.\n", "declares"),
         ("---\nplaceholders:\n---\nPut {{thing}}.\n", "declares"),
         ("---\nplaceholders: thing, thing\n---\nPut {{thing}}.\n", "declares"),
-        ("---\nplaceholders: thing\n---\nPut {{ thing }}.\n", "no name of a placeholder"),
-        ("---\nplaceholders: thing\n---\nPut {{thing}} {{Other}}.\n", "no name of a placeholder"),
+        ("---\nplaceholders: thing\n---\nPut {{ thing }}.\n", "not the name of a placeholder"),
+        ("---\nplaceholders: thing\n---\nPut {{thing}} {{Other}}.\n", "not the name of a placeholder"),
         ("", "must begin"),
     ],
 )

@@ -1,1 +1,1 @@
-"""How one asset is made: mesh pieces, materials, patterns, sampling and baked light."""
+"""Builds one asset: mesh pieces, materials, patterns, sampling to Gaussians and baked lighting."""

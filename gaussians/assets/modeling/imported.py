@@ -1,7 +1,7 @@
-"""Assets that others made: a mesh (.glb, .ply) or a splat (.ply), upright, fitted into a box, as our own are.
+"""Imports an asset from a file: a mesh (.glb, .ply) or a splat (.ply), turned upright and stretched to a box.
 
-Knows how a file becomes an `Asset`. Refuses to know what it is called and why it was chosen. Files are not trusted:
-whatever a reader makes of a broken one ends as a `FileError`, and large ones are bounded before they are opened.
+Files are untrusted: every failure of a reader becomes a `FileError`, and the size of a file is checked before it is
+opened.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ from .make import Asset, Parts, Unlit, basic_name
 from .sampling import Samples
 
 Array = NDArray[np.float64]
-MOST_BYTES = 256 << 20
-MOST_FACES = 4_000_000
-MOST_SPLATS = 60_000  # of one thing: more is thinned evenly, as a room holds dozens of them
-SAMPLES = 10_000  # Gaussians a mesh
-WIDER = 1.35  # samples fall at random: wider cells close the holes between them
-# Rows: x, y, z of ours in a file whose y points up: its front +z becomes our -y.
+MAX_BYTES = 256 << 20
+MAX_FACES = 4_000_000
+MAX_GAUSSIANS = 60_000  # per asset; larger splats are subsampled evenly, because a room holds dozens of assets
+SAMPLES = 10_000  # Gaussians per mesh
+CELL_SCALE = 1.35  # samples are random: larger cells close the holes between them
+# Rows: our x, y, z in the axes of a file whose y points up; its front +z becomes our -y.
 _FROM_Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
 @dataclass(frozen=True, eq=False)
-class _AsRead(Unlit):
-    """A splat shows the light it was taken in."""
+class _Captured(Unlit):
+    """A captured splat, which keeps the lighting of its capture."""
 
     lit: GaussianCloud
 
@@ -43,19 +43,19 @@ class _AsRead(Unlit):
 
 
 def read(path: Path, size: Vec3, kind: str, up: str = "", tint: Rgb | None = None) -> Asset:
-    """The thing in a file, stretched to `size`, standing on z = 0, centred in x and y, facing -y.
+    """The asset in a file, stretched to `size`, standing on z = 0, centred in x and y, facing -y.
 
     Args:
-        kind: what it is called.
-        up: the file's axis that points up, "y" or "z"; "" takes that of its format (glTF: y, others: z).
-        tint: colour of the whole thing; None leaves its own.
+        kind: name of its kind.
+        up: the file's axis that points up, "y" or "z"; "" means that of its format (glTF: y, others: z).
+        tint: colour of the whole asset; None keeps its own colours.
 
     Raises:
-        FileError: it cannot be read, holds no surface, or is too large.
+        FileError: the file cannot be read, holds no surface, or is too large.
     """
     try:
-        if path.stat().st_size > MOST_BYTES:
-            raise FileError(f"{path} is larger than {MOST_BYTES >> 20} MB; make it smaller")
+        if path.stat().st_size > MAX_BYTES:
+            raise FileError(f"{path} is larger than {MAX_BYTES >> 20} MB; make it smaller")
     except OSError as error:
         raise FileError(f"cannot read {path}: {error.strerror or error}") from error
     turn = _FROM_Y_UP if (up or ("y" if path.suffix.lower() == ".glb" else "z")) == "y" else np.eye(3)
@@ -65,36 +65,36 @@ def read(path: Path, size: Vec3, kind: str, up: str = "", tint: Rgb | None = Non
 
 
 def _splats(path: Path) -> GaussianCloud | None:
-    """The Gaussians in a file; None if it holds none, as a mesh does not."""
+    """The Gaussians in a file; None if it holds none (a mesh)."""
     from ...files import load
 
     try:
         cloud = load(path).cloud
     except ScenewrightError:
         return None
-    step = -(-len(cloud) // MOST_SPLATS)
+    step = -(-len(cloud) // MAX_GAUSSIANS)
     return cloud[torch.arange(0, len(cloud), step)] if step > 1 else cloud
 
 
 def _gain(low: Array, high: Array, size: Vec3) -> tuple[Array, Array]:
-    """Factor of each side, and the point that comes to stand on the origin."""
+    """Scale factor of each axis, and the point that is moved to the origin."""
     span = high - low
     if not np.isfinite(span).all() or span.max() <= 0:
-        raise FileError("it has no extent")
+        raise FileError("its bounding box is empty or not finite")
     gain = np.array(size) / np.maximum(span, 1e-4 * span.max())
     return gain, np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
 
 
 def _splat_asset(cloud: GaussianCloud, turn: Array, size: Vec3, kind: str) -> Asset:
-    """Splats turned and stretched; harmonics are cut to their constant, which needs no turning."""
+    """A splat rotated and stretched; its harmonics are cut to the constant band, which needs no rotation."""
     means = cloud.means.numpy().astype(np.float64) @ turn.T
-    # Floaters around a captured thing must not make it small: the box is that of all but the outermost 1 %.
+    # Floaters around a captured object must not shrink it: the box is that of all but the outermost 1 %.
     low, high = np.quantile(means, [0.005, 0.995], axis=0)
     gain, foot = _gain(low, high, size)
     spin = from_matrix(torch.from_numpy(turn)).to(torch.float32)
     quats = normalize(multiply(spin, cloud.quats))
     inside = (np.abs((means - foot) * gain - [0, 0, size[2] / 2]) <= np.array(size) / 2 + 0.01).all(axis=1)
-    # Each axis of a Gaussian grows by how long it becomes: its skew under an uneven stretch is left out.
+    # Each axis of a Gaussian is scaled by its change of length; the shear of an uneven stretch is ignored.
     axes = to_matrix(quats).numpy().astype(np.float64) * cloud.scales.numpy()[:, None, :]  # [N, 3, 3 axes]
     scales = np.linalg.norm(axes * gain[:, None], axis=1)
     keep = torch.from_numpy(inside)
@@ -106,7 +106,7 @@ def _splat_asset(cloud: GaussianCloud, turn: Array, size: Vec3, kind: str) -> As
         sh=cloud.sh[keep][:, :1].contiguous(),
     )
     nothing = Samples(np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0, np.int64))
-    unlit = _AsRead(nothing, np.zeros((0, 3)), np.zeros(0, dtype=bool), fitted)
+    unlit = _Captured(nothing, np.zeros((0, 3)), np.zeros(0, dtype=bool), fitted)
     return _asset(unlit, fitted, size, kind)
 
 
@@ -115,10 +115,11 @@ def _mesh_asset(path: Path, turn: Array, size: Vec3, kind: str, tint: Rgb | None
     xyz, normal = xyz @ turn.T, normal @ turn.T
     gain, foot = _gain(xyz.min(axis=0), xyz.max(axis=0), size)
     xyz, normal = (xyz - foot) * gain, normal / gain
-    # A patch with unit normal n grows by det(A) |A^-T n| under the stretch A; samples are even over the old surface.
+    # The area of a patch with unit normal n grows by det(A) |A^-T n| under the stretch A; samples are even over the
+    # unstretched surface.
     area *= float(np.prod(gain) * np.linalg.norm(normal, axis=1).mean())
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
-    side = np.full((len(xyz), 2), WIDER * np.sqrt(area / len(xyz)))
+    side = np.full((len(xyz), 2), CELL_SCALE * np.sqrt(area / len(xyz)))
     samples = Samples(xyz, frames(normal), side, np.zeros((len(xyz), 2)), np.zeros(len(xyz), dtype=np.int64))
     albedo = rgb if tint is None else np.tile(np.array(tint), (len(rgb), 1))
     unlit = Unlit(samples, albedo, np.ones(len(xyz), dtype=bool))
@@ -126,7 +127,7 @@ def _mesh_asset(path: Path, turn: Array, size: Vec3, kind: str, tint: Rgb | None
 
 
 def _surface(path: Path) -> tuple[Array, Array, Array, float]:
-    """Even points on a mesh, their normals and display colours, and its area, in the file's frame and unit."""
+    """Evenly sampled points of a mesh, their normals and colours, and its area, in the file's frame and unit."""
     try:
         import trimesh
 
@@ -136,8 +137,8 @@ def _surface(path: Path) -> tuple[Array, Array, Array, float]:
             for node in scene.graph.nodes_geometry
         ]
         meshes = [m for m in meshes if isinstance(m, trimesh.Trimesh) and len(m.faces)]
-        if not meshes or sum(len(m.faces) for m in meshes) > MOST_FACES:
-            raise FileError(f"{path.name} holds no mesh of 1 to {MOST_FACES:,} triangles")
+        if not meshes or sum(len(m.faces) for m in meshes) > MAX_FACES:
+            raise FileError(f"{path.name} holds no mesh of 1 to {MAX_FACES:,} triangles")
         total = sum(float(m.area) for m in meshes)
         if not np.isfinite(total) or total <= 0:
             raise FileError(f"the mesh in {path.name} has no surface")
@@ -146,7 +147,7 @@ def _surface(path: Path) -> tuple[Array, Array, Array, float]:
         ]
     except FileError:
         raise
-    except Exception as error:  # readers of foreign formats raise anything at all on a broken file
+    except Exception as error:  # readers of mesh formats raise all kinds of exceptions on a broken file
         raise FileError(f"{path.name} cannot be read as a mesh ({type(error).__name__}: {error})") from error
     xyz, normal, rgb = (np.concatenate(column) for column in zip(*parts, strict=True))
     good = np.isfinite(xyz).all(axis=1) & np.isfinite(normal).all(axis=1) & np.isfinite(rgb).all(axis=1)
@@ -163,7 +164,7 @@ def _sampled(mesh: Any, count: int, seed: int) -> tuple[Array, Array, Array]:
 
 
 def _colors(mesh: Any, points: Array, faces: NDArray[np.int64]) -> Array:
-    """Display colour of points on faces: the texture's, the vertices', or the material's one colour."""
+    """Display colours `[N, 3]` of points on faces: from the texture, the vertices or the material's base colour."""
     import trimesh
 
     visual = mesh.visual
@@ -172,21 +173,21 @@ def _colors(mesh: Any, points: Array, faces: NDArray[np.int64]) -> Array:
     image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
     factor = getattr(material, "baseColorFactor", None)
     linear = np.array([255, 255, 255] if factor is None else factor[:3], dtype=np.float64) / 255
-    plain = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)  # factors are linear
+    base = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)  # factors are linear
     if image is not None and uv is not None:
         weights = trimesh.triangles.points_to_barycentric(mesh.triangles[faces], points)  # type: ignore[no-untyped-call]
         at = np.einsum("nk,nkc->nc", weights, np.asarray(uv)[mesh.faces[faces]])
         shown = trimesh.visual.color.uv_to_interpolated_color(at, image)
-        return np.asarray(shown[:, :3], dtype=np.float64) / 255 * plain
+        return np.asarray(shown[:, :3], dtype=np.float64) / 255 * base
     if material is None and getattr(visual, "defined", False):
         return np.asarray(visual.face_colors[faces][:, :3], dtype=np.float64) / 255
     if factor is None:
-        plain = np.full(3, 0.6)
-    return np.tile(plain, (len(points), 1))
+        base = np.full(3, 0.6)
+    return np.tile(base, (len(points), 1))
 
 
 def frames(normal: Array) -> Array:
-    """`[N, 3, 3]` orthonormal columns, the last being the normal."""
+    """`[N, 3, 3]` orthonormal frames in columns; the last column is the normal."""
     helper = np.where(np.abs(normal[:, 2:]) < 0.9, [[0.0, 0.0, 1.0]], [[1.0, 0.0, 0.0]])
     first = np.cross(helper, normal)
     first /= np.linalg.norm(first, axis=1, keepdims=True)
@@ -195,7 +196,7 @@ def frames(normal: Array) -> Array:
 
 def _asset(unlit: Unlit, cloud: GaussianCloud, size: Vec3, kind: str) -> Asset:
     if not len(cloud):
-        raise FileError("nothing of it is left")
+        raise FileError("no Gaussian of it lies inside its box")
     rgb = (cloud.sh[:, 0].mean(dim=0) * 0.28209479177387814 + 0.5).clamp(0, 1).tolist()
     parts = Parts(torch.zeros(len(cloud), dtype=torch.int32), ("whole",))
     whole = torch.ones(len(cloud), dtype=torch.bool)

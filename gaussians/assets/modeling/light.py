@@ -1,7 +1,7 @@
-"""Soft light baked into the colours: a sky, one large lamp, and the shade things cast on themselves and the ground.
+"""Bakes soft lighting into colours: a sky, one large lamp, self-shadowing and occlusion at the ground.
 
-Knows samples and an occupancy grid. Refuses to know what the object is. Deterministic, no rays: occlusion is read from
-blurred occupancy a few steps out from the surface (as in cone tracing, Crassin et al. 2011, cut to one level).
+Deterministic and without rays: occlusion is read from blurred occupancy a few steps away from the surface (as in cone
+tracing, Crassin et al. 2011, with one level).
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ STEPS = (1.2, 2.2, 3.6)  # distances, in cells, at which occlusion is probed
 
 @dataclass(frozen=True, eq=False)
 class Occupancy:
-    """How full the space is. `cells [X, Y, Z]` in [0, 1], `origin` of cell 0's corner, `step` metres a cell."""
+    """An occupancy grid: `cells [X, Y, Z]` in [0, 1], `origin` of the corner of cell 0, `step` metres per cell."""
 
     cells: NDArray[np.float32]
     origin: Array
     step: float
 
     def at(self, points: Array) -> Array:
-        """Fullness at points `[N, 3]`, between cell centres by trilinear interpolation, 0 outside."""
+        """Occupancy `[N]` at points `[N, 3]`, by trilinear interpolation between cell centres, 0 outside."""
         from scipy.ndimage import map_coordinates
 
         index = (points - self.origin) / self.step - 0.5
@@ -52,11 +52,11 @@ def bake(
     """Brightness `[N]`, about 0.45 in the dark and 1.1 in full light, 0.9 on average.
 
     Args:
-        points: `[N, 3]` on the surface; z = 0 is the ground.
-        normals: `[N, 3]` outwards.
-        space: what stands in the way.
-        sun: towards the lamp, any length, in the frame of the points.
-        two_sided: `[N]` bool, samples lit from whichever side faces the lamp.
+        points: `[N, 3]` on the surface; the lowest lie on the ground.
+        normals: `[N, 3]`, outward.
+        space: the occluders.
+        sun: direction towards the lamp, any length, in the frame of the points.
+        two_sided: `[N]` bool, samples that are lit from both sides.
     """
     toward = sun / np.linalg.norm(sun)
     facing = normals @ toward

@@ -1,6 +1,6 @@
-"""`make`: one object of a kind, as Gaussians. Knows the order of the steps; the steps live in their own files.
+"""Makes one object of a kind as Gaussians (`make`).
 
-build pieces -> fit to size, stand on the ground -> cut into cells -> paint -> bake light -> flat Gaussians
+Steps: build pieces -> fit to size, stand on the ground -> cut into cells -> paint -> bake light -> flat Gaussians.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ from .shapes import Piece
 Array = NDArray[np.float64]
 SH_C0 = 0.28209479177387814  # Y_0^0, Kerbl et al. 2023
 OPACITY = 0.97
-COVER = 0.6  # standard deviation over cell length: cells a closed surface without holes, edges still crisp
-MOST = 8500  # Gaussians of one object at detail 1, roughly
-THIN = 0.06  # thickness against the shorter tangent
+COVER = 0.6  # standard deviation over cell length: a surface without holes whose edges stay crisp
+MAX_GAUSSIANS = 8500  # of one object at detail 1, approximately
+THICKNESS = 0.06  # of a Gaussian, as a share of its shorter tangent
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,14 +48,14 @@ class Parts:
 
 @dataclass(frozen=True, eq=False)
 class Unlit:
-    """An object before light: cells, their colours `[N, 3]`, and which of them are lit from both sides `[N]`."""
+    """An object before lighting: cells, their colours `[N, 3]`, and which of them are lit from both sides `[N]`."""
 
     samples: sampling.Samples
     albedo: Array
     two_sided: NDArray[np.bool_]
 
     def cloud(self, sun: Array) -> GaussianCloud:
-        """Gaussians under a lamp in the direction `sun`, object frame."""
+        """The Gaussians lit by a lamp in the direction `sun`, object frame."""
         s = self.samples
         bright = light.bake(s.xyz, s.normal, light.occupancy(s.xyz), sun, self.two_sided)
         return flat_gaussians(s, self.albedo * bright[:, None])
@@ -63,17 +63,17 @@ class Unlit:
 
 @dataclass(frozen=True, eq=False)
 class Asset:
-    """One made thing, standing on z = 0, centred in x and y, its front facing -y, metres.
+    """One object, standing on z = 0, centred in x and y, its front facing -y, metres.
 
     Attributes:
-        cloud: SH degree 0.
+        cloud: the lit Gaussians, SH degree 0.
         kind: canonical name.
         size: (w, d, h) of its bounding box, metres.
         color: basic name of its main colour ("red", "gray", ...).
-        parts: part labels a Gaussian.
-        main: `[N]` bool, the Gaussians that carry the main colour.
-        seed: the design.
-        unlit: what `relit` starts from.
+        parts: part label of each Gaussian.
+        main: `[N]` bool, the Gaussians that have the main colour.
+        seed: the seed of its design.
+        unlit: the object before lighting, for `relit`.
     """
 
     cloud: GaussianCloud
@@ -86,7 +86,7 @@ class Asset:
     unlit: Unlit
 
     def relit(self, sun: Vec3) -> GaussianCloud:
-        """The same object under another lamp; `sun` points towards it, object frame."""
+        """The Gaussians lit by another lamp; `sun` points towards the lamp, object frame."""
         return self.unlit.cloud(np.asarray(sun, dtype=np.float64))
 
 
@@ -124,11 +124,11 @@ def make(
         raise UserError(f"size must be three lengths (w, d, h) between 0.005 and 50 metres, got {size}")
     pieces, tone = design(known, seed, shade_of(color) if color is not None else None)
     wanted = size if size is not None else _typical(pieces, meant)
-    return finished(fitted(pieces, wanted), meant.name, tone.color, seed, detail)
+    return to_asset(fit_to_size(pieces, wanted), meant.name, tone.color, seed, detail)
 
 
-def finished(pieces: Sequence[Piece], kind: str, rgb: Rgb, seed: int = 0, detail: float = 1.0) -> Asset:
-    """Pieces that stand on z = 0, centred in x and y, as an asset whose main colour is `rgb`."""
+def to_asset(pieces: Sequence[Piece], kind: str, rgb: Rgb, seed: int = 0, detail: float = 1.0) -> Asset:
+    """An asset of pieces that stand on z = 0, centred in x and y; its main colour is `rgb`."""
     samples = _sampled(pieces, detail)
     sided = np.array([p.two_sided for p in pieces])[samples.piece]
     unlit = Unlit(samples, sampling.albedo(pieces, samples), sided)
@@ -149,23 +149,23 @@ def finished(pieces: Sequence[Piece], kind: str, rgb: Rgb, seed: int = 0, detail
 
 
 def design(known: registry.Kind, seed: int, wanted: Rgb | None = None) -> tuple[list[Piece], Tone]:
-    """The pieces of one design as its builder made them, and the colours it used."""
+    """The pieces of one design in their own size, and the colours it uses."""
     rng = np.random.default_rng([zlib.crc32(known.name.encode()), seed & 0xFFFFFFFF])
     tone = Tone(rng, known.palette, wanted)
     return known.build(rng, tone), tone
 
 
 def _typical(pieces: Sequence[Piece], meant: world.Kind) -> Vec3:
-    """The design's own size, brought back into what its builder may draw; a kind that is drawn as another one is as
-    large as it is sold."""
+    """The design's own size, clipped to the range that its builder may draw; a kind that is drawn as another one is
+    clipped to its own range of sizes."""
     low, high = shapes.bounds(pieces)
     limits = world.extent(meant.name) if meant.asset == meant.name else meant.size
     w, d, h = np.clip(np.maximum(high - low, 1e-6), *np.array(limits).T).tolist()
     return (w, d, h)
 
 
-def fitted(pieces: Sequence[Piece], size: Vec3) -> list[Piece]:
-    """Stretched to `size`, standing on z = 0, centred in x and y."""
+def fit_to_size(pieces: Sequence[Piece], size: Vec3) -> list[Piece]:
+    """The pieces stretched to `size`, standing on z = 0, centred in x and y."""
     low, high = shapes.bounds(pieces)
     middle = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
     gain = np.array(size) / np.maximum(high - low, 1e-6)
@@ -173,26 +173,29 @@ def fitted(pieces: Sequence[Piece], size: Vec3) -> list[Piece]:
 
 
 def spacing(pieces: Sequence[Piece], detail: float) -> float:
-    """Cell length, metres, so that an object gets about 1,000 to 6,000 Gaussians by its area."""
+    """Cell length, metres, that gives an object about 1,000 to 6,000 Gaussians depending on its area."""
     total = sampling.area(pieces)
     count = float(np.clip(1900 + 900 * math.sqrt(total), 900, 7000)) * detail
     return math.sqrt(total / count)
 
 
 def _sampled(pieces: Sequence[Piece], detail: float) -> sampling.Samples:
-    """Cells of an object; one of many small parts, which each take a cell a side, is cut again more coarsely."""
+    """Cells of an object; one of many small parts, each at least one cell per side, is sampled more coarsely."""
     step = spacing(pieces, detail)
     samples = sampling.sample(pieces, step)
-    if (excess := len(samples.xyz) / (MOST * detail)) > 1:
+    if (excess := len(samples.xyz) / (MAX_GAUSSIANS * detail)) > 1:
         samples = sampling.sample(pieces, step * excess**0.5 * 1.05)
     return samples[~sampling.covered(samples)]
 
 
 def flat_gaussians(samples: sampling.Samples, rgb: Array, cover: float = COVER) -> GaussianCloud:
-    """One flat Gaussian a cell, of SH degree 0; `rgb [N, 3]` is what it shows, `cover` its deviation over the cell."""
+    """One flat Gaussian per cell, SH degree 0.
+
+    `rgb [N, 3]` are display colours; `cover` is the standard deviation as a share of the cell's length.
+    """
     tangent = samples.size * cover
-    tangent = np.maximum(tangent, 0.08 * tangent.max(axis=1, keepdims=True))  # no needles
-    scales = np.concatenate([tangent, np.maximum(THIN * tangent.min(axis=1, keepdims=True), 2e-4)], axis=1)
+    tangent = np.maximum(tangent, 0.08 * tangent.max(axis=1, keepdims=True))  # avoids needle-shaped Gaussians
+    scales = np.concatenate([tangent, np.maximum(THICKNESS * tangent.min(axis=1, keepdims=True), 2e-4)], axis=1)
     n = len(rgb)
     return GaussianCloud.create(
         means=torch.from_numpy(samples.xyz.astype(np.float32)),
@@ -204,7 +207,7 @@ def flat_gaussians(samples: sampling.Samples, rgb: Array, cover: float = COVER) 
 
 
 def quaternions(frames: Array) -> Array:
-    """Rotation matrices `[N, 3, 3]` to unit quaternions wxyz `[N, 4]` (the largest component is found first)."""
+    """Rotation matrices `[N, 3, 3]` to unit quaternions wxyz `[N, 4]`, from the largest component (Shepperd 1978)."""
     m = frames
     t = np.einsum("nii->n", m)
     squares = np.stack([1 + t, *(1 - t + 2 * m[:, i, i] for i in range(3))], axis=1)  # 4 q_i^2

@@ -1,6 +1,6 @@
-"""What pieces are made of: colours with the name of a pattern, and the palette a design draws from.
+"""Materials of pieces (a colour and the name of a pattern), palettes, and the colours of one design.
 
-Refuses to know how a pattern looks on a surface (`patterns` does), geometry and light.
+`patterns` draws the patterns.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ class Material:
     Attributes:
         color: display RGB in [0, 1].
         pattern: a key of `patterns.PATTERNS`.
-        second: the other colour of a two-coloured pattern.
+        second: the second colour of a two-coloured pattern.
         scale: period or feature size, metres.
-        axis: 0, 1, 2: along which axis a directed pattern runs.
-        seed: phase of its irregularities.
-        main: whether it carries the colour the object is named by.
+        axis: 0, 1 or 2, the axis along which a directed pattern runs.
+        seed: seed of the pattern's irregularities.
+        main: whether this is the colour that the object is named by.
     """
 
     color: Rgb
@@ -40,7 +40,7 @@ class Material:
     main: bool = False
 
     def along(self, axis: int) -> Self:
-        """The same material running along another axis."""
+        """The same material with its pattern along another axis."""
         return replace(self, axis=axis)
 
     def shaded(self, factor: float) -> Self:
@@ -49,7 +49,7 @@ class Material:
 
 
 def shade(rgb: Rgb, factor: float) -> Rgb:
-    """Scale towards black (< 1), or mix towards white by `factor - 1` (> 1)."""
+    """Darken by `factor` (< 1), or mix with white by `factor - 1` (> 1)."""
     if factor <= 1:
         return (rgb[0] * factor, rgb[1] * factor, rgb[2] * factor)
     t = min(factor - 1, 1.0)
@@ -57,7 +57,7 @@ def shade(rgb: Rgb, factor: float) -> Rgb:
 
 
 def mix(a: Rgb, b: Rgb, t: float) -> Rgb:
-    """`a` at 0, `b` at 1."""
+    """Linear interpolation from `a` (t = 0) to `b` (t = 1)."""
     return (a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t, a[2] + (b[2] - a[2]) * t)
 
 
@@ -66,7 +66,7 @@ def mix(a: Rgb, b: Rgb, t: float) -> Rgb:
 WOODS = ("#b5894f", "#8a5a33", "#5d432c", "#d8b27c", "#6e3b22", "#a8743f", "#c79a63", "#42301f")
 METALS = ("#b9bcc0", "#8f9398", "#3a3b3e", "#c0a062", "#a8643c", "#d7d9db")
 PALETTES: dict[str, tuple[str, ...]] = {
-    # two or three shades of each basic colour term, so that colour words can be learnt and measured
+    # two or three shades of each basic colour term, so that colour words can be trained and measured
     "any": ("#c8201e", "#a61c28", "#f07c1c", "#e06a2a", "#f2d31b", "#e3bc2e", "#3c9a3f", "#2f7d46", "#6fae4a",
             "#128080", "#2a9a94", "#2a5ac8", "#3f79c9", "#1f3f8f", "#7d3fa6", "#6a3a8c", "#f08fb4", "#e87aa4",
             "#7a4a26", "#d9c4a0", "#202024", "#808080", "#6c7076", "#f2f2f2", "#e8e6e0"),
@@ -85,11 +85,11 @@ STEEL = Material((0.75, 0.76, 0.78), "brushed")
 
 
 class Tone:
-    """The colours of one design: the main one, as asked for or drawn from the kind's palette, and companions."""
+    """The colours of one design: a main colour, requested or drawn from the kind's palette, and matching ones."""
 
     def __init__(self, rng: np.random.Generator, palette: str, wanted: Rgb | None = None) -> None:
         self.rng = rng
-        drawn = _jitter(rng, _pick(rng, PALETTES[palette]))  # drawn even if not used: the design stays the same
+        drawn = _jitter(rng, _pick(rng, PALETTES[palette]))  # drawn in any case: the design stays the same
         wooden = palette == "wood" and (_is_brown(wanted) if wanted else _is_brown(drawn))
         self.color: Rgb = wanted if wanted is not None else drawn
         self.asked = wanted is not None
@@ -98,21 +98,21 @@ class Tone:
         self.second: Rgb = self._companion()
 
     def _companion(self) -> Rgb:
-        """A second colour that stays apart from the main one without taking over its name."""
+        """A second colour that contrasts with the main one without changing the object's colour name."""
         light = 0.3 * self.color[0] + 0.59 * self.color[1] + 0.11 * self.color[2]
         if self.rng.random() < 0.6:
             return mix(self.color, (0.97, 0.96, 0.93), 0.75) if light < 0.6 else shade(self.color, 0.55)
         return mix(self.color, (0.08, 0.08, 0.1), 0.6) if light > 0.35 else mix(self.color, (1, 1, 1), 0.55)
 
     def in_white(self) -> Material:
-        """The colour that was asked for, or the white of baths and kitchen fronts, which the tone takes on."""
+        """The requested colour, or else the white of baths and kitchen fronts, which becomes the main colour."""
         if not self.asked:
             self.color = (0.94, 0.94, 0.92)
         return Material(self.color, main=True)
 
     @property
     def main(self) -> Material:
-        """Main colour on hard surfaces: wood grain where it is a wood colour, plain paint otherwise."""
+        """Main colour on hard surfaces: wood grain if it is a wood colour, plain paint otherwise."""
         return Material(self.color, "wood" if self.wooden else "plain", self.second, seed=self.seed, main=True)
 
     def textile(self, scale: float = 0.08, plain: float = 0.55) -> Material:
@@ -129,24 +129,24 @@ class Tone:
         return Material(self.color, chosen, mix(self.color, self.second, 0.8), scale, 2, self.seed, True)
 
     def wood(self) -> Material:
-        """Some wood, for legs and frames."""
+        """A random wood, for legs and frames."""
         return Material(_jitter(self.rng, _pick(self.rng, WOODS)), "wood", seed=self.seed + 1, axis=2)
 
     def metal(self) -> Material:
-        """Some metal: steel, black, brass or copper."""
+        """A random metal: steel, black, brass or copper."""
         return Material(_pick(self.rng, METALS), "brushed", seed=self.seed)
 
     def accent(self) -> Material:
-        """Another colour altogether, for books, cushions and trims."""
+        """A random colour independent of the main one, for books, cushions and trims."""
         return Material(_jitter(self.rng, _pick(self.rng, PALETTES["any"])), seed=int(self.rng.integers(1 << 20)))
 
     def frame(self) -> Material:
-        """Wood or metal."""
+        """A random wood or metal."""
         return self.wood() if self.rng.random() < 0.6 else self.metal()
 
     @staticmethod
     def plain(text: str, name: str = "plain", **options: float | int | str | Rgb) -> Material:
-        """A fixed colour."""
+        """A fixed colour, given as `color.parse` takes it, with the pattern `name`."""
         return Material(colors.parse(text), name, **options)  # type: ignore[arg-type]
 
 

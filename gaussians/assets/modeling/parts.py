@@ -1,4 +1,4 @@
-"""Parts that families of furniture share: legs, drawer fronts, books, blankets. Knows shapes and chance only."""
+"""Parts that several families of furniture share: legs, drawer fronts, books, blankets."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ def tapered_legs(rng: Rng, w: float, d: float, h: float, thick: float) -> Piece:
 
 
 def shell(grid: Array) -> Piece:
-    """One open surface `[U, V, 3]` with crisp borders, its front where du x dv points."""
+    """One open surface `[U, V, 3]` with hard borders; its normal is du x dv."""
     return Piece((Sheets(np.asarray(grid)[None], True, True),))
 
 
 def clipped_below(piece: Piece, z: float) -> Piece:
-    """Flatten what lies below `z` onto it."""
+    """The piece with everything below `z` flattened onto z."""
 
     def cut(points: Array) -> Array:
         low = points[..., 2:].clip(min=z)
@@ -51,7 +51,7 @@ def clipped_below(piece: Piece, z: float) -> Piece:
 def fronts(
     rng: Rng, w: float, h: float, at: Point, columns: int, rows: int, mat: Material, knob: Material
 ) -> list[Piece]:
-    """Doors or drawers on a front plane at y = at[1] facing -y, with knobs or bars to pull."""
+    """A `columns` x `rows` grid of doors or drawers on a front plane at y = at[1] facing -y, with knobs or bars."""
     x0, y, z0 = at
     cw, rh = w / columns, h / rows
     style = int(rng.integers(3))

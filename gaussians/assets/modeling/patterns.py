@@ -1,6 +1,6 @@
-"""How a colour varies over a surface: grain, stripes, weaves, screens, pictures.
+"""Patterns that vary a material's colour over a surface: grain, stripes, weaves, screens, pictures.
 
-Knows sample positions and a material. Refuses to know pieces, kinds and light. A new pattern is one decorated function.
+A new pattern is one function with the decorator `pattern`.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ PATTERNS: dict[str, Pattern] = {}
 
 
 def pattern(name: str) -> Callable[[Pattern], Pattern]:
-    """Register a pattern: samples and material to RGB `[N, 3]`."""
+    """Register a pattern: a function of samples and material that returns RGB `[N, 3]`."""
 
     def keep(fn: Pattern) -> Pattern:
         PATTERNS[name] = fn
@@ -48,7 +48,7 @@ def pattern(name: str) -> Callable[[Pattern], Pattern]:
     return keep
 
 
-# Patterns whose colour changes within centimetres deserve denser samples.
+# Factor on the density of samples for patterns whose colour changes within centimetres.
 FINE = {"stripes": 1.3, "checks": 1.35, "dots": 1.4, "leaves": 1.3, "picture": 1.5, "screen": 1.3, "wicker": 1.25,
         "clock": 1.6, "rug": 1.4, "keys": 1.5, "wood": 1.1}  # fmt: skip
 
@@ -59,7 +59,7 @@ def paint(surface: Surface, material: Material) -> Array:
 
 
 def _noise(x: Array, seed: int, octaves: int = 3) -> Array:
-    """Smooth values about 0, roughly in [-1, 1], from positions `[N, D]` in feature sizes: a few plane waves."""
+    """Smooth noise around 0, roughly in [-1, 1], at positions `[N, D]` in units of the feature size: plane waves."""
     rng = np.random.default_rng(seed)
     out: Array = np.zeros(len(x))
     for o in range(octaves):
@@ -91,7 +91,7 @@ def _flat(s: Surface, m: Material) -> Array:
 
 @pattern("wood")
 def _wood(s: Surface, m: Material) -> Array:
-    """Boards side by side, each its own shade, with a wavy grain along the axis."""
+    """Boards side by side, each of its own shade, with a wavy grain along the axis."""
     first, second = [k for k in range(3) if k != m.axis]
     facing = np.abs(s.normal[:, first]) > np.abs(s.normal[:, second])
     across = np.where(facing, s.xyz[:, second], s.xyz[:, first])
@@ -159,7 +159,7 @@ def _wicker(s: Surface, m: Material) -> Array:
 
 @pattern("brushed")
 def _brushed(s: Surface, m: Material) -> Array:
-    """Metal: bright bands by the direction a surface faces, as if reflecting a room."""
+    """Metal: bright bands that depend on the normal, like reflections of a room."""
     sky = 0.5 + 0.5 * s.normal[:, 2]
     band = 0.16 * np.sin(5.0 * s.normal[:, 0] + 3.0 * s.normal[:, 2] + 1.0)
     return _tint(m.color, 0.25 * (sky - 0.5) + band)
@@ -190,7 +190,7 @@ def _rug(s: Surface, m: Material) -> Array:
 
 @pattern("planks")
 def _planks(s: Surface, m: Material) -> Array:
-    """Floor boards along x: each its own shade, thin dark joints, a little grain."""
+    """Floor boards along x: each of its own shade, with thin dark joints and a little grain."""
     row = np.floor(s.xyz[:, 1] / m.scale)
     along = s.xyz[:, 0] / 1.3 + np.mod(row * 0.618, 1.0)
     board = np.mod(np.sin(row * 12.9898 + np.floor(along) * 78.233 + m.seed % 97) * 43758.5453, 1.0)
@@ -227,7 +227,7 @@ def _glass(s: Surface, m: Material) -> Array:
 
 @pattern("sky")
 def _sky(s: Surface, m: Material) -> Array:
-    """What is seen through a window: sky above, far trees below."""
+    """The view through a window: sky above, distant trees below."""
     u, v = s.uv[:, 0], s.uv[:, 1]
     horizon = 0.28 + 0.05 * np.sin(9 * v + m.seed % 7) + 0.03 * np.sin(23 * v + m.seed % 11)
     blue = np.array([0.62, 0.80, 0.95]) + (1 - u)[:, None] * np.array([0.28, 0.15, 0.04])
@@ -261,7 +261,7 @@ def _keys(s: Surface, m: Material) -> Array:
 
 @pattern("clock")
 def _clock(s: Surface, m: Material) -> Array:
-    """A dial about its own centre in the x, z plane: twelve marks and two hands."""
+    """A clock face around its own centre in the x, z plane: twelve marks and two hands."""
     centre = (s.xyz.min(axis=0) + s.xyz.max(axis=0)) / 2
     x, z = s.xyz[:, 0] - centre[0], s.xyz[:, 2] - centre[2]
     r = np.hypot(x, z) / max(float(np.ptp(s.xyz[:, 2])) / 2, 1e-6)

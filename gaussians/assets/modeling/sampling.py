@@ -1,10 +1,8 @@
-"""From mesh pieces to samples: even, closed, crisp coverage of every surface by flat cells.
+"""Cuts the surfaces of mesh pieces into flat cells of even size, without holes; each cell becomes one Gaussian.
 
-Knows grids, spacing and borders. Refuses to know light, opacity and kinds of furniture.
-
-A grid is cut into rows of equal length along u, each row into cells of equal length along v (counted row by row, so a
-sphere gets fewer cells at its poles), neighbouring rows shifted by half a cell. Cells at hard borders are narrower, so
-that a Gaussian as wide as its cell does not blur over the edge. One cell, one Gaussian.
+A grid is cut into rows of equal width along u, and each row into cells of equal length along v. The number of cells is
+chosen row by row, so a sphere gets fewer cells at its poles. On closed grids, neighbouring rows are shifted by half a
+cell. Cells at hard borders are narrower, so that a Gaussian as wide as its cell does not blur over the edge.
 """
 
 from __future__ import annotations
@@ -19,8 +17,8 @@ from .patterns import FINE, Surface, paint
 from .shapes import Piece, Sheets
 
 Array = NDArray[np.float64]
-EDGE = 0.45  # width of a cell at a hard border against the others
-LEAST_AROUND = 6  # columns around the thinnest bar: fewer and it looks flat
+EDGE = 0.45  # width of a cell at a hard border, as a share of the other cells'
+MIN_AROUND = 6  # cells around the thinnest bar; with fewer it looks flat
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +30,7 @@ class Samples:
         frame: `[N, 3, 3]` columns are the two tangents and the outward normal, orthonormal, right-handed.
         size: `[N, 2]` lengths of the cell along the tangents, metres.
         uv: `[N, 2]` grid parameters.
-        piece: `[N]` index of the piece each belongs to.
+        piece: `[N]` index of the piece that each cell belongs to.
     """
 
     xyz: Array
@@ -43,7 +41,7 @@ class Samples:
 
     @property
     def normal(self) -> Array:
-        """`[N, 3]`."""
+        """`[N, 3]` outward normals."""
         return self.frame[:, :, 2]
 
     def __getitem__(self, rows: NDArray[np.bool_]) -> Samples:
@@ -52,7 +50,7 @@ class Samples:
 
 
 def sample(pieces: Sequence[Piece], spacing: float) -> Samples:
-    """Cut all pieces into cells about `spacing` metres long, finer on dense pieces and fine patterns."""
+    """Cut all pieces into cells about `spacing` metres long, smaller on dense pieces and fine patterns."""
     batches: dict[tuple[int, int, bool, bool, bool], list[tuple[int, Sheets, float]]] = {}
     for index, piece in enumerate(pieces):
         fine = FINE.get(piece.material.pattern, 1.0) if piece.material else 1.0
@@ -61,7 +59,7 @@ def sample(pieces: Sequence[Piece], spacing: float) -> Samples:
             batches.setdefault(key, []).append((index, s, spacing / (piece.density * fine)))
     parts = [_cut(key, rows) for key, rows in batches.items()]
     joined = [np.concatenate([getattr(p, name) for p in parts]) for name in ("xyz", "frame", "size", "uv", "piece")]
-    order = np.argsort(joined[4], kind="stable")  # by piece, whatever batch it was cut in
+    order = np.argsort(joined[4], kind="stable")  # by piece, independent of the batches
     return Samples(*(column[order] for column in joined))
 
 
@@ -84,7 +82,7 @@ def _cut(key: tuple[int, int, bool, bool, bool], rows: list[tuple[int, Sheets, f
     along_v = np.linalg.norm(np.diff(line, axis=1), axis=2)  # [R, V-1]
     number = _cells(along_v.sum(axis=1), space[b], hard_v)
     if closed:  # a bar keeps its roundness, except where it shrinks to a point
-        number = np.where(along_v.sum(axis=1) > 0.25 * space[b], np.maximum(number, LEAST_AROUND), number)
+        number = np.where(along_v.sum(axis=1) > 0.25 * space[b], np.maximum(number, MIN_AROUND), number)
     r, _, at_v, wide_v = _divide(number, hard_v)  # [N]
     if not hard_v:
         at_v = np.mod(at_v + 0.5 * wide_v * (k[r] % 2), 1.0) if closed else at_v
@@ -99,10 +97,10 @@ def _cut(key: tuple[int, int, bool, bool, bool], rows: list[tuple[int, Sheets, f
 
 
 def covered(samples: Samples) -> NDArray[np.bool_]:
-    """Cells that lie just under a cell of another piece facing the same way: a label on a bottle, a cloth on a bed.
+    """`[N]` bool, cells that lie just under a cell of another piece with a similar normal, e.g. under a bottle's label.
 
-    Gaussians are ordered by the depth of their centres, so two sheets closer than their cells are long would show
-    through each other.
+    Renderers sort Gaussians by the depth of their centres, so two surfaces that are closer than the length of their
+    cells would show through each other.
     """
     from scipy.spatial import cKDTree
 
@@ -126,15 +124,15 @@ def covered(samples: Samples) -> NDArray[np.bool_]:
 
 
 def _cells(length: Array, space: Array, hard: bool) -> NDArray[np.int64]:
-    """How many cells cover a length; hard borders need two narrow ones more."""
+    """Number of cells that cover a length; hard borders need narrow cells in addition."""
     number = np.maximum(np.ceil(length / space - 0.05), 1)
-    if hard:  # n - 2 whole cells and two narrow ones cover as much as n did
+    if hard:  # n - 2 whole cells and two narrow ones cover the length
         number = np.where(number >= 2, np.ceil(length / space + 2 * (1 - EDGE) - 0.3), number)
     return number.astype(np.int64)
 
 
 def _divide(number: NDArray[np.int64], hard: bool) -> tuple[NDArray[np.int64], NDArray[np.int64], Array, Array]:
-    """Lay `number[b]` cells end to end on each unit length: owner, index, centre, width, all flat."""
+    """Divide each unit length b into `number[b]` cells: owner b, index, centre and width of each cell, flat arrays."""
     owner = np.repeat(np.arange(len(number)), number)
     index = np.arange(len(owner)) - np.repeat(np.cumsum(number) - number, number)
     n = number[owner]
@@ -147,7 +145,7 @@ def _divide(number: NDArray[np.int64], hard: bool) -> tuple[NDArray[np.int64], N
 
 
 def _locate(segments: Array, owner: NDArray[np.int64], at: Array) -> tuple[NDArray[np.int64], Array, Array]:
-    """Arc-length position `at` in [0, 1] on polyline `owner`: segment index, fraction within it, whole length."""
+    """Find arc-length positions `at` in [0, 1] on polylines `owner`: segment index, fraction in it, total length."""
     ends = np.cumsum(segments, axis=1)  # [B, S]
     total = ends[:, -1][owner]
     target = at * total
@@ -158,7 +156,7 @@ def _locate(segments: Array, owner: NDArray[np.int64], at: Array) -> tuple[NDArr
 
 
 def _frames(u: Array, v: Array) -> tuple[Array, Array]:
-    """Orthonormal frames from two tangents, and how much of `u` is square to `v`."""
+    """Orthonormal frames `[N, 3, 3]` from two tangents, and the share `[N]` of `u` that is perpendicular to `v`."""
     normal = np.cross(u, v)
     size_n, size_u, size_v = (np.linalg.norm(x, axis=1, keepdims=True) for x in (normal, u, v))
     bad = (size_n[:, 0] <= 1e-7 * np.maximum(size_u * size_v, 1e-12)[:, 0]) | (size_v[:, 0] < 1e-9)
@@ -170,7 +168,7 @@ def _frames(u: Array, v: Array) -> tuple[Array, Array]:
 
 
 def albedo(pieces: Sequence[Piece], samples: Samples) -> Array:
-    """RGB `[N, 3]` before light: each material is painted once over all its samples."""
+    """RGB `[N, 3]` before lighting: each material is painted once over all its samples."""
     out = np.empty((len(samples.xyz), 3))
     owners: dict[object, list[int]] = {}
     for index, piece in enumerate(pieces):
@@ -186,7 +184,7 @@ def albedo(pieces: Sequence[Piece], samples: Samples) -> Array:
 
 
 def area(pieces: Sequence[Piece]) -> float:
-    """Total surface, square metres, by the diagonals of the grid cells."""
+    """Total surface area, square metres, from the diagonals of the grid cells."""
     total = 0.0
     for s in (s for p in pieces for s in p.sheets):
         d1 = s.points[:, 1:, 1:] - s.points[:, :-1, :-1]

@@ -1,11 +1,10 @@
 """Mesh pieces of furniture as quad grids: boxes with bevelled edges, lathes, tubes, cushions, sheets, extrusions.
 
-Knows vertices, their order (normals point outwards) and which borders are hard edges. Refuses to know colours beyond
-carrying a `Material`, Gaussians, and what a piece is part of. Metres; z up; x right, the front faces -y.
+Metres; z up; x right, the front faces -y.
 
 Every surface is a grid `[U, V, 3]`: a flat side is a 2x2 grid, a lathe is profile x angle, a leaf is length x width.
-The normal of a grid is `dP/du x dP/dv`. Grids of one shape are stored together, `[B, U, V, 3]`, so that sampling is
-a handful of array operations however many parts a piece has.
+The normal of a grid is `dP/du x dP/dv` and points outward. Grids of one shape are stored together, `[B, U, V, 3]`, so
+that sampling takes a few array operations for any number of parts.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Point = tuple[float, float, float]
-ROUND = 24  # columns of a grid that closes around an axis, one of them repeated
+ROUND = 24  # segments of a grid that closes around an axis
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +31,7 @@ class Sheets:
 
     Attributes:
         points: `[B, U, V, 3]`, metres.
-        hard_u, hard_v: whether the borders u = 0, 1 and v = 0, 1 are edges to keep crisp.
+        hard_u, hard_v: whether the borders u = 0, 1 and v = 0, 1 are hard edges.
         closed: whether v = 1 meets v = 0.
     """
 
@@ -44,14 +43,14 @@ class Sheets:
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """Some grids that share a material and a part name.
+    """Grids that share a material and a part name.
 
     Attributes:
         sheets: the surfaces.
         part: "leg", "seat", "shade", ...; "" until `named`.
-        material: what it is made of; None until `named`.
-        density: samples along a length against the asset's average, for small or finely patterned pieces.
-        two_sided: lit from both sides (leaves, cloth).
+        material: None until `named`.
+        density: samples per length relative to the asset's average, for small or finely patterned pieces.
+        two_sided: whether it is lit from both sides (leaves, cloth).
     """
 
     sheets: tuple[Sheets, ...]
@@ -61,11 +60,11 @@ class Piece:
     two_sided: bool = False
 
     def named(self, part: str, material: Material, density: float = 1.0) -> Self:
-        """The same piece as a part of something."""
+        """The same piece with a part name and a material."""
         return replace(self, part=part, material=material, density=density * self.density)
 
     def transformed(self, matrix: ArrayLike, offset: ArrayLike = (0.0, 0.0, 0.0)) -> Self:
-        """`x -> matrix @ x + offset`; a mirroring matrix also swaps the grid so that normals stay outside."""
+        """`x -> matrix @ x + offset`; a mirroring matrix also flips the grids so that normals stay outward."""
         m, t = np.asarray(matrix, dtype=np.float64), np.asarray(offset, dtype=np.float64)
         flip = np.linalg.det(m) < 0
         moved = []
@@ -80,7 +79,7 @@ class Piece:
         return replace(self, sheets=tuple(replace(s, points=s.points + offset) for s in self.sheets))
 
     def turned(self, axis: str, degrees: float, about: ArrayLike = (0.0, 0.0, 0.0)) -> Self:
-        """Turned counter-clockwise about the line through `about` along the axis "x", "y" or "z"."""
+        """Rotated counter-clockwise about the line through `about` along the axis "x", "y" or "z"."""
         centre = np.asarray(about, dtype=np.float64)
         m = rotation(axis, degrees)
         return self.transformed(m, centre - m @ centre)
@@ -115,7 +114,7 @@ def bounds(pieces: Sequence[Piece]) -> tuple[Array, Array]:
 
 
 def _cube(bevel: Array) -> Array:
-    """`[18, 2, 2, 3]` sides then bevels of the cube [-1, 1]^3, bevelled by a fraction of each half side."""
+    """`[18, 2, 2, 3]` six sides, then twelve bevels of the cube [-1, 1]^3; `bevel [3]` in fractions of half a side."""
     sides = []
     for n, sign in ((0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0), (2, 1.0), (2, -1.0)):
         a, b = (n + 1) % 3, (n + 2) % 3
@@ -138,7 +137,7 @@ def _cube(bevel: Array) -> Array:
 
 
 def box(w: float, d: float, h: float, at: Point = (0.0, 0.0, 0.0), bevel: float = 0.006) -> Piece:
-    """A block standing on `at`, the centre of its bottom; edges bevelled where `bevel` > 0."""
+    """A block; `at` is the centre of its bottom face; its edges are bevelled if `bevel` > 0."""
     half = np.array([w, d, h]) / 2
     cube = _cube(np.minimum(bevel / half, 0.45)) * half + np.array([at[0], at[1], at[2] + h / 2])
     if bevel <= 0:
@@ -152,7 +151,7 @@ def boxes(rows: Sequence[Sequence[float]], bevel: float = 0.004) -> Piece:
 
 
 def legs4(w: float, d: float, h: float, leg: Piece | float, inset: float = 0.0) -> Piece:
-    """Four copies of an upright piece (or square posts that thick) at the corners of a w x d rectangle."""
+    """Four copies of an upright piece (or square posts of width `leg`) at the corners of a w x d rectangle."""
     post = box(leg, leg, h) if isinstance(leg, int | float) else leg
     inset += leg / 2 if isinstance(leg, int | float) else 0.0
     return join(*(post.moved(sx * (w / 2 - inset), sy * (d / 2 - inset)) for sx in (-1, 1) for sy in (-1, 1)))
@@ -164,7 +163,7 @@ def quad(corners: ArrayLike) -> Piece:
 
 
 def panel(w: float, h: float, at: Point = (0.0, 0.0, 0.0)) -> Piece:
-    """A flat upright picture facing -y, bottom centre at `at`; v runs right and u runs up."""
+    """A flat upright panel facing -y; `at` is the centre of its bottom edge; u runs up, v towards -x."""
     x, y, z = at
     return quad([(x + w / 2, y, z), (x - w / 2, y, z), (x + w / 2, y, z + h), (x - w / 2, y, z + h)])
 
@@ -173,8 +172,11 @@ def panel(w: float, h: float, at: Point = (0.0, 0.0, 0.0)) -> Piece:
 
 
 def lathe(profile: ArrayLike, at: Point = (0.0, 0.0, 0.0), smooth: int = 0) -> Piece:
-    """A surface of revolution about z. `profile` is `[M, 2]` (radius, height) with the outside on its right
-    when walking up; `smooth` > 0 resamples it as a spline-like curve with that many points."""
+    """A surface of revolution about z.
+
+    `profile` is `[M, 2]` (radius, height); the outside is to the right of its direction. `smooth` > 0 resamples it as
+    a curve with that many points.
+    """
     rz = np.asarray(profile, dtype=np.float64)
     if smooth:
         rz = curve(rz, smooth)
@@ -198,7 +200,7 @@ def disc(r: float, at: Point = (0.0, 0.0, 0.0), up: bool = True) -> Piece:
 
 
 def cylinder(r: float, h: float, at: Point = (0.0, 0.0, 0.0), top: float | None = None, bevel: float = 0.0) -> Piece:
-    """A cylinder (or a cone's frustum, of radius `top` above) standing on `at`."""
+    """A cylinder, or a frustum with radius `top` at its top; `at` is the centre of its bottom."""
     t = r if top is None else top
     b = min(bevel, h / 3, r / 2)
     if b > 0:
@@ -230,7 +232,7 @@ def curve(points: ArrayLike, count: int) -> Array:
 
 
 def tube(path: ArrayLike, radius: ArrayLike, closed: bool = False, segments: int = 12, smooth: int = 0) -> Piece:
-    """A round bar along `path` `[M, 3]`, `radius` a number or one a point. Closed paths are rings, open ones capped."""
+    """A round bar along `path` `[M, 3]`; `radius` is a number or `[M]`. Open paths get caps, closed ones none."""
     p = np.asarray(path, dtype=np.float64)
     r = np.broadcast_to(np.asarray(radius, dtype=np.float64), (len(p),))
     if smooth:
@@ -256,8 +258,8 @@ def tube(path: ArrayLike, radius: ArrayLike, closed: bool = False, segments: int
 
 
 def _transported(forward: Array, closed: bool) -> Array:
-    """`[M, 3]` unit vectors square to `forward`, turning as little as possible along the path."""
-    if closed:  # rings here are planar: the plane's normal serves every point
+    """`[M, 3]` unit vectors perpendicular to `forward`, transported along the path with minimal rotation."""
+    if closed:  # closed paths are planar here, so the plane's normal is used at every point
         normal = np.cross(forward[0], forward[len(forward) // 3])
         return np.broadcast_to(normal / np.linalg.norm(normal), forward.shape)
     side = np.empty_like(forward)
@@ -279,7 +281,8 @@ def ring(r: float, thick: float, at: Point = (0.0, 0.0, 0.0), axis: str = "z", s
 
 
 def blob(w: float, d: float, h: float, at: Point = (0.0, 0.0, 0.0), square: float = 1.0, flat: float = 1.0) -> Piece:
-    """A superellipsoid centred on `at`: 1 is an ellipsoid, towards 0 a box; `square` seen from above, `flat` aside."""
+    """A superellipsoid centred on `at`; exponents `square` (seen from above) and `flat` (from the side): 1 is round,
+    towards 0 it becomes a box."""
     lat = np.linspace(-np.pi / 2, np.pi / 2, 15)[:, None]
     lon = np.linspace(0, -2 * np.pi, ROUND + 9)[None]
     c, s = _signed(np.cos(lat), flat), _signed(np.sin(lat), flat)
@@ -300,7 +303,7 @@ def ball(r: float, at: Point = (0.0, 0.0, 0.0)) -> Piece:
 
 
 def cushion(w: float, d: float, h: float, at: Point = (0.0, 0.0, 0.0), square: float = 0.35) -> Piece:
-    """A stuffed block standing on `at`: rounded sides, a softly domed top."""
+    """A stuffed block with rounded sides and a slightly domed top; `at` is the centre of its bottom."""
     return blob(w, d, h, (at[0], at[1], at[2] + h / 2), square, 0.45)
 
 
@@ -318,7 +321,7 @@ def pillow(w: float, h: float, thick: float, at: Point = (0.0, 0.0, 0.0)) -> Pie
 def extrude(outline: ArrayLike, thick: float, rounding: float = 0.0) -> Piece:
     """A plate lying flat, bottom at z = 0: `outline` `[M, 2]`, counter-clockwise, star-shaped about its mean.
 
-    `rounding` bevels the rims. Stand it up with `turned`.
+    `rounding` bevels the rims. Use `turned` to stand it upright.
     """
     o = np.asarray(outline, dtype=np.float64)
     o = np.concatenate([o, o[:1]])[::-1]  # clockwise v with upward u gives outward normals
@@ -367,7 +370,7 @@ def ellipse(w: float, d: float, count: int = 24) -> Array:
 
 
 def surface(grid: ArrayLike, hard: bool = True) -> Piece:
-    """A free sheet `[U, V, 3]`, lit from both sides."""
+    """An open sheet `[U, V, 3]`, lit from both sides."""
     return Piece((Sheets(np.asarray(grid, dtype=np.float64)[None], hard, hard),), two_sided=True)
 
 
