@@ -1,10 +1,10 @@
-"""Which way a thing faces, measured where it can be: away from its high back, or from the wall it stands at.
+"""The direction a thing faces, measured from its Gaussians: away from its high back, or from the wall it stands at.
 
-Knows Gaussians, boxes and walls. Refuses to know names, and to guess: a vase in the middle of a room faces nowhere.
+Names are not used, and nothing is guessed: a vase in the middle of a room has no front.
 
-Of 150 things with a front in 24 rooms 51 were told by their shape (chairs, sofas, beds, laptops) and 95 by a wall
-(cabinets, shelves, pictures), all rightly; 4 were left open. A standing lamp or fan, which has no front that people
-would agree on, may lean to one side and be given one.
+Of 150 things with a front in 24 rooms, 51 were found by their shape (chairs, sofas, beds, laptops) and 95 by a wall
+(cabinets, shelves, pictures), all correctly; 4 were left open. A standing lamp or fan, which has no generally agreed
+front, may lean to one side and get one.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from ..language.field.language_field import Group, LanguageField
 
 F64 = NDArray[np.float64]
 
-LEANS = 0.3  # of half the depth: by so much the upper part must lie behind the lower one to be a back
+LEANS = 0.3  # of half the depth: least offset of the upper part behind the lower one that makes it a back
 UPPER, LOWER = 0.3, 0.0  # heights in the box (-1 bottom, 1 top) above and below which the two parts lie
 AGAINST = 0.15  # of a typical object's size: a wall nearer than this is the one a thing stands at
 PARALLEL = 0.95  # cosine from which a side of the box lies along a wall
-_SAMPLE = 4096  # rows that the shape is measured on
-LONG = 1.25  # a side longer than the other by this factor stands along the wall, not the short one
+_SAMPLE = 4096  # rows from which the shape is measured
+LONG = 1.25  # ratio of the sides from which the longer one is taken to stand along the wall
 
 
 @dataclass(frozen=True)
 class Facing:
-    """A level unit vector out of the front of a thing, world frame, and what it was told by; None if by nothing."""
+    """A horizontal unit vector out of a thing's front, world frame, None if unknown; and how it was found."""
 
     front: F64 | None
     by: Literal["shape", "wall", "nothing"]

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-EYE_HEIGHT = 1.55  # of standing eyes above the floor: between women's and men's middle
-HEADROOM = 1.9  # what begins higher up is walked under, and using a thing takes no more height
-SHOULDERS = 0.5  # from shoulder to shoulder, with clothes: the narrowest way that is walked through
-WALKWAY = 0.6  # a way that is passed at ease, where there is a choice
+EYE_HEIGHT = 1.55  # of standing eyes above the floor: between the averages of women and men
+HEADROOM = 1.9  # people walk under things above this height, and use zones are no higher
+SHOULDERS = 0.5  # shoulder width with clothes: the narrowest passage that a person walks through
+WALKWAY = 0.6  # width of a comfortable passage, preferred where there is a choice
 ARM = 0.6  # reach from the edge of the body
-STEP = 0.05  # what is lower is stepped or stood upon: rugs, mats, sills
-HUNG_AT = 1.5  # above the floor of the middle of what hangs on a wall to be looked at, a little below the eyes
+STEP = 0.05  # people and furniture stand on lower things: rugs, mats, sills
+HUNG_AT = 1.5  # usual height of the middle of things that hang on a wall, a little below the eyes

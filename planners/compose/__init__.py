@@ -1,4 +1,4 @@
-"""A sentence to a room: briefs, what rooms are like, and how one is composed."""
+"""Compose a room from a sentence: briefs, knowledge about rooms, and the steps from a brief to a layout."""
 
 from __future__ import annotations
 

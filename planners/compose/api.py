@@ -1,7 +1,6 @@
-"""`compose`: from a sentence to the graph of a room, in one call; and who is asked for it.
+"""`compose`: turn a sentence into the scene graph of a room, in one call, with a chosen planner.
 
-Knows that wishes may conflict, and says so rather than give half of them unasked. Refuses to know how things are chosen
-(compose/) and placed (layout/), and Gaussians (`SceneGraph.build` makes them).
+If wishes conflict, it reports that instead of fulfilling a part of them. `SceneGraph.build` makes the Gaussians.
 """
 
 from __future__ import annotations

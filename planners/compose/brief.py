@@ -1,7 +1,6 @@
-"""What is to be built, as a planner proposes it: a kind of room, things, sizes, relations. Never where anything stands.
+"""The brief of a room, as a planner proposes it: a kind of room, things, sizes and relations, without any positions.
 
-Knows the type, its bounds, and how a brief is refused. Refuses to know words (reading.py), what rooms usually hold
-(knowledge.py) and how a brief becomes boxes (furnishing.py).
+This module defines the type, its bounds and the refusal of a brief; problems.py turns a brief into a layout problem.
 """
 
 from __future__ import annotations

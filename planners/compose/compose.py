@@ -1,7 +1,4 @@
-"""A sentence to a room: read or proposed as a brief, posed as a problem, laid out.
-
-Knows the order of the work and who proposes the brief. Refuses to know words, habits and the search for places.
-"""
+"""The steps from a sentence to a room: get a brief (by the reader or a model), pose the layout problem, solve it."""
 
 from __future__ import annotations
 

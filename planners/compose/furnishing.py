@@ -1,7 +1,7 @@
-"""What a room is filled with: what the brief asks for, and what such a room usually holds beside it.
+"""Choose the things of a room: those that the brief asks for, and those that such a room usually has besides.
 
-Knows habits, styles, seats and what replaces what. Refuses to know sizes (sizing.py) and how things become items of a
-layout (problems.py).
+The choice follows styles, seats, and which things replace others. sizing.py gives the sizes, and problems.py makes the
+items of the layout problem.
 """
 
 from __future__ import annotations

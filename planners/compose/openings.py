@@ -1,7 +1,4 @@
-"""Doors, windows and beams: what belongs to the building and has its place before anything is arranged.
-
-Knows walls and the frame of layouts. Refuses to know furniture.
-"""
+"""Doors, windows and beams: parts of the building that get their places before the furniture."""
 
 from __future__ import annotations
 

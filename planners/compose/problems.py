@@ -1,6 +1,6 @@
-"""A brief as a layout problem: a room with a size, items with sizes, wishes between them, hard ones and habits.
+"""Turn a brief into a layout problem: the room's size, items with sizes, and hard and soft wishes between them.
 
-Knows how groups become items and relations become wishes. Refuses to know how they are fulfilled (the layout solver).
+Groups of the brief become items, and its relations become wishes; the layout solver fulfils them.
 """
 
 from __future__ import annotations

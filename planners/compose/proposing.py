@@ -1,7 +1,6 @@
-"""A language model proposes a brief: asked with what is known of rooms, repaired where its answer is not valid.
+"""Let a language model propose a brief: the prompt states what is known of rooms, and an invalid answer is repaired.
 
-Knows the prompt, the type of the answer and how often it may be repaired. Refuses to take anything from an answer that
-is not a valid brief, and to know which model is asked.
+Nothing is used of an answer that is no valid brief after the allowed number of repairs.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""Varied briefs over all kinds of rooms, for measuring layouts.
-
-Knows the habits of rooms. Refuses to know who measures what with them.
-"""
+"""Random briefs over all kinds of rooms, for measuring layouts."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""How large things and the room are.
-
-Knows ranges, words of size, what was stated, and how much floor things need. Refuses to know where anything stands.
-"""
+"""Sizes of things and of the room: from stated lengths, words of size, usual ranges and the floor that things need."""
 
 from __future__ import annotations
 

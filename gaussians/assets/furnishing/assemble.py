@@ -1,7 +1,6 @@
-"""A layout as one lit cloud: floor, walls and ceiling around it, openings cut, light and contact shadows baked.
+"""Assemble a layout into one lit cloud: add floor, walls and ceiling, cut openings, bake light and contact shadows.
 
-Knows layouts, materials and light. Refuses to know which things there are and why (rooms.py furnishes, a scene graph
-says so), and cameras.
+Layouts come from furnish.py or from a scene graph.
 """
 
 from __future__ import annotations

@@ -1,7 +1,6 @@
-"""`furnish`: a whole room as one scene, and the truth about it kept beside.
+"""`furnish`: make a furnished room as one scene, with the ground truth about its things beside it.
 
-Knows which things go into a room and what is true of them there. Refuses to know how a layout becomes Gaussians
-(raising.py). The scene it returns holds no groups; who wants to measure looks into `Room.truth`.
+assemble.py turns the layout into Gaussians. The returned scene has no groups; measurements compare with `Room.truth`.
 """
 
 from __future__ import annotations

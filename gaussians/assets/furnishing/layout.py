@@ -1,6 +1,6 @@
-"""Where things stand in a room: upright oriented boxes, free places, surfaces that carry.
+"""Positions of things in a generated room: upright oriented boxes, free floor, supporting surfaces, walls, clearances.
 
-Knows footprints, heights, walls and clearances. Refuses to know which furniture belongs in which room, and light.
+recipes.py says which furniture belongs in which room.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What belongs in which room and how it is arranged. Knows kinds and habits; `layout` finds out whether it fits."""
+"""Recipes of rooms: which kinds of furniture a room gets and how they are arranged; layout.py tests if they fit."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Where one looks at a room from: an overview, and views at eye height from where one sees far.
-
-Knows boxes of layouts and cameras. Refuses to know what the things are.
-"""
+"""Cameras for a layout: an overview, and views at eye height from positions with a long line of sight."""
 
 from __future__ import annotations
 
