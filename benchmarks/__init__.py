@@ -1,5 +1,5 @@
-"""What is measured: one benchmark a file, each with `run(quick: bool) -> Result`, found by scanning this folder.
+"""Benchmarks: one module each, with `run(quick: bool) -> Result`, found by scanning this folder.
 
-A benchmark's name is its file's name; files that begin with "_" and `harness.py` are tools. Knows every room. Nobody
-but the command line looks in here.
+A benchmark has the name of its file; files that begin with "_" and `harness.py` are helpers. Benchmarks may import
+every package; only the command line imports them.
 """

@@ -1,7 +1,6 @@
-"""Fewer bits for what a trained scene holds: harmonics in 8 bits a number, positions in 16.
+"""Uniform quantization of a trained scene: harmonics in 8 bits a number, positions in 16.
 
-Knows uniform steps over a range. Refuses to know files, which do better and are measured by `bench files`: here one
-thing is made smaller at a time, to see what it costs.
+One column is quantized at a time, to measure its cost alone. The file formats do better; `bench files` measures them.
 """
 
 from __future__ import annotations
@@ -15,13 +14,13 @@ FLOAT = 4  # bytes
 
 
 def eight_bit_harmonics(cloud: GaussianCloud) -> GaussianCloud:
-    """Every band on 256 even steps between its least and its greatest number."""
+    """Every band quantized to 256 uniform levels between its least and its greatest number."""
     bands = [cloud.sh[:, d * d : (d + 1) ** 2] for d in range(cloud.degree + 1)]
     return cloud.replace(sh=torch.cat([stepped(band, 8) for band in bands], dim=1))
 
 
 def sixteen_bit_positions(cloud: GaussianCloud) -> GaussianCloud:
-    """Every axis on 65,536 even steps of the box around all Gaussians."""
+    """Every axis quantized to 65,536 uniform levels of the box around all Gaussians."""
     return cloud.replace(means=torch.stack([stepped(axis, 16) for axis in cloud.means.unbind(dim=1)], dim=1))
 
 
@@ -31,14 +30,14 @@ def half_float_positions(cloud: GaussianCloud) -> GaussianCloud:
 
 
 def stepped(numbers: Tensor, bits: int) -> Tensor:
-    """Each number at the nearest of `2^bits` even steps from the least to the greatest of them."""
+    """Each number rounded to the nearest of `2^bits` uniform levels from the least to the greatest of them."""
     low, high = numbers.min().double(), numbers.max().double()
     step = ((high - low) / (2**bits - 1)).clamp(min=1e-30)
     return (low + torch.round((numbers.double() - low) / step) * step).float()
 
 
-def saved(cloud: GaussianCloud, harmonics: bool, positions: bool) -> int:
-    """Bytes fewer than in an INRIA .ply, where every number is a float; the ends of the ranges are counted."""
+def bytes_saved(cloud: GaussianCloud, harmonics: bool, positions: bool) -> int:
+    """Bytes saved against an INRIA .ply, where every number is a float; the stored ranges are counted."""
     count, numbers = len(cloud), int(cloud.sh.shape[1]) * 3
     bands = 2 * FLOAT * (cloud.degree + 1)
     box = 2 * FLOAT * 3

@@ -1,8 +1,8 @@
-"""A real room: a trained scene, a detector's coarse masks, real CLIP vectors of their labels, four hand-drawn photos.
+"""Selection in a real room: a trained scene, a detector's coarse masks, real CLIP vectors and four annotated photos.
 
-What a query selects is drawn white in the scene drawn black, from where a photo was taken, and its silhouette compared
-with the hand-drawn one; pixels that the drawer left open do not count. Knows this capture. Its data may be measured
-with and not passed on, so that no picture of it is kept.
+The selected Gaussians are rendered white and the others black from the camera of a photo, and this silhouette is
+compared with the annotation; pixels without annotation do not count. The data may be used for measuring but not be
+redistributed, so no picture of it is kept.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ from ..gaussians.render import render
 from ..gaussians.scene import Scene
 from .harness import Metric
 
-OPEN = 255  # pixel value of what the drawer left open
-LEAST = 200  # pixels of a thing from which a photo shows it
+UNLABELED = 255  # pixel value without annotation
+MIN_PIXELS = 200  # pixels of a thing from which a photo counts as showing it
 # The 80 classes of COCO (Lin et al. 2014) in their order, which is that of `coco_clip_a+cname.npy`.
 COCO = (
     "person", "bicycle", "car", "motorcycle", "airplane", "bus", "train", "truck", "boat", "traffic light",
@@ -44,9 +44,9 @@ COCO = (
     "tv", "laptop", "mouse", "remote", "keyboard", "cell phone", "microwave", "oven", "toaster", "sink",
     "refrigerator", "book", "clock", "vase", "scissors", "teddy bear", "hair drier", "toothbrush",
 )  # fmt: skip
-# Each query, and the labels of the drawings that it means. The detector's masks of a potted plant are of its crown and
-# hold a tenth of the pot; with the pot it is reported beside the mean, not in it.
-ASKED: dict[str, tuple[Query, tuple[int, ...]]] = {
+# Each query, and the annotated labels that it means. The detector's masks of a potted plant cover its crown and a tenth
+# of the pot; the figure with the pot is reported separately and is not part of the mean.
+QUERIES: dict[str, tuple[Query, tuple[int, ...]]] = {
     "bicycle": (Query(text="bicycle"), (5,)),
     "chair": (Query(text="chair", pick="all"), (7, 8)),
     "potted plant": (Query(text="potted plant"), (1,)),
@@ -55,12 +55,12 @@ ASKED: dict[str, tuple[Query, tuple[int, ...]]] = {
     "red bicycle": (Query(text="bicycle", colors=("red",)), (5,)),
 }
 WITH_POT = (Query(text="potted plant"), (1, 2))
-SPURIOUS = ("cat", "person", "couch")  # what the detector saw here and there and is not there
+SPURIOUS = ("cat", "person", "couch")  # false detections: none of these is in the room
 
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """One hand-drawn photo: its camera, and the label of each pixel `[H, W]`."""
+    """One annotated photo: its camera, and the label of each pixel `[H, W]`."""
 
     camera: Camera
     labels: NDArray[np.uint8]
@@ -79,7 +79,7 @@ def drawings(capture: Path) -> list[Drawing]:
 
 
 def silhouette(scene: Scene, chosen: NDArray[np.bool_], camera: Camera) -> NDArray[np.bool_]:
-    """`[H, W]`: pixels that are mostly of the chosen Gaussians `[N]`, as the whole scene hides and shows them."""
+    """`[H, W]`: pixels mostly covered by the chosen Gaussians `[N]`, with occlusion by the whole scene."""
     white = torch.from_numpy(chosen)[:, None].expand(-1, 3).float()
     cloud = scene.cloud.with_degree(0).replace(sh=color_to_dc(white)[:, None].contiguous())
     seen: NDArray[np.bool_] = (render(cloud, camera).rgb[..., 0] > 0.5).numpy()
@@ -87,9 +87,9 @@ def silhouette(scene: Scene, chosen: NDArray[np.bool_], camera: Camera) -> NDArr
 
 
 def agreement(found: NDArray[np.bool_], drawing: Drawing, labels: Sequence[int]) -> float | None:
-    """Intersection over union of a silhouette and the drawn labels; None if the photo does not show them."""
-    true, counted = np.isin(drawing.labels, labels), drawing.labels != OPEN
-    if true.sum() < LEAST:
+    """Intersection over union of a silhouette and the annotated labels; None if the photo does not show them."""
+    true, counted = np.isin(drawing.labels, labels), drawing.labels != UNLABELED
+    if true.sum() < MIN_PIXELS:
         return None
     shown = found & counted
     return float((shown & true).sum() / (shown | true).sum())
@@ -104,7 +104,7 @@ def figures(data: Path) -> list[Metric]:
     scene = embed(bare, encoder, masks=masks.load(f"folder:{capture / 'masks'}", capture / "transforms.json"))
     seconds = time.perf_counter() - start
     drawn = drawings(capture)
-    scores = {name: _score(scene, encoder, drawn, *asked) for name, asked in ASKED.items()}
+    scores = {name: _score(scene, encoder, drawn, *query) for name, query in QUERIES.items()}
     refused = [resolve(scene, Query(text=name), drawn[0].camera, encoder).verdict == "absent" for name in SPURIOUS]
     return [
         Metric("bonsai.mean_iou", fmean(scores.values()), "IoU", "higher", 0.03, 0.80),
@@ -116,7 +116,7 @@ def figures(data: Path) -> list[Metric]:
 
 
 def _score(scene: Scene, encoder: Encoder, drawn: Sequence[Drawing], query: Query, labels: tuple[int, ...]) -> float:
-    """Mean agreement over the photos that show what is meant, asked from where the first was taken."""
+    """Mean agreement over the photos that show the labels; the query is resolved from the camera of the first photo."""
     chosen = resolve(scene, query, drawn[0].camera, encoder).mask(scene.cloud).numpy()
     each = [agreement(silhouette(scene, chosen, d.camera), d, labels) for d in drawn]
     return fmean(value for value in each if value is not None)

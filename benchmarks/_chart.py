@@ -1,4 +1,4 @@
-"""The chart of time against accuracy. Knows matplotlib, which is an extra; refuses to know what was measured."""
+"""Draws the chart of time or bytes against accuracy of a benchmark's result, with matplotlib (an extra)."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from .harness import Point, Result
 
 FORMATS = ("png", "svg", "pdf")
 COLORS = ("#1b6ca8", "#d1495b", "#3c8d5a", "#b0792b", "#6a4c93", "#4a4e52", "#17a2a2", "#c2649b", "#8a8f1d", "#e08b6d")
-MARKS = "osD^v"  # with each round of the colours another, so that no two methods look alike
-FEW = 12  # points up to which each is named; of more only those that one would choose, and the ends of each method
-CLOSE = 1000  # times from the least cost to the greatest, up to which 2 and 5 are marked too
-SPOTS = ((7, 6), (7, -12), (-7, 6), (-7, -12), (7, 17), (7, -23), (-7, 17), (-7, -23))  # of a label, best first; points
-LETTER = (4.4, 9.0)  # width and height of a letter of a label, points
+MARKERS = "osD^v"  # the next marker for each repetition of the colours, so that all methods differ
+MAX_LABELS = 12  # points up to which each is labelled; of more, only the front, the defaults and ends of each method
+NARROW_RANGE = 1000  # ratio of greatest to least cost up to which the axis also has ticks at 2 and 5
+# Offsets of a label from its point, best first; points.
+LABEL_OFFSETS = ((7, 6), (7, -12), (-7, 6), (-7, -12), (7, 17), (7, -23), (-7, 17), (-7, -23))
+LETTER_SIZE = (4.4, 9.0)  # width and height of a letter of a label, points
 
 
 def draw(result: Result, path: Path) -> Path:
@@ -36,7 +37,7 @@ def draw(result: Result, path: Path) -> Path:
         from matplotlib.figure import Figure  # no pyplot: no global state, no display
     except ImportError as error:
         raise BackendError("charts need matplotlib; install it with: pip install 'scenewright[bench]'") from error
-    many = len(result.points) > FEW
+    many = len(result.points) > MAX_LABELS
     figure = Figure(figsize=(11, 6.5) if many else (8, 5), dpi=150, layout="constrained")
     axes = figure.add_subplot()
     _fill(axes, result)
@@ -52,9 +53,9 @@ def draw(result: Result, path: Path) -> Path:
 
 
 def labelled(result: Result) -> tuple[Point, ...]:
-    """The points that are named: all of a few; of many the front, the defaults, and both ends of each method, as far as
-    they have a setting (those on the way of a curve have none)."""
-    if len(result.points) <= FEW:
+    """The points that are labelled: all if there are few; else the front, the defaults and both ends of each method, if
+    they have a setting (inner points of a curve have none)."""
+    if len(result.points) <= MAX_LABELS:
         return result.points
     wanted = {*result.front(), *(p for p in result.points if p.default)}
     for method in dict.fromkeys(p.method for p in result.points):
@@ -67,12 +68,12 @@ def _fill(axes: Any, result: Result) -> None:
     """Points by method in the order they were measured, the front as steps, the default ringed."""
     axes.set_xscale("log")
     methods = list(dict.fromkeys(point.method for point in result.points))
-    lines = len(result.points) > FEW
+    lines = len(result.points) > MAX_LABELS
     for index, method in enumerate(methods):
         own = [point for point in result.points if point.method == method]
         color = COLORS[index % len(COLORS)]
         where = [result.cost_of(p) for p in own], [p.accuracy for p in own]
-        mark = MARKS[index // len(COLORS) % len(MARKS)]
+        mark = MARKERS[index // len(COLORS) % len(MARKERS)]
         axes.scatter(*where, s=45, color=color, marker=mark, label=method, zorder=3)
         if lines:
             axes.plot(*where, color=color, linewidth=0.8, alpha=0.5, zorder=2)
@@ -105,13 +106,13 @@ def _number(axes: Any, result: Result) -> None:
     from matplotlib.ticker import EngFormatter, LogLocator, NullFormatter, StrMethodFormatter
 
     low, high = axes.get_xlim()
-    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < CLOSE * low else (1,)))
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < NARROW_RANGE * low else (1,)))
     axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}") if result.cost == "seconds" else EngFormatter("B"))
     axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def _name(axes: Any, points: Sequence[Point], named: Sequence[Point], cost: Callable[[Point], float]) -> None:
-    """Write each label where it hides least: within the axes, not over points or labels that stand already."""
+    """Write each label at the offset with the least overlap with the points, earlier labels and the axes' outside."""
     gain = axes.figure.dpi / 72
     frame = tuple(edge / gain for edge in axes.get_window_extent().extents)
     spots = axes.transData.transform([(cost(p), p.accuracy) for p in points]) / gain
@@ -119,13 +120,18 @@ def _name(axes: Any, points: Sequence[Point], named: Sequence[Point], cost: Call
     for point in named:
         x, y = axes.transData.transform((cost(point), point.accuracy)) / gain
         text = point.setting or point.method
-        boxes = [_box(x, y, spot, text) for spot in SPOTS]
+        boxes = [_box(x, y, spot, text) for spot in LABEL_OFFSETS]
         hidden = [sum(_overlap(box, other) for other in taken) - _overlap(box, frame) for box in boxes]
         best = hidden.index(min(hidden))
         taken.append(boxes[best])
-        side = "left" if SPOTS[best][0] > 0 else "right"
+        side = "left" if LABEL_OFFSETS[best][0] > 0 else "right"
         axes.annotate(
-            text, (cost(point), point.accuracy), xytext=SPOTS[best], textcoords="offset points", fontsize=8, ha=side
+            text,
+            (cost(point), point.accuracy),
+            xytext=LABEL_OFFSETS[best],
+            textcoords="offset points",
+            fontsize=8,
+            ha=side,
         )
 
 
@@ -133,7 +139,7 @@ _Box = tuple[float, float, float, float]  # left, bottom, right, top; points
 
 
 def _box(x: float, y: float, spot: tuple[int, int], text: str) -> _Box:
-    width, height = LETTER[0] * len(text), LETTER[1]
+    width, height = LETTER_SIZE[0] * len(text), LETTER_SIZE[1]
     left = x + spot[0] - (width if spot[0] < 0 else 0)
     return left, y + spot[1] - 2, left + width, y + spot[1] - 2 + height
 

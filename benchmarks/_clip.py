@@ -1,10 +1,9 @@
-"""Real CLIP geometry: things given real image vectors, asked with real text vectors, under the rule that ships.
+"""Selection with real CLIP vectors: things with real image vectors are queried with real text vectors.
 
 The data (`clip_vectors`) are ViT-B/32 vectors of the 1,203 LVIS names and the mean over five photos of each class. They
-bound what any selection by words can do with such a model, so every figure of ours stands beside the one that the
-vectors allow. Classes with an even LVIS id calibrate (`calibrate`), those with an odd id are measured.
-
-Knows vectors and names. Refuses to know Gaussians beyond the one that stands for each thing.
+bound what any selection by words can reach with such a model, so each of our figures is printed beside the one that the
+vectors allow. The calibrated rule is the one that ships. Classes with an even LVIS id calibrate it (`calibrate`), those
+with an odd id are measured. Each thing is one Gaussian.
 """
 
 from __future__ import annotations
@@ -35,19 +34,19 @@ from ..gaussians.world.box import Box
 F64 = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
-# What stands in rooms, of the names that LVIS has: furniture, appliances, and things on them.
+# The LVIS names of things found in rooms: furniture, appliances, and things on them.
 ROOM = (
     "armchair", "bed", "bench", "bicycle", "bookcase", "cabinet", "chair", "clock", "coffee table", "curtain", "desk",
     "dresser", "flowerpot", "guitar", "lamp", "microwave oven", "mirror", "ottoman", "painting", "piano",
     "refrigerator", "sink", "sofa", "stool", "table", "television set", "trash can", "vase", "wardrobe",
 )  # fmt: skip
-NAMES = (40, 80, 300, 1203)  # lengths of vocabulary that one rule has to serve
-THINGS, NAMELESS = 14, 4  # in a simulated scene, and how many of them the vocabulary has no name for
+NAMES = (40, 80, 300, 1203)  # vocabulary sizes for which one rule must work
+THINGS, NAMELESS = 14, 4  # things in a simulated scene, and how many of them have no name in the vocabulary
 
 
 @dataclass(frozen=True)
 class Pairs:
-    """Names with text vectors, and one thing's image vector for each.
+    """Names with text vectors, and an image vector for each.
 
     Attributes:
         encoder: text vectors of all names, in the order of their ids.
@@ -59,7 +58,7 @@ class Pairs:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """Of all classes, as people say them."""
+        """The names of all classes, as people say them."""
         return self.encoder.vocabulary.names
 
     @cached_property
@@ -80,7 +79,7 @@ class Pairs:
 
 @dataclass(frozen=True)
 class Scores:
-    """What many asked scenes gave, to be judged at any threshold.
+    """The scores of queries in many scenes, for evaluation at any threshold.
 
     Attributes:
         present: `[P]` probability of the best thing for each name whose thing is there.
@@ -148,11 +147,11 @@ def top1(pairs: Pairs, rows: Rows, step: int = 1) -> dict[str, float]:
 def ask(
     pairs: Pairs, classes: Rows, vocabulary: int, scenes: int, things: int = THINGS, nameless: int = NAMELESS
 ) -> Scores:
-    """Simulated scenes: `things` of `classes`, all but `nameless` of them asked for, and as many names not there.
+    """Query simulated scenes of `things` of `classes`: all but `nameless` of them, and as many absent names.
 
     Args:
-        vocabulary: how many names compete: those asked for and random others; those of nameless things only if the
-            vocabulary is everything.
+        vocabulary: how many names compete: the queried names and random others; the names of nameless things only if
+            the vocabulary is the full one.
     """
     rng = np.random.default_rng(vocabulary)
     everything = np.arange(len(pairs.names))
@@ -179,7 +178,7 @@ def ask(
 
 
 def ask_alike(pairs: Pairs, classes: Rows, competing: Rows, scenes: int) -> Scores:
-    """Scenes of things that are alike: `THINGS` of a few `classes` there, as many others of them asked for in vain."""
+    """Query scenes of similar things: `THINGS` of a few `classes` are present, and as many others are absent."""
     rng = np.random.default_rng(29)
     encoder = pairs.among(competing)
     found: list[tuple[float, bool, bool]] = []
@@ -225,8 +224,8 @@ def curve(scores: Sequence[Scores], thresholds: Sequence[float]) -> list[tuple[f
 def calibrate(pairs: Pairs, scenes: int = 100) -> tuple[float, float]:
     """The two numbers of `calibration.of_clip` from the even classes: the weight of the rivals and the threshold.
 
-    The weight makes the probabilities honest (least log loss over things and names), the threshold makes the sum of
-    the two errors least, over all lengths of vocabulary and scenes of 14 and of 29 things.
+    The weight minimizes the log loss of the probabilities over things and names; the threshold minimizes the sum of the
+    two errors over all vocabulary sizes and scenes of 14 and of 29 things.
     """
     even, rule = pairs.half(odd=False), pairs.encoder.calibration
     assert rule.rivals is not None

@@ -1,4 +1,4 @@
-"""Where real data lies and what to say where it does not, and the reading of instructions that were written down."""
+"""Finds the folders of real data, words the note for missing data, and reads sets of written instructions."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def folder(name: str) -> Path | None:
 
 
 def missing(name: str) -> str:
-    """The note of a benchmark that had to do without."""
+    """The note of a benchmark whose data are missing."""
     return f"{name}: not measured, the data are not here; set SCENEWRIGHT_DATA to the folder that holds {name}"
 
 

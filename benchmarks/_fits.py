@@ -1,10 +1,8 @@
-"""Trainings as a benchmark makes them: each in a process of its own, and kept, so that what took long is not lost.
+"""Runs the trainings of a benchmark, each in a separate process, and keeps their results.
 
-A finished training is a JSON file and a scene in the folder that `SCENEWRIGHT_BENCH_KEEP` names; one that was ended
-goes on from its checkpoint there. `SCENEWRIGHT_BENCH_ONLY` (names, parted by commas) says which may be made now, so
-that the whole can be cut into parts; those that are neither kept nor made are left out.
-
-Knows settings, files and processes. Refuses to know what the figures are compared for.
+A finished training is a JSON file and a scene in the folder that `SCENEWRIGHT_BENCH_KEEP` names; an interrupted one
+resumes from its checkpoint there. `SCENEWRIGHT_BENCH_ONLY` (names separated by commas) selects the trainings to run
+now, so that a long benchmark can be split; those that are neither kept nor run are left out of the result.
 """
 
 from __future__ import annotations
@@ -54,7 +52,7 @@ Curve = tuple[tuple[float, float], ...]  # seconds of training, and dB
 
 @dataclass(frozen=True)
 class Run:
-    """A training to be made: `name` on the command line and of its files, `title` for people, `plain` for `_plain`."""
+    """A training to run: `name` for options and files, `title` for people, `plain` to train with `_plain`."""
 
     name: str
     title: str
@@ -64,10 +62,10 @@ class Run:
 
 @dataclass(frozen=True)
 class Made:
-    """What a training came to.
+    """The result of a training.
 
     Attributes:
-        settings: as text; a kept training of other settings is made anew.
+        settings: as text; a kept training with other settings is run again.
         psnr, ssim: on all held-out photographs.
         curve: seconds of training, and dB on the watched held-out photographs; the last is the end.
         choices: bands and numbers of Gaussians that were tried.
@@ -93,7 +91,7 @@ class Made:
 
 @contextmanager
 def kept() -> Iterator[Path]:
-    """The folder of finished trainings; one that goes away where none is named."""
+    """The folder of finished trainings; a temporary one if none is named."""
     if named := os.environ.get(KEEP):
         Path(named).mkdir(parents=True, exist_ok=True)
         yield Path(named)
@@ -106,7 +104,7 @@ Make = Callable[[Run, Path], None]  # train, and leave the outcome in a folder
 
 
 def maker(quick: bool) -> Make | None:
-    """How to train on the real capture, or on the small one; None if the former is not here."""
+    """The function that trains on the real capture, or on the small one if `quick`; None if the data are missing."""
     capture = folder(CAPTURE)
     if quick:
         return make_of(small_photos())
@@ -128,10 +126,10 @@ def photos(quick: bool) -> Photos:
 
 
 def all_made(runs: Sequence[Run], place: Path, make: Make) -> dict[str, Made]:
-    """Every training by its name, made by `make` unless it is kept.
+    """Every training by its name, run by `make` unless it is kept.
 
     Raises:
-        UserError: `SCENEWRIGHT_BENCH_ONLY` names what is none of them.
+        UserError: `SCENEWRIGHT_BENCH_ONLY` has an unknown name.
         FileError: a kept one cannot be read.
     """
     names = [run.name for run in runs]
@@ -152,7 +150,7 @@ def all_made(runs: Sequence[Run], place: Path, make: Make) -> dict[str, Made]:
 
 
 def notes(runs: Sequence[Run], found: Mapping[str, Made], quick: bool) -> Iterator[str]:
-    """What was left out, and whether the figures are of one revision of the source."""
+    """Notes on trainings that were left out, different revisions of the source, and quick runs."""
     if absent := [run.name for run in runs if run.name not in found]:
         yield f"not made: {', '.join(absent)}"
     if len({made.revision for made in found.values()}) > 1:
@@ -162,12 +160,12 @@ def notes(runs: Sequence[Run], found: Mapping[str, Made], quick: bool) -> Iterat
 
 
 def scene_of(name: str, place: Path) -> Path:
-    """Where the scene of a training lies."""
+    """The scene file of a training."""
     return place / f"{name}.ply"
 
 
 def make_apart(capture: Path) -> Make:
-    """Train in processes of their own, so that each one's memory is told apart."""
+    """Train in separate processes, so that the peak memory of each can be measured."""
 
     def make(run: Run, place: Path) -> None:
         with ProcessPoolExecutor(1, get_context("spawn"), initializer=_end_with_parent) as apart:
@@ -177,7 +175,7 @@ def make_apart(capture: Path) -> Make:
 
 
 def _end_with_parent() -> None:
-    """A training whose benchmark was killed would spoil the figures of the next one."""
+    """End this process with its parent: a training left over from a killed benchmark would distort the next figures."""
 
     def watch() -> None:
         parent = parent_process()
@@ -193,8 +191,8 @@ def _make_from(capture: Path, run: Run, place: Path) -> None:
 
 
 def make_of(photos: Photos) -> Make:
-    """Train here, on photographs that are at hand."""
-    fit(small_photos(), Settings(steps=1))  # kernels are compiled once a machine, not once a training
+    """Train in this process on given photographs."""
+    fit(small_photos(), Settings(steps=1))  # compiles the kernels before any training is timed
 
     def make(run: Run, place: Path) -> None:
         cloud, curve, choices, steps, seconds = (_plainly if run.plain else _fitted)(photos, run, place)
@@ -228,7 +226,7 @@ def _checkpoint(run: Run, place: Path) -> Path:
 
 
 def _plainly(photos: Photos, run: Run, place: Path) -> Outcome:
-    """Not to be gone on with: it is never long."""
+    """Train with the plain recipe, without checkpoints."""
     trainer = _plain.trainer(photos, run.settings)
     curve: list[tuple[float, float]] = []
     while trainer.progress < 1:
@@ -239,10 +237,10 @@ def _plainly(photos: Photos, run: Run, place: Path) -> Outcome:
 
 
 def _read(place: Path, run: Run) -> Made | None:
-    """A kept training; None if there is none of these settings.
+    """A kept training; None if there is none with these settings.
 
     Raises:
-        FileError: the file is none.
+        FileError: the file cannot be read as a training.
     """
     path = place / f"{run.name}.json"
     if not path.exists():
@@ -253,12 +251,12 @@ def _read(place: Path, run: Run) -> Made | None:
         choices = tuple(Choice(**{**choice, "psnr": tuple(choice["psnr"])}) for choice in told["choices"])
         made = Made(**{**told, "curve": curve, "choices": choices})
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise FileError(f"{path} is no kept training ({error}); delete it to make it anew") from error
+        raise FileError(f"{path} is not a kept training ({error}); delete it to train again") from error
     return made if made.settings == repr(run.settings) else None
 
 
 def _peak() -> int:
-    """Bytes, the most that this process held at once."""
+    """Peak resident memory of this process, bytes."""
     import resource
 
     most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

@@ -1,13 +1,12 @@
-"""The least time that blending a picture can take, and how many times that the renderer takes.
+"""The lower bound of the time for blending a picture, and the ratio of the renderer's time to it.
 
-Knows the pairs that must be blended and the renderer's block of SIMD code. A pair is one Gaussian in one pixel whose
-alpha there is at least 1/255, in front of where the pixel is finished: pairs of pixels, as the readable renderer counts
-them, not lanes of blocks, of which many idle. The time of a pair is that of the very block code the renderer runs, at
-its best: all lanes busy, all records in the first-level cache, nothing sorted, copied or stored. So
+A pair is one Gaussian in one pixel where its alpha is at least 1/255 and the pixel is not yet saturated. The reference
+renderer counts the pairs per pixel, without the idle lanes of SIMD blocks. The time of a pair is that of the renderer's
+own block code at its best: all lanes busy, all records in the first-level cache, nothing sorted, copied or stored. So
 
     floor = pairs x time of a pair / workers
 
-and what the renderer takes beyond is idle lanes, the walk over tiles and lists, and memory.
+and the renderer's further time goes into idle lanes, the traversal of tiles and lists, and memory accesses.
 """
 
 from __future__ import annotations
@@ -26,8 +25,8 @@ from ..gaussians.render.cpu import lanes, project, simd, touch
 from .harness import Metric
 
 STAGE = "draw"  # the kernel that blends
-TRIALS, ROUNDS = 25, 400  # least of so many, each of so many chunks
-ALPHA = 0.01  # of every pair that is timed: a chunk of them leaves pixels open
+TRIALS, ROUNDS = 25, 400  # the least time of 25 trials counts, each of 400 chunks
+ALPHA = 0.01  # of every pair that is timed: so low that a chunk does not saturate a pixel
 
 
 def measure(cloud: GaussianCloud, camera: Camera, key: str, raster: float) -> list[Metric]:
@@ -58,7 +57,7 @@ def pair_seconds() -> float:
     return least / (ROUNDS * touch.CHUNK * lanes.LANES)
 
 
-# Multiply-adds fuse as in the renderer's kernels. Not kept on disk: the cache would not see the block's code change.
+# Multiply-adds fuse as in the renderer's kernels. Not cached on disk: the cache would miss changes of the block's code.
 @numba.njit(nogil=True, boundscheck=False, fastmath={"contract"})
 def _blend_often(chunk, slots, state, limits, rounds):  # type: ignore[no-untyped-def]
     """Blend a whole chunk into one block, `rounds` times, each time from the start."""

@@ -1,7 +1,7 @@
-"""A real garden's points as Gaussians of random shape: much overlap, and no order in memory.
+"""Loads the garden points of gsplat's tests as Gaussians: much overlap, and no order in memory.
 
-Knows one file, the points and cameras that gsplat's tests ship. They are positions and colours only, so rotations,
-scales and opacities are drawn as those tests draw them: the picture is no garden, but the load of a splatted one.
+The file has positions, colours and cameras only, so rotations, scales and opacities are random, as in those tests. The
+picture does not look like the garden, but its rendering load is that of a real scene.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""How fast the way there and back is, and how near its gradients are: the fast renderer beside the readable one.
+"""Times forward and backward pass of the fast renderer, and compares its gradients with the reference renderer's.
 
-Knows torch's autograd. The readable renderer runs once, in float32; the loss is a random number for every colour.
+The reference renderer runs once, in float32, with torch's autograd; the loss weights every colour by a random number.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Draw = Callable[[Columns], Tensor]  # columns to a picture, [H, W, 3]
 
 
 def measure(name: str, cloud: GaussianCloud, camera: Camera, repeats: int) -> list[Metric]:
-    """Times of both, their ratio, and how far their gradients are apart, of one scene."""
+    """Times of both renderers, their ratio, and the relative difference of their gradients, on one scene."""
     weights = torch.randn(camera.height, camera.width, 3, generator=torch.Generator().manual_seed(0))
 
     def fast(columns: Columns) -> Tensor:
@@ -55,7 +55,7 @@ def measure(name: str, cloud: GaussianCloud, camera: Camera, repeats: int) -> li
 
 
 def _once(draw: Draw, cloud: GaussianCloud, weights: Tensor) -> tuple[float, dict[str, float], Columns]:
-    """Seconds there and back, those of each stage, and the gradients by column."""
+    """Seconds of forward and backward pass, those of each stage, and the gradients by column."""
     columns = {n: getattr(cloud, n).clone().requires_grad_() for n in NAMES}
     with compiled.stage_times() as stages:
         start = time.perf_counter()

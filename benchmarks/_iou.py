@@ -1,7 +1,4 @@
-"""How much two selections agree: over the whole of them, and along their borders only, in 3D or drawn.
-
-Knows masks, points and pixels. Refuses to know where a selection comes from.
-"""
+"""Intersection over union of two selections: of all their Gaussians or only near their borders, in 3D or in pixels."""
 
 from __future__ import annotations
 
@@ -16,7 +13,7 @@ CONTOUR = 0.02  # of a picture's diagonal, likewise for a pixel: what Cheng et a
 
 
 def iou(a: Mask, b: Mask) -> float:
-    """Intersection over union of two masks `[N]`; 0 where both are empty, since nothing was found."""
+    """Intersection over union of two masks `[N]`; 0 if both are empty."""
     return float((a & b).sum()) / max(float((a | b).sum()), 1.0)
 
 
@@ -35,9 +32,9 @@ def border(mask: Mask, points: NDArray[np.floating], distance: float = BORDER) -
 
 
 def border_iou(truth: Mask, found: Mask, points: NDArray[np.floating], distance: float = BORDER) -> float | None:
-    """Boundary IoU (Cheng et al. 2021) carried to 3D: that of the two masks' borders.
+    """Boundary IoU (Cheng et al. 2021) in 3D: the IoU of the two masks' borders.
 
-    None where the true object has no border, because it hangs freely: there is nothing to be right about.
+    None if the true object touches nothing and so has no border.
     """
     edge = border(truth, points, distance)
     return iou(edge, border(found, points, distance)) if edge.any() else None

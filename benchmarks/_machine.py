@@ -1,7 +1,4 @@
-"""Where a figure was measured: the machine, the versions of what did the work, and the source's revision.
-
-Knows how to ask the system. Refuses to know what was measured, and sends nothing anywhere.
-"""
+"""Describes where a figure was measured: the machine, the versions of packages, and the revision of the source."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
-"""Head nouns of real human descriptions (Nr3D), as data: what people call the thing that they point out.
+"""Measures the head nouns that the planner reads in real descriptions of objects (Nr3D).
 
-Knows the sentences' layout and which names of a class count as the same. Refuses to quote a sentence: failures are told
-as pairs of words with their number.
+No sentence of the data set is quoted: failures are reported as pairs of words with their number.
 """
 
 from __future__ import annotations

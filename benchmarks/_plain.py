@@ -1,11 +1,9 @@
-"""Training as first published, through the renderer that is made to be read: what all speed-ups are measured against.
+"""The baseline of training: the published recipe with the reference renderer and torch's autograd.
 
-Kerbl et al. 2023: L1 and D-SSIM, Adam, Gaussians that are split, cloned, pruned and made faint, one more band of
-harmonics every thousand steps. Gradients are torch's own, of the readable renderer and of the readable loss; order of
-photographs, growth and rates (but for one that was raised there) are the very ones of `gaussians.fit`, so that a
-comparison of the two says what the compiled path and the strategy give, and nothing else.
-
-Knows torch's engine and the readable renderer. Refuses to know photographs on the disk, and how good the scene becomes.
+Kerbl et al. 2023: L1 and D-SSIM, Adam, Gaussians that are split, cloned and pruned, opacity resets, one more band of
+harmonics every thousand steps. Gradients are those of torch through the reference renderer and the reference loss. The
+order of photographs, densification and learning rates (except one that `gaussians.fit` raised) are those of
+`gaussians.fit`, so that a comparison shows the effect of the compiled path and the strategy alone.
 """
 
 from __future__ import annotations
@@ -28,8 +26,8 @@ HIGHEST = 3  # degree
 
 
 class PlainEngine(TorchEngine):
-    """An `Engine` of torch and the readable renderer. Bands come by steps, as published, not by the schedule, and learn
-    at the published rate."""
+    """An `Engine` of torch and the reference renderer. Bands are added by steps, as published, not by the schedule, and
+    are trained with the published learning rate."""
 
     shn_lr = 2.5e-3 / 20
 
@@ -47,7 +45,7 @@ class PlainEngine(TorchEngine):
 
 
 def trainer(photos: Photos, settings: Settings) -> Trainer:
-    """A training from the same start as `fit` makes, to the same end, without a budget and without coarse pictures."""
+    """A training with the initialization and the duration of `fit`, without a limit of Gaussians or coarse pictures."""
     rng = np.random.default_rng(settings.seed)
     parameters = Parameters.of(initial_cloud(photos, settings.max_gaussians, rng))
     strategy, schedule = DefaultStrategy(photos.extent, rng), Schedule(settings.steps, settings.seconds)

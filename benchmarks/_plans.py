@@ -1,4 +1,4 @@
-"""Plans of layouts, seen from above, as one picture. Knows matplotlib, which is an extra; refuses to judge."""
+"""Draws the floor plans of layouts, seen from above, into one picture, with matplotlib (an extra)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _COLORS = {"floor": "#d9c8a9", "wall": "#8fb0c9", "ceiling": "none", "carried": 
 
 
 def draw(layouts: Sequence[tuple[str, SceneGraph]], path: Path, columns: int = 4) -> None:
-    """One plan a layout; a thing's front is its thick side."""
+    """Draw one plan for each layout; the thick side of a thing is its front."""
     from matplotlib.figure import Figure
 
     rows = -(-len(layouts) // columns)

@@ -1,7 +1,7 @@
-"""Rooms to be furnished: twelve kinds with typical things, and wishes that are known to be possible.
+"""Layout problems of twelve kinds of rooms, with wishes that are known to be possible together.
 
-Knows furniture and a sampler of witnesses: things thrown into the room at random until they lie free, from which true
-relations are read. Refuses to know the solver that is measured, so that what is asked is never what it likes to do.
+Hard relations are read from a witness: a random arrangement of the things without overlaps. The solver that is measured
+has no part in it, so the problems do not favour it.
 """
 
 from __future__ import annotations
@@ -148,7 +148,7 @@ KINDS: dict[str, tuple[tuple[float, float, float, float], dict[str, tuple[int, i
 _HEIGHT = 2.7
 _TRIES = 300
 _VIEWED = ("left_of", "right_of", "in_front_of", "behind")
-_CLEARLY = 0.8  # cosine from which a relation is read off a witness; 0.5 is where it begins to hold
+_MIN_COSINE = 0.8  # cosine from which a relation is read from a witness; a relation holds from 0.5
 
 
 def problem(kind: str, seed: int, stated: float = 0.5) -> Problem:
@@ -196,7 +196,7 @@ def _things(wanted: dict[str, tuple[int, int]], rng: np.random.Generator) -> Ite
 
 
 def _habits(items: Sequence[Item]) -> Iterator[Wish]:
-    """What things of a kind are wont to do, spread over the partners there are."""
+    """Soft wishes from the habits of things, distributed over their possible partners."""
     names = [i.id for i in items]
     for item in items:
         habit = THINGS[item.label].habit if item.label in THINGS else ""
@@ -227,7 +227,7 @@ def _relations(
         way = np.array(at[one.id]) - np.array(at[other.id])
         way /= np.linalg.norm(way)
         for name, aim in zip(_VIEWED, ((-1, 0), (1, 0), (0, -1), (0, 1)), strict=True):
-            if float(way @ np.array(aim)) > _CLEARLY:
+            if float(way @ np.array(aim)) > _MIN_COSINE:
                 said.add(pair)
                 yield Wish(subject=one.id, name=name, objects=(other.id,))
 
@@ -235,7 +235,7 @@ def _relations(
 def _witness(
     size: tuple[float, float, float], items: Sequence[Item], rng: np.random.Generator
 ) -> dict[int | str, tuple[float, float]]:
-    """Middles of things that were thrown into the room and lie free of each other, the large ones first."""
+    """Random positions (x, y) of the things that stand on the floor, without overlaps, placed in order of size."""
     found: dict[int | str, tuple[float, float]] = {}
     taken = list[tuple[float, float, float, float]]()
     for item in sorted(items, key=lambda i: -i.size[0] * i.size[1]):

@@ -1,7 +1,6 @@
-"""A scripted stand-in for a language model: it knows what was written down as right, and errs as often as it is told.
+"""A scripted stand-in for a language model: gives the written answers with a given error rate and simulated latency.
 
-Knows the written set, a stated rate of errors and a stated distribution of latencies. Refuses to be taken for a model:
-its name says what it is. Its latency is accounted in the plan's usage and not slept, so that nobody waits for it.
+Its name says that it is not a real model. The latency is only stated in the plan's usage; nothing sleeps.
 """
 
 from __future__ import annotations
@@ -32,8 +31,8 @@ _GREY, _RED = {"color": "gray"}, {"color": "red"}
 
 
 class Scripted:
-    """Answers the instructions of the written set, each with the room that it sees; all others as the grammar reads
-    them (the instruction before, which only says what "it" means).
+    """Answers the instructions of the written set in their rooms; all others (such as the previous instruction, which
+    only defines "it") are planned by the grammar.
 
     Args:
         errors: share of instructions that it gets wrong: half of them not understood, half done to the wrong thing.
@@ -117,7 +116,7 @@ def _all_of(stage: Stage, ids: Sequence[Any]) -> dict[str, Any]:
 
 
 def _wrong(told: dict[str, Any], stage: Stage) -> tuple[EditOp, ...]:
-    """What nobody asked for: the thing beside the right one, or another colour of what is added."""
+    """A wrong plan: the next thing in place of the right one, or another colour for an inserted thing."""
     ops: tuple[EditOp, ...] = told.get("ops", ())
     first: dict[str, Any] = ops[0].model_dump(exclude_none=True) if ops else {"op": "delete"}
     if first["op"] == "insert":

@@ -1,9 +1,9 @@
 """The eleven LayoutVLM room tasks as layout problems.
 
-Knows the tasks' boundaries, and a table of plausible things. Refuses to know the true assets: the tasks name them by
-hash and their geometry is not included. So each table here is ours: labels from the tasks' own lists where they have
-one, counts from how often a hash occurs, typical sizes; hard wishes from the written criteria. Walls are 2.5 m high
-(the tasks' are lower than their shelves), and there is no door, as the tasks have none.
+The boundaries come from the tasks. The tasks name their assets by hash and do not include the geometry, so the tables
+of things are ours: labels from the tasks' own lists where they have one, counts from how often a hash occurs, typical
+sizes; hard wishes from the written criteria. Walls are 2.5 m high (the tasks' are lower than their shelves), and there
+is no door, as the tasks have none.
 """
 
 from __future__ import annotations

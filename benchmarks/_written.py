@@ -1,7 +1,6 @@
-"""The instructions written by hand over hand-written rooms, and what counts as right on them.
+"""The set of hand-written instructions on hand-written rooms, and the judgement of answers.
 
-Knows the set, its two halves and the judgement. Half of the set is held back: of it only totals are told, so that
-nobody can fit words to it one by one.
+Half of the set is held back: only its totals are reported, so that nobody fits the planners to single instructions.
 """
 
 from __future__ import annotations
@@ -58,7 +57,7 @@ def cases(folder: Path = FOLDER) -> list[dict[str, Any]]:
 
 
 def is_held(case: dict[str, Any]) -> bool:
-    """Whether a case belongs to the half that is not looked at: by the hash of its id."""
+    """Whether a case belongs to the held-back half, by the hash of its id."""
     return hashlib.sha256(case["id"].encode()).digest()[0] % 2 == 1
 
 

@@ -1,8 +1,7 @@
-"""bench edit: seconds and peak memory of each atomic edit on a large cloud, checks included, rendering not.
+"""bench edit: seconds and peak memory of each atomic edit on a large cloud, with checks and without rendering.
 
-Knows how to make a cloud of boxes with a language field and how to read peak memory. Refuses to know pictures' quality.
-Goals on one million Gaussians: 0.3 s an edit, less than three times the cloud in memory, undo for nothing (an old
-reference).
+The cloud consists of boxes with a language field. Goals on one million Gaussians: 0.3 s an edit, less than three times
+the cloud in memory, and undo at no cost (an old reference).
 """
 
 from __future__ import annotations

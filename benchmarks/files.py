@@ -1,7 +1,6 @@
-"""bench files: what each format takes and loses on real and synthetic scenes, and how long reading and writing takes.
+"""bench files: size, loss, reading and writing time of each file format on real and synthetic scenes.
 
-Knows formats by their suffix and how to make a glossy synthetic scene. Refuses to know how any format works. Loss is
-PSNR of the scene read back against the scene that was written, from views that the scene itself suggests.
+The loss is the PSNR of the scene read back against the written scene, from views chosen for the scene.
 """
 
 from __future__ import annotations

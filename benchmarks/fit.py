@@ -1,7 +1,6 @@
-"""bench fit: how good a scene is after how much training, by several settings and by the plain recipe.
+"""bench fit: quality of a scene against training time, for several settings and the plain recipe.
 
-One real capture, every eighth photograph held out. Knows which settings are worth comparing. Refuses to know how any
-of them trains. It takes an hour: `_fits` says how to cut it into parts and to go on after a crash.
+One real capture, every eighth photograph held out. It takes an hour; `_fits` tells how to split it and resume it.
 """
 
 from __future__ import annotations

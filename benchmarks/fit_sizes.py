@@ -1,8 +1,7 @@
 """bench fit_sizes: bytes of a trained scene against its likeness to held-out photographs.
 
 The same capture as `bench fit`, trained for the same time at each degree of the harmonics; then each of these scenes
-with positions in 16 bits (as integers or half floats), with harmonics in 8 bits, and with both. Knows what is compared.
-Refuses to know how it is trained (`_fits`) and rounded (`_ablation`).
+with positions in 16 bits (as integers or half floats), with harmonics in 8 bits, and with both (`_ablation`).
 """
 
 from __future__ import annotations
@@ -17,18 +16,18 @@ from ..gaussians.fit import Settings
 from ..gaussians.fit.quality import measure
 from ..gaussians.fit.train import Shot
 from . import _fits
-from ._ablation import eight_bit_harmonics, half_float_positions, saved, sixteen_bit_positions
+from ._ablation import bytes_saved, eight_bit_harmonics, half_float_positions, sixteen_bit_positions
 from ._data import missing
 from ._fits import Made, Run
 from .harness import Metric, Point, Result
 
-SECONDS, MOST = 90.0, 180_000
+SECONDS, MAX_GAUSSIANS = 90.0, 180_000
 QUICK_STEPS = 200
 NOISE = 0.01  # of a PSNR: a quarter of a decibel, as other seeds give
 TITLE = "bytes of trained scenes against likeness to photographs that were held out"
 ACCURACY = "PSNR on all held-out photographs, dB"
 NOTES = (
-    f"each degree trained for {SECONDS:.0f} s with at most {MOST:,} Gaussians. More SH bands take more time a "
+    f"each degree trained for {SECONDS:.0f} s with at most {MAX_GAUSSIANS:,} Gaussians. More SH bands take more time a "
     "step, so that there are fewer steps. No band is dropped",
     "8 bits: each SH band in 256 uniform steps over its range. 16 bits: each axis in 65,536 steps over the box of all "
     "Gaussians. The rest stays as in the .ply, with three unused normals",
@@ -36,8 +35,8 @@ NOTES = (
 
 
 @dataclass(frozen=True)
-class Way:
-    """A way to store a scene: what people call it, how it changes it, and what it makes smaller."""
+class Storage:
+    """A way to store a scene: its title, the change of the cloud, and the columns that it makes smaller."""
 
     title: str
     change: Callable[[GaussianCloud], GaussianCloud]
@@ -45,12 +44,12 @@ class Way:
     positions: bool = False
 
 
-WAYS = {
-    "float32": Way("all in 32 bits (.ply)", lambda c: c),
-    "means16": Way("positions in 16 bits", sixteen_bit_positions, positions=True),
-    "means_half": Way("positions in half floats", half_float_positions, positions=True),
-    "sh8": Way("harmonics in 8 bits", eight_bit_harmonics, harmonics=True),
-    "both": Way("8 and 16 bits", lambda c: sixteen_bit_positions(eight_bit_harmonics(c)), True, True),
+STORAGES = {
+    "float32": Storage("all in 32 bits (.ply)", lambda c: c),
+    "means16": Storage("positions in 16 bits", sixteen_bit_positions, positions=True),
+    "means_half": Storage("positions in half floats", half_float_positions, positions=True),
+    "sh8": Storage("harmonics in 8 bits", eight_bit_harmonics, harmonics=True),
+    "both": Storage("8 and 16 bits", lambda c: sixteen_bit_positions(eight_bit_harmonics(c)), True, True),
 }
 DRAWN = ("float32", "means16", "sh8", "both")  # half floats take as much as 16 bits
 
@@ -74,7 +73,7 @@ class Stored:
 
     def point(self) -> Point:
         """Where it stands on the chart."""
-        return Point(WAYS[self.way].title, f"SH {self.made.degree}", self.made.seconds, self.psnr, self.bytes)
+        return Point(STORAGES[self.way].title, f"SH {self.made.degree}", self.made.seconds, self.psnr, self.bytes)
 
 
 def run(quick: bool) -> Result:
@@ -97,7 +96,7 @@ def run(quick: bool) -> Result:
 def _settings(quick: bool, degree: int) -> Settings:
     if quick:
         return Settings(steps=QUICK_STEPS, max_gaussians=2 * _fits.SMALL, degree=degree, gain=None)
-    return Settings(seconds=SECONDS, max_gaussians=MOST, degree=degree, gain=None)
+    return Settings(seconds=SECONDS, max_gaussians=MAX_GAUSSIANS, degree=degree, gain=None)
 
 
 def _trained(name: str, made: Made) -> Iterator[Metric]:
@@ -110,6 +109,6 @@ def _trained(name: str, made: Made) -> Iterator[Metric]:
 def _stored(name: str, made: Made, place: Path, held: Sequence[Shot]) -> Iterator[Stored]:
     """A trained scene in every way."""
     cloud = files.load(_fits.scene_of(name, place)).cloud
-    for key, way in WAYS.items():
-        size = made.bytes - saved(cloud, way.harmonics, way.positions)
+    for key, way in STORAGES.items():
+        size = made.bytes - bytes_saved(cloud, way.harmonics, way.positions)
         yield Stored(name, key, size, measure(way.change(cloud), held).psnr, made)

@@ -1,7 +1,6 @@
-"""The one measuring harness: what a benchmark returns, how it is found, run, and told as JSON, Markdown and a chart.
+"""The benchmark harness: finds and runs benchmarks, and prints their results as JSON and Markdown.
 
-Knows results and their surroundings (machine, versions, revision). Refuses to know what is measured: that is one file
-a benchmark. A benchmark fills a `Result`; `run` stamps on it where and on what it was measured.
+A benchmark returns a `Result`; `run` adds the machine, the versions of packages and the revision of the source.
 """
 
 from __future__ import annotations
@@ -62,7 +61,7 @@ class Metric:
 
 @dataclass(frozen=True)
 class Point:
-    """One way to do the job, on the chart of time against accuracy.
+    """One method with its setting on the chart of time (or bytes) against accuracy.
 
     Attributes:
         method: the family, drawn in one colour: "cpu", "reference", ...
@@ -87,7 +86,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Result:
-    """What a benchmark found, and where.
+    """The result of a benchmark, and the machine and versions it was measured with.
 
     Attributes:
         title: a sentence, what was measured.
@@ -208,7 +207,7 @@ def names() -> tuple[str, ...]:
 
 
 def run(name: str, quick: bool = False) -> Result:
-    """Run a benchmark and stamp the surroundings on what it found. `quick` trades steadiness for time.
+    """Run a benchmark and add the machine, versions and revision to its result. `quick`: faster and less precise.
 
     Raises:
         UserError: no benchmark has this name.

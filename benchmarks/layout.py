@@ -1,7 +1,7 @@
-"""The layout solver on composed rooms, on rooms with relations read off witnesses, on other people's tasks, and on
-problems that cannot be solved.
+"""bench layout: the layout solver on composed rooms, rooms with relations read from witnesses, published tasks, and
+problems without a solution.
 
-Knows how a layout is judged: by the neutral checker, never by the solver. Run: `scenewright bench layout`.
+Layouts are judged by the checker of scene graphs, never by the solver itself.
 """
 
 from __future__ import annotations

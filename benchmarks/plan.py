@@ -1,9 +1,9 @@
 """bench plan: how often a planner is right, by kind of instruction, and how long it takes.
 
-Three sets: instructions over hand-written rooms, judged by the nodes they would touch (`_written`), of which half is
-held back and told in totals only, and on which is also shown what asking a language model adds (`_cascade`);
-instructions judged by their operations alone; and sentences of other people, of which the head noun is judged
-(`_nouns`). Refuses to count an abstention as a wrong edit: a wrong edit costs more.
+Three sets: instructions on hand-written rooms, judged by the nodes they would change (`_written`), of which half is
+held back and reported in totals only, and which also show what a language model adds (`_cascade`); instructions judged
+by their operations alone; and sentences of other people, judged by the head noun (`_nouns`). An abstention is not
+counted as a wrong edit, which is worse.
 """
 
 from __future__ import annotations

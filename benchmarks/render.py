@@ -1,10 +1,9 @@
-"""How fast and how exact the renderers are: the fast CPU back end beside the readable one, scene by scene.
+"""bench render: speed and accuracy of the fast CPU renderer and the reference renderer, scene by scene.
 
-Knows the renderers' public face and the stages' names. Accuracy is PSNR against the readable renderer run in float64.
-How near the blending stage comes to what it cannot avoid is measured beside it (`_floor`), as is the way back
-(`_gradient`).
-Beside the default stand cheaper ways to draw: fewer harmonics, fewer Gaussians, fewer pixels. What a scene can prepare
-once (cutting harmonics, dropping faint Gaussians) is not timed; what must happen for every picture is.
+Accuracy is PSNR against the reference renderer run in float64. The blending stage is also compared with its lower bound
+(`_floor`), and the backward pass is measured (`_gradient`). Besides the default, cheaper settings are measured: fewer
+harmonics, fewer Gaussians, fewer pixels. Work that a scene needs once (cutting harmonics, dropping faint Gaussians) is
+not timed; work for every picture is.
 """
 
 from __future__ import annotations

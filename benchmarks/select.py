@@ -1,8 +1,8 @@
-"""bench select: words to Gaussians, every row of what the selection has to show, and the chart of time against mIoU.
+"""bench select: all measures of selection by words, and the chart of time against mIoU.
 
-Direct 3D: the selected Gaussians are compared with the object's own, never pixels, except for the photographs of a
-real room. Rooms come from seeds that nothing was fitted on; every score stands beside its ceiling. This file is the
-table of contents: each measure is one function of `_select`, and figures over real CLIP vectors are `_clip`'s.
+The selected Gaussians are compared with the object's own in 3D; only the photographs of a real room are compared in
+pixels. Rooms come from seeds that nothing was fitted on; each score is printed beside its upper bound. Each measure is
+a function of `_select`; figures with real CLIP vectors come from `_clip`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .harness import Metric, Result
 
 @dataclass(frozen=True)
 class Plan:
-    """Which seeds each measure takes; none of them, and nothing above 7000 and below 8000, was used for fitting."""
+    """The seeds of each measure; no seed from 7000 to 7999 was used for fitting."""
 
     names: tuple[int, ...]
     attributes: tuple[int, ...]
@@ -88,7 +88,7 @@ def run(quick: bool) -> Result:
 
 
 def _strangers(plan: Plan, encoder: Encoder, grouped: Callable[[Case], Case], quick: bool) -> Part:
-    """Objects that others made, where they are to be found."""
+    """The measure on meshes made by others, if the data are there."""
     folder = _data.folder("meshes")
     if folder is None:
         return Part(notes=(_data.missing("meshes"),))
@@ -96,7 +96,7 @@ def _strangers(plan: Plan, encoder: Encoder, grouped: Callable[[Case], Case], qu
 
 
 def _real_vectors(quick: bool) -> Part:
-    """Real CLIP vectors in place of the embedded encoder's, where they are to be found."""
+    """The measure with real CLIP vectors in place of the embedded encoder's, if the data are there."""
     folder = _data.folder("clip_vectors")
     if folder is None:
         return Part(notes=(_data.missing("clip_vectors"),))
@@ -108,7 +108,7 @@ def _real_vectors(quick: bool) -> Part:
 
 
 def _real_room(quick: bool) -> Part:
-    """A captured room with a detector's masks, where it is to be found."""
+    """The measure on a captured room with a detector's masks, if the data are there."""
     if quick:
         return Part(notes=("bonsai: quick runs leave out the real room",))
     wanted = ("captures/bonsai_room", "scenes", "clip_vectors")

@@ -1,7 +1,7 @@
 """bench structure: size of the product, imports between its packages, and what one instruction touches.
 
 Counts are of the source tree that runs. A walk is one call after a warm-up: the files and functions of the product that
-Python enters on the calling thread, and how often control passes from one top-level package to another.
+Python enters on the calling thread, and how often execution moves from one top-level package to another.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What `bench select` measures, a measure a module: each takes cases and an encoder and returns a `Part`.
+"""The measures of `bench select`, one module each: a measure takes cases and an encoder and returns a `Part`.
 
-Truth is read only here and only after the answer is there. Nobody but `benchmarks.select` looks in.
+The ground truth is used only to judge an answer, never to find it.
 """

@@ -1,4 +1,4 @@
-"""Scenes with their truth, embedding them, asking them. Knows both sides; no answer ever depends on the truth."""
+"""Cases: scenes with their ground truth, their embedding, and queries on them. No answer depends on the truth."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def embedded(case: Case, encoder: Encoder, views_per_candidate: int = VIEWS_PER_
 
 
 def with_true_groups(case: Case, encoder: Encoder) -> Case:
-    """The case with a field over the true objects: what is still wrong then, segmentation did not do."""
+    """The case with a field over the true objects: errors that remain are not due to segmentation."""
     things = [Segment((), "object") for _ in case.objects]
     rows = np.arange(len(case.ids))
     unseen = Views((), rows, np.zeros((0, len(rows)), bool), 0.0)

@@ -1,4 +1,4 @@
-"""Seconds and bytes: embedding and lifting 150 thousand Gaussians, asking a million, and what the field takes up."""
+"""Costs: seconds for embedding and lifting 150,000 Gaussians and querying a million, and the memory of the field."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ REPEATS, QUICK_REPEATS = 7, 2
 
 
 def resized(case: Case, count: int) -> Case:
-    """The case at exactly `count` Gaussians: rows dropped evenly, or laid beside themselves within their footprints."""
+    """The case with exactly `count` Gaussians: rows dropped evenly, or duplicated with offsets within their extent."""
     cloud, have = case.scene.cloud, len(case.scene.cloud)
     rows = torch.linspace(0, have - 1, count).round().long() if count < have else torch.arange(count) % have
     taken = cloud[rows]

@@ -1,8 +1,7 @@
-"""Multi-view lifting in the chart: the same eyes and masks, lifted alone, or guiding what users get.
+"""Multi-view lifting in the chart: the same cameras and masks, lifted alone or as input of the default embedding.
 
-Lifted alone, a Gaussian belongs to the track that holds most of it and nothing knows of surfaces; guiding, the masks
-go through `embed`. Names are compared with portraits either way, so that only the groups differ. Knows how masks get
-there. Refuses to know what is made of the result.
+Lifted alone, a Gaussian belongs to the track with most of its weight, and surfaces have no influence; "guiding", the
+masks go through `embed`. Names are compared with renders of the groups either way, so that only the groups differ.
 """
 
 from __future__ import annotations

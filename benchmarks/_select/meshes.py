@@ -1,7 +1,7 @@
-"""Things that others made, in rooms, by their names: what the embedded encoder does on shapes that it never saw.
+"""Selection by name of 33 meshes of the Kenney furniture kit: the embedded encoder on shapes that it never saw.
 
-Knows the 33 meshes of the Kenney furniture kit by their files' names and what people call them. The size of a mesh is
-taken for metres, as its maker seems to have meant it (a chair is 1 m high, a bed 2.4 m long).
+The sizes of the meshes are read as metres, as their maker seems to have meant them (a chair is 1 m high, a bed 2.4 m
+long).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from .cases import Case, Part, ask
 ABSENT = 20  # names of kinds of ours that are not in a room, asked of each
 ROOMS = 6
 WIDER = 1.5  # on the splats of a mesh, whose samples fall at random: a trained surface has no holes
-# What each may be called, the plainest name first; it is asked by the first that the encoder has the words for.
+# The accepted names of each mesh, the plainest first; the query uses the first that the encoder knows.
 NAMES: dict[str, tuple[str, ...]] = {
     "bathroomCabinetDrawer": ("cabinet", "sink", "dresser"), "bathroomSink": ("sink",), "bear": ("bear", "teddy bear"),
     "bedSingle": ("bed",), "benchCushionLow": ("bench", "ottoman"), "bookcaseOpenLow": ("bookcase", "bookshelf"),
@@ -52,7 +52,7 @@ SMALL = frozenset({"kitchenBlender", "kitchenMicrowave", "lampRoundTable", "lamp
 
 @dataclass(frozen=True, eq=False)
 class _AsRead(Unlit):
-    """A mesh's light is baked when it is read, and does not turn with the room's."""
+    """A mesh whose light was baked when it was read, and is not that of the room."""
 
     lit: GaussianCloud
 

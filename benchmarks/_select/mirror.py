@@ -1,4 +1,4 @@
-"""A scene seen in a mirror: cloud, cameras and truth, so that left and right swap and nothing else does."""
+"""Mirrors a scene with its cameras and truth, so that only left and right are exchanged."""
 
 from __future__ import annotations
 

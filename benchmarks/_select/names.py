@@ -1,4 +1,4 @@
-"""Bare names in furnished rooms: what is there once, what is there more than once, and what is not there."""
+"""Queries by bare name in furnished rooms: kinds that occur once, more than once, or not at all."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ WIDE = 0.1  # metres: deeper than a splat of wall or floor, which are up to 6 cm
 PICTURE = (480, 320)  # pixels of the pictures that selections are drawn in
 SHOWN = 100  # pixels of a thing from which a picture shows it
 ABSENT = 20  # names of kinds of ours that are not in the room, asked of each room
-# Things that no asset of ours is and no calibration saw; none of their heads is a word for one of our kinds.
+# Things of which we have no asset and that no calibration used; no head noun among them names one of our kinds.
 STRANGE = (
     "aquarium", "bathtub", "birdcage", "canoe", "dartboard", "fire hydrant", "giraffe", "hammock", "helicopter",
     "ironing board", "ladder", "lawn mower", "parking meter", "sewing machine", "skateboard", "snowman", "stroller",

@@ -1,6 +1,6 @@
-"""Pairs of a kind that only an attribute tells apart, and the same two kinds with their colours swapped.
+"""Queries by attribute: pairs of a kind that differ only in colour or size, and two kinds with their colours swapped.
 
-Encoders are near bag-of-words: for them "a red chair and a green table" is "a green chair and a red table".
+To an encoder that is nearly a bag of words, "a red chair and a green table" equals "a green chair and a red table".
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ def swap_rooms(seed: int) -> tuple[Set, Set]:
 
 
 def _placed(layout: Layout, things: Sequence[Asset], asked: Sequence[Query], seed: int) -> Set:
-    """What found a place, and the queries for it (those for a pair of which one did not are dropped)."""
+    """The room with the things that could be placed, and their queries; without kinds of which a thing is missing."""
     spots = staged.stand(layout, things)
     lost = {things[i].kind for i, spot in enumerate(spots) if spot is None}
     meant = [Meant(q, s) for q, s, t in zip(asked, spots, things, strict=True) if t.kind not in lost]

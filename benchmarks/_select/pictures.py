@@ -1,6 +1,6 @@
-"""Pictures of a case and masks of them: where to look from, and what a flawless segmenter with shaky hands would see.
+"""Cameras and masks of a case: chooses views, and makes masks from the truth with imprecise outlines.
 
-Knows the truth, as it makes masks from it. What lifts these masks is told pixels and vectors only.
+The lifting of these masks gets only pixels and vectors, not the truth.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from ...gaussians.viewpoints.coverage import candidates, fit_camera
 from .cases import Case
 
 I32 = NDArray[np.int32]
-LOOK = 96  # pixels a side while choosing where to look from
+LOOK = 96  # pixels a side of the views that are compared when cameras are chosen
 SEEN = 0.01  # summed blending weight from which a Gaussian counts as seen
 SHAKE = 0.006  # of the picture's side: standard deviation by which outlines wander
 WAVE = 0.03  # of the picture's side: over which they do
-UNLIKE = 0.45  # length of what an object, or one picture of it, has of its own: two pictures of it are 0.86 alike
-LEAST = 30  # pixels of the smallest mask that is kept, at 256 a side
+UNLIKE = 0.45  # norm of the noise of an object and of each of its pictures: two pictures have a cosine of 0.86
+MIN_PIXELS = 30  # of the smallest mask that is kept, at 256 a side
 
 
 class Pictured(Protocol):
@@ -48,7 +48,7 @@ class Seen:
 
 
 def eyes(scene: Scene, most: int, size: int) -> list[Camera]:
-    """Where to look from, best first: each next eye sees most of what few have seen so far."""
+    """Cameras chosen greedily, best first: each next one sees most of the Gaussians that few cameras saw before."""
     pool = [fit_camera(c, LOOK, LOOK) for c in scene.cameras] + candidates(scene.cloud, scene.frame, LOOK)
     seen = np.stack([(contributions(scene.cloud, c) > SEEN).numpy() for c in pool]).astype(np.float32)  # [P, N]
     times = np.zeros(len(scene.cloud), np.float32)
@@ -62,7 +62,7 @@ def eyes(scene: Scene, most: int, size: int) -> list[Camera]:
 
 
 def shaken(ids: I32, rng: np.random.Generator) -> I32:
-    """An id map `[H, W]` whose outlines wander smoothly, as a segmenter's do; identical ids, other borders."""
+    """An id map `[H, W]` with smoothly displaced outlines, like those of a segmentation model; the ids are the same."""
     side = max(ids.shape)
     drift = ndimage.gaussian_filter(rng.standard_normal((2, *ids.shape)), (0, WAVE * side, WAVE * side))
     drift *= SHAKE * side / max(float(drift.std()), 1e-12)
@@ -78,7 +78,7 @@ def true_masks(case: Case, camera: Camera, pictured: Pictured, seed: int) -> See
     ids = shaken(picture.group.numpy(), np.random.default_rng([case.seed, seed]))
     ids[picture.alpha.numpy() < 0.5] = NONE
     kept, count = np.unique(ids[ids >= 0], return_counts=True)
-    objects = [int(o) for o in kept[count >= LEAST * ids.size / 256**2]]
+    objects = [int(o) for o in kept[count >= MIN_PIXELS * ids.size / 256**2]]
     number = np.full(len(case.objects) + 1, NONE, np.int32)  # the last is that of -1
     number[objects] = np.arange(len(objects))
     vectors = pictured(picture, ids, objects)
@@ -106,7 +106,7 @@ class Crops:
 
 @dataclass(frozen=True, eq=False)
 class Photos:
-    """Vectors of masks as a real image tower gives them: that of a photo of the kind, and no two photos are alike.
+    """Vectors of masks as of a real image encoder: the vector of a photo of the kind, with noise for each picture.
 
     Attributes:
         exemplars: `[O, D]` unit image vector of each true object's kind; zero where there is none.

@@ -1,6 +1,6 @@
-"""Relations asked in rooms: queries from the truth's boxes, clear cases only, from several eyes and in the mirror.
+"""Queries by relation in rooms: clear cases computed from the true boxes, from several cameras and mirrored.
 
-Each is asked of the field that users get, and of a field over the true objects, which shows what segmentation costs.
+Each query is resolved on the default field, and on a field over the true objects, which shows the loss by segmentation.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from .cases import Case, Part, ask
 from .mirror import mirrored
 from .spatial import Solid
 
-MOST, MOST_ABSENT = 3, 1  # queries a relation, a room and an eye: with an answer, and where nothing stands so
-EYES = 3  # of each room
+MAX_FOUND, MAX_ABSENT = 3, 1  # queries for each relation, room and camera: with an answer, and without
+EYES = 3  # cameras of each room
 GOAL = 0.95
 NAMES = (*spatial.SIDES, "on", "under", "above", "inside", "next_to", "between", "nearest_to", "farthest_from")
 # Things whose front is beyond doubt, so that "to the left of the sofa" in its own frame is too.
@@ -46,10 +46,10 @@ class Asked:
 
 
 def generate(case: Case, eyes: Sequence[int]) -> list[Asked]:
-    """Queries of a room that have one clear answer: at most `MOST` of a relation and an eye, drawn by its seed.
+    """Queries of a room with one clear answer: at most `MAX_FOUND` for each relation and camera, drawn by its seed.
 
-    An anchor is a kind that the room holds once. What is sought is a kind of which exactly one clearly stands so and
-    every other clearly does not; or none does, where the answer must be that it is not there.
+    An anchor is a kind that the room has once. The target is a kind of which exactly one clearly has the relation and
+    every other clearly does not; or none has it, and the right answer is "absent".
     """
     rng = np.random.default_rng([zlib.crc32(b"relations"), case.seed])
     solids = [Solid(o) for o in case.objects]
@@ -59,7 +59,7 @@ def generate(case: Case, eyes: Sequence[int]) -> list[Asked]:
         taken: Counter[tuple[str, Frame, bool]] = Counter()
         for one in (every[i] for i in rng.permutation(len(every))):
             key = one.name, one.frame, one.object is None
-            if taken[key] < (MOST_ABSENT if one.object is None else MOST):
+            if taken[key] < (MAX_ABSENT if one.object is None else MAX_FOUND):
                 taken[key] += 1
                 chosen.append(one)
     return chosen

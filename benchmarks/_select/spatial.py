@@ -1,7 +1,7 @@
-"""What stands where, from the boxes things were placed in: true, false, or None where people might disagree.
+"""The true relations between things, from the boxes they were placed in: true, false, or None if it is debatable.
 
-Written without a look at how queries score relations, so that the two can be held against each other. Plain geometry
-of upright boxes, metres, z up; angles in degrees. Refuses to know Gaussians, groups and encoders.
+This definition is independent of how queries score relations, so that the one can test the other. Plain geometry of
+upright boxes in metres with z up; angles in degrees.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def angle(offset: F64, direction: F64) -> float:
 
 
 def stands(name: str, thing: Solid, anchors: tuple[Solid, ...], viewer: Camera) -> bool | None:
-    """Whether `thing` clearly stands so towards the anchors for someone at `viewer`; None if it is debatable."""
+    """Whether `thing` clearly has the relation to the anchors as seen from `viewer`; None if it is debatable."""
     anchor = anchors[0]
     if name in SIDES:
         return _beside(thing, anchor, _viewer_directions(name, anchor, viewer))

@@ -1,4 +1,4 @@
-"""How selection holds when the scene or the rule is not as it was: thresholds, floaters, fewer views."""
+"""Robustness of selection against other thresholds and against floaters in the scene."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _both(case: Case, encoder: Encoder) -> tuple[float, float]:
 def floaters(
     rooms: Sequence[Case], encoder: Encoder, grouped: Callable[[Case], Case], shares: Sequence[float] = FLOATERS
 ) -> Part:
-    """Haze added to rooms before they are embedded: what it does to names, and how much of it joins an object."""
+    """Floaters added to rooms before embedding: the mIoU of names, and the share of floaters that join an object."""
     metrics = []
     for share in shares:
         found: list[float] = []

@@ -1,7 +1,4 @@
-"""Rooms put together on purpose: what is asked of them is known because it was placed.
-
-Knows layouts and assets. Refuses to know encoders and answers.
-"""
+"""Builds rooms for queries whose answer is known from the placement of their things."""
 
 from __future__ import annotations
 

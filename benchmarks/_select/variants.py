@@ -1,4 +1,4 @@
-"""An encoder with one thing changed: remembering its phrases, or under another rule. The vectors stay the same."""
+"""Variants of an encoder with the same vectors: with a cache of phrases, or with another calibration rule."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""Groups against one vector a Gaussian, from the very same masks: what the field's usual memory buys.
+"""Compares groups with one vector per Gaussian, as is usual in the literature, from the same masks.
 
-The rival is built as the field builds it: a Gaussian's vector is the mean of its masks' vectors over all views, by
-blending weight, compressed to d numbers by principal components of the scene; a query takes the Gaussians whose
-similarity beats all other names, by the same calibrated rule as groups. Nobody measures size here, as a Gaussian has
-none. Knows masks' vectors and the truth. Refuses to know how masks were made.
+The alternative is built as in the literature: a Gaussian's vector is the mean of its masks' vectors over all views,
+weighted by blending weight and compressed to d numbers by principal components of the scene; a query selects the
+Gaussians whose similarity beats all other names, by the same calibrated rule as groups. Size is not used, as a single
+Gaussian has no size of an object.
 """
 
 from __future__ import annotations

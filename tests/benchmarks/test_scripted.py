@@ -67,13 +67,13 @@ def test_a_model_that_fails_counts_as_an_abstention() -> None:
         def plan(self, text: str, **_: Any) -> EditPlan:
             raise BackendError("the server is down")
 
-    plan = _cascade._Patient(Down()).plan("delete the sofa")
+    plan = _cascade._ModelAlone(Down()).plan("delete the sofa")
     assert (plan.verdict, plan.planner, plan.reason) == ("not_understood", "down", "the server is down")
 
 
 def test_a_real_model_is_measured_where_one_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(_cascade.VARIABLE, "openai:some-model")
-    monkeypatch.setattr(_cascade, "EVERY", 60)
+    monkeypatch.setattr(_cascade, "QUICK_STRIDE", 60)
     monkeypatch.setattr(_cascade, "load", lambda spec: GrammarPlanner() if spec == "grammar" else _Named(spec))
     metrics, points, (note,) = _cascade.measure(quick=True)
     assert [p.method for p in points] == ["grammar", "cascade: grammar, then openai:some-model", "openai:some-model"]
