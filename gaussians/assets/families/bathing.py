@@ -196,11 +196,8 @@ def towel_rack(rng: Rng, tone: Tone) -> list[Piece]:
     out.append(boxes([(0.03, 0.08, 0.03, s * (w / 2 - 0.02), -0.02, h - 0.035) for s in (-1, 1)]).named("mount", STEEL))
     for k in range(int(rng.integers(1, 3))):
         x, wide, drop = (k * 2 - 1) * w * 0.22, w * rng.uniform(0.3, 0.4), h * rng.uniform(0.75, 0.95)
-        out.append(
-            boxes([(wide, 0.012, drop, x, -0.066, h - drop), (wide, 0.03, 0.014, x, -0.05, h - 0.014)], 0.004).named(
-                "towel", cloth if k == 0 else tone.accent()
-            )
-        )
+        towel = boxes([(wide, 0.012, drop, x, -0.066, h - drop), (wide, 0.03, 0.014, x, -0.05, h - 0.014)], 0.004)
+        out.append(towel.named("towel", cloth if k == 0 else tone.accent()))
     return out
 
 

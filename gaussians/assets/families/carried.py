@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import Material, Tone
-from ..modeling.parts import Rng, chance
+from ..modeling.parts import Rng, around, chance, polar
 from ..modeling.shapes import (
     Piece,
     ball,
@@ -114,21 +114,15 @@ def shoe(rng: Rng, tone: Tone) -> list[Piece]:
     foot = np.stack([0.045 * np.cos(t) * (1 - 0.18 * np.sin(t) - 0.1 * np.sin(2 * t)), -0.14 * np.sin(t)], 1)[::-1]
     one = [extrude(foot, 0.025 if style != 1 else 0.035, 0.006).named("sole", sole)]
     one.append(blob(0.088, 0.17, 0.1, (0, -0.05, 0.035), 0.9, 0.9).named("toe", mat))
-    one.append(
-        lathe([(0.046, 0.02), (0.045, tall * 0.6), (0.04, tall)], smooth=9)
-        .stretched(0.92, 1.45, 1)
-        .moved(0, 0.065, 0)
-        .named("upper", mat)
+    upper = (
+        lathe([(0.046, 0.02), (0.045, tall * 0.6), (0.04, tall)], smooth=9).stretched(0.92, 1.45, 1).moved(0, 0.065, 0)
     )
+    one.append(upper.named("upper", mat))
     one.append(
         ring(0.04, 0.006, (0, 0, 0)).stretched(0.92, 1.45, 1).moved(0, 0.065, tall).named("collar", mat.shaded(0.7))
     )
-    one.append(
-        cylinder(0.036, 0.004)
-        .stretched(0.92, 1.45, 1)
-        .moved(0, 0.065, tall - 0.012)
-        .named("inside", tone.plain("#2a2522"))
-    )
+    inside = cylinder(0.036, 0.004).stretched(0.92, 1.45, 1).moved(0, 0.065, tall - 0.012)
+    one.append(inside.named("inside", tone.plain("#2a2522")))
     if style != 2:
         laces = [
             rod((-0.028, -0.02 - 0.022 * k, 0.085 - 0.009 * k), (0.028, -0.02 - 0.022 * k, 0.085 - 0.009 * k), 0.004)
@@ -163,13 +157,13 @@ def umbrella(rng: Rng, tone: Tone) -> list[Piece]:
             tube(
                 [
                     (0, 0, h - 0.045),
-                    (r * 0.5 * np.cos(a), r * 0.5 * np.sin(a), h - 0.045 - r * 0.105),
-                    (r * np.cos(a), r * np.sin(a), h - 0.045 - r * 0.42),
+                    polar(r * 0.5, a, h - 0.045 - r * 0.105),
+                    polar(r, a, h - 0.045 - r * 0.42),
                 ],
                 0.003,
                 smooth=7,
             )
-            for a in np.linspace(0, 2 * np.pi, n + 1)[:-1]
+            for a in around(n)
         ]
         whole = [
             canopy.named("canopy", mat),
@@ -180,10 +174,7 @@ def umbrella(rng: Rng, tone: Tone) -> list[Piece]:
         rest = np.degrees(np.arctan2(h - 0.04 - r * 0.42, r))  # rim and handle both touch the ground
         return [p.turned("x", rest if chance(rng, 0.7) else -rest) for p in whole]
     folds = lathe([(0.012, 0.3), (0.045, 0.42), (0.035, 0.6), (0.012, h - 0.03)], smooth=13)
-    pleats = [
-        rod((0.04 * np.cos(a), 0.04 * np.sin(a), 0.4), (0.01 * np.cos(a), 0.01 * np.sin(a), h - 0.05), 0.009, 0.004)
-        for a in np.linspace(0, 2 * np.pi, 9)[:-1]
-    ]
+    pleats = [rod(polar(0.04, a, 0.4), polar(0.01, a, h - 0.05), 0.009, 0.004) for a in around(8)]
     stand = lathe([(0.0, 0.0), (0.1, 0.0), (0.11, 0.38), (0.1, 0.38), (0.095, 0.03), (0, 0.02)]).named(
         "stand", tone.metal()
     )

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import Material, Tone, mix, shade
-from ..modeling.parts import Rng, chance
+from ..modeling.parts import Rng, around, chance
 from ..modeling.shapes import (
     Array,
     Piece,
@@ -125,7 +125,7 @@ def mirror(rng: Rng, tone: Tone) -> list[Piece]:
     if style == 1 and chance(rng, 0.4):  # a sunburst
         rays = [
             rod((w / 2 * np.cos(a), 0, w / 2 * np.sin(a)), (w * 0.7 * np.cos(a), 0, w * 0.7 * np.sin(a)), 0.012, 0.004)
-            for a in np.linspace(0, 2 * np.pi, 21)[:-1]
+            for a in around(20)
         ]
         out.append(join(*rays).named("ray", frame))
     return out
@@ -219,11 +219,8 @@ def sculpture(rng: Rng, tone: Tone) -> list[Piece]:
         out, z = [plinth], 0.05
         for k in range(int(rng.integers(3, 6))):
             s = 0.15 * 0.82**k
-            out.append(
-                blob(s * rng.uniform(0.9, 1.2), s, s * 0.55, (rng.uniform(-0.01, 0.01), 0, z + s * 0.27)).named(
-                    "stone", mat
-                )
-            )
+            stone = blob(s * rng.uniform(0.9, 1.2), s, s * 0.55, (rng.uniform(-0.01, 0.01), 0, z + s * 0.27))
+            out.append(stone.named("stone", mat))
             z += s * 0.53
         return out
     legs = [

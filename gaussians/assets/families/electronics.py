@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import Material, Tone
-from ..modeling.parts import Rng, chance, tapered_legs
+from ..modeling.parts import Rng, around, chance, tapered_legs
 from ..modeling.shapes import (
     Piece,
     ball,
@@ -194,12 +194,8 @@ def radio(rng: Rng, tone: Tone) -> list[Piece]:
     if chance(rng, 0.5):
         out.append(box(w * 0.5, 0.006, h * 0.7, (-w * 0.18, y, h * 0.15), 0.002).named("grill", grill))
     else:
-        out.append(
-            lathe([(h * 0.34, 0), (h * 0.3, 0.006), (0, 0.006)])
-            .turned("x", 90)
-            .moved(-w * 0.18, y, h * 0.5)
-            .named("grill", grill)
-        )
+        cover = lathe([(h * 0.34, 0), (h * 0.3, 0.006), (0, 0.006)]).turned("x", 90).moved(-w * 0.18, y, h * 0.5)
+        out.append(cover.named("grill", grill))
     out.append(box(w * 0.3, 0.006, h * 0.22, (w * 0.28, y, h * 0.6), 0.002).named("dial", tone.plain("#f6efd8")))
     out += [
         cylinder(h * 0.09, 0.016, bevel=0.003)
@@ -211,11 +207,8 @@ def radio(rng: Rng, tone: Tone) -> list[Piece]:
     if chance(rng, 0.6):
         out.append(rod((w * 0.42, 0, h), (w * 0.62, 0, h * 1.6), 0.003).named("aerial", tone.metal(), 1.2))
     if chance(rng, 0.5):
-        out.append(
-            tube([(-w * 0.4, 0, h), (-w * 0.38, 0, h * 1.2), (w * 0.38, 0, h * 1.2), (w * 0.4, 0, h)], 0.007).named(
-                "handle", tone.main.shaded(0.7), 1.2
-            )
-        )
+        handle = tube([(-w * 0.4, 0, h), (-w * 0.38, 0, h * 1.2), (w * 0.38, 0, h * 1.2), (w * 0.4, 0, h)], 0.007)
+        out.append(handle.named("handle", tone.main.shaded(0.7), 1.2))
     return out
 
 
@@ -225,7 +218,7 @@ def fan(rng: Rng, tone: Tone) -> list[Piece]:
     z = rng.uniform(0.28, 0.38) if chance(rng, 0.5) else rng.uniform(0.85, 1.1)
     cage = tone.main if chance(rng, 0.5) else tone.metal()
     wires = []
-    for a in np.linspace(0, 2 * np.pi, 25)[:-1]:
+    for a in around(24):
         c, s = np.cos(a), np.sin(a)
         wires.append(
             tube(
@@ -295,10 +288,6 @@ def record_player(rng: Rng, tone: Tone) -> list[Piece]:
     ]
     out += [ball(0.014, (w * 0.38, -d * 0.35, z + 0.006)).named("knob", tone.metal(), 1.2)]
     if chance(rng, 0.5):
-        out.append(
-            box(w, 0.012, d * 0.9, (0, 0, 0), 0.003)
-            .turned("x", -18)
-            .moved(0, d / 2, z)
-            .named("lid", tone.main.along(0))
-        )
+        lid = box(w, 0.012, d * 0.9, (0, 0, 0), 0.003).turned("x", -18).moved(0, d / 2, z)
+        out.append(lid.named("lid", tone.main.along(0)))
     return out

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import Material, Tone
-from ..modeling.parts import Rng, chance
+from ..modeling.parts import Rng, chance, polar
 from ..modeling.shapes import Piece, ball, blob, box, boxes, cylinder, join, ring, rod
 from ..registry import kind
 
@@ -35,13 +35,11 @@ def exercise_bike(rng: Rng, tone: Tone) -> list[Piece]:
         ((0, 0.02, 0.28), (0, front, 0.6)),
     ]
     grips = [rod((s * 0.06, front, 1.04), (s * 0.2, front + 0.12, 1.12), 0.016) for s in (-1, 1)]
+    flywheel = cylinder(wheel, 0.06, (0, 0, -0.03)).turned("y", 90).moved(0, front + 0.02, wheel + 0.09)
     return [
         boxes([(0.5, 0.07, 0.06, 0, y, 0) for y in (-d * 0.44, d * 0.44)], 0.015).named("foot", black),
         box(0.08, d * 0.88, 0.06, (0, 0, 0.05), 0.015).named("beam", mat),
-        cylinder(wheel, 0.06, (0, 0, -0.03))
-        .turned("y", 90)
-        .moved(0, front + 0.02, wheel + 0.09)
-        .named("flywheel", _STEEL),
+        flywheel.named("flywheel", _STEEL),
         ring(wheel, 0.02, (0, front + 0.02, wheel + 0.09), "x").named("rim", black),
         box(0.11, 0.42, 0.2, (0, -0.08, 0.22), 0.05).named("cover", mat),
         join(*(rod(a, b, 0.03) for a, b in bars)).named("frame", mat),
@@ -94,7 +92,7 @@ def weight_bench(rng: Rng, tone: Tone) -> list[Piece]:
 @kind("punching bag", palette="dark")
 def punching_bag(rng: Rng, tone: Tone) -> list[Piece]:
     r, h, mat = rng.uniform(0.17, 0.19), rng.uniform(0.75, 0.85), tone.main
-    chains = [rod((0.11 * np.cos(a), 0.11 * np.sin(a), h), (0, 0, h + 0.2), 0.008) for a in np.arange(4) * np.pi / 2]
+    chains = [rod(polar(0.11, a, h), (0, 0, h + 0.2), 0.008) for a in np.arange(4) * np.pi / 2]
     bands = [ring(r, 0.008, (0, 0, z)) for z in (0.1 * h, 0.5 * h, 0.9 * h)]
     return [
         cylinder(r, h, (0, 0, 0), bevel=0.04).named("bag", mat),

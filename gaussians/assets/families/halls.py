@@ -101,6 +101,9 @@ def ping_pong_table(rng: Rng, tone: Tone) -> list[Piece]:
     ]
     lines.append((w, 0.012, 0.004, 0, 0, h))
     net = Material((0.9, 0.9, 0.9), "checks", (0.25, 0.27, 0.3), 0.02)
+    leg = boxes(
+        [(0.05, 0.05, h - 0.06, sx * w * k, sy * d * 0.36, 0) for sx in (-1, 1) for sy in (-1, 1) for k in (0.12, 0.42)]
+    )
     out = [
         box(w, d, 0.03, (0, 0, h - 0.03), 0.004).named("top", top),
         boxes(lines, 0.0).named("line", white, 1.3),
@@ -109,14 +112,7 @@ def ping_pong_table(rng: Rng, tone: Tone) -> list[Piece]:
         boxes([(0.05, d * 0.8, 0.05, s * w * k, 0, h - 0.09) for s in (-1, 1) for k in (0.12, 0.42)]).named(
             "beam", black
         ),
-        boxes(
-            [
-                (0.05, 0.05, h - 0.06, sx * w * k, sy * d * 0.36, 0)
-                for sx in (-1, 1)
-                for sy in (-1, 1)
-                for k in (0.12, 0.42)
-            ]
-        ).named("leg", black),
+        leg.named("leg", black),
     ]
     bat = tone.plain("#c8201e") if chance(rng, 0.5) else black
     for s in (-1, 1):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import Material, Tone, mix
-from ..modeling.parts import Rng, chance
+from ..modeling.parts import Rng, around, chance, polar
 from ..modeling.shapes import Piece, ball, blob, cylinder, disc, join, lathe, leaf, ring, rod, tube
 from ..registry import kind
 
@@ -46,11 +46,8 @@ def mug(rng: Rng, tone: Tone) -> list[Piece]:
         drink = tone.plain(str(rng.choice(["#3b2314", "#c28a4a", "#7a1f1f"])))
         out.append(disc(edge * 0.9, (0, 0, top * 0.86)).named("drink", drink))
     if style == 3:
-        out.append(
-            lathe([(0, 0), (0.04, 0), (0.072, 0.012), (0.068, 0.014), (0.03, 0.006)], smooth=11).named(
-                "saucer", tone.main
-            )
-        )
+        saucer = lathe([(0, 0), (0.04, 0), (0.072, 0.012), (0.068, 0.014), (0.03, 0.006)], smooth=11)
+        out.append(saucer.named("saucer", tone.main))
     return out
 
 
@@ -68,11 +65,7 @@ def bowl(rng: Rng, tone: Tone) -> list[Piece]:
         fruit = [str(rng.choice(["#c8281e", "#e9a21f", "#7fae32", "#e0c020"])) for _ in range(4)]
         for k in range(4):
             a = 1.57 * k
-            out.append(
-                ball(r * 0.28, (r * 0.36 * np.cos(a), r * 0.36 * np.sin(a), h * 0.75)).named(
-                    "fruit", tone.plain(fruit[k])
-                )
-            )
+            out.append(ball(r * 0.28, polar(r * 0.36, a, h * 0.75)).named("fruit", tone.plain(fruit[k])))
     return out
 
 
@@ -286,20 +279,10 @@ def cake(rng: Rng, tone: Tone) -> list[Piece]:
             ring(rr, 0.011, (0, 0, z + 0.008)).named("cream", cream),
         ]
         n = 12 - 4 * k
-        out.append(
-            join(
-                *(
-                    ball(0.014, (rr * 0.85 * np.cos(a), rr * 0.85 * np.sin(a), z + h + 0.006))
-                    for a in np.linspace(0, 2 * np.pi, n + 1)[:-1]
-                )
-            ).named("cream", cream)
-        )
+        out.append(join(*(ball(0.014, polar(rr * 0.85, a, z + h + 0.006)) for a in around(n))).named("cream", cream))
         z += h
     if chance(rng, 0.6):
-        out += [
-            cylinder(0.004, 0.05, (0.03 * np.cos(a), 0.03 * np.sin(a), z)).named("candle", tone.accent(), 1.3)
-            for a in (0.3, 2.4, 4.5)
-        ]
+        out += [cylinder(0.004, 0.05, polar(0.03, a, z)).named("candle", tone.accent(), 1.3) for a in (0.3, 2.4, 4.5)]
     else:
         out.append(ball(0.02, (0, 0, z + 0.015)).named("cherry", tone.plain("#b8141c")))
     return out

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import Material, Tone, mix
-from ..modeling.parts import Rng, chance
+from ..modeling.parts import Rng, around, chance, polar
 from ..modeling.shapes import (
     Array,
     Piece,
@@ -138,8 +138,7 @@ def bicycle(rng: Rng, tone: Tone) -> list[Piece]:
     out: list[Piece] = []
     for y, z in (rear, front):
         spokes = [
-            rod((0, y, z), (0, y + (r - 0.02) * np.cos(a), z + (r - 0.02) * np.sin(a)), 0.0018)
-            for a in np.linspace(0, 2 * np.pi, 17)[:-1]
+            rod((0, y, z), (0, y + (r - 0.02) * np.cos(a), z + (r - 0.02) * np.sin(a)), 0.0018) for a in around(16)
         ]
         out += [
             ring(r - 0.018, 0.018, (0, y, z), "x").named("tyre", tyre, 0.8),
@@ -303,11 +302,8 @@ def piano(rng: Rng, tone: Tone) -> list[Piece]:
         ),
     ]
     if chance(rng, 0.5):
-        out.append(
-            box(0.34, 0.01, 0.24, (0, -d / 2 + 0.235, z + 0.2))
-            .turned("x", -8, (0, 0, z + 0.2))
-            .named("sheet music", tone.plain("#faf7ee"))
-        )
+        sheet_music = box(0.34, 0.01, 0.24, (0, -d / 2 + 0.235, z + 0.2)).turned("x", -8, (0, 0, z + 0.2))
+        out.append(sheet_music.named("sheet music", tone.plain("#faf7ee")))
     return out
 
 
@@ -370,11 +366,11 @@ def drum(rng: Rng, tone: Tone) -> list[Piece]:
     skin = tone.plain("#f1ead8")
     lugs = [
         rod(
-            ((r + 0.008) * np.cos(a), (r + 0.008) * np.sin(a), z),
-            ((r + 0.008) * np.cos(a), (r + 0.008) * np.sin(a), z + h),
+            polar(r + 0.008, a, z),
+            polar(r + 0.008, a, z + h),
             0.005,
         )
-        for a in np.linspace(0, 2 * np.pi, 9)[:-1]
+        for a in around(8)
     ]
     out = [
         lathe([(r, z), (r, z + h)]).named("shell", mat),

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..modeling.materials import Material, Tone, mix
-from ..modeling.parts import Rng, chance
+from ..modeling.parts import Rng, around, chance, polar
 from ..modeling.shapes import (
     Piece,
     Point,
@@ -43,10 +41,7 @@ def _shade(rng: Rng, r: float, h: float, at: Point, tone: Tone, style: int) -> l
         lathe([(p[0] - 0.004, p[1]) for p in profile[::-1]], at).named("inside", tone.plain("#fff3cf")),
     ]
     if style == 5:
-        ribs = [
-            rod((r * np.cos(a), r * np.sin(a), 0), (0.6 * r * np.cos(a), 0.6 * r * np.sin(a), h), 0.004)
-            for a in np.linspace(0, 2 * np.pi, 17)[:-1]
-        ]
+        ribs = [rod(polar(r, a), polar(0.6 * r, a, h), 0.004) for a in around(16)]
         out.append(join(*ribs).moved(*at).named("rib", lit.shaded(0.7)))
     if chance(rng, 0.5):
         trim = Material(tone.second, seed=tone.seed)
@@ -70,8 +65,8 @@ def floor_lamp(rng: Rng, tone: Tone) -> list[Piece]:
     elif style == 1:
         legs = [
             rod(
-                (0.28 * np.cos(a), 0.28 * np.sin(a), 0),
-                (0.02 * np.cos(a), 0.02 * np.sin(a), h - sh * 0.6),
+                polar(0.28, a),
+                polar(0.02, a, h - sh * 0.6),
                 0.013,
                 0.017,
             )
@@ -205,11 +200,8 @@ def candle(rng: Rng, tone: Tone) -> list[Piece]:
     out += [rod((0, 0, z + h), (0, 0, z + h + 0.012), 0.0015).named("wick", tone.plain("#222222"))]
     if chance(rng, 0.6):
         flame = Material((1.0, 0.78, 0.25), "glow", (1.0, 0.95, 0.7))
-        out.append(
-            lathe([(0, 0), (0.008, 0.01), (0.005, 0.024), (0, 0.04)], (0, 0, z + h + 0.008), smooth=9).named(
-                "flame", flame, 1.3
-            )
-        )
+        fire = lathe([(0, 0), (0.008, 0.01), (0.005, 0.024), (0, 0.04)], (0, 0, z + h + 0.008), smooth=9)
+        out.append(fire.named("flame", flame, 1.3))
     return out
 
 

@@ -59,11 +59,8 @@ def door(rng: Rng, tone: Tone) -> list[Piece]:
             ).named("panel", inner)
         )
     elif style == 1:
-        out.append(
-            boxes([(w * 0.7, 0.012, h * 0.2, 0, y, h * (0.06 + 0.235 * k)) for k in range(4)], 0.005).named(
-                "panel", inner
-            )
-        )
+        panels = boxes([(w * 0.7, 0.012, h * 0.2, 0, y, h * (0.06 + 0.235 * k)) for k in range(4)], 0.005)
+        out.append(panels.named("panel", inner))
     elif style == 2:
         out += [
             panel(w * 0.62, h * 0.36, (0, y - 0.004, h * 0.56)).named(
@@ -76,11 +73,8 @@ def door(rng: Rng, tone: Tone) -> list[Piece]:
             box(w * 0.62, 0.012, h * 0.34, (0, y, h * 0.12)).named("panel", inner),
         ]
     elif style == 3:
-        out.append(
-            boxes(
-                [(0.008, 0.006, h * 0.96, x * w, y + 0.001, h * 0.02) for x in np.linspace(-0.4, 0.4, 6)], 0.001
-            ).named("groove", inner)
-        )
+        groove = boxes([(0.008, 0.006, h * 0.96, x * w, y + 0.001, h * 0.02) for x in np.linspace(-0.4, 0.4, 6)], 0.001)
+        out.append(groove.named("groove", inner))
     metal = tone.metal()
     x = side * (w / 2 - 0.07)
     if chance(rng, 0.5):
@@ -140,13 +134,11 @@ def radiator(rng: Rng, tone: Tone) -> list[Piece]:
                 0.003,
             ).named("rib", mat.shaded(0.88), 0.8),
         ]
+    valve = cylinder(0.02, 0.06, bevel=0.005).turned("y", 90).moved(w / 2, 0, foot + 0.06)
     return [
         *out,
         boxes([(0.03, 0.05, foot + 0.02, s * w * 0.4, 0, 0) for s in (-1, 1)]).named("foot", mat),
-        cylinder(0.02, 0.06, bevel=0.005)
-        .turned("y", 90)
-        .moved(w / 2, 0, foot + 0.06)
-        .named("valve", tone.plain("#f0f0ee"), 1.2),
+        valve.named("valve", tone.plain("#f0f0ee"), 1.2),
     ]
 
 

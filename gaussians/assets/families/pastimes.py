@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import STEEL, Material, Tone
-from ..modeling.parts import Rng, chance, shell
+from ..modeling.parts import Rng, chance, polar, shell
 from ..modeling.shapes import Piece, ball, blob, box, boxes, cylinder, disc, join, legs4, panel, rod, tube
 from ..registry import kind
 
@@ -20,11 +20,8 @@ def beanbag(rng: Rng, tone: Tone) -> list[Piece]:
         blob(w * 0.8, w * 0.5, 0.5, (0, w * 0.22, 0.38), 1.0, 0.8).named("back", cloth),
     ]
     if chance(rng, 0.5):
-        out.append(
-            tube([(0, w * 0.3, 0.6), (0, w * 0.36, 0.68), (0, w * 0.42, 0.58)], 0.012, smooth=9).named(
-                "loop", cloth.shaded(0.7)
-            )
-        )
+        loop = tube([(0, w * 0.3, 0.6), (0, w * 0.36, 0.68), (0, w * 0.42, 0.58)], 0.012, smooth=9)
+        out.append(loop.named("loop", cloth.shaded(0.7)))
     return out
 
 
@@ -87,7 +84,7 @@ def dart_board(rng: Rng, tone: Tone) -> list[Piece]:
         ):
             mat = tints[k % 2]
             mat = mat if isinstance(mat, Material) else tone.plain("#c8201e" if mat == "r" else "#2f7d46")
-            from_to = [[(q * np.cos(a), q * np.sin(a), 0.037), (q * np.cos(b), q * np.sin(b), 0.037)] for q in (lo, hi)]
+            from_to = [[polar(q, a, 0.037), polar(q, b, 0.037)] for q in (lo, hi)]
             out.append(shell(np.array(from_to)).named("segment", mat, 0.7))
     out.append(disc(0.02, (0, 0, 0.038)).named("bull", tone.plain("#c8201e")))
     out.append(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import Material, Tone
-from ..modeling.parts import Rng, chance, clipped_below, drape, shell, tapered_legs
+from ..modeling.parts import Rng, chance, clipped_below, drape, polar, shell, tapered_legs
 from ..modeling.shapes import (
     Piece,
     Point,
@@ -30,8 +30,8 @@ from ..registry import kind
 def _star_base(r: float, h: float, metal: Material, wheels: Material) -> list[Piece]:
     """The base of an office chair: five spokes on castors and a column."""
     turns = [2 * np.pi * k / 5 + 0.3 for k in range(5)]
-    spokes = [rod((0, 0, 0.11), (r * np.cos(a), r * np.sin(a), 0.07), 0.022, 0.016) for a in turns]
-    castors = [ball(0.033, (r * np.cos(a), r * np.sin(a), 0.033)) for a in turns]
+    spokes = [rod((0, 0, 0.11), polar(r, a, 0.07), 0.022, 0.016) for a in turns]
+    castors = [ball(0.033, polar(r, a, 0.033)) for a in turns]
     return [
         join(*spokes).named("base", metal, 1.3),
         join(*castors).named("wheel", wheels, 1.3),
@@ -141,11 +141,8 @@ def office_chair(rng: Rng, tone: Tone) -> list[Piece]:
     if chance(rng, 0.65):
         for s in (-1, 1):
             x = s * (w / 2 + 0.03)
-            out.append(
-                boxes([(0.035, 0.04, 0.22, x, 0.02, seat - 0.03), (0.06, 0.26, 0.03, x, 0, seat + 0.19)]).named(
-                    "armrest", black
-                )
-            )
+            armrest = boxes([(0.035, 0.04, 0.22, x, 0.02, seat - 0.03), (0.06, 0.26, 0.03, x, 0, seat + 0.19)])
+            out.append(armrest.named("armrest", black))
     if chance(rng, 0.3):
         y, z = d / 2 + 0.03, seat + 0.05 + h
         head = cushion(0.28, 0.16, 0.07).turned("x", 90).moved(0, y + 0.03, z + 0.12)
@@ -275,14 +272,8 @@ def stool(rng: Rng, tone: Tone) -> list[Piece]:
     count, splay = int(rng.choice([3, 4, 4])), rng.uniform(0.0, 0.06)
     turns = [2 * np.pi * (k + 0.5) / count for k in range(count)]
     low, up = r * 0.9 + splay, r * 0.72
-    out.append(
-        join(
-            *(
-                rod((low * np.cos(a), low * np.sin(a), 0), (up * np.cos(a), up * np.sin(a), h - 0.03), 0.014, 0.02)
-                for a in turns
-            )
-        ).named("leg", frame.along(2), 1.2)
-    )
+    leg = join(*(rod(polar(low, a), polar(up, a, h - 0.03), 0.014, 0.02) for a in turns))
+    out.append(leg.named("leg", frame.along(2), 1.2))
     if chance(rng, 0.6):
         out.append(ring((low * 0.65 + up * 0.35), 0.009, (0, 0, h * 0.35)).named("footrest", frame, 1.2))
     return out
@@ -297,11 +288,8 @@ def bench(rng: Rng, tone: Tone) -> list[Piece]:
         out.append(box(w, d, 0.05, (0, 0, h - 0.05), 0.01).named("seat", mat.along(0)))
     elif style == 1:
         n = 4
-        out.append(
-            boxes([(w, d / n - 0.015, 0.03, 0, (k + 0.5) * d / n - d / 2, h - 0.03) for k in range(n)]).named(
-                "seat", mat.along(0)
-            )
-        )
+        seat = boxes([(w, d / n - 0.015, 0.03, 0, (k + 0.5) * d / n - d / 2, h - 0.03) for k in range(n)])
+        out.append(seat.named("seat", mat.along(0)))
     else:
         out += [
             box(w, d, 0.06, (0, 0, h - 0.13), 0.01).named("seat", mat.along(0)),
@@ -315,11 +303,8 @@ def bench(rng: Rng, tone: Tone) -> list[Piece]:
             boxes([(a, b, 0.88, x, y, z) for a, b, _, x, y, z in posts]).named("leg", mat.along(2)),
         ]
     if chance(rng, 0.5):
-        out.append(
-            legs4(w - 0.06, d - 0.02, h - 0.05, 0.055).named(
-                "leg", (mat if chance(rng, 0.6) else tone.metal()).along(2)
-            )
-        )
+        leg = legs4(w - 0.06, d - 0.02, h - 0.05, 0.055)
+        out.append(leg.named("leg", (mat if chance(rng, 0.6) else tone.metal()).along(2)))
     else:
         out.append(
             boxes([(0.05, d - 0.02, h - 0.05, s * (w / 2 - 0.12), 0, 0) for s in (-1, 1)]).named("leg", mat.along(2))
@@ -333,8 +318,8 @@ def ottoman(rng: Rng, tone: Tone) -> list[Piece]:
     if chance(rng, 0.4):
         seams = [
             rod(
-                (0.25 * w * np.cos(a), 0.25 * w * np.sin(a), h * 0.97),
-                (0.499 * w * np.cos(a), 0.499 * w * np.sin(a), h / 2),
+                polar(0.25 * w, a, h * 0.97),
+                polar(0.499 * w, a, h / 2),
                 0.004,
             )
             for a in np.linspace(0, 6.28, 9)[:-1]
@@ -388,11 +373,8 @@ def bed(rng: Rng, tone: Tone) -> list[Piece]:
         )
         out.append(clipped_below(plate, 0.0).named("headboard", frame.along(0)))
     over = d - rng.uniform(0.4, 0.62)
-    out.append(
-        drape(w - 0.01, over, base + 0.232, rng.uniform(0.12, base + 0.1))
-        .moved(0, (over - d) / 2 - 0.005)
-        .named("blanket", cover)
-    )
+    blanket = drape(w - 0.01, over, base + 0.232, rng.uniform(0.12, base + 0.1)).moved(0, (over - d) / 2 - 0.005)
+    out.append(blanket.named("blanket", cover))
     n = 1 if w < 1.2 else 2
     for k in range(n):
         p = (

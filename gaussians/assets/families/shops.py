@@ -86,11 +86,8 @@ def display_case(rng: Rng, tone: Tone) -> list[Piece]:
         out.append(box(w - 0.06, deep, 0.012, (0, y, z), 0.002).named("shelf", tone.plain("#e8eef0")))
         out += [p.moved(0, y, 0) for p in _pastries(rng, tone, w - 0.14, deep - 0.08, z + 0.012)]
     if chance(rng, 0.6):
-        out.append(
-            box(w * 0.9, 0.03, 0.02, (0, -d / 2 + 0.05, h - 0.055)).named(
-                "light", Material((1.0, 0.93, 0.75), "glow", (1, 1, 0.95))
-            )
-        )
+        light = box(w * 0.9, 0.03, 0.02, (0, -d / 2 + 0.05, h - 0.055))
+        out.append(light.named("light", Material((1.0, 0.93, 0.75), "glow", (1, 1, 0.95))))
     return out
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import Material, Tone
-from ..modeling.parts import Rng, chance, fronts
+from ..modeling.parts import Rng, chance, fronts, polar
 from ..modeling.shapes import Piece, ball, blob, box, boxes, cylinder, disc, join, lathe, legs4, ring, rod, tube
 from ..registry import kind
 
@@ -51,21 +51,15 @@ def bar_stool(rng: Rng, tone: Tone) -> list[Piece]:
             lathe([(0, 0), (r * 1.15, 0), (r * 1.15, 0.012), (0.05, 0.05), (0.028, 0.06)]).named("foot", frame),
             rod((0, 0, 0.04), (0, 0, h - 0.06), 0.026).named("column", frame),
             ring(r * 0.75, 0.01, (0, 0, h * 0.36)).named("footrest", frame),
-            join(
-                *(
-                    rod((0, 0, h * 0.36), (r * 0.75 * np.cos(a), r * 0.75 * np.sin(a), h * 0.36), 0.008)
-                    for a in (0.5, 2.6, 4.7)
-                )
-            ).named("footrest", frame),
+            join(*(rod((0, 0, h * 0.36), polar(r * 0.75, a, h * 0.36), 0.008) for a in (0.5, 2.6, 4.7))).named(
+                "footrest", frame
+            ),
         ]
     else:
         low, top = r * 1.05, r * 0.72
         corners = [(sx, sy) for sx in (-1, 1) for sy in (-1, 1)]
-        out.append(
-            join(
-                *(rod((sx * low, sy * low, 0), (sx * top, sy * top, h - 0.05), 0.013, 0.017) for sx, sy in corners)
-            ).named("leg", frame)
-        )
+        leg = join(*(rod((sx * low, sy * low, 0), (sx * top, sy * top, h - 0.05), 0.013, 0.017) for sx, sy in corners))
+        out.append(leg.named("leg", frame))
         k = low + (top - low) * 0.34
         edge = [(-k, -k), (k, -k), (k, k), (-k, k)]
         bars = [rod((*edge[i], h * 0.34), (*edge[(i + 1) % 4], h * 0.34), 0.009) for i in range(4)]
@@ -78,7 +72,7 @@ def bar_stool(rng: Rng, tone: Tone) -> list[Piece]:
             disc(r * 0.9, (0, 0, h - 0.061), False).named("under", frame),
         ]
     if style in (2, 3):
-        arc = [(r * 0.9 * np.cos(a), r * 0.9 * np.sin(a), h + 0.24) for a in np.linspace(0.35, np.pi - 0.35, 9)]
+        arc = [polar(r * 0.9, a, h + 0.24) for a in np.linspace(0.35, np.pi - 0.35, 9)]
         out += [
             tube(arc, 0.032, smooth=13).named("back", seat),
             join(
@@ -116,9 +110,6 @@ def tv_stand(rng: Rng, tone: Tone) -> list[Piece]:
             tone.metal(),
         )
     if len(doors) < 3:
-        out.append(
-            boxes(
-                [(third, d - 0.05, 0.016, k * third, 0, foot + body * 0.5) for k in (-1, 0, 1) if k not in doors]
-            ).named("shelf", mat)
-        )
+        shelf = boxes([(third, d - 0.05, 0.016, k * third, 0, foot + body * 0.5) for k in (-1, 0, 1) if k not in doors])
+        out.append(shelf.named("shelf", mat))
     return out

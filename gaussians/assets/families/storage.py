@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import Material, Tone
-from ..modeling.parts import Rng, chance, fronts, row_of_books, tapered_legs
+from ..modeling.parts import Rng, around, chance, fronts, polar, row_of_books, tapered_legs
 from ..modeling.shapes import (
     Piece,
     ball,
@@ -55,11 +55,8 @@ def wardrobe(rng: Rng, tone: Tone) -> list[Piece]:
             rng, w - 0.03, low - foot, (0, -d / 2, foot + 0.01), max(doors // 2, 1), 1, front.along(0), tone.metal()
         )
     if chance(rng, 0.3):
-        out.append(
-            box(w / doors - 0.1, 0.006, (h - low) * 0.8, (-w / 2 + w / doors / 2, -d / 2 - 0.02, low + 0.12)).named(
-                "mirror", tone.plain("#b9cbd4", "brushed")
-            )
-        )
+        mirror = box(w / doors - 0.1, 0.006, (h - low) * 0.8, (-w / 2 + w / doors / 2, -d / 2 - 0.02, low + 0.12))
+        out.append(mirror.named("mirror", tone.plain("#b9cbd4", "brushed")))
     if chance(rng, 0.5):
         out.append(box(w + 0.06, d + 0.05, 0.05, (0, -0.01, h - 0.01), 0.015).named("cornice", mat.along(0)))
     return out
@@ -255,10 +252,7 @@ def waste_bin(rng: Rng, tone: Tone) -> list[Piece]:
             .named("lid", mat.shaded(0.7)),
             box(w * 0.5, 0.01, h * 0.16, (0, -w * 0.4, h * 0.6)).named("label", tone.plain("#f2f2f2")),
         ]
-    bars = [
-        rod((r * 0.8 * np.cos(a), r * 0.8 * np.sin(a), 0), (r * np.cos(a), r * np.sin(a), h), 0.004)
-        for a in np.linspace(0, 2 * np.pi, 25)[:-1]
-    ]
+    bars = [rod(polar(r * 0.8, a), polar(r, a, h), 0.004) for a in around(24)]
     hoops = [ring(r * (0.8 + 0.2 * k / 4), 0.005, (0, 0, h * k / 4)) for k in range(5)]
     return [
         join(*bars).named("wall", mat),
@@ -270,9 +264,9 @@ def waste_bin(rng: Rng, tone: Tone) -> list[Piece]:
 @kind("coat rack", palette="wood")
 def coat_rack(rng: Rng, tone: Tone) -> list[Piece]:
     h, mat, n = rng.uniform(1.6, 1.85), tone.main, int(rng.integers(3, 6))
-    turns = np.linspace(0, 2 * np.pi, n + 1)[:-1]
+    turns = around(n)
     feet = (
-        [rod((0, 0, 0.14), (0.26 * np.cos(a), 0.26 * np.sin(a), 0.02), 0.022, 0.015) for a in turns]
+        [rod((0, 0, 0.14), polar(0.26, a, 0.02), 0.022, 0.015) for a in turns]
         if chance(rng, 0.6)
         else [cylinder(0.2, 0.03, bevel=0.01)]
     )
@@ -280,8 +274,8 @@ def coat_rack(rng: Rng, tone: Tone) -> list[Piece]:
         tube(
             [
                 (0, 0, h - 0.14),
-                (0.1 * np.cos(a), 0.1 * np.sin(a), h - 0.15),
-                (0.17 * np.cos(a), 0.17 * np.sin(a), h - 0.05),
+                polar(0.1, a, h - 0.15),
+                polar(0.17, a, h - 0.05),
             ],
             0.013,
             smooth=9,
@@ -299,7 +293,7 @@ def coat_rack(rng: Rng, tone: Tone) -> list[Piece]:
         body = (
             lathe([(0.16, 0), (0.15, 0.3), (0.12, 0.6), (0.1, 0.72), (0.03, 0.8)], smooth=13)
             .stretched(1.0, 0.55, 1.0)
-            .moved(0.16 * np.cos(a), 0.16 * np.sin(a), h - 0.95)
+            .moved(*polar(0.16, a, h - 0.95))
         )
         out.append(body.named("coat", coat))
     return out

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..modeling.materials import Material, Tone
-from ..modeling.parts import Rng, chance, fronts, tapered_legs
+from ..modeling.parts import Rng, chance, fronts, polar, tapered_legs
 from ..modeling.shapes import Piece, box, boxes, ellipse, extrude, join, lathe, legs4, rod, rounded_rectangle, tube
 from ..registry import kind
 
@@ -107,8 +105,8 @@ def side_table(rng: Rng, tone: Tone) -> list[Piece]:
     if style == 1:
         bars = [
             rod(
-                (0.85 * w / 2 * np.cos(a), 0.85 * w / 2 * np.sin(a), 0),
-                (0.3 * w * np.cos(a), 0.3 * w * np.sin(a), h - 0.02),
+                polar(0.85 * w / 2, a),
+                polar(0.3 * w, a, h - 0.02),
                 0.014,
                 0.02,
             )
@@ -117,11 +115,8 @@ def side_table(rng: Rng, tone: Tone) -> list[Piece]:
         return [_top(rng, "round", w, w, h, 0.025, mat), join(*bars).named("leg", mat, 1.2)]
     if style == 2:
         t = 0.022
-        return [
-            boxes([(w, w, t, 0, 0, h - t), (w, w, t, 0, 0, 0), (w, t, h - 2 * t, 0, w / 2 - t / 2, t)]).named(
-                "body", mat.along(0)
-            )
-        ]
+        body = boxes([(w, w, t, 0, 0, h - t), (w, w, t, 0, 0, 0), (w, t, h - 2 * t, 0, w / 2 - t / 2, t)])
+        return [body.named("body", mat.along(0))]
     return [
         _top(rng, "box", w, w, h, 0.025, mat),
         _base(rng, 1, w, w, h - 0.025, mat),

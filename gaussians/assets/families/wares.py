@@ -60,11 +60,8 @@ def mannequin(rng: Rng, tone: Tone) -> list[Piece]:
     if skirt:
         out.append(lathe([(0.26, 0.5), (0.16, 0.85), (0.13, 1.02)], smooth=11).named("skirt", tone.accent()))
     else:
-        out.append(
-            join(*(rod((s * 0.085, 0, 0.12), (s * 0.08, 0, 0.9), 0.06, 0.09) for s in (-1, 1))).named(
-                "trousers", tone.accent()
-            )
-        )
+        trousers = join(*(rod((s * 0.085, 0, 0.12), (s * 0.08, 0, 0.9), 0.06, 0.09) for s in (-1, 1)))
+        out.append(trousers.named("trousers", tone.accent()))
     return out
 
 

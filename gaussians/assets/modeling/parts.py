@@ -17,6 +17,16 @@ def chance(rng: Rng, p: float) -> bool:
     return bool(rng.random() < p)
 
 
+def around(count: int) -> Array:
+    """`[count]` angles spread evenly over a full turn, radians, from 0."""
+    return np.linspace(0, 2 * np.pi, count + 1)[:-1]
+
+
+def polar(r: float, angle: float, z: float = 0.0) -> Point:
+    """The point at distance `r` from the z axis in the direction `angle`, radians counter-clockwise from +x."""
+    return (r * np.cos(angle), r * np.sin(angle), z)
+
+
 def tapered_legs(rng: Rng, w: float, d: float, h: float, thick: float) -> Piece:
     """Four legs: square posts, or round ones that taper and splay outwards."""
     if chance(rng, 0.4):
