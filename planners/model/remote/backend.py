@@ -85,16 +85,14 @@ class Remote:
         refusals: list[Exception] = []
 
         async def work(emit: Emit) -> Reply:
-            return await self._insist(
-                messages, schema, begun + seconds, emit if on_text is not None else None, refusals
-            )
+            listener = emit if on_text is not None else None
+            return await self._insist(messages, schema, begun + seconds, listener, refusals)
 
         reply = wait(work, seconds, on_text)
         waited = time.monotonic() - begun
         if isinstance(reply, Failed):
-            late = (
-                isinstance(reply.error, TimeoutError) and refusals
-            )  # what used the time up tells more than that it is
+            # What used the time up tells more than that it is up.
+            late = isinstance(reply.error, TimeoutError) and refusals
             raise UnreachableError(errors.say(late[-1] if late else reply.error, self._address, seconds))
         usage = Usage(
             model=self.name,

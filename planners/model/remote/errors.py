@@ -21,24 +21,12 @@ _REPAIRS = 2  # how often a broken server is asked again; one that is only busy,
 _READ = 20_000  # letters of an error's body that are looked at
 
 
-class TooLongError(Exception):
-    """The server sent more than any answer can be."""
-
-
-class RedirectedError(Exception):
-    """The server sends elsewhere; following would carry the key along."""
+class StoppedError(Exception):
+    """We ended a request; the message is for the user."""
 
 
 class NothingError(Exception):
     """The server sent neither words nor a reason for ending without them."""
-
-
-class ProxyError(Exception):
-    """The environment names a proxy that cannot be used."""
-
-
-class CompressedError(Exception):
-    """The server compressed its answer, though asked not to, so that its size cannot be bounded."""
 
 
 @dataclass(frozen=True)
@@ -81,11 +69,7 @@ def without(extras: Extras, error: BaseException) -> Extras | None:
     """
     from pydantic_ai import exceptions as failures
 
-    hopeless = (
-        failures.ModelAuthenticationError,
-        failures.ModelNotFoundError,
-        failures.ModelQuotaExceededError,
-    )
+    hopeless = (failures.ModelAuthenticationError, failures.ModelNotFoundError, failures.ModelQuotaExceededError)
     if not isinstance(error, failures.ModelHTTPError) or isinstance(error, hopeless) or extras == BARE:
         return None
     body = str(error.body)[:_READ]
@@ -97,13 +81,10 @@ def without(extras: Extras, error: BaseException) -> Extras | None:
     if too_long and not (extras.length and _COMPLAINTS["length"].search(body)):
         return None
     blamed = {name for name, words in _COMPLAINTS.items() if words.search(body)}
-    less = Extras(
-        form=_looser(extras.form) if "form" in blamed else extras.form,
-        temperature=extras.temperature and "temperature" not in blamed,
-        seed=extras.seed and "seed" not in blamed,
-        length=extras.length and "length" not in blamed,
-        stream=extras.stream and "stream" not in blamed,
-    )
+    omitted: dict[str, Any] = dict.fromkeys(blamed, False)
+    if "form" in blamed:
+        omitted["form"] = _looser(extras.form)
+    less = replace(extras, **omitted)
     return less if less != extras else BARE
 
 
@@ -132,11 +113,10 @@ def say(error: BaseException, address: Address, seconds: float) -> str:
     """The error in one line: what happened, where, and what to do. Never holds a key, whatever the server echoed."""
     from pydantic_ai import exceptions as failures
 
-    chain = list(_chain(error))
     if isinstance(error, failures.ModelHTTPError):
         text = _status(error, address)
     else:
-        text = _transport(chain, address, seconds) or _nonsense(error, address)
+        text = _transport(list(_chain(error)), address, seconds) or _nonsense(error, address)
     return address.without_keys(text)
 
 
@@ -162,16 +142,8 @@ def _transport(chain: list[BaseException], address: Address, seconds: float) -> 
 
     at, model = address.url, address.model
     proxy = ", or at the proxy of the environment" if _proxied(address) else ""
-    if _first(chain, TooLongError):
-        return (
-            f"{model} at {at} sent more than any answer needs; it may be caught in a loop, ask again or another model"
-        )
-    if redirected := _first(chain, RedirectedError):
-        return f"{at} sends elsewhere ({address.hide(str(redirected))}); name that address after the @ instead"
-    if _first(chain, ProxyError):
-        return "the proxy that HTTPS_PROXY, HTTP_PROXY or ALL_PROXY names cannot be used; correct it, or see NO_PROXY"
-    if _first(chain, CompressedError):
-        return f"{at} compresses its answers though asked not to; turn that off in the server or the proxy before it"
+    if stopped := _first(chain, StoppedError):
+        return str(stopped)
     if (refused := _first(chain, ssl.SSLError)) or any("certificate" in str(one).lower() for one in chain):
         why = address.hide(getattr(refused, "reason", None) or "")
         return f"no trusted connection to {at} ({why}); name the server's certificate in SSL_CERT_FILE, or use http://"

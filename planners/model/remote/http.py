@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import AsyncIterator
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from .address import Address
-from .errors import CompressedError, ProxyError, RedirectedError, TooLongError
+from .errors import StoppedError
 
 if TYPE_CHECKING:
     import httpx2
@@ -19,7 +20,7 @@ def open_client(address: Address, seconds: float) -> httpx2.AsyncClient:
     """An HTTP client that reads at most `_MOST_BYTES` of a response and follows no redirects.
 
     Raises:
-        ProxyError: the environment names a proxy that cannot be used.
+        StoppedError: the environment names a proxy that cannot be used.
     """
     import httpx2
     from pydantic_ai.models import create_async_httpx2_client
@@ -30,23 +31,29 @@ def open_client(address: Address, seconds: float) -> httpx2.AsyncClient:
             transport=httpx2.AsyncHTTPTransport() if address.near else None,  # a given transport passes proxies by
         )
     except (ImportError, ValueError):  # a kind of proxy that needs another package, or none at all
-        raise ProxyError from None
+        raise StoppedError(
+            "the proxy that HTTPS_PROXY, HTTP_PROXY or ALL_PROXY names cannot be used; correct it, or see NO_PROXY"
+        ) from None
     client.headers["Accept-Encoding"] = "identity"  # so that bytes counted are bytes held
     client.headers["Connection"] = "close"  # a kept one may be closing as the next request goes out on it
-    client.event_hooks["response"].append(_bound)
+    client.event_hooks["response"].append(partial(_bound, address))
     return client
 
 
-async def _bound(response: httpx2.Response) -> None:
-    """Refuse redirects and compressed responses, and limit the size of the others."""
+async def _bound(address: Address, response: httpx2.Response) -> None:
+    """Refuse redirects, which would carry the key along, and compressed responses, and limit the size of the others."""
     if response.is_redirect:
-        raise RedirectedError(response.headers.get("location", ""))
+        elsewhere = address.hide(response.headers.get("location", ""))
+        raise StoppedError(f"{address.url} sends elsewhere ({elsewhere}); name that address after the @ instead")
     if response.headers.get("content-encoding", "identity") != "identity":
-        raise CompressedError
-    response.stream = _counted(response.stream)
+        raise StoppedError(
+            f"{address.url} compresses its answers though asked not to; turn that off in the server or the proxy "
+            "before it"
+        )
+    response.stream = _counted(address, response.stream)
 
 
-def _counted(stream: Any) -> httpx2.AsyncByteStream:
+def _counted(address: Address, stream: Any) -> httpx2.AsyncByteStream:
     import httpx2
 
     class Counted(httpx2.AsyncByteStream):
@@ -55,7 +62,10 @@ def _counted(stream: Any) -> httpx2.AsyncByteStream:
             async for chunk in stream:
                 size += len(chunk)
                 if size > _MOST_BYTES:
-                    raise TooLongError
+                    raise StoppedError(
+                        f"{address.model} at {address.url} sent more than any answer needs; it may be caught in a "
+                        "loop, ask again or another model"
+                    )
                 yield chunk
 
         async def aclose(self) -> None:

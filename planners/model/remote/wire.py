@@ -112,25 +112,22 @@ async def ask(model: Model[Any], address: Address, question: Question) -> Reply:
     """Ask once.
 
     Raises:
-        Exception: whatever pydantic-ai and the libraries below raise; `remote_errors.say` knows them.
+        Exception: whatever pydantic-ai and the libraries below raise; `errors.say` knows them.
     """
     from pydantic_ai.direct import model_request, model_request_stream
 
-    turns, settings = _turns(question.messages), _settings(question)
-    wanted = _wanted(address.kind, question.extras, question.schema)
-    emit = question.emit
+    options: dict[str, Any] = {
+        "model_settings": _settings(question),
+        "model_request_parameters": _wanted(address.kind, question.extras, question.schema),
+        "instrument": False,
+    }
+    turns, emit = _turns(question.messages), question.emit
     if emit is None or not question.extras.stream:
-        response = await model_request(
-            model, turns, model_settings=settings, model_request_parameters=wanted, instrument=False
-        )
-        reply = _reply(response, address)
+        reply = _reply(await model_request(model, turns, **options), address)
         if emit is not None and reply.text:
             emit(reply.text)
         return reply
-    streamed = model_request_stream(
-        model, turns, model_settings=settings, model_request_parameters=wanted, instrument=False
-    )
-    async with streamed as stream:
+    async with model_request_stream(model, turns, **options) as stream:
         async for event in stream:
             if piece := _piece(event):
                 emit(address.without_keys(piece))
