@@ -58,12 +58,8 @@ def fridge(rng: Rng, tone: Tone) -> list[Piece]:
             ]
         return out
     for low, high in split:
-        out += [
-            box(w, 0.04, high - low - 0.006, (0, y, low), r).named("door", mat),
-            box(0.022, 0.03, min((high - low) * 0.4, 0.4), (-w * 0.4, y - 0.04, low + (high - low) * 0.4), 0.006).named(
-                "handle", steel
-            ),
-        ]
+        handle = box(0.022, 0.03, min((high - low) * 0.4, 0.4), (-w * 0.4, y - 0.04, low + (high - low) * 0.4), 0.006)
+        out += [box(w, 0.04, high - low - 0.006, (0, y, low), r).named("door", mat), handle.named("handle", steel)]
     if chance(rng, 0.3):
         for _ in range(4):
             note = box(0.06, 0.003, 0.06, (rng.uniform(-0.1, 0.2), y - 0.022, h * rng.uniform(0.65, 0.85)))
@@ -129,15 +125,9 @@ def sink(rng: Rng, tone: Tone) -> list[Piece]:
             [(w, (d - bd) / 2, 0.04, 0, s * (d + bd) / 4, h - 0.04) for s in (-1, 1)]
             + [((w - bw) / 2, bd, 0.04, s * (w + bw) / 4, 0, h - 0.04) for s in (-1, 1)]
         )
-        well = boxes(
-            [
-                (bw, bd, 0.01, 0, 0, h - 0.17),
-                (bw, 0.01, 0.15, 0, bd / 2, h - 0.17),
-                (bw, 0.01, 0.15, 0, -bd / 2, h - 0.17),
-                (0.01, bd, 0.15, bw / 2, 0, h - 0.17),
-                (0.01, bd, 0.15, -bw / 2, 0, h - 0.17),
-            ]
-        )
+        walls = [(bw, 0.01, 0.15, 0, s * bd / 2, h - 0.17) for s in (1, -1)]
+        walls += [(0.01, bd, 0.15, s * bw / 2, 0, h - 0.17) for s in (1, -1)]
+        well = boxes([(bw, bd, 0.01, 0, 0, h - 0.17), *walls])
         out = [
             boxes(
                 [

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import STEEL, Material, Tone
-from ..modeling.parts import Rng, chance, fronts
+from ..modeling.parts import CORNERS, Rng, chance, fronts
 from ..modeling.shapes import (
     Array,
     Piece,
@@ -69,7 +69,7 @@ def bathtub(rng: Rng, tone: Tone) -> list[Piece]:
         lift = 0.1 if style == 1 else 0.0
         out.append(_basin(outline, h - lift, 0.9, (h - lift) * 0.82).moved(0, 0, lift).named("tub", white))
         if lift:
-            feet = [blob(0.07, 0.07, 0.13, (sx * w * 0.3, sy * d * 0.24, 0.06)) for sx in (-1, 1) for sy in (-1, 1)]
+            feet = [blob(0.07, 0.07, 0.13, (sx * w * 0.3, sy * d * 0.24, 0.06)) for sx, sy in CORNERS]
             out.append(join(*feet).named("foot", tone.metal()))
     end = -w / 2 + 0.07
     out.append(_tap(0, 0, 0, 0.16, steel).turned("z", 90).moved(end, 0, h - 0.02).named("tap", steel))
@@ -170,7 +170,7 @@ def shower(rng: Rng, tone: Tone) -> list[Piece]:
     w, h = rng.uniform(0.85, 1.0), rng.uniform(1.95, 2.1)
     white, t = tone.in_white(), 0.03
     tiles = Material((0.86, 0.92, 0.93), "tiles", (0.7, 0.8, 0.83), 0.15)
-    posts: Rows = [(t, t, h, sx * (w - t) / 2, sy * (w - t) / 2, 0) for sx in (-1, 1) for sy in (-1, 1)]
+    posts: Rows = [(t, t, h, sx * (w - t) / 2, sy * (w - t) / 2, 0) for sx, sy in CORNERS]
     posts += [(w, t, t, 0, -(w - t) / 2, h - t), (t, w, t, -(w - t) / 2, 0, h - t)]
     head = [(0, w * 0.44, 1.0), (0, w * 0.44, h * 0.96), (0, w * 0.3, h * 0.99), (0, w * 0.14, h * 0.97)]
     glass = Material((0.78, 0.88, 0.9), "glass", (0.93, 0.97, 0.98))

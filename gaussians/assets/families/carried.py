@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import Material, Tone
-from ..modeling.parts import Rng, around, chance, polar
+from ..modeling.parts import CORNERS, Rng, around, chance, polar
 from ..modeling.shapes import (
     Piece,
     ball,
@@ -77,7 +77,7 @@ def suitcase(rng: Rng, tone: Tone) -> list[Piece]:
             ],
             0.009,
         )
-        wheels = [ball(0.026, (sx * w * 0.38, sy * d * 0.36, 0.026)) for sx in (-1, 1) for sy in (-1, 1)]
+        wheels = [ball(0.026, (sx * w * 0.38, sy * d * 0.36, 0.026)) for sx, sy in CORNERS]
         return [
             shell.named("shell", mat),
             ribs.named("rib", mat.shaded(0.8)),
@@ -87,10 +87,7 @@ def suitcase(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h = rng.uniform(0.55, 0.7), rng.uniform(0.18, 0.24), rng.uniform(0.4, 0.48)
     strap = tone.plain("#6b4423")
     corners = [
-        ball(0.035, (sx * (w / 2 - 0.012), sy * (d / 2 - 0.012), z))
-        for sx in (-1, 1)
-        for sy in (-1, 1)
-        for z in (0.028, h - 0.02)
+        ball(0.035, (sx * (w / 2 - 0.012), sy * (d / 2 - 0.012), z)) for sx, sy in CORNERS for z in (0.028, h - 0.02)
     ]
     return [
         box(w, d, h, (0, 0, 0), 0.015).named("shell", mat),
@@ -155,11 +152,7 @@ def umbrella(rng: Rng, tone: Tone) -> list[Piece]:
         canopy = surface(np.stack([rad * np.cos(lon), rad * np.sin(lon), z], -1)[::-1])
         ribs = [
             tube(
-                [
-                    (0, 0, h - 0.045),
-                    polar(r * 0.5, a, h - 0.045 - r * 0.105),
-                    polar(r, a, h - 0.045 - r * 0.42),
-                ],
+                [(0, 0, h - 0.045), polar(r * 0.5, a, h - 0.045 - r * 0.105), polar(r, a, h - 0.045 - r * 0.42)],
                 0.003,
                 smooth=7,
             )

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import Material, Tone, mix, shade
-from ..modeling.parts import Rng, around, chance
+from ..modeling.parts import CORNERS, Rng, around, chance
 from ..modeling.shapes import (
     Array,
     Piece,
@@ -190,16 +190,9 @@ def globe(rng: Rng, tone: Tone) -> list[Piece]:
 
 @kind("sculpture")
 def sculpture(rng: Rng, tone: Tone) -> list[Piece]:
-    mat, style = (
-        Material(
-            tone.color,
-            str(rng.choice(["plain", "marble", "brushed"])),
-            shade(tone.color, 0.7),
-            seed=tone.seed,
-            main=True,
-        ),
-        int(rng.integers(4)),
-    )
+    pattern = str(rng.choice(["plain", "marble", "brushed"]))
+    mat = Material(tone.color, pattern, shade(tone.color, 0.7), seed=tone.seed, main=True)
+    style = int(rng.integers(4))
     plinth = box(0.14, 0.14, 0.05, (0, 0, 0)).named(
         "plinth", tone.wood() if chance(rng, 0.5) else tone.plain("#2b2b2e")
     )
@@ -223,9 +216,7 @@ def sculpture(rng: Rng, tone: Tone) -> list[Piece]:
             out.append(stone.named("stone", mat))
             z += s * 0.53
         return out
-    legs = [
-        rod((sx * 0.1, sy * 0.035, 0.05), (sx * 0.085, sy * 0.03, 0.2), 0.014, 0.02) for sx in (-1, 1) for sy in (-1, 1)
-    ]
+    legs = [rod((sx * 0.1, sy * 0.035, 0.05), (sx * 0.085, sy * 0.03, 0.2), 0.014, 0.02) for sx, sy in CORNERS]
     neck = tube([(-0.08, 0, 0.22), (-0.13, 0, 0.3), (-0.15, 0, 0.36)], [0.045, 0.035, 0.028], smooth=9)
     return [
         box(0.32, 0.13, 0.05).named("plinth", plinth.material or mat),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import Material, Tone
-from ..modeling.parts import Rng, around, chance, tapered_legs
+from ..modeling.parts import CORNERS, Rng, around, chance, tapered_legs
 from ..modeling.shapes import (
     Piece,
     ball,
@@ -57,9 +57,7 @@ def television(rng: Rng, tone: Tone) -> list[Piece]:
         out += [rod((0, 0, h + 0.05), (s * 0.16, 0, h + 0.36), 0.004).named("aerial", tone.metal()) for s in (-1, 1)]
         return [
             *out,
-            boxes([(0.05, 0.05, 0.06, sx * w * 0.4, sy * d * 0.35, 0) for sx in (-1, 1) for sy in (-1, 1)]).named(
-                "foot", case
-            ),
+            boxes([(0.05, 0.05, 0.06, sx * w * 0.4, sy * d * 0.35, 0) for sx, sy in CORNERS]).named("foot", case),
         ]
     w = rng.uniform(0.9, 1.4)
     h, lift = w * 0.57, 0.06
@@ -126,16 +124,8 @@ def keyboard(rng: Rng, tone: Tone) -> list[Piece]:
         for i in range(n):
             if j == 0 and 4 <= i <= 9:
                 continue
-            rows.append(
-                (
-                    step_x * 0.82,
-                    step_y * 0.82,
-                    0.008,
-                    -w / 2 + 0.01 + step_x * (i + 0.5),
-                    -d / 2 + 0.01 + step_y * (j + 0.5),
-                    0.015,
-                )
-            )
+            x, y = -w / 2 + 0.01 + step_x * (i + 0.5), -d / 2 + 0.01 + step_y * (j + 0.5)
+            rows.append((step_x * 0.82, step_y * 0.82, 0.008, x, y, 0.015))
     rows.append((step_x * 5.7, step_y * 0.82, 0.008, -w / 2 + 0.01 + step_x * 7, -d / 2 + 0.01 + step_y * 0.5, 0.015))
     same = chance(rng, 0.35)
     return [

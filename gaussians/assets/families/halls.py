@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import Material, Tone
-from ..modeling.parts import Rng, chance, tapered_legs
+from ..modeling.parts import CORNERS, Rng, chance, tapered_legs
 from ..modeling.shapes import Piece, ball, box, boxes, cushion, cylinder, disc, join, legs4, panel, rod
 from ..registry import kind
 
@@ -101,9 +101,7 @@ def ping_pong_table(rng: Rng, tone: Tone) -> list[Piece]:
     ]
     lines.append((w, 0.012, 0.004, 0, 0, h))
     net = Material((0.9, 0.9, 0.9), "checks", (0.25, 0.27, 0.3), 0.02)
-    leg = boxes(
-        [(0.05, 0.05, h - 0.06, sx * w * k, sy * d * 0.36, 0) for sx in (-1, 1) for sy in (-1, 1) for k in (0.12, 0.42)]
-    )
+    leg = boxes([(0.05, 0.05, h - 0.06, sx * w * k, sy * d * 0.36, 0) for sx, sy in CORNERS for k in (0.12, 0.42)])
     out = [
         box(w, d, 0.03, (0, 0, h - 0.03), 0.004).named("top", top),
         boxes(lines, 0.0).named("line", white, 1.3),

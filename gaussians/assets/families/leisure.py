@@ -364,14 +364,7 @@ def drum(rng: Rng, tone: Tone) -> list[Piece]:
     r, h, mat, steel = rng.uniform(0.17, 0.26), rng.uniform(0.22, 0.45), tone.main, tone.metal()
     z = 0.02
     skin = tone.plain("#f1ead8")
-    lugs = [
-        rod(
-            polar(r + 0.008, a, z),
-            polar(r + 0.008, a, z + h),
-            0.005,
-        )
-        for a in around(8)
-    ]
+    lugs = [rod(polar(r + 0.008, a, z), polar(r + 0.008, a, z + h), 0.005) for a in around(8)]
     out = [
         lathe([(r, z), (r, z + h)]).named("shell", mat),
         lathe([(r, z + h), (0, z + h)]).named("skin", skin),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..modeling.materials import Material, Tone, mix
-from ..modeling.parts import Rng, around, chance, polar
+from ..modeling.parts import CORNERS, Rng, around, chance, polar
 from ..modeling.shapes import (
     Piece,
     Point,
@@ -63,15 +63,7 @@ def floor_lamp(rng: Rng, tone: Tone) -> list[Piece]:
             rod((0, 0, 0.02), (0, 0, h - sh * 0.4), 0.013).named("pole", metal, 1.3),
         ]
     elif style == 1:
-        legs = [
-            rod(
-                polar(0.28, a),
-                polar(0.02, a, h - sh * 0.6),
-                0.013,
-                0.017,
-            )
-            for a in (0.4, 2.5, 4.6)
-        ]
+        legs = [rod(polar(0.28, a), polar(0.02, a, h - sh * 0.6), 0.013, 0.017) for a in (0.4, 2.5, 4.6)]
         out = [join(*legs).named("leg", metal, 1.2)]
     elif style == 2:  # an arc reaching over
         reach = rng.uniform(0.45, 0.7)
@@ -209,11 +201,7 @@ def candle(rng: Rng, tone: Tone) -> list[Piece]:
 def lantern(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, mat = rng.uniform(0.14, 0.2), rng.uniform(0.22, 0.34), tone.main
     posts = join(
-        *(
-            box(0.014, 0.014, h, (sx * (w / 2 - 0.007), sy * (w / 2 - 0.007), 0.02), 0.003)
-            for sx in (-1, 1)
-            for sy in (-1, 1)
-        )
+        *(box(0.014, 0.014, h, (sx * (w / 2 - 0.007), sy * (w / 2 - 0.007), 0.02), 0.003) for sx, sy in CORNERS)
     )
     roof = cylinder(w * 0.62, w * 0.4, (0, 0, h + 0.03), top=w * 0.12)
     glow = Material((1.0, 0.86, 0.5), "glow", (1.0, 0.97, 0.8))

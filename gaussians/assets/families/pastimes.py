@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import STEEL, Material, Tone
-from ..modeling.parts import Rng, chance, polar, shell
+from ..modeling.parts import CORNERS, Rng, chance, polar, shell
 from ..modeling.shapes import Piece, ball, blob, box, boxes, cylinder, disc, join, legs4, panel, rod, tube
 from ..registry import kind
 
@@ -124,7 +124,7 @@ def dumbbell_rack(rng: Rng, tone: Tone) -> list[Piece]:
 def aquarium(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat, t = rng.uniform(0.7, 0.95), rng.uniform(0.34, 0.4), rng.uniform(0.4, 0.46), tone.main, 0.025
     back = Material((0.3, 0.62, 0.82), "glass", (0.62, 0.86, 0.95))
-    posts: Rows = [(t, t, h, sx * (w - t) / 2, sy * (d - t) / 2, 0) for sx in (-1, 1) for sy in (-1, 1)]
+    posts: Rows = [(t, t, h, sx * (w - t) / 2, sy * (d - t) / 2, 0) for sx, sy in CORNERS]
     weed = [
         rod((x, y, 0.06), (x + rng.uniform(-0.05, 0.05), y, h * rng.uniform(0.4, 0.75)), 0.012, 0.003)
         for x, y in zip(rng.uniform(-0.4, 0.4, 9) * w, rng.uniform(-0.1, 0.35, 9) * d, strict=True)

@@ -164,12 +164,10 @@ def _sofa_body(rng: Rng, tone: Tone, w: float, seats: int) -> list[Piece]:
         out += [box(arm, d, high - foot, (s * (w - arm) / 2, 0, foot), 0.025).named("arm", mat) for s in (-1, 1)]
     elif style == 1:  # rolled arms
         for s in (-1, 1):
+            roll = cylinder(arm * 0.58, d, bevel=0.02).turned("x", -90)
             out += [
                 box(arm * 0.75, d, high - foot - arm / 2, (s * (w - arm) / 2, 0, foot), 0.02).named("arm", mat),
-                cylinder(arm * 0.58, d, bevel=0.02)
-                .turned("x", -90)
-                .moved(s * (w - arm * 1.1) / 2, -d / 2, high - arm * 0.5)
-                .named("arm", mat),
+                roll.moved(s * (w - arm * 1.1) / 2, -d / 2, high - arm * 0.5).named("arm", mat),
             ]
     elif style == 2:  # soft
         out += [
@@ -179,15 +177,8 @@ def _sofa_body(rng: Rng, tone: Tone, w: float, seats: int) -> list[Piece]:
         wood = tone.wood()
         for s in (-1, 1):
             x = s * (w / 2 - 0.03)
-            out.append(
-                boxes(
-                    [
-                        (0.05, 0.05, high, x, -d / 2 + 0.06, 0),
-                        (0.05, 0.05, high, x, d / 2 - 0.06, 0),
-                        (0.07, d, 0.035, x, 0, high),
-                    ]
-                ).named("arm", wood.along(1))
-            )
+            posts = [(0.05, 0.05, high, x, t * (d / 2 - 0.06), 0) for t in (-1, 1)]
+            out.append(boxes([*posts, (0.07, d, 0.035, x, 0, high)]).named("arm", wood.along(1)))
         inner = w - 0.14
     thick = rng.uniform(0.16, 0.24)
     if style == 2 or chance(rng, 0.3):
@@ -317,12 +308,7 @@ def ottoman(rng: Rng, tone: Tone) -> list[Piece]:
     w, h, mat = rng.uniform(0.45, 0.75), rng.uniform(0.34, 0.45), tone.textile(0.07, 0.4)
     if chance(rng, 0.4):
         seams = [
-            rod(
-                polar(0.25 * w, a, h * 0.97),
-                polar(0.499 * w, a, h / 2),
-                0.004,
-            )
-            for a in np.linspace(0, 6.28, 9)[:-1]
+            rod(polar(0.25 * w, a, h * 0.97), polar(0.499 * w, a, h / 2), 0.004) for a in np.linspace(0, 6.28, 9)[:-1]
         ]
         return [blob_seat(w, h).named("seat", mat), join(*seams).named("seam", mat.shaded(0.6))]
     d, foot = w * rng.uniform(0.7, 1.0), rng.uniform(0.05, 0.14)

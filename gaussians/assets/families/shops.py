@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import Material, Tone, mix
-from ..modeling.parts import Rng, chance
+from ..modeling.parts import CORNERS, Rng, chance
 from ..modeling.shapes import Piece, blob, box, boxes, cylinder, join, lathe, panel, ring, rod, tube
 from ..registry import kind
 
@@ -73,9 +73,7 @@ def display_case(rng: Rng, tone: Tone) -> list[Piece]:
     out = [
         box(w, d, low, (0, 0, 0), 0.008).named("base", mat.along(0)),
         box(w * 0.94, 0.012, low * 0.7, (0, -d / 2 - 0.004, low * 0.14), 0.004).named("panel", mat.shaded(0.82)),
-        boxes([(t, t, h - low, sx * (w - t) / 2, sy * (d - t) / 2, low) for sx in (-1, 1) for sy in (-1, 1)]).named(
-            "frame", metal
-        ),
+        boxes([(t, t, h - low, sx * (w - t) / 2, sy * (d - t) / 2, low) for sx, sy in CORNERS]).named("frame", metal),
         box(w, d, 0.03, (0, 0, h - 0.03), 0.006).named("top", mat.along(0)),
         box(w - t, 0.012, h - low - 0.04, (0, d / 2 - 0.012, low), 0.0).named("back", tone.plain("#f0e2c4")),
     ]
@@ -112,18 +110,9 @@ def coffee_machine(rng: Rng, tone: Tone) -> list[Piece]:
                 [(0, 0), (0.025, 0), (0.038, 0.06), (0.032, 0.058), (0.02, 0.01), (0, 0.01)], (x, -d * 0.2, 0.072)
             ).named("cup", tone.plain("#f4f1ea")),
         ]
-    out += [
-        tube(
-            [
-                (s * w * 0.44, -d * 0.32, h * 0.72),
-                (s * w * 0.46, -d * 0.42, h * 0.5),
-                (s * w * 0.43, -d * 0.4, h * 0.28),
-            ],
-            0.007,
-            smooth=9,
-        ).named("wand", steel)
-        for s in ((1,) if groups == 1 else (-1, 1))
-    ]
+    bends = (0.44, -0.32, 0.72), (0.46, -0.42, 0.5), (0.43, -0.4, 0.28)
+    for s in (1,) if groups == 1 else (-1, 1):
+        out.append(tube([(s * w * x, d * y, h * z) for x, y, z in bends], 0.007, smooth=9).named("wand", steel))
     stack = [
         cylinder(0.036, 0.05, (x, d * 0.12, h * 0.98), top=0.042)
         for x in np.linspace(-w * 0.36, w * 0.36, 2 + 2 * groups)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import Material, Tone
-from ..modeling.parts import Rng, chance, fronts, polar
+from ..modeling.parts import CORNERS, Rng, chance, fronts, polar
 from ..modeling.shapes import Piece, ball, blob, box, boxes, cylinder, disc, join, lathe, legs4, ring, rod, tube
 from ..registry import kind
 
@@ -47,18 +47,16 @@ def bar_stool(rng: Rng, tone: Tone) -> list[Piece]:
     seat, frame = (tone.textile(0.05, 0.8) if chance(rng, 0.5) else tone.main), tone.frame()
     out: list[Piece] = []
     if style == 0:  # on a column
+        spokes = [rod((0, 0, h * 0.36), polar(r * 0.75, a, h * 0.36), 0.008) for a in (0.5, 2.6, 4.7)]
         out += [
             lathe([(0, 0), (r * 1.15, 0), (r * 1.15, 0.012), (0.05, 0.05), (0.028, 0.06)]).named("foot", frame),
             rod((0, 0, 0.04), (0, 0, h - 0.06), 0.026).named("column", frame),
             ring(r * 0.75, 0.01, (0, 0, h * 0.36)).named("footrest", frame),
-            join(*(rod((0, 0, h * 0.36), polar(r * 0.75, a, h * 0.36), 0.008) for a in (0.5, 2.6, 4.7))).named(
-                "footrest", frame
-            ),
+            join(*spokes).named("footrest", frame),
         ]
     else:
         low, top = r * 1.05, r * 0.72
-        corners = [(sx, sy) for sx in (-1, 1) for sy in (-1, 1)]
-        leg = join(*(rod((sx * low, sy * low, 0), (sx * top, sy * top, h - 0.05), 0.013, 0.017) for sx, sy in corners))
+        leg = join(*(rod((sx * low, sy * low, 0), (sx * top, sy * top, h - 0.05), 0.013, 0.017) for sx, sy in CORNERS))
         out.append(leg.named("leg", frame))
         k = low + (top - low) * 0.34
         edge = [(-k, -k), (k, -k), (k, k), (-k, k)]
@@ -73,12 +71,8 @@ def bar_stool(rng: Rng, tone: Tone) -> list[Piece]:
         ]
     if style in (2, 3):
         arc = [polar(r * 0.9, a, h + 0.24) for a in np.linspace(0.35, np.pi - 0.35, 9)]
-        out += [
-            tube(arc, 0.032, smooth=13).named("back", seat),
-            join(
-                *(rod((s * r * 0.62, r * 0.6, h - 0.02), (s * r * 0.6, r * 0.68, h + 0.24), 0.012) for s in (-1, 1))
-            ).named("post", frame),
-        ]
+        posts = [rod((s * r * 0.62, r * 0.6, h - 0.02), (s * r * 0.6, r * 0.68, h + 0.24), 0.012) for s in (-1, 1)]
+        out += [tube(arc, 0.032, smooth=13).named("back", seat), join(*posts).named("post", frame)]
     return out
 
 
@@ -91,24 +85,13 @@ def tv_stand(rng: Rng, tone: Tone) -> list[Piece]:
     plates += [(w, t, body, 0, d / 2 - t / 2, foot)]
     plates += [(t, d, body - 2 * t, s * (w / 2 - t / 2), 0, foot + t) for s in (-1, 1)]
     feet = box(0.04, 0.04, foot)
-    out = [
-        boxes(plates).named("body", mat.along(0)),
-        legs4(w, d, foot, feet, 0.05).named("leg", tone.frame()),
-    ]
+    out = [boxes(plates).named("body", mat.along(0)), legs4(w, d, foot, feet, 0.05).named("leg", tone.frame())]
     third = (w - 2 * t) / 3
     out.append(boxes([(t, d - t, body - 2 * t, s * third / 2, 0, foot + t) for s in (-1, 1)]).named("divider", mat))
     doors = (-1, 1) if style == 0 else (0,) if style == 1 else (-1, 0, 1)
     for k in doors:
-        out += fronts(
-            rng,
-            third - 0.01,
-            body - 2 * t,
-            (k * third, -d / 2 + 0.012, foot + t),
-            1,
-            1 if k else 2,
-            mat.shaded(0.88),
-            tone.metal(),
-        )
+        at, rows = (k * third, -d / 2 + 0.012, foot + t), 1 if k else 2
+        out += fronts(rng, third - 0.01, body - 2 * t, at, 1, rows, mat.shaded(0.88), tone.metal())
     if len(doors) < 3:
         shelf = boxes([(third, d - 0.05, 0.016, k * third, 0, foot + body * 0.5) for k in (-1, 0, 1) if k not in doors])
         out.append(shelf.named("shelf", mat))

@@ -51,9 +51,8 @@ def wardrobe(rng: Rng, tone: Tone) -> list[Piece]:
     front = mat.shaded(rng.uniform(0.8, 1.2)).along(2)
     out += fronts(rng, w - 0.03, h - low - 0.05, (0, -d / 2, low + 0.02), doors, 1, front, tone.metal())
     if low > foot:
-        out += fronts(
-            rng, w - 0.03, low - foot, (0, -d / 2, foot + 0.01), max(doors // 2, 1), 1, front.along(0), tone.metal()
-        )
+        below, columns = (0, -d / 2, foot + 0.01), max(doors // 2, 1)
+        out += fronts(rng, w - 0.03, low - foot, below, columns, 1, front.along(0), tone.metal())
     if chance(rng, 0.3):
         mirror = box(w / doors - 0.1, 0.006, (h - low) * 0.8, (-w / 2 + w / doors / 2, -d / 2 - 0.02, low + 0.12))
         out.append(mirror.named("mirror", tone.plain("#b9cbd4", "brushed")))
@@ -68,17 +67,15 @@ def cabinet(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, mat = 0.15 + columns * rng.uniform(0.4, 0.5), rng.uniform(0.36, 0.46), tone.main
     h = rng.uniform(0.65, 0.85) if columns > 1 else rng.uniform(0.8, 1.15)
     foot = rng.uniform(0.05, 0.2)
+    leg = tapered_legs(rng, w, d, foot + 0.01, 0.05)
     out = [
         box(w, d, h - foot, (0, 0, foot), 0.008).named("body", mat.along(0)),
-        tapered_legs(rng, w, d, foot + 0.01, 0.05).named(
-            "leg", mat.along(2) if chance(rng, 0.6) else tone.metal(), 1.2
-        ),
+        leg.named("leg", mat.along(2) if chance(rng, 0.6) else tone.metal(), 1.2),
         box(w + 0.03, d + 0.02, 0.025, (0, 0, h - 0.02), 0.008).named("top", mat.along(0)),
     ]
     front = mat.shaded(rng.uniform(0.82, 1.25))
-    return out + fronts(
-        rng, w - 0.04, h - foot - 0.06, (0, -d / 2, foot + 0.02), columns, int(rng.integers(1, 3)), front, tone.metal()
-    )
+    rows = int(rng.integers(1, 3))
+    return out + fronts(rng, w - 0.04, h - foot - 0.06, (0, -d / 2, foot + 0.02), columns, rows, front, tone.metal())
 
 
 @kind("dresser", palette="wood")
@@ -93,16 +90,8 @@ def dresser(rng: Rng, tone: Tone) -> list[Piece]:
         tapered_legs(rng, w, d, foot + 0.01, 0.06).named("leg", mat.along(2)),
     ]
     front = mat.shaded(rng.uniform(0.85, 1.25)).along(0)
-    return out + fronts(
-        rng,
-        w - 0.04,
-        h - foot - 0.04,
-        (0, -d / 2, foot + 0.02),
-        2 if wide else 1,
-        3 if wide else int(rng.integers(4, 6)),
-        front,
-        tone.metal(),
-    )
+    columns, rows = (2, 3) if wide else (1, int(rng.integers(4, 6)))
+    return out + fronts(rng, w - 0.04, h - foot - 0.04, (0, -d / 2, foot + 0.02), columns, rows, front, tone.metal())
 
 
 @kind("bookshelf", palette="wood")
@@ -151,13 +140,9 @@ def books(rng: Rng, tone: Tone) -> list[Piece]:
         w, d, t = rng.uniform(0.15, 0.2), rng.uniform(0.21, 0.27), rng.uniform(0.022, 0.045)
         cover = main if k == n - 1 or chance(rng, 0.5) else tone.accent()
         turn = rng.uniform(-15, 15)
-        block = (
-            box(w - 0.008, d - 0.012, t - 0.006, (0.004, 0, z + 0.003), 0.001).turned("z", turn).named("pages", pages)
-        )
-        lids = boxes(
-            [(w, d, 0.003, 0, 0, z), (w, d, 0.003, 0, 0, z + t - 0.003), (0.004, d, t, -w / 2 + 0.002, 0, z)], 0.001
-        )
-        out += [block, lids.turned("z", turn).named("cover", cover)]
+        block = box(w - 0.008, d - 0.012, t - 0.006, (0.004, 0, z + 0.003), 0.001).turned("z", turn)
+        lids = [(w, d, 0.003, 0, 0, z), (w, d, 0.003, 0, 0, z + t - 0.003), (0.004, d, t, -w / 2 + 0.002, 0, z)]
+        out += [block.named("pages", pages), boxes(lids, 0.001).turned("z", turn).named("cover", cover)]
         z += t
     return out
 
@@ -271,16 +256,7 @@ def coat_rack(rng: Rng, tone: Tone) -> list[Piece]:
         else [cylinder(0.2, 0.03, bevel=0.01)]
     )
     hooks = [
-        tube(
-            [
-                (0, 0, h - 0.14),
-                polar(0.1, a, h - 0.15),
-                polar(0.17, a, h - 0.05),
-            ],
-            0.013,
-            smooth=9,
-        )
-        for a in turns
+        tube([(0, 0, h - 0.14), polar(0.1, a, h - 0.15), polar(0.17, a, h - 0.05)], 0.013, smooth=9) for a in turns
     ]
     out = [
         rod((0, 0, 0.02), (0, 0, h), 0.026, 0.018).named("pole", mat.along(2)),

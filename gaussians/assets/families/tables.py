@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..modeling.materials import Material, Tone
-from ..modeling.parts import Rng, chance, fronts, polar, tapered_legs
+from ..modeling.parts import CORNERS, Rng, chance, fronts, polar, tapered_legs
 from ..modeling.shapes import Piece, box, boxes, ellipse, extrude, join, lathe, legs4, rod, rounded_rectangle, tube
 from ..registry import kind
 
@@ -50,13 +50,9 @@ def _base(rng: Rng, style: int, w: float, d: float, h: float, mat: Material) -> 
     if style == 5:
         t = 0.035
         rows: list[tuple[float, ...]] = [(t, d * 0.85, t, s * w * 0.42, 0, z) for s in (-1, 1) for z in (0.0, h - t)]
-        rows += [(t, t, h - 2 * t, sx * w * 0.42, sy * (d * 0.425 - t / 2), t) for sx in (-1, 1) for sy in (-1, 1)]
+        rows += [(t, t, h - 2 * t, sx * w * 0.42, sy * (d * 0.425 - t / 2), t) for sx, sy in CORNERS]
         return boxes(rows).named("leg", mat.along(2))
-    bars = [
-        rod((sx * w * 0.36, sy * d * 0.4, 0.01), (sx * w * 0.36, -sy * d * 0.36, h), 0.025)
-        for sx in (-1, 1)
-        for sy in (-1, 1)
-    ]
+    bars = [rod((sx * w * 0.36, sy * d * 0.4, 0.01), (sx * w * 0.36, -sy * d * 0.36, h), 0.025) for sx, sy in CORNERS]
     return join(*bars, rod((-w * 0.36, 0, h / 2), (w * 0.36, 0, h / 2), 0.018)).named("leg", mat)
 
 
@@ -103,15 +99,7 @@ def side_table(rng: Rng, tone: Tone) -> list[Piece]:
             _base(rng, 2, w, w, h - 0.022, mat if chance(rng, 0.5) else tone.metal()),
         ]
     if style == 1:
-        bars = [
-            rod(
-                polar(0.85 * w / 2, a),
-                polar(0.3 * w, a, h - 0.02),
-                0.014,
-                0.02,
-            )
-            for a in (0.5, 2.6, 4.7)
-        ]
+        bars = [rod(polar(0.85 * w / 2, a), polar(0.3 * w, a, h - 0.02), 0.014, 0.02) for a in (0.5, 2.6, 4.7)]
         return [_top(rng, "round", w, w, h, 0.025, mat), join(*bars).named("leg", mat, 1.2)]
     if style == 2:
         t = 0.022
@@ -132,16 +120,8 @@ def nightstand(rng: Rng, tone: Tone) -> list[Piece]:
         box(w, d, h - foot, (0, 0, foot), 0.008).named("body", mat.along(0)),
         tapered_legs(rng, w, d, foot + 0.01, 0.04).named("leg", mat.along(2)),
     ]
-    return out + fronts(
-        rng,
-        w - 0.03,
-        h - foot - 0.04,
-        (0, -d / 2, foot + 0.02),
-        1,
-        int(rng.integers(1, 4)),
-        mat.shaded(1.08).along(0),
-        tone.metal(),
-    )
+    rows, front = int(rng.integers(1, 4)), mat.shaded(1.08).along(0)
+    return out + fronts(rng, w - 0.03, h - foot - 0.04, (0, -d / 2, foot + 0.02), 1, rows, front, tone.metal())
 
 
 @kind("desk", palette="wood")
@@ -154,16 +134,8 @@ def desk(rng: Rng, tone: Tone) -> list[Piece]:
     for side, bw in block:
         x = side * (w / 2 - bw / 2 - 0.02)
         out.append(box(bw, d - 0.06, z, (x, 0, 0)).named("drawers", mat.along(2)))
-        out += fronts(
-            rng,
-            bw - 0.02,
-            z - 0.06,
-            (x, -d / 2 + 0.03, 0.04),
-            1,
-            int(rng.integers(2, 5)),
-            mat.shaded(1.08),
-            tone.metal(),
-        )
+        rows, front = int(rng.integers(2, 5)), mat.shaded(1.08)
+        out += fronts(rng, bw - 0.02, z - 0.06, (x, -d / 2 + 0.03, 0.04), 1, rows, front, tone.metal())
     if style in (0, 3):
         out.append(box(0.035, d - 0.06, z, (w / 2 - 0.05, 0, 0)).named("leg", under.along(2)))
     elif style == 2:
@@ -174,13 +146,6 @@ def desk(rng: Rng, tone: Tone) -> list[Piece]:
     elif style == 4:
         out += [_base(rng, 4 if chance(rng, 0.5) else 1, w, d, z, under)]
     if style == 3 or chance(rng, 0.15):
-        out.append(
-            boxes(
-                [
-                    (w, 0.2, 0.02, 0, d / 2 - 0.1, h + 0.28),
-                    (0.02, 0.2, 0.28, -w / 2 + 0.01, d / 2 - 0.1, h),
-                    (0.02, 0.2, 0.28, w / 2 - 0.01, d / 2 - 0.1, h),
-                ]
-            ).named("hutch", mat)
-        )
+        sides = [(0.02, 0.2, 0.28, s * (w / 2 - 0.01), d / 2 - 0.1, h) for s in (-1, 1)]
+        out.append(boxes([(w, 0.2, 0.02, 0, d / 2 - 0.1, h + 0.28), *sides]).named("hutch", mat))
     return out

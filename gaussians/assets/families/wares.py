@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..modeling.materials import STEEL, Material, Tone
-from ..modeling.parts import Rng, chance, fronts
+from ..modeling.parts import CORNERS, Rng, chance, fronts
 from ..modeling.shapes import Piece, ball, blob, box, boxes, cylinder, join, lathe, legs4, panel, ring, rod, tube
 from ..registry import kind
 
@@ -88,12 +88,9 @@ def bar_cart(rng: Rng, tone: Tone) -> list[Piece]:
     metal, glass = tone.metal(), ("#3c7a4a", "#8a5230", "#d8e2e6", "#c8201e")
     posts = [
         rod((sx * (w / 2 - 0.02), sy * (d / 2 - 0.02), 0.08), (sx * (w / 2 - 0.02), sy * (d / 2 - 0.02), h), 0.011)
-        for sx in (-1, 1)
-        for sy in (-1, 1)
+        for sx, sy in CORNERS
     ]
-    wheels = [
-        ring(0.032, 0.01, (sx * (w / 2 - 0.02), sy * (d / 2 - 0.02), 0.042), "x") for sx in (-1, 1) for sy in (-1, 1)
-    ]
+    wheels = [ring(0.032, 0.01, (sx * (w / 2 - 0.02), sy * (d / 2 - 0.02), 0.042), "x") for sx, sy in CORNERS]
     out = [
         boxes([(w, d, 0.022, 0, 0, z) for z in (0.2, h - 0.12)], 0.006).named("shelf", mat.along(0)),
         join(*posts).named("post", metal), join(*wheels).named("wheel", tone.plain("#232326")),

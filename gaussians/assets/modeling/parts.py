@@ -10,6 +10,7 @@ from .materials import Material
 from .shapes import Array, Piece, Point, Sheets, ball, box, boxes, join, legs4, rod, surface
 
 Rng = np.random.Generator
+CORNERS = ((-1, -1), (-1, 1), (1, -1), (1, 1))  # signs of x and y
 
 
 def chance(rng: Rng, p: float) -> bool:
@@ -37,8 +38,7 @@ def tapered_legs(rng: Rng, w: float, d: float, h: float, thick: float) -> Piece:
     return join(
         *(
             rod((sx * low[0], sy * low[1], 0), (sx * top[0], sy * top[1], h), thick * 0.35, thick * 0.6)
-            for sx in (-1, 1)
-            for sy in (-1, 1)
+            for sx, sy in CORNERS
         )
     )
 
