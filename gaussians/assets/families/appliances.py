@@ -125,7 +125,7 @@ def sink(rng: Rng, tone: Tone) -> list[Piece]:
             [(w, (d - bd) / 2, 0.04, 0, s * (d + bd) / 4, h - 0.04) for s in (-1, 1)]
             + [((w - bw) / 2, bd, 0.04, s * (w + bw) / 4, 0, h - 0.04) for s in (-1, 1)]
         )
-        walls = [(bw, 0.01, 0.15, 0, s * bd / 2, h - 0.17) for s in (1, -1)]
+        walls: list[tuple[float, ...]] = [(bw, 0.01, 0.15, 0, s * bd / 2, h - 0.17) for s in (1, -1)]
         walls += [(0.01, bd, 0.15, s * bw / 2, 0, h - 0.17) for s in (1, -1)]
         well = boxes([(bw, bd, 0.01, 0, 0, h - 0.17), *walls])
         out = [
