@@ -1,4 +1,4 @@
-"""Laws of the pinhole camera: rigid, looking where it was told, and resizable without moving the picture."""
+"""Laws of the pinhole camera: a rigid pose, `look_at` aims at its target, resizing scales pixels in proportion."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from scenewright.gaussians.errors import UserError
 
 
 def make(n: int, degree: int = 0, seed: int = 0, first_id: int = 0) -> GaussianCloud:
-    """A random cloud whose every column tells the row it belongs to."""
+    """A random cloud whose columns encode the number of their row."""
     g = torch.Generator().manual_seed(seed)
     ids = torch.arange(first_id, first_id + n, dtype=torch.int64)
     means = torch.randn(n, 3, generator=g)
@@ -28,7 +28,7 @@ def make(n: int, degree: int = 0, seed: int = 0, first_id: int = 0) -> GaussianC
 
 
 def aligned(cloud: GaussianCloud) -> bool:
-    """Whether every column of `make` still stands beside its id."""
+    """Whether every column of `make` is still aligned with the ids."""
     ids = cloud.ids
     return bool(
         (cloud.means[:, 0] == ids).all()

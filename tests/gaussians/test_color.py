@@ -1,4 +1,4 @@
-"""Laws of colour: display RGB to Lab and back, names to RGB and back, and errors that help."""
+"""Laws of colour: display RGB to Lab and back, names to RGB and back, and helpful errors."""
 
 from __future__ import annotations
 

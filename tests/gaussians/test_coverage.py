@@ -1,4 +1,4 @@
-"""Views chosen from the scene itself: few, the same each time, and looking at something."""
+"""Chosen views are few, deterministic and show the scene."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SIZE = 64  # pixels: enough to see a crate, quick to draw
 
 
 def crate(world: type[Any]) -> Scene:
-    """A closed box that nothing shines through: each side needs a view of its own."""
+    """A closed opaque box: each side needs a view of its own."""
     cloud = world().box("crate", (-0.5, -0.5, 0), (0.5, 0.5, 1), RED, 0.08).cloud()
     opaque = cloud.replace(opacities=torch.full((len(cloud),), 0.99), scales=cloud.scales * 1.8)
     return Scene(opaque, Frame(up_source="given"))

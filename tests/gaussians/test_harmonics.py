@@ -1,4 +1,4 @@
-"""Laws of the harmonics: orthonormal, turned with the object, in the original order and signs."""
+"""Laws of the harmonics: orthonormal, rotated with the object, in the original order and signs."""
 
 from __future__ import annotations
 

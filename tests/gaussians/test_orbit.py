@@ -1,4 +1,4 @@
-"""Where to turn about a scene: on the ring of its photographs, on the spot if they look outward, or as is best."""
+"""Orbit rings: that of the photographs, on the spot if they look outward, or the best-scored ring."""
 
 from __future__ import annotations
 

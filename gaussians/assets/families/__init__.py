@@ -1,4 +1,4 @@
-"""One module a family of assets; importing this package registers every kind."""
+"""The builders of all kinds of assets, one module per family; importing this package registers them."""
 
 import importlib
 import pkgutil

@@ -1,4 +1,4 @@
-"""Kitchen appliances and the sink. Each builder returns the pieces of one design."""
+"""Builders of kitchen appliances and the sink. Each builder returns the pieces of one design."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def sink(rng: Rng, tone: Tone) -> list[Piece]:
             lathe([(0.13, 0), (0.08, 0.15), (0.07, h * 0.6), (0.11, h - 0.14)], smooth=11).named("pedestal", mat),
         ]
         y = d / 2 - 0.04
-    else:  # set in a cupboard
+    else:  # built into a cupboard
         w, d = rng.uniform(0.7, 1.1) if style == 1 else rng.uniform(0.55, 0.7), 0.55
         bw, bd = w * 0.55, d * 0.62
         rim = boxes(

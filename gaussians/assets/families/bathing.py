@@ -1,4 +1,4 @@
-"""Bathrooms and laundries. Each builder returns the pieces of one design."""
+"""Builders of furniture and appliances of bathrooms and laundries. Each builder returns the pieces of one design."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Rows = list[tuple[float, ...]]
 
 
 def _tap(x: float, y: float, z: float, high: float, steel: Material) -> Piece:
-    """A curved spout that reaches towards -y, with a lever."""
+    """A tap with a lever and a curved spout towards -y."""
     path = [(x, y, z), (x, y, z + high * 0.7), (x, y - 0.04, z + high), (x, y - 0.1, z + high * 0.82)]
     return join(tube(path, 0.011, smooth=13), rod((x, y, z + high * 0.5), (x + 0.06, y, z + high * 0.62), 0.007)).named(
         "tap", steel
@@ -38,7 +38,7 @@ def _tap(x: float, y: float, z: float, high: float, steel: Material) -> Piece:
 
 
 def _basin(outline: Array, h: float, inner: float, deep: float) -> Piece:
-    """A block of `outline` with a hollow: outer wall, rim, and a rounded tub `deep` below the rim."""
+    """A hollow block with the outline `outline [M, 2]`: outer wall, rim, and a rounded tub `deep` below the rim."""
     o = np.concatenate([outline, outline[:1]])[::-1]
     centre = outline.mean(axis=0)
 
@@ -83,7 +83,7 @@ def bathtub(rng: Rng, tone: Tone) -> list[Piece]:
 
 
 def _panelled(w: float, d: float, h: float, mat: Material) -> Piece:
-    """The front and the sides of a tub that is built in."""
+    """The front and side panels of a built-in bathtub."""
     return boxes([(w - 0.04, 0.02, h - 0.03, 0, -d / 2 + 0.02, 0), (0.02, d - 0.06, h - 0.03, -w / 2 + 0.02, 0, 0),
                   (0.02, d - 0.06, h - 0.03, w / 2 - 0.02, 0, 0)]).named("panel", mat)  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Bags, shoes and umbrellas: what people carry and wear. Each builder returns the pieces of one design."""
+"""Builders of bags, shoes and umbrellas. Each builder returns the pieces of one design."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Things to look at: rugs, pictures, mirrors, clocks, globes. Each builder returns the pieces of one design.
+"""Builders of decoration: rugs, pictures, mirrors, clocks, globes. Each builder returns the pieces of one design.
 
-Wall pieces hang with their back at the largest y.
+The back of pieces that hang on a wall is at their largest y.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def rug(rng: Rng, tone: Tone) -> list[Piece]:
 
 
 def _frame(w: float, h: float, t: float, deep: float, mat: Material) -> Piece:
-    """Four bars around a w x h opening standing on z = 0."""
+    """Four bars of width `t` around a w x h opening whose lower edge is at z = 0."""
     rows = [
         (w + 2 * t, deep, t, 0, 0, -t),
         (w + 2 * t, deep, t, 0, 0, h),

@@ -1,4 +1,4 @@
-"""Screens, sound and other appliances with a plug. Each builder returns the pieces of one design."""
+"""Builders of screens, audio and other electric devices. Each builder returns the pieces of one design."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def _display(rng: Rng, w: float, h: float, z: float, tone: Tone, rim: float, thi
 @kind("television", palette="dark")
 def television(rng: Rng, tone: Tone) -> list[Piece]:
     style = int(rng.integers(4))
-    if style == 3:  # a tube set on legs or with aerials
+    if style == 3:  # a cathode-ray set with aerials
         w, d, h = rng.uniform(0.6, 0.75), 0.4, rng.uniform(0.45, 0.52)
         case = tone.wood() if chance(rng, 0.5) else tone.main
         glass = (

@@ -1,4 +1,4 @@
-"""What people train with in a gym. Each builder returns the pieces of one design; who trains looks towards -y."""
+"""Builders of gym equipment and the drum kit. Each builder returns the pieces of one design; its user faces -y."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Game rooms, gyms, class rooms and children's rooms. Each builder returns the pieces of one design."""
+"""Builders of furniture of game rooms, gyms, class rooms and children's rooms. Each returns one design's pieces."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def whiteboard(rng: Rng, tone: Tone) -> list[Piece]:
 def treadmill(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.74, 0.84), rng.uniform(1.6, 1.85), rng.uniform(1.3, 1.42), tone.main
     black, steel = tone.plain("#1d1d1f"), Material((0.7, 0.71, 0.73), "brushed")
-    head = d / 2 - 0.28  # one runs towards the console at the back, away from whoever stands before it
+    head = d / 2 - 0.28  # the console is at the back: its user faces +y, away from a viewer in front
     posts = [rod((s * (w / 2 - 0.05), head, 0.12), (s * (w / 2 - 0.08), head - 0.06, h - 0.1), 0.032) for s in (-1, 1)]
     rails = [
         rod((s * (w / 2 - 0.08), head - 0.05, h - 0.2), (s * (w / 2 - 0.08), head - 0.55, h - 0.35), 0.022)

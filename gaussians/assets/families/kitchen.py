@@ -1,4 +1,4 @@
-"""Kitchen and table: crockery, pots, food. Each builder returns the pieces of one design."""
+"""Builders of crockery, pots and food. Each builder returns the pieces of one design."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..registry import kind
 def _vessel(
     outer: list[tuple[float, float]], thick: float, mat: Material, inside: Material, smooth: int = 17
 ) -> list[Piece]:
-    """A pot turned from an outer profile (bottom to rim), hollow, with a rounded rim."""
+    """A hollow vessel of revolution with the outer profile `outer` (bottom to rim) and a rounded rim."""
     inner = [*((max(r - thick, 0.0), max(z, thick)) for r, z in outer[:0:-1]), (0.0, outer[0][1] + thick)]
     rim_r, rim_z = outer[-1]
     return [

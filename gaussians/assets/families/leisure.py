@@ -1,4 +1,4 @@
-"""Toys, instruments and sport. Each builder returns the pieces of one design."""
+"""Builders of toys, musical instruments, bicycles and balls. Each builder returns the pieces of one design."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def teddy_bear(rng: Rng, tone: Tone) -> list[Piece]:
 
 
 def _guitar_outline(w: float, h: float, electric: bool) -> Array:
-    """A waisted body, counter-clockwise, h long along +y from the bottom."""
+    """`[40, 2]` outline of a guitar's body, counter-clockwise, from y = 0 to y = `h`."""
     t = np.linspace(0, 2 * np.pi, 40, endpoint=False)
     wide = w / 2 * (1 - 0.17 * np.cos(2 * t) - 0.12 * np.sin(t)) / 1.17
     x, y = wide * np.cos(t) * (1 - 0.22 * np.exp(-(((np.sin(t) - 0.15) / 0.22) ** 2))), h / 2 * np.sin(t)

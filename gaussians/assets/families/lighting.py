@@ -1,4 +1,4 @@
-"""Lamps and candles. Each builder returns the pieces of one design."""
+"""Builders of lamps, lanterns and candles. Each builder returns the pieces of one design."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def floor_lamp(rng: Rng, tone: Tone) -> list[Piece]:
     elif style == 1:
         legs = [rod(polar(0.28, a), polar(0.02, a, h - sh * 0.6), 0.013, 0.017) for a in (0.4, 2.5, 4.6)]
         out = [join(*legs).named("leg", metal, 1.2)]
-    elif style == 2:  # an arc reaching over
+    elif style == 2:  # an arc lamp
         reach = rng.uniform(0.45, 0.7)
         path = [
             (-reach / 2, 0, 0.02),
@@ -121,7 +121,7 @@ def table_lamp(rng: Rng, tone: Tone) -> list[Piece]:
             box(0.11, 0.11, h * 0.8, (0, 0, 0), 0.012).named("base", body),
             rod((0, 0, h * 0.8), (0, 0, h), 0.009).named("pole", body),
         ]
-    else:  # glowing egg without a foot
+    else:  # an egg-shaped shade without a stem
         lit = Material(tone.color, "glow", mix(tone.color, (1.0, 0.97, 0.85), 0.6), main=True)
         return [
             cylinder(r * 0.5, 0.02).named("base", body),

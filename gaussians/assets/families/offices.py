@@ -1,4 +1,4 @@
-"""What offices, schools and halls stand and hang about: boards, lockers, machines, a stage."""
+"""Builders of furniture of offices, schools and halls: boards, lockers, machines, a stage."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What belongs to a wall: windows, doors, curtains, radiators. Each builder returns the pieces of one design."""
+"""Builders of fixtures at walls: windows, doors, curtains, radiators. Each builder returns the pieces of one design."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What hangs from a ceiling besides lamps: beams, streamers, strings of lights; and balloons.
+"""Builders of what hangs from a ceiling besides lamps (beams, streamers, strings of lights), and of balloons.
 
 Each builder returns the pieces of one design.
 """
@@ -23,7 +23,7 @@ def ceiling_beams(rng: Rng, tone: Tone) -> list[Piece]:
     mat = Material(tone.color, "wood", seed=tone.seed, main=True)
     n, t = int(rng.integers(3, 7)), rng.uniform(0.12, 0.18)
     cross, pitch = chance(rng, 0.6), w / n
-    # Across the view, so that they are seen from the side on which rooms are open; every one from wall to wall.
+    # Along x from wall to wall, so that they are visible from the open side of a room.
     rows = [(w, t, h, 0, (k - (n - 1) / 2) * (d - t) / max(n - 1, 1), 0) for k in range(n)]
     out = [boxes(rows, 0.012).named("beam", mat.along(0), 1.3)]
     if cross:
@@ -46,7 +46,7 @@ def beam(rng: Rng, tone: Tone) -> list[Piece]:
 
 
 def _sagging(w: float, sag: float, count: int) -> Array:
-    """`[count, 3]` along a string from corner to corner whose middle hangs `sag` below z = 0."""
+    """`[count, 3]` points of a string of span `w` along x whose middle hangs `sag` below z = 0."""
     t = np.linspace(-1, 1, count)
     return np.stack([t * w / 2, 0 * t, -sag * (1 - t**2)], axis=1)
 

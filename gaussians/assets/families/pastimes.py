@@ -1,4 +1,4 @@
-"""What people rest, play and train with. Each builder returns the pieces of one design."""
+"""Builders of furniture and equipment for rest, play and training. Each builder returns the pieces of one design."""
 
 from __future__ import annotations
 

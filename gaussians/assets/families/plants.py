@@ -1,4 +1,4 @@
-"""Plants and what they stand in. Each builder returns the pieces of one design."""
+"""Builders of plants, flowers, pots and vases. Each builder returns the pieces of one design."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..registry import kind
 
 
 def _pot(rng: Rng, r: float, h: float, mat: Material) -> list[Piece]:
-    """A pot of one of four shapes with soil in it."""
+    """A pot of one of four shapes, with soil."""
     style = int(rng.integers(4))
     soil = disc(r * 0.9, (0, 0, h * 0.9)).named("soil", Material((0.22, 0.15, 0.1)))
     if style == 0:
@@ -43,7 +43,7 @@ def _pot(rng: Rng, r: float, h: float, mat: Material) -> list[Piece]:
 
 
 def _leaves(rng: Rng, count: int, length: float, width: float, z: float, rise: float, bend: float) -> Piece:
-    """Leaves fanning out of (0, 0, z) by the golden angle, lower ones flatter."""
+    """Leaves around (0, 0, z) at multiples of the golden angle, the first ones flatter."""
     out = []
     for k in range(count):
         t = k / max(count - 1, 1)
@@ -54,7 +54,7 @@ def _leaves(rng: Rng, count: int, length: float, width: float, z: float, rise: f
 
 
 def _crown(rng: Rng, count: int, r: float, at: tuple[float, float, float], length: float, width: float) -> Piece:
-    """Leaves pointing outwards all over a ball."""
+    """Leaves that point outward all over a sphere of radius `r` around `at`."""
     out = []
     for k in range(count):
         z = 1 - 2 * (k + 0.5) / count

@@ -1,4 +1,4 @@
-"""Things to sit and lie on. Each builder returns the pieces of one design."""
+"""Builders of seating, beds and cushions. Each builder returns the pieces of one design."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def _star_base(r: float, h: float, metal: Material, wheels: Material) -> list[Pi
 
 
 def _chair_back(rng: Rng, style: int, w: float, d: float, z: float, h: float, mat: Material) -> list[Piece]:
-    """A chair's back rising from z by h at y = d/2: solid, slatted, ladder, spindles, padded, or ring."""
+    """A chair's back from z to z + h at y = d/2; styles 0 to 5: solid, slats, ladder, spindles, padded, hoop."""
     y = d / 2 - 0.02
     posts = boxes([(0.035, 0.035, h, s * (w / 2 - 0.018), y, z) for s in (-1, 1)])
     if style == 0:
@@ -210,7 +210,7 @@ def _sofa_body(rng: Rng, tone: Tone, w: float, seats: int) -> list[Piece]:
 
 @kind("armchair", palette="fabric")
 def armchair(rng: Rng, tone: Tone) -> list[Piece]:
-    if chance(rng, 0.25):  # a tub: one shell around the sitter
+    if chance(rng, 0.25):  # a tub chair: one shell for back and arms
         r, seat, h = rng.uniform(0.36, 0.42), 0.42, rng.uniform(0.7, 0.85)
         mat = tone.textile(0.1)
         a = np.radians(np.linspace(-35, 215, 31))[None]

@@ -1,4 +1,4 @@
-"""What shops and cafés are fitted with. Each builder returns the pieces of one design."""
+"""Builders of furniture and equipment of shops and cafés. Each builder returns the pieces of one design."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _GOODS = ("#c8201e", "#f2d31b", "#2a5ac8", "#3c9a3f", "#f07c1c", "#f2f2f2", "#7d
 
 
 def _pastries(rng: Rng, tone: Tone, w: float, d: float, z: float) -> list[Piece]:
-    """Trays of cakes, rolls and tarts on a shelf of w x d at height z."""
+    """Cakes, rolls and tarts on a shelf of w x d at height z."""
     rows: dict[int, list[Piece]] = {}
     columns, lines = max(int(w / 0.16), 1), max(int(d / 0.16), 1)
     for i in range(columns):

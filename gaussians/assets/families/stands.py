@@ -1,4 +1,4 @@
-"""What cafés, florists and living rooms have to sit at and to show things on. Each builder returns one design."""
+"""Builders of flower stands, bar stools and TV stands. Each builder returns the pieces of one design."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cupboards, shelves, boxes and bins. Each builder returns the pieces of one design."""
+"""Builders of cupboards, shelves, boxes and bins. Each builder returns the pieces of one design."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from ..registry import kind
 
 
 def _open_box(w: float, d: float, h: float, t: float, z: float = 0.0) -> Piece:
-    """Bottom and four walls."""
+    """The bottom and four walls, of thickness `t`, of a box that is open at the top."""
     return boxes(
         [
             (w, d, t, 0, 0, z),

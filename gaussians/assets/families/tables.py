@@ -1,4 +1,4 @@
-"""Tables and desks. Each builder returns the pieces of one design."""
+"""Builders of tables and desks. Each builder returns the pieces of one design."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ..registry import kind
 
 
 def _top(rng: Rng, shape: str, w: float, d: float, z: float, thick: float, mat: Material) -> Piece:
-    """A table's plate, its upper face at z: "box", "rounded", "oval" or "round"."""
+    """A table top with its upper face at z; `shape` is "box", "rounded", "oval" or "round"."""
     if shape == "box":
         plate = box(w, d, thick, (0, 0, z - thick), 0.008)
     elif shape == "rounded":
@@ -20,7 +20,7 @@ def _top(rng: Rng, shape: str, w: float, d: float, z: float, thick: float, mat: 
 
 
 def _base(rng: Rng, style: int, w: float, d: float, h: float, mat: Material) -> Piece:
-    """What holds a plate at height h: 0 legs, 1 frame, 2 pedestal, 3 trestles, 4 hairpins, 5 sled, 6 cross."""
+    """A table's base of height h; styles: 0 legs, 1 frame, 2 pedestal, 3 trestles, 4 hairpins, 5 sled, 6 cross."""
     if style == 0:
         return tapered_legs(rng, w * 0.92, d * 0.9, h, rng.uniform(0.045, 0.075)).named("leg", mat.along(2))
     if style == 1:

@@ -1,4 +1,4 @@
-"""What is worn, served and sold, and what it is sold from. Each builder returns one design."""
+"""Builders of vending machines, mannequins, clothes rails, carts and workbenches. Each returns one design's pieces."""
 
 from __future__ import annotations
 

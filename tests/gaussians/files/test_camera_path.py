@@ -1,4 +1,4 @@
-"""Camera paths in files: ours and nerfstudio's, and whatever else may be in such a file."""
+"""Camera paths in files: our format, nerfstudio's, and invalid content."""
 
 from __future__ import annotations
 

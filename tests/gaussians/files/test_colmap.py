@@ -1,4 +1,4 @@
-"""COLMAP's models, binary and text, and lenses: by hand-made files whose answer is known, and broken at random."""
+"""COLMAP models, binary and text, and lens distortion: hand-made files with known content, and randomly broken ones."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def binary(folder: Path) -> Path:
 
 
 def text(folder: Path) -> Path:
-    """The same in words."""
+    """The same model as text files."""
     folder.mkdir(parents=True)
     (folder / "cameras.txt").write_text(
         "# cameras\n1 OPENCV 80 60 70 71 40 30 0.1 -0.02 0.001 -0.002\n7 SIMPLE_RADIAL 80 60 75 40 30 0.05\n"

@@ -1,4 +1,4 @@
-"""Files that other programs wrote, or broke: each is refused with one error, whatever is wrong with it."""
+"""Invalid files of other programs are refused with one clear error."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def held(**columns: Any) -> bytes:
 
 
 def lying(shape: tuple[int, ...]) -> bytes:
-    """A `.npz` whose one array says it is larger than what follows."""
+    """A `.npz` with one array whose header declares more bytes than follow."""
     stream = io.BytesIO()
     header = f"{{'descr': '|b1', 'fortran_order': False, 'shape': {shape}, }}".ljust(117).encode() + b"\n"
     with zipfile.ZipFile(stream, "w") as archive:
@@ -135,7 +135,7 @@ def test_archives_that_do_not_hold_together_say_why(tmp_path: Path, columns: dic
 
 
 def png(width: int, height: int) -> bytes:
-    """A grey picture that says it is so large and ends after a line."""
+    """A grey image whose header declares this size and whose data end after one line."""
 
     def chunk(kind: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))

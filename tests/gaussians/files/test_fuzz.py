@@ -1,4 +1,4 @@
-"""Whatever bytes a file holds, loading gives a sound scene or a FileError, and nothing else."""
+"""Fuzzing: loading any bytes returns a valid scene or raises FileError."""
 
 from __future__ import annotations
 
@@ -156,7 +156,7 @@ def test_sog_archives_with_bytes_exchanged(tmp_path: Path, data: st.DataObject) 
 
 
 def test_the_parts_of_the_fuzz_are_a_scene(tmp_path: Path) -> None:
-    """Otherwise every example above would end at the first gate."""
+    """Otherwise every example above would fail at the first check."""
     for name, part in PARTS.items():
         (tmp_path / name).write_bytes(part)
     assert len(files.load(tmp_path).cloud) == 16

@@ -1,4 +1,4 @@
-"""Damaged and lying files of every format: a sound scene or a FileError, and no more memory than the file justifies."""
+"""Damaged and forged files of every format give a valid scene or a FileError, within a bound on memory."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from scenewright.gaussians.scene import Scene
 
 SUFFIXES = (".ply", ".compressed.ply", ".splat", ".spz", ".2.spz", ".sog")
 COUNT = 2000
-# What a refusal may cost beside ten times the file: objects of Python and zipfile, the error's words, and what a header
-# of a few megabytes is allowed to ask for whatever the file's size (a picture of `sog._SPARE_PIXELS` RGBA pixels).
+# Memory that a refusal may take besides ten times the file: objects of Python and zipfile, the error message, and what
+# a file of any size is allowed to ask for (an image of `sog._SPARE_PIXELS` RGBA pixels).
 SPARE = 2 << 20
 fuzz = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=120)
 

@@ -90,7 +90,7 @@ def test_a_cloud_comes_back(tmp_path: Path, degree: int, seed: int) -> None:
 
 
 def test_a_finite_world_of_opacities_survives_exactly() -> None:
-    """Every second-write law above rests on this one: all float32 logits of opacities map back to themselves."""
+    """The laws of second writes above depend on this: all float32 logits of opacities map back to themselves."""
     from scenewright.gaussians.files.formats import values
 
     rng = np.random.default_rng(0)

@@ -1,4 +1,4 @@
-"""Our files against an independent program, PlayCanvas' splat-transform: what each writes, the other reads alike.
+"""Our files against an independent program, PlayCanvas' splat-transform: each reads what the other writes.
 
 `npm install @playcanvas/splat-transform` and its `node_modules/.bin` on the PATH; skipped where it is not found.
 """

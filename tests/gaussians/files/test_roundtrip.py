@@ -1,4 +1,4 @@
-"""What was written comes back within the format's own quantisation step, whatever the cloud; equal bytes twice."""
+"""Written clouds are read back within the quantisation step of the format; equal scenes give equal bytes."""
 
 from __future__ import annotations
 

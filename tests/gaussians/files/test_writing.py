@@ -1,4 +1,4 @@
-"""Saving: whole or not at all, and never over another file unasked."""
+"""Saving is atomic and overwrites existing files only on request."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def make_scene(n: int = 3) -> Scene:
 
 
 def only(folder: Path, *names: str) -> bool:
-    """Whether nothing else lies there, hidden files included."""
+    """Whether the folder holds nothing else, hidden files included."""
     return sorted(p.name for p in folder.iterdir()) == sorted(names)
 
 
