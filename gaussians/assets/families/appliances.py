@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from ..modeling.materials import Material, Tone
 from ..modeling.parts import Rng, chance, fronts
-from ..modeling.shapes import Piece, ball, box, boxes, cylinder, extrude, lathe, ring, rod, rounded_rectangle, tube
+from ..modeling.round_shapes import ball, cylinder, lathe, ring, rod, tube
+from ..modeling.shapes import Piece, box, boxes, extrude, rounded_rectangle
 from ..registry import kind
 
 

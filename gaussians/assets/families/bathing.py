@@ -6,24 +6,8 @@ import numpy as np
 
 from ..modeling.materials import STEEL, Material, Tone
 from ..modeling.parts import CORNERS, Rng, chance, fronts
-from ..modeling.shapes import (
-    Array,
-    Piece,
-    Sheets,
-    blob,
-    box,
-    boxes,
-    cylinder,
-    disc,
-    extrude,
-    join,
-    lathe,
-    panel,
-    ring,
-    rod,
-    rounded_rectangle,
-    tube,
-)
+from ..modeling.round_shapes import blob, cylinder, disc, lathe, ring, rod, tube
+from ..modeling.shapes import Array, Piece, Sheets, box, boxes, extrude, join, panel, rounded_rectangle
 from ..registry import kind
 
 Rows = list[tuple[float, ...]]

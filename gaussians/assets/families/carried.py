@@ -6,22 +6,8 @@ import numpy as np
 
 from ..modeling.materials import Material, Tone
 from ..modeling.parts import CORNERS, Rng, around, chance, polar
-from ..modeling.shapes import (
-    Piece,
-    ball,
-    blob,
-    box,
-    boxes,
-    cylinder,
-    extrude,
-    join,
-    lathe,
-    ring,
-    rod,
-    rounded_rectangle,
-    surface,
-    tube,
-)
+from ..modeling.round_shapes import ball, blob, cylinder, lathe, ring, rod, tube
+from ..modeling.shapes import Piece, box, boxes, extrude, join, rounded_rectangle, surface
 from ..registry import kind
 
 

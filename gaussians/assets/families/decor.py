@@ -9,25 +9,8 @@ import numpy as np
 
 from ..modeling.materials import Material, Tone, mix, shade
 from ..modeling.parts import CORNERS, Rng, around, chance
-from ..modeling.shapes import (
-    Array,
-    Piece,
-    ball,
-    blob,
-    box,
-    boxes,
-    cylinder,
-    ellipse,
-    extrude,
-    join,
-    lathe,
-    panel,
-    ring,
-    rod,
-    rounded_rectangle,
-    surface,
-    tube,
-)
+from ..modeling.round_shapes import ball, blob, cylinder, lathe, ring, rod, tube
+from ..modeling.shapes import Array, Piece, box, boxes, ellipse, extrude, join, panel, rounded_rectangle, surface
 from ..registry import kind
 
 

@@ -6,23 +6,8 @@ import numpy as np
 
 from ..modeling.materials import Material, Tone
 from ..modeling.parts import CORNERS, Rng, around, chance, tapered_legs
-from ..modeling.shapes import (
-    Piece,
-    ball,
-    box,
-    boxes,
-    cylinder,
-    disc,
-    extrude,
-    join,
-    lathe,
-    leaf,
-    panel,
-    ring,
-    rod,
-    rounded_rectangle,
-    tube,
-)
+from ..modeling.round_shapes import ball, blob, cylinder, disc, lathe, ring, rod, tube
+from ..modeling.shapes import Piece, box, boxes, extrude, join, leaf, panel, rounded_rectangle
 from ..registry import kind
 
 
@@ -136,8 +121,6 @@ def keyboard(rng: Rng, tone: Tone) -> list[Piece]:
 
 @kind("computer mouse")
 def computer_mouse(rng: Rng, tone: Tone) -> list[Piece]:
-    from ..modeling.shapes import blob
-
     body = blob(0.062, 0.11, 0.072, (0, 0, 0), 0.75, 0.9)
     from ..modeling.parts import clipped_below
 

@@ -6,7 +6,8 @@ import numpy as np
 
 from ..modeling.materials import Material, Tone
 from ..modeling.parts import Rng, chance, polar
-from ..modeling.shapes import Piece, ball, blob, box, boxes, cylinder, join, ring, rod
+from ..modeling.round_shapes import ball, blob, cylinder, ring, rod
+from ..modeling.shapes import Piece, box, boxes, join
 from ..registry import kind
 
 _STEEL = Material((0.72, 0.73, 0.75), "brushed")

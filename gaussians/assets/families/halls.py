@@ -6,7 +6,8 @@ import numpy as np
 
 from ..modeling.materials import Material, Tone
 from ..modeling.parts import CORNERS, Rng, chance, tapered_legs
-from ..modeling.shapes import Piece, ball, box, boxes, cushion, cylinder, disc, join, legs4, panel, rod
+from ..modeling.round_shapes import ball, cushion, cylinder, disc, rod
+from ..modeling.shapes import Piece, box, boxes, join, legs4, panel
 from ..registry import kind
 
 

@@ -6,7 +6,8 @@ import numpy as np
 
 from ..modeling.materials import Material, Tone, mix
 from ..modeling.parts import Rng, around, chance, polar
-from ..modeling.shapes import Piece, ball, blob, cylinder, disc, join, lathe, leaf, ring, rod, tube
+from ..modeling.round_shapes import ball, blob, cylinder, disc, lathe, ring, rod, tube
+from ..modeling.shapes import Piece, join, leaf
 from ..registry import kind
 
 

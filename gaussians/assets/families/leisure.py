@@ -6,22 +6,8 @@ import numpy as np
 
 from ..modeling.materials import Material, Tone, mix
 from ..modeling.parts import Rng, around, chance, polar
-from ..modeling.shapes import (
-    Array,
-    Piece,
-    ball,
-    blob,
-    box,
-    boxes,
-    cylinder,
-    extrude,
-    join,
-    lathe,
-    ring,
-    rod,
-    rounded_rectangle,
-    tube,
-)
+from ..modeling.round_shapes import ball, blob, cylinder, lathe, ring, rod, tube
+from ..modeling.shapes import Array, Piece, box, boxes, extrude, join, rounded_rectangle
 from ..registry import kind
 
 

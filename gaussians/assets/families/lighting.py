@@ -4,21 +4,8 @@ from __future__ import annotations
 
 from ..modeling.materials import Material, Tone, mix
 from ..modeling.parts import CORNERS, Rng, around, chance, polar
-from ..modeling.shapes import (
-    Piece,
-    Point,
-    ball,
-    blob,
-    box,
-    cylinder,
-    extrude,
-    join,
-    lathe,
-    ring,
-    rod,
-    rounded_rectangle,
-    tube,
-)
+from ..modeling.round_shapes import ball, blob, cylinder, lathe, ring, rod, tube
+from ..modeling.shapes import Piece, Point, box, extrude, join, rounded_rectangle
 from ..registry import kind
 
 

@@ -6,7 +6,8 @@ import numpy as np
 
 from ..modeling.materials import STEEL, Material, Tone
 from ..modeling.parts import Rng, chance
-from ..modeling.shapes import Piece, box, boxes, join, lathe, panel, rod
+from ..modeling.round_shapes import lathe, rod
+from ..modeling.shapes import Piece, box, boxes, join, panel
 from ..registry import kind
 
 Rows = list[tuple[float, ...]]

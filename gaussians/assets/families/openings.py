@@ -6,7 +6,8 @@ import numpy as np
 
 from ..modeling.materials import Material, Tone, mix
 from ..modeling.parts import Rng, chance
-from ..modeling.shapes import Piece, ball, blob, box, boxes, cylinder, join, lathe, panel, ring, rod, surface
+from ..modeling.round_shapes import ball, blob, cylinder, lathe, ring, rod
+from ..modeling.shapes import Piece, box, boxes, join, panel, surface
 from ..registry import kind
 
 

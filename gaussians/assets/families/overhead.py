@@ -9,7 +9,8 @@ import numpy as np
 
 from ..modeling.materials import Material, Tone
 from ..modeling.parts import Rng, chance, shell
-from ..modeling.shapes import Array, Piece, ball, blob, box, boxes, cylinder, join, rod, surface, tube
+from ..modeling.round_shapes import ball, blob, cylinder, rod, tube
+from ..modeling.shapes import Array, Piece, box, boxes, join, surface
 from ..registry import kind
 
 _PARTY = ("#e0455e", "#f2c53d", "#3f79c9", "#4fae6a", "#f08a3c", "#9a5fc0")

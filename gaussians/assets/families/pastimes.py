@@ -6,7 +6,8 @@ import numpy as np
 
 from ..modeling.materials import STEEL, Material, Tone
 from ..modeling.parts import CORNERS, Rng, chance, polar, shell
-from ..modeling.shapes import Piece, ball, blob, box, boxes, cylinder, disc, join, legs4, panel, rod, tube
+from ..modeling.round_shapes import ball, blob, cylinder, disc, rod, tube
+from ..modeling.shapes import Piece, box, boxes, join, legs4, panel
 from ..registry import kind
 
 Rows = list[tuple[float, ...]]

@@ -6,7 +6,8 @@ import numpy as np
 
 from ..modeling.materials import Material, Tone, shade
 from ..modeling.parts import Rng, chance
-from ..modeling.shapes import Piece, ball, blob, box, cylinder, disc, join, lathe, leaf, rod, tube
+from ..modeling.round_shapes import ball, blob, cylinder, disc, lathe, rod, tube
+from ..modeling.shapes import Piece, box, join, leaf
 from ..registry import kind
 
 

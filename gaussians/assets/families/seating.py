@@ -6,24 +6,8 @@ import numpy as np
 
 from ..modeling.materials import Material, Tone
 from ..modeling.parts import Rng, chance, clipped_below, drape, polar, shell, tapered_legs
-from ..modeling.shapes import (
-    Piece,
-    Point,
-    ball,
-    box,
-    boxes,
-    cushion,
-    cylinder,
-    extrude,
-    join,
-    lathe,
-    legs4,
-    pillow,
-    ring,
-    rod,
-    rounded_rectangle,
-    tube,
-)
+from ..modeling.round_shapes import ball, cushion, cylinder, lathe, pillow, ring, rod, tube
+from ..modeling.shapes import Piece, Point, box, boxes, extrude, join, legs4, rounded_rectangle
 from ..registry import kind
 
 

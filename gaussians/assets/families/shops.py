@@ -6,7 +6,8 @@ import numpy as np
 
 from ..modeling.materials import Material, Tone, mix
 from ..modeling.parts import CORNERS, Rng, chance
-from ..modeling.shapes import Piece, blob, box, boxes, cylinder, join, lathe, panel, ring, rod, tube
+from ..modeling.round_shapes import blob, cylinder, lathe, ring, rod, tube
+from ..modeling.shapes import Piece, box, boxes, join, panel
 from ..registry import kind
 
 _CRUSTS = ("#c98a45", "#e0a860", "#8a5230", "#f0d9a8", "#d9738c", "#5a3220")

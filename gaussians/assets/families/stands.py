@@ -6,7 +6,8 @@ import numpy as np
 
 from ..modeling.materials import Material, Tone
 from ..modeling.parts import CORNERS, Rng, chance, fronts, polar
-from ..modeling.shapes import Piece, ball, blob, box, boxes, cylinder, disc, join, lathe, legs4, ring, rod, tube
+from ..modeling.round_shapes import ball, blob, cylinder, disc, lathe, ring, rod, tube
+from ..modeling.shapes import Piece, box, boxes, join, legs4
 from ..registry import kind
 
 

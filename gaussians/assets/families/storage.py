@@ -6,22 +6,8 @@ import numpy as np
 
 from ..modeling.materials import Material, Tone
 from ..modeling.parts import Rng, around, chance, fronts, polar, row_of_books, tapered_legs
-from ..modeling.shapes import (
-    Piece,
-    ball,
-    box,
-    boxes,
-    cylinder,
-    disc,
-    extrude,
-    join,
-    lathe,
-    legs4,
-    ring,
-    rod,
-    rounded_rectangle,
-    tube,
-)
+from ..modeling.round_shapes import ball, cylinder, disc, lathe, ring, rod, tube
+from ..modeling.shapes import Piece, box, boxes, extrude, join, legs4, rounded_rectangle
 from ..registry import kind
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from ..modeling.materials import Material, Tone
 from ..modeling.parts import CORNERS, Rng, chance, fronts, polar, tapered_legs
-from ..modeling.shapes import Piece, box, boxes, ellipse, extrude, join, lathe, legs4, rod, rounded_rectangle, tube
+from ..modeling.round_shapes import lathe, rod, tube
+from ..modeling.shapes import Piece, box, boxes, ellipse, extrude, join, legs4, rounded_rectangle
 from ..registry import kind
 
 

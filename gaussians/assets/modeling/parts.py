@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from .materials import Material
-from .shapes import Array, Piece, Point, Sheets, ball, box, boxes, join, legs4, rod, surface
+from .round_shapes import ball, rod
+from .shapes import Array, Piece, Point, Sheets, box, boxes, join, legs4, surface
 
 Rng = np.random.Generator
 CORNERS = ((-1, -1), (-1, 1), (1, -1), (1, 1))  # signs of x and y

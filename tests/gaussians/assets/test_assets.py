@@ -10,7 +10,7 @@ import torch
 import trimesh
 
 from scenewright.gaussians import assets, color
-from scenewright.gaussians.assets.modeling import make, sampling, shapes
+from scenewright.gaussians.assets.modeling import make, round_shapes, sampling, shapes
 from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.world import kinds
 
@@ -129,11 +129,11 @@ def test_closed_solids_have_their_volume_and_outward_normals() -> None:
     """Signed volume is positive only if every face looks outwards; inscribed polygons lose a few per cent."""
     cases = [
         (shapes.box(2, 3, 4, bevel=0.0), 24.0),
-        (shapes.ball(1.0), 4 / 3 * np.pi),
-        (shapes.cylinder(1.0, 2.0), 2 * np.pi),
-        (shapes.tube([(0, 0, 0), (0, 0, 1), (0, 0, 2)], 0.5, segments=24), np.pi / 2),
+        (round_shapes.ball(1.0), 4 / 3 * np.pi),
+        (round_shapes.cylinder(1.0, 2.0), 2 * np.pi),
+        (round_shapes.tube([(0, 0, 0), (0, 0, 1), (0, 0, 2)], 0.5, segments=24), np.pi / 2),
         (shapes.extrude(shapes.ellipse(2, 2, 48), 1.0), np.pi),
-        (shapes.ring(2.0, 0.5, axis="x"), 2 * np.pi**2 * 2 * 0.25),
+        (round_shapes.ring(2.0, 0.5, axis="x"), 2 * np.pi**2 * 2 * 0.25),
     ]
     for piece, volume in cases:
         measured = to_trimesh(piece).volume
@@ -141,12 +141,12 @@ def test_closed_solids_have_their_volume_and_outward_normals() -> None:
 
 
 def test_mirrored_pieces_keep_their_normals_outside() -> None:
-    assert to_trimesh(shapes.ball(1.0).stretched(-1, 1, 1)).volume > 3.5
+    assert to_trimesh(round_shapes.ball(1.0).stretched(-1, 1, 1)).volume > 3.5
 
 
 def test_samples_cover_a_sphere_evenly() -> None:
     """No point of a unit sphere is farther from a sample than one spacing, and areas add up."""
-    samples = sampling.sample([shapes.ball(1.0)], 0.1)
+    samples = sampling.sample([round_shapes.ball(1.0)], 0.1)
     rng = np.random.default_rng(0)
     points = rng.normal(size=(2000, 3))
     points /= np.linalg.norm(points, axis=1, keepdims=True)
