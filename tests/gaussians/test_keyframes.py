@@ -1,4 +1,4 @@
-"""Laws of camera paths: spline every keyframe, never far off between them, at rest where keyframes rest."""
+"""Laws of camera paths: they pass every keyframe, stay near the chords between them, and rest at equal keyframes."""
 
 from __future__ import annotations
 

@@ -241,7 +241,7 @@ def in_folder(name: str, content: str) -> Callable[[Path], str]:
         (in_folder("names.json", '[{"name": "a", "synonyms": 3}, "b"]'), "must be a list"),
         (in_folder("names.json", '[{"name": "a", "synonyms": null}, "b"]'), "must be a list"),
         (in_folder("names.json", DEEP), "cannot be read"),
-        (in_folder("calibration.json", "[]"), "no calibration"),
+        (in_folder("calibration.json", "[]"), "is not a calibration"),
     ],
 )
 def test_vectors_that_do_not_hold_together_say_why(tmp_path: Path, write: Callable[[Path], str], said: str) -> None:
