@@ -235,8 +235,7 @@ class DefaultStrategy:
         if not prune.all():
             parameters.take(np.flatnonzero(~prune))
         if step % self.reset_every == 0:
-            opacity = 2 * PRUNE_OPA
-            logits = parameters.logit_opacities
+            opacity, logits = 2 * PRUNE_OPA, parameters.logit_opacities
             logits[:] = np.minimum(logits, np.float32(math.log(opacity / (1 - opacity))))
             parameters.optimisers["logit_opacities"].reset(np.arange(len(parameters)))
         self._grads = _Grad2d()
@@ -246,8 +245,7 @@ class DefaultStrategy:
         for _ in range(2):
             first = len(parameters)
             parameters.append(rows)
-            axes = _axes(parameters, rows)
-            offsets = np.einsum("nij,nj->ni", axes, self.rng.standard_normal((len(rows), 3)))
+            offsets = np.einsum("nij,nj->ni", _axes(parameters, rows), self.rng.standard_normal((len(rows), 3)))
             parameters.means[first:] += offsets.astype(np.float32)
             parameters.log_scales[first:] -= np.float32(math.log(1.6))
 

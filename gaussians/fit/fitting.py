@@ -99,9 +99,7 @@ class Fitted:
     quality: Quality
     steps: int
     seconds: float
-    curve: tuple[
-        tuple[float, float], ...
-    ]  # seconds of training, and dB on the first `EVAL_PHOTOS` held-out photographs
+    curve: tuple[tuple[float, float], ...]  # seconds, and dB on the first `EVAL_PHOTOS` held-out photographs
     choices: tuple[Choice, ...]  # tried reductions, in order
 
 
@@ -136,7 +134,9 @@ def fit(
     initial = initial_cloud(photos, settings.max_gaussians, rng)
     degree = held_out_choice.MAX_DEGREE if settings.degree == "auto" else settings.degree
     schedule = Schedule(settings.steps, settings.seconds, settings.coarse, degree)
-    strategy = _strategy(settings, photos.extent, rng)
+    strategy: Strategy = DefaultStrategy(photos.extent, rng, settings.max_gaussians)
+    if settings.growth == "budgeted":
+        strategy = MCMCStrategy(settings.max_gaussians, rng)
     trainer = Trainer(photos.shots, Parameters.of(initial), strategy, photos.extent, schedule, rng, engine)
     name = _training_id(photos, settings)
     record = _resume(trainer, checkpoint_path, name) if checkpoint_path is not None else _Record()
@@ -202,12 +202,6 @@ class _Reporter:
         psnr = curve[-1][1] if curve else math.nan
         self._on_status(Status(trainer.steps, trainer.progress, self._loss, psnr, len(trainer.parameters), left))
         self._reported = now
-
-
-def _strategy(settings: Settings, extent: float, rng: np.random.Generator) -> Strategy:
-    if settings.growth == "budgeted":
-        return MCMCStrategy(settings.max_gaussians, rng)
-    return DefaultStrategy(extent, rng, settings.max_gaussians)
 
 
 def _training_id(photos: Photos, settings: Settings) -> str:

@@ -83,11 +83,10 @@ def toilet(rng: Rng, tone: Tone) -> list[Piece]:
     y = -d / 2 + bowl / 2
     t = np.linspace(0, 2 * np.pi, 24, endpoint=False)
     egg = np.stack([w / 2 * np.cos(t), bowl / 2 * np.sin(t) * (1 + 0.06 * np.sin(t))], axis=1)
+    foot = extrude(rounded_rectangle(w * 0.62, bowl * 0.8, 0.1), 0.16, 0.01).moved(0, y + bowl * 0.1, 0)
     out = [
         _basin(egg, seat, 0.68, 0.2).moved(0, y, 0).named("bowl", white),
-        extrude(rounded_rectangle(w * 0.62, bowl * 0.8, 0.1), 0.16, 0.01)
-        .moved(0, y + bowl * 0.1, 0)
-        .named("foot", white),
+        foot.named("foot", white),
         box(w, tank, h - seat + 0.02, (0, d / 2 - tank / 2, seat - 0.02), 0.02).named("tank", white),
         box(w * 1.04, tank + 0.02, 0.03, (0, d / 2 - tank / 2, h - 0.03), 0.01).named("lid", white),
         cylinder(0.022, 0.012, (0, d / 2 - tank / 2, h)).named("button", steel),
@@ -158,12 +157,11 @@ def shower(rng: Rng, tone: Tone) -> list[Piece]:
     posts += [(w, t, t, 0, -(w - t) / 2, h - t), (t, w, t, -(w - t) / 2, 0, h - t)]
     head = [(0, w * 0.44, 1.0), (0, w * 0.44, h * 0.96), (0, w * 0.3, h * 0.99), (0, w * 0.14, h * 0.97)]
     glass = Material((0.78, 0.88, 0.9), "glass", (0.93, 0.97, 0.98))
+    tile = boxes([(w - t, 0.012, h - 0.1, 0, w / 2 - 0.01, 0.1), (0.012, w - t, h - 0.1, w / 2 - 0.01, 0, 0.1)], 0.0)
     return [
         box(w, w, 0.1, (0, 0, 0), 0.02).named("tray", white),
         disc(0.045, (0, 0, 0.102)).named("drain", STEEL),
-        boxes(
-            [(w - t, 0.012, h - 0.1, 0, w / 2 - 0.01, 0.1), (0.012, w - t, h - 0.1, w / 2 - 0.01, 0, 0.1)], 0.0
-        ).named("tile", tiles),
+        tile.named("tile", tiles),
         boxes(posts, 0.004).named("frame", STEEL),
         box(0.008, w * 0.9, h * 0.4, (-w / 2 + 0.015, 0, 0.12), 0.0).named("glass", glass),
         tube(head, 0.012, smooth=17).named("pipe", STEEL),
@@ -189,6 +187,7 @@ def towel_rack(rng: Rng, tone: Tone) -> list[Piece]:
 def dishwasher(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = 0.6, rng.uniform(0.56, 0.6), rng.uniform(0.82, 0.87), tone.main
     y, dark = -d / 2, tone.plain("#26282c")
+    button = boxes([(0.02, 0.008, 0.015, x * w, y - 0.015, h - 0.07) for x in (-0.3, -0.2, -0.1, 0.25)])
     return [
         box(w, d, h, (0, 0, 0), 0.012).named("body", mat),
         box(w * 0.95, 0.02, h * 0.72, (0, y - 0.004, 0.1), 0.006).named("door", mat.shaded(1.05)),
@@ -197,8 +196,6 @@ def dishwasher(rng: Rng, tone: Tone) -> list[Piece]:
         ),
         rod((-w * 0.36, y - 0.045, h * 0.76), (w * 0.36, y - 0.045, h * 0.76), 0.012).named("handle", STEEL),
         boxes([(0.02, 0.03, 0.02, s * w * 0.34, y - 0.025, h * 0.76 - 0.01) for s in (-1, 1)]).named("mount", STEEL),
-        boxes([(0.02, 0.008, 0.015, x * w, y - 0.015, h - 0.07) for x in (-0.3, -0.2, -0.1, 0.25)]).named(
-            "button", tone.plain("#c8d2d8")
-        ),
+        button.named("button", tone.plain("#c8d2d8")),
         box(w * 0.94, d * 0.9, 0.08, (0, 0.03, 0.0), 0.0).named("plinth", dark),
     ]

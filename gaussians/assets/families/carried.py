@@ -15,11 +15,10 @@ from ..registry import kind
 def backpack(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.27, 0.33), rng.uniform(0.15, 0.2), rng.uniform(0.4, 0.48), tone.textile(0.07, 0.7)
     trim = tone.accent() if chance(rng, 0.5) else mat.shaded(0.6)
+    pocket = blob(w * 0.78, d * 0.6, h * 0.42, (0, -d * 0.42, h * 0.28), 0.5, 0.5)
     out = [
         blob(w, d, h, (0, 0, h / 2), 0.5, 0.45).named("body", mat),
-        blob(w * 0.78, d * 0.6, h * 0.42, (0, -d * 0.42, h * 0.28), 0.5, 0.5).named(
-            "pocket", mat if chance(rng, 0.5) else trim
-        ),
+        pocket.named("pocket", mat if chance(rng, 0.5) else trim),
     ]
     zipper = [
         (w * 0.38 * np.cos(a), -d * 0.5 * (0.75 + 0.1 * np.sin(a)), h * 0.62 + h * 0.3 * np.sin(a))
@@ -75,16 +74,14 @@ def suitcase(rng: Rng, tone: Tone) -> list[Piece]:
     corners = [
         ball(0.035, (sx * (w / 2 - 0.012), sy * (d / 2 - 0.012), z)) for sx, sy in CORNERS for z in (0.028, h - 0.02)
     ]
+    handle = tube([(-0.07, 0, h), (-0.06, 0, h + 0.045), (0.06, 0, h + 0.045), (0.07, 0, h)], 0.011, smooth=13)
+    lock = boxes([(0.05, 0.012, 0.04, s * w * 0.15, -d / 2 - 0.003, h * 0.8) for s in (-1, 1)])
     return [
         box(w, d, h, (0, 0, 0), 0.015).named("shell", mat),
         boxes([(0.035, d + 0.012, h + 0.01, s * w * 0.28, 0, 0) for s in (-1, 1)]).named("strap", strap),
         join(*corners).named("corner", strap),
-        tube([(-0.07, 0, h), (-0.06, 0, h + 0.045), (0.06, 0, h + 0.045), (0.07, 0, h)], 0.011, smooth=13).named(
-            "handle", strap
-        ),
-        boxes([(0.05, 0.012, 0.04, s * w * 0.15, -d / 2 - 0.003, h * 0.8) for s in (-1, 1)]).named(
-            "lock", tone.metal()
-        ),
+        handle.named("handle", strap),
+        lock.named("lock", tone.metal()),
     ]
 
 

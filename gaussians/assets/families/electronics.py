@@ -84,11 +84,10 @@ def laptop(rng: Rng, tone: Tone) -> list[Piece]:
     w, d = rng.uniform(0.31, 0.37), rng.uniform(0.21, 0.25)
     body = tone.main
     keys = Material((0.12, 0.12, 0.13), "keys", body.color)
+    screen = panel(w - 0.016, d - 0.02, (0, -0.0055, 0.012))
     lid = [
         box(w, 0.008, d, (0, 0, 0), 0.003).named("lid", body),
-        panel(w - 0.016, d - 0.02, (0, -0.0055, 0.012)).named(
-            "screen", Material((0.1, 0.1, 0.1), "screen", seed=tone.seed | 1)
-        ),
+        screen.named("screen", Material((0.1, 0.1, 0.1), "screen", seed=tone.seed | 1)),
     ]
     angle = -rng.uniform(8, 32)
     out = [box(w, d, 0.016, (0, 0, 0), 0.004).named("base", body)]

@@ -47,13 +47,12 @@ def treadmill(rng: Rng, tone: Tone) -> list[Piece]:
     screen = panel(w * 0.5, 0.2, (0, -0.028, 0.06)).named(
         "screen", Material((0.15, 0.5, 0.75), "screen", seed=tone.seed)
     )
+    foot = boxes([(0.08, 0.08, 0.03, s * (w / 2 - 0.06), y, 0) for s in (-1, 1) for y in (-d * 0.42, d * 0.42)])
     return [
         boxes([(0.1, d, 0.13, s * (w / 2 - 0.05), 0, 0.03) for s in (-1, 1)], 0.02).named("side", mat),
         box(w - 0.18, d - 0.06, 0.05, (0, 0, 0.1), 0.01).named("belt", black),
         box(w * 0.84, 0.34, 0.2, (0, d / 2 - 0.17, 0.05), 0.05).named("hood", mat),
-        boxes([(0.08, 0.08, 0.03, s * (w / 2 - 0.06), y, 0) for s in (-1, 1) for y in (-d * 0.42, d * 0.42)]).named(
-            "foot", black
-        ),
+        foot.named("foot", black),
         join(*posts).named("post", steel),
         join(*rails).named("handle", black),
         *(p.turned("x", -22).moved(0, head - 0.08, h - 0.3) for p in (console, screen)),
@@ -103,14 +102,13 @@ def ping_pong_table(rng: Rng, tone: Tone) -> list[Piece]:
     lines.append((w, 0.012, 0.004, 0, 0, h))
     net = Material((0.9, 0.9, 0.9), "checks", (0.25, 0.27, 0.3), 0.02)
     leg = boxes([(0.05, 0.05, h - 0.06, sx * w * k, sy * d * 0.36, 0) for sx, sy in CORNERS for k in (0.12, 0.42)])
+    beam = boxes([(0.05, d * 0.8, 0.05, s * w * k, 0, h - 0.09) for s in (-1, 1) for k in (0.12, 0.42)])
     out = [
         box(w, d, 0.03, (0, 0, h - 0.03), 0.004).named("top", top),
         boxes(lines, 0.0).named("line", white, 1.3),
         box(0.008, d + 0.2, 0.13, (0, 0, h + 0.015), 0.0).named("net", net),
         box(0.012, d + 0.2, 0.015, (0, 0, h + 0.14), 0.0).named("tape", white),
-        boxes([(0.05, d * 0.8, 0.05, s * w * k, 0, h - 0.09) for s in (-1, 1) for k in (0.12, 0.42)]).named(
-            "beam", black
-        ),
+        beam.named("beam", black),
         leg.named("leg", black),
     ]
     bat = tone.plain("#c8201e") if chance(rng, 0.5) else black
@@ -207,11 +205,10 @@ def easel(rng: Rng, tone: Tone) -> list[Piece]:
         rod((0, 0.42, 0), (0, 0.08, h * 0.94), 0.016)
     ]
     lean = 9.0
+    picture = panel(w * 0.9, 0.58, (0, -0.015, 0.02))
     canvas = [
         box(w * 0.95, 0.025, 0.62, (0, 0, 0), 0.003).named("canvas", tone.plain("#f4f1e8")),
-        panel(w * 0.9, 0.58, (0, -0.015, 0.02)).named(
-            "picture", Material((0.4, 0.6, 0.8), "picture", (0.9, 0.7, 0.4), seed=tone.seed)
-        ),
+        picture.named("picture", Material((0.4, 0.6, 0.8), "picture", (0.9, 0.7, 0.4), seed=tone.seed)),
     ]
     return [
         join(*legs).named("leg", mat, 1.2),

@@ -131,10 +131,9 @@ def wine_glass(rng: Rng, tone: Tone) -> list[Piece]:
     r, h = rng.uniform(0.032, 0.044), rng.uniform(0.16, 0.22)
     glass = Material(mix(tone.color, (0.85, 0.92, 0.95), 0.4), "brushed", main=True)
     cup = [(0.004, h * 0.5), (r * 0.7, h * 0.56), (r * 1.05, h * 0.72), (r * 0.85, h)]
+    stem = lathe([(0, 0), (r * 0.85, 0), (r * 0.5, 0.006), (0.004, 0.014), (0.004, h * 0.5)], smooth=15)
     out = [
-        lathe([(0, 0), (r * 0.85, 0), (r * 0.5, 0.006), (0.004, 0.014), (0.004, h * 0.5)], smooth=15).named(
-            "stem", glass
-        ),
+        stem.named("stem", glass),
         lathe(cup, smooth=13).named("cup", glass),
         lathe([(r * 0.82, h), (r, h * 0.74), (0, h * 0.58)], smooth=11).named("inside", glass.shaded(0.8)),
         ring(r * 0.84, 0.0016, (0, 0, h)).named("rim", glass),
@@ -224,11 +223,10 @@ def apple(rng: Rng, tone: Tone) -> list[Piece]:
         ],
         smooth=21,
     )
+    stem = tube([(0, 0, r * 1.5 * k), (0.003, 0, r * 1.9 * k), (0.008, 0, r * 2.1 * k)], 0.0022)
     out = [
         body.named("body", skin),
-        tube([(0, 0, r * 1.5 * k), (0.003, 0, r * 1.9 * k), (0.008, 0, r * 2.1 * k)], 0.0022).named(
-            "stem", tone.plain("#4a3018"), 1.3
-        ),
+        stem.named("stem", tone.plain("#4a3018"), 1.3),
     ]
     if chance(rng, 0.6):
         out.append(leaf(0.035, 0.02, 0.4, 0.4).moved(0.004, 0, r * 1.9 * k).named("leaf", tone.plain("#3d8b37")))

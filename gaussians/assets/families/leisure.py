@@ -258,15 +258,14 @@ def piano(rng: Rng, tone: Tone) -> list[Piece]:
             rod((x, y, 0), (x, y, z), 0.03, 0.05)
             for x, y in ((-w * 0.42, -d * 0.3), (w * 0.42, -d * 0.3), (-w * 0.22, d * 0.36))
         ]
+        arm = boxes([(0.06, 0.24, 0.12, s * (w / 2 - 0.03), -d / 2 + 0.12, z - 0.03) for s in (-1, 1)])
         return [
             extrude(outline, 0.3, 0.01).moved(0, 0, z).named("case", wood),
             lid.turned("y", -rng.uniform(0, 25), (-w / 2, 0, 1.0)).named("lid", wood),
             join(*legs).named("leg", wood),
             box(w, 0.24, 0.06, (0, -d / 2 + 0.12, z - 0.06)).named("keybed", wood),
             *keys(-d / 2 + 0.1),
-            boxes([(0.06, 0.24, 0.12, s * (w / 2 - 0.03), -d / 2 + 0.12, z - 0.03) for s in (-1, 1)]).named(
-                "arm", wood
-            ),
+            arm.named("arm", wood),
         ]
     h, d = rng.uniform(1.08, 1.3), rng.uniform(0.55, 0.62)
     y = -d / 2 + 0.12
@@ -278,14 +277,13 @@ def piano(rng: Rng, tone: Tone) -> list[Piece]:
         [(0.06, 0.27, 0.13, s * (w / 2 - 0.03), y + 0.01, z - 0.03) for s in (-1, 1)]
         + [(0.06, 0.06, z - 0.06, s * (w / 2 - 0.05), y - 0.06, 0) for s in (-1, 1)]
     )
+    pedal = boxes([(0.04, 0.1, 0.02, x, -0.02, 0.06) for x in (-0.1, 0, 0.1)])
     out = [
         case.named("case", wood),
         arms.named("arm", wood),
         *keys(y - 0.01),
         box(w * 0.6, 0.02, 0.18, (0, -d / 2 + 0.25, z + 0.16)).named("music stand", wood.shaded(0.8)),
-        boxes([(0.04, 0.1, 0.02, x, -0.02, 0.06) for x in (-0.1, 0, 0.1)]).named(
-            "pedal", Material((0.8, 0.65, 0.3), "brushed")
-        ),
+        pedal.named("pedal", Material((0.8, 0.65, 0.3), "brushed")),
     ]
     if chance(rng, 0.5):
         sheet_music = box(0.34, 0.01, 0.24, (0, -d / 2 + 0.235, z + 0.2)).turned("x", -8, (0, 0, z + 0.2))

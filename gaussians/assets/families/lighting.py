@@ -73,12 +73,11 @@ def floor_lamp(rng: Rng, tone: Tone) -> list[Piece]:
             rod((0, 0, 0.02), (0, 0, h), 0.014).named("pole", metal, 1.3),
         ]
         bowl = Material(tone.color, "glow", mix(tone.color, (1, 1, 0.9), 0.6), main=True)
+        inside = lathe([(r - 0.005, 0.14), (r * 0.7, 0.06), (0, 0.03)], (0, 0, h), smooth=9)
         return [
             *out,
             lathe([(0.02, 0), (r * 0.7, 0.05), (r, 0.14)], (0, 0, h), smooth=9).named("shade", bowl),
-            lathe([(r - 0.005, 0.14), (r * 0.7, 0.06), (0, 0.03)], (0, 0, h), smooth=9).named(
-                "inside", tone.plain("#fff3cf")
-            ),
+            inside.named("inside", tone.plain("#fff3cf")),
         ]
     return out + _shade(rng, r, sh, (0, 0, h - sh * 0.5), tone, shade)
 

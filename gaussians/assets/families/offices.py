@@ -17,15 +17,14 @@ Rows = list[tuple[float, ...]]
 def printer(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(0.4, 0.46), rng.uniform(0.36, 0.42), rng.uniform(0.24, 0.32), tone.main
     dark = tone.plain("#2a2c30")
+    display = panel(w * 0.26, h * 0.14, (w * 0.28, -d / 2 - 0.002, h * 0.6))
     return [
         box(w, d, h * 0.8, (0, 0, 0), 0.015).named("body", mat),
         box(w * 0.96, d * 0.9, h * 0.14, (0, 0.01, h * 0.82), 0.012).named("lid", mat.shaded(0.9)),
         box(w * 0.8, 0.02, h * 0.16, (0, -d / 2 + 0.005, h * 0.38), 0.004).named("slot", dark),
         box(w * 0.62, d * 0.35, 0.012, (0, -d * 0.58, h * 0.36), 0.003).named("tray", mat.shaded(0.8)),
         box(w * 0.55, d * 0.3, 0.006, (0, -d * 0.58, h * 0.37 + 0.01), 0.0).named("paper", tone.plain("#fbfbf9")),
-        panel(w * 0.26, h * 0.14, (w * 0.28, -d / 2 - 0.002, h * 0.6)).named(
-            "display", Material((0.2, 0.5, 0.75), "screen", seed=2)
-        ),
+        display.named("display", Material((0.2, 0.5, 0.75), "screen", seed=2)),
     ]
 
 

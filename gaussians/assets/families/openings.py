@@ -63,10 +63,9 @@ def door(rng: Rng, tone: Tone) -> list[Piece]:
         panels = boxes([(w * 0.7, 0.012, h * 0.2, 0, y, h * (0.06 + 0.235 * k)) for k in range(4)], 0.005)
         out.append(panels.named("panel", inner))
     elif style == 2:
+        glass = panel(w * 0.62, h * 0.36, (0, y - 0.004, h * 0.56))
         out += [
-            panel(w * 0.62, h * 0.36, (0, y - 0.004, h * 0.56)).named(
-                "glass", Material((0.72, 0.84, 0.88), "glass", (0.93, 0.97, 0.98))
-            ),
+            glass.named("glass", Material((0.72, 0.84, 0.88), "glass", (0.93, 0.97, 0.98))),
             boxes(
                 [(w * 0.62, 0.02, 0.02, 0, y, h * z) for z in (0.55, 0.735, 0.92)]
                 + [(0.02, 0.02, h * 0.37, x * w * 0.31, y, h * 0.555) for x in (-1, 0, 1)]
@@ -156,13 +155,11 @@ def fireplace(rng: Rng, tone: Tone) -> list[Piece]:
     )
     pw, oh = w * 0.22, h * 0.68
     iw = w - 2 * pw
+    surround = boxes([(pw, d, h, s * (w - pw) / 2, 0, 0) for s in (-1, 1)] + [(iw, d, h - oh, 0, 0, oh)], 0.008)
+    mantel = box(w + 0.16, d + 0.08, 0.06, (0, -0.03, h), 0.012)
     out = [
-        boxes([(pw, d, h, s * (w - pw) / 2, 0, 0) for s in (-1, 1)] + [(iw, d, h - oh, 0, 0, oh)], 0.008).named(
-            "surround", stone
-        ),
-        box(w + 0.16, d + 0.08, 0.06, (0, -0.03, h), 0.012).named(
-            "mantel", stone if chance(rng, 0.5) else tone.wood().along(0)
-        ),
+        surround.named("surround", stone),
+        mantel.named("mantel", stone if chance(rng, 0.5) else tone.wood().along(0)),
         box(w + 0.1, d + 0.2, 0.03, (0, -0.1, 0), 0.006).named("hearth", tone.plain("#4a4644")),
     ]
     soot = tone.plain("#1c1816")

@@ -104,12 +104,11 @@ def coffee_machine(rng: Rng, tone: Tone) -> list[Piece]:
     ]
     for k in range(groups):
         x = (k - (groups - 1) / 2) * w * 0.45
+        cup = lathe([(0, 0), (0.025, 0), (0.038, 0.06), (0.032, 0.058), (0.02, 0.01), (0, 0.01)], (x, -d * 0.2, 0.072))
         out += [
             cylinder(0.035, 0.05, (x, -d * 0.17, h * 0.63), bevel=0.006).named("group", steel),
             rod((x, -d * 0.2, h * 0.64), (x, -d * 0.46, h * 0.6), 0.013).named("handle", black),
-            lathe(
-                [(0, 0), (0.025, 0), (0.038, 0.06), (0.032, 0.058), (0.02, 0.01), (0, 0.01)], (x, -d * 0.2, 0.072)
-            ).named("cup", tone.plain("#f4f1ea")),
+            cup.named("cup", tone.plain("#f4f1ea")),
         ]
     bends = (0.44, -0.32, 0.72), (0.46, -0.42, 0.5), (0.43, -0.4, 0.28)
     for s in (1,) if groups == 1 else (-1, 1):
@@ -166,12 +165,11 @@ def aisle_shelf(rng: Rng, tone: Tone) -> list[Piece]:
     w, d, h, mat = rng.uniform(1.1, 2.1), rng.uniform(0.5, 0.9), rng.uniform(1.35, 1.8), tone.main
     levels = int(rng.integers(3, 6))
     rise = (h - 0.14) / levels
+    upright = boxes([(0.03, d * 0.4, h - 0.12, s * (w / 2 - 0.015), 0, 0.12) for s in (-1, 1)])
     out = [
         box(w, d, 0.12, (0, 0, 0), 0.006).named("base", mat),
         box(w, 0.03, h - 0.12, (0, 0, 0.12), 0.003).named("back", mat.shaded(1.1)),
-        boxes([(0.03, d * 0.4, h - 0.12, s * (w / 2 - 0.015), 0, 0.12) for s in (-1, 1)]).named(
-            "upright", mat.shaded(0.75)
-        ),
+        upright.named("upright", mat.shaded(0.75)),
     ]
     boards: list[tuple[float, ...]] = []
     goods: dict[int, list[Piece]] = {}

@@ -24,17 +24,15 @@ def vending_machine(rng: Rng, tone: Tone) -> list[Piece]:
             goods.setdefault(int(rng.integers(len(tints))), []).append(
                 (0.07, 0.02, 0.16, x * w, y - 0.012, h * 0.32 + k * 0.215)
             )
+    shelf = boxes([(w * 0.7, 0.02, 0.012, -w * 0.11, y - 0.008, h * 0.31 + k * 0.215) for k in range(5)])
+    display = panel(w * 0.12, 0.1, (w * 0.37, y - 0.012, h * 0.72))
     out = [
         box(w, d, h, (0, 0, 0), 0.02).named("body", mat),
         box(w * 0.7, 0.012, h * 0.62, (-w * 0.11, y - 0.002, h * 0.3), 0.0).named("window", dark),
-        boxes([(w * 0.7, 0.02, 0.012, -w * 0.11, y - 0.008, h * 0.31 + k * 0.215) for k in range(5)]).named(
-            "shelf", STEEL
-        ),
+        shelf.named("shelf", STEEL),
         box(w * 0.6, 0.012, h * 0.12, (-w * 0.11, y - 0.002, h * 0.1), 0.0).named("flap", dark),
         box(w * 0.16, 0.012, h * 0.3, (w * 0.37, y - 0.003, h * 0.5), 0.0).named("panel", STEEL),
-        panel(w * 0.12, 0.1, (w * 0.37, y - 0.012, h * 0.72)).named(
-            "display", Material((0.2, 0.6, 0.8), "screen", seed=1)
-        ),
+        display.named("display", Material((0.2, 0.6, 0.8), "screen", seed=1)),
     ]
     return out + [boxes(rows, 0.004).named("goods", tone.plain(tints[k])) for k, rows in goods.items()]
 

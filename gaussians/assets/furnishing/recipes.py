@@ -28,21 +28,10 @@ SMALL = {
     "stove": ("cooking pot", "kettle"),
 }  # fmt: skip
 LOOSE = (
-    "ball",
-    "basket",
-    "box",
-    "bin",
-    "backpack",
-    "suitcase",
-    "shoe",
-    "umbrella",
-    "drum",
-    "fan",
-    "ottoman",
-    "flower pot",
-    "guitar",
-    "teddy bear",
-)
+    "ball", "basket", "box", "bin", "backpack", "suitcase", "shoe", "umbrella", "drum",
+    "fan", "ottoman", "flower pot", "guitar", "teddy bear",
+)  # fmt: skip
+ODD_COLORS = ("red", "orange", "yellow", "green", "teal", "blue", "purple", "pink", "brown", "white", "black")
 
 
 class Supplier:
@@ -58,11 +47,7 @@ class Supplier:
 
     def odd_color(self) -> str:
         """A colour word for the one that differs."""
-        return str(
-            self.rng.choice(
-                ["red", "orange", "yellow", "green", "teal", "blue", "purple", "pink", "brown", "white", "black"]
-            )
-        )
+        return str(self.rng.choice(ODD_COLORS))
 
 
 def dress(room: Layout, get: Supplier, anchor: int | None, like: str, count: int) -> None:
@@ -101,9 +86,8 @@ def pictures(room: Layout, get: Supplier, count: int) -> None:
     """Paintings, mirrors and clocks at eye height, where the wall is free."""
     for _ in range(count):
         thing = get(str(room.rng.choice(["painting", "painting", "painting", "mirror", "clock"])))
-        low = {"clock": 1.65, "mirror": max(0.55, EYE_HEIGHT - thing.size[2] / 2)}.get(
-            thing.kind, max(0.95, EYE_HEIGHT - thing.size[2] / 2)
-        )
+        lowest = 0.55 if thing.kind == "mirror" else 0.95
+        low = 1.65 if thing.kind == "clock" else max(lowest, EYE_HEIGHT - thing.size[2] / 2)
         for _ in range(8):
             wall = str(room.rng.choice(room.walls))
             length = room.w if wall in ("north", "south") else room.d

@@ -95,14 +95,7 @@ def kinds(shown: bool = False) -> tuple[str, ...]:
     return tuple(sorted(name for name, known in registry.KINDS.items() if known.known.shown or not shown))
 
 
-def make(
-    kind: str,
-    seed: int = 0,
-    *,
-    color: str | None = None,
-    size: Vec3 | None = None,
-    detail: float = 1.0,
-) -> Asset:
+def make(kind: str, seed: int = 0, *, color: str | None = None, size: Vec3 | None = None, detail: float = 1.0) -> Asset:
     """One object of a kind; the same arguments give the same bytes.
 
     Args:

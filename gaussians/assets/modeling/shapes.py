@@ -184,10 +184,7 @@ def extrude(outline: ArrayLike, thick: float, rounding: float = 0.0) -> Piece:
 
     middle = np.broadcast_to(centre, o.shape)
     strips = [np.stack([level(o, b), level(o, thick - b)])]
-    caps = [
-        np.stack([level(middle, 0.0), level(inner, 0.0)]),
-        np.stack([level(inner, thick), level(middle, thick)]),
-    ]
+    caps = [np.stack([level(middle, 0.0), level(inner, 0.0)]), np.stack([level(inner, thick), level(middle, thick)])]
     if b > 0:
         caps += [np.stack([level(inner, 0.0), level(o, b)]), np.stack([level(o, thick - b), level(inner, thick)])]
     return Piece((Sheets(np.stack(strips + caps), True, False, True),))

@@ -52,10 +52,7 @@ class Photos:
 
 
 def load_photos(
-    path: Path,
-    scale: float | None = None,
-    progress: Progress = lambda stage, share: None,
-    poses: Path | None = None,
+    path: Path, scale: float | None = None, progress: Progress = lambda stage, share: None, poses: Path | None = None
 ) -> Photos:
     """Load the photographs of a capture.
 
@@ -118,9 +115,7 @@ def _check_present(capture: Capture) -> None:
 
 def _points(folder: Path) -> colmap.Points:
     sparse = colmap.find(folder)
-    if sparse is None:
-        return colmap.Points(np.zeros((0, 3)), np.zeros((0, 3)))
-    return colmap.read_points(sparse)
+    return colmap.Points(np.zeros((0, 3)), np.zeros((0, 3))) if sparse is None else colmap.read_points(sparse)
 
 
 def _shot(path: Path, camera: Camera, lens: Lens, scale: float | None) -> Shot:

@@ -6,7 +6,7 @@ intrinsics, points project onto pixels of their colour. Without points, nothing 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -69,11 +69,13 @@ def check_colors(path: Path, shots: Sequence[Shot], points: Points) -> str | Non
         return None
     some = shots[:: max(1, len(shots) // MAX_PHOTOS)]
 
-    def median(change: Callable[[Camera], Camera]) -> float:
-        return float(np.median([_correlation(replace(s, camera=change(s.camera)), means, bright) for s in some]))
+    def median(zoom: float) -> float:
+        cameras = [replace(s.camera, fx=s.camera.fx * zoom, fy=s.camera.fy * zoom) for s in some]
+        zoomed = [replace(s, camera=camera) for s, camera in zip(some, cameras, strict=True)]
+        return float(np.median([_correlation(shot, means, bright) for shot in zoomed]))
 
-    given = median(lambda camera: camera)
-    factor, best = max(((f, median(_zoomed(f))) for f in FACTORS), key=lambda found: found[1])
+    given = median(1.0)
+    factor, best = max(((f, median(f)) for f in FACTORS), key=lambda found: found[1])
     if best > max(given, 0) + MIN_GAIN:
         raise FileError(f"{path}: surveyed points fall onto their colours only if focal lengths are {factor:g} times "
                         "as long; correct fl_x and fl_y (pixels of photographs of w x h)")  # fmt: skip
@@ -102,10 +104,6 @@ def _correlation(shot: Shot, means: NDArray[np.float64], bright: NDArray[np.floa
     if len(seen) < MIN_POINTS or seen.std() == 0 or wanted.std() == 0:
         return 0.0
     return float(np.corrcoef(seen, wanted)[0, 1])
-
-
-def _zoomed(factor: float) -> Callable[[Camera], Camera]:
-    return lambda camera: replace(camera, fx=camera.fx * factor, fy=camera.fy * factor)
 
 
 def _flipped(camera: Camera) -> Camera:

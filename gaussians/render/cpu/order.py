@@ -8,20 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import helper, kernel
-from .project import (
-    EXTREME,
-    L3,
-    LIMIT,
-    MASK_SIDE,
-    REACH_Y,
-    SLOPE,
-    WIDTH,
-    Ellipse,
-    X,
-    Y,
-    tile_rows,
-    tile_span,
-)
+from .project import EXTREME, L3, LIMIT, MASK_SIDE, REACH_Y, SLOPE, WIDTH, Ellipse, X, Y, tile_rows, tile_span
 from .touch import lowest_bit
 
 DIGIT = 11  # bits of a radix-sort digit: 2048 counters stay in the first-level cache

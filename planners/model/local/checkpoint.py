@@ -106,6 +106,8 @@ def _fetched(name: str) -> Path:
 
 
 def _read(transformers: Any, folder: Path) -> Checkpoint:
+    import torch
+
     named, safe = str(folder), {"trust_remote_code": False, "local_files_only": True}
     try:
         with _quiet(transformers):
@@ -116,7 +118,7 @@ def _read(transformers: Any, folder: Path) -> Checkpoint:
                 folder, dtype=_dtype(folder), use_safetensors=True, output_loading_info=True, **safe
             )
             _check_parts(model, tokenizer, told, named)
-            model = model.eval().to(_device())
+            model = model.eval().to("cuda" if torch.cuda.is_available() else "cpu")
     except BackendError:
         raise
     except MemoryError as error:
@@ -150,12 +152,6 @@ def _check_parts(model: Any, tokenizer: Any, told: dict[str, Any], named: str) -
 
 def _rows(model: Any) -> int:
     return int(model.get_input_embeddings().weight.shape[0])
-
-
-def _device() -> str:
-    import torch
-
-    return "cuda" if torch.cuda.is_available() else "cpu"
 
 
 def _dtype(folder: Path) -> Any:

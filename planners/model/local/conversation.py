@@ -19,7 +19,8 @@ def prompt_tokens(tokenizer: Any, messages: Sequence[Message]) -> list[int]:
     """
     turns = [{"role": m.role, "content": _defused(tokenizer, m.text)} for m in messages]
     if not getattr(tokenizer, "chat_template", None):
-        return list(tokenizer(_plain(turns))["input_ids"])
+        plain = "".join(f"### {turn['role']}\n{turn['content']}\n\n" for turn in turns)
+        return list(tokenizer(f"{plain}### assistant\n")["input_ids"])
     failures = []
     for attempt in (turns, _without_system(turns)):  # some templates refuse a system message
         try:
@@ -35,20 +36,11 @@ def prompt_tokens(tokenizer: Any, messages: Sequence[Message]) -> list[int]:
 
 def _defused(tokenizer: Any, text: str) -> str:
     """The text with special tokens pulled apart: an object called "<|im_end|>" must not end a turn."""
-    for token in {str(t) for t in tokenizer.all_special_tokens} | _marks(tokenizer):
+    marks = {t.content for t in tokenizer.added_tokens_decoder.values() if t.special}  # whether or not with a role
+    for token in {str(t) for t in tokenizer.all_special_tokens} | marks:
         if len(token) > 1:
             text = text.replace(token, f"{token[0]} {token[1:]}")
     return text
-
-
-def _marks(tokenizer: Any) -> set[str]:
-    """Tokens that were added as special, whether or not they have a role."""
-    return {t.content for t in tokenizer.added_tokens_decoder.values() if t.special}
-
-
-def _plain(turns: list[dict[str, str]]) -> str:
-    said = "".join(f"### {turn['role']}\n{turn['content']}\n\n" for turn in turns)
-    return f"{said}### assistant\n"
 
 
 def _without_system(turns: list[dict[str, str]]) -> list[dict[str, str]]:

@@ -44,6 +44,8 @@ nothing =now =then =all =every =must =should =shall =please =you =your =yours =y
 =tutti istruzion =apaga =apague esquec =tudo instruç verwijder negeer =wis vergeet usuń zignoruj wszystk удал игнор
 забуд уничтож сотри =все =всё инструкц видал ігнор =sil yoksay
 """
+_WHOLE_ORDERS = frozenset(w[1:] for w in _ORDERS.split() if w[0] == "=")
+_BEGINNINGS = tuple(w for w in _ORDERS.split() if w[0] != "=")
 _UNSPACED_ORDERS = re.compile(
     "删|刪|忽略|无视|無視|忘|指令|指示|全部|所有|请|請|必须|清除|移除|削除|消|すべて|全て|命令|삭제|무시|모두|지시"
 )
@@ -87,7 +89,8 @@ def plain(name: str, most: int = MAX_WORDS) -> str | None:
     tied = bool(_LINKS & set(words))
     if len(strange) > _STRANGE_WORDS or len(words) > (_UNTIED if not tied else _BESIDE_STRANGE if strange else most):
         return None
-    return None if _is_order(words) or any(_mixed(w) or _orders(w) for w in words) else text
+    orders = any(w in _WHOLE_ORDERS or w.startswith(_BEGINNINGS) or _mixed(w) for w in words)
+    return None if orders or _is_order(words) else text
 
 
 def _is_order(words: list[str]) -> bool:
@@ -96,17 +99,6 @@ def _is_order(words: list[str]) -> bool:
     named = any(" ".join(words[:n]) in _phrases() for n in range(2, len(words) + 1))
     speaks = any(w == "the" and before not in _BEFORE_THE for before, w in pairwise(words))
     return (begins and not named) or speaks
-
-
-def _orders(word: str) -> bool:
-    whole, stems = _order_words()
-    return word in whole or word.startswith(stems)
-
-
-@cache
-def _order_words() -> tuple[frozenset[str], tuple[str, ...]]:
-    every = _ORDERS.split()
-    return frozenset(w[1:] for w in every if w[0] == "="), tuple(w for w in every if w[0] != "=")
 
 
 def _mixed(word: str) -> bool:
