@@ -26,6 +26,7 @@ from ...camera import Camera, Vec3
 from ...errors import FileError, UserError
 from ...viewpoints.keyframes import CameraPath, Keyframe
 from ..foreign import read_json
+from .capture import from_opengl
 
 MAX_KEYFRAMES = 20_000
 _SPACING = 2.0  # seconds between keyframes, if none of them has a time
@@ -87,10 +88,7 @@ def _nerfstudio(data: Mapping[str, Any]) -> CameraPath:
     for i, listed in enumerate(_entries(data, "camera_path")):
         with _error_context("picture", i):
             entry = _object(listed)
-            pose = _matrix(entry["camera_to_world"], "camera_to_world")
-            rotation = pose[:3, :3] * [1, -1, -1]  # OpenGL to OpenCV axes
-            world = np.eye(4)
-            world[:3, :3], world[:3, 3] = rotation.T, -rotation.T @ pose[:3, 3]
+            world = from_opengl(_matrix(entry["camera_to_world"], "camera_to_world"))
             found.append(Keyframe(i / (fps or 24.0), _camera(world, _number(entry["fov"], "fov"))))
     return CameraPath(tuple(found), size, fps)
 

@@ -184,15 +184,20 @@ def _camera(data: Mapping[str, Any], photo: Path) -> Camera:
         KeyError, ValueError, ArithmeticError, UserError: an entry is missing, not a number or out of range, or the
             pose is not rigid.
     """
-    pose = _pose(data["transform_matrix"])
-    world = np.eye(4)
-    rotation = pose[:3, :3] * [1, -1, -1]  # OpenGL to OpenCV axes
-    world[:3, :3], world[:3, 3] = rotation.T, -rotation.T @ pose[:3, 3]
+    world = from_opengl(_pose(data["transform_matrix"]))
     width, height = _size(data, photo)
     fx = _number(data, "fl_x") if "fl_x" in data else _focal(data, width)
     defaults = {"fl_y": fx, "cx": width / 2, "cy": height / 2}
     fy, cx, cy = (_number({**defaults, **data}, key) for key in defaults)
     return Camera(world, fx, fy, cx, cy, width, height, photo.stem)
+
+
+def from_opengl(pose: NDArray[np.float64]) -> NDArray[np.float64]:
+    """World to camera in OpenCV axes, of a pose camera to world in OpenGL axes; both `[4, 4]` and rigid."""
+    world = np.eye(4)
+    rotation = pose[:3, :3] * [1, -1, -1]
+    world[:3, :3], world[:3, 3] = rotation.T, -rotation.T @ pose[:3, 3]
+    return world
 
 
 def _pose(matrix: Any) -> NDArray[np.float64]:

@@ -42,11 +42,9 @@ def read(path: Path) -> tuple[Scene, Report]:
         degree = _degree(path, vertex)
         assert vertex is not None
         blocks = ply.read_rows(file, path, header, "vertex")
-        columns = _gather(blocks, vertex.count, degree)
-    means, quats, logs, logits, sh = columns
-    cloud, notes = values.sound_cloud(
-        means, quats, values.scales_from_logs(logs), values.opacities_from_logits(logits), sh
-    )
+        means, quats, logs, logits, sh = _gather(blocks, vertex.count, degree)
+    scales, opacities = values.scales_from_logs(logs), values.opacities_from_logits(logits)
+    cloud, notes = values.sound_cloud(means, quats, scales, opacities, sh)
     frame, cameras, ignored = comments.parse(header.comments)
     scene = Scene(cloud, frame, cameras, path=path)
     return scene, Report(NAME, vertex.count, len(cloud), notes + ignored)
@@ -99,18 +97,8 @@ def write(scene: Scene, file: BinaryIO) -> None:
     means, scales, opacities, sh = (cloud[name] for name in ("means", "scales", "opacities", "sh"))
     quats, _ = values.unit_quats(cloud["quats"])
     k = sh.shape[1]
-    names = [
-        "x",
-        "y",
-        "z",
-        "nx",
-        "ny",
-        "nz",
-        "f_dc_0",
-        "f_dc_1",
-        "f_dc_2",
-        *(f"f_rest_{i}" for i in range(3 * (k - 1))),
-    ]
+    names = ["x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"]
+    names += [f"f_rest_{i}" for i in range(3 * (k - 1))]
     names += ["opacity", *(f"scale_{i}" for i in range(3)), *(f"rot_{i}" for i in range(4))]
     file.write(_header(names, len(means), comments.describe(scene)))
     rest = 9 + 3 * (k - 1)

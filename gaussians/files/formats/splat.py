@@ -45,13 +45,8 @@ def read(path: Path) -> tuple[Scene, Report]:
         scales = np.where(scales >= 0, np.maximum(scales, np.float32(values.SCALE_MIN)), np.float32(np.nan))
     quats = ((rows["quat"].astype(np.float64) - 128) / 128).astype(np.float32)
     dc = ((rows["rgba"][:, :3] / 255 - 0.5) / SH_C0).astype(np.float32)
-    cloud, notes = values.sound_cloud(
-        np.ascontiguousarray(rows["mean"]),
-        quats,
-        scales,
-        values.opacities_from_bytes(rows["rgba"][:, 3]),
-        dc[:, None],
-    )
+    means, opacities = np.ascontiguousarray(rows["mean"]), values.opacities_from_bytes(rows["rgba"][:, 3])
+    cloud, notes = values.sound_cloud(means, quats, scales, opacities, dc[:, None])
     return Scene(cloud, path=path), Report(NAME, len(rows), len(cloud), notes)
 
 

@@ -118,11 +118,6 @@ class Constrained:
             _checked(self._matcher)
         return self._add(forced)
 
-    def reads(self, text: str) -> bool:
-        """Whether a text, as JSON without spaces, is a whole answer; for a fresh one, which then cannot go on."""
-        tokens = self._vocabulary.reader.greedy_tokenize(text)
-        return bool(self._matcher.try_consume_tokens(tokens) == len(tokens)) and self.done
-
     def close(self) -> None:
         """Bring the text to a valid end by the shortest way, without asking any model."""
         for _ in range(_LONGEST_CLOSING):
