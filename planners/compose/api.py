@@ -1,6 +1,6 @@
 """`compose`: turn a sentence into the scene graph of a room, in one call, with a chosen planner.
 
-If wishes conflict, it reports that instead of fulfilling a part of them. `SceneGraph.build` makes the Gaussians.
+If wishes conflict, it raises an error unless `best` is set. `SceneGraph.build` makes the Gaussians.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ def compose(text: str, *, seed: int = 0, planner: str = "auto", best: bool = Fal
 
     Args:
         text: "a minimalist home office", "a cozy coffee shop with a counter and four small tables".
-        seed: what varies between two rooms of one description.
-        planner: who chooses the things, see `composed`.
-        best: take what can be had where wishes conflict.
+        seed: different seeds give different rooms of one description.
+        planner: what proposes the brief, see `composed`.
+        best: if wishes conflict, return the best layout instead of raising an error.
 
     Raises:
         UserError: the words describe no room, or no planner has this name.
-        InstructionError: not everything that is wished is possible together; the message names the smallest conflict.
+        InstructionError: not all wishes are possible together; the message names the smallest conflict.
         BackendError: the model cannot be reached.
     """
     layout = composed(text, seed=seed, planner=planner).layout
@@ -41,12 +41,12 @@ def compose(text: str, *, seed: int = 0, planner: str = "auto", best: bool = Fal
 
 
 def composed(text: str, *, seed: int = 0, planner: str = "auto") -> Composition:
-    """The room that `text` describes, with what was understood, left out and in conflict.
+    """The room that `text` describes, with its brief, remarks, omissions and conflicts.
 
     Args:
-        planner: "grammar" for the knowledge that ships with the package; "auto" asks the model that the environment
-            names (`SCENEWRIGHT_MODEL`), or the one named after "auto:", where that knowledge does not understand
-            everything; a model alone ("openai:...") is always asked.
+        planner: "grammar" for the embedded reader; "auto" asks the model that the environment names
+            (`SCENEWRIGHT_MODEL`), or the one named after "auto:", where the reader does not understand everything; a
+            model alone ("openai:...") is always asked.
 
     Raises:
         UserError: the words describe no room, or no planner has this name.
@@ -59,7 +59,7 @@ def composed(text: str, *, seed: int = 0, planner: str = "auto") -> Composition:
 
 
 def _proposer(spec: str) -> tuple[ModelBackend | None, Mode]:
-    """The model that a planner's name means, and when it is asked."""
+    """The model that a planner's name means, or None, and the mode in which it is asked."""
     from .. import model
 
     kind, _, named = spec.partition(":")

@@ -1,6 +1,7 @@
-"""The brief of a room, as a planner proposes it: a kind of room, things, sizes and relations, without any positions.
+"""The brief of a room: a kind of room, things, sizes and relations, without positions.
 
-This module defines the type, its bounds and the refusal of a brief; problems.py turns a brief into a layout problem.
+A planner proposes it, and `problems` turns it into a layout problem. This module defines the type, its limits and the
+error for a text without a brief.
 """
 
 from __future__ import annotations
@@ -17,11 +18,11 @@ from ..plan import Verdict
 Word = Annotated[str, Field(min_length=1, max_length=60)]
 Extent = Annotated[float, Field(ge=0.005, le=100, allow_inf_nan=False)]
 Scale = Literal["tiny", "small", "normal", "large", "huge"]
-_MOST = 200  # things of one brief; more are no room that anyone arranges
+_MOST = 200  # most things of one brief
 
 
 class RefusedError(InstructionError):
-    """A text that is no room description. `verdict` and `unknown` are those of an `EditPlan`."""
+    """The text is no room description. `verdict` and `unknown` are those of an `EditPlan`."""
 
     def __init__(self, message: str, verdict: Verdict, unknown: tuple[str, ...] = ()) -> None:
         super().__init__(message)
@@ -30,7 +31,7 @@ class RefusedError(InstructionError):
 
 
 class RoomSize(BaseModel):
-    """What was said of the room's size, metres and square metres; None where nothing was."""
+    """The stated size of the room, metres and square metres; None for what was not stated."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -44,15 +45,15 @@ class Thing(BaseModel):
     """Things of one kind that are wanted.
 
     Attributes:
-        id: what wishes call them; its name unless the brief has the name twice.
+        id: by which relations name them; the name, unless the brief has the name twice.
         name: what they are, singular: "armchair".
         count: how many.
-        color: colour word, "" if free.
-        material: "wooden", "leather", "" if free.
-        scale: size in words, against what is usual for the kind.
+        color: colour word, "" if not stated.
+        material: "wooden", "leather", "" if not stated.
+        scale: size in words, relative to the usual size of the kind.
         width, depth, height: of each, metres, where stated.
-        support: where that is said: "floor", "wall" or "ceiling"; None as is usual. On another thing is a wish "on".
-        optional: a habit, not asked for: may be left out where there is no room.
+        support: "floor", "wall" or "ceiling" where stated, None for the usual one; on another thing is a relation "on".
+        optional: whether it was not asked for and may be left out where it does not fit.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -73,8 +74,8 @@ class Thing(BaseModel):
 class Relation(BaseModel):
     """A relation between things by their ids: "subject name objects".
 
-    Several subjects share several objects out evenly: four chairs around two tables are two at each. `hard`: it was
-    said; otherwise a habit. `wall` as in `Wish`.
+    Several subjects are distributed evenly over several objects: of four chairs around two tables, two are at each.
+    `hard`: it was stated; otherwise it is a habit. `wall` as in `Wish`.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -90,17 +91,17 @@ class Brief(BaseModel):
     """A room to be built.
 
     Attributes:
-        kind: of room: "bedroom", "coffee shop"; "room" if nothing is known.
+        kind: of room: "bedroom", "coffee shop"; "room" if none is stated.
         styles: words of style: "cozy", "industrial".
-        size: what was said of its size; None leaves it to what it has to hold.
+        size: the stated size; None: it follows from what the room has to hold.
         scale: its size in words.
-        things: what is wanted in it; doors and windows too, where they were spoken of.
-        relations: what is wanted of them.
+        things: what is wanted in it, doors and windows included where they were mentioned.
+        relations: wanted between them.
         without: names of things that must not be there.
         seats: how many people are to be seated.
-        habits: whether what such rooms usually hold is added; not for "an empty room with one chair".
+        habits: whether usual things of the kind of room are added; not for "an empty room with one chair".
         features: of the room itself: "exposed beams", "brick wall", "white walls".
-        remarks: what was understood and cannot be shown, or was read otherwise than written; a sentence each.
+        remarks: what was understood and cannot be shown, or was read differently from the text; a sentence each.
         unknown: words that were not understood.
     """
 
@@ -125,15 +126,15 @@ class Brief(BaseModel):
         if len(known) != len(self.things):
             raise ValueError("two things have the same id")
         if sum(t.count for t in self.things) > _MOST:
-            raise ValueError(f"these are {sum(t.count for t in self.things)} things, at most {_MOST} are arranged")
+            raise ValueError(f"a brief has at most {_MOST} things, got {sum(t.count for t in self.things)}")
         for r in self.relations:
             if missing := {r.subject, *r.objects} - known:
-                raise ValueError(f"a relation names {sorted(missing)}, which is no id of a thing")
+                raise ValueError(f"a relation names {sorted(missing)}, but no thing has such an id")
             kind = relations.named(r.name)
             if not min(kind.anchors, 1) <= len(r.objects) <= kind.anchors:  # "between the tables" names one group
-                raise ValueError(f"{r.name} takes another number of objects than {len(r.objects)}")
+                raise ValueError(f"{r.name} takes {kind.anchors} objects, got {len(r.objects)}")
             if r.wall and not kind.at_wall:
-                raise ValueError(f"{r.name} is about no wall, got {r.wall}")
+                raise ValueError(f"{r.name} takes no wall, got {r.wall}")
         return self
 
     def thing(self, id: str) -> Thing:

@@ -1,4 +1,4 @@
-"""The steps from a sentence to a room: get a brief (by the reader or a model), pose the layout problem, solve it."""
+"""Compose a room from a sentence: get a brief from the reader or a model, pose the layout problem, solve it."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from .sentence.read import read
 if TYPE_CHECKING:
     from ..model.backend import ModelBackend
 
-_GROWTH = (1.0, 1.12, 1.25, 1.45, 1.7)  # how much longer the sides of a room without a stated size become, in turn
-_STRIDE = 7919  # between the seeds of attempts, so that neighbouring seeds of users share none
+_GROWTH = (1.0, 1.12, 1.25, 1.45, 1.7)  # factors on the sides of a room without a stated size, tried in turn
+_STRIDE = 7919  # between the seeds of attempts, so that users' neighbouring seeds share no attempt
 EMBEDDED = "embedded"
 Mode = Literal["auto", "model"]
 
@@ -28,13 +28,13 @@ class Composition:
 
     Attributes:
         brief: what was asked for, as it was understood.
-        problem: what that means for the layout.
-        layout: what stands where; its `conflicts` say what cannot be as it was asked for.
-        remarks: what a person should know of the reading and the furnishing, a sentence each.
-        names: ids of the graph's nodes that the brief asked for, and the ids of its things.
-        proposer: who made the brief: "embedded", the model's name, or "given".
-        prompt_hash: of the prompt, "" where no model was asked.
-        usage: what the model was asked for, None where none was.
+        problem: the layout problem that the brief poses.
+        layout: positions of the things; its `conflicts` are the requests that cannot be fulfilled together.
+        remarks: notes for the user about the reading and the furnishing, a sentence each.
+        names: for each node of the graph that the brief asked for, its id to the id of the brief's thing.
+        proposer: where the brief comes from: "embedded", the model's name, or "given".
+        prompt_hash: hash of the prompt, "" where no model was asked.
+        usage: what the model used, None where none was asked.
     """
 
     brief: Brief
@@ -48,7 +48,7 @@ class Composition:
 
     @property
     def ok(self) -> bool:
-        """Whether everything that was asked for is there as it was asked for."""
+        """Whether everything that was asked for is in the room as asked for."""
         return self.layout.ok
 
 
@@ -66,14 +66,14 @@ def compose(
     Args:
         text: a description in words, or a brief.
         seed: the same words and seed give the same room.
-        planner: a language model that proposes the brief; without one the embedded reading does.
-        mode: "auto" asks the model only where the embedded reading did not understand everything; "model" always.
+        planner: a language model that proposes the brief; without one the embedded reader does.
+        mode: "auto" asks the model only where the embedded reader did not understand everything; "model" always.
         effort: of the layout solver.
-        seconds: the longest that the model may take, all attempts together.
+        seconds: time limit of the model, all attempts together.
 
     Raises:
         UserError: the text is too long to be a description.
-        RefusedError: it describes no room.
+        RefusedError: the text describes no room.
         BackendError: the model gave no brief.
     """
     brief, proposer, prompt_hash, usage = _brief(text, planner, mode, seconds)
@@ -84,11 +84,11 @@ def compose(
 
 
 def arranged(brief: Brief, seed: int, effort: float) -> tuple[Posed, Layout]:
-    """A brief laid out; a room whose size nobody stated is made larger until all that was asked for fits."""
+    """The layout of a brief; a room without a stated size is enlarged until everything that was asked for fits."""
     best: tuple[int, Posed, Layout] | None = None
     for attempt, grow in enumerate(_GROWTH):
         posed = problem_of(brief, seed, grow=grow)
-        layout = _judged(posed, solve(posed.problem, seed + _STRIDE * attempt, effort=effort))
+        layout = _with_missing_items(posed, solve(posed.problem, seed + _STRIDE * attempt, effort=effort))
         failures = len(layout.conflicts) + sum(w.hard for w in layout.broken) + len(check(layout.graph).violations)
         if best is None or failures < best[0]:
             best = failures, posed, layout
@@ -103,11 +103,11 @@ def _may_grow(brief: Brief) -> bool:
     return said is None or (said.area is None and (said.width is None or said.depth is None))
 
 
-def _judged(posed: Posed, layout: Layout) -> Layout:
-    """The layout; what is asked for and missing is a conflict even where the search for its cause found none."""
+def _with_missing_items(posed: Posed, layout: Layout) -> Layout:
+    """The layout, with a conflict for each missing item that was asked for and for which no cause was found."""
     asked = {i.id: i for i in posed.problem.items if not i.optional}
-    told = {s for c in layout.conflicts for s in c.subjects}
-    missing = [asked[i] for i in layout.left_out if i in asked and i not in told]
+    explained = {s for c in layout.conflicts for s in c.subjects}
+    missing = [asked[i] for i in layout.left_out if i in asked and i not in explained]
     if not missing:
         return layout
     width, depth, _ = posed.problem.size
@@ -127,7 +127,7 @@ def _judged(posed: Posed, layout: Layout) -> Layout:
 def _brief(
     text: str | Brief, planner: ModelBackend | None, mode: Mode, seconds: float
 ) -> tuple[Brief, str, str, Usage | None]:
-    """The brief, who made it, and what that took."""
+    """The brief, its proposer, the hash of the prompt and the usage."""
     if isinstance(text, Brief):
         return text, "given", "", None
     if planner is None:

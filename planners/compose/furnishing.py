@@ -1,7 +1,7 @@
-"""Choose the things of a room: those that the brief asks for, and those that such a room usually has besides.
+"""Choose the things of a room: those that the brief asks for, and those that are usual in a room of its kind.
 
-The choice follows styles, seats, and which things replace others. sizing.py gives the sizes, and problems.py makes the
-items of the layout problem.
+The choice depends on styles, on the number of seats, and on which things replace others. `sizing` gives the sizes, and
+`problems` makes the items of the layout problem.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from ..layout.problem import Wall
 from . import knowledge
 from .brief import Brief, Thing
 
-_FEWEST, _MOST = 8, 22  # objects that a room without a stated size is filled to
+_FEWEST, _MOST = 8, 22  # fewest and most objects of a room without a stated size
 _PER_AREA = 0.9  # objects for each square metre of a stated size
-_SKIPPED = 0.15  # share of habits that chance leaves out, so that not every living room is the same
+_SKIPPED = 0.15  # probability that a habit is left out, so that rooms of one kind differ
 _PLAIN = Kind(name="thing", size=((0.5, 0.5), (0.5, 0.5), (0.5, 0.5)))
 
 
 @dataclass(frozen=True)
-class Bond:
-    """A relation of a group to other groups, by their keys."""
+class GroupRelation:
+    """A relation of a group to other groups, which are named by their keys."""
 
     name: WishName
     objects: tuple[str, ...] = ()
@@ -37,12 +37,12 @@ class Bond:
 
 @dataclass
 class Group:
-    """Things of one kind, all alike."""
+    """Identical things of one kind."""
 
     key: str
     thing: Thing
     kind: Kind
-    bonds: list[Bond] = field(default_factory=list)
+    relations: list[GroupRelation] = field(default_factory=list)
 
     @property
     def asked(self) -> bool:
@@ -54,18 +54,18 @@ class Group:
 
 
 class Furnishing:
-    """The groups of a room, found by key or by what they stand in for."""
+    """The groups of a room. A group is found by its key, by the name of its kind, or by its role."""
 
     def __init__(self, brief: Brief, rng: np.random.Generator) -> None:
         self.brief, self.rng = brief, rng
         self.room = knowledge.room(brief.kind)
         self.groups: list[Group] = []
         self.remarks: list[str] = []
-        self.pending: list[tuple[Group, Sequence[str]]] = []  # wishes to things that are not there yet
+        self.pending: list[tuple[Group, Sequence[str]]] = []  # wishes whose object is not in the room yet
         self.without = {_role(w) for w in brief.without} | set(brief.without)
 
     def find(self, name: str) -> Group | None:
-        """The group of this name, else one that stands in for it."""
+        """The group with this name or key, else a group that was asked for and has the same role."""
         named = next((g for g in self.groups if g.kind.name == name or g.key == name), None)
         kind = knowledge.things().get(name)
         if named or not kind:
@@ -73,11 +73,11 @@ class Furnishing:
         return next((g for g in self.groups if g.asked and kind.role == g.kind.role), None)
 
     def count(self) -> int:
-        """How many things there are, without what comes in numbers: chairs and beams."""
+        """The number of things without single seats and beams, of which a room has many."""
         return sum(g.count for g in self.groups if g.kind.seats != 1 and g.kind.name != "beam")
 
     def ask(self) -> None:
-        """What the brief wants."""
+        """Add the things and relations of the brief."""
         for thing in self.brief.things:
             if thing.name in ("door", "window"):
                 continue
@@ -86,12 +86,15 @@ class Furnishing:
         known = {g.key: g for g in self.groups}
         for said in self.brief.relations:
             if said.subject in known:
-                known[said.subject].bonds.append(Bond(said.name, said.objects, said.wall, said.hard))
+                known[said.subject].relations.append(GroupRelation(said.name, said.objects, said.wall, said.hard))
 
     def add(self, habit: knowledge.Habit, most: int | None = None) -> bool:
-        """Take a habit in, unless it is there already, unwanted, or nothing it needs is there."""
+        """Add a habit, unless the room has it, the brief excludes it, or a thing that it needs is missing.
+
+        Returns whether it was added; `most` limits the number of things.
+        """
         kind = knowledge.things()[habit.thing]
-        if {kind.name, kind.role} & self.without or self._there(kind):
+        if {kind.name, kind.role} & self.without or self._is_present(kind):
             return False
         low, high = habit.count
         number = int(self.rng.integers(low, high + 1))
@@ -101,45 +104,45 @@ class Furnishing:
                 return False
             number *= others.count
         number = min(number, 60 if most is None else max(most, 1))
-        wishes = [(w, self._bond(w)) for w in habit.wishes]
-        bonds = [b for _, b in wishes if b]
-        if kind.support == "surface" and not any(b.name == "on" for b in bonds) and not self.carrier(kind, True):
+        wishes = [(w, self._relation(w)) for w in habit.wishes]
+        relations = [b for _, b in wishes if b]
+        if kind.support == "surface" and not any(b.name == "on" for b in relations) and not self.carrier(kind, True):
             return False
         thing = Thing(id=self._key(kind.name), name=kind.name, count=number, optional=True)
-        self.groups.append(Group(thing.id, thing, kind, bonds))
+        self.groups.append(Group(thing.id, thing, kind, relations))
         self.pending += [(self.groups[-1], w) for w, b in wishes if b is None]
         return True
 
     def settle(self) -> None:
-        """Relations of habits to things that were taken in after them."""
+        """Add relations of habits to things that were added after them."""
         for group, wish in self.pending:
-            bond = self._bond(wish)
-            if bond is not None and bond.name != "on":
-                group.bonds.append(bond)
+            relation = self._relation(wish)
+            if relation is not None and relation.name != "on":
+                group.relations.append(relation)
         self.pending = []
 
-    def _there(self, kind: Kind) -> bool:
-        """Whether the brief asked for it or its like, or the room has it already."""
+    def _is_present(self, kind: Kind) -> bool:
+        """Whether the room has this kind, or the brief asked for a kind of the same role."""
         return any(g.kind.name == kind.name or (g.asked and g.kind.role == kind.role) for g in self.groups)
 
-    def _bond(self, wish: Sequence[str]) -> Bond | None:
-        """A habit's wish to the groups that are there."""
+    def _relation(self, wish: Sequence[str]) -> GroupRelation | None:
+        """A habit's wish as a relation to groups of the room; None while its object is missing."""
         name = wish[0]
         if len(wish) == 1:
-            return Bond(name)
+            return GroupRelation(name)
         if wish[1] in ("door", "window"):
-            return Bond(name, (wish[1],))
+            return GroupRelation(name, (wish[1],))
         other = self.find(wish[1])
         if name == "aligned_with" and other is None:
-            return Bond(name, (wish[1],))
-        return Bond(name, (other.key,)) if other else None
+            return GroupRelation(name, (wish[1],))
+        return GroupRelation(name, (other.key,)) if other else None
 
     def _key(self, name: str) -> str:
         used = {g.key for g in self.groups}
         return name if name not in used else next(k for i in range(2, 99) if (k := f"{name} {i}") not in used)
 
     def carrier(self, kind: Kind, usual: bool = False) -> Group | None:
-        """The group that a small thing is put on; only one that it is usually found on, if `usual`."""
+        """The group that a small thing is put on; with `usual`, only a group of a kind that usually carries it."""
         for name in kind.on:
             if (found := self.find(name)) and (found.kind.top or found.kind.name in kind.on):
                 return found
@@ -148,7 +151,7 @@ class Furnishing:
         return next((g for g in self.groups if g.kind.top and g.kind.support == "floor"), None)
 
     def seat(self) -> None:
-        """Seats for as many people as were spoken of."""
+        """Add seats for the number of people in the brief."""
         if self.brief.seats is None:
             return
         left = self.brief.seats - sum(g.count * g.kind.seats for g in self.groups if _is_for_people(g))
@@ -161,21 +164,21 @@ class Furnishing:
             if habit.each and asked is None:
                 tables = next(h for h in self.room.habits if h.thing == habit.each)
                 share = max(habit.count[1], 1)
-                self._force(tables, ceil(number / share))
-            self._force(habit, number)
+                self._require(tables, ceil(number / share))
+            self._require(habit, number)
             left -= number * seat.holds
         if left > 0:
-            self.remarks.append(f"{left} of {self.brief.seats} people find no seat here")
+            self.remarks.append(f"there are no seats for {left} of {self.brief.seats} people")
 
-    def _force(self, habit: knowledge.Habit, number: int) -> None:
-        """A habit that the brief's people need: asked for, in a number of its own."""
+    def _require(self, habit: knowledge.Habit, number: int) -> None:
+        """Add a habit that the brief's people need, in the given number, as a thing that was asked for."""
         wanted = knowledge.Habit(thing=habit.thing, count=(number, number), wishes=habit.wishes)
         if number > 0 and self.add(wanted):
             last = self.groups[-1]
             last.thing = last.thing.model_copy(update={"optional": False})
 
     def fill(self, area: float | None) -> None:
-        """Habits and the styles' own things up to a sensible number."""
+        """Add habits and the things that styles add, up to the number that `_goal` gives."""
         if not self.brief.habits:
             return
         goal = self._goal(area)
@@ -197,11 +200,11 @@ class Furnishing:
                 self.add(habit)
 
     def _companions(self) -> list[knowledge.Habit]:
-        """What comes with things that were asked for: a chair with a desk."""
+        """Habits that belong to things that were asked for: a chair to a desk."""
         return [h for h in self.room.usual if h.each and (g := self.find(h.each)) and g.asked]
 
     def _goal(self, area: float | None) -> int:
-        """How many things make this room full enough."""
+        """The number of things to fill the room with."""
         styled = [knowledge.styles()[s].share for s in self.brief.styles if s in knowledge.styles()]
         share = float(np.prod(styled)) if styled else 1.0
         size = {"tiny": 0.6, "small": 0.75, "normal": 1.0, "large": 1.25, "huge": 1.4}[self.brief.scale]
@@ -209,7 +212,7 @@ class Furnishing:
         return max(_FEWEST if area is None else 0, round(usual * share))
 
     def support_small(self) -> None:
-        """Something to stand on for every small thing that was asked for."""
+        """Put every small thing on a carrier, which is added if it is missing; without one it stands on the floor."""
         for group in list(self.groups):
             if group.kind.support != "surface" or group.thing.support or _carried(group):
                 continue
@@ -221,7 +224,7 @@ class Furnishing:
                 self.groups.append(carrier)
                 self.remarks.append(f"added a {name} for the {group.kind.name} to stand on")
             if carrier is not None:
-                group.bonds.append(Bond("on", (carrier.key,)))
+                group.relations.append(GroupRelation("on", (carrier.key,)))
             else:
                 group.thing = group.thing.model_copy(update={"support": "floor"})
 
@@ -232,7 +235,7 @@ def _role(name: str) -> str:
 
 
 def _carried(group: Group) -> bool:
-    return any(b.name == "on" for b in group.bonds)
+    return any(b.name == "on" for b in group.relations)
 
 
 def _is_for_people(group: Group) -> bool:
@@ -244,8 +247,8 @@ def furnish(brief: Brief, rng: np.random.Generator, area: float | None) -> Furni
 
     Args:
         brief: what is wanted.
-        rng: decides what chance decides.
-        area: of the room, square metres, where its size is stated.
+        rng: the source of randomness.
+        area: floor area in square metres, None where the brief states no size.
     """
     made = Furnishing(brief, rng)
     made.ask()
@@ -257,9 +260,9 @@ def furnish(brief: Brief, rng: np.random.Generator, area: float | None) -> Furni
 
 
 def pairs(subjects: Sequence[int], objects: Sequence[int]) -> Iterable[tuple[int, int]]:
-    """Subjects shared out evenly over objects, in order: four chairs at two tables are two at each.
+    """Pair subjects with objects evenly and in order: of four chairs at two tables, two go to each.
 
-    Within one and the same sequence: each with its neighbour.
+    If both sequences are equal, each element is paired with its neighbour.
     """
     if not subjects or not objects:
         return []
@@ -271,5 +274,5 @@ def pairs(subjects: Sequence[int], objects: Sequence[int]) -> Iterable[tuple[int
 
 
 def chained(items: Sequence[int]) -> list[tuple[int, int]]:
-    """Each with the one before."""
+    """Each item paired with the item before it."""
     return [(b, a) for a, b in pairwise(items)]

@@ -1,6 +1,6 @@
-"""What rooms are like: kinds of rooms and what belongs in them, and styles. Things are those of the table of kinds.
+"""Kinds of rooms with their usual sizes and things, and styles, read from `rooms.json` and `styles.json`.
 
-Sizes are those of rooms as they are built, rounded ranges from common knowledge.
+Things are those of the table of kinds. Sizes are rounded ranges of built rooms, from common knowledge.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ class _Entry(BaseModel):
 
 
 class Habit(_Entry):
-    """What a kind of room usually holds.
+    """A thing that a kind of room usually holds.
 
     Attributes:
         thing: name of a kind of thing.
-        count: fewest and most; for each one of `each`, where that is said.
+        count: fewest and most; for each one of `each`, where that is set.
         each: name of another thing of the same room.
-        wishes: relation names with the thing that they are to, if they are to any: ["next_to", "bed"].
+        wishes: names of relations, each with its object if it has one: ["next_to", "bed"].
     """
 
     thing: Name
@@ -47,7 +47,7 @@ class Habit(_Entry):
 
 
 class Seat(_Entry):
-    """Who is to be seated gets these: `holds` people on each, `most` of them."""
+    """Seats that are added for people: `holds` people on each, at most `most` of them."""
 
     thing: Name
     holds: Annotated[int, Field(ge=1, le=12)]
@@ -58,12 +58,12 @@ class RoomKind(_Entry):
     """A kind of room.
 
     Attributes:
-        name, also: what it is called.
+        name, also: its names.
         width, depth, height: usual ranges, metres.
         windows: fewest and most.
-        must: without which it would not be such a room.
-        usual: what else is found there, the likeliest first.
-        seats: what guests are seated on, filled in this order.
+        must: habits that every such room has.
+        usual: further habits, the likeliest first.
+        seats: seats for guests, filled in this order.
     """
 
     name: Name
@@ -91,12 +91,12 @@ class RoomKind(_Entry):
 
 
 class Style(_Entry):
-    """What a word of style changes.
+    """What a style word changes.
 
     Attributes:
-        share: of the usual number of things.
-        adds: things that are taken in first.
-        colors: that things have where nothing else is said.
+        share: factor on the usual number of things.
+        adds: things that are added first.
+        colors: preferred colours of things without a stated colour.
         unshown: what the word also means and boxes cannot show.
     """
 
@@ -119,7 +119,7 @@ def rooms() -> Mapping[str, RoomKind]:
     """Every kind of room by its name; what they hold is among `things`."""
     found = TypeAdapter(tuple[RoomKind, ...]).validate_json(_text("rooms.json"))
     strange = {n for room in found for n in _asked(room)} - set(things())
-    assert not strange, f"rooms hold things that nobody described: {sorted(strange)}"
+    assert not strange, f"rooms hold things that the table of kinds lacks: {sorted(strange)}"
     return MappingProxyType({r.name: r for r in found})
 
 
@@ -133,7 +133,7 @@ def styles() -> Mapping[str, Style]:
     """Every style by its name."""
     found = TypeAdapter(tuple[Style, ...]).validate_json(_text("styles.json"))
     strange = {name for style in found for name in style.adds} - set(things())
-    assert not strange, f"styles add things that nobody described: {sorted(strange)}"
+    assert not strange, f"styles add things that the table of kinds lacks: {sorted(strange)}"
     return MappingProxyType({s.name: s for s in found})
 
 
@@ -153,7 +153,7 @@ def thing_words() -> Table:
     """Names of things as tuples of words, the last one singular, and what they name."""
     every = kinds.table().kinds.values()
     told = {_words(a): k.one or k.name for k in every for a in k.names}
-    told = {w: name for w, name in told.items() if w not in room_words()}  # a closet is a room here, no wardrobe
+    told = {w: name for w, name in told.items() if w not in room_words()}  # here a closet is a room, not a wardrobe
     return MappingProxyType({(*w[:-1], singular(w[-1])): name for w, name in told.items()} | told)
 
 
@@ -165,7 +165,7 @@ def room_words() -> Table:
 
 @cache
 def style_words() -> Table:
-    """Words of style and what they name."""
+    """Style words as tuples of words, and the styles that they name."""
     return MappingProxyType({_words(a): s.name for s in styles().values() for a in (*s.also, s.name)})
 
 
@@ -186,27 +186,27 @@ def lookup(table: Table, words: Sequence[str], i: int) -> tuple[str, int] | None
 
 
 def longest_name(words: Sequence[str], i: int) -> int:
-    """How many words the longest name of a thing, a room or a style has at position `i`; 0 if none stands there."""
+    """The number of words of the longest name of a thing, room or style at position `i`; 0 if there is none."""
     found = (lookup(table, words, i) for table in (thing_words(), room_words(), style_words()))
     return max((f[1] for f in found if f), default=0)
 
 
 def thing(name: str) -> Kind | None:
-    """The kind that a name means, in singular or plural, by any of its words; None if nobody described it."""
+    """The kind that a name means, in singular or plural; None if the table has no such name."""
     words = _words(" ".join(name.lower().split()))
     found = lookup(thing_words(), words, 0) if words else None
     return things()[found[0]] if found and found[1] == len(words) else None
 
 
 def room(name: str) -> RoomKind:
-    """The kind of room that a name means; just a room if nobody described it."""
+    """The kind of room that a name means; "room" if the name is unknown."""
     words = _words(" ".join(name.lower().split()))
     found = lookup(room_words(), words, 0) if words else None
     return rooms()[found[0] if found and found[1] == len(words) else "room"]
 
 
 def summary(kind: RoomKind) -> str:
-    """What is known of a kind of room, as few lines for a language model: sizes in metres, things with usual sizes."""
+    """A kind of room in a few lines for a language model: sizes in metres, and things with their usual sizes."""
     lines = [f"{kind.name}: {_span(kind.width)} wide, {_span(kind.depth)} deep, {_span(kind.height)} high"]
     for habit in kind.habits:
         low, high = habit.count

@@ -1,4 +1,4 @@
-"""Doors, windows and beams: parts of the building that get their places before the furniture."""
+"""Place doors, windows, curtains and beams, before the layout solver places the furniture."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from . import knowledge
 from .brief import Brief
 
 _SILL = 0.9  # metres from the floor to a window
-_BEFORE = 0.3  # metres before a window that nothing taller than its sill belongs in
-_EDGE = 0.12  # metres from an opening to the corner at least
+_BEFORE = 0.3  # metres before a window that are kept free of things taller than its sill
+_EDGE = 0.12  # least metres from an opening to the corner
 _YAWS: dict[Wall, float] = {"north": 0.0, "east": -90.0, "south": 180.0, "west": 90.0}
-_LIGHT: tuple[Wall, ...] = ("north", "west", "east", "south")
+_WINDOW_WALLS: tuple[Wall, ...] = ("north", "west", "east", "south")
 
 
 @dataclass
 class _Walls:
-    """Which stretches of the walls are taken, metres along each from its middle."""
+    """The intervals of each wall that openings take, metres from its middle."""
 
     size: Size
     taken: dict[Wall, list[tuple[float, float]]]
@@ -35,7 +35,7 @@ class _Walls:
         return fits and all(high <= a or low >= b for a, b in self.taken[wall])
 
     def stand(self, wall: Wall, along: float, size: Size, bottom: float) -> Stand:
-        """Where an opening is that begins at height `bottom`; its back is in the wall's plane."""
+        """The position of an opening that begins at height `bottom`; its back is in the wall's plane."""
         half, middle = size[1] / 2, bottom + size[2] / 2
         x, y = self.size[0] / 2 - half, self.size[1] / 2 - half
         spot = {"north": (along, y), "south": (along, -y), "east": (x, along), "west": (-x, along)}[wall]
@@ -46,12 +46,12 @@ def openings(brief: Brief, size: Size, rng: np.random.Generator, ids: Iterator[i
     """Doors and windows of a room, each with its place on a wall.
 
     Args:
-        brief: says how many, or nothing.
+        brief: may state how many.
         size: of the room.
         rng: chooses walls and places.
         ids: numbers for them.
     """
-    walls = _Walls(size, {w: [] for w in _LIGHT})
+    walls = _Walls(size, {w: [] for w in _WINDOW_WALLS})
     asked = {t.name: t for t in brief.things if t.name in ("door", "window")}
     doors = asked["door"].count if "door" in asked else 1
     low, high = knowledge.room(brief.kind).windows
@@ -61,15 +61,16 @@ def openings(brief: Brief, size: Size, rng: np.random.Generator, ids: Iterator[i
     if "door" in brief.without:
         doors = 0
     order: list[Wall] = ["east", "west"] if rng.random() < 0.5 else ["west", "east"]
-    named = {r.wall for r in brief.relations if r.wall}  # a wall that things were said to stand at is left to them
+    named = {r.wall for r in brief.relations if r.wall}  # openings avoid walls that the brief names for things
     own = {r.wall for r in brief.relations if r.subject == "door"}
     entered: list[Wall] = sorted([*order, "north", "south"], key=lambda w: (w not in own, w == "south", w in named))
     made = [_doors(walls, ids, entered[i % 4], rng) for i in range(doors)]
-    big = 1.35 if "window" in asked and asked["window"].scale in ("large", "huge") else 1.0
+    scale = 1.35 if "window" in asked and asked["window"].scale in ("large", "huge") else 1.0
     shown = {r.wall for r in brief.relations if r.subject == "window"}
-    lit = [w for w in _LIGHT if w in shown] or [w for w in _LIGHT if w != entered[0] and w not in {*named, "south"}]
-    lit = lit or list(_LIGHT)
-    glazed = [_window(walls, ids, lit[i % len(lit)], big, rng) for i in range(windows)]
+    avoided = {entered[0], *named, "south"}
+    lit = [w for w in _WINDOW_WALLS if w in shown] or [w for w in _WINDOW_WALLS if w not in avoided]
+    lit = lit or list(_WINDOW_WALLS)
+    glazed = [_window(walls, ids, lit[i % len(lit)], scale, rng) for i in range(windows)]
     return [d for d in made if d], [w for w in glazed if w]
 
 
@@ -94,12 +95,12 @@ def _doors(walls: _Walls, ids: Iterator[int], wall: Wall, rng: np.random.Generat
     return None
 
 
-def _window(walls: _Walls, ids: Iterator[int], wall: Wall, big: float, rng: np.random.Generator) -> Item | None:
+def _window(walls: _Walls, ids: Iterator[int], wall: Wall, scale: float, rng: np.random.Generator) -> Item | None:
     kind = knowledge.things()["window"]
     length, height = walls.length(wall), walls.size[2]
-    width = round(min(float(rng.uniform(*kind.size[0])) * big, length - 2 * _EDGE), 3)
-    bottom = min(_SILL, height * 0.35) if big == 1.0 else min(0.5, height * 0.2)
-    tall = round(min(float(rng.uniform(*kind.size[2])) * big, height - bottom - 0.15), 3)
+    width = round(min(float(rng.uniform(*kind.size[0])) * scale, length - 2 * _EDGE), 3)
+    bottom = min(_SILL, height * 0.35) if scale == 1.0 else min(0.5, height * 0.2)
+    tall = round(min(float(rng.uniform(*kind.size[2])) * scale, height - bottom - 0.15), 3)
     if width < 0.3 or tall < 0.3:
         return None
     reach = length / 2 - width / 2 - _EDGE
@@ -113,17 +114,17 @@ def _window(walls: _Walls, ids: Iterator[int], wall: Wall, big: float, rng: np.r
     return None
 
 
-def draped(
+def hang_curtains(
     items: Sequence[Item], most: int, size: Size, height: float, color: str, ids: Iterator[int]
 ) -> tuple[list[Item], list[Item]]:
-    """The items with curtains before windows that have none, one before each, and the curtains.
+    """Add a curtain before each window without one; returns all items, and the curtains.
 
-    A curtain hangs from above its window to below the sill; the room before the window becomes the curtain's.
+    A curtain hangs from above its window to below the sill. The clear space before the window moves to the curtain.
 
     Args:
         items: doors and windows among them.
         most: how many curtains at most.
-        size: of a curtain where it hangs freely; its depth is kept.
+        size: usual size of a curtain, of which only the depth is used.
         height: of the room.
         color: of all.
         ids: numbers for them.
@@ -136,9 +137,9 @@ def draped(
 
 
 def _curtain(window: Item, openings: Sequence[Item], deep: float, height: float, color: str, number: int) -> Item:
-    """A curtain wider than its window, as far as its neighbours on the wall let it."""
+    """A curtain 1.3 times as wide as its window, or less where the next opening on the wall is near."""
     stand = window.stand
-    assert stand is not None  # openings are placed where they are made
+    assert stand is not None  # `openings` places each opening that it makes
     along = 0 if stand.yaw in (0.0, 180.0) else 1
     width = 1.3 * window.size[0]
     for other in openings:
@@ -163,12 +164,12 @@ def _curtain(window: Item, openings: Sequence[Item], deep: float, height: float,
 
 
 def beams(size: Size, count: int, section: Size, color: str, ids: Iterator[int]) -> list[Item]:
-    """Beams from the left to the right wall, evenly over the depth.
+    """Beams from the west to the east wall, evenly spaced over the depth.
 
     Args:
         size: of the room.
-        count: how many; no more than stand half a metre apart.
-        section: depth and height are those of a beam.
+        count: how many at most; they are at least half a metre apart.
+        section: its depth and height are those of a beam.
         color: of all.
         ids: numbers for them.
     """

@@ -1,6 +1,6 @@
-"""Let a language model propose a brief: the prompt states what is known of rooms, and an invalid answer is repaired.
+"""Let a language model propose a brief: the prompt describes the kind of room, and an invalid answer is repaired.
 
-Nothing is used of an answer that is no valid brief after the allowed number of repairs.
+An answer that is still invalid after the allowed number of repairs is discarded.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from . import knowledge
 from .brief import Brief, RefusedError, Relation, Thing
 
 REPAIRS = 3
-_LONGEST = 200_000  # characters of an answer that are looked at
-_FAULT = 900  # characters of a complaint that goes back to the model
+_LONGEST = 200_000  # most characters of an answer
+_FAULT = 900  # most characters of an error message that goes back to the model
 _EXAMPLE = Brief(
     kind="coffee shop",
     scale="small",
@@ -41,7 +41,7 @@ _EXAMPLE = Brief(
 
 
 class Proposed(BaseModel):
-    """What the model answers: a brief, or a verdict with its reason."""
+    """The answer of the model: a brief, or another verdict with its reason."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -52,17 +52,17 @@ class Proposed(BaseModel):
     @model_validator(mode="after")
     def _whole(self) -> Self:
         if (self.verdict == "ok") != (self.brief is not None):
-            raise ValueError('verdict "ok" comes with a brief, and every other verdict without')
+            raise ValueError('verdict "ok" needs a brief, and every other verdict must have none')
         if self.verdict != "ok" and not self.reason:
             raise ValueError(f'verdict "{self.verdict}" needs a reason')
         if self.brief is not None and not (self.brief.things or self.brief.habits):
-            raise ValueError("the brief holds nothing: name things, or leave habits on")
+            raise ValueError("the brief is empty: name things, or leave habits on")
         return self
 
 
 @dataclass(frozen=True)
 class Proposal:
-    """A model's brief, the hash of the prompt that it answered, and what it took."""
+    """A model's brief, the hash of the prompt files, and the usage."""
 
     brief: Brief
     prompt_hash: str
@@ -74,18 +74,18 @@ def propose(text: str, model: ModelBackend, *, seconds: float = 120.0, heard: Br
 
     Args:
         text: the description.
-        model: who is asked.
-        seconds: the longest that all attempts together may take.
-        heard: what the embedded reading made of it; says which kind of room the prompt tells about.
+        model: the model that is asked.
+        seconds: time limit of all attempts together.
+        heard: the brief of the embedded reader; the prompt describes its kind of room.
 
     Raises:
         UserError: the text is too long to be a description.
-        RefusedError: it asks for something else than a room, or the model says that it describes none.
+        RefusedError: the text is unsafe, or the model says that it describes no room.
         BackendError: the model cannot be reached, or gave no valid brief after all attempts.
     """
     cleaned = clean(text)
     if phrase := unsafe_words(cleaned):
-        raise RefusedError("this is not about a room", "unsafe", (phrase[:60],))
+        raise RefusedError("this is no description of a room", "unsafe", (phrase[:60],))
     ends = time.monotonic() + seconds
     messages = [Message("system", _system(heard)), Message("user", f"Description: {json.dumps(cleaned)}\nAnswer:")]
     usage = Usage(model=model.name)
@@ -94,15 +94,15 @@ def propose(text: str, model: ModelBackend, *, seconds: float = 120.0, heard: Br
         left = ends - time.monotonic()
         if left <= 0:
             raise BackendError(
-                f"{model.name} gave no brief within {seconds:g} s; allow more time or describe it shorter"
+                f"{model.name} gave no brief within {seconds:g} s; allow more time or shorten the description"
             )
         answer = model.answer(messages, schema(), seconds=left)
         usage = usage.plus(answer.usage)
         if answer.end == "declined":
             raise BackendError(f"{model.name} declined to answer; describe the room in other words")
         try:
-            if answer.end != "done":  # a text that was closed by its grammar is valid, but half of what was meant
-                raise ValueError("the answer was cut off at its longest; answer shorter")
+            if answer.end != "done":  # constrained decoding closes the JSON: it is valid but incomplete
+                raise ValueError("the answer was cut off at the length limit; give a shorter answer")
             found = _read(answer.text)
         except ValueError as error:
             fault = str(error)[:_FAULT]
@@ -126,18 +126,18 @@ def _schema_text() -> str:
 
 
 def schema() -> dict[str, Any]:
-    """The JSON Schema of an answer: that of the very type that validates."""
+    """The JSON Schema of an answer, from the type that validates it."""
     made: dict[str, Any] = json.loads(_schema_text())
     return made
 
 
 def prompt_hash() -> str:
-    """Of the prompt files that a proposal is asked with."""
+    """The hash of the prompt files."""
     return prompts.short_hash(*(prompts.load(name).hash for name in ("compose", "compose_repair")))
 
 
 def _system(heard: Brief | None) -> str:
-    """The prompt, with what is known of the kind of room that was heard, or of rooms in general."""
+    """The system prompt, with the knowledge about the kind of room that was read, or about rooms in general."""
     kind = knowledge.room(heard.kind if heard else "room")
     example = {"verdict": "ok", "brief": _EXAMPLE.model_dump(mode="json", exclude_defaults=True)}
     return prompts.load("compose").fill(
@@ -151,14 +151,14 @@ def _system(heard: Brief | None) -> str:
 
 
 def _read(text: str) -> Proposed:
-    """The one JSON object of an answer, which may stand in a fence.
+    """The JSON object of an answer, which may be in a code fence.
 
     Raises:
-        ValueError: there is none, or it is not valid; the message is for the model.
+        ValueError: there is none, or it is invalid; the message is for the model.
     """
     bare = text.strip().removeprefix("```json").removeprefix("```").removesuffix("```").strip()
     if len(bare) > _LONGEST:
-        raise ValueError(f"the answer has {len(bare)} characters; answer shorter")
+        raise ValueError(f"the answer has {len(bare)} characters, at most {_LONGEST} are read; give a shorter answer")
     try:
         return Proposed.model_validate(given_only(DECODER.decode(bare)))
     except ValidationError as error:
@@ -167,4 +167,4 @@ def _read(text: str) -> Proposed:
     except (TooDeepError, RecursionError) as error:
         raise ValueError("the JSON is nested too deeply") from error
     except ValueError as error:
-        raise ValueError(f"the answer is no valid JSON: {error}") from error
+        raise ValueError(f"the answer is not valid JSON: {error}") from error

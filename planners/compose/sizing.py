@@ -1,4 +1,4 @@
-"""Sizes of things and of the room: from stated lengths, words of size, usual ranges and the floor that things need."""
+"""Compute sizes of things and of the room from stated lengths, size words, usual ranges and needed floor area."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from . import knowledge
 from .brief import Brief, Scale
 from .furnishing import Furnishing, Group
 
-_SCALES: dict[Scale, tuple[float, float]] = {  # (where in the range, factor)
+_SCALES: dict[Scale, tuple[float, float]] = {  # (position in the usual range, factor)
     "tiny": (0.0, 0.7), "small": (0.0, 0.85), "normal": (0.5, 1.0), "large": (1.0, 1.15), "huge": (1.0, 1.4),
 }  # fmt: skip
-_SIT = 0.58  # metres of a table's edge that one chair takes
-_PASSAGE = 0.35  # metres around each thing on the floor, half of a way between two
-_FULL = 0.72  # share of a floor that things with their clear space and passages may take
-_BACKS = 0.62  # share of the walls that backed things may take
-_LONGEST = 2.0  # times as long as usual a room becomes of which one side is stated
-_SMALLEST = 1.0  # metres, of a room's side
+_EDGE_PER_CHAIR = 0.58  # metres of a table's edge that one chair takes
+_PASSAGE = 0.35  # metres of passage around each thing on the floor, half of the way between two things
+_FLOOR_SHARE = 0.72  # share of the floor that things may take, clear space and passages included
+_WALL_SHARE = 0.62  # share of the wall length that things with their back to a wall may take
+_LONGEST = 2.0  # times the longest usual side: limit of a side where only the other one is stated
+_SMALLEST = 1.0  # metres, least side of a room
 
 
 def size_of(group: Group, rng: np.random.Generator) -> Size:
@@ -39,23 +39,24 @@ def size_of(group: Group, rng: np.random.Generator) -> Size:
     return round(width, 3), round(depth, 3), round(height, 3)
 
 
-def table_for(size: Size, chairs: int, round_one: bool) -> Size:
-    """A table made so much larger that this many chairs find room around it."""
+def table_for(size: Size, chairs: int, is_round: bool) -> Size:
+    """The size of a table, made large enough for this many chairs around it."""
     width, depth, height = size
-    if round_one:
-        need = round(max(width, chairs * _SIT / pi - 0.15), 3)
+    if is_round:
+        need = round(max(width, chairs * _EDGE_PER_CHAIR / pi - 0.15), 3)
         return need, need, height
-    ends = 2 * int(depth / _SIT)
-    need = ceil(max(chairs - ends, 0) / 2) * _SIT
+    ends = 2 * int(depth / _EDGE_PER_CHAIR)
+    need = ceil(max(chairs - ends, 0) / 2) * _EDGE_PER_CHAIR
     return round(max(width, need), 3), depth, height
 
 
 def sized(made: Furnishing, rng: np.random.Generator) -> list[tuple[Group, Size]]:
-    """Every group with the size of its things; tables are as large as their chairs need."""
+    """Every group with the size of its things; tables are made large enough for their chairs."""
     found = []
     for group in made.groups:
         size = size_of(group, rng)
-        chairs = [g for g in made.groups for b in g.bonds if b.name == "around" and made.find(b.objects[0]) is group]
+        around = ((g, r) for g in made.groups for r in g.relations if r.name == "around")
+        chairs = [g for g, relation in around if made.find(relation.objects[0]) is group]
         sat = -(-sum(g.count for g in chairs) // group.count)
         if sat > 1 and group.thing.width is None and group.kind.top:
             size = table_for(size, sat, group.kind.round)
@@ -64,7 +65,7 @@ def sized(made: Furnishing, rng: np.random.Generator) -> list[tuple[Group, Size]
 
 
 def color_of(group: Group, styles: Sequence[str], rng: np.random.Generator, material_color: str) -> str:
-    """The colour of a group: said, of its material, or one it usually has that the styles like."""
+    """The colour of a group: stated, else that of its material, else a usual one, preferably of the styles."""
     chosen = int(rng.integers(1 << 16))
     if group.thing.color or material_color:
         return group.thing.color or material_color
@@ -74,7 +75,7 @@ def color_of(group: Group, styles: Sequence[str], rng: np.random.Generator, mate
 
 
 def stated_area(brief: Brief) -> float | None:
-    """Floor area in square metres as far as the brief says it."""
+    """Floor area in square metres, from the stated area or sides; None where the brief states neither."""
     said = brief.size
     if said is None:
         return None
@@ -86,13 +87,13 @@ def stated_area(brief: Brief) -> float | None:
 def room_size(
     brief: Brief, groups: Sequence[tuple[Group, Size]], rng: np.random.Generator, grow: float
 ) -> tuple[float, float, float]:
-    """Width, depth and height of the room: what was stated, and otherwise usual and large enough.
+    """Width, depth and height of the room, metres: stated, else drawn from the usual range and large enough.
 
     Args:
-        brief: says it, or says nothing.
+        brief: may state sides or the area.
         groups: what has to fit, each with its size.
         rng: draws from the usual range.
-        grow: how much longer each side is made that was not stated.
+        grow: factor on each side that was not stated.
     """
     kind, said = knowledge.room(brief.kind), brief.size
     where = {"tiny": 0.0, "small": 0.15, "normal": None, "large": 0.85, "huge": 1.0}[brief.scale]
@@ -101,7 +102,8 @@ def room_size(
         float(low + (high - low) * t)
         for (low, high), t in zip((kind.width, kind.depth, kind.height), shares, strict=True)
     )
-    stretch = max(1.0, sqrt(_needed(groups) / (width * depth)), _backs(groups) / (2 * (width + depth))) * grow
+    by_floor, by_walls = _floor_needed(groups) / (width * depth), _wall_needed(groups) / (2 * (width + depth))
+    stretch = max(1.0, sqrt(by_floor), by_walls) * grow
     width, depth = width * stretch, depth * stretch
     if said is not None:
         if said.area is not None and said.width is None and said.depth is None:
@@ -119,22 +121,22 @@ def room_size(
     )
 
 
-def _needed(groups: Sequence[tuple[Group, Size]]) -> float:
-    """Square metres of floor that things take with what is kept free about them."""
-    total = 1.2  # before the door
+def _floor_needed(groups: Sequence[tuple[Group, Size]]) -> float:
+    """Square metres of floor that things need, with the space that is kept free around them."""
+    total = 1.2  # square metres before the door
     for group, (width, depth, height) in groups:
         if group.kind.support != "floor" or height < 0.05:
             continue
         before, behind, left, right = group.kind.clear
         passage = _PASSAGE / 2 if group.kind.seats == 1 else _PASSAGE
         total += group.count * (width + left + right + passage) * (depth + before + behind + passage)
-    return total / _FULL
+    return total / _FLOOR_SHARE
 
 
-def _backs(groups: Sequence[tuple[Group, Size]]) -> float:
-    """Metres of wall that things with their back to it need."""
+def _wall_needed(groups: Sequence[tuple[Group, Size]]) -> float:
+    """Metres of wall that things with their back to a wall need."""
     widths = sum(g.count * (size[0] + 0.1) for g, size in groups if g.kind.backed and g.kind.support == "floor")
-    return (widths + 1.2) / _BACKS
+    return (widths + 1.2) / _WALL_SHARE
 
 
 def _height(brief: Brief, groups: Sequence[tuple[Group, Size]], usual: float) -> float:
