@@ -1,6 +1,6 @@
-"""`python -m scenewright.training --out DIR`: from procedural assets to a folder with an encoder.
+"""`python -m scenewright.training --out DIR`: train an encoder on procedural assets.
 
-Seeds are split once: training takes 0 upwards, calibration 10,000 upwards, measurement 20,000 upwards.
+Training uses seeds from 0, calibration from 10,000, measurement from 20,000.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from ..gaussians.language.encoders.backends.embedded import Embedded
 from . import captions, export, fit, foreign_meshes, in_rooms, measure, renders
 
 CALIBRATION_SEEDS, MEASURING_SEEDS = 10_000, 20_000
-ROOMS = 16  # furnished for measurement
+ROOMS = 16  # furnished rooms for measurement
 HELD_OUT = 8  # seeds of each kind for calibration, and as many for measurement
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Render, train, export, calibrate, measure; progress on stderr."""
+    """Render, train, export, calibrate and measure, with progress on stderr."""
     options = _options(argv)
     torch.set_num_threads(options.threads)
     start = time.monotonic()
@@ -70,13 +70,15 @@ def main(argv: list[str] | None = None) -> int:
 def _options(argv: list[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m scenewright.training", description=__doc__)
     parser.add_argument("--out", type=Path, required=True, help="folder to write the encoder to")
-    parser.add_argument("--minutes", type=float, default=12.0, help="wall time of the training proper")
-    parser.add_argument("--steps", type=int, help="exactly so many steps instead of a time")
+    parser.add_argument("--minutes", type=float, default=12.0, help="wall time of the training alone")
+    parser.add_argument("--steps", type=int, help="exact number of steps, instead of a time")
     parser.add_argument("--bf16", action="store_true", help="convolutions in bfloat16: faster on recent processors")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--assets", type=int, default=60, help="designs of each kind to learn from")
-    parser.add_argument("--strangers", type=Path, help="folder of meshes by others to measure on as well")
-    parser.add_argument("--threads", type=int, default=os.cpu_count() or 1, help="fewer where the machine is shared")
+    parser.add_argument("--strangers", type=Path, help="folder of third-party meshes to evaluate on as well")
+    parser.add_argument(
+        "--threads", type=int, default=os.cpu_count() or 1, help="CPU threads; use fewer on a shared machine"
+    )
     parser.add_argument(
         "--cache", type=Path, help=f"where rendered pictures are kept (default {renders.cache_folder()})"
     )
@@ -84,7 +86,7 @@ def _options(argv: list[str] | None) -> argparse.Namespace:
 
 
 def _measured(encoder: Embedded, crops: renders.Crops, meshes: Path | None) -> dict[str, Any]:
-    """What the encoder card states about the encoder itself."""
+    """The figures of the encoder card."""
     image_ms, text_ms = measure.milliseconds(encoder)
     files = ("image.onnx", "text.onnx", "words.json")
     result = {

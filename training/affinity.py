@@ -1,10 +1,10 @@
-"""Fit the rule that says whether two touching regions are one thing, on furnished rooms whose objects are known.
+"""Fit the rule that decides whether two touching regions are one object, on furnished rooms with known objects.
 
     python -m scenewright.training.affinity --rooms 70 --seed 9000
 
-Writes `affinity.json` beside `affinity.py`. A rule that merges greedily meets borders of its own making, so it is
-fitted in rounds: each walks the rooms in the order of the rule so far, sometimes into its mistakes, and adds the
-borders it meets to those of all rounds (DAgger: Ross, Gordon & Bagnell 2011).
+Writes `affinity.json` beside `affinity.py`. The features of a border depend on earlier merges, so the rule is fitted
+in rounds. Each round merges the regions of all rooms in the order of the current rule, executes some of its wrong
+merges, and adds the borders that occur to the training set (DAgger: Ross, Gordon & Bagnell 2011).
 """
 
 from __future__ import annotations
@@ -24,25 +24,30 @@ from ..gaussians.language.segmentation.segment import graph_of, superpoints_and_
 from ..gaussians.language.segmentation.superpoints import links_of
 from ..gaussians.language.segmentation.surface import surface_of
 from ..gaussians.scene import Scene
-from .rules import Met, Rooms, command, fit, joined, kept, with_judgement
+from .rules import Examples, Rooms, command, fit, joined, training_count, with_held_out
 
 F64 = NDArray[np.float64]
 STEPS = 8000
 ROUNDS = 2
-STRAY = 0.3  # of the wrong merges that the rule would make are made, so that it learns not to add to them
-LEAST = 0.2  # weight of a border of a crumb against one that decides over a whole object
+WRONG_MERGES = 0.3  # share of the wrong merges of the rule that are executed, so that it learns to recover from them
+MIN_WEIGHT = 0.2  # weight of a border of a tiny region; a border that decides about a whole object has weight 1
 
 
 @dataclass(frozen=True)
-class Known:
-    """A graph and `owners [R, K]`, how many points of each region each known object (and, first, none) has."""
+class LabelledGraph:
+    """A region graph with `owners [R, K]`: number of points of each region that belong to each known object. Column 0
+    counts points of no object."""
 
     graph: Graph
     owners: F64
 
 
-def known_graph(scene: Scene, truth: NDArray[np.int32]) -> Known:
-    """The graph that embedding would build, with the objects (-1: structure) its regions belong to."""
+def labelled_graph(scene: Scene, truth: NDArray[np.int32]) -> LabelledGraph:
+    """The region graph that embedding would build, with the true objects of its regions.
+
+    Args:
+        truth: `[N]` object of each Gaussian, -1 for structure.
+    """
     surface = surface_of(scene.cloud)
     links = links_of(surface)
     labels, kind_of = superpoints_and_structure(surface, links, scene.frame)
@@ -50,11 +55,14 @@ def known_graph(scene: Scene, truth: NDArray[np.int32]) -> Known:
     many = int(truth.max(initial=-1)) + 2
     counts = np.bincount(labels.astype(np.int64) * many + truth[surface.rows] + 1, minlength=len(kind_of) * many)
     rows = [m[0] for m in graph.members.values()]
-    return Known(graph, counts.reshape(-1, many)[rows].astype(np.float64))
+    return LabelledGraph(graph, counts.reshape(-1, many)[rows].astype(np.float64))
 
 
-def walk(known: Known, rule: Rule | None, rng: np.random.Generator) -> Met:
-    """Merge as the rule would (at random if None) but only within objects, bar a stray; note every border met."""
+def collect_borders(known: LabelledGraph, rule: Rule | None, rng: np.random.Generator) -> Examples:
+    """Merge regions in the order of the rule (random if None) and return every border that occurs.
+
+    Merges across objects are skipped, except for the share `WRONG_MERGES` of those that the rule would make.
+    """
     graph, owners = copy.deepcopy(known.graph), {i: row for i, row in enumerate(known.owners)}
     total = known.owners.sum(axis=0)
     features: list[F64] = []
@@ -62,7 +70,7 @@ def walk(known: Known, rule: Rule | None, rng: np.random.Generator) -> Met:
     cost: list[float] = []
     heap: list[tuple[float, int, int]] = []
 
-    def meet(pairs: list[tuple[int, int]]) -> None:
+    def add_borders(pairs: list[tuple[int, int]]) -> None:
         if not pairs:
             return
         found = affinity.features(graph, pairs)
@@ -74,35 +82,35 @@ def walk(known: Known, rule: Rule | None, rng: np.random.Generator) -> Met:
             share = min(a.sum(), b.sum()) / max(min(total[first], total[second]), 1.0)
             pure = a.max() / a.sum() * b.max() / b.sum()
             same.append(first == second)
-            cost.append(float(pure * (LEAST + (1 - LEAST) * min(2 * share, 1.0))))
+            cost.append(float(pure * (MIN_WEIGHT + (1 - MIN_WEIGHT) * min(2 * share, 1.0))))
             heapq.heappush(heap, (p, i, j))
 
-    meet(graph.pairs())
+    add_borders(graph.pairs())
     while heap:
         order, i, j = heapq.heappop(heap)
         if i not in graph.members or j not in graph.members:
             continue
         right = owners[i].argmax() == owners[j].argmax()
-        if right or (rule is not None and order < -0.5 and rng.random() < STRAY):
+        if right or (rule is not None and order < -0.5 and rng.random() < WRONG_MERGES):
             new = graph.merge(i, j)
             owners[new] = owners.pop(i) + owners.pop(j)
-            meet([(other, new) for other in graph.around[new]])
-    return Met(np.concatenate(features) if features else np.zeros((0, len(affinity.FEATURES))),
+            add_borders([(other, new) for other in graph.around[new]])
+    return Examples(np.concatenate(features) if features else np.zeros((0, len(affinity.FEATURES))),
                np.array(same, bool), np.array(cost))  # fmt: skip
 
 
 def fit_in_rounds(rooms: Rooms, seed: int) -> dict[str, Any]:
-    """The table of the rule after all rounds; a sixth of the rooms is held out and judged as the rule meets them."""
+    """The table of the rule after all rounds. A sixth of the rooms is held out for evaluation."""
     rng = np.random.default_rng(seed)
-    graphs = [known_graph(scene, truth) for scene, truth in rooms]
-    known, held = graphs[: kept(len(graphs))], graphs[kept(len(graphs)) :]
-    met = [walk(g, None, rng) for g in known]
-    table = fit(joined(met), affinity.FEATURES, seed, STEPS)
+    graphs = [labelled_graph(scene, truth) for scene, truth in rooms]
+    known, held = graphs[: training_count(len(graphs))], graphs[training_count(len(graphs)) :]
+    examples = [collect_borders(g, None, rng) for g in known]
+    table = fit(joined(examples), affinity.FEATURES, seed, STEPS)
     for _ in range(ROUNDS):
-        met += [walk(g, rule_of(table, affinity.FEATURES), rng) for g in known]
-        table = fit(joined(met), affinity.FEATURES, seed, STEPS)
+        examples += [collect_borders(g, rule_of(table, affinity.FEATURES), rng) for g in known]
+        table = fit(joined(examples), affinity.FEATURES, seed, STEPS)
     rule = rule_of(table, affinity.FEATURES)
-    return with_judgement(table, affinity.FEATURES, [walk(g, rule, rng) for g in held])
+    return with_held_out(table, affinity.FEATURES, [collect_borders(g, rule, rng) for g in held])
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ def augment(pixels: Tensor, seed: int, size: int = IMAGE_SIZE) -> Tensor:
 
 
 def plain(pixels: Tensor, size: int = IMAGE_SIZE) -> Tensor:
-    """The same crops as they are, over neutral grey, `[B, 3, size, size]`: for measuring."""
+    """The crops without augmentation over neutral grey, `[B, 3, size, size]`, for evaluation."""
     rgba = pixels.permute(0, 3, 1, 2).float() / 255
     rgba = functional.interpolate(rgba, (size, size), mode="bilinear", antialias=True)
     return (rgba[:, :3] + (1 - rgba[:, 3:]) * 0.5).clamp(0, 1)
@@ -50,7 +50,7 @@ def backgrounds(count: int, size: int, g: torch.Generator) -> Tensor:
 
 
 def _reframed(rgba: Tensor, g: torch.Generator, size: int) -> Tensor:
-    """Mirrored, turned a little, scaled, stretched and shifted, so that some borders are cut off."""
+    """Mirror, rotate a little, scale, stretch and shift the crops; some borders are cut off."""
     n = len(rgba)
     turn = torch.randn(n, generator=g) * 0.06
     scale = torch.exp(torch.randn(n, generator=g) * 0.1) * 0.97
@@ -66,7 +66,7 @@ def _reframed(rgba: Tensor, g: torch.Generator, size: int) -> Tensor:
 
 
 def _coarsened(rgba: Tensor, g: torch.Generator) -> Tensor:
-    """For a third of the batch, seen small: down to 18 to 44 pixels and up again."""
+    """Downsample a third of the batch to between 18 and 44 pixels and upsample it again."""
     count = len(rgba) // 3
     side = int(torch.randint(18, 45, (1,), generator=g))
     rows = torch.randperm(len(rgba), generator=g)[:count]
@@ -76,7 +76,7 @@ def _coarsened(rgba: Tensor, g: torch.Generator) -> Tensor:
 
 
 def _relit(rgb: Tensor, g: torch.Generator) -> Tensor:
-    """Gain, gamma and tint for all; for most also another hue and saturation: shape, not colour, names things."""
+    """Vary gain, gamma and tint of all crops, and hue and saturation of 60 %: names depend on shape."""
     n = len(rgb)
     gain = torch.exp(torch.randn(n, 1, 1, 1, generator=g) * 0.25)
     gamma = torch.exp(torch.randn(n, 1, 1, 1, generator=g) * 0.2)
@@ -89,7 +89,8 @@ def _relit(rgb: Tensor, g: torch.Generator) -> Tensor:
 
 
 def _hue_matrices(angle: Tensor, saturation: Tensor) -> Tensor:
-    """`[B, 3, 3]` turns about the grey axis (Rodrigues), with what lies across the axis scaled by `saturation`."""
+    """`[B, 3, 3]` rotations about the grey axis (Rodrigues); components perpendicular to it are scaled by
+    `saturation`."""
     axis = _GREY
     along = torch.outer(axis, axis)
     cross = torch.tensor([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])

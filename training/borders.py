@@ -1,4 +1,4 @@
-"""Fit the rule that draws borders point by point, on furnished rooms cut as well as their superpoints allow.
+"""Fit the rule that refines object borders point by point, on furnished rooms with the best labels of superpoints.
 
     python -m scenewright.training.borders --rooms 40 --seed 9000
 
@@ -17,14 +17,14 @@ from ..gaussians.language.segmentation.segment import superpoints_and_structure
 from ..gaussians.language.segmentation.superpoints import links_of, touching
 from ..gaussians.language.segmentation.surface import surface_of
 from ..gaussians.scene import Scene
-from .rules import Met, Rooms, command, fit_and_judge, joined
+from .rules import Examples, Rooms, command, fit_and_evaluate, joined
 
 STEPS = 6000
-TAKEN = 0.5  # of the pieces of floor that were not recognised, those that went to a thing they touch
+ABSORBED = 0.5  # share of the unrecognised pieces of floor that are assigned to an object that they touch
 
 
-def points_met(scene: Scene, truth: NDArray[np.int32], rng: np.random.Generator) -> Met:
-    """Points at borders with each thing near them, and whether it is theirs, over the passes that embedding makes."""
+def point_examples(scene: Scene, truth: NDArray[np.int32], rng: np.random.Generator) -> Examples:
+    """Points at borders paired with each object near them, and whether they belong to it, over two passes."""
     surface = surface_of(scene.cloud)
     links = links_of(surface)
     labels, codes = superpoints_and_structure(surface, links, scene.frame)
@@ -32,38 +32,40 @@ def points_met(scene: Scene, truth: NDArray[np.int32], rng: np.random.Generator)
     owner = _owners(labels, truth[surface.rows], kinds, touching(labels, links), rng)
     wanted = truth[surface.rows] + structure.CEILING  # things are numbered after floor, wall and ceiling
     level = kinds != structure.NONE
-    met = []
+    examples = []
     for _ in range(2):
         point, thing, nearest, features = borders.describe(surface, labels, owner, level)
         of_thing = np.where(level[labels[nearest]], structure.CEILING - 1, thing)
         same = np.where(thing < 0, wanted[point] == structure.CEILING - 1, of_thing == wanted[point])
-        met.append(Met(features, same, np.ones(len(same))))
-        keep = same & (rng.random(len(same)) < 0.7)  # the next pass starts nearer to the truth
+        examples.append(Examples(features, same, np.ones(len(same))))
+        keep = same & (rng.random(len(same)) < 0.7)  # the next pass starts closer to the true labels
         labels = labels.copy()
         labels[point[keep]] = labels[nearest[keep]]
-    return joined(met)
+    return joined(examples)
 
 
 def _owners(
     labels: NDArray[np.int32], truth: NDArray[np.int32], kinds: NDArray[np.int8], near: dict[int, set[int]],
     rng: np.random.Generator,
 ) -> NDArray[np.int32]:  # fmt: skip
-    """Thing of each superpoint `[S]`: what most of its points are; structure is numbered by its kind less one."""
+    """Object of each superpoint `[S]` by majority of its points; structure is numbered by its kind minus one."""
     many = int(truth.max(initial=-1)) + 2
     counts = np.bincount(labels.astype(np.int64) * many + truth + 1, minlength=len(kinds) * many).reshape(-1, many)
     most = counts.argmax(axis=1) - 1
     owner = np.where(kinds > 0, kinds.astype(np.int64) - 1, np.where(most < 0, -1, most + structure.CEILING))
     for s in np.flatnonzero(owner < 0):
         things = [t for t in sorted(near.get(int(s), ())) if owner[t] >= structure.CEILING]
-        if things and rng.random() < TAKEN:
+        if things and rng.random() < ABSORBED:
             owner[s] = owner[things[int(rng.integers(len(things)))]]
     return owner.astype(np.int32)
 
 
 def fit_rooms(rooms: Rooms, seed: int) -> dict[str, Any]:
-    """The table of the rule; a sixth of the rooms is held out and judged."""
+    """The table of the rule. A sixth of the rooms is held out for evaluation."""
     rng = np.random.default_rng(seed)
-    return fit_and_judge([points_met(scene, truth, rng) for scene, truth in rooms], borders.FEATURES, seed, STEPS)
+    return fit_and_evaluate(
+        [point_examples(scene, truth, rng) for scene, truth in rooms], borders.FEATURES, seed, STEPS
+    )
 
 
 if __name__ == "__main__":

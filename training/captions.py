@@ -43,9 +43,9 @@ _SHOWN = ("", "", "", "", "photo of ", "picture of the ", "one ")
 
 
 def vocabulary(names: Sequence[str]) -> Vocabulary:
-    """The names for kinds of the table, each with its synonyms and those of kinds that it is alike to.
+    """The vocabulary: the names with their synonyms, and those of similar kinds that are not shown.
 
-    A synonym that is a word for a family is dropped: it would teach a contradiction.
+    Synonyms that are also the name of a family are dropped, since they would contradict its training phrases.
     """
     table = kinds.table()
     terms = {normalise(term) for term in table.families}
@@ -64,14 +64,14 @@ def vocabulary(names: Sequence[str]) -> Vocabulary:
 
 
 def words(vocabulary: Vocabulary) -> list[str]:
-    """Every word the text tower learns, sorted: of names, of captions, and the modifiers."""
+    """All words that the text tower learns, sorted: words of names and captions, and modifiers."""
     phrases = [*vocabulary.names, *vocabulary.broader, *(s for v in vocabulary.kinds.values() for s in v)]
     phrases += [*NEGATIVES, *(s for v in NEGATIVES.values() for s in v)]
     return sorted({w for p in phrases for w in normalise(p)} | set(vocabulary.modifiers))
 
 
 def phrase(rng: np.random.Generator, name: str, modifiers: list[str]) -> str:
-    """One caption around `name`: sometimes alone, often with up to three words before it, in any colour."""
+    """A random caption of `name`: alone in 40 % of cases, else after one to three modifiers."""
     count = int(rng.choice(4, p=[0.4, 0.3, 0.2, 0.1]))
     before = [modifiers[i] for i in rng.integers(len(modifiers), size=count)]
     return " ".join([_SHOWN[rng.integers(len(_SHOWN))] + " ".join([*before, name])])

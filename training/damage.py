@@ -18,14 +18,14 @@ _C0 = 0.28209479177387814
 
 
 def extent(cloud: GaussianCloud) -> tuple[Array, Array]:
-    """Lower and upper corner `[3]` of the centres, without the outermost hundredth."""
+    """Lower and upper corner `[3]` of the centres, without the outermost 0.5 % on each side."""
     points = cloud.means.double().numpy()
     return np.quantile(points, 0.005, axis=0), np.quantile(points, 0.995, axis=0)
 
 
 def moved(cloud: GaussianCloud, offset: Array, yaw: float = 0.0, scale: float = 1.0) -> GaussianCloud:
     """Scaled and turned about the vertical axis (radians) around the origin, then shifted. Harmonics beyond degree 0
-    are left out instead of turned: training looks at base colours."""
+    are dropped instead of rotated, since training uses base colours only."""
     turn = rotations.from_axis_angle(torch.tensor([0.0, 0.0, 1.0]), torch.tensor(float(yaw)))
     matrix = rotations.to_matrix(turn).to(torch.float32)
     plain = cloud.with_degree(0)
@@ -37,7 +37,7 @@ def moved(cloud: GaussianCloud, offset: Array, yaw: float = 0.0, scale: float = 
 
 
 def join(clouds: list[GaussianCloud]) -> GaussianCloud:
-    """Stacked, renumbered from 0."""
+    """Concatenate clouds; ids start at 0."""
     parts = [c.with_degree(0) for c in clouds]
     columns = ("means", "quats", "scales", "opacities", "sh")
     return GaussianCloud.create(*(torch.cat([getattr(c, name) for c in parts]) for name in columns))
@@ -51,8 +51,8 @@ def direction(rng: np.random.Generator, level: bool = False) -> Array:
 
 
 def cut(cloud: GaussianCloud, rng: np.random.Generator, keep: float, toward: Array | None = None) -> GaussianCloud:
-    """The share `keep` of the Gaussians that lies furthest against `toward` (random if not given), cut by a plane that
-    is a little rough, as borders of segments are."""
+    """Cut off the side in direction `toward` (random if None) and keep the share `keep` of the Gaussians. The cut is a
+    slightly rough plane, as borders of segments are."""
     toward = direction(rng) if toward is None else toward
     low, high = extent(cloud)
     along = cloud.means.double().numpy() @ toward + rng.normal(size=len(cloud)) * 0.01 * np.linalg.norm(high - low)
@@ -60,11 +60,11 @@ def cut(cloud: GaussianCloud, rng: np.random.Generator, keep: float, toward: Arr
 
 
 def thinned(cloud: GaussianCloud, rng: np.random.Generator, drop: float) -> GaussianCloud:
-    """A share left out at random, the rest grown, moved and faded a little, as in trained scenes."""
+    """Drop the share `drop` at random and grow, move and fade the rest a little, as in trained scenes."""
     kept = cloud[torch.from_numpy(rng.random(len(cloud)) >= drop)]
     n = len(kept)
     shift = torch.from_numpy(rng.normal(size=(n, 3)).astype(np.float32)) * kept.scales.amax(dim=1, keepdim=True) * 0.4
-    wider = (1 - drop) ** -0.45  # the fewer must cover nearly what all covered
+    wider = (1 - drop) ** -0.45  # the remaining Gaussians must cover nearly the same area
     grow = torch.from_numpy((wider * rng.lognormal(0.1, 0.3, size=(n, 1))).astype(np.float32))
     fade = torch.from_numpy(rng.uniform(0.55, 1.0, size=n).astype(np.float32))
     return kept.replace(means=kept.means + shift, scales=kept.scales * grow, opacities=kept.opacities * fade)
@@ -110,7 +110,7 @@ def with_fragment(cloud: GaussianCloud, other: GaussianCloud, rng: np.random.Gen
 
 
 def several(clouds: list[GaussianCloud], rng: np.random.Generator) -> GaussianCloud:
-    """Things of comparable size merged into one: side by side, or the next on top of the first."""
+    """Merge objects, scaled to comparable size, into one: side by side or on top of each other."""
     merged = clouds[0]
     for other in clouds[1:]:
         merged = _beside(merged, other, rng, share=rng.uniform(0.5, 1.1))

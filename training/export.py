@@ -1,4 +1,4 @@
-"""Export the towers as ONNX to the folder that `encoders.embedded` loads.
+"""Export the towers as ONNX to the folder that `encoders.backends.embedded` loads.
 
 Weights are stored in half precision and widened by a Cast when the session starts, so files are half as large and the
 arithmetic stays float32.
@@ -25,7 +25,7 @@ _OPSET = 17
 
 
 def write_weights(folder: Path, towers: Towers, job: Task) -> None:
-    """`image.onnx`, `text.onnx` and `words.json` in `folder`.
+    """Write `image.onnx`, `text.onnx` and `words.json` to `folder`.
 
     Raises:
         BackendError: onnx is not installed.
@@ -44,17 +44,17 @@ def write_weights(folder: Path, towers: Towers, job: Task) -> None:
 
 
 def write_calibration(folder: Path, calibration: Calibration) -> None:
-    """`calibration.json` in `folder`."""
+    """Write `calibration.json` to `folder`."""
     write_json(folder / "calibration.json", calibration.to_json())
 
 
 def write_json(path: Path, content: dict[str, Any]) -> None:
-    """Readable, in the order given, with a final newline."""
+    """Write indented JSON with keys in the given order and a final newline."""
     path.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
 def _export(module: nn.Module, example: torch.Tensor, name: str, path: Path) -> None:
-    """One graph with a free batch size, its larger weights halved."""
+    """Export one graph with a dynamic batch size and its larger weights in half precision."""
     try:
         import onnx
     except ImportError as error:

@@ -24,7 +24,7 @@ from . import damage
 from .augment import plain
 from .renders import WHOLE, Thing, pictures
 
-SAMPLES = 12_000  # Gaussians a mesh: borders stay crisp although samples fall at random
+SAMPLES = 12_000  # Gaussians per mesh; enough for sharp borders with random samples
 _NAMES: dict[str, tuple[str, ...]] = {
     "bathroomCabinetDrawer": ("cabinet", "sink"), "bathroomSink": ("sink",), "bear": ("bear trophy",),
     "bedSingle": ("bed",), "benchCushionLow": ("bench", "ottoman"), "bookcaseOpenLow": ("bookshelf", "wall shelf"),
@@ -42,21 +42,23 @@ _NAMES: dict[str, tuple[str, ...]] = {
 
 @dataclass(frozen=True)
 class Verdict:
-    """What was said of one mesh: the accepted kinds (none: the encoder has no name for it), guess, probability."""
+    """Result for one mesh: accepted kinds (none if the encoder has no name for it), predicted kind, probability."""
 
     name: str
     accepted: tuple[str, ...]
     guess: str
-    sized: str  # the guess with the mesh's size taken for metres
+    sized: str  # prediction with the size of the mesh taken as metres
     sure: float
     asked: float  # probability of the best accepted name; of the best of all names where none is accepted
 
 
 def judge(encoder: encoders.Encoder, folder: Path) -> list[Verdict]:
-    """The encoder's word on every known mesh in `folder`, by the mean vector of four views.
+    """Predictions for every known mesh in `folder`, from the mean vector of four views.
+
+    Meshes without an entry in the table of names are skipped.
 
     Raises:
-        BackendError: the encoder fails. Meshes without an entry in the table of names are passed over.
+        BackendError: the encoder fails.
     """
     verdicts = []
     for path in sorted(folder.glob("*.glb")):
@@ -78,7 +80,7 @@ def judge(encoder: encoders.Encoder, folder: Path) -> list[Verdict]:
 
 
 def summary(verdicts: list[Verdict], threshold: float) -> dict[str, Any]:
-    """Top-1 over the meshes that have a name, the share of them found, and the share of the others that is refused."""
+    """Top-1 over meshes with an accepted name, the share of them found by name, and the refused share of the others."""
     named = [v for v in verdicts if v.accepted]
     others = [v for v in verdicts if not v.accepted]
     return {
@@ -93,7 +95,7 @@ def summary(verdicts: list[Verdict], threshold: float) -> dict[str, Any]:
 
 
 def read(path: Path) -> GaussianCloud:
-    """A mesh file as Gaussians of one flat colour a material, z up, standing on z = 0, lit as our assets are."""
+    """Convert a mesh file to Gaussians: one flat colour per material, z up, base at z = 0, lit as our assets are."""
     import trimesh
 
     scene: Any = trimesh.load(path, force="scene")
@@ -112,7 +114,7 @@ def read(path: Path) -> GaussianCloud:
 
 
 def _sampled(mesh: Any, count: int, seed: int) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Even points, normals and colours on a mesh; glTF's y-up becomes z-up, its front +z becomes -y."""
+    """Points, normals and colours sampled uniformly on a mesh. glTF's y-up becomes z-up, its front +z becomes -y."""
     import trimesh
 
     points, faces = trimesh.sample.sample_surface(mesh, count, seed=seed)
@@ -125,7 +127,7 @@ def _sampled(mesh: Any, count: int, seed: int) -> tuple[NDArray[np.float64], NDA
 
 
 def _frames(normal: NDArray[np.float64]) -> NDArray[np.float64]:
-    """`[N, 3, 3]` orthonormal columns, the last being the normal."""
+    """`[N, 3, 3]` matrices with orthonormal columns; the last column is the normal."""
     helper = np.where(np.abs(normal[:, 2:]) < 0.9, [[0.0, 0.0, 1.0]], [[1.0, 0.0, 0.0]])
     first = np.cross(helper, normal)
     first /= np.linalg.norm(first, axis=1, keepdims=True)
@@ -133,7 +135,7 @@ def _frames(normal: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Print one line a mesh and the summary as JSON."""
+    """Print one line per mesh and the summary as JSON."""
     parser = argparse.ArgumentParser(prog="python -m scenewright.training.foreign_meshes")
     parser.add_argument("folder", type=Path)
     parser.add_argument("--encoder", default="auto")

@@ -14,14 +14,14 @@ from ..gaussians.language.encoders import Encoder
 from ..gaussians.language.encoders.probability import labels, probability
 from ..gaussians.language.segmentation.group_renders import mean_vectors
 
-ABSENT = 6  # names of things that are not there, asked of each room
+ABSENT = 6  # absent kinds queried in each room
 
 
 def judge(encoder: Encoder, seeds: range) -> dict[str, float]:
-    """Rates over the rooms of these seeds; every kind present is asked for once, and some that are not there.
+    """Rates over the rooms of these seeds. Every present kind is queried once, and `ABSENT` absent ones.
 
-    A present kind counts as answered right if the likeliest thing over the threshold is of that kind; an absent one as
-    refused if nothing is over it.
+    A present kind counts as correct if the most probable object over the threshold is of that kind. An absent kind
+    counts as refused if no object is over the threshold.
     """
     plain, sized, right, refused, things = [], [], [], [], 0
     rng = np.random.default_rng(seeds.start)

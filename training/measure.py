@@ -1,6 +1,6 @@
-"""Evaluate the encoder on unseen objects, and fit the two numbers of its calibration.
+"""Evaluate the encoder on unseen objects, and fit its calibration: scale, weight of sizes and threshold.
 
-Everything runs through the encoder as shipped, not through torch.
+All vectors are computed by the exported encoder, not by torch.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from .augment import plain
 from .renders import DAMAGED, NONE, WHOLE, Crops
 
 Array = NDArray[np.float64]
-ROOM = 14  # things in a simulated room
-MERGES = 4  # pieces and heaps among them that segmentation got wrong
+ROOM = 14  # objects in a simulated room
+MERGES = 4  # wrong segments (pieces and heaps) in addition
 ROOMS = 400
-WIDEN = 0.25  # added to the deviation of log sizes: people's things vary more than our assets
+WIDEN = 0.25  # added to the deviation of log sizes, since real objects vary more than our assets
 
 
 def encode(encoder: Encoder, crops: Crops) -> NDArray[np.float32]:
@@ -51,26 +51,26 @@ def size_priors(crops: Crops) -> dict[str, SizePrior]:
 
 
 def calibrate(encoder: Embedded, crops: Crops, priors: dict[str, SizePrior], learnt_scale: float) -> Calibration:
-    """The scale that makes the label's probability most honest (least log loss), a weight for sizes, and the threshold
-    that serves simulated rooms best: answer when asked for what is there, refuse when asked for what is not."""
+    """Fit scale and weight of sizes by the least log loss of the true labels, and the threshold by simulated rooms: it
+    maximises the sum of correct answers to present kinds and refusals of absent kinds."""
     pooled = encode(encoder, crops).mean(axis=1)
     best: tuple[float, Calibration] | None = None
     for factor in (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0):
         for weight in (0.0, 0.3, 0.6, 1.0):
             rule = Calibration(learnt_scale * factor, 0.5, weight, priors)
-            loss = _log_loss(_with(encoder, rule), crops, pooled)
+            loss = _log_loss(_with_calibration(encoder, rule), crops, pooled)
             if best is None or loss < best[0]:
                 best = (loss, rule)
     assert best is not None
     rule = best[1]
-    table = _table(_with(encoder, rule), crops, pooled, sized=True)
+    table = _table(_with_calibration(encoder, rule), crops, pooled, sized=True)
     grid = np.linspace(0.05, 0.95, 91)
-    found, refused = _rooms(_with(encoder, rule), crops, table, grid, seed=1)
+    found, refused = _rooms(_with_calibration(encoder, rule), crops, table, grid, seed=1)
     return replace(rule, threshold=float(grid[int(np.argmax(found + refused))]))
 
 
 def figures(encoder: Embedded, crops: Crops) -> dict[str, float]:
-    """All rates on a set that served neither training nor calibration."""
+    """All rates on a set that was used neither for training nor for calibration."""
     vectors = encode(encoder, crops)
     pooled = vectors.mean(axis=1)
     objects = crops.states != NONE
@@ -115,7 +115,7 @@ def confusions(encoder: Encoder, crops: Crops) -> dict[str, dict[str, float]]:
 
 
 def milliseconds(encoder: Encoder, count: int = 64) -> tuple[float, float]:
-    """For one picture in a batch of 16, and for one phrase; the best of several tries."""
+    """Milliseconds for one image in a batch of 16 and for one phrase, each the best of several runs."""
     pictures = (
         np.random.default_rng(0).integers(0, 255, (16, encoder.image_size, encoder.image_size, 3)).astype(np.uint8)
     )
@@ -130,8 +130,8 @@ def milliseconds(encoder: Encoder, count: int = 64) -> tuple[float, float]:
     return 1e3 * min(image), 1e3 * min(text)
 
 
-def _with(encoder: Embedded, rule: Calibration) -> Embedded:
-    """The same encoder under another rule, sharing its sessions."""
+def _with_calibration(encoder: Embedded, rule: Calibration) -> Embedded:
+    """The same encoder with another calibration; it shares the sessions."""
     other = Embedded(encoder.folder)
     vars(other).update({k: v for k, v in vars(encoder).items() if k != "calibration"})
     vars(other)["calibration"] = rule
@@ -153,12 +153,12 @@ def _log_loss(encoder: Encoder, crops: Crops, pooled: NDArray[np.float32]) -> fl
 
 
 def _table(encoder: Encoder, crops: Crops, pooled: NDArray[np.float32], sized: bool) -> Array:
-    """`[M, K]` probability that each thing is each kind: what `probability` gives for canonical names, all at once."""
+    """`[M, K]` probability that each thing is each kind: the result of `probability` for all canonical names."""
     return distribution(encoder, pooled, crops.sizes if sized else None)[:, : len(encoder.vocabulary.names)]
 
 
 def _rooms(encoder: Encoder, crops: Crops, table: Array, grid: Array, seed: int) -> tuple[Array, Array]:
-    """Simulated rooms of things of different kinds and some wrong segments, at each threshold of `grid` `[T]`.
+    """Query simulated rooms, objects of different kinds and some wrong segments, at each threshold of `grid` `[T]`.
 
     Returns:
         Share of present kinds for which the best thing over the threshold is the right one, and share of absent kinds
@@ -182,7 +182,7 @@ def _rooms(encoder: Encoder, crops: Crops, table: Array, grid: Array, seed: int)
 
 
 def _auc(positive: Array, negative: Array) -> float:
-    """Chance that a random positive scores above a random negative."""
+    """Area under the ROC curve: probability that a random positive scores above a random negative."""
     order = np.concatenate([positive, negative]).argsort().argsort() + 1.0
     rank = order[: len(positive)].sum() - len(positive) * (len(positive) + 1) / 2
     return float(rank / (len(positive) * len(negative)))

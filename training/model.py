@@ -50,7 +50,7 @@ class ImageTower(nn.Module):
 
     def forward(self, images: Tensor) -> Tensor:
         x = self.body((images - 0.5) * 4.0)  # grey, the neutral background, becomes 0
-        x = torch.cat([x.mean(dim=(2, 3)), x.amax(dim=(2, 3))], dim=1)  # [B, 2d]: how much, and whether at all
+        x = torch.cat([x.mean(dim=(2, 3)), x.amax(dim=(2, 3))], dim=1)  # [B, 2d]: mean and maximum of each feature
         return functional.normalize(self.head(x), dim=1)
 
 

@@ -30,13 +30,13 @@ from . import damage
 from .captions import FLOOR, PART, SEVERAL, WALL
 
 CROP = 80  # px, side of the stored crops: a quarter more than the encoder's input, room for augmentation
-CANVAS = 112  # px, side of the renders they are cut from
-VIEWS = 4  # of each thing
-STRETCH = 0.15  # deviation of the logarithm of an axis' stretch
-VERSION = 3  # of this file's choices; part of the cache's name
+CANVAS = 112  # px, side of the renders that crops are cut from
+VIEWS = 4  # per object
+STRETCH = 0.15  # standard deviation of the logarithm of the stretch of an axis
+VERSION = 3  # of the settings in this file; part of the cache key
 
 WHOLE, DAMAGED, NONE = "whole", "damaged", "not an object"
-# A cut-off piece of these still looks like one of them, so cuts of them say nothing about being incomplete.
+# A piece of these looks like a whole one, so it is no example of an incomplete object.
 SELF_SIMILAR = frozenset(
     {
         *("rug", "painting", "mirror", "window", "curtain", "door", "plate", "bowl", "candle", "ball", "box"),
@@ -47,7 +47,7 @@ SELF_SIMILAR = frozenset(
 
 @dataclass(frozen=True)
 class Thing:
-    """Something to be looked at: a cloud, what it is called, the state it is in, and how it hangs or stands."""
+    """An object to render: its cloud, label, state (`WHOLE`, `DAMAGED` or `NONE`), seed and support."""
 
     cloud: GaussianCloud
     label: str
@@ -59,7 +59,7 @@ class Thing:
 
 @dataclass(frozen=True, eq=False)
 class Crops:
-    """`M` things seen from `V` sides.
+    """`M` objects seen from `V` sides.
 
     Attributes:
         pixels: `[M, V, S, S, 4]` uint8, premultiplied RGB and alpha.
@@ -80,9 +80,9 @@ class Crops:
 
 
 def cached(name: str, kinds: tuple[str, ...], seeds: range, cache: Path, report: Callable[[str], None]) -> Crops:
-    """The set of these kinds and seeds, from the cache or rendered and put there.
+    """The set of these kinds and seeds, read from the cache, or rendered and stored there.
 
-    The cache is keyed by what the assets look like (a digest of one asset a kind), so changed assets render again.
+    The key of the cache contains a digest of one asset per kind, so changed assets are rendered again.
     """
     key = hashlib.sha256(json.dumps([VERSION, CROP, VIEWS, list(kinds), list(seeds)]).encode())
     for kind in kinds:
@@ -100,7 +100,7 @@ def cached(name: str, kinds: tuple[str, ...], seeds: range, cache: Path, report:
 
 
 def render_set(kinds: tuple[str, ...], seeds: range, report: Callable[[str], None] = lambda line: None) -> Crops:
-    """Make and render every kind for every seed, with its damaged forms and the non-objects cut from it."""
+    """Make and render every kind for every seed, with damaged forms and non-objects cut from it."""
     pixels: list[NDArray[np.uint8]] = []
     things: list[Thing] = []
     sizes: list[NDArray[np.float64]] = []
@@ -124,9 +124,9 @@ def render_set(kinds: tuple[str, ...], seeds: range, report: Callable[[str], Non
 
 
 def things_of_seed(kinds: tuple[str, ...], seed: int) -> Iterator[Thing]:
-    """One of each kind, whole and damaged; pieces and heaps of them; a piece of wall and of floor."""
+    """One object of each kind, whole and damaged, pieces and heaps of objects, and patches of wall and floor."""
     rng = np.random.default_rng([seed, 7])
-    made = {kind: _made(kind, seed, rng) for kind in kinds}
+    made = {kind: _design(kind, seed, rng) for kind in kinds}
     for kind in kinds:
         asset, entry = made[kind], registry.KINDS[kind].known
         hang = (entry.backed or entry.support == "wall", str(entry.support))
@@ -143,8 +143,8 @@ def things_of_seed(kinds: tuple[str, ...], seed: int) -> Iterator[Thing]:
         yield Thing(patch, WALL if upright else FLOOR, NONE, seed, upright, "wall" if upright else "floor")
 
 
-def _made(kind: str, seed: int, rng: np.random.Generator) -> assets.Asset:
-    """One design, half of the time stretched along each axis beyond its own proportions: others build differently."""
+def _design(kind: str, seed: int, rng: np.random.Generator) -> assets.Asset:
+    """One design; half of them are stretched along each axis, since real proportions vary more than ours."""
     detail = float(rng.choice([0.4, 0.7, 1.0]))
     asset = assets.make(kind, seed, detail=detail)
     stretch = np.exp(rng.normal(size=3) * STRETCH)
@@ -155,19 +155,19 @@ def _made(kind: str, seed: int, rng: np.random.Generator) -> assets.Asset:
 
 
 def damaged(cloud: GaussianCloud, neighbour: GaussianCloud, rng: np.random.Generator) -> GaussianCloud:
-    """One to three mishaps that leave the thing recognisable."""
+    """Apply one to three kinds of damage that leave the object recognisable."""
     result = cloud
-    for mishap in rng.permutation(6)[: rng.choice([1, 2, 3], p=[0.4, 0.4, 0.2])]:
-        if mishap == 0:  # cut away by a plane, from any side
+    for damage_kind in rng.permutation(6)[: rng.choice([1, 2, 3], p=[0.4, 0.4, 0.2])]:
+        if damage_kind == 0:  # cut by a plane from any side
             result = damage.cut(result, rng, rng.uniform(0.68, 0.92))
-        elif mishap == 1:  # the back was never seen: it faces +y
+        elif damage_kind == 1:  # the back was never seen: it faces +y
             back = damage.direction(rng, level=True)
             result = damage.cut(result, rng, rng.uniform(0.6, 0.9), np.array([back[0], abs(back[1]), 0.0]))
-        elif mishap == 2:  # the underside was taken for floor
+        elif damage_kind == 2:  # the underside was taken for floor
             result = damage.cut(result, rng, rng.uniform(0.75, 0.95), np.array([0.0, 0.0, -1.0]))
-        elif mishap == 3:
+        elif damage_kind == 3:
             result = damage.thinned(result, rng, rng.uniform(0.0, 0.85))
-        elif mishap == 4:
+        elif damage_kind == 4:
             result = damage.with_residue(result, rng)
         else:
             result = damage.with_fragment(result, neighbour, rng)
@@ -175,7 +175,7 @@ def damaged(cloud: GaussianCloud, neighbour: GaussianCloud, rng: np.random.Gener
 
 
 def fragment(asset: assets.Asset, rng: np.random.Generator) -> GaussianCloud | None:
-    """Clearly less than the thing: one of its smaller parts, or what two planes leave of it; None for simple things."""
+    """A piece that is clearly incomplete: a small part, or the rest after two cuts; None for simple objects."""
     cloud = asset.cloud
     part = asset.parts.labels.numpy()
     small = [p for p in np.unique(part) if 30 < (part == p).sum() < 0.35 * len(part)]
@@ -191,7 +191,7 @@ def fragment(asset: assets.Asset, rng: np.random.Generator) -> GaussianCloud | N
 
 
 def pictures(thing: Thing, rng: np.random.Generator) -> NDArray[np.uint8] | None:
-    """`[V, S, S, 4]` uint8 crops from `VIEWS` cameras around the thing; None if one of them sees nothing."""
+    """`[V, S, S, 4]` uint8 crops from `VIEWS` cameras around the object; None if one of them is empty."""
     views = []
     for camera in cameras(thing, rng):
         seen = render(thing.cloud, camera)
@@ -203,12 +203,14 @@ def pictures(thing: Thing, rng: np.random.Generator) -> NDArray[np.uint8] | None
 
 
 def cameras(thing: Thing, rng: np.random.Generator) -> list[Camera]:
-    """Cameras around the thing: for half of the things as embedding a scene places them, for the others more freely."""
+    """Cameras around the object: for half of the objects as in the embedding of a scene, for the others at random."""
     low, high = damage.extent(thing.cloud)
     middle, size = (low + high) / 2, high - low
     radius = float(np.linalg.norm(size)) / 2
     result = []
-    for azimuth, elevation, fov in _portrait(thing, rng) if rng.random() < 0.5 else _free(thing, rng, size):
+    for azimuth, elevation, fov in (
+        _embedding_views(thing, rng) if rng.random() < 0.5 else _free_views(thing, rng, size)
+    ):
         distance = radius / math.sin(fov / 2) * rng.uniform(0.85, 1.3)
         ground = math.cos(elevation)
         eye = middle + distance * np.array(
@@ -219,9 +221,9 @@ def cameras(thing: Thing, rng: np.random.Generator) -> list[Camera]:
     return result
 
 
-def _portrait(thing: Thing, rng: np.random.Generator) -> list[tuple[float, float, float]]:
-    """Azimuth from the front (-y), elevation and field of view, radians, about as `group_renders` looks at a
-    group: from the open side of the room, the front of what stands against a wall and any side of the rest."""
+def _embedding_views(thing: Thing, rng: np.random.Generator) -> list[tuple[float, float, float]]:
+    """Azimuth from the front (-y), elevation and field of view, radians, close to those of `group_renders`:
+    the front of objects against a wall and any side of the others."""
     front = rng.normal() * 0.35 if thing.against_wall else rng.uniform(0, 2 * math.pi)
     jitter = rng.normal(size=(VIEWS, 2)) * 0.12
     angles = itertools.islice(itertools.cycle(group_renders.VIEW_ANGLES), VIEWS)
@@ -231,8 +233,8 @@ def _portrait(thing: Thing, rng: np.random.Generator) -> list[tuple[float, float
     ]
 
 
-def _free(thing: Thing, rng: np.random.Generator, size: NDArray[np.float64]) -> list[tuple[float, float, float]]:
-    """The same three numbers, from wherever there is room to stand."""
+def _free_views(thing: Thing, rng: np.random.Generator, size: NDArray[np.float64]) -> list[tuple[float, float, float]]:
+    """The same three numbers at random, within 75 degrees of the front for most objects against a wall."""
     flat = bool(size[2] < 0.15 * max(size[0], size[1]))
     start, step = rng.uniform(0, 2 * math.pi), math.radians(rng.uniform(25, 90))
     result = []
@@ -246,7 +248,7 @@ def _free(thing: Thing, rng: np.random.Generator, size: NDArray[np.float64]) -> 
 
 
 def _elevation(rng: np.random.Generator, support: str, flat: bool) -> float:
-    """Degrees above the horizon from which such a thing is usually seen."""
+    """Degrees above the horizon from which such an object is usually seen."""
     if flat and support != "wall":
         return float(rng.uniform(14, 70))
     if support == "ceiling":

@@ -21,31 +21,34 @@ from ..gaussians.scene import Scene
 F64 = NDArray[np.float64]
 Rooms = Iterator[tuple[Scene, NDArray[np.int32]]]
 HIDDEN, BATCH, RATE = 32, 2048, 5e-3
-JITTER = 0.25  # standard deviations of a feature: captures are noisier than furnished rooms
+JITTER = 0.25  # noise in standard deviations of a feature, since captures are noisier than furnished rooms
 
 
 @dataclass(frozen=True)
-class Met:
-    """Borders met on the way: features `[B, F]`, whether both sides are one object, and what a mistake would cost."""
+class Examples:
+    """Training examples: features `[B, F]`, whether the answer is yes `[B]`, and the cost of a mistake `[B]`.
+
+    For borders, `same` says whether both sides are one object.
+    """
 
     features: F64
     same: NDArray[np.bool_]
     cost: F64
 
 
-def joined(met: Sequence[Met]) -> Met:
-    """All of them."""
-    return Met(*(np.concatenate([getattr(m, name) for m in met]) for name in ("features", "same", "cost")))
+def joined(examples: Sequence[Examples]) -> Examples:
+    """Concatenate examples."""
+    return Examples(*(np.concatenate([getattr(m, name) for m in examples]) for name in ("features", "same", "cost")))
 
 
-def fit(met: Met, names: tuple[str, ...], seed: int, steps: int) -> dict[str, Any]:
-    """The rule as a table; both classes count equally, so that it does not follow how often each occurs."""
+def fit(examples: Examples, names: tuple[str, ...], seed: int, steps: int) -> dict[str, Any]:
+    """Fit a rule and return it as a table. Both classes have the same total weight, however often they occur."""
     torch.manual_seed(seed)
     rng = np.random.default_rng(seed)
-    mean, spread = met.features.mean(axis=0), met.features.std(axis=0) + 1e-6
-    x = torch.from_numpy((met.features - mean) / spread).float()
-    y = torch.from_numpy(met.same).float()
-    weight = torch.from_numpy(met.cost).float()
+    mean, spread = examples.features.mean(axis=0), examples.features.std(axis=0) + 1e-6
+    x = torch.from_numpy((examples.features - mean) / spread).float()
+    y = torch.from_numpy(examples.same).float()
+    weight = torch.from_numpy(examples.cost).float()
     weight = torch.where(y > 0, weight / (weight * y).mean(), weight / (weight * (1 - y)).mean())
     layers = [torch.nn.Linear(len(names), HIDDEN), torch.nn.Linear(HIDDEN, HIDDEN), torch.nn.Linear(HIDDEN, 1)]
     model = torch.nn.Sequential(layers[0], torch.nn.Tanh(), layers[1], torch.nn.Tanh(), layers[2])
@@ -70,12 +73,15 @@ def fit(met: Met, names: tuple[str, ...], seed: int, steps: int) -> dict[str, An
     }
 
 
-def judge(rule: Rule, met: Met) -> dict[str, float]:
-    """Shares of borders judged right, each weighted by what a mistake would cost."""
-    joined = rule.probability(met.features) > 0.5
+def judge(rule: Rule, examples: Examples) -> dict[str, float]:
+    """Accuracy in each class, weighted by the cost of a mistake."""
+    joined = rule.probability(examples.features) > 0.5
     return {
-        name: round(float(np.average(joined[rows] == wanted, weights=met.cost[rows])), 4)
-        for name, rows, wanted in (("joined when one thing", met.same, True), ("parted when two", ~met.same, False))
+        name: round(float(np.average(joined[rows] == wanted, weights=examples.cost[rows])), 4)
+        for name, rows, wanted in (
+            ("joined when one thing", examples.same, True),
+            ("parted when two", ~examples.same, False),
+        )
     }
 
 
@@ -84,20 +90,20 @@ def _rounded(values: NDArray[np.floating]) -> list[Any]:
     return rounded
 
 
-def kept(rooms: int) -> int:
-    """How many of some rooms are fitted on: all but a sixth, which is held out."""
+def training_count(rooms: int) -> int:
+    """Number of rooms to fit on: all but a sixth, which is held out."""
     return max(1, rooms * 5 // 6)
 
 
-def with_judgement(table: dict[str, Any], features: tuple[str, ...], held: Sequence[Met]) -> dict[str, Any]:
-    """The table with how it does on what was held out."""
+def with_held_out(table: dict[str, Any], features: tuple[str, ...], held: Sequence[Examples]) -> dict[str, Any]:
+    """The table with its accuracy on the held-out examples."""
     return {**table, "held_out": judge(rule_of(table, features), joined(held)) if held else {}}
 
 
-def fit_and_judge(met: Sequence[Met], features: tuple[str, ...], seed: int, steps: int) -> dict[str, Any]:
-    """The table of a rule fitted on what most rooms showed and judged on the others."""
-    count = kept(len(met))
-    return with_judgement(fit(joined(met[:count]), features, seed, steps), features, met[count:])
+def fit_and_evaluate(examples: Sequence[Examples], features: tuple[str, ...], seed: int, steps: int) -> dict[str, Any]:
+    """The table of a rule fitted on the examples of most rooms and evaluated on the others."""
+    count = training_count(len(examples))
+    return with_held_out(fit(joined(examples[:count]), features, seed, steps), features, examples[count:])
 
 
 def command(
@@ -109,10 +115,10 @@ def command(
     """Fit the rule of a module on furnished rooms, from the command line.
 
     Args:
-        module: whose `NAME.json` is written.
-        rooms: how many, unless said.
-        fit_rooms: rooms with their known objects (-1: structure), and a seed, to the table of a rule.
-        room: of a seed, and which room of all it is.
+        module: the module of the rule; `NAME.json` is written beside it.
+        rooms: default number of rooms.
+        fit_rooms: takes rooms with their true objects (-1: structure) and a seed; returns the table of the rule.
+        room: makes a room from a seed and the number of the room.
     """
     parser = argparse.ArgumentParser(description=f"Fit the rule of {module.__name__.rpartition('.')[2]}.")
     parser.add_argument("--rooms", type=int, default=rooms)

@@ -1,6 +1,6 @@
-"""Sizes of rooms and things as people say them: "4 by 5 metres", "12 ft x 15 ft", "20 square metres", "2 m wide".
+"""Sizes of rooms and things in a description: "4 by 5 metres", "12 ft x 15 ft", "20 square metres", "2 m wide".
 
-Knows forms. Refuses to know what they are said of (reading.py). Everything is given in metres.
+All results are in metres. `read.py` finds the room or thing that a size belongs to.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Things as they are being read: named, counted, related, and at the end a brief.
+"""Collect the things of a description with their counts and relations while it is read, and turn them into a brief.
 
-Knows what was said so far and what pronouns and "the table" go back to. Refuses to know words (reading.py).
+Resolves pronouns and phrases such as "the table" to earlier things. `read.py` parses the words.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Which relation is said of which thing: "next to it", "a counter with a pastry display", "one on each side of it".
+"""Attach relations to things: "next to it", "a counter with a pastry display", "one on each side of it".
 
-Knows the order in which people speak of things and places. Refuses to know how things are named (reading.py).
+Depends on the order of things and places in a sentence only; `read.py` recognises the names.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""The words of a description, and what is none.
+"""Split a description into words, and detect texts that are no description, such as questions and edits.
 
-Knows typography, slips of the keyboard, questions and edits. Refuses to know what a room is (reading.py).
+Handles typography and typing errors. `read.py` interprets the words.
 """
 
 from __future__ import annotations

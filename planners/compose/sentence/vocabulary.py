@@ -1,6 +1,6 @@
 """Words of room descriptions that name neither things nor rooms: relations, walls, parts of the room, people, filler.
 
-Knows spellings and what each stands for. Refuses to know how they combine (reading.py).
+Maps each spelling to its meaning. `read.py` combines them.
 """
 
 from __future__ import annotations

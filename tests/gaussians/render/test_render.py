@@ -24,7 +24,7 @@ from scenewright.gaussians.render import backends, contributions, render
 Array = NDArray[np.float64]
 
 pytestmark = pytest.mark.filterwarnings("error")
-every_backend = pytest.mark.parametrize("backend", [b for b in backends() if b != "cuda"])  # test_render_cuda.py
+every_backend = pytest.mark.parametrize("backend", [b for b in backends() if b != "cuda"])  # test_cuda.py
 
 
 def random_cloud(seed: int, n: int = 150, degree: int = 0, group: bool = True) -> GaussianCloud:

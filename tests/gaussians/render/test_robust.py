@@ -22,7 +22,7 @@ from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.render import backends, contributions, cpu, render
 from scenewright.gaussians.render.cpu import project, simd
 
-every_backend = pytest.mark.parametrize("backend", [b for b in backends() if b != "cuda"])  # test_render_cuda.py
+every_backend = pytest.mark.parametrize("backend", [b for b in backends() if b != "cuda"])  # test_cuda.py
 CAMERA = Camera.look_at([0, -3, 0.5], [0, 0, 0], [0, 0, 1], 37, 29)
 # Everything that has ever upset a rasteriser.
 WILD = [0.0, -0.0, 1e-45, 1e-30, 1e-8, 1e-3, 0.5, 1.0, -1.0, 3.0, 1e4, 1e10, -1e19, 1e19, 3e38, math.inf, -math.inf]
