@@ -214,7 +214,7 @@ class _Review:
         except reply.ReplyError as error:
             self.wrong = cut if answer.end == "cut" else str(error)
             return self.wrong
-        ops = guard.settled(said.ops)
+        ops = guard.drop_unstated(said.ops)
         faults = guard.faults(ops)
         if said.verdict != "ok":
             return self._hesitant(said, ops, faults)

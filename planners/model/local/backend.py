@@ -19,18 +19,18 @@ from . import checkpoint
 from .constrained import Constrained, Vocabulary
 from .conversation import prompt_tokens
 
-_CHUNK = 256  # tokens of a prompt read at once; time is looked at in between
-_LEAST = 64  # tokens an answer needs; less of the window left is refused
-_LONGEST = 2048  # tokens of an answer: 64 operations as plans have them take about 1900
-# What running a model of somebody else's making raises; torch's own lack of memory is a RuntimeError.
+_CHUNK = 256  # prompt tokens per forward pass; the time limit is checked in between
+_MIN_ANSWER = 64  # minimum tokens for an answer; a prompt that leaves fewer is an error
+_MAX_ANSWER = 2048  # maximum tokens of an answer; typical plans of 64 operations take about 1900
+# Exceptions that a third-party model may raise; out of memory in torch is a RuntimeError.
 _FAILURES = (MemoryError, RuntimeError, ValueError, TypeError, IndexError, KeyError, AttributeError)
 
 
 def load(path: str) -> LocalModel:
-    """The model in a folder, or of a name on the hub (see `checkpoint.read`).
+    """Load the model in a folder, or by its name on the hub (see `checkpoint.read`).
 
     Raises:
-        BackendError: it cannot be loaded; the message says why and what to do.
+        BackendError: the model cannot be loaded; the message says why and what to do.
     """
     return LocalModel(checkpoint.read(path), f"transformers:{path}")
 
@@ -40,10 +40,10 @@ class LocalModel:
 
     Args:
         parts: the model and its tokenizer.
-        name: for receipts.
-        longest: tokens of an answer; what is longer is cut.
-        temperature: 0 takes the likeliest token; above, tokens are drawn, the same for the same seed.
-        seed: of the draws.
+        name: name in receipts.
+        max_tokens: maximum tokens of an answer; longer ones are closed early.
+        temperature: 0 takes the most probable token; above 0 tokens are sampled, deterministically by `seed`.
+        seed: seed of the sampling.
 
     Raises:
         BackendError: the tokenizer cannot be constrained.
@@ -56,34 +56,34 @@ class LocalModel:
         parts: checkpoint.Checkpoint,
         name: str,
         *,
-        longest: int = _LONGEST,
+        max_tokens: int = _MAX_ANSWER,
         temperature: float = 0.0,
         seed: int = 0,
     ) -> None:
         self.name, self.window = name, parts.window
-        self.longest, self.temperature, self.seed = longest, temperature, seed
+        self.max_tokens, self.temperature, self.seed = max_tokens, temperature, seed
         self._model, self._tokenizer = parts.model, parts.tokenizer
-        self._vocabulary = Vocabulary(_serialized(parts.tokenizer), parts.rows, _ends(parts))
-        # Scores of the last token alone: those of a whole prompt would take more room than the model.
+        self._vocabulary = Vocabulary(_serialized(parts.tokenizer), parts.rows, _end_tokens(parts))
+        # Logits of the last token only; those of a whole prompt would need more memory than the model.
         last_alone = "logits_to_keep" in signature(parts.model.forward).parameters
         self._options = {"use_cache": True, **({"logits_to_keep": 1} if last_alone else {})}
-        self._read: list[int] = []  # tokens that the cache holds
+        self._read: list[int] = []  # tokens in the KV cache
         self._cache: Any = None
 
     def answer(
         self, messages: Sequence[Message], schema: dict[str, Any], *, seconds: float, on_text: OnText | None = None
     ) -> Answer:
-        """See `ModelBackend.answer`. The text is valid by the schema, whatever the model wants; one that took too long
-        is brought to its end without the model, and its `end` says "closed".
+        """See `ModelBackend.answer`. The text is always valid by the schema. If time or tokens run out, it is completed
+        without the model, and `end` is "closed".
 
         Raises:
-            UnreachableError: the prompt does not fit the model's window, the schema cannot be followed, no token came
-                in time, or the memory did not suffice.
+            UnreachableError: the prompt does not fit the model's window, the schema cannot be followed, no token was
+                generated in time, or the memory did not suffice.
         """
         started = time.perf_counter()
         prompt = prompt_tokens(self._tokenizer, messages)
-        room = min(self.longest, self.window - len(prompt))
-        if room < min(_LEAST, self.longest):
+        room = min(self.max_tokens, self.window - len(prompt))
+        if room < min(_MIN_ANSWER, self.max_tokens):
             raise UnreachableError(
                 f"the prompt has {len(prompt)} tokens and the window of {self.name} is {self.window}; "
                 "use a model with a longer window, or a scene with fewer objects"
@@ -98,7 +98,7 @@ class LocalModel:
         return Answer(text.text, usage, "done" if taken == len(text.tokens) else "closed")
 
     def _write(self, prompt: list[int], text: Constrained, room: int, until: float, on_text: OnText) -> int:
-        """Write the answer to its end; how many of its tokens the model had a part in."""
+        """Generate the whole answer; return the number of its tokens before it was closed without the model."""
         import torch
 
         draw = torch.Generator().manual_seed(self.seed)
@@ -120,8 +120,8 @@ class LocalModel:
         return taken
 
     def _scores(self, prompt: list[int], forced: list[int], until: float) -> Any:
-        """Scores `[V]` of the token after the prompt and what the schema forces first."""
-        self._keep(prompt)
+        """Logits `[V]` of the token after the prompt and the tokens that the schema forces first."""
+        self._reuse_cache(prompt)
         scores = None
         while len(self._read) < len(prompt):
             if time.perf_counter() > until:
@@ -129,8 +129,8 @@ class LocalModel:
             scores = self._forward(prompt[len(self._read) : len(self._read) + _CHUNK])
         return self._forward(forced) if forced else scores
 
-    def _keep(self, prompt: list[int]) -> None:
-        """Keep of the cache the whole chunks that the prompt begins with, but for its last token."""
+    def _reuse_cache(self, prompt: list[int]) -> None:
+        """Crop the cache to the whole chunks that it shares with the prompt, without the last token of the prompt."""
         shared = 0
         for mine, read in zip(prompt[:-1], self._read, strict=False):
             if mine != read:
@@ -144,10 +144,10 @@ class LocalModel:
             self._cache, self._read = None, []
 
     def _forward(self, tokens: list[int]) -> Any:
-        """Read tokens; scores `[V]` of the next one."""
+        """Run the model on tokens; return logits `[V]` of the next one."""
         import torch
 
-        cache, self._cache = self._cache, None  # gone, should reading break off half way
+        cache, self._cache = self._cache, None  # dropped if the forward pass fails
         with torch.inference_mode():
             ids = torch.tensor([tokens], device=self._model.device)
             said = self._model(input_ids=ids, past_key_values=cache, **self._options)
@@ -156,7 +156,7 @@ class LocalModel:
         return said.logits[0, -1].float().cpu()
 
     def _choice(self, scores: Any, text: Constrained, draw: Any) -> int:
-        """The next token: of those that the schema allows."""
+        """Choose the next token among those that the schema allows."""
         import torch
 
         allowed = torch.from_numpy(text.allowed())[: len(scores)]
@@ -172,7 +172,7 @@ class LocalModel:
         )
 
     def _failed(self, error: Exception) -> UnreachableError:
-        """What to say of an error while the model ran."""
+        """The error for the user, for an exception of the running model."""
         told = str(error)
         if isinstance(error, MemoryError) or "out of memory" in told.lower() or "allocate" in told:
             advice = "use a smaller model, or a scene with fewer objects"
@@ -181,12 +181,12 @@ class LocalModel:
 
 
 def _serialized(tokenizer: Any) -> str:
-    """The tokenizer as JSON, without cutting and filling up."""
+    """The tokenizer as JSON, without truncation and padding."""
     return json.dumps(json.loads(tokenizer.backend_tokenizer.to_str()) | {"truncation": None, "padding": None})
 
 
-def _ends(parts: checkpoint.Checkpoint) -> list[int]:
-    """Ids of the tokens that end an answer; llguidance wants one even where the schema tells the end."""
+def _end_tokens(parts: checkpoint.Checkpoint) -> list[int]:
+    """Ids of the tokens that end an answer; llguidance requires one even where the schema determines the end."""
     told = getattr(parts.model.generation_config, "eos_token_id", None)
     told = parts.tokenizer.eos_token_id if told is None else told
     ids = told if isinstance(told, list) else [told]

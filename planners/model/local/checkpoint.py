@@ -18,21 +18,27 @@ from ....gaussians.errors import BackendError
 from ....gaussians.torchvision_fix import import_torchvision
 
 _PICKLED = ("*.bin", "*.pt", "*.pth", "*.ckpt")
-_WANTED = ("*.json", "*.safetensors", "*.model", "*.txt", "*.jinja")  # of a published model: no pickles, no Python
-_OTHER_FORMATS = ("original/*", "onnx/*", "consolidated*")  # the same weights once more
-_AS_SAVED = 4 * 2**30  # bytes of weights above which a CPU keeps their precision rather than computing in float32
-_WINDOW = 4096  # tokens, where a model does not say
+_WANTED = (
+    "*.json",
+    "*.safetensors",
+    "*.model",
+    "*.txt",
+    "*.jinja",
+)  # downloaded files: no pickles, no Python
+_OTHER_FORMATS = ("original/*", "onnx/*", "consolidated*")  # the same weights in other formats
+_AS_SAVED = 4 * 2**30  # bytes of weights above which a CPU keeps the saved precision instead of float32
+_WINDOW = 4096  # tokens, if the model does not state its window
 
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """What was read.
+    """A loaded model.
 
     Attributes:
         model: in evaluation mode, on its device.
         tokenizer: a fast one.
-        window: how many tokens the model can hold.
-        rows: how many token ids it knows.
+        window: maximum tokens of prompt and answer.
+        rows: number of rows of the embedding table, one per token id.
     """
 
     model: Any
@@ -42,10 +48,12 @@ class Checkpoint:
 
 
 def read(argument: str) -> Checkpoint:
-    """The model in a folder; or of a name, from transformers' cache or else fetched, which a line on stderr says.
+    """Load a model from a folder, or by name from transformers' cache; download it if it is not there.
+
+    A download is announced on stderr.
 
     Raises:
-        BackendError: transformers is missing, there is no such model, or it is not one that can be used safely.
+        BackendError: transformers is missing, there is no such model, or it cannot be used safely.
     """
     transformers = _library()
     if not argument:
@@ -60,7 +68,7 @@ def read(argument: str) -> Checkpoint:
 
 
 def _library() -> Any:
-    """The transformers module, with torchvision, where there is one, cured first."""
+    """Import transformers, after the fix for torchvision if that is installed."""
     try:
         if find_spec("torchvision") is not None:
             import_torchvision()
@@ -71,7 +79,11 @@ def _library() -> Any:
 
 
 def _examine(folder: Path) -> None:
-    """Say what is wrong with a folder before anything is read from it."""
+    """Check a folder before anything is read from it.
+
+    Raises:
+        BackendError: it has no config.json, or no weights as safetensors.
+    """
     if not (folder / "config.json").is_file():
         raise BackendError(f"{folder} holds no config.json; give the folder of a model as save_pretrained writes it")
     if not any(folder.glob("*.safetensors")):
@@ -85,7 +97,7 @@ def _examine(folder: Path) -> None:
 
 
 def _fetched(name: str) -> Path:
-    """The folder of a published model in the cache; only what is safe to read is ever fetched into it."""
+    """The folder of a published model in the cache, downloaded if missing; only file types that are safe to read."""
     import huggingface_hub
 
     wanted: dict[str, Any] = {"allow_patterns": list(_WANTED), "ignore_patterns": list(_OTHER_FORMATS)}
@@ -98,7 +110,7 @@ def _fetched(name: str) -> Path:
     print(f"transformers: {name} is not in the cache and is fetched", file=sys.stderr)
     try:
         return Path(huggingface_hub.snapshot_download(name, **wanted))
-    except Exception as error:  # the hub's client raises its own, its HTTP library's, and OSErrors
+    except Exception as error:  # the hub's client raises its own errors, those of its HTTP library, and OSErrors
         raise BackendError(
             f"there is no folder {name}, and no model of this name could be fetched ({type(error).__name__}); "
             "check the name, or copy the model here and give transformers:FOLDER"
@@ -123,13 +135,13 @@ def _read(transformers: Any, folder: Path) -> Checkpoint:
         raise
     except MemoryError as error:
         raise BackendError(f"{named} does not fit into memory; use a smaller model") from error
-    except Exception as error:  # transformers, tokenizers, safetensors and torch raise what their parts raise
+    except Exception as error:  # transformers, tokenizers, safetensors and torch raise many types
         raise BackendError(_advice(named, error)) from error
     return Checkpoint(model, tokenizer, _window(config, tokenizer), _rows(model))
 
 
 def _check_kind(transformers: Any, config: Any, named: str) -> None:
-    """Refuse what cannot continue a text: encoders and translators would be read with layers missing."""
+    """Refuse models that are not causal language models; encoders and translators would load with missing layers."""
     known = transformers.models.auto.modeling_auto.MODEL_FOR_CAUSAL_LM_MAPPING_NAMES
     kinds, saved = known.get(config.model_type, ()), tuple(getattr(config, "architectures", None) or ())
     kinds = (kinds,) if isinstance(kinds, str) else tuple(kinds)
@@ -139,7 +151,7 @@ def _check_kind(transformers: Any, config: Any, named: str) -> None:
 
 
 def _check_parts(model: Any, tokenizer: Any, told: dict[str, Any], named: str) -> None:
-    """Refuse what would answer at random or cannot be constrained."""
+    """Refuse models with missing weights and tokenizers that cannot be constrained."""
     if missing := sorted(told["missing_keys"]):
         raise BackendError(f"{named} lacks {len(missing)} of its weights, {missing[0]} first; get the whole model")
     if not getattr(tokenizer, "is_fast", False):
@@ -155,7 +167,7 @@ def _rows(model: Any) -> int:
 
 
 def _dtype(folder: Path) -> Any:
-    """float32 for a small model on a CPU, which computes in it fastest; else as saved."""
+    """float32 for a small model on a CPU, which is fastest there; else the saved precision."""
     import torch
 
     size = sum(path.stat().st_size for path in folder.glob("*.safetensors"))
@@ -163,7 +175,7 @@ def _dtype(folder: Path) -> Any:
 
 
 def _window(config: Any, tokenizer: Any) -> int:
-    """What the configuration says, or the tokenizer; transformers writes 1e30 there for "unknown"."""
+    """Window from the configuration, or else the tokenizer, where transformers writes 1e30 for "unknown"."""
     text = config.get_text_config()
     for name in ("max_position_embeddings", "n_positions", "max_seq_len"):
         if isinstance(getattr(text, name, None), int):
@@ -182,7 +194,7 @@ def _advice(named: str, error: Exception) -> str:
 
 @contextmanager
 def _quiet(transformers: Any) -> Iterator[None]:
-    """Without transformers' progress bars and warnings, which are for those who program with it."""
+    """Turn off transformers' progress bars and warnings, which are meant for programmers."""
     logging = transformers.utils.logging
     level, bars = logging.get_verbosity(), logging.is_progress_bar_enabled()
     logging.set_verbosity_error()

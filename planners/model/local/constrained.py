@@ -18,7 +18,7 @@ from .tightening import tighten
 
 _SCHEMAS = 4  # kept compiled
 _LONGEST_CLOSING = 4096  # tokens; every step takes the shortest way, some tens are usual
-# How a text is brought to its end: inside a string its quote, outside brackets, null before a value that has parts.
+# Characters tried in order to close a text: quotes inside strings; outside brackets, and null before nested values.
 _INSIDE = '"' + "".join(chr(c) for c in range(32, 127) if chr(c) not in '"\\')
 _OUTSIDE = '}]n123456789.0tf-"[{,:' + "abcdeghijklmopqrsuvwxyz"
 
@@ -47,7 +47,7 @@ class Vocabulary:
         self.size = size
         single = {c: self.reader.greedy_tokenize(c) for c in {*_INSIDE, *_OUTSIDE}}
         self.characters = {c: ids[0] for c, ids in single.items() if len(ids) == 1}
-        self._fresh: dict[str, Any] = {}
+        self._compiled_matchers: dict[str, Any] = {}
 
     def matcher(self, schema: dict[str, Any]) -> Any:
         """A fresh matcher of the tightened schema; the last few schemas are compiled once.
@@ -56,29 +56,29 @@ class Vocabulary:
             UnreachableError: the schema cannot be followed.
         """
         key = json.dumps(schema)
-        if key not in self._fresh:
-            if len(self._fresh) >= _SCHEMAS:
-                del self._fresh[next(iter(self._fresh))]
-            self._fresh[key] = self._compiled(schema)
-        return self._fresh[key].deep_copy()
+        if key not in self._compiled_matchers:
+            if len(self._compiled_matchers) >= _SCHEMAS:
+                del self._compiled_matchers[next(iter(self._compiled_matchers))]
+            self._compiled_matchers[key] = self._compiled(schema)
+        return self._compiled_matchers[key].deep_copy()
 
     def _compiled(self, schema: dict[str, Any]) -> Any:
         from llguidance import LLMatcher
 
-        compact: Any = {"whitespace_flexible": False}  # free whitespace would be one more way never to end
+        compact: Any = {"whitespace_flexible": False}  # free whitespace could continue forever
         try:
             grammar = LLMatcher.grammar_from_json_schema(tighten(schema), overrides=compact)
         except ValueError as error:
-            raise _unfollowed(str(error)) from error
+            raise _schema_error(str(error)) from error
         return _checked(LLMatcher(self.reader, grammar, log_level=0))
 
 
 class Constrained:
-    """One answer in the making.
+    """One answer under construction.
 
     Attributes:
         tokens: chosen so far.
-        text: what they say.
+        text: their text.
 
     Raises:
         UnreachableError: the schema cannot be followed; so do its methods.
@@ -124,10 +124,10 @@ class Constrained:
             if self.done:
                 return
             self.take(self._closing(self.allowed()))
-        raise _unfollowed(f"no end within {_LONGEST_CLOSING} tokens")
+        raise _schema_error(f"no end within {_LONGEST_CLOSING} tokens")
 
     def _closing(self, allowed: NDArray[np.bool_]) -> int:
-        """The token that leads toward the end; any that is allowed where none of the known ones is."""
+        """The allowed token that closes the text soonest by the order of characters; else any allowed token."""
         for character in _INSIDE if self._in_string else _OUTSIDE:
             token = self._vocabulary.characters.get(character)
             if token is not None and allowed[token]:
@@ -135,7 +135,7 @@ class Constrained:
         return int(np.flatnonzero(allowed)[0])
 
     def _add(self, tokens: list[int]) -> list[int]:
-        """Note tokens and what they say."""
+        """Append tokens and their text, and track whether the text is inside a string."""
         said = self._decoder.decode(self._vocabulary.reader.decode_bytes(tokens)) if tokens else ""
         for character in said:
             quote = character == '"' and not self._escaped
@@ -149,9 +149,9 @@ class Constrained:
 def _checked(matcher: Any) -> Any:
     """The matcher, unless it met an error, which it never leaves."""
     if matcher.is_error():
-        raise _unfollowed(str(matcher.get_error()).splitlines()[0])
+        raise _schema_error(str(matcher.get_error()).splitlines()[0])
     return matcher
 
 
-def _unfollowed(why: str) -> UnreachableError:
+def _schema_error(why: str) -> UnreachableError:
     return UnreachableError(f"no answer can be held to this schema: {why}")

@@ -26,18 +26,18 @@ _KNOWN = {
     "null": set[str](),
 }
 _PREFIX = "#/$defs/"
-_FARTHEST = 10**6  # numbers without bounds of their own
+_MAX_NUMBER = 10**6  # bound of the absolute value of numbers without bounds
 
 
 @dataclass(frozen=True)
 class Limits:
-    """How far a schema is drawn in.
+    """Bounds of a tightened schema.
 
     Attributes:
-        chars: of a string.
-        items: of a list; lists of what can hold itself get a quarter at each step inward, but two at least.
-        nesting: how many steps what can hold itself may go inward; "the cup on the table beside the sofa" takes 5.
-        decimals: of a number.
+        chars: maximum length of a string.
+        items: maximum length of a list; lists of recursive types get a quarter per level of nesting, but at least two.
+        nesting: maximum depth of recursive types; "the cup on the table beside the sofa" needs 5.
+        decimals: maximum decimals of a number.
     """
 
     chars: int = 240
@@ -47,10 +47,10 @@ class Limits:
 
 
 def tighten(schema: Schema, limits: Limits | None = None) -> Schema:
-    """The smaller schema; descriptions and defaults are gone.
+    """Tighten a schema; descriptions and defaults are removed.
 
     Raises:
-        ValueError: a keyword is unknown here, a part says nothing, or nothing fits the limits.
+        ValueError: a keyword is unknown, a part has no type, or nothing fits the limits.
     """
     work = _Tightening(schema, limits or Limits())
     root = work.of({k: v for k, v in schema.items() if k != "$defs"}, work.limits.nesting)
@@ -61,7 +61,7 @@ def tighten(schema: Schema, limits: Limits | None = None) -> Schema:
 
 
 class _Tightening:
-    """One schema at work; `left` is how many steps inward are left."""
+    """State of tightening one schema; `left` is the remaining depth of recursion."""
 
     def __init__(self, schema: Schema, limits: Limits) -> None:
         self.limits = limits
@@ -88,7 +88,9 @@ class _Tightening:
         if kind == "array":
             return self._array(node, left)
         if kind == "string":
-            return _kept(node) | {"maxLength": min(node.get("maxLength", self.limits.chars), self._chars(node))}
+            return _without_descriptions(node) | {
+                "maxLength": min(node.get("maxLength", self.limits.chars), self._chars(node))
+            }
         if kind in ("number", "integer"):
             return self._number(node)
         return {"type": kind}
@@ -113,7 +115,7 @@ class _Tightening:
         return _any_of([option for option in made if option is not None])
 
     def _closed(self, node: Schema, narrowing: Schema, left: int) -> Schema | None:
-        """An object of one alternative; optional properties that nothing fits are left out."""
+        """An object of one alternative; optional properties that no value fits are omitted."""
         if unknown := narrowing.keys() - {"properties", "required"}:
             raise ValueError(f"cannot tighten {sorted(unknown)} of an alternative")
         required = [*node.get("required", []), *narrowing.get("required", [])]
@@ -154,15 +156,15 @@ class _Tightening:
         return max(self.limits.chars, node.get("minLength", 0))
 
     def _number(self, node: Schema) -> Schema:
-        bounds = {"minimum": -_FARTHEST, "maximum": _FARTHEST}
+        bounds = {"minimum": -_MAX_NUMBER, "maximum": _MAX_NUMBER}
         for inner, outer in (("exclusiveMinimum", "minimum"), ("exclusiveMaximum", "maximum")):
             if inner in node:
                 del bounds[outer]
         step = {"multipleOf": 10**-self.limits.decimals} if node["type"] == "number" else {}
-        return step | bounds | _kept(node)
+        return step | bounds | _without_descriptions(node)
 
     def _tag_unions(self, schema: Schema) -> None:
-        """Require of each union's options the property that tells them apart, a constant in each."""
+        """Make the tag of each union, a property that is constant in every option, required in its options."""
         for node in list(_nodes(schema)):
             options = [option.get("$ref", "").removeprefix(_PREFIX) for option in node.get("oneOf", [])]
             constants = [self._constants(name) for name in options]
@@ -172,13 +174,13 @@ class _Tightening:
                 self.given[name] = {**option, "required": [*tags, *option.get("required", [])]}
 
     def _constants(self, name: str) -> set[str]:
-        """Names of the properties of a definition that can have one value only."""
+        """Names of the properties of a definition that are constants."""
         fields: dict[str, Schema] = self.given.get(name, {}).get("properties", {})
         return {field for field, node in fields.items() if "const" in node}
 
 
 def _narrowed(field: Schema, narrowing: Schema) -> Schema:
-    """A property under an alternative: one that says what the property is replaces it, one of bounds only joins in."""
+    """A property under an alternative: a narrowing with a type replaces it, one with bounds only is merged."""
     whole = narrowing.keys() & {"$ref", "type", "enum", "const", "anyOf"}
     return narrowing if whole else field | narrowing
 
@@ -189,8 +191,8 @@ def _any_of(options: list[Schema]) -> Schema | None:
     return {"anyOf": options}
 
 
-def _kept(node: Schema) -> Schema:
-    """A node without its words for readers."""
+def _without_descriptions(node: Schema) -> Schema:
+    """A node without its descriptive keywords."""
     return {key: value for key, value in node.items() if key not in _WORDS}
 
 
@@ -203,12 +205,12 @@ def _nodes(value: Any) -> Iterator[Schema]:
 
 
 def _references(node: Schema) -> set[str]:
-    """Names of the definitions a node refers to; tags of a union repeat those of its options."""
+    """Names of the definitions that a node refers to by `$ref`."""
     return {n["$ref"].removeprefix(_PREFIX) for n in _nodes(node) if isinstance(n.get("$ref"), str)}
 
 
 def _reached(definitions: dict[str, Schema], name: str) -> set[str]:
-    """Names of the definitions that a definition refers to, however far."""
+    """Names of the definitions that a definition refers to, directly or indirectly."""
     found: set[str] = set()
     fresh = _references(definitions[name])
     while fresh:

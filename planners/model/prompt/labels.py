@@ -30,8 +30,8 @@ _BEFORE_THE = frozenset({"of", "in", "on", "by", "from"})
 _LINKS = _BEFORE_THE | {"with", "and", "for", "a", "an", "the"}
 _SCRIPT_OF_IDEAS = re.compile(r"[\u0e00-\u0eff\u1000-\u109f\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
 
-# Words of commands, of addressing somebody and of "all", which no object has in its name, in the languages that models
-# understand best. Each is a prefix; with "=" it is a whole word.
+# Words of commands, forms of address and words for "all", which do not occur in names of objects, in the languages that
+# models understand best. Each is a prefix; with "=" it is a whole word.
 _ORDERS = """
 ignor disregard forget overrid bypass obey disobey =execute =executing delet =remove =removes =removed =removing eras
 destroy elimin obliterat annihilat =purge instruct =command =commands prompt =previous =prior everything anything

@@ -19,11 +19,13 @@ from ....gaussians.errors import BackendError, UserError
 Kind = Literal["openai", "anthropic", "google"]
 
 OVERRIDE = "SCENEWRIGHT_API_KEY"
-_DUMMY_KEY = "none-needed"  # servers of one's own seldom ask for a key, and their clients insist on sending one
-_LONGEST = 200  # of a specification: what a receipt has room for (`plan.Usage.model`)
-_SHORTEST_SECRET = 8  # shorter keys are placeholders ("ollama", "EMPTY") that are words of their own
-_HEAD = 12  # a key's first letters: what follows them is hidden too, as servers show keys cut off or starred
-_SHOWN = 300  # letters of a server's own words in an error
+_DUMMY_KEY = "none-needed"  # self-hosted servers seldom need a key, but the client libraries always send one
+_LONGEST = 200  # characters of a specification; the limit of `plan.Usage.model`
+_SHORTEST_SECRET = 8  # characters; shorter keys are placeholders such as "ollama" or "EMPTY"
+_HEAD = (
+    12  # first characters of a key; they and what follows are redacted, since servers show truncated or starred keys
+)
+_SHOWN = 300  # characters of a server's message in an error
 
 
 @dataclass(frozen=True)
@@ -31,12 +33,12 @@ class Service:
     """One wire format and the provider that it is named after.
 
     Attributes:
-        label: the provider, for people.
-        keys: variables that may hold its key, first that is set wins.
-        url_variable: where its own tools look for another address.
-        url: its own address.
-        version: what its client adds to an address itself, so that it is dropped where a user gives it.
-        package: what its client needs besides pydantic-ai.
+        label: name of the provider in messages.
+        keys: environment variables of its key; the first that is set wins.
+        url_variable: environment variable with which its own tools set another address.
+        url: its default address.
+        version: path that the client adds to an address itself, so that it is removed from the address of a user.
+        package: package that the client needs besides pydantic-ai.
     """
 
     label: str
@@ -68,13 +70,13 @@ class Address:
     """A model behind a wire format.
 
     Attributes:
-        name: as the user named it.
+        name: the spec as the user wrote it.
         kind: the wire format.
-        model: as its server names it.
-        url: of the server, without a slash at its end.
-        own: whether the server is another than the provider's.
+        model: name of the model on its server.
+        url: address of the server, without a trailing slash.
+        own: whether the server is not the provider's.
         key: sent with each request.
-        secrets: all keys of the environment, which no message may show.
+        secrets: all keys in the environment; redacted from messages.
     """
 
     name: str
@@ -87,7 +89,7 @@ class Address:
 
     @property
     def near(self) -> bool:
-        """Whether the server is on this machine or its network: asked directly, never through a proxy."""
+        """Whether the server is on this machine or its local network; such servers are reached without a proxy."""
         host = urlsplit(self.url).hostname or ""
         try:
             return ipaddress.ip_address(host).is_private
@@ -95,13 +97,13 @@ class Address:
             return "." not in host or host.endswith((".localhost", ".local", ".lan", ".internal"))
 
     def hide(self, text: str) -> str:
-        """A stranger's text fit to be shown: without keys and control characters, on one line, cut where long."""
+        """Untrusted text made safe to display: one line, without keys and control characters, truncated."""
         shown = " ".join(self.without_keys(text).split())
         shown = "".join(c for c in shown if c.isprintable())
         return shown if len(shown) <= _SHOWN else shown[: _SHOWN - 1] + "…"
 
     def without_keys(self, text: str) -> str:
-        """The text with each key of the environment, in any writing that URLs and JSON give it, replaced."""
+        """The text with each key of the environment replaced, also in its URL and JSON encodings."""
         for secret in self.secrets:
             for written in {secret, quote(secret, safe=""), json.dumps(secret)[1:-1]}:
                 text = text.replace(written, "[key]")
@@ -111,11 +113,11 @@ class Address:
 
 
 def read(spec: str, environ: Mapping[str, str]) -> Address:
-    """The address that "KIND:MODEL[@BASE_URL]" names; MODEL may hold ":" and "/", and "@" except before a scheme.
+    """Parse "KIND:MODEL[@BASE_URL]"; MODEL may contain ":" and "/", and "@" except before a scheme.
 
     Raises:
-        UserError: the specification is malformed, or holds a key.
-        BackendError: the key or the packages that it needs are missing; says how to get them.
+        UserError: the specification is malformed, or contains a key.
+        BackendError: the key or a package is missing; the message says how to get it.
     """
     kind, rest = _kind(spec)
     service = SERVICES[kind]
@@ -141,13 +143,13 @@ def _kind(spec: str) -> tuple[Kind, str]:
 
 
 def _parted(rest: str) -> tuple[str, str, str]:
-    """Model, separator, URL: apart at the last "@" that a scheme follows."""
+    """Model, separator and URL, split at the last "@" before a scheme."""
     found = re.fullmatch(r"(.*)(@)([A-Za-z][A-Za-z0-9+.-]*://.*)", rest, re.DOTALL)
     return (found[1], found[2], found[3].strip()) if found else (rest, "", "")
 
 
 def _tidy(url: str, service: Service, kind: Kind) -> str:
-    """The address as the service's client takes it."""
+    """Normalise an address for the client of the service."""
     try:
         parts = urlsplit(url)
         fine = parts.scheme.lower() in ("http", "https") and bool(parts.hostname) and parts.port != 0
@@ -186,7 +188,7 @@ def _need_packages(service: Service) -> None:
     for package in ("pydantic_ai", service.package):
         try:
             found = importlib.util.find_spec(package) is not None
-        except ModuleNotFoundError:  # of the package that it is in
+        except ModuleNotFoundError:  # the parent package is missing
             found = False
         if not found:
             raise BackendError(f"{service.label}'s models need {package}: pip install 'scenewright[llm]'")

@@ -20,21 +20,21 @@ from .errors import Extras
 from .wait import Emit, Failed, wait
 from .wire import Reply
 
-HOSTED_WINDOW = 128_000  # tokens that every model now sold by the three providers reads
-NEAR_WINDOW = 8_192  # Ollama and llama.cpp serve 4096 unless told otherwise, too few for any plan; the next usual step
-# Hosted models that take no pictures; all others do.
-_BLIND = ("gpt-3.5", "o1-mini", "o1-preview", "o3-mini", "claude-2", "claude-instant", "gemini-1.0", "text-")
+HOSTED_WINDOW = 128_000  # tokens; the minimum of the models that the three providers now offer
+NEAR_WINDOW = 8_192  # twice the default of Ollama and llama.cpp, 4096, which is too few for any plan
+# Prefixes of hosted models without image input; all others accept images.
+_WITHOUT_IMAGES = ("gpt-3.5", "o1-mini", "o1-preview", "o3-mini", "claude-2", "claude-instant", "gemini-1.0", "text-")
 
 
 def load(spec: str) -> ModelBackend:
     """The model that "openai:MODEL[@BASE_URL]", "anthropic:MODEL[@BASE_URL]" or "google:MODEL[@BASE_URL]" names.
 
     Keys come from OPENAI_API_KEY, ANTHROPIC_API_KEY, GOOGLE_API_KEY or GEMINI_API_KEY; SCENEWRIGHT_API_KEY comes first.
-    A server of one's own in OpenAI's format needs none. Nothing is imported and nobody is asked yet.
+    A self-hosted server in OpenAI's format needs none. Nothing is imported and no request is sent yet.
 
     Raises:
         UserError: the specification is malformed.
-        BackendError: a key or a package is missing; says which, and how to get it.
+        BackendError: a key or a package is missing; the message says which, and how to get it.
     """
     return Remote(read(spec, os.environ))
 
@@ -42,7 +42,7 @@ def load(spec: str) -> ModelBackend:
 class Remote:
     """A language model behind an address, a `ModelBackend`.
 
-    It remembers what its server refused (a schema, a temperature), so that a refusal costs one request, not each.
+    It remembers the parameters that its server refused (a schema, a temperature), so that a refusal costs one request.
     """
 
     def __init__(self, address: Address) -> None:
@@ -51,18 +51,18 @@ class Remote:
 
     @property
     def name(self) -> str:
-        """As the user named it; holds no key."""
+        """The spec as the user wrote it; contains no key."""
         return self._address.name
 
     @property
     def sees(self) -> bool:
-        """Whether pictures may be sent: to hosted models known to see, and to any model of one's own server."""
+        """Whether pictures may be sent: to hosted models with image input, and to any model of a self-hosted server."""
         model = self._address.model
-        return self._address.own or not (model.startswith(_BLIND) or model == "gpt-4")
+        return self._address.own or not (model.startswith(_WITHOUT_IMAGES) or model == "gpt-4")
 
     @property
     def window(self) -> int:
-        """Tokens for prompt and answer: what hosted models have at least, what servers nearby have usually."""
+        """Tokens for prompt and answer: the minimum of hosted models, or the usual setting of local servers."""
         return NEAR_WINDOW if self._address.near else HOSTED_WINDOW
 
     def answer(
@@ -70,11 +70,11 @@ class Remote:
     ) -> Answer:
         """One answer, as `ModelBackend.answer`; may be called from a thread with or without an event loop.
 
-        The schema is enforced by the server where it can be; where it refuses, JSON is, or nothing. The libraries'
-        first import is not counted in `seconds`.
+        The server enforces the schema; if it refuses that, JSON mode, or nothing. The first import of the libraries is
+        not counted in `seconds`.
 
         Raises:
-            UnreachableError: there was no answer; says why and what to do, and holds no key.
+            UnreachableError: there was no answer; the message says why and what to do, and contains no key.
             BackendError: the libraries are broken.
         """
         try:
@@ -86,14 +86,14 @@ class Remote:
 
         async def work(emit: Emit) -> Reply:
             listener = emit if on_text is not None else None
-            return await self._insist(messages, schema, begun + seconds, listener, refusals)
+            return await self._ask_with_retries(messages, schema, begun + seconds, listener, refusals)
 
         reply = wait(work, seconds, on_text)
         waited = time.monotonic() - begun
         if isinstance(reply, Failed):
-            # What used the time up tells more than that it is up.
+            # The refusal that used up the time is more informative than the timeout.
             late = isinstance(reply.error, TimeoutError) and refusals
-            raise UnreachableError(errors.say(late[-1] if late else reply.error, self._address, seconds))
+            raise UnreachableError(errors.describe(late[-1] if late else reply.error, self._address, seconds))
         usage = Usage(
             model=self.name,
             requests=1,
@@ -104,7 +104,7 @@ class Remote:
         )
         return Answer(text=reply.text, usage=usage, end=reply.end)
 
-    async def _insist(
+    async def _ask_with_retries(
         self,
         messages: Sequence[Message],
         schema: dict[str, Any],
@@ -115,7 +115,7 @@ class Remote:
         """Request an answer, with fewer parameters after a refusal, and with retries where they may help.
 
         Args:
-            refusals: those after which it was asked again because the server is busy or broken are added here.
+            refusals: errors of a busy or failing server, after which the request is repeated, are appended here.
         """
         left = deadline - time.monotonic()
         extras, tries, spoken = self._extras, 0, False
@@ -133,8 +133,8 @@ class Remote:
                 try:
                     reply = await wire.ask(model, self._address, question)
                 except Exception as error:
-                    less = errors.without(extras, error)
-                    pause = errors.pause(error, tries) if less is None else 0.0
+                    less = errors.fewer_extras(extras, error)
+                    pause = errors.retry_delay(error, tries) if less is None else 0.0
                     if spoken or pause is None or pause >= deadline - time.monotonic():
                         raise
                     if less is None:

@@ -13,12 +13,12 @@ from urllib.request import getproxies, proxy_bypass
 
 from .address import SERVICES, Address
 
-Form = Literal["schema", "json", "words"]  # the answer held to a schema, to JSON, to nothing
+Form = Literal["schema", "json", "words"]  # the answer is constrained to a schema, to JSON, or not at all
 
-FIRST_PAUSE = 1.0  # seconds before asking again where the server does not say; doubled each time
+FIRST_PAUSE = 1.0  # seconds before the first retry if the server gives no delay; doubled each time
 _SHORTEST_PAUSE = 0.1
-_REPAIRS = 2  # how often a broken server is asked again; one that is only busy, as long as there is time
-_READ = 20_000  # letters of an error's body that are looked at
+_MAX_RETRIES = 2  # retries of a failing server; a busy one (code 429) is retried until the time limit
+_READ = 20_000  # characters of an error body that are examined
 
 
 class StoppedError(Exception):
@@ -26,18 +26,18 @@ class StoppedError(Exception):
 
 
 class NothingError(Exception):
-    """The server sent neither words nor a reason for ending without them."""
+    """The server sent neither text nor a reason for its absence."""
 
 
 @dataclass(frozen=True)
 class Extras:
-    """What is asked of a server beyond the wire format's core; left out where it complains.
+    """Optional parameters of a request, omitted if the server refuses them.
 
     Attributes:
-        form: how its answer is bound.
-        temperature, seed: the same answer to the same words, where it can.
-        length: a longest answer.
-        stream: the answer in pieces.
+        form: constraint of the answer.
+        temperature, seed: whether to send them, for reproducible answers.
+        length: whether to send a maximum length.
+        stream: whether to stream the answer.
     """
 
     form: Form = "schema"
@@ -58,14 +58,15 @@ _COMPLAINTS = {
     "stream": re.compile(r"\bstream", re.IGNORECASE),
 }
 _TOO_LONG = re.compile(r"context[_ ](length|window|size)|(prompt|input|request) is too (long|large)", re.IGNORECASE)
-_REFUSALS = {400, 415, 422, 501}  # codes that servers refuse a parameter with
-_NO_GRAMMAR = re.compile(_FORM, re.IGNORECASE)  # what servers say that fail, code 500, at making a grammar of a schema
+_REFUSALS = {400, 415, 422, 501}  # status codes with which servers refuse a parameter
+# In messages of servers that fail, with code 500, to convert a schema to a grammar.
+_NO_GRAMMAR = re.compile(_FORM, re.IGNORECASE)
 
 
-def without(extras: Extras, error: BaseException) -> Extras | None:
-    """What to ask for instead after a refusal, always less than before; None where less would not help.
+def fewer_extras(extras: Extras, error: BaseException) -> Extras | None:
+    """Parameters for the next request after a refusal, always fewer than before; None if that would not help.
 
-    A refusal that names parameters is asked without those, one that names none without any.
+    Parameters that the refusal names are omitted; if it names none, all are.
     """
     from pydantic_ai import exceptions as failures
 
@@ -92,36 +93,36 @@ def _looser(form: Form) -> Form:
     return "json" if form == "schema" else "words"
 
 
-def pause(error: BaseException, tries: int) -> float | None:
-    """Seconds after which asking again may help; None where it will not.
+def retry_delay(error: BaseException, tries: int) -> float | None:
+    """Seconds after which a retry may help; None if it will not.
 
     Args:
-        tries: how often it was asked again already.
+        tries: number of retries so far.
     """
     from pydantic_ai import exceptions as failures
 
     if not isinstance(error, failures.ModelHTTPError) or isinstance(error, failures.ModelQuotaExceededError):
         return None
     busy = error.status_code == 429
-    if not busy and (tries >= _REPAIRS or error.status_code not in (408, 500, 502, 503, 504, 529)):
+    if not busy and (tries >= _MAX_RETRIES or error.status_code not in (408, 500, 502, 503, 504, 529)):
         return None
     asked = error.retry_after
     return FIRST_PAUSE * 2.0 ** min(tries, 6) if asked is None else max(asked, _SHORTEST_PAUSE)
 
 
-def say(error: BaseException, address: Address, seconds: float) -> str:
-    """The error in one line: what happened, where, and what to do. Never holds a key, whatever the server echoed."""
+def describe(error: BaseException, address: Address, seconds: float) -> str:
+    """The error in one line: what happened, where, and what to do. Contains no key, even if the server echoed it."""
     from pydantic_ai import exceptions as failures
 
     if isinstance(error, failures.ModelHTTPError):
-        text = _status(error, address)
+        text = _status_error(error, address)
     else:
-        text = _transport(list(_chain(error)), address, seconds) or _nonsense(error, address)
+        text = _transport_error(list(_chain(error)), address, seconds) or _invalid_response(error, address)
     return address.without_keys(text)
 
 
 def _chain(error: BaseException) -> Iterator[BaseException]:
-    """The error and all that it came from."""
+    """The error, its causes and contexts, and the members of exception groups."""
     waiting, seen = [error], set[int]()
     while waiting:
         one = waiting.pop(0)
@@ -136,8 +137,8 @@ def _first(chain: list[BaseException], *kinds: type[BaseException]) -> Any:
     return next((one for one in chain if isinstance(one, kinds)), None)
 
 
-def _transport(chain: list[BaseException], address: Address, seconds: float) -> str:
-    """Of what kept the request from its answer; "" where nothing did."""
+def _transport_error(chain: list[BaseException], address: Address, seconds: float) -> str:
+    """Message for an error of connection or transport; "" if there is none in the chain."""
     import httpx2
 
     at, model = address.url, address.model
@@ -163,26 +164,26 @@ def _transport(chain: list[BaseException], address: Address, seconds: float) -> 
 
 
 def _proxied(address: Address) -> bool:
-    """Whether requests go through a proxy that the environment names."""
+    """Whether requests go through a proxy set in the environment."""
     parts = urlsplit(address.url)
     proxies = getproxies()
     named = any(proxies.get(scheme) for scheme in (parts.scheme.lower(), "all"))
     return named and not address.near and not proxy_bypass(parts.hostname or "")
 
 
-def _nonsense(error: BaseException, address: Address) -> str:
-    """Of an answer that is none, or of an error of our libraries."""
+def _invalid_response(error: BaseException, address: Address) -> str:
+    """Message for a response that is no answer of a language model, or an error of the libraries."""
     from pydantic_ai import exceptions as failures
 
     kind, at = address.kind, address.url
     if isinstance(error, failures.ModelAPIError) and error.in_stream:
-        return f"{address.model} at {at} failed in the middle of its answer: {_words(error.body, address)}"
+        return f"{address.model} at {at} failed in the middle of its answer: {_server_message(error.body, address)}"
     own = f"; does it speak the {kind} format, and is its address complete?" if address.own else "; ask again later"
     return f"{at} answered something that is no answer of a language model{own}"
 
 
-def _status(error: Any, address: Address) -> str:
-    """Of a request that the server refused or failed at.
+def _status_error(error: Any, address: Address) -> str:
+    """Message for a request that the server refused or failed to answer.
 
     Args:
         error: pydantic-ai's ModelHTTPError.
@@ -191,7 +192,7 @@ def _status(error: Any, address: Address) -> str:
 
     code, model, at = error.status_code, address.model, address.url
     service = SERVICES[address.kind]
-    said = _words(error.body, address)
+    said = _server_message(error.body, address)
     quoted = f' It said: "{said}"' if said else ""
     if isinstance(error, failures.ModelQuotaExceededError) or code == 402:
         return f"the account at {at} has no credit or quota left; look at its billing, or use another model.{quoted}"
@@ -201,7 +202,7 @@ def _status(error: Any, address: Address) -> str:
         names = ", ".join(("SCENEWRIGHT_API_KEY", *service.keys))
         return f"{at} does not accept the key, or not for {model}; look at {names}.{quoted}"
     if code in (404, 405):
-        return _missing(model, address, said) + quoted
+        return _missing_model(model, address, said) + quoted
     if code == 429:
         asked = f" and asks to wait {error.retry_after:g} s" if error.retry_after else ""
         return f"{at} takes no more requests for now{asked}, longer than there was time; ask again later.{quoted}"
@@ -212,7 +213,7 @@ def _status(error: Any, address: Address) -> str:
     return f"{at} refused the request for {model} (code {code}).{quoted or ' It did not say why; look into its log.'}"
 
 
-def _missing(model: str, address: Address, said: str) -> str:
+def _missing_model(model: str, address: Address, said: str) -> str:
     if model.rsplit("/", 1)[-1].lower() in said.lower() or "model" in said.lower():
         return f"there is no model {model!r} at {address.url}; look for a slip, or fetch it onto the server."
     hint = " (addresses of this format usually end in /v1)" if address.kind == "openai" and address.own else ""
@@ -221,8 +222,8 @@ def _missing(model: str, address: Address, said: str) -> str:
     )
 
 
-def _words(body: object, address: Address) -> str:
-    """What the server said for people in an error's body, fit to be shown; "" where nothing is."""
+def _server_message(body: object, address: Address) -> str:
+    """The message in the body of an error, safe to display; "" if there is none."""
     for _ in range(4):  # {"error": {"message": "…"}}, [{"error": …}], {"detail": "…"}
         if isinstance(body, list) and body:
             body = body[0]

@@ -12,12 +12,12 @@ from .errors import StoppedError
 if TYPE_CHECKING:
     import httpx2
 
-_MOST_BYTES = 32 << 20  # of one response: a streamed token costs about 300 bytes, so five times the longest answer
-_CONNECT = 10.0  # seconds for a connection; a server that is there needs less than one
+_MAX_BYTES = 32 << 20  # of one response: a streamed token costs about 300 bytes, so five times the longest answer
+_CONNECT = 10.0  # seconds to connect; a reachable server needs less than one
 
 
 def open_client(address: Address, seconds: float) -> httpx2.AsyncClient:
-    """An HTTP client that reads at most `_MOST_BYTES` of a response and follows no redirects.
+    """An HTTP client that reads at most `_MAX_BYTES` of a response and follows no redirects.
 
     Raises:
         StoppedError: the environment names a proxy that cannot be used.
@@ -28,20 +28,20 @@ def open_client(address: Address, seconds: float) -> httpx2.AsyncClient:
     try:
         client = create_async_httpx2_client(
             timeout=httpx2.Timeout(seconds, connect=min(_CONNECT, seconds)),
-            transport=httpx2.AsyncHTTPTransport() if address.near else None,  # a given transport passes proxies by
+            transport=httpx2.AsyncHTTPTransport() if address.near else None,  # an explicit transport bypasses proxies
         )
-    except (ImportError, ValueError):  # a kind of proxy that needs another package, or none at all
+    except (ImportError, ValueError):  # an unknown type of proxy, or one that needs another package
         raise StoppedError(
             "the proxy that HTTPS_PROXY, HTTP_PROXY or ALL_PROXY names cannot be used; correct it, or see NO_PROXY"
         ) from None
-    client.headers["Accept-Encoding"] = "identity"  # so that bytes counted are bytes held
-    client.headers["Connection"] = "close"  # a kept one may be closing as the next request goes out on it
-    client.event_hooks["response"].append(partial(_bound, address))
+    client.headers["Accept-Encoding"] = "identity"  # so that the bytes counted are those in memory
+    client.headers["Connection"] = "close"  # a kept connection may close while the next request is sent
+    client.event_hooks["response"].append(partial(_limit, address))
     return client
 
 
-async def _bound(address: Address, response: httpx2.Response) -> None:
-    """Refuse redirects, which would carry the key along, and compressed responses, and limit the size of the others."""
+async def _limit(address: Address, response: httpx2.Response) -> None:
+    """Refuse redirects, which would forward the key, and compressed responses; limit the size of all others."""
     if response.is_redirect:
         elsewhere = address.hide(response.headers.get("location", ""))
         raise StoppedError(f"{address.url} sends elsewhere ({elsewhere}); name that address after the @ instead")
@@ -61,7 +61,7 @@ def _counted(address: Address, stream: Any) -> httpx2.AsyncByteStream:
             size = 0
             async for chunk in stream:
                 size += len(chunk)
-                if size > _MOST_BYTES:
+                if size > _MAX_BYTES:
                     raise StoppedError(
                         f"{address.model} at {address.url} sent more than any answer needs; it may be caught in a "
                         "loop, ask again or another model"

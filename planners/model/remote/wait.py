@@ -13,12 +13,12 @@ from typing import Any, Generic, TypeVar
 T = TypeVar("T")
 Emit = Callable[[str], None]
 
-_GRACE = 1.0  # seconds for the work to give up on its own; after that it is left behind, as a name look-up must be
+_GRACE = 1.0  # seconds to stop after cancellation; then the thread is abandoned, since a DNS look-up cannot be stopped
 
 
 @dataclass(frozen=True)
 class Failed:
-    """The work ended in an error, TimeoutError where time was up."""
+    """The work ended with an error; TimeoutError if the time was up."""
 
     error: BaseException
 
@@ -29,7 +29,7 @@ class _Done(Generic[T]):
 
 
 class _Worker(Generic[T]):
-    """A thread with an event loop of its own, in which one piece of work runs."""
+    """A thread with its own event loop that runs one coroutine."""
 
     def __init__(self, work: Callable[[Emit], Coroutine[Any, Any, T]], seconds: float) -> None:
         self.said: queue.SimpleQueue[str | Failed | _Done[T]] = queue.SimpleQueue()
@@ -42,7 +42,7 @@ class _Worker(Generic[T]):
     def _run(self) -> None:
         try:
             result = asyncio.run(self._bounded())
-        except BaseException as error:  # whatever it is, the caller's thread must hear of it
+        except BaseException as error:  # passed to the caller's thread, whatever its type
             self.said.put(Failed(error))
         else:
             self.said.put(_Done(result))
@@ -55,7 +55,7 @@ class _Worker(Generic[T]):
             return await self._work(self.said.put)
 
     def stop(self) -> None:
-        """Make it give up; does nothing where it has ended."""
+        """Cancel the work; does nothing if it has ended."""
         self._given_up = True
         if self._running is not None and not self._running[0].is_closed():
             loop, task = self._running
@@ -70,11 +70,11 @@ def wait(
 ) -> T | Failed:
     """The result of `work`, which runs in its own thread; `on_text` gets what it emits, in the caller's thread.
 
-    Whatever `on_text` raises, and an interrupt of the user, stops the work and is raised here.
+    An exception of `on_text` or an interrupt of the user stops the work and is raised here.
 
     Args:
-        work: given a function to emit text with.
-        seconds: until it is cancelled.
+        work: takes a function that emits text.
+        seconds: time limit, after which the work is cancelled.
     """
     worker = _Worker(work, seconds)
     deadline = time.monotonic() + seconds + _GRACE

@@ -22,20 +22,20 @@ if TYPE_CHECKING:
     from pydantic_ai.models import Model, ModelRequestParameters
     from pydantic_ai.settings import ModelSettings
 
-LONGEST_ANSWER = 16_384  # tokens, a reasoning model's thoughts included: the longest plan has 64 operations
+LONGEST_ANSWER = 16_384  # tokens, including a model's reasoning; the longest plan has 64 operations
 _SEED = 0
 _NAME = "answer"  # of the schema, and of the tool whose arguments are the answer
 
 
 @dataclass(frozen=True)
 class Question:
-    """What is asked.
+    """One request.
 
     Attributes:
         messages, schema: as in `ModelBackend.answer`.
-        extras: what is asked for beside them.
-        seconds: until the connection is given up.
-        emit: called with the pieces of the answer, with the whole where it is not streamed; None: nobody listens.
+        extras: optional parameters.
+        seconds: time limit of the connection.
+        emit: called with the pieces of the answer, or with the whole if it is not streamed; None: not streamed.
     """
 
     messages: Sequence[Message]
@@ -47,13 +47,13 @@ class Question:
 
 @dataclass(frozen=True)
 class Reply:
-    """What came back.
+    """One response.
 
     Attributes:
-        text: the model's words.
+        text: the model's answer.
         end: as `Answer.end`.
-        input_tokens, output_tokens: as the server counted them, 0 where it did not.
-        dollars: by published prices, None where unknown.
+        input_tokens, output_tokens: as counted by the server, 0 if it did not.
+        dollars: by published prices, None if unknown.
     """
 
     text: str
@@ -64,7 +64,7 @@ class Reply:
 
 
 def import_libraries(kind: Kind) -> None:
-    """Import what a wire format needs, some seconds once, and quieten what the libraries warn of.
+    """Import the libraries of a wire format, which takes seconds the first time, and silence some of their warnings.
 
     Raises:
         ImportError: the packages are broken.
@@ -73,14 +73,14 @@ def import_libraries(kind: Kind) -> None:
 
     for module in ("pydantic_ai.direct", f"pydantic_ai.models.{kind}", f"pydantic_ai.providers.{kind}"):
         importlib.import_module(module)
-    # Not for users: that a model which thinks takes no temperature, and what a server garbles; both are dealt with.
+    # Reasoning models without temperature and malformed responses are handled here, so users need no warning.
     for words in ("Sampling parameters", "Failed to extract usage", "Pydantic serializer", "Unexpected non-string"):
         warnings.filterwarnings("ignore", message=words)
 
 
 def build(address: Address, client: httpx2.AsyncClient) -> Model[Any]:
     """pydantic-ai's model for an address."""
-    # Whether a server takes a schema shows when it is asked; pydantic-ai only guesses it from the model's name.
+    # pydantic-ai guesses from the model's name whether a server accepts a schema; here the first request shows it.
     takes: Any = {"supports_json_schema_output": True, "supports_json_object_output": True}
     if address.kind == "anthropic":
         from pydantic_ai.models.anthropic import AnthropicModel
@@ -101,7 +101,7 @@ def build(address: Address, client: httpx2.AsyncClient) -> Model[Any]:
     if not address.own:
         openai = OpenAIProvider(api_key=address.key, base_url=address.url, http_client=client)
         return OpenAIChatModel(address.model, provider=openai, profile=takes)
-    takes["openai_chat_supports_max_completion_tokens"] = False  # servers of one's own know the older max_tokens
+    takes["openai_chat_supports_max_completion_tokens"] = False  # compatible servers expect the older max_tokens
     compatible = OpenAICompatibleProvider(
         "openai-compatible", base_url=address.url, api_key=address.key, http_client=client
     )
@@ -109,16 +109,16 @@ def build(address: Address, client: httpx2.AsyncClient) -> Model[Any]:
 
 
 async def ask(model: Model[Any], address: Address, question: Question) -> Reply:
-    """Ask once.
+    """Send one request.
 
     Raises:
-        Exception: whatever pydantic-ai and the libraries below raise; `errors.say` knows them.
+        Exception: any error of pydantic-ai and its libraries; `errors.describe` turns it into a message.
     """
     from pydantic_ai.direct import model_request, model_request_stream
 
     options: dict[str, Any] = {
         "model_settings": _settings(question),
-        "model_request_parameters": _wanted(address.kind, question.extras, question.schema),
+        "model_request_parameters": _parameters(address.kind, question.extras, question.schema),
         "instrument": False,
     }
     turns, emit = _turns(question.messages), question.emit
@@ -146,12 +146,12 @@ def _settings(question: Question) -> ModelSettings:
     return settings
 
 
-def _wanted(kind: Kind, extras: Extras, schema: dict[str, Any]) -> ModelRequestParameters:
-    """How the answer is bound to the schema.
+def _parameters(kind: Kind, extras: Extras, schema: dict[str, Any]) -> ModelRequestParameters:
+    """Parameters that constrain the answer to the schema.
 
-    OpenAI's strict mode wants every property required, Anthropic's takes no recursion, and a query may hold queries; so
-    OpenAI and its kin get the schema unstrictly, Anthropic as the arguments of a tool that must be called, and Google
-    in the subset that pydantic-ai knows it to take. The schema is not put into words: what a prompt says is not ours.
+    OpenAI's strict mode requires every property, Anthropic's has no recursion, and a query may contain queries.
+    Therefore OpenAI and compatible servers get the schema in non-strict mode, Anthropic as the arguments of a tool that
+    must be called, and Google in the subset that pydantic-ai supports. The schema is not added to the prompt.
     Sources: platform.openai.com/docs/guides/structured-outputs, platform.claude.com/docs structured outputs,
     ai.google.dev/gemini-api/docs/structured-output.
     """
@@ -175,10 +175,10 @@ def _wanted(kind: Kind, extras: Extras, schema: dict[str, Any]) -> ModelRequestP
 
 
 def loosened(node: Any) -> Any:
-    """The schema without alternatives beside `properties`: it allows more, and every server takes it.
+    """The schema without alternatives beside `properties`. It allows more, and every server accepts it.
 
-    They say which fields go together. Anthropic refuses them at a tool's root, and llama.cpp's grammars follow the
-    alternatives alone and forget the properties.
+    Such alternatives state which fields go together. Anthropic refuses them at the root of a tool, and llama.cpp's
+    grammars use the alternatives only and ignore the properties.
     """
     if isinstance(node, list):
         return [loosened(one) for one in node]
@@ -206,11 +206,11 @@ def _turns(messages: Sequence[Message]) -> list[ModelMessage]:
 
 
 def _piece(event: ModelResponseStreamEvent) -> str:
-    """The words of the answer in an event; a model's thoughts are none of them."""
+    """The text of the answer in an event, without a model's reasoning."""
     from pydantic_ai import messages as parts
 
     if isinstance(event, parts.PartStartEvent):
-        return _said(event.part)
+        return _part_text(event.part)
     if isinstance(event, parts.PartDeltaEvent):
         if isinstance(event.delta, parts.TextPartDelta):
             return event.delta.content_delta
@@ -219,7 +219,7 @@ def _piece(event: ModelResponseStreamEvent) -> str:
     return ""
 
 
-def _said(part: object) -> str:
+def _part_text(part: object) -> str:
     from pydantic_ai import messages as parts
 
     if isinstance(part, parts.TextPart):
@@ -235,7 +235,7 @@ def _reply(response: ModelResponse, address: Address) -> Reply:
     if not response.parts and response.finish_reason is None:
         raise NothingError
     calls = [part for part in response.parts if isinstance(part, parts.ToolCallPart)]
-    text = _said(calls[0]) if calls else "".join(_said(part) for part in response.parts)
+    text = _part_text(calls[0]) if calls else "".join(_part_text(part) for part in response.parts)
     end: Literal["done", "cut", "declined"] = "done"
     if response.finish_reason == "length":
         end = "cut"
@@ -259,13 +259,13 @@ def _refusal(response: ModelResponse, text: str) -> str:
 
 
 def _count(tokens: object) -> int:
-    """A count as a receipt takes it, whatever the server claims."""
+    """A token count in the range that a receipt allows; 0 if it is not an integer."""
     return min(max(tokens, 0), 10**9) if isinstance(tokens, int) else 0
 
 
 def _dollars(response: ModelResponse) -> float | None:
     try:
         price = float(response.cost().total_price)
-    except (LookupError, ValueError, AssertionError):  # a model that the price list does not know, usage left out
+    except (LookupError, ValueError, AssertionError):  # the model is not in the price list, or the usage is missing
         return None
     return price if 0 <= price <= 1e6 else None

@@ -1,7 +1,7 @@
 """Semantic checks of a valid plan: unknown ids, invalid colours, and removals that the instruction does not ask for.
 
-Plans are not repaired, except that choices which the instruction leaves open are removed (`choosing`), so that the
-session asks. Each fault is reported to the model; `Fault.verdict` is the outcome if the model repeats it.
+Plans are not repaired, except that choices which the instruction does not state are removed (`unstated_choices`), so
+that the session asks. Each fault is reported to the model; `Fault.verdict` is the outcome if the model repeats it.
 
 Absent and ambiguous phrases are reported to the model once, because it may have meant something else in the scene. If
 it repeats them, the plan is accepted: the graph has only those labels that the encoder is sure of, while the session
@@ -30,21 +30,21 @@ from ...rooms.graph_scene import Id
 from ...rooms.label_encoder import words
 from ...rooms.plan_on_graph import Resolved
 from ..prompt.pruning import Relevance
-from .choosing import numbered, stems, without_guesses, without_inventions
 from .rehearsal import Rehearsal
-from .removal_words import Ground, said
+from .removal_words import Ground, mentions
+from .unstated_choices import drop_unstated_colors, drop_unstated_ids, singular_picks, stems
 
 # Operations that remove things, and the kinds of words that justify each. A new operation that removes belongs here.
-_TAKES: dict[str, tuple[Ground, ...]] = {
+_REMOVALS: dict[str, tuple[Ground, ...]] = {
     "delete": ("removing", "exchanging"),
     "replace": ("removing", "exchanging"),
     "isolate": ("keeping", "removing"),
     "opacity": ("hiding", "removing", "keeping"),
 }
-_HIDES = 0.15  # opacity up to which a thing counts as removed
+_HIDDEN_OPACITY = 0.15  # opacity up to which a thing counts as removed
 _MANY = 4  # unnamed things; a plan that removes as many is a fault
 _FILLERS = re.compile(r"^(?:(?:and|now|then|next|ok|okay|please|so)\b[\s,]*)+")
-_TOO = re.compile(r"\b(?:too|also|as well|same|again|likewise|either|neither)\b")
+_SAME_AGAIN = re.compile(r"\b(?:too|also|as well|same|again|likewise|either|neither)\b")
 _EVERYTHING = frozenset({"", "everything", "anything", "thing", "object", "item", "stuff", "furniture"})
 
 
@@ -81,22 +81,23 @@ class Guard:
         self._previous = previous
         self._scene = Rehearsal(graph, previous, recall) if graph is not None else None
 
-    def settled(self, ops: Sequence[EditOp]) -> tuple[EditOp, ...]:
+    def drop_unstated(self, ops: Sequence[EditOp]) -> tuple[EditOp, ...]:
         """The operations without choices of ids, colours and "all" that the instruction does not make."""
         if self._scene is None:
             return tuple(ops)
-        said = without_inventions(without_guesses(ops, self._text, self._scene), self._text, self._previous)
-        return numbered(said, self._text, self._scene)
+        stated = drop_unstated_ids(ops, self._text, self._scene)
+        stated = drop_unstated_colors(stated, self._text, self._previous)
+        return singular_picks(stated, self._text, self._scene)
 
     def faults(self, ops: Sequence[EditOp]) -> list[Fault]:
         """Faults of the operations, worst first, one of each kind."""
-        found = [f for check in (self._ids, self._colors, self._last) for f in check(ops)]
+        found = [f for check in (self._ids, self._colors, self._unknown_it) for f in check(ops)]
         if any(f.verdict is None for f in found):
-            return _one_a_kind(found)  # a dry run needs existing ids
-        played = self._scene.play(ops) if self._scene is not None and ops else None
-        found += [*self._groundless(ops), *self._sweeping(ops, played)]
-        found += self._shell(ops) if played is None else self._stopped(played)
-        return _one_a_kind(found)
+            return _first_of_each_kind(found)  # a dry run needs existing ids
+        resolved = self._scene.dry_run(ops) if self._scene is not None and ops else None
+        found += [*self._unjustified_removals(ops), *self._broad_removals(ops, resolved)]
+        found += self._structure(ops) if resolved is None else self._dry_run_faults(resolved)
+        return _first_of_each_kind(found)
 
     # -- the words of a plan ----------------------------------------------------------------------------------------
 
@@ -107,9 +108,9 @@ class Guard:
                 continue
             if self._scene is None:
                 yield Fault("ids", "no scene was shown, so groups must be left out: say in words what is meant")
-            elif lost := self._scene.lost(query):
-                near = self._scene.shown(n.id for n in self._scene.near(query, lost[0]))
-                yield Fault("ids", f"groups: no thing has the id {lost[0]}; near are\n{near}")
+            elif missing := self._scene.missing_ids(query):
+                near = self._scene.shown(n.id for n in self._scene.alternatives(query, missing[0]))
+                yield Fault("ids", f"groups: no thing has the id {missing[0]}; near are\n{near}")
             elif (node := self._scene.misnamed(query)) is not None:
                 told = f'groups: {node.id} is a {node.label}, not "{query.text}"; correct the id or the text'
                 yield Fault("ids", told)
@@ -125,7 +126,7 @@ class Guard:
             except UserError as error:
                 yield Fault("color", str(error), "not_understood", str(error))
 
-    def _shell(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
+    def _structure(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
         """Operations that would move floor, walls or ceiling."""
         for op in ops:
             query = op.query()
@@ -135,7 +136,7 @@ class Guard:
                 told = f'{reason}; if that was asked, answer with verdict "impossible"'
                 yield Fault("shell", told, "impossible", reason)
 
-    def _last(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
+    def _unknown_it(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
         """ "it" without a previous instruction."""
         if not self._previous and any(q.last for _, q in queries(tuple(ops[:1]))):
             told = "last: there was no instruction before, so it means nothing; name the thing"
@@ -143,43 +144,43 @@ class Guard:
 
     # -- removals ---------------------------------------------------------------------------------------------------
 
-    def _groundless(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
+    def _unjustified_removals(self, ops: Sequence[EditOp]) -> Iterator[Fault]:
         """Operations that remove something although the instruction does not ask for it."""
-        for op in filter(_takes, ops):
-            asked = any(said(g, self._text, self._before) for g in _TAKES[op.op])
+        for op in filter(_removes, ops):
+            asked = any(mentions(g, self._text, self._before) for g in _REMOVALS[op.op])
             if not asked and not (op.op == "replace" and self._names(getattr(op, "asset", ""))):
                 what = f"{op.op} {op.subject()}"
                 told = (
                     f"{op.op}: the instruction does not ask to take anything away. Do only what it says; if it cannot "
                     'be done otherwise, answer with verdict "not_understood"'
                 )
-                yield Fault("groundless", told, "not_understood", f"{_REFUSED}: {what}. {_SAY}")
+                yield Fault("groundless", told, "not_understood", f"{_REFUSED}: {what}. {_REPHRASE}")
 
-    def _sweeping(self, ops: Sequence[EditOp], played: Resolved | None) -> Iterator[Fault]:
+    def _broad_removals(self, ops: Sequence[EditOp], resolved: Resolved | None) -> Iterator[Fault]:
         """Operations that remove everything, or many unnamed things, although the instruction does not say "all"."""
-        if said("all", self._text, self._before):
+        if mentions("all", self._text, self._before):
             return
-        sweeping = [op for op in ops if _takes(op) and op.op != "isolate" and _is_everything(op.query())]
-        unnamed = self._unnamed(played)
+        sweeping = [op for op in ops if _removes(op) and op.op != "isolate" and _is_everything(op.query())]
+        unnamed = self._unnamed(resolved)
         count = len(self._scene.graph.nodes) if self._scene is not None else 0
         if sweeping or len(unnamed) >= max(_MANY, count / 2):
             what = sweeping[0].subject() if sweeping else f"{len(unnamed)} things that it does not name"
             told = f"the instruction does not say that {what} should go. Do only what it says"
-            yield Fault("sweeping", told, "not_understood", f"{_REFUSED}: remove {what}. {_SAY}")
+            yield Fault("sweeping", told, "not_understood", f"{_REFUSED}: remove {what}. {_REPHRASE}")
 
     @cached_property
     def _before(self) -> str | None:
         """The previous instruction if it may justify removals too: this one has no command of its own, or says
         "too"."""
         own = _FILLERS.sub("", self._text.casefold()).split(maxsplit=1)
-        commands = bool(own) and own[0] in _commands() and not _TOO.search(self._text.casefold())
+        commands = bool(own) and own[0] in _commands() and not _SAME_AGAIN.search(self._text.casefold())
         return None if commands else self._previous
 
-    def _unnamed(self, played: Resolved | None) -> set[Id]:
+    def _unnamed(self, resolved: Resolved | None) -> set[Id]:
         """Nodes that would be removed although the instruction names neither their label nor their colour."""
-        if played is None or self._scene is None:
+        if resolved is None or self._scene is None:
             return set()
-        gone = {i for s in played.steps if _takes(s.op) and s.op.op != "isolate" for i in s.targets}
+        gone = {i for s in resolved.steps if _removes(s.op) and s.op.op != "isolate" for i in s.targets}
         return gone - self._named if gone else gone
 
     @cached_property
@@ -196,17 +197,19 @@ class Guard:
 
     # -- the dry run ------------------------------------------------------------------------------------------------
 
-    def _stopped(self, played: Resolved) -> Iterator[Fault]:
+    def _dry_run_faults(self, resolved: Resolved) -> Iterator[Fault]:
         """Why the plan fails on the graph, if it does."""
-        if played.verdict == "ok" or self._scene is None:
+        if resolved.verdict == "ok" or self._scene is None:
             return
-        shown = self._scene.shown(played.candidates)
-        if played.verdict in ("absent", "ambiguous"):
-            how = _IF_ABSENT if played.verdict == "absent" else _IF_AMBIGUOUS
-            yield Fault(played.verdict, f"{played.verdict}: {played.reason}\n{shown}\n{how}", "ok", played.reason)
+        shown = self._scene.shown(resolved.candidates)
+        if resolved.verdict in ("absent", "ambiguous"):
+            how = _IF_ABSENT if resolved.verdict == "absent" else _IF_AMBIGUOUS
+            yield Fault(
+                resolved.verdict, f"{resolved.verdict}: {resolved.reason}\n{shown}\n{how}", "ok", resolved.reason
+            )
         else:
-            told = f"{played.verdict}: {played.reason}. Correct it, or answer with this verdict"
-            yield Fault(played.verdict, told, played.verdict, played.reason)
+            told = f"{resolved.verdict}: {resolved.reason}. Correct it, or answer with this verdict"
+            yield Fault(resolved.verdict, told, resolved.verdict, resolved.reason)
 
 
 _REFUSED = "the model wanted what the instruction does not ask for, and nothing was done"
@@ -218,7 +221,7 @@ _IF_AMBIGUOUS = (
     "If the instruction says which one, say it as it does (colors, relations, pick, all); if it does not, give the "
     "same ops with this verdict. Do not choose by id"
 )
-_SAY = "If you mean it, say so ('delete …', 'keep only …', 'delete everything')"
+_REPHRASE = "If you mean it, say so ('delete …', 'keep only …', 'delete everything')"
 
 
 @cache
@@ -228,8 +231,8 @@ def _commands() -> frozenset[str]:
     return frozenset(phrase.split()[0] for phrase in VERBS) - alike
 
 
-def _takes(op: EditOp) -> bool:
-    return op.op in _TAKES and (op.op != "opacity" or float(getattr(op, "value", 1.0)) <= _HIDES)
+def _removes(op: EditOp) -> bool:
+    return op.op in _REMOVALS and (op.op != "opacity" or float(getattr(op, "value", 1.0)) <= _HIDDEN_OPACITY)
 
 
 def _is_everything(query: Query | None) -> bool:
@@ -240,7 +243,7 @@ def _is_everything(query: Query | None) -> bool:
     return query.invert or query.pick == "rest" or (query.pick == "all" and query.text in _EVERYTHING and open_ended)
 
 
-def _one_a_kind(faults: Sequence[Fault]) -> list[Fault]:
+def _first_of_each_kind(faults: Sequence[Fault]) -> list[Fault]:
     """The first fault of each kind: invalid plans first, then refusals, then accepted ones."""
     first: dict[str, Fault] = {}
     for fault in faults:

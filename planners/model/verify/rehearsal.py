@@ -1,7 +1,7 @@
 """Dry run of a model's plan on the scene graph: what each operation would touch, and what its ids refer to.
 
 Queries name nodes by the graph's ids, the graph scene by rows. The graph has sanitised names, so that all texts made
-here may be sent to the model. `guard.py` draws the conclusions.
+here may be sent to the model. `guard.py` turns the results into faults.
 """
 
 from __future__ import annotations
@@ -59,28 +59,28 @@ class Rehearsal:
         except UserError:
             return None
 
-    def play(self, ops: Sequence[EditOp]) -> Resolved | None:
+    def dry_run(self, ops: Sequence[EditOp]) -> Resolved | None:
         """What the operations would touch; None if they refer to an "it" that is unknown. All ids must exist."""
         if self.last is None and any(q.last for _, q in queries(tuple(ops[:1]))):
             return None
-        staged = tuple(with_queries(op, self._staged) for op in ops)
+        staged = tuple(with_queries(op, self._with_rows) for op in ops)
         return resolve_plan(self.stage, EditPlan(instruction="", ops=staged, planner=""), self.last)
 
-    def lost(self, query: Query) -> list[int]:
+    def missing_ids(self, query: Query) -> list[int]:
         """Ids that the query names and the graph does not have."""
         return [i for i in query.groups if i not in self.rows]
 
-    def near(self, query: Query, lost: int) -> list[Node]:
-        """What may be meant instead of an id that is not there: things of the query's name, else those with ids next
-        to it."""
+    def alternatives(self, query: Query, missing: int) -> list[Node]:
+        """Nodes that may be meant instead of a missing id: those that the query's text fits, else those with the
+        nearest ids."""
         nodes = [n for n in self.graph.nodes if isinstance(n.id, int)]
-        fits = _fitting(query, nodes)
+        fits = _fitting_labels(query, nodes)
         named = [n for n in nodes if n.label in fits]
-        return (named or sorted(nodes, key=lambda n: (abs(int(n.id) - lost), n.id)))[:_NEAR]
+        return (named or sorted(nodes, key=lambda n: (abs(int(n.id) - missing), n.id)))[:_NEAR]
 
     def misnamed(self, query: Query) -> Node | None:
         """A node that the query names by id while its text fits only other things of the scene."""
-        fits = _fitting(query, self.graph.nodes)
+        fits = _fitting_labels(query, self.graph.nodes)
         named = (self.graph.nodes[self.rows[i]] for i in query.groups if i in self.rows)
         return next((n for n in named if fits and n.label and n.label not in fits), None)
 
@@ -92,7 +92,7 @@ class Rehearsal:
         """Ids of all nodes that the words of a query fit, ignoring its ids and its choice among several."""
         words = query.model_copy(update={"groups": (), "also": (), "pick": "all", "count": None, "ordinal": None})
         try:
-            found = self.stage.find(with_queries(words, self._staged), self.last)
+            found = self.stage.find(with_queries(words, self._with_rows), self.last)
         except UserError:
             return ()
         return self.stage.names(found.groups) if found.verdict == "found" else ()
@@ -104,13 +104,13 @@ class Rehearsal:
         more = [f"and {len(lines) - _SHOWN} more"] if len(lines) > _SHOWN else []
         return "\n".join([*lines[:_SHOWN], *more])
 
-    def _staged(self, query: Query) -> Query:
+    def _with_rows(self, query: Query) -> Query:
         if not query.groups:
             return query
         return query.model_copy(update={"groups": tuple(self.rows[i] for i in query.groups)})
 
 
-def _fitting(query: Query, nodes: Sequence[Node]) -> set[str]:
+def _fitting_labels(query: Query, nodes: Sequence[Node]) -> set[str]:
     """Labels that the text of a query fits."""
     labels = sorted({n.label for n in nodes if n.label})
     return {label for label, p in zip(labels, agreement(query.text, labels), strict=True) if p >= THRESHOLD}

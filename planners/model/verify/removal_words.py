@@ -1,7 +1,7 @@
 """Detect words in an instruction that justify removing things: removing, exchanging, keeping only, hiding, and "all".
 
-The words cover the languages that users mostly speak to models in. A superfluous word lets a mistaken plan pass to the
-editor's own checks and to undo; a missing word makes a user rephrase.
+The words cover the languages that users mostly speak to models in. With a superfluous word, a mistaken plan
+reaches the editor's own checks, and the user can undo it; with a missing word, the user must rephrase.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ _WORDS: dict[Ground, str] = {
 _UNSPACED = re.compile(r"[\u0e00-\u0eff\u1000-\u109f\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
 
 
-def said(ground: Ground, *texts: str | None) -> bool:
+def mentions(ground: Ground, *texts: str | None) -> bool:
     """Whether any of the texts contains a word of this kind."""
     return any(_pattern(ground).search(" ".join(text.casefold().split()).replace("’", "'")) for text in texts if text)
 

@@ -1,4 +1,4 @@
-"""How things are describe_things of: sure names counted, the rest only numbered."""
+"""Descriptions of things: those with certain names are counted by name, the others by number only."""
 
 from __future__ import annotations
 

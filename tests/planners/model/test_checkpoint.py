@@ -193,5 +193,5 @@ def test_without_a_template_the_prompt_is_plain(copied: Path) -> None:
     plain = checkpoint.read(str(copied))
     said = plain.tokenizer.decode(prompt_tokens(plain.tokenizer, asked("delete it", "Answer with JSON.")))
     assert said.endswith("### system\nAnswer with JSON.\n\n### user\ndelete it\n\n### assistant\n")
-    answer = backend.LocalModel(plain, "plain", longest=120).answer(asked("delete it"), SCHEMA, seconds=60)
+    answer = backend.LocalModel(plain, "plain", max_tokens=120).answer(asked("delete it"), SCHEMA, seconds=60)
     EditPlan.model_validate_json(answer.text)

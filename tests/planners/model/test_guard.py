@@ -10,7 +10,7 @@ import pytest
 
 from scenewright.planners.grammar import GrammarPlanner
 from scenewright.planners.model.verify.guard import Fault, Guard
-from scenewright.planners.model.verify.removal_words import said
+from scenewright.planners.model.verify.removal_words import mentions
 from scenewright.planners.rooms.graph import SceneGraph
 from scenewright.tools import registry
 from scenewright.tools.operation import EditOp
@@ -88,7 +88,7 @@ def test_right_ids_pass() -> None:
     ],
 )  # fmt: skip
 def test_ids_do_not_choose_what_the_words_leave_open(text: str, planned: EditOp) -> None:
-    (settled,) = guard(text).settled([planned])
+    (settled,) = guard(text).drop_unstated([planned])
     assert "groups" not in json.dumps(settled.model_dump(exclude_defaults=True, mode="json"))
     assert kinds(text, settled) == ["ambiguous"]  # and so the user is asked
 
@@ -105,7 +105,7 @@ def test_ids_do_not_choose_what_the_words_leave_open(text: str, planned: EditOp)
 )
 def test_ids_that_the_words_have_a_ground_for_stay(text: str, groups: list[int]) -> None:
     planned = op("delete", "armchair", q_groups=groups, q_pick="all")
-    assert guard(text).settled([planned]) == (planned,)
+    assert guard(text).drop_unstated([planned]) == (planned,)
     assert not faults(text, planned)
 
 
@@ -235,7 +235,7 @@ def test_what_people_wrote_is_never_refused_for_want_of_grounds(room: Path) -> N
 
 def test_words_that_only_begin_like_grounds_are_none() -> None:
     harmless = "move the thing with silver stripes near the sink at noon; make her garden chair quite wide"
-    assert [g for g in ("removing", "exchanging", "keeping", "hiding", "all") if said(g, harmless)] == []  # type: ignore[arg-type]
+    assert [g for g in ("removing", "exchanging", "keeping", "hiding", "all") if mentions(g, harmless)] == []  # type: ignore[arg-type]
 
 
 # -- what the scene says ---------------------------------------------------------------------------------------------
@@ -285,7 +285,7 @@ def test_no_operations_have_no_faults() -> None:
     ],
 )
 def test_where_one_was_said_it_is_never_all(text: str, name: str, pick: str, settled: str) -> None:
-    (made,) = guard(text).settled([op("delete", name, q_pick=pick)])
+    (made,) = guard(text).drop_unstated([op("delete", name, q_pick=pick)])
     query = made.query()
     assert query is not None and query.pick == settled
 
@@ -326,11 +326,13 @@ def test_everything_that_went_before_is_no_ground_for_everything_now() -> None:
 )
 def test_colours_that_nobody_said_choose_nothing(text: str, previous: str | None, kept: tuple[str, ...]) -> None:
     planned = op("move", "armchair", q_colors=["green"], direction="left")
-    (made,) = guard(text, previous).settled([planned])
+    (made,) = guard(text, previous).drop_unstated([planned])
     query = made.query()
     assert query is not None and query.colors == kept and query.text == "armchair"
 
 
 def test_a_colour_to_paint_with_is_none_to_look_for() -> None:
-    (made,) = guard("paint the armchair green").settled([op("recolor", "armchair", q_colors=["gray"], color="green")])
+    (made,) = guard("paint the armchair green").drop_unstated(
+        [op("recolor", "armchair", q_colors=["gray"], color="green")]
+    )
     assert made.query().colors == () and made.color == "green"  # type: ignore[attr-defined,union-attr]

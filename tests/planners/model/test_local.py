@@ -39,7 +39,7 @@ def parts(tiny_llama: Path) -> checkpoint.Checkpoint:
 @pytest.fixture
 def llama(parts: checkpoint.Checkpoint) -> backend.LocalModel:
     """A back end that has read nothing yet and is brief; what is slow to load is shared."""
-    return backend.LocalModel(parts, "transformers:tiny", longest=BRIEF)
+    return backend.LocalModel(parts, "transformers:tiny", max_tokens=BRIEF)
 
 
 def drawn(parts: checkpoint.Checkpoint, seed: int) -> Answer:
@@ -69,7 +69,7 @@ def test_a_hundred_of_a_hundred_are_valid(parts: checkpoint.Checkpoint) -> None:
 
 def test_the_reply_that_planners_ask_for_is_valid_too(parts: checkpoint.Checkpoint) -> None:
     for seed in range(6):
-        warm = backend.LocalModel(parts, "transformers:tiny", temperature=1.0, seed=seed, longest=400)
+        warm = backend.LocalModel(parts, "transformers:tiny", temperature=1.0, seed=seed, max_tokens=400)
         answer = warm.answer(asked("delete it", "JSON."), reply.schema(), seconds=120)
         reply.read(answer.text)
 
@@ -78,7 +78,7 @@ def test_the_same_question_gets_the_same_answer(parts: checkpoint.Checkpoint, ll
     first = llama.answer(asked(WORDS[0]), SCHEMA, seconds=120)
     llama.answer(asked(WORDS[1]), SCHEMA, seconds=120)
     again = llama.answer(asked(WORDS[0]), SCHEMA, seconds=120)
-    fresh = backend.LocalModel(parts, "transformers:tiny", longest=BRIEF)
+    fresh = backend.LocalModel(parts, "transformers:tiny", max_tokens=BRIEF)
     assert first.text == again.text == fresh.answer(asked(WORDS[0]), SCHEMA, seconds=120).text
     assert drawn(parts, 3).text == drawn(parts, 3).text != drawn(parts, 7).text
 
@@ -132,7 +132,7 @@ def test_tokens_are_counted(parts: checkpoint.Checkpoint) -> None:
 
 @pytest.mark.parametrize("longest", [1, 2, 7, 20, 33])
 def test_what_is_too_long_is_cut_and_still_valid(parts: checkpoint.Checkpoint, longest: int) -> None:
-    brief = backend.LocalModel(parts, "transformers:tiny", longest=longest, temperature=1.0)
+    brief = backend.LocalModel(parts, "transformers:tiny", max_tokens=longest, temperature=1.0)
     pieces: list[str] = []
     answer = brief.answer(asked(WORDS[0], "JSON."), SCHEMA, seconds=120, on_text=pieces.append)
     EditPlan.model_validate_json(answer.text)

@@ -536,7 +536,7 @@ def test_an_answer_of_a_hundred_megabytes_is_not_read(wire: Wire) -> None:
 
 @each_wire
 def test_a_stream_without_end_is_not_read_for_ever(wire: Wire, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(http, "_MOST_BYTES", 1 << 20)
+    monkeypatch.setattr(http, "_MAX_BYTES", 1 << 20)
 
     def endless() -> Iterator[str]:
         while True:

@@ -34,7 +34,7 @@ inches foot feet ft clockwise counterclockwise transparent invisible opaque
 """
 
 
-def without_guesses(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple[EditOp, ...]:
+def drop_unstated_ids(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple[EditOp, ...]:
     """Remove ids where the words of the query fit more things and the instruction does not distinguish them.
 
     Example: "delete the chair", and a model that picks one of three.
@@ -48,8 +48,8 @@ def without_guesses(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple
         return tuple(ops)
     used = _used(ops)
 
-    def settled(query: Query) -> Query:
-        if not query.groups or scene.lost(query) or scene.misnamed(query):
+    def rewrite(query: Query) -> Query:
+        if not query.groups or scene.missing_ids(query) or scene.misnamed(query):
             return query
         named = query if query.text else query.model_copy(update={"text": scene.label(query.groups[0])})
         fits = scene.by_words(named) if named.text else ()
@@ -59,10 +59,10 @@ def without_guesses(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple
         # One thing is meant, however many ids the model gave; never all that the words fit.
         return named.model_copy(update={"groups": (), "pick": "one" if named.pick in _LOOSE else named.pick})
 
-    return tuple(with_queries(op, settled) for op in ops)
+    return tuple(with_queries(op, rewrite) for op in ops)
 
 
-def without_inventions(ops: Sequence[EditOp], text: str, previous: str | None) -> tuple[EditOp, ...]:
+def drop_unstated_colors(ops: Sequence[EditOp], text: str, previous: str | None) -> tuple[EditOp, ...]:
     """Remove colours that the instruction does not state, where all of its words are explained without them.
 
     Example: "delete the chair", and a model that says the red one. An unexplained word (of another language, "crimson",
@@ -73,16 +73,16 @@ def without_inventions(ops: Sequence[EditOp], text: str, previous: str | None) -
     if not all(stems(word) <= _plain() | used for word in _WORD.findall(text.lower())):
         return tuple(ops)
 
-    def settled(query: Query) -> Query:
+    def rewrite(query: Query) -> Query:
         if not query.text or query.last or query.groups:
             return query
-        heard = tuple(c for c in query.colors if stems(c) & said)
-        return query.model_copy(update={"colors": heard}) if heard != query.colors else query
+        stated = tuple(c for c in query.colors if stems(c) & said)
+        return query.model_copy(update={"colors": stated}) if stated != query.colors else query
 
-    return tuple(with_queries(op, settled) for op in ops)
+    return tuple(with_queries(op, rewrite) for op in ops)
 
 
-def numbered(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple[EditOp, ...]:
+def singular_picks(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple[EditOp, ...]:
     """Set `pick` to "one" where the instruction speaks of one thing: "delete the chair" is never all chairs, nor any.
 
     Only if the name is that of things in the scene and occurs once in the instruction, in the singular, after "the" or
@@ -91,7 +91,7 @@ def numbered(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple[EditOp
     said = text.lower()
     heads = {w for node in scene.graph.nodes for w in words(node.label)[-1:]}
 
-    def settled(query: Query) -> Query:
+    def rewrite(query: Query) -> Query:
         noun = query.text.lower().split()[-1:]
         if query.pick not in ("all", "any") or query.groups or not noun or not heads & set(words(noun[0])):
             return query
@@ -101,7 +101,7 @@ def numbered(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple[EditOp
 
     if _OPEN_CHOICE.search(said) or _SEVERAL.search(said):
         return tuple(ops)
-    return tuple(with_queries(op, settled) for op in ops)
+    return tuple(with_queries(op, rewrite) for op in ops)
 
 
 def stems(text: str) -> set[str]:
