@@ -65,13 +65,26 @@ NEEDED = {
 
 def examine() -> list[Finding]:
     """The findings of all back ends, the needed ones first."""
-    needed = [_distribution(name, serves, needed=True, fix=_REINSTALL) for name, serves in NEEDED.items()]
+    nothing_more = (True, False, "", "needs nothing more", "")
     return [
-        *needed,
-        *(check() for check in (_cuda, _gsplat, _encoder, _torchvision, _open_clip, _onnx, _vectors)),
-        *(check() for check in (_masks_of_files, _masks_of_sam, _transformers, _poses, _webp, _charts, _ffmpeg)),
+        *(_distribution(name, serves, needed=True, fix=_REINSTALL) for name, serves in NEEDED.items()),
+        *(check() for check in (_cuda, _gsplat, _encoder, _torchvision)),
+        _distribution("open_clip_torch", "real CLIP towers (open_clip:MODEL/PRETRAINED)"),
+        # The towers run on onnxruntime, which is installed in any case; texts also need the `tokenizers` package.
+        _distribution(
+            "onnx:FOLDER", "real CLIP towers without torch models (embed --encoder onnx:FOLDER)", "tokenizers"
+        ),
+        Finding("vectors:PATH", "names with vectors made elsewhere (embed --encoder vectors:PATH)", *nothing_more),
+        Finding("masks folder:PATH", "masks that another program made (embed --masks folder:PATH)", *nothing_more),
+        _distribution("masks sam:PATH", "masks by a Segment Anything model (embed --masks sam:PATH)", "transformers"),
+        _distribution("transformers", "local language and vision models"),
+        _distribution("pycolmap", "poses of photographs that come without (fit)", fix='pip install "scenewright[sfm]"'),
+        _webp(),
+        _distribution("matplotlib", "charts of `scenewright bench`", fix='pip install "scenewright[bench]"'),
+        _ffmpeg(),
         *(_planner(kind) for kind in PLANNERS),
-        *(check() for check in (_planner_here, _planner_of_auto)),
+        _planner_here(),
+        _planner_of_auto(),
     ]
 
 
@@ -106,9 +119,10 @@ def _version(name: str) -> str:
         return ""
 
 
-def _distribution(name: str, serves: str, *, needed: bool, fix: str) -> Finding:
-    version = _version(name)
-    detail = "installed" if version else "not installed"
+def _distribution(name: str, serves: str, package: str = "", *, needed: bool = False, fix: str = _MODELS) -> Finding:
+    """The finding on a Python package; `package` if the back end `name` is called otherwise."""
+    version = _version(package or name)
+    detail = f"{package} is " * bool(package) + ("installed" if version else "not installed")
     return Finding(name, serves, bool(version), needed, version, detail, "" if version else fix)
 
 
@@ -197,42 +211,6 @@ def _interpreter(code: str) -> tuple[str, str]:
     return done.stdout.strip(), error
 
 
-def _open_clip() -> Finding:
-    return _distribution("open_clip_torch", "real CLIP towers (open_clip:MODEL/PRETRAINED)", needed=False, fix=_MODELS)
-
-
-def _onnx() -> Finding:
-    """The towers run on onnxruntime, which is installed in any case; texts also need the `tokenizers` package."""
-    version, serves = _version("tokenizers"), "real CLIP towers without torch models (embed --encoder onnx:FOLDER)"
-    detail = "tokenizers is installed" if version else "tokenizers is not installed"
-    return Finding("onnx:FOLDER", serves, bool(version), False, version, detail, "" if version else _MODELS)
-
-
-def _vectors() -> Finding:
-    serves = "names with vectors made elsewhere (embed --encoder vectors:PATH)"
-    return Finding("vectors:PATH", serves, True, False, "", "needs nothing more", "")
-
-
-def _masks_of_files() -> Finding:
-    serves = "masks that another program made (embed --masks folder:PATH)"
-    return Finding("masks folder:PATH", serves, True, False, "", "needs nothing more", "")
-
-
-def _masks_of_sam() -> Finding:
-    version, serves = _version("transformers"), "masks by a Segment Anything model (embed --masks sam:PATH)"
-    detail = "transformers is installed" if version else "transformers is not installed"
-    return Finding("masks sam:PATH", serves, bool(version), False, version, detail, "" if version else _MODELS)
-
-
-def _transformers() -> Finding:
-    return _distribution("transformers", "local language and vision models", needed=False, fix=_MODELS)
-
-
-def _poses() -> Finding:
-    serves = "poses of photographs that come without (fit)"
-    return _distribution("pycolmap", serves, needed=False, fix='pip install "scenewright[sfm]"')
-
-
 def _webp() -> Finding:
     serves, usable, detail = "reading and writing .sog", False, "pillow is not installed"
     if _version("pillow"):
@@ -243,18 +221,10 @@ def _webp() -> Finding:
     return Finding("webp", serves, usable, False, "", detail, "" if usable else "pip install -U pillow")
 
 
-def _charts() -> Finding:
-    return _distribution(
-        "matplotlib", "charts of `scenewright bench`", needed=False, fix='pip install "scenewright[bench]"'
-    )
-
-
 def _ffmpeg() -> Finding:
     path = shutil.which("ffmpeg")
-    detail = path or "not on the path"
-    return Finding(
-        "ffmpeg", "turning pictures into video", bool(path), False, "", detail, "" if path else "apt-get install ffmpeg"
-    )
+    fix = "" if path else "apt-get install ffmpeg"
+    return Finding("ffmpeg", "turning pictures into video", bool(path), False, "", path or "not on the path", fix)
 
 
 def _planner(kind: str) -> Finding:

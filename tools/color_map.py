@@ -70,8 +70,7 @@ class ColorMap:
         """Coefficients `[N, K, 3]` that show the mapped colour in every direction."""
         turned = sh @ self.matrix.T.to(sh)
         half = torch.full((3,), 0.5, dtype=torch.float64)
-        lift = (self(half) - half) / SH_C0
-        return torch.cat([turned[:, :1] + lift.to(sh), turned[:, 1:]], dim=1)
+        return torch.cat([turned[:, :1] + ((self(half) - half) / SH_C0).to(sh), turned[:, 1:]], dim=1)
 
 
 def toward_color(colors: Sample, asked: Tensor, *, keep_pattern: bool = False) -> ColorMap:
@@ -159,8 +158,8 @@ class _Fit:
         means = _in_shade(goals, gains * drop)
         aims = means.clone()
         for _ in range(_ITERATIONS):
-            shown = self._shown(*self._compose(aims, spreads))
-            off = means - _mean(weight, shown)
+            shown = rgb_to_lab(self._mapped(*self._compose(aims, spreads)).clamp(0, 1))
+            off = means - torch.einsum("m,bmc->bc", weight, shown)
             off[:, 0] = goals[:, 0] - lit_of(weight, shown)[:, 0]
             aims = rgb_to_lab(lab_to_rgb(aims + off.clamp(-6, 6)).clamp(0, 1))
         return self._compose(aims, spreads)
@@ -197,13 +196,6 @@ class _Fit:
 
     def _mapped(self, matrices: Tensor, offsets: Tensor) -> Tensor:
         return self.colors.rgb @ matrices.transpose(1, 2) + offsets[:, None]  # [B, M, 3]
-
-    def _shown(self, matrices: Tensor, offsets: Tensor) -> Tensor:
-        return rgb_to_lab(self._mapped(matrices, offsets).clamp(0, 1))
-
-
-def _mean(weight: Tensor, lab: Tensor) -> Tensor:
-    return torch.einsum("m,bmc->bc", weight, lab)
 
 
 def _spread(weight: Tensor, lab: Tensor) -> Tensor:
@@ -256,10 +248,7 @@ def _hue_rotation(angle: float) -> Tensor:
     The plane's axes are the display colours in Lab's +a and +b directions from mid grey.
     """
     grey = torch.tensor([60.0, 0.0, 0.0], dtype=torch.float64)
-    h = 1.0
-    toward = [
-        (lab_to_rgb(grey + torch.tensor(v, dtype=torch.float64)) - lab_to_rgb(grey)) / h for v in ((0, h, 0), (0, 0, h))
-    ]
+    toward = lab_to_rgb(grey + torch.eye(3, dtype=torch.float64)[1:]) - lab_to_rgb(grey)
     weights = torch.tensor(LUMA, dtype=torch.float64)
     ones = torch.ones(3, dtype=torch.float64)
     plane = torch.stack([ones, *(v - ones * (weights @ v) for v in toward)], dim=1)

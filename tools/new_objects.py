@@ -70,8 +70,7 @@ def _across(scene: Scene) -> float:
     points = scene.cloud.means[:: max(1, len(scene.cloud) // 50_000)].to(torch.float64).cpu().numpy()
     if not len(points):
         return _ASSUMED_WIDTH
-    spans = [float(np.subtract(*np.quantile(points @ a, [0.9, 0.1]))) for a in (east, north)]
-    return max(*spans, 1e-6)
+    return max(*[float(np.subtract(*np.quantile(points @ a, [0.9, 0.1]))) for a in (east, north)], 1e-6)
 
 
 @dataclass(frozen=True, eq=False)

@@ -58,5 +58,4 @@ def check(pixels: Pixels) -> Check:
 
 
 def _dilated(mask: Tensor, by: int) -> Tensor:
-    grown = torch.nn.functional.max_pool2d(mask[None, None].float(), 2 * by + 1, stride=1, padding=by)
-    return grown[0, 0] > 0
+    return torch.nn.functional.max_pool2d(mask[None, None].float(), 2 * by + 1, stride=1, padding=by)[0, 0] > 0

@@ -73,7 +73,7 @@ def command(
     _check_options([option for option, given in options.items() if given], output, film)
     _check_channels(alpha, depth, output)
     behind = (0.0, 0.0, 0.0) if alpha else parse(background)
-    finish = _transparent if alpha else _thousandths if depth else _plain
+    finish = _transparent if alpha else _thousandths if depth else lambda drawn: drawn.to_uint8()
 
     def draw(camera: Camera) -> Any:
         return finish(render(loaded.cloud, camera, behind, backend))
@@ -169,11 +169,6 @@ def _film(draw: Callable[[Camera], Any], shots: Shots, output: Path, force: bool
     lasts = "" if film.picture_paths(output, shots.names) else f", {shots.seconds:.1f} s at {shots.fps:g} a second"
     pictures = "1 picture" if count == 1 else f"{count} pictures"
     terminal.result(f"{output}: {pictures}{of}{lasts}, {size / 1e6:.1f} MB, drawn in {spent} s", data)
-
-
-def _plain(drawn: Render) -> Any:
-    """`[H, W, 3]` uint8."""
-    return drawn.to_uint8()
 
 
 def _transparent(drawn: Render) -> Any:

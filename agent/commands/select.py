@@ -101,11 +101,7 @@ def _steps(grow: float | None, shrink: float | None, invert: bool) -> tuple[Quer
 
 
 def _target(ids: Path | None, row: Any, batch: bool) -> Path | None:
-    """The file for the rows of one answer.
-
-    Raises:
-        UserError: the id of a batch line cannot be a file name.
-    """
+    """The file for the rows of one answer; raises UserError if the id of a batch line cannot be a file name."""
     from ...gaussians.errors import UserError
 
     if ids is None or not batch:

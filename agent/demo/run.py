@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...gaussians.camera import Camera
 from ...gaussians.errors import AmbiguousError, InstructionError, UserError
 from ...gaussians.scene import Scene
 from ...gaussians.timing import timed
@@ -94,30 +93,38 @@ class Demo:
         Raises:
             UserError: there are files of an earlier run and `force` is not set.
         """
+        from ...gaussians.assets import furnish
+        from ...gaussians.files import save
+        from ...gaussians.viewpoints.coverage import default_viewer
+
         started = time.perf_counter()
         self._prepare()
         with timed(self.seconds, "furnish"):
-            room = _furnish(self.seed)
+            room = furnish(self.seed)
         scene: Scene = room.scene
         self.say(
             f"furnished a room from seed {self.seed}: {len(scene.cloud):,} Gaussians, {len(room.truth.objects)} things"
         )
         with timed(self.seconds, "save"):
-            _save(scene, self.folder / "room.ply", self.force)
+            save(scene, self.folder / "room.ply", force=self.force)
         log = self.folder / "session.jsonl"
         log.unlink(missing_ok=True)  # only with force: see _prepare
         session = Session(scene, "grammar", self.encoder, log=log, progress=self.progress, seed=self.seed)
-        session.viewer = _viewer(scene, self.size)
+        session.viewer = default_viewer(scene, *self.size)
         with timed(self.seconds, "embed"):
             session.embed()
-        self._describe_scene(session)
+        language = session.scene.language
+        assert language is not None
+        self.say(f"embedded in {self.seconds['embed']:.1f} s; it sees {describe_things(language.objects())}")
         self._converse(session, room)
         with timed(self.seconds, "save"):
             session.save(self.folder / "edited.ply", force=self.force)
         session.close()
         if self.passed_over:
             self.say(f"skipped, since they would select other things: {'; '.join(self.passed_over)}")
-        self._sheet()
+        heading = f"Scenewright demo, seed {self.seed}: {len(self.steps)} instructions"
+        with timed(self.seconds, "pictures"):
+            save_png(contact_sheet(heading, self._tiles), self.folder / "contact_sheet.png", self.force)
         self.seconds["total"] = time.perf_counter() - started
         return self._report()
 
@@ -130,16 +137,6 @@ class Demo:
             raise UserError(f"{self.folder} holds {there[0]} of an earlier run; choose another folder, or --force")
         for old in self.folder.glob("[0-9][0-9]-*.png") if self.force else ():
             old.unlink()
-
-    def _describe_scene(self, session: Session) -> None:
-        language = session.scene.language
-        assert language is not None
-        self.say(f"embedded in {self.seconds['embed']:.1f} s; it sees {describe_things(language.objects())}")
-
-    def _sheet(self) -> None:
-        heading = f"Scenewright demo, seed {self.seed}: {len(self.steps)} instructions"
-        with timed(self.seconds, "pictures"):
-            save_png(contact_sheet(heading, self._tiles), self.folder / "contact_sheet.png", self.force)
 
     def _report(self) -> dict[str, Any]:
         return {
@@ -234,25 +231,5 @@ class Demo:
         return files
 
 
-def _furnish(seed: int) -> Room:
-    from ...gaussians.assets import furnish
-
-    return furnish(seed)
-
-
-def _save(scene: Scene, path: Path, force: bool) -> None:
-    from ...gaussians.files import save
-
-    save(scene, path, force=force)
-
-
-def _viewer(scene: Scene, size: tuple[int, int]) -> Camera:
-    from ...gaussians.viewpoints.coverage import default_viewer
-
-    return default_viewer(scene, *size)
-
-
 def _sentence(result: Result) -> str:
-    if not result.receipts:
-        return "the scene is again exactly as it was"
-    return "; ".join(r.sentence() for r in result.receipts)
+    return "; ".join(r.sentence() for r in result.receipts) or "the scene is again exactly as it was"

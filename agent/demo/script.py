@@ -125,14 +125,6 @@ def _insert(targets: Targets) -> Iterator[Turn]:
     yield Turn("put a red ball on the floor")
 
 
-def _undo(targets: Targets) -> Iterator[Turn]:
-    yield Turn("undo that", "undo")
-
-
-def _absent(targets: Targets) -> Iterator[Turn]:
-    yield from (Turn(f"remove the {kind}", "absent") for kind in targets.absent)
-
-
 def _ambiguous(targets: Targets) -> Iterator[Turn]:
     for group in targets.several():
         yield Turn(f"paint the {group[0].kind} yellow", "ambiguous", "the left one")
@@ -153,8 +145,8 @@ SCRIPT: tuple[tuple[str, ScriptPart], ...] = (
     ("recolour by name", _recolor),
     ("insert", _insert),
     ("move", _move),
-    ("undo", _undo),
-    ("an absent thing", _absent),
+    ("undo", lambda _: iter([Turn("undo that", "undo")])),
+    ("an absent thing", lambda targets: (Turn(f"remove the {kind}", "absent") for kind in targets.absent)),
     ("an ambiguous thing", _ambiguous),
     ("delete", _delete),
     ("two in one", _compound),

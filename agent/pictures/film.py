@@ -192,11 +192,7 @@ def _write_mp4(file: BinaryIO, count: int, draw: Draw, fps: float) -> None:
 
 
 def _ffmpeg() -> str:
-    """The path of ffmpeg.
-
-    Raises:
-        BackendError: it is not installed.
-    """
+    """The path of ffmpeg; raises BackendError if it is not installed."""
     found = shutil.which("ffmpeg")
     if found is None:
         raise BackendError(

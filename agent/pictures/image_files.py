@@ -49,8 +49,7 @@ def beside(pictures: Sequence[Picture], gap: int = 6) -> Picture:
     """Pictures of one height in a row, with background between them."""
     height = pictures[0].shape[0]
     bar = np.full((height, gap, 3), _PAPER, dtype=np.uint8)
-    row = [p for picture in pictures for p in (bar, picture)][1:]
-    return np.concatenate(row, axis=1)
+    return np.concatenate([p for picture in pictures for p in (bar, picture)][1:], axis=1)
 
 
 def contact_sheet(heading: str, tiles: Sequence[Tile], columns: int = 2, tile_width: int = 760) -> Picture:

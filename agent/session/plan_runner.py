@@ -60,7 +60,9 @@ def run_plan(
             scene, receipt, last = execute.carry_out(scene, op, context)
         except ScenewrightError as error:
             raise PlanFailed(_in_plan(error, plan, step), _question(plan, step, error, scene, context)) from error
-        receipts.append(_completed(receipt, plan, dry_run))
+        receipts.append(
+            receipt.model_copy(update={"backends": {**receipt.backends, "planner": plan.planner}, "dry_run": dry_run})
+        )
     return State(scene, last, plan.instruction, plan.instruction), tuple(receipts)
 
 
@@ -69,11 +71,6 @@ def _question(plan: EditPlan, step: int, error: ScenewrightError, scene: Scene, 
         return None
     verdict = "ambiguous" if isinstance(error, AmbiguousError) else "absent"
     return find_question(plan, step, verdict, lambda query: context.resolve(scene, query))
-
-
-def _completed(receipt: Receipt, plan: EditPlan, dry_run: bool) -> Receipt:
-    """The receipt with the fields that only the session knows: the planner, and whether this is a dry run."""
-    return receipt.model_copy(update={"backends": {**receipt.backends, "planner": plan.planner}, "dry_run": dry_run})
 
 
 def _in_plan(error: ScenewrightError, plan: EditPlan, step: int) -> ScenewrightError:

@@ -111,8 +111,7 @@ class Session:
     @property
     def done(self) -> tuple[str, ...]:
         """The instructions that led to the present scene, oldest first."""
-        states = [*self._history.past, self._history.present]
-        return tuple(s.text for s in states if s.text)
+        return tuple(s.text for s in [*self._history.past, self._history.present] if s.text)
 
     @property
     def viewer(self) -> Camera:

@@ -66,14 +66,6 @@ def _help(chat: Conversation, _: str) -> None:
     chat.tell(f"{examples}\n\n{operations}\n\n{commands}", {"commands": help_lines})
 
 
-def _undo(chat: Conversation, _: str) -> None:
-    chat.show_result(chat.session.undo())
-
-
-def _redo(chat: Conversation, _: str) -> None:
-    chat.show_result(chat.session.redo())
-
-
 def _plan(chat: Conversation, text: str) -> None:
     if text:
         result = chat.session.preview(text)
@@ -105,14 +97,6 @@ def _why(chat: Conversation, text: str) -> None:
     chat.tell("\n".join(explained.lines()), explained.to_json())
 
 
-def _grow(chat: Conversation, text: str) -> None:
-    chat.show_result(chat.session.adjust(grow=_metres(text)))
-
-
-def _shrink(chat: Conversation, text: str) -> None:
-    chat.show_result(chat.session.adjust(grow=-_metres(text)))
-
-
 def _metres(text: str) -> float:
     """The distance of /grow and /shrink; `STEP` if the text is empty.
 
@@ -126,10 +110,6 @@ def _metres(text: str) -> float:
     if not 0 < by <= 100:
         raise UserError(f"a selection grows by metres above 0 and up to 100, not by {by:g}")
     return by
-
-
-def _invert(chat: Conversation, _: str) -> None:
-    chat.show_result(chat.session.adjust(invert=True))
 
 
 def _show(chat: Conversation, view: str) -> None:
@@ -194,14 +174,22 @@ def _quit(chat: Conversation, _: str) -> None:
 
 SLASH_COMMANDS: dict[str, SlashCommand] = {
     "/help": SlashCommand("list the operations and the commands", _help),
-    "/undo": SlashCommand("undo the last instruction", _undo),
-    "/redo": SlashCommand("redo what was undone last", _redo),
+    "/undo": SlashCommand("undo the last instruction", lambda chat, _: chat.show_result(chat.session.undo())),
+    "/redo": SlashCommand("redo what was undone last", lambda chat, _: chat.show_result(chat.session.redo())),
     "/plan": SlashCommand("TEXT: what an instruction would do, without doing it; alone: the last plan", _plan),
     "/select": SlashCommand("TEXT: select the things that a phrase describes; 'it' then refers to them", _select),
     "/why": SlashCommand("TEXT: explain what a phrase selects, with the score of each term", _why),
-    "/grow": SlashCommand("[METRES]: add the Gaussians around the selection (default 0.05 m)", _grow),
-    "/shrink": SlashCommand("[METRES]: remove the Gaussians at the border of the selection", _shrink),
-    "/invert": SlashCommand("select everything that is not selected", _invert),
+    "/grow": SlashCommand(
+        "[METRES]: add the Gaussians around the selection (default 0.05 m)",
+        lambda chat, text: chat.show_result(chat.session.adjust(grow=_metres(text))),
+    ),
+    "/shrink": SlashCommand(
+        "[METRES]: remove the Gaussians at the border of the selection",
+        lambda chat, text: chat.show_result(chat.session.adjust(grow=-_metres(text))),
+    ),
+    "/invert": SlashCommand(
+        "select everything that is not selected", lambda chat, _: chat.show_result(chat.session.adjust(invert=True))
+    ),
     "/show": SlashCommand("a picture of the current view; /show 2 changes to the scene's camera 2", _show),
     "/things": SlashCommand("list the things in the scene", _things),
     "/planner": SlashCommand("[NAME]: the planner and what its models cost; with a name, change the planner", _planner),

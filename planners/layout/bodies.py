@@ -61,8 +61,7 @@ class Prepared:
 
     @classmethod
     def of(cls, problem: Problem) -> Prepared:
-        index = {item.id: i for i, item in enumerate(problem.items)}
-        return cls(problem, tuple(_supported(problem)), index)
+        return cls(problem, tuple(_supported(problem)), {item.id: i for i, item in enumerate(problem.items)})
 
     @cached_property
     def carriers(self) -> tuple[tuple[int, ...], ...]:

@@ -254,8 +254,7 @@ def _in_corner(one: YawBox, size: Sequence[float]) -> Measured:
 
 def _in_center(one: YawBox, size: Sequence[float]) -> Measured:
     """The middle is within a sixth of the room's width and depth of the room's middle."""
-    off = np.hypot(one.x, one.y)
-    return (np.abs(one.x) <= size[0] / 6) & (np.abs(one.y) <= size[1] / 6), 1.5 * off
+    return (np.abs(one.x) <= size[0] / 6) & (np.abs(one.y) <= size[1] / 6), 1.5 * np.hypot(one.x, one.y)
 
 
 _PAIRS: dict[str, Callable[[YawBox, YawBox], Measured]] = {

@@ -15,7 +15,7 @@ from ...gaussians.world.support import is_stepped_on
 from .bodies import Body, Member, Prepared
 from .lattice import EPSILON
 from .measures import behind_gap, measure, walls_gaps
-from .problem import Keepout, Stand
+from .problem import Stand
 from .walkable_grid import walkable_grids
 
 # Costs; the unit is about a metre away from the ideal.
@@ -54,7 +54,9 @@ class State:
         for i, item in enumerate(prepared.items):
             if item.stand is not None:
                 self.put(i, self._fixed(i))
-        self.discs: list[tuple[float, float, float] | None] = [_disc(k) for k in problem.free]
+        self.discs: list[tuple[float, float, float] | None] = [
+            None if k.center is None else (*k.center, k.radius) for k in problem.free
+        ]
 
     def _fixed(self, i: int) -> YawBox:
         item = self.prepared.items[i]
@@ -236,7 +238,3 @@ def placed(zone: YawBox, spot: YawBox) -> YawBox:
     """A box given in the axes of another, in the room's frame."""
     x, y = to_world(spot.x, spot.y, spot.yaw, zone.x, zone.y)
     return zone._replace(x=x, y=y, yaw=spot.yaw + zone.yaw)
-
-
-def _disc(keepout: Keepout) -> tuple[float, float, float] | None:
-    return None if keepout.center is None else (*keepout.center, keepout.radius)

@@ -94,8 +94,7 @@ class AssetFolder:
         return tuple(out)
 
     def _entry(self, path: Path) -> Entry:
-        inside = path.relative_to(self.folder).as_posix()
-        return self.index.get(inside) or self.index.get(path.name) or Entry()
+        return self.index.get(path.relative_to(self.folder).as_posix()) or self.index.get(path.name) or Entry()
 
     def ranked(self, label: str, least: float) -> list[Path]:
         """Files that may be called `label`, the best agreement first, then by path."""

@@ -235,5 +235,4 @@ def _face(graph: Drawn, face: str, index: int, room: Raised, mine: Tensor) -> Gr
         "east wall": Box(((w - _SKIN) / 2, 0.0, h / 2), _LEVEL, (_SKIN, d, h)),
     }[face]
     lab = lab_of_cloud(room.cloud[: len(mine)][mine])
-    count = int(mine.sum())
-    return Group(index, "structure", -1, face.split()[-1], 1.0, box, lab, count, 0, 1.0)
+    return Group(index, "structure", -1, face.split()[-1], 1.0, box, lab, int(mine.sum()), 0, 1.0)

@@ -46,8 +46,7 @@ def color_of(name: str) -> Vec3:
 def _family(plain: str) -> str | None:
     """The basic colour word that a name ends with or belongs to."""
     last = plain.replace("-", " ").split()[-1:] or [""]
-    joined = plain.replace(" ", "")
-    return last[0] if last[0] in BASIC else FAMILIES.get(joined) or FAMILIES.get(last[0])
+    return last[0] if last[0] in BASIC else FAMILIES.get(plain.replace(" ", "")) or FAMILIES.get(last[0])
 
 
 def _lab(text: str) -> Vec3:

@@ -167,7 +167,7 @@ def _agrees(asked: Phrase, label: Phrase) -> float:
         return how
     plain = _plainer(asked)
     # A "round table" may be a plain "table", but not a "square table".
-    same = plain != asked and not _other(asked) and set(label) - set(_plainer(label)) <= set(asked)
+    same = plain != asked and asked not in _own_names() and set(label) - set(_plainer(label)) <= set(asked)
     return _names(plain, label) if same else NOT
 
 
@@ -214,11 +214,6 @@ def _plainer(asked: Phrase) -> Phrase:
     return asked[i:]
 
 
-def _other(asked: Phrase) -> bool:
-    """Whether the whole phrase is a kind of its own ("office chair"), which a plain "chair" need not be."""
-    return asked in _own_names()
-
-
 @cache
 def _own_names() -> frozenset[Phrase]:
     """The names of kinds that looks tell apart. A "wall cabinet" or "round table" may be labelled by its plain name."""
@@ -228,5 +223,4 @@ def _own_names() -> frozenset[Phrase]:
 @cache
 def _covers(asked: Phrase, label: Phrase) -> bool:
     """Whether what is asked is a word for a family that the label belongs to."""
-    members = kinds.narrower(asked)
-    return any(_names(member, label) > NOT for member in members)
+    return any(_names(member, label) > NOT for member in kinds.narrower(asked))

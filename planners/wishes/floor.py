@@ -91,11 +91,7 @@ def _radius(room: Room, goal: Clear) -> float:
 
 
 def _disc_center(room: Room, where: Where, radius: float) -> tuple[float, float]:
-    """The centre of the free floor.
-
-    Raises:
-        WishError: its anchor is not in the room.
-    """
+    """The centre of the free floor; raises WishError if its anchor is not in the room."""
     anchor = room.one(where.anchor) if where.anchor is not None else None
     if anchor is None:
         return (0.0, 0.0)
@@ -208,8 +204,7 @@ def _turn_in_place(room: Room, seats: Collection[Id], view: Node) -> None:
 
 def _sees(node: Node, view: Node) -> bool:
     """Whether a thing's front points at another within 40 degrees."""
-    off = toward(node, view.position[:2]) - node.yaw
-    return abs(math.remainder(off, 360.0)) <= 40.0
+    return abs(math.remainder(toward(node, view.position[:2]) - node.yaw, 360.0)) <= 40.0
 
 
 def spread(room: Room, goal: Spread) -> None:

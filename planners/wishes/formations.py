@@ -51,11 +51,7 @@ def form(room: Room, goal: Formation) -> None:
 
 
 def _at_table(room: Room, things: Sequence[Node], table: Node) -> None:
-    """Place chairs at the free sides of a table, facing it.
-
-    Raises:
-        WishError: there is no room for them.
-    """
+    """Place chairs at the free sides of a table, facing it; raises WishError if there is no room for them."""
     wishes = [LayoutWish(subject=n.id, name="around", objects=(table.id,)) for n in things]
     own = frozenset(n.id for n in things)
     movable = frozenset(n.id for n in room.nodes.values() if room.is_movable(n))
@@ -205,7 +201,7 @@ def mirror(room: Room) -> None:
         left, right = (one, other) if u[0] <= v[0] else (other, one)
         for node, x in ((left, -aside), (right, aside)):
             yaw = 90.0 * round((node.yaw - axis.yaw) / 90.0)
-            yaw = yaw if node is left else -_local_yaw(room, left, axis)
+            yaw = yaw if node is left else -(room.nodes[left.id].yaw - axis.yaw)
             px, py = axis.position[0] + c * x - s * along, axis.position[1] + s * x + c * along
             if not room.fits(node.id, px, py, wrapped(axis.yaw + yaw), but=(one.id, other.id)):
                 raise WishError(f"the {node.label} has no room where its mirror image would be")
@@ -219,10 +215,6 @@ def mirror(room: Room) -> None:
 def _local(node: Node, axis: Node, c: float, s: float) -> tuple[float, float]:
     dx, dy = node.position[0] - axis.position[0], node.position[1] - axis.position[1]
     return c * dx + s * dy, c * dy - s * dx
-
-
-def _local_yaw(room: Room, node: Node, axis: Node) -> float:
-    return room.nodes[node.id].yaw - axis.yaw
 
 
 def _pairs(nodes: Sequence[Node]) -> Iterator[tuple[Node, Node]]:

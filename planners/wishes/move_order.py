@@ -27,7 +27,7 @@ def ordered_moves(start: Room, goal: Room) -> list[Arrange]:
     now = Room(start.stage, dict(start.nodes))
     waiting = {i: n for i, n in goal.nodes.items() if i in now.nodes and n.support == now.nodes[i].support}
     waiting = {i: n for i, n in waiting.items() if _moves_itself(now, goal, i) and _is_elsewhere(now.nodes[i], n)}
-    known = _initial_overlaps(now)
+    known = frozenset(frozenset((n.id, other.id)) for n in now.nodes.values() for other in now.overlapping(n))
     found: list[Arrange] = []
     parked = set[Id]()
     while waiting:
@@ -60,14 +60,8 @@ def _is_elsewhere(a: Node, b: Node) -> bool:
     return turned or math.dist(a.position[:2], b.position[:2]) > _STILL
 
 
-def _initial_overlaps(room: Room) -> frozenset[frozenset[Id]]:
-    """Pairs of things that overlap from the start, as measured boxes may."""
-    return frozenset(frozenset((n.id, other.id)) for n in room.nodes.values() for other in room.overlapping(n))
-
-
 def _is_free(now: Room, id: Id, there: Node, known: frozenset[frozenset[Id]]) -> bool:
-    met = now.overlapping(there, now.carried_by(id))
-    return all(frozenset((id, n.id)) in known for n in met)
+    return all(frozenset((id, n.id)) in known for n in now.overlapping(there, now.carried_by(id)))
 
 
 def _move(now: Room, there: Node) -> Arrange:

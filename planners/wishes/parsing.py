@@ -224,11 +224,7 @@ def _vocabulary() -> frozenset[str]:
 
 
 def _people(said: str) -> int:
-    """A number of people in words or digits.
-
-    Raises:
-        NotAWish: it is not a number from 1 to 20.
-    """
+    """A number of people in words or digits; raises NotAWish if it is not a number from 1 to 20."""
     read = quantities.read((said,))
     number = read.value if read is not None and read.kind == "NUMBER" else _COUNTS.get(said, 0)
     if number != int(number) or not 1 <= number <= 20:
@@ -237,11 +233,7 @@ def _people(said: str) -> int:
 
 
 def _width(said: str) -> float:
-    """A width in metres.
-
-    Raises:
-        NotAWish: it is not a length of at least 0.2 m.
-    """
+    """A width in metres; raises NotAWish if it is not a length of at least 0.2 m."""
     words = tuple(w.text for w in split(said))
     read = quantities.read(words)
     if read is None or read.kind != "LENGTH" or read.taken < len(words) or not in_metres(read.value, read.unit) >= 0.2:
@@ -295,10 +287,6 @@ def _spread(parser: WishParser, parts: Parts) -> Goal:
     return Spread(things)
 
 
-def _watch(_parser: WishParser, _parts: Parts) -> Goal:
-    return See(None, Query(text="television"))
-
-
 _BUILDERS: dict[str, Callable[[WishParser, Parts], Goal]] = {
     "clear": _clear,
     "walls": _walls,
@@ -312,7 +300,7 @@ _BUILDERS: dict[str, Callable[[WishParser, Parts], Goal]] = {
         parser.noun(parts["goal"]), _people(parts["people"]) if "people" in parts else None
     ),
     "see": lambda parser, parts: See(parser.things(parts), parser.noun(parts["goal"])),
-    "watch": _watch,
+    "watch": lambda _parser, _parts: See(None, Query(text="television")),
     "spread": _spread,
     "reading_corner": lambda parser, parts: ReadingCorner(parser.where(parts)),
     "symmetric": lambda _parser, _parts: Symmetric(),

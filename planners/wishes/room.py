@@ -95,8 +95,7 @@ class Room:
         if meant.verdict != "found" or (not several and len(meant.groups) > 1):
             verdict = "ambiguous" if meant.verdict != "absent" else "absent"
             raise WishError(self.stage.told(meant.reason) or f"{query.describe()} is not here", verdict)  # type: ignore[arg-type]
-        named = self.stage.names(meant.groups)
-        return [self.nodes[i] for i in named if i in self.nodes]
+        return [self.nodes[i] for i in self.stage.names(meant.groups) if i in self.nodes]
 
     def one(self, query: Query) -> Node | None:
         """The first node that a query selects; None for a wall, the floor or the ceiling."""

@@ -99,8 +99,7 @@ class Duplicate(TargetedOp):
         if self.distance is not None:
             return self.distance.in_units(scene.frame)
         corners = np.concatenate([b.box.corners() for b in bodies]) @ way
-        largest = max(b.box.extent(way) for b in bodies)
-        return float(np.ptp(corners)) + 8 * centimetre(scene.frame, largest)
+        return float(np.ptp(corners)) + 8 * centimetre(scene.frame, max(b.box.extent(way) for b in bodies))
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         after = outcome.scene

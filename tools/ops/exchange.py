@@ -61,11 +61,7 @@ class Exchange(TargetedOp):
         return Outcome(after, touched=touched, moved=tuple(moved), notes=carried_note(scene, bodies))
 
     def _two(self, scene: Scene, selection: Selection) -> list[Body]:
-        """The two bodies.
-
-        Raises:
-            InstructionError: they are not two, or one stands on the other.
-        """
+        """The two bodies; raises InstructionError if they are not two, or one stands on the other."""
         bodies = bodies_of(scene, selection)
         if len(bodies) != 2:
             raise InstructionError(f"two things change places; {selection.query.describe()} means {len(bodies)}")

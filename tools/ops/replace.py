@@ -11,7 +11,6 @@ from ..cloud_diff import selection_of
 from ..new_objects import (
     AssetRequest,
     NewObjects,
-    ScaledAsset,
     add_obstacle,
     affine_of,
     make_asset,
@@ -20,8 +19,8 @@ from ..new_objects import (
     standing_axes,
 )
 from ..operation import AssetName, ColorName, Context, Outcome, TargetedOp
-from ..placement.bodies import Body, bodies_of
-from ..placement.place import Spot, spot_near
+from ..placement.bodies import bodies_of
+from ..placement.place import spot_near
 from ..placement.surroundings import Surroundings
 from ..receipt import Check
 
@@ -47,7 +46,7 @@ class Replace(TargetedOp):
         for index, body in enumerate(bodies):
             request = AssetRequest(self.asset, self.color, context.seed + index, scene_scale(scene, [body]))
             asset = make_asset(scene, request)
-            spot = self._spot(around, asset, body)
+            spot = spot_near(around, asset.size, standing_axes(around, [body]), body)
             cloud = set_down(asset, spot.foot, spot.axes)
             add_obstacle(cloud, scene, around)
             moved.append(affine_of(objects.add(cloud, asset.label, spot.axes), spot.support))
@@ -58,10 +57,6 @@ class Replace(TargetedOp):
         return Outcome(
             after, added=added, removed=scene.cloud.ids[go], moved=tuple(moved), notes=tuple(notes), focus=focus
         )
-
-    def _spot(self, around: Surroundings, asset: ScaledAsset, body: Body) -> Spot:
-        """The spot where the old object stood, or the nearest free one."""
-        return spot_near(around, asset.size, standing_axes(around, [body]), body)
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         after = outcome.scene

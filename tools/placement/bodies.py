@@ -125,8 +125,7 @@ def contact_box(points: Array, frame: Frame, axes: Axes | None = None) -> Box:
     if axes is None:
         axes = level_axes(points[:: max(1, len(points) // _CALIPERS)], frame)
     low, high = np.array([reach(points @ a) for a in np.array(axes)]).T
-    missing = np.maximum(1e-9 - (high - low), 0.0)
-    return box_along(axes, low, high + missing)
+    return box_along(axes, low, high + np.maximum(1e-9 - (high - low), 0.0))
 
 
 def as_vec(values: Array) -> Vec3:

@@ -19,7 +19,7 @@ from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.box import Axes, Box
 from ..operation import Context
 from .bodies import Array, Body, as_vec, centimetre, contact_box, mask_of_bodies
-from .occupancy import Bool, obstacle_points
+from .occupancy import obstacle_points
 
 _LOW_CEILING = 240.0  # centimetres, height of a low room
 _SAMPLE_SIZE = 50_000  # points from which extents of the room are measured
@@ -138,16 +138,12 @@ class Surroundings:
         if abs(bottom - self.floor) <= tolerance and self.frame.floor is not None:
             return self.floor, None
         heights = self.solid @ self.up.astype(np.float32)
-        near = (np.abs(heights - bottom) <= tolerance) & ~self._inside(anchor)
+        near = (np.abs(heights - bottom) <= tolerance) & ~anchor.box.covers(self.solid)
         if near.sum() < 20:
             return bottom, None
         local = self.solid[near].astype(np.float64)
         level = float(np.median(heights[near]))
         return level, np.column_stack([local @ plan.T, heights[near]])
-
-    def _inside(self, body: Body) -> Bool:
-        """Which solid points lie within a body's footprint."""
-        return body.box.covers(self.solid)
 
     def points_of(self, body: Body) -> Array:
         cloud = self.scene.cloud

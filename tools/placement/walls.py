@@ -69,8 +69,7 @@ def _wall_points(scene: Scene) -> NDArray[np.float32]:
         return np.zeros((0, 3), dtype=np.float32)
     flags = torch.zeros(len(field.groups) + 1, dtype=torch.bool, device=scene.cloud.device)  # the last: no group
     flags[[leaf for g in walls for leaf in field.leaves(g.id)]] = True
-    rows = flags[scene.cloud.group].nonzero().squeeze(1)
-    return obstacle_points(scene.cloud[rows])
+    return obstacle_points(scene.cloud[flags[scene.cloud.group].nonzero().squeeze(1)])
 
 
 def _leaves_room(scene: Scene, body: Body, offset: Array) -> bool:

@@ -68,8 +68,7 @@ def probability(
     against = (scale * (units @ anchors.T) + evidence)[:, rivals]
     if encoder.calibration.rivals is not None and rivals.any():
         against = against + np.log(encoder.calibration.rivals / rivals.sum())
-    logits = np.concatenate([own[:, None], against], axis=1)
-    return np.where(seen, _softmax(logits)[:, 0], 0.0)
+    return np.where(seen, _softmax(np.concatenate([own[:, None], against], axis=1))[:, 0], 0.0)
 
 
 def distribution(encoder: Encoder, vectors: NDArray[np.floating], sizes: NDArray[np.floating] | None = None) -> Array:

@@ -64,7 +64,9 @@ def embed(
     tracks = None if masks is None else associate(lift(scene.cloud, masks.masks(scene, progress)))
     progress("segments", 0.0)
     with one_thread():
-        judge = encoder if _knows_fragments(encoder) else encoders.load()
+        # Ours is trained on renders of both whole objects and fragments, and so can tell one from the other. An encoder
+        # trained on photographs cannot, and takes a hundred times longer; it only names the groups found.
+        judge = encoder if encoder.image_size and not encoders.uses_background(encoder) else encoders.load()
         labels, segments = segment(scene, surface, judge, progress, views_per_candidate)
         owner = None
         if tracks is not None:
@@ -79,14 +81,6 @@ def embed(
         on_surface[surface.rows] = True
         embedded = with_table(scene, segments, column, on_surface, seen, encoder)
     return embedded if tracks is None else _with_mask_note(embedded, tracks)
-
-
-def _knows_fragments(encoder: Encoder) -> bool:
-    """Whether an encoder can tell whole objects from fragments, as ours do, which are trained on renders of both.
-
-    An encoder trained on photographs cannot, and takes a hundred times longer; it only names the groups found.
-    """
-    return bool(encoder.image_size) and not encoders.uses_background(encoder)
 
 
 def _vector(track: Track, encoder: Encoder) -> NDArray[np.float32] | None:

@@ -32,7 +32,7 @@ def with_table(
     """The scene with its language field: every group measured, embedded from its renders, and labelled."""
     cloud = scene.cloud.replace(group=torch.from_numpy(column))
     members = index_groups(cloud)
-    whole = [members.rows(_leaves(segments, i)) for i in range(len(segments))]
+    whole = [members.rows([i, *(j for j, t in enumerate(segments) if t.parent == i)]) for i in range(len(segments))]
     clouds = [cloud[torch.from_numpy(rows)] for rows in whole]
     boxes = [box_of(c, scene.frame) for c in clouds]
     middle = cloud.means[:: max(1, len(cloud) // 50_000)].median(dim=0).values.double().numpy()
@@ -54,10 +54,6 @@ def with_table(
     )  # fmt: skip
     field = LanguageField(rows, vectors, encoder.fingerprint, _notes(scene, column, seen))
     return replace(scene, cloud=cloud, language=field)
-
-
-def _leaves(segments: Sequence[Segment], i: int) -> list[int]:
-    return [i, *(j for j, t in enumerate(segments) if t.parent == i)]
 
 
 def _notes(scene: Scene, column: NDArray[np.int32], seen: Views) -> tuple[str, ...]:

@@ -123,8 +123,7 @@ def _counted(query: Query, scored: Scored, matches: list[int]) -> Choice:
 
 
 def _refused(query: Query, reason: str, told: tuple[Candidate, ...], verdict: Verdict) -> Selection:
-    empty = nothing(query, reason, told)
-    return Selection(query, verdict, empty.ids, (), told, reason)
+    return Selection(query, verdict, nothing(query, reason, told).ids, (), told, reason)
 
 
 def _keys(stand: Stand) -> dict[str, Callable[[Group], float]]:

@@ -238,8 +238,7 @@ class Resolver:
         """The direction that a group faces."""
         if group.id < 0:
             return Facing(None, "nothing")
-        rows = self.members.rows(self.field.leaves(group.id))
-        return facing_in(self.field, self.scene.cloud, rows, group)
+        return facing_in(self.field, self.scene.cloud, self.members.rows(self.field.leaves(group.id)), group)
 
     def _frames_told(self, query: Query) -> str:
         """How the front of each anchor was determined, for relations in the frame of the anchor; "" without any."""

@@ -117,8 +117,7 @@ def graph_of(surface: Surface, links: Links, labels: NDArray[np.int32], codes: N
     """The adjacency graph of the superpoints that are not structure, in the level frame."""
     flat = planes.level(surface, frame)
     lab = surface.lab.astype(np.float64)
-    kinds = structure.kind_of(codes)
-    return build_graph(labels, flat.points, lab, flat.normals, links, kinds, surface.spacing)
+    return build_graph(labels, flat.points, lab, flat.normals, links, structure.kind_of(codes), surface.spacing)
 
 
 def _evidence(

@@ -94,8 +94,7 @@ def _solid_rows(cloud: GaussianCloud) -> NDArray[np.int64]:
         return np.zeros(0, np.int64)
     sample = largest[:: max(1, len(cloud) // 50_000)]
     bound = 12 * float(torch.quantile(sample, 0.8))
-    solid = (cloud.opacities > MIN_OPACITY) & (largest < bound)
-    return solid.nonzero().squeeze(1).numpy()
+    return ((cloud.opacities > MIN_OPACITY) & (largest < bound)).nonzero().squeeze(1).numpy()
 
 
 def _not_isolated(gaps: F32, reach: F32, spacing: float) -> NDArray[np.bool_]:

@@ -182,11 +182,7 @@ def _archive(path: Path) -> Reader:
 
 
 def _numbered(columns: Mapping[str, NDArray[Any]]) -> tuple[NDArray[np.int32], int]:
-    """The ids as `ViewMasks` takes them, and the number of masks.
-
-    Raises:
-        UserError: the archive holds no masks.
-    """
+    """The ids as `ViewMasks` takes them, and the number of masks; raises UserError if the archive holds no masks."""
     if "masks" in columns:
         masks = columns["masks"]
         if masks.ndim != 3 or masks.dtype.kind not in "biu":
