@@ -1,7 +1,4 @@
-"""The names an encoder can propose and tell apart: kinds, their synonyms, broader terms and the non-objects.
-
-Knows words only. Refuses to know vectors, pictures and thresholds.
-"""
+"""The names that an encoder can propose and tell apart: kinds, their synonyms, broader terms and non-objects."""
 
 from __future__ import annotations
 
@@ -18,12 +15,12 @@ from ...world.words import AFTER_HEAD, normalise
 
 @dataclass(frozen=True)
 class Vocabulary:
-    """What a text encoder is asked to choose between.
+    """The names that a text encoder chooses from.
 
     Attributes:
         kinds: canonical name of each kind of whole object, to its synonyms (the name itself not among them).
-        broader: terms that cover several kinds ("lamp": floor lamp, table lamp); may also be the name of one kind,
-            which then is meant first.
+        broader: terms that cover several kinds ("lamp": floor lamp, table lamp). A term may also be the name of one
+            kind, which then takes precedence.
         negatives: captions of what is not one whole object ("part of something", "a piece of wall").
         modifiers: single words that do not change what a thing is (colours, materials, sizes).
     """
@@ -40,7 +37,7 @@ class Vocabulary:
 
     @cached_property
     def _phrases(self) -> dict[tuple[str, ...], frozenset[str]]:
-        """Normalised phrase to the kinds it names; a kind's own name beats a broader term, a synonym does not."""
+        """Normalised phrase to the kinds it names; a kind's own name replaces a broader term, a synonym does not."""
         table: dict[tuple[str, ...], frozenset[str]] = {}
         for kind, synonyms in self.kinds.items():
             for name in synonyms:
@@ -93,16 +90,16 @@ class Vocabulary:
     def trained(cls, data: Mapping[str, Any]) -> Self:
         """The names and phrases that an encoder was trained with; the table of kinds says which kind a phrase means.
 
-        A phrase of a kind that the encoder was not shown means a shown kind that it is alike to or stands in for
-        ("loveseat": sofa), or is left out.
+        A phrase of a kind that the encoder was not trained on means a trained kind that is alike or has the same role
+        ("loveseat": sofa); if there is none, the phrase is left out.
         """
         found: dict[str, list[str]] = {name: [] for name in data["kinds"]}
         for name, phrases in data["kinds"].items():
             for phrase in phrases:
                 meant = world.find(phrase)
                 wanted = (name,) if meant is None else (meant.name, *meant.alike, meant.role)
-                if (shown := next((w for w in wanted if w in found), None)) is not None:
-                    found[shown].append(phrase)
+                if (known := next((w for w in wanted if w in found), None)) is not None:
+                    found[known].append(phrase)
         families = {term: tuple(k for k in members if k in found) for term, members in world.table().families.items()}
         return cls(
             {name: tuple(phrases) for name, phrases in found.items()},
@@ -113,11 +110,12 @@ class Vocabulary:
 
     @classmethod
     def everyday(cls) -> Self:
-        """The household names and all others of the table that stand for themselves, for encoders that read any name.
+        """The household names and all independent names of the table, for encoders that read any name.
 
-        Not only more labels: among household names alone, which are all alike, a thing's own name wins too small a
-        share. With real ViT-B/32 vectors of household classes, 13 % of the present are refused against household names
-        and 6 % against these, of the absent 98 % and 97 % (`home` in `benchmarks/_clip.py`).
+        The further names also improve refusal: household names are similar to each other, so that among them alone a
+        thing's own name gets too small a share. With real ViT-B/32 vectors of household classes, 13 % of the present
+        are refused against household names and 6 % against these, of the absent 98 % and 97 % (`home` in
+        `benchmarks/_clip.py`).
         """
         home, table = cls.household(), world.table()
         own = [k for k in table.kinds.values() if not (k.like or k.alike or k.one or k.name in home.kinds)]

@@ -23,14 +23,14 @@ _SIDES: dict[str, Side] = {
 
 @dataclass(frozen=True)
 class Extents:
-    """Stated lengths, metres, by the side they are of; `taken`: how many words they took."""
+    """Stated lengths (metres) and area (square metres) by side; `taken`: how many words were read."""
 
     sides: dict[Side, float] = field(default_factory=dict)
     taken: int = 0
 
 
 def read(words: Sequence[str]) -> Extents | None:
-    """The lengths that `words` begin with; None for a mere number, and where they do not begin with lengths."""
+    """The lengths that `words` begin with; None if they begin with none, or with a number without a unit."""
     return _area(words) or _product(words) or _single(words)
 
 
@@ -54,7 +54,7 @@ def _amount(words: Sequence[str]) -> tuple[float, str, int] | None:
 
 
 def _product(words: Sequence[str]) -> Extents | None:
-    """Two or three lengths with "x" or "by" between them; a unit said once is that of all."""
+    """Two or three lengths with "x" or "by" between them; a unit that is stated once holds for all."""
     found: list[tuple[float, str]] = []
     i = 0
     while len(found) < 3 and (amount := _amount(words[i:])):
@@ -75,7 +75,7 @@ def _product(words: Sequence[str]) -> Extents | None:
 
 
 def _single(words: Sequence[str]) -> Extents | None:
-    """A length, perhaps with its side, perhaps with another one behind "and": "3.5 m wide and 4 m long"."""
+    """A length, optionally with its side, and further ones after "and": "3.5 m wide and 4 m long"."""
     amount = _amount(words)
     if not amount or not amount[1]:
         return None

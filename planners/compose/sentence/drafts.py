@@ -16,13 +16,13 @@ from .. import knowledge
 from ..brief import Brief, RefusedError, Relation, RoomSize, Scale, Thing
 from .amounts import Side
 
-_BARE_PLURAL = 2  # "chairs" where the kind of room has no habit of them
-_MOST = 60  # of one thing
+_BARE_PLURAL = 2  # count of "chairs" where the kind of room has no habit of chairs
+_MOST = 60  # most of one thing
 
 
 @dataclass(frozen=True)
 class Said:
-    """What stands before a noun."""
+    """The modifiers before a noun."""
 
     count: int | None = None
     determiner: Literal["", "a", "the", "each"] = ""
@@ -35,20 +35,20 @@ class Said:
 
     @property
     def plain(self) -> bool:
-        """Whether nothing was said that would make it another thing than one spoken of before."""
+        """Whether no modifier distinguishes the thing from one that was mentioned before."""
         return self.count is None and not (self.color or self.material or self.scale or self.sides)
 
 
 @dataclass
 class Draft:
-    """One thing being read; `each` is the draft that it comes to once for each of."""
+    """One thing while it is read. Where `each` is a draft, the count is per thing of that draft."""
 
     name: str
     said: Said
     plural: bool
     support: Literal["floor", "wall", "ceiling"] | None = None
     each: Draft | None = None
-    placed: bool = False  # whether a relation was said of it
+    placed: bool = False  # whether it is the subject of a relation
 
     @property
     def kind(self) -> Kind | None:
@@ -70,12 +70,12 @@ class Link:
     hard: bool = True
 
 
-class Book:
-    """Everything that was read of one description."""
+class Reading:
+    """The things and relations that were read from one description."""
 
     def __init__(self) -> None:
         self.drafts: list[Draft] = []
-        self.recent: list[Draft] = []  # by mention, the last one last
+        self.recent: list[Draft] = []  # in the order of their last mention
         self.links: list[Link] = []
 
     def add(self, draft: Draft) -> Draft:
@@ -87,30 +87,30 @@ class Book:
         return draft
 
     def known(self, name: str, head: str, without: Draft | None = None) -> Draft | None:
-        """The draft that "the NAME" goes back to: the same thing, or one whose name ends with the word said."""
+        """The draft that "the NAME" refers to: one of that name, or one whose name ends with the head noun."""
         others = [d for d in reversed(self.recent) if d is not without]
         same = (d for d in others if d.name == name)
         return next(same, None) or next((d for d in others if head in (d.name, d.name.rsplit(" ", 1)[-1])), None)
 
     def before(self, subject: Draft | None) -> Draft | None:
-        """What "it" goes back to in what is said of `subject`."""
+        """The draft that "it" refers to in a relation of `subject`."""
         return next((d for d in reversed(self.recent) if d is not subject), None)
 
     def pair(self, subject: Draft | None) -> tuple[Draft, ...]:
-        """What "them" goes back to: several of a kind, or the last two."""
+        """The drafts that "them" refers to: one draft of several things, or the last two drafts."""
         others = [d for d in reversed(self.recent) if d is not subject]
         if others and others[0].several:
             return (others[0],)
         return tuple(reversed(others[:2]))
 
     def link(self, link: Link) -> None:
-        """Keep a relation, once."""
+        """Add a relation, unless it is there already."""
         link.subject.placed = True
         if link not in self.links:
             self.links.append(link)
 
-    def seat(self) -> None:
-        """Chairs of which nothing was said gather around the table that was."""
+    def seat_chairs(self) -> None:
+        """Relate chairs without a relation to the last table by a soft "around"."""
         tables = [d for d in self.drafts if d.kind and d.kind.top and d.kind.support == "floor" and _is_table(d.name)]
         for chair in self.drafts:
             if chair.placed or not tables or not chair.kind or chair.kind.seats != 1 or not _is_chair(chair.name):
@@ -118,19 +118,21 @@ class Book:
             self.link(Link(chair, "around", (tables[-1],), hard=False))
 
     def remarks(self) -> list[str]:
-        """What of the things cannot be had or shown as it was said, a sentence each."""
+        """What cannot be provided or shown as described, a sentence each."""
         found = []
         for draft in self.drafts:
             if (draft.said.count or 0) > _MOST:
-                found.append(f"{draft.said.count} of “{draft.name}” were asked for; {_MOST} of a kind are the most")
+                found.append(
+                    f"{draft.said.count} of “{draft.name}” were asked for; at most {_MOST} of a kind are built"
+                )
             if draft.kind is None:
-                found.append(f"nobody said how large a {draft.name} is; it is a plain box of half a metre")
+                found.append(f"the usual size of a {draft.name} is unknown; it is a plain box of half a metre")
             if draft.said.shape and draft.said.shape not in draft.name:
                 found.append(f"the shape of the {draft.name} ({draft.said.shape}) is not shown")
         return found
 
     def counts(self, room: str) -> dict[int, int]:
-        """How many of each draft, by its identity."""
+        """The number of things of each draft, by `id(draft)`."""
         habits = {h.thing: h.count[1] for h in knowledge.room(room).habits}
         found: dict[int, int] = {}
 
@@ -154,11 +156,11 @@ def _is_table(name: str) -> bool:
     return name.rsplit(" ", 1)[-1] in ("table", "desk", "island") and name not in ("side table", "coffee table")
 
 
-def brief_of(book: Book, kind: str, seats: int | None, size: dict[Side, float], **rest: Any) -> Brief:
+def brief_of(reading: Reading, kind: str, seats: int | None, size: dict[Side, float], **rest: Any) -> Brief:
     """A brief from everything that was read."""
-    book.seat()
-    counts = book.counts(kind)
-    drafts = _within(book.drafts, counts)
+    reading.seat_chairs()
+    counts = reading.counts(kind)
+    drafts = _within(reading.drafts, counts)
     ids = _ids(drafts)
     things = tuple(_thing(d, ids[id(d)], counts[id(d)]) for d in drafts)
     relations = tuple(
@@ -169,14 +171,14 @@ def brief_of(book: Book, kind: str, seats: int | None, size: dict[Side, float], 
             wall=x.wall,
             hard=x.hard,
         )
-        for x in book.links
+        for x in reading.links
         if all(id(d) in ids for d in (x.subject, *x.objects))
     )
     return Brief(kind=kind, seats=seats, size=_room_size(size), things=things, relations=relations, **rest)
 
 
 def _within(drafts: Sequence[Draft], counts: dict[int, int]) -> list[Draft]:
-    """As many drafts as a brief may hold; counts are cut where they are too many."""
+    """As many drafts as a brief may hold; reduces `counts` where there are too many things."""
     left, kept = 200, list[Draft]()
     for draft in drafts[:64]:
         if left <= 0:
@@ -188,7 +190,7 @@ def _within(drafts: Sequence[Draft], counts: dict[int, int]) -> list[Draft]:
 
 
 def _ids(drafts: Iterable[Draft]) -> dict[int, str]:
-    """Names, numbered from the second of the same name on."""
+    """Ids by `id(draft)`: the names, with a number from the second draft of the same name on."""
     used: dict[str, int] = {}
     found = {}
     for draft in drafts:
@@ -215,13 +217,13 @@ def _thing(draft: Draft, id: str, count: int) -> Thing:
 
 
 def _side(length: float | None) -> float | None:
-    """A stated length.
+    """A stated length, rounded to millimetres.
 
     Raises:
-        RefusedError: no room and no thing is so long or so short.
+        RefusedError: it is outside 0.005 m to 100 m.
     """
     if length is not None and not 0.005 <= length <= 100:
-        raise RefusedError(f"{length:g} m is no size that can be built; say one from 0.005 m to 100 m", "impossible")
+        raise RefusedError(f"{length:g} m cannot be built; give a size from 0.005 m to 100 m", "impossible")
     return None if length is None else round(length, 3)
 
 
@@ -237,7 +239,7 @@ def _room_size(sides: dict[Side, float]) -> RoomSize | None:
 
 
 def changed(draft: Draft, said: Said) -> None:
-    """Add what was said of a thing that was spoken of before."""
+    """Add modifiers to a thing that was mentioned before."""
     draft.said = replace(
         draft.said,
         color=said.color or draft.said.color,

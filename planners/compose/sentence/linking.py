@@ -13,7 +13,7 @@ from ....gaussians.world.relations import WishName
 from ...grammar.tagging.lookahead import match
 from ...layout.problem import Wall
 from . import vocabulary
-from .drafts import Book, Draft, Link, Said, changed
+from .drafts import Draft, Link, Reading, Said, changed
 
 _SKIPPED = frozenset({"the", "a", "an", "one", "each", "every", "all", "both", "opposite", "that", "my", "its", "two"})
 _AT_WINDOW = frozenset({"next_to", "under", "below", "at", "in_front_of", "against", "inside"})
@@ -21,7 +21,7 @@ _AT_WINDOW = frozenset({"next_to", "under", "below", "at", "in_front_of", "again
 
 @dataclass
 class _Waiting:
-    """A relation whose object has not been read yet; without a subject it is of the next thing."""
+    """A relation whose object has not been read yet; None as subject stands for the next thing."""
 
     subject: Draft | None
     name: str
@@ -29,10 +29,10 @@ class _Waiting:
 
 
 class Linker:
-    """Keeps the book, and what the next thing has to do with those before."""
+    """The things and relations read so far, and the relation that the next thing completes."""
 
     def __init__(self) -> None:
-        self.book = Book()
+        self.reading = Reading()
         self.without: list[str] = []
         self.last: Draft | None = None  # the subject of a relation that follows
         self.waiting: _Waiting | None = None
@@ -53,7 +53,7 @@ class Linker:
         self.opens, self._each = True, False
 
     def joined(self, word: str) -> None:
-        """ "with" hangs what follows on the thing before; "and" goes on with it."""
+        """Handle "with", which relates the following things to the last one, and "and" and "but"."""
         if word == "and":
             if self.waiting and self.waiting.name == "between":
                 return
@@ -71,18 +71,18 @@ class Linker:
         self._each = True
 
     def drop(self) -> None:
-        """What a relation waited for is nothing that can be placed."""
+        """Drop the waiting relation, as its object cannot be placed."""
         self.waiting = None
 
     def in_room(self) -> bool:
-        """Whether the room was the object of a relation: "in the room"."""
+        """Whether the room is the object of the waiting relation ("in the room"), which is dropped."""
         waited = self.waiting is not None
         self.waiting = None
         self._negating = False
         return waited
 
     def _finish(self) -> None:
-        """Give up waiting; "between" with one group of things is complete."""
+        """Drop the waiting relation; "between" with one group of things is complete and is kept."""
         waiting, self.waiting = self.waiting, None
         if waiting and waiting.name == "between" and waiting.found:
             self._link(waiting.subject, "between", waiting.found)
@@ -90,7 +90,7 @@ class Linker:
     # ---- things ----------------------------------------------------------------------------------------------------
 
     def thing(self, name: str, head: str, said: Said, plural: bool) -> None:
-        """A thing was named: the object of what waits, one spoken of before, or a new one."""
+        """Handle the name of a thing: the object of the waiting relation, a thing mentioned before, or a new one."""
         each, self._each = self._each or said.determiner == "each", False
         opens, self.opens = self.opens, False
         if self._negating:
@@ -99,13 +99,13 @@ class Linker:
         if self.waiting:
             self._object(self._resolved(name, head, said, plural, each))
             return
-        if said.determiner == "the" and (before := self.book.known(name, head)):
+        if said.determiner == "the" and (before := self.reading.known(name, head)):
             changed(before, said)
-            self.last = self.book.mention(before)
+            self.last = self.reading.mention(before)
             return
-        draft = self.book.add(Draft(name, said, plural))
+        draft = self.reading.add(Draft(name, said, plural))
         for relation, objects, wall in self._ahead:
-            self.book.link(Link(draft, relation, objects, wall))
+            self.reading.link(Link(draft, relation, objects, wall))
         self._ahead = []
         if self.parent is not None and not opens:
             if each:
@@ -114,14 +114,14 @@ class Linker:
         self.last = draft
 
     def _resolved(self, name: str, head: str, said: Said, plural: bool, each: bool) -> Draft:
-        """The draft an object is: known before, or new; "on each table" counts the subject once for each."""
+        """The draft of an object, mentioned before or new; "on each table" counts the subject once per table."""
         assert self.waiting is not None
         subject = self.waiting.subject
-        known = self.book.known(name, head, subject) if said.plain or said.determiner == "the" else None
-        draft = known or self.book.add(Draft(name, said, plural or each))
+        known = self.reading.known(name, head, subject) if said.plain or said.determiner == "the" else None
+        draft = known or self.reading.add(Draft(name, said, plural or each))
         if each and subject is not None and subject is not draft:
             subject.each = draft
-        return self.book.mention(draft)
+        return self.reading.mention(draft)
 
     def _object(self, draft: Draft) -> None:
         waiting = self.waiting
@@ -133,21 +133,21 @@ class Linker:
         self._link(waiting.subject, waiting.name, (*waiting.found, draft))
 
     def pronoun(self, word: str) -> None:
-        """ "next to it", "between them"."""
+        """Use a pronoun as the object of the waiting relation: "next to it", "between them"."""
         waiting = self.waiting
         if waiting is None:
             return
         if word in ("them", "these", "those") and waiting.name == "between":
-            objects = self.book.pair(waiting.subject)
+            objects = self.reading.pair(waiting.subject)
         else:
-            one = self.book.before(waiting.subject)
+            one = self.reading.before(waiting.subject)
             objects = (one,) if one else ()
         self.waiting = None
         if objects and (waiting.name != "between" or len(objects) == 2 or objects[0].several):
             self._link(waiting.subject, waiting.name, objects)
 
     def _link(self, subject: Draft | None, name: str, objects: tuple[Draft, ...]) -> None:
-        """Make a relation, turned round where it was said so, under its name in layouts."""
+        """Add a relation under its layout name, with subject and object exchanged for reversed phrases."""
         first = objects[0]
         if subject is None:
             known = "next_to" if name in ("at", "against", "inside") else name
@@ -158,27 +158,27 @@ class Linker:
             self.last = subject
             return
         if first.name == "window" and name in _AT_WINDOW:
-            self.book.link(Link(subject, "at_window"))
+            self.reading.link(Link(subject, "at_window"))
             return
-        self.book.link(Link(subject, _named(name, subject, first), objects))
+        self.reading.link(Link(subject, _named(name, subject, first), objects))
 
     def _attach(self, child: Draft, parent: Draft) -> None:
-        """What "with" means for two things, if anything."""
+        """Add the relation that "with" means for two things, if any."""
         small, large = child.kind, parent.kind
         if not small or not large:
             return
         if small.support == "surface" and (large.top or large.name in small.on):
-            self.book.link(Link(child, "on", (parent,)))
+            self.reading.link(Link(child, "on", (parent,)))
         elif small.seats == 1 and large.top and not large.seats:
-            self.book.link(Link(child, "around", (parent,)))
+            self.reading.link(Link(child, "around", (parent,)))
         elif small.support == "floor" and large.support == "floor" and self.parent is parent and not child.placed:
-            self.book.link(Link(child, "next_to", (parent,), hard=False))
+            self.reading.link(Link(child, "next_to", (parent,), hard=False))
             child.placed = False
 
     # ---- places ----------------------------------------------------------------------------------------------------
 
     def place(self, texts: Sequence[str], i: int) -> int:
-        """A relation or a place at `i`; how many words it took."""
+        """Read a relation or a place at position `i`; returns the number of words, or 0."""
         found = match(vocabulary.RELATIONS, texts, i)
         behind = self._structure(texts, i, *found) if found else 0
         if behind:
@@ -194,13 +194,13 @@ class Linker:
         return found[1]
 
     def _relates(self, texts: Sequence[str], i: int, name: str, taken: int) -> bool:
-        """Whether a word is a relation where it stands: "in" and "at" only between things."""
+        """Whether a word is a relation at this position; "in" and "at" are only between things."""
         if name in ("inside", "at") and (self.last is None or self.opens):
             return False
         return name != "from" and i + taken < len(texts) and (self.last is not None or self.opens)
 
     def _structure(self, texts: Sequence[str], i: int, name: str, taken: int) -> int:
-        """ "against the north wall", "in the left corner", "from the ceiling"."""
+        """Read a place at a part of the room ("against the north wall", "in the left corner"); the number of words."""
         j = i + taken
         while j < len(texts) and texts[j] in _SKIPPED:
             j += 1
@@ -238,30 +238,30 @@ class Linker:
         elif subject is None:
             return
         elif spot == "aligned_with":
-            self.book.link(Link(subject, "aligned_with", (subject,)))
+            self.reading.link(Link(subject, "aligned_with", (subject,)))
         elif spot == "facing":
-            self._mutual(subject)
+            self._face_each_other(subject)
         elif spot == "wall":
             self._at_wall("on", None)
         else:
             subject.support = "floor" if spot == "floor" else "ceiling"
 
-    def _mutual(self, subject: Draft) -> None:
-        other = subject if subject.several else self.book.before(subject)
+    def _face_each_other(self, subject: Draft) -> None:
+        other = subject if subject.several else self.reading.before(subject)
         if other is not None:
-            self.book.link(Link(subject, "facing", (other,)))
+            self.reading.link(Link(subject, "facing", (other,)))
             if other is not subject:
-                self.book.link(Link(other, "facing", (subject,)))
+                self.reading.link(Link(other, "facing", (subject,)))
 
     def _place(self, name: WishName, wall: Wall | None) -> None:
         if self.last is None or self.opens:
             self._ahead.append((name, (), wall))
         else:
-            self.book.link(Link(self.last, name, (), wall))
+            self.reading.link(Link(self.last, name, (), wall))
 
 
 def _named(name: str, subject: Draft, other: Draft) -> WishName:
-    """A layout's name for a relation, as it is meant of these two."""
+    """The layout name of a relation between these two things."""
     small, large = subject.kind, other.kind
     if name == "at":
         seated = small and small.seats == 1 and large and large.top

@@ -1,8 +1,7 @@
-"""A description in words to a brief, in one pass from left to right, without a language model.
+"""Read a description in words into a brief, in one pass from left to right, without a language model.
 
-Knows how descriptions of rooms are built: a kind of room, then things with what stands before and behind them. Refuses
-to guess: words that it does not know are named in the brief, and a text that describes no room is refused. Links
-between things are made in linking.py.
+A description names a kind of room and things, with modifiers before each noun and relations after it. Unknown words are
+listed in the brief, and a text that describes no room is refused. `linking` makes the relations between things.
 """
 
 from __future__ import annotations
@@ -33,11 +32,11 @@ def read(text: str) -> Brief:
 
     Raises:
         UserError: the text is too long to be a description.
-        RefusedError: it describes no room: a question, an edit, chat, or words that nobody knows.
+        RefusedError: the text describes no room: a question, an edit, chat, or unknown words.
     """
     cleaned = clean(text)
     if phrase := unsafe_words(cleaned):
-        raise RefusedError("this is not about a room", "unsafe", (phrase[:60],))
+        raise RefusedError("this is no description of a room", "unsafe", (phrase[:60],))
     if any(c in cleaned for c in "{}<>[]\\"):
         raise RefusedError("this is code or data, not a description in words", "not_understood")
     texts, slips = words_of(cleaned)
@@ -64,7 +63,7 @@ class _Reader:
         self.features: list[str] = []
         self.remarks: list[str] = []
         self.unknown: list[str] = []
-        self.about_room = True  # whether a size that comes next is the room's
+        self.about_room = True  # whether a size that comes next is that of the room
 
     def run(self) -> None:
         i = 0
@@ -80,15 +79,15 @@ class _Reader:
         Raises:
             RefusedError: it names neither a room nor a thing.
         """
-        book = self.linker.book
-        if not self.kind and not any(d.kind for d in book.drafts):
-            told = f": “{' '.join(self.unknown[:5])}” is not understood" if self.unknown else ""
+        reading = self.linker.reading
+        if not self.kind and not any(d.kind for d in reading.drafts):
+            told = f": “{' '.join(self.unknown[:5])}” was not understood" if self.unknown else ""
             raise RefusedError(
-                f"this describes no room{told}; say a kind of room or what is in it",
+                f"this describes no room{told}; name a kind of room or what is in it",
                 "not_understood" if self.unknown else "not_an_edit",
                 tuple(self.unknown[:64]),
             )  # fmt: skip
-        self.remarks += book.remarks()
+        self.remarks += reading.remarks()
         for name in dict.fromkeys(self.styles):
             if unshown := knowledge.styles()[name].unshown:
                 self.remarks.append(f"{name} also means {unshown}, which boxes do not show")
@@ -102,11 +101,11 @@ class _Reader:
             "unknown": tuple(w[:60] for w in dict.fromkeys(self.unknown))[:64],
         }
         try:
-            return brief_of(book, self.kind or "room", self.seats, self.size, **rest)
+            return brief_of(reading, self.kind or "room", self.seats, self.size, **rest)
         except ValueError as error:
-            raise UserError(f"this cannot be built as it is said: {error}") from error
+            raise UserError(f"this cannot be built as described: {error}") from error
 
-    # ---- what may stand at a position; each gives how many words it took, 0 if it is not there --------------------
+    # ---- readers of what may stand at position `i`; each returns the number of words that it read, or 0 ------------
 
     def _mark(self, i: int) -> int:
         text = self.texts[i]
@@ -159,13 +158,13 @@ class _Reader:
             self.features.append(found[0])
             self.said = Said()
             if found[0] not in ("high ceiling", "low ceiling", "dance floor"):
-                self.remarks.append(f"{found[0]}: kept in the brief, but walls and ceilings are not drawn so")
+                self.remarks.append(f"{found[0]}: kept in the brief, but not drawn")
             return found[1]
         looks = self.said.color or self.said.material
         told = looks or (self.said.styles and self.said.styles[-1]) or (_before(self.texts, i) == "light" and "light")
         if self.texts[i] in vocabulary.STRUCTURE and not self.linker.waiting and told:
             self.features.append(f"{told} {self.texts[i]}")
-            self.remarks.append(f"{told} {self.texts[i]}: kept in the brief, but layouts do not paint")
+            self.remarks.append(f"{told} {self.texts[i]}: kept in the brief, but layouts have no paint")
             self.said = Said()
             return 1
         return 0
@@ -177,7 +176,7 @@ class _Reader:
         return taken
 
     def _people(self, i: int) -> int:
-        """ "for six people", "seats four", "six-seater", "for eight"."""
+        """How many people are to be seated: "for six people", "seats four", "six-seater", "for eight"."""
         opener = self.texts[i] in ("for", "seats", "seating", "seat", "sleeps", "seated", "of")
         at = i + 1 + (self.texts[i + 1 : i + 2] == ["for"]) if opener else i
         number = quantities.read(self.texts[at:]) if at < len(self.texts) else None
@@ -217,7 +216,7 @@ class _Reader:
         return self._name(i, 2)
 
     def _name(self, i: int, shortest: int = 1) -> int:
-        """A thing, a room or a style: the longest name that stands there."""
+        """A thing, a room or a style: the longest name at position `i`, of at least `shortest` words."""
         tables = (knowledge.thing_words(), knowledge.room_words(), knowledge.style_words())
         hits = [(knowledge.lookup(t, self.texts, i), what) for t, what in zip(tables, range(3), strict=True)]
         if self.texts[i] == "light" and self.texts[i + 1 : i + 2] and self.texts[i + 1] in vocabulary.STRUCTURE:
@@ -231,13 +230,13 @@ class _Reader:
         elif what == -1:
             self._room(name)
         else:
-            self.styles.append(name) if not self.linker.book.drafts else None
+            self.styles.append(name) if not self.linker.reading.drafts else None
             self.said = replace(self.said, styles=(*self.said.styles, self.texts[i]))
         return taken
 
     def _thing(self, name: str, word: str, i: int) -> None:
         said = self.said
-        if said.styles and self.kind and self.linker.book.drafts:
+        if said.styles and self.kind and self.linker.reading.drafts:
             self.remarks.append(f"“{said.styles[-1]}” of the {name} is not shown")
         self.linker.thing(name, singular(word), said, is_plural(word))
         self.said, self.about_room = Said(), False
@@ -255,7 +254,7 @@ class _Reader:
         if not self.kind or self.kind == "room":
             self.kind = name
         elif name not in ("room", self.kind):
-            self.remarks.append(f"one room at a time is built: this is the {self.kind}, not the {name}")
+            self.remarks.append(f"only one room is built: the {self.kind}, not the {name}")
         self.size.update(said.sides)
         self.scale = said.scale or self.scale
         self.about_room = True
@@ -290,7 +289,7 @@ class _Reader:
         return int(text in vocabulary.FILLER or match(lexicon.FILLER, self.texts, i) is not None or text in "-&/'\"()")
 
     def _unknown(self, i: int) -> int:
-        """A run of words that nobody knows: a thing without a usual size if it is an everyday one, else named."""
+        """An unknown word: a thing without a usual size if it is an everyday noun; else it is listed as unknown."""
         word = self.texts[i]
         everyday = nouns.is_known(word)
         behind = knowledge.lookup(knowledge.thing_words(), self.texts, i + 1)

@@ -20,9 +20,9 @@ _GREETINGS = frozenset({"hi", "hello", "hey"})
 
 
 def words_of(cleaned: str) -> tuple[list[str], list[str]]:
-    """The words in lower case, possessives joined ("childrens room"), slips corrected; and a remark for each slip.
+    """The words in lower case, possessives joined ("childrens room"), typing errors corrected; a remark for each error.
 
-    A word is only corrected to one of a name that then stands there as a whole: "gravel" is no "travel bag".
+    A correction is kept only where it completes a whole name: "gravel" does not become "travel" of "travel bag".
     """
     joined: list[str] = []
     for word in split(cleaned):
@@ -45,16 +45,16 @@ def _is_known(text: str) -> bool:
 
 
 def refuse_others(texts: Sequence[str]) -> None:
-    """Raise for questions and for edits of a scene that is there."""
+    """Raise `RefusedError` for greetings, texts without words, questions, and edits of an existing scene."""
     words = [t for t in texts if t not in ("please", ",", *_GREETINGS)]
     first = words[0] if words else ""
     if not any(w[0].isalpha() for w in words if w) and set(texts) & _GREETINGS:
         raise RefusedError("this is a greeting; describe a room, or say what is in it", "not_an_edit")
     if not any(t[0].isalpha() for t in texts if t):
-        raise RefusedError("there are no words", "not_an_edit")
+        raise RefusedError("the text has no words; describe a room", "not_an_edit")
     asks = texts[-1] == "?" or first in ("what", "where", "who", "why", "how", "which", "when")
     if asks and not set(words) & (vocabulary.BUILD | {"room"}):
-        raise RefusedError("this is a question, not a description of a room", "not_an_edit", (first,))
+        raise RefusedError("this is a question; describe a room", "not_an_edit", (first,))
     verb = match(lexicon.VERB_PHRASES, words, 0)
     if (
         verb
@@ -63,7 +63,7 @@ def refuse_others(texts: Sequence[str]) -> None:
         and not knowledge.lookup(knowledge.thing_words(), words, 0)
     ):
         raise RefusedError(
-            f"“{first}” changes a scene that is there; describe a room, or use `scenewright edit`",
+            f"“{first}” edits an existing scene; describe a room, or use `scenewright edit`",
             "impossible",
             (first,),
         )

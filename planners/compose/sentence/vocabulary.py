@@ -17,7 +17,8 @@ def _table(said: dict[str, str]) -> dict[Phrase, str]:
     return {tuple(phrase.split()): value for listed, value in said.items() for phrase in listed.split(", ")}
 
 
-# Relations that take an object. `reversed`: "X surrounded by Y" is "Y around X". "at" and "from" depend on the things.
+# Relations with an object. `reversed`: "X surrounded by Y" is "Y around X". What "at" and "from" mean depends on the
+# things.
 _SAID = [kind for kind in relations.KINDS if kind.used("wish") or kind.phrases.descriptions]
 RELATIONS: dict[Phrase, str] = {
     **{tuple(p.split()): kind.name for kind in _SAID for p in kind.phrases.in_descriptions()},
@@ -25,7 +26,7 @@ RELATIONS: dict[Phrase, str] = {
     **_table({"at": "at", "hanging from, hung from, suspended from, dangling from, from": "from"}),
 }
 
-# Relations that take none, or whose object is a part of the room.
+# Relations without an object, or whose object is a part of the room.
 SPOTS: dict[Phrase, str] = {
     **{tuple(p.split()): kind.name for kind in relations.KINDS for p in kind.alone.in_descriptions()},
     **_table({
@@ -56,7 +57,7 @@ SIZES: dict[str, Scale] = {
     **dict.fromkeys(bag("huge enormous giant gigantic massive vast"), "huge"),
     **dict.fromkeys(bag("medium mid normal average"), "normal"),
 }  # fmt: skip
-# Materials and the basic colour that a thing of them has where none is said; of the first ones it may have any.
+# Materials, and the basic colour of a thing of each where none is stated; "": the material has no typical colour.
 MATERIALS = dict.fromkeys(
     bag("glass plastic fabric velvet linen wool cotton upholstered acrylic brick brass"), ""
 ) | {m: FAMILIES[m] for m in bag(
@@ -78,7 +79,7 @@ PEOPLE = bag(
     "toddler toddlers baby babies twins couple boys girls boy girl teens readers seats seat kindergarteners gamers "
     "clients patients"
 )
-# Words of the room itself; with a colour or a material before them they describe it.
+# Parts of the room; after a colour or a material they state a feature of it.
 STRUCTURE = bag("wall walls floor floors ceiling ceilings paint wallpaper flooring floorboards tiles tile parquet")
 ABSTRACT = bag(
     "vibe feel feeling atmosphere ambiance ambience touch touches style theme mood lighting daylight sunlight sense "
