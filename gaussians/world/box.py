@@ -1,8 +1,8 @@
-"""Upright oriented boxes: their frames and corners, how deep two are in each other, and how far apart they are.
+"""Upright oriented boxes: their frames and corners, and the penetration depth and distance of two boxes.
 
-`Box` stands in a scene, whose up may be any direction; `Boxes` are many of them as arrays. `YawBox` stands in a room,
-whose up is z; its position may be arrays, so that one box is tried at many places at once.
-All of them are upright, so that height is one separating axis and the plan (the picture from above) has the others.
+`Box` is a box of a scene, whose up may be any direction; `Boxes` are many of them as arrays. `YawBox` is a box of a
+room whose up is z; its position may be arrays, so that one box is tried at many places at once.
+All boxes are upright, so that up is one separating axis and the others lie in the plan (the view from above).
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class Box:
         return float(np.abs(np.array(self.axes) @ direction) @ np.array(self.size))
 
     def covers(self, points: NDArray[np.floating]) -> NDArray[np.bool_]:
-        """`[M]` whether each world point `[M, 3]` lies over, in or under its footprint."""
+        """`[M]` whether each world point `[M, 3]` lies within the footprint, at any height."""
         return np.asarray((np.abs(self.local(points)[:, :2]) <= np.array(self.size[:2]) / 2).all(axis=1))
 
     def shifted(self, offset: F64) -> Self:
@@ -70,9 +70,9 @@ class Box:
 
 
 def penetration(a: Box, b: Box) -> float:
-    """How deep two boxes of one scene are in each other, scene units: the shortest way apart; negative if apart.
+    """The penetration depth of two boxes of one scene, scene units: the shortest shift that separates them.
 
-    The negative value is the widest gap along a separating axis, no more than the distance (see `distance`).
+    Negative if they are apart: minus the widest gap along a separating axis, which is at most their `distance`.
     """
     axes = np.array([a.axes[2], *a.axes[:2], *b.axes[:2]])
     apart = np.array(a.center) - np.array(b.center)
@@ -80,7 +80,7 @@ def penetration(a: Box, b: Box) -> float:
 
 
 def overlap(a: Box, b: Box) -> float:
-    """How deep two boxes are in each other, scene units; 0 if they touch or are apart."""
+    """The penetration depth of two boxes, scene units; 0 if they touch or are apart."""
     return max(0.0, penetration(a, b))
 
 
@@ -94,7 +94,7 @@ class Boxes:
 
     @classmethod
     def of(cls, boxes: Sequence[Box]) -> Self:
-        """The boxes one after another."""
+        """The boxes as arrays, in the given order."""
         return cls(
             np.array([b.center for b in boxes], dtype=np.float64).reshape(-1, 3),
             np.array([b.axes for b in boxes], dtype=np.float64).reshape(-1, 3, 3),
@@ -105,14 +105,14 @@ class Boxes:
         return len(self.centers)
 
     def at(self, rows: Sequence[int] | NDArray[np.intp]) -> Self:
-        """Some of them."""
+        """The boxes of these rows."""
         rows = np.asarray(rows, dtype=np.intp)
         return type(self)(self.centers[rows], self.axes[rows], self.sizes[rows])
 
     def local(self, points: F64) -> F64:
         """World points `[C, P, 3]` in each box's frame, origin at its centre.
 
-        One box or one set of points serves all.
+        One box, or one set of points, is broadcast to all.
         """
         local: F64 = (points - self.centers[:, None]) @ self.axes.transpose(0, 2, 1)
         return local
@@ -145,7 +145,7 @@ def distance(a: Box, b: Box) -> float:
 def distances(boxes: Boxes, anchor: Boxes) -> F64:
     """`[C]` gaps between each box and one anchor `[1]`, scene units; 0 where they touch or overlap.
 
-    Exact: all stand upright, so that the gap in plan and the gap in height do not depend on each other.
+    Exact: all boxes are upright, so that the gap in plan and the gap in height are independent.
     """
     rise = np.abs((boxes.centers - anchor.centers) @ anchor.axes[0, 2])
     over = np.maximum(0.0, rise - (boxes.sizes[:, 2] + anchor.sizes[:, 2]) / 2)
@@ -153,7 +153,7 @@ def distances(boxes: Boxes, anchor: Boxes) -> F64:
 
 
 def _plan_distances(boxes: Boxes, anchor: Boxes) -> F64:
-    """`[C]` gaps between rectangles: where two are apart, a corner of one is at an end of the shortest way."""
+    """`[C]` gaps between footprints: if two are apart, one end of the shortest connection is a corner of either."""
     apart, gaps = np.zeros(len(boxes), bool), []
     for one, other in ((boxes, anchor), (anchor, boxes)):
         corners = other.local(one.spread(_CORNERS))[..., :2]  # [C, 4, 2]
@@ -198,7 +198,7 @@ class YawBox(NamedTuple):
 
     @property
     def front(self) -> tuple[float, float]:
-        """The direction that its front looks."""
+        """Unit vector (x, y) out of its front."""
         c, s = cos_sin(self.yaw)
         return s, -c
 
@@ -255,7 +255,7 @@ def to_world(x: Any, y: Any, yaw: float, right: Any, back: Any) -> tuple[Any, An
 
 
 def is_square(yaw: float) -> bool:
-    """Whether a box of this yaw is along the axes."""
+    """Whether a box of this yaw is aligned with the axes."""
     return abs(yaw % 90.0) < 1e-9 or abs(yaw % 90.0 - 90.0) < 1e-9
 
 
@@ -266,7 +266,7 @@ def wrapped(yaw: float) -> float:
 
 
 def plan_penetration(a: YawBox, b: YawBox) -> Any:
-    """How deep two footprints are in each other, by their separating axes; negative where they are apart."""
+    """The penetration depth of two footprints by their separating axes, metres; negative where they are apart."""
     deepest: Any = np.inf
     for yaw in (a.yaw, b.yaw):
         for turn in (yaw, yaw + 90.0):
@@ -283,17 +283,17 @@ def _extent(a: YawBox, turn: float) -> float:
 
 
 def shared_height(a: YawBox, b: YawBox) -> float:
-    """Height that two boxes have in common; negative where one is above the other."""
+    """Length of the height interval that two boxes share, metres; negative where one is above the other."""
     return min(a.high, b.high) - max(a.low, b.low)
 
 
 def meet(a: YawBox, b: YawBox, slack: float) -> Any:
-    """Whether two boxes are in each other by more than `slack`, in plan and in height."""
+    """Whether two boxes penetrate each other by more than `slack` metres, in plan and in height."""
     return shared_height(a, b) > slack and plan_penetration(a, b) > slack
 
 
 def plan_gap(a: YawBox, b: YawBox) -> Any:
-    """Gap between two footprints, at least; exact where both are along the axes, and 0 where they meet."""
+    """A lower bound of the gap between two footprints, metres, 0 where they meet; exact if both are axis-aligned."""
     if is_square(a.yaw) and is_square(b.yaw):
         (aw, ad), (bw, bd) = a.half, b.half
         return np.hypot(
@@ -304,7 +304,7 @@ def plan_gap(a: YawBox, b: YawBox) -> Any:
 
 
 def plan_share(a: YawBox, b: YawBox) -> Any:
-    """Area that two footprints have in common, of the smaller one's; both are taken along the axes."""
+    """The shared area of two footprints as a share of the smaller one, from their axis-aligned bounds."""
     (aw, ad), (bw, bd) = a.half, b.half
     wide = np.minimum(a.x + aw, b.x + bw) - np.maximum(a.x - aw, b.x - bw)
     deep = np.minimum(a.y + ad, b.y + bd) - np.maximum(a.y - ad, b.y - bd)

@@ -1,6 +1,6 @@
-"""The one table of kinds of things: names, sizes, supports and habits, read from `kinds.json` when first needed.
+"""The table of kinds of things: names, sizes, supports and usual places, read from `kinds.json` when first needed.
 
-Sizes are metres and those of things as they are sold. Every package reads kinds here: the asset builders, the composer,
+Sizes are those of things as sold, in metres. Every package reads kinds here: the asset builders, the composer,
 the grammar, the wishes, the checker and the vocabularies of the encoders. Adding a kind is one entry of the file.
 """
 
@@ -20,7 +20,7 @@ Support = Literal["floor", "surface", "wall", "ceiling"]
 Range = tuple[float, float]
 Phrase = tuple[str, ...]
 
-FARTHEST = 2.0  # times the largest or smallest size as sold: larger or smaller things are hardly of that kind
+FARTHEST = 2.0  # factor beyond the largest and smallest size as sold; things outside are hardly of that kind
 _FILE = Path(__file__).with_name("kinds.json")
 
 
@@ -32,26 +32,26 @@ class Kind:
         name: lower case, singular where English has one.
         size: lowest and highest width x, depth y and height z as sold, metres.
         also: other words for it.
-        loosely: other words that mean it only where they stand alone: a "bag" is a backpack, a "sleeping bag" is none.
-        one: of a name for several things as one ("ceiling beams"), the kind of each of them.
-        like: the kind that it stands in for in a room: who asks for a queen bed needs no other bed.
-        alike: kinds whose words people use for it, and the reverse: a "loveseat" may be called a sofa.
-        support: what it is put on or hung from; "surface": the top of another thing.
+        loosely: words that mean it only if they are the whole name: a "bag" is a backpack, a "sleeping bag" is not.
+        one: for a collective name ("ceiling beams"), the kind of each single thing.
+        like: the kind that it replaces in a room: a room with a queen bed needs no other bed.
+        alike: kinds whose names people use for it, and the reverse: a "loveseat" may be called a sofa.
+        support: what it stands on or hangs from; "surface": the top of another thing.
         asset: name of the builder that draws it, "" if it is drawn as a plain block.
         shown: whether the trained encoder was shown pictures of it.
         on: kinds that a small thing usually stands on, the likeliest first.
-        backed: its back belongs against a wall.
-        aisle: metres between its back and that wall, where somebody works behind it.
+        backed: whether its back belongs against a wall.
+        aisle: metres between its back and that wall, where people work behind it.
         front: whether it has a side that people look at or use.
-        round: whether all its sides are alike.
+        round: whether its width equals its depth and all sides are alike.
         top: whether small things are put on it.
         stores: whether things are kept in or on it: shelves, cabinets, chests.
         holds: whether things are put into it: boxes, bowls, sinks.
-        fixed: whether it is part of the building or connected to it, so that nobody pushes it about.
+        fixed: whether it is part of the building or connected to it, so that it is not moved.
         opening: whether it is an opening in a wall, flush with its face.
         clear: metres kept free before, behind, left and right of it.
         seats: how many people sit on it.
-        colors: that it usually has.
+        colors: usual colours.
     """
 
     name: str
@@ -80,7 +80,7 @@ class Kind:
 
     @property
     def role(self) -> str:
-        """What it is in a room, whatever sort of it."""
+        """The kind that it replaces in a room, or its own name."""
         return self.like or self.name
 
     @property
@@ -90,7 +90,7 @@ class Kind:
 
     @property
     def is_rug(self) -> bool:
-        """Whether it lies on the floor and is stood upon."""
+        """Whether it lies flat on the floor, so that people and things stand on it."""
         return self.support == "floor" and self.size[2][1] <= 0.05
 
 
@@ -102,7 +102,7 @@ class Table:
         kinds: every kind by its name.
         families: words that cover several kinds or other things ("appliance"), and what they cover; the first is
             what the word means where it is also a word for one kind.
-        others: things that scenes show and that are no furnishings: animals, vehicles, food, clothes.
+        others: things in scenes that are not furnishings: animals, vehicles, food, clothes.
     """
 
     kinds: Mapping[str, Kind]
@@ -122,10 +122,10 @@ def table(file: Path = _FILE) -> Table:
     kinds = {k.name: k for k in found}
     assert len(kinds) == len(found), "a kind has two entries"
     asked = {r for k in found for r in (*k.on, *k.alike, *([k.like] if k.like else []), *([k.one] if k.one else []))}
-    assert asked <= set(kinds), f"nobody described {sorted(asked - set(kinds))}"
+    assert asked <= set(kinds), f"entries refer to kinds that the table lacks: {sorted(asked - set(kinds))}"
     families = {word: tuple(members) for word, members in data["families"].items()}
     strange = {m for members in families.values() for m in members} - set(kinds) - set(data["others"])
-    assert not strange, f"families hold what nobody described: {sorted(strange)}"
+    assert not strange, f"families hold members that the table lacks: {sorted(strange)}"
     return Table(MappingProxyType(kinds), MappingProxyType(families), tuple(data["others"]))
 
 
@@ -152,7 +152,7 @@ def by_words() -> Mapping[Phrase, Kind]:
 
 
 def find(name: str) -> Kind | None:
-    """The kind that a whole name means, in singular or plural; None if none is called so."""
+    """The kind that a whole name means, in singular or plural; None if no kind has this name."""
     words = words_of(name)
     return next((by_words()[form] for form in _numbers(words) if form in by_words()), None)
 
@@ -182,7 +182,7 @@ def is_opening(label: str) -> bool:
 
 
 def is_door(label: str) -> bool:
-    """Whether a whole label names what a room is entered by; a "cabinet door" is none."""
+    """Whether a whole label names a door of a room; a "cabinet door" is not one."""
     kind = find(label)
     return kind is not None and kind.name == "door"
 
@@ -222,7 +222,7 @@ def phrases() -> frozenset[str]:
 
 @cache
 def _alike() -> Mapping[str, tuple[Kind, ...]]:
-    """By name of a kind: the kinds whose words people use for it, in either direction."""
+    """By name of a kind: the kinds whose names people use for it, in either direction."""
     kinds = table().kinds
     pairs = {(k.name, other) for k in kinds.values() for other in k.alike}
     pairs |= {(b, a) for a, b in pairs}
@@ -277,8 +277,11 @@ def _families() -> Mapping[Phrase, tuple[Phrase, ...]]:
 
 @cache
 def extent(name: str) -> tuple[Range, Range, Range]:
-    """Smallest and largest sides, metres, of what may go by the name of a kind: `FARTHEST` times smaller and larger
-    than it is sold, or than any kind is sold that is drawn like it ("piano": also the grand ones)."""
+    """Smallest and largest width, depth and height, metres, of things that may have this name.
+
+    They are `FARTHEST` times smaller and larger than the sizes as sold, of the kind itself and of all kinds with the
+    same builder ("piano": also grand pianos).
+    """
     sizes = [k.size for k in table().kinds.values() if name in (k.name, k.asset)]
     low = (min(s[i][0] for s in sizes) / FARTHEST for i in range(3))
     high = (max(s[i][1] for s in sizes) * FARTHEST for i in range(3))

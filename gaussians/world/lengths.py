@@ -1,4 +1,4 @@
-"""Units of length: how they are written, and what they measure in metres."""
+"""Units of length and area: their spellings, and their values in metres and square metres."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from typing import Literal
 
 Unit = Literal["m", "cm", "mm", "in", "ft", "units"]
 
-# Metres of each unit that a length keeps; "units" are a scene's own and have no fixed length.
+# Metres of each unit in which a length may be stored; "units" are those of a scene and have no fixed length.
 METRES: dict[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
-# Every spelling of those units. "in" is left out: it is a unit only behind digits.
+# Every spelling of those units, except "in", which is a unit only after digits.
 _SPELT: dict[Unit, str] = {
     "m": "m meter meters metre metres",
     "cm": "cm cms centimeter centimeters centimetre centimetres",
@@ -18,7 +18,7 @@ _SPELT: dict[Unit, str] = {
     "units": "unit units",
 }
 UNITS: dict[str, Unit] = {said: unit for unit, spellings in _SPELT.items() for said in spellings.split()}
-# Every spelling of units that are read as metres, and how many.
+# Every spelling of units that are converted to metres when read, and their metres.
 IN_METRES: dict[str, float] = {
     **dict.fromkeys(["km", "kms", "kilometer", "kilometers", "kilometre", "kilometres"], 1000.0),
     **dict.fromkeys(["dm", "decimeter", "decimeters", "decimetre", "decimetres"], 0.1),
@@ -35,5 +35,5 @@ SQUARE_METRES: dict[str, float] = {"sqm": 1.0, "m2": 1.0, "sqft": METRES["ft"] *
 
 
 def in_metres(value: float, unit: str) -> float:
-    """A length in metres; one of a scene's own units counts as a metre."""
+    """A length in metres; a scene unit counts as one metre."""
     return value * METRES.get(unit, 1.0)

@@ -1,11 +1,11 @@
-"""How well boxes stand in each spatial relation, in a stated frame of reference: the one geometry of relations.
+"""Score how well boxes fulfil each spatial relation, in a given frame of reference.
 
-Every score is in [0, 1], for all candidates at once against one anchor (or two); 0.5 is where a relation begins to
-hold. Queries, the checker of scene graphs and, with a margin, the layout solver judge by these functions;
-`relations.py` says which relation has which. Left, right, in front and behind are those of the viewer, levelled to the
+Every score is in [0, 1], for all candidates at once against one anchor (or two); a relation holds from 0.5 on.
+Queries, the checker of scene graphs and, with a margin, the layout solver use these functions; `relations` assigns them
+to relations. Left, right, in front and behind are those of the viewer, levelled to the
 ground, or of the anchor's own axes.
 
-Names: C candidates, `[C]` scores; a plan is the picture from above, its boxes are rectangles.
+Names: C candidates, `[C]` scores; the plan is the view from above, in which boxes are rectangles.
 """
 
 from __future__ import annotations
@@ -22,24 +22,27 @@ from .box import Boxes, distances, lattice
 
 F64 = NDArray[np.float64]
 FOOTPRINT, VOLUME = lattice(7, 1), lattice(5, 5)
-HOLDS = 0.5  # where every relation begins: of a side at 60 degrees, of what is on or under by half a footprint
+HOLDS = 0.5  # score from which every relation holds: for a side at 60 degrees, for on and under at half a footprint
 CLOSE = 0.3  # of the sum of two things' largest extents: the gap up to which they are next to each other
-RESTS, HANGS = 0.02, 0.1  # of a thing's, or a wall's, height: what begins above is on it; lower stands on the floor
+RESTS, HANGS = (
+    0.02,
+    0.1,
+)  # of a thing's, or a wall's, height: things that begin above it are on it; lower ones stand on the floor
 TOUCH = 0.06  # gap or overlap that still counts as resting on something, as a share of the typical object size
-SLACK = 0.1  # the same as a share of the anchor's own height, where that is more: a tall thing's top is less precise
+SLACK = 0.1  # the same as a share of the anchor's height, where that is more: the top of a tall thing is less precise
 ENDS = 0.1  # share of the way between two things, at either end, that is no longer between them
-BULGE = 0.5  # of that way: how fast "between" fades to the side; it ends at 0.42
-FACES = 45.0  # degrees between a thing's front and the way to what it faces
-ACROSS = 0.6  # of the anchor's distance from the middle: how far from the point across it one may be; 37 degrees aside
+BULGE = 0.5  # of that way: decay length of "between" to the side; it holds up to 0.42
+FACES = 45.0  # largest angle in degrees between a thing's front and the direction to what it faces
+ACROSS = 0.6  # of the anchor's distance from the middle: largest distance from the point across it; 37 degrees aside
 
 
 @dataclass(frozen=True)
 class Stand:
-    """Where one stands when saying left and right: unit vectors, world frame.
+    """The frame of reference of left, right, in front and behind: unit vectors, world frame.
 
     Attributes:
-        right, forward, up: level, level and vertical.
-        eye: of the viewer, or the centre of the anchor whose frame it is.
+        right, forward, up: horizontal, horizontal and vertical.
+        eye: position of the viewer, or centre of the anchor whose frame it is.
         scale: a typical object size, scene units.
         own: whether the frame is the anchor's own, so that "in front" is forward; a viewer is on the near side.
         middle: `[3]` middle of the room.
@@ -54,15 +57,20 @@ class Stand:
     middle: F64 = field(default_factory=lambda: np.zeros(3))
 
     def side(self, aim: tuple[float, float]) -> F64:
-        """`[3]` unit vector of a side, said as (to the right, behind)."""
+        """`[3]` unit vector of a side, given as (to the right, behind)."""
         behind = -self.forward if self.own else self.forward
         return aim[0] * self.right + aim[1] * behind
 
 
 def viewer_stand(camera: Camera, up: F64, scale: float, middle: F64 | None = None) -> Stand:
-    """The camera's right and forward, levelled. A camera looking straight down keeps its image's right and top."""
+    """The camera's right and forward, made horizontal.
+
+    For a camera that looks straight down, they are the right and top of its image.
+    """
     right = camera.right - up * (camera.right @ up)
-    if np.linalg.norm(right) < 1e-6:  # a picture taken upright: its right is up or down, but it still looks ahead
+    if (
+        np.linalg.norm(right) < 1e-6
+    ):  # the camera is rolled by 90 degrees: its right is up or down, its forward is still usable
         right = np.cross(camera.forward, up)
     right = right / np.linalg.norm(right)
     return Stand(
@@ -78,7 +86,7 @@ def object_stand(anchor: Group, front: F64, viewer: Stand) -> Stand:
 
 @dataclass(frozen=True, eq=False)
 class Things:
-    """Boxes that are related, and which of them are part of the room.
+    """Boxes that are related, and which of them are part of the building.
 
     Attributes:
         boxes: C of them; of an anchor one, or one for each candidate.
@@ -95,9 +103,10 @@ Score = Callable[[Things, Sequence[Things], Stand], F64]  # candidates, anchors,
 
 
 def toward(aim: tuple[float, float]) -> Score:
-    """Being at a side, (to the right, behind): the cosine between it and the way between the boxes' centres.
+    """The score of being at a side, (to the right, behind): the cosine between it and the offset of the centres.
 
-    A wall is where it is nearest: the one behind the sofa has its middle anywhere along it.
+    For floors, walls and ceilings the nearest point replaces the centre: the wall behind a sofa may have its centre
+    anywhere along it.
     """
 
     def score(candidates: Things, anchors: Sequence[Things], stand: Stand) -> F64:
@@ -114,7 +123,7 @@ def toward(aim: tuple[float, float]) -> Score:
 
 
 def near(candidates: Things, anchors: Sequence[Things], stand: Stand) -> F64:
-    """1 when touching, 0.5 at a gap of `CLOSE`."""
+    """1 for boxes that touch, 0.5 at a gap of `CLOSE`."""
     boxes, anchor = candidates.boxes, anchors[0].boxes
     reach = 0.5 * (boxes.sizes.max(axis=1) + anchor.sizes.max(axis=1))
     score: F64 = 1 / (1 + (distances(boxes, anchor) / np.maximum(2 * CLOSE * reach, 1e-9)) ** 2)
@@ -126,7 +135,7 @@ def resting(candidates: Things, anchors: Sequence[Things], stand: Stand) -> F64:
     boxes, anchor = candidates.boxes, anchors[0].boxes
     (low, high), (base, top) = boxes.heights(stand.up), anchor.heights(stand.up)
     over, slack = _overlaps(boxes, anchor), _slack(base, top, stand)
-    # On a shelf is within the shelf's height; a rug or a floor is thinner than a box is precise.
+    # On a shelf means within the shelf's height. A rug or a floor is thinner than the precision of a box.
     lift = HANGS if anchors[0].wall else RESTS
     rests = (np.minimum(base + lift * (top - base), top - slack) < low) & (low < top + slack)
     smaller = ((high - low) <= 1.5 * (top - base)) | (over > 0.9)
@@ -134,22 +143,22 @@ def resting(candidates: Things, anchors: Sequence[Things], stand: Stand) -> F64:
 
 
 def over(candidates: Things, anchors: Sequence[Things], stand: Stand) -> F64:
-    """Share of the footprint that both have in common, for what begins at the anchor's top or higher."""
+    """Shared footprint of both, for candidates that begin at the anchor's top or higher."""
     low, _ = candidates.boxes.heights(stand.up)
     base, top = anchors[0].boxes.heights(stand.up)
-    return np.where(low >= top - _slack(base, top, stand), _common(candidates, anchors[0]), 0.0)
+    return np.where(low >= top - _slack(base, top, stand), _shared_footprint(candidates, anchors[0]), 0.0)
 
 
 def beneath(candidates: Things, anchors: Sequence[Things], stand: Stand) -> F64:
-    """Share of the footprint that both have in common, for what has its middle lower than the anchor's."""
+    """Shared footprint of both, for candidates whose middle is lower than the anchor's."""
     low, high = candidates.boxes.heights(stand.up)
     base, top = anchors[0].boxes.heights(stand.up)
     lower = ((low + high) / 2 < (base + top) / 2) & (low < top - _slack(base, top, stand))
-    return np.where(lower, _common(candidates, anchors[0]), 0.0)
+    return np.where(lower, _shared_footprint(candidates, anchors[0]), 0.0)
 
 
 def within(candidates: Things, anchors: Sequence[Things], stand: Stand) -> F64:
-    """Share of a candidate's volume within the anchor and a little around it; what stands on top is not inside."""
+    """Share of a candidate's volume within the anchor, enlarged by `TOUCH`; a thing on top of it is not inside."""
     boxes, anchor = candidates.boxes, anchors[0].boxes
     half = anchor.sizes / 2
     inside = np.abs(anchor.local(boxes.spread(VOLUME))) <= half[:, None] + TOUCH * stand.scale
@@ -158,7 +167,7 @@ def within(candidates: Things, anchors: Sequence[Things], stand: Stand) -> F64:
 
 
 def between(candidates: Things, anchors: Sequence[Things], stand: Stand) -> F64:
-    """Along the way from the first anchor's centre to the last one's, fading to the side."""
+    """1 on the line from the first anchor's centre to the last one's, falling to the side; 0 at either end."""
     a, b = anchors[0].boxes.centers, anchors[-1].boxes.centers
     span = b - a
     length = np.maximum(np.linalg.norm(span, axis=1), 1e-9)
@@ -170,13 +179,13 @@ def between(candidates: Things, anchors: Sequence[Things], stand: Stand) -> F64:
 
 
 def facing(candidates: Things, anchors: Sequence[Things], stand: Stand) -> F64:
-    """1 where a candidate's front looks at the anchor's centre, 0.5 at `FACES` degrees aside."""
+    """1 where a candidate's front points to the anchor's centre, 0.5 at `FACES` degrees aside."""
     off: F64 = degrees_aside(candidates.boxes, anchors[0].boxes)
     return np.maximum(0.0, 1 - off * (1 - HOLDS) / FACES)
 
 
 def degrees_aside(boxes: Boxes, anchor: Boxes) -> F64:
-    """`[C]` degrees in plan between each box's front (its -y side) and the way to the anchor's centre."""
+    """`[C]` degrees in plan between each box's front (its -y side) and the direction to the anchor's centre."""
     way = ((anchor.centers - boxes.centers)[:, None] * boxes.axes[:, :2]).sum(axis=2)  # [C, 2] in own axes
     reach = np.linalg.norm(way, axis=1)
     cosine = np.clip(-way[:, 1] / np.maximum(reach, 1e-9), -1.0, 1.0)
@@ -184,9 +193,9 @@ def degrees_aside(boxes: Boxes, anchor: Boxes) -> F64:
 
 
 def across(candidates: Things, anchors: Sequence[Things], stand: Stand) -> F64:
-    """Near the point that the anchor's centre has across the middle of the room; 0.5 at `ACROSS` from it.
+    """Nearness to the anchor's centre mirrored at the middle of the room: 1 at that point, 0.5 at `ACROSS` from it.
 
-    What stands in the middle has nothing across from it.
+    0 for an anchor in the middle of the room.
     """
     way = stand.middle - anchors[0].boxes.centers
     level = way - (way @ stand.up)[:, None] * stand.up
@@ -197,7 +206,7 @@ def across(candidates: Things, anchors: Sequence[Things], stand: Stand) -> F64:
 
 
 def _nearest(boxes: Boxes, points: F64) -> F64:
-    """`[C, 3]` the point of each box that is nearest to each point; one box or one point serves all."""
+    """`[C, 3]` the point of each box that is nearest to each point; one box or one point is broadcast."""
     local = boxes.local(points[:, None])[:, 0]
     inside = np.clip(local, -boxes.sizes / 2, boxes.sizes / 2)
     near: F64 = boxes.centers + (inside[:, None] @ boxes.axes)[:, 0]
@@ -205,17 +214,17 @@ def _nearest(boxes: Boxes, points: F64) -> F64:
 
 
 def _overlaps(of: Boxes, over: Boxes) -> F64:
-    """`[C]` share of one footprint that lies over another; one box on either side serves all."""
+    """`[C]` share of one footprint that lies over another; one box on either side is broadcast."""
     local = np.abs(over.local(of.spread(FOOTPRINT)))[..., :2]
     share: F64 = (local <= over.sizes[:, None, :2] / 2 + 1e-9).all(axis=2).mean(axis=1)
     return share
 
 
-def _common(candidates: Things, anchor: Things) -> F64:
-    """`[C]` share of the smaller footprint that two have in common, by points of either."""
+def _shared_footprint(candidates: Things, anchor: Things) -> F64:
+    """`[C]` shared footprint of two boxes as a share of the smaller one, by sample points of either."""
     return np.maximum(_overlaps(candidates.boxes, anchor.boxes), _overlaps(anchor.boxes, candidates.boxes))
 
 
 def _slack(base: F64, top: F64, stand: Stand) -> F64:
-    """`[C]` how far from an anchor's top still counts as at it."""
+    """`[C]` largest distance from an anchor's top that counts as being at it."""
     return np.maximum(TOUCH * stand.scale, SLACK * (top - base))

@@ -1,7 +1,7 @@
-"""The table of spatial relations: what each is called, what people say for it, where it may be used, how it is judged.
+"""The table of spatial relations: name, phrases, permitted uses and scoring function of each.
 
-Queries, placements, wishes of a layout and stated relations of a scene graph take their names from here, the grammar
-and the reader of room descriptions their phrases, messages their sentences. The geometry is in `relation_geometry.py`.
+Queries, placements, layout wishes and stated relations of a scene graph take names from here; the grammar and the
+reader of room descriptions take phrases, and messages take sentences. The geometry is in `relation_geometry`.
 To add a relation, add an entry to `KINDS` and, where none fits, a scoring function.
 """
 
@@ -25,11 +25,11 @@ Region = Literal["top", "inside", "under", "between", "beside", "across"]
 
 @dataclass(frozen=True)
 class Phrases:
-    """What people say, separated by commas.
+    """Phrases for a relation, separated by commas.
 
     Attributes:
-        shared: in commands and in descriptions of rooms.
-        commands, descriptions: only there.
+        shared: used in commands and in descriptions of rooms.
+        commands, descriptions: used only there.
         reversed: in descriptions, with subject and object exchanged: "a table surrounded by chairs".
     """
 
@@ -43,11 +43,11 @@ class Phrases:
         yield from _listed(self.shared, self.commands)
 
     def in_descriptions(self) -> Iterator[str]:
-        """Phrases that a description may use, as said."""
+        """Phrases that a description may use, subject first."""
         yield from _listed(self.shared, self.descriptions)
 
     def in_reverse(self) -> Iterator[str]:
-        """Phrases that a description may use, the other way round."""
+        """Phrases that a description may use, object first."""
         yield from _listed(self.reversed)
 
 
@@ -57,25 +57,25 @@ class RelationKind:
 
     Attributes:
         name: as in JSON.
-        uses: where it may stand, separated by spaces: "query", "placement", "wish", "stated" (in a scene graph).
+        uses: where it may be used, separated by spaces: "query", "placement", "wish", "stated" (in a scene graph).
         words: "left of {}"; with two anchors "{}" stands for both, joined by "and".
-        score: its geometry; None where a use of its own judges it (an order, a wall of the room).
-        anchors: how many it relates to: 0, 1 or 2.
-        default: what a placement without an anchor is meant of ("on" alone is on the floor); "": it needs one.
-        phrases: what people say before an anchor.
-        alone: what people say without one: "in the corner".
+        score: scoring function; None where boxes alone do not decide it (an order, a wall of the room).
+        anchors: number of anchors: 0, 1 or 2.
+        default: anchor of a placement that names none ("on" alone is on the floor); "": it needs one.
+        phrases: said before an anchor.
+        alone: said without an anchor: "in the corner".
         aliases: further names in scene graphs.
-        inverse: the relation that its anchor then has to its subject, if there is one.
-        sentence: as said of a thing, if not "is" and `words`.
-        at_wall: the sentence where a wall is named, for wishes that may name one.
-        aim: the side that is meant, (to the right, behind), for relations that depend on a frame of reference.
+        inverse: the relation of the anchor to the subject, if there is one.
+        sentence: predicate in a sentence about the subject, if not "is" and `words`.
+        at_wall: the predicate with a named wall, for wishes that may name one.
+        aim: the side, (to the right, behind), for relations that depend on a frame of reference.
         region: where a placement looks for a place; "beside" at a distance of `gap`.
         gap: metres between the two, for a placement.
-        query_as, placement_as: the relation that stands for it where it is none itself.
-        own_frame: whether a query takes it in the anchor's own frame.
-        enters: how far its subject may enter the floor that the anchor keeps free for its use: not at all, at its
-            sides, or before it too ("a stool at a piano").
-        orders: whether it orders what matches instead of being true or false.
+        query_as, placement_as: the relation that replaces it in a query or placement, where it has no such use.
+        own_frame: whether a query uses the anchor's own frame.
+        enters: where its subject may enter the clear floor of the anchor: nowhere, at its sides, or in front of it too
+            ("a stool at a piano").
+        orders: whether it orders the candidates instead of being true or false.
     """
 
     name: str
@@ -100,7 +100,7 @@ class RelationKind:
     orders: bool = False
 
     def used(self, use: Use) -> bool:
-        """Whether it may stand there."""
+        """Whether it has this use."""
         return use in self.uses.split()
 
     def told(self, *anchors: str) -> str:
@@ -108,7 +108,7 @@ class RelationKind:
         return self.words.partition("{}")[0] + " and ".join(anchors) if self.anchors else self.words
 
     def says(self, *anchors: str) -> str:
-        """As said of a thing: "is left of the sofa", "faces the sofa"."""
+        """As a predicate: "is left of the sofa", "faces the sofa"."""
         return self.sentence.format(*anchors) if self.sentence else f"is {self.told(*anchors)}"
 
 
@@ -117,7 +117,7 @@ def _listed(*phrases: str) -> Iterator[str]:
 
 
 def _side(name: str, words: str, aim: tuple[float, float], inverse: str, **more: object) -> RelationKind:
-    """A side of the anchor in a frame of reference."""
+    """The relation of being at a side of the anchor in a frame of reference."""
     uses = "query placement wish stated"
     made: RelationKind = RelationKind(
         name, uses, words, geometry.toward(aim), aim=aim, inverse=inverse, **more  # type: ignore[arg-type]
@@ -200,7 +200,7 @@ KINDS: tuple[RelationKind, ...] = (
     RelationKind("farthest_from", "query", "farthest from {}", orders=True,
                  phrases=Phrases(commands="farthest from, furthest from, farthest away from, furthest away from")),
     RelationKind("part_of", "query", "part of {}"),
-    # Of placements only.
+    # For placements only.
     RelationKind(
         "opposite", "placement", "opposite {}", aim=(0.0, -1.0), own_frame=True, gap=1.2, query_as="in_front_of",
         phrases=Phrases(commands="opposite, opposite to, opposite of, across from, directly across from, across the "
@@ -236,7 +236,7 @@ KINDS: tuple[RelationKind, ...] = (
             "room, in opposite corners, in the far corner, in two corners",
         ),
     ),
-    # Of layouts.
+    # For layouts.
     RelationKind(
         "facing", "wish stated", "facing {}", geometry.facing, sentence="faces {}", aliases=("faces",), enters="beside",
         phrases=Phrases(descriptions="facing, turned to, turned toward, turned towards, facing toward, facing towards, "
@@ -269,7 +269,7 @@ _BY_ALIAS = {alias: kind for kind in KINDS for alias in kind.aliases}
 
 
 def named(name: str) -> RelationKind:
-    """The relation of a name that JSON has.
+    """The relation with this name, as in JSON.
 
     Raises:
         ValueError: there is none.
@@ -280,19 +280,19 @@ def named(name: str) -> RelationKind:
 
 
 def stated(said: str) -> RelationKind | None:
-    """The relation that a scene graph states in its own spelling ("to the left of"); None if it cannot be checked."""
+    """The relation that a scene graph states, in any spelling ("to the left of"); None if it cannot be checked."""
     name = said.strip().lower().replace(" ", "_")
     kind = _BY_NAME.get(name) or _BY_ALIAS.get(name)
     return kind if kind is not None and kind.used("stated") else None
 
 
 def names(use: Use) -> tuple[str, ...]:
-    """Names that may stand there, in the table's order."""
+    """Names of the relations with this use, in the order of the table."""
     return tuple(kind.name for kind in KINDS if kind.used(use))
 
 
 def placed_as(name: str) -> str:
-    """The placement that a relation stands for, "" if there is none."""
+    """The placement that a relation means, "" if there is none."""
     kind = named(name)
     return kind.name if kind.used("placement") else kind.placement_as
 
@@ -301,14 +301,14 @@ if TYPE_CHECKING:
     QueryName = str
     PlacementName = str
     WishName = str
-else:  # pydantic makes closed enumerations of them; a type checker cannot read a table
+else:  # enumerations for pydantic; a type checker cannot evaluate them
     QueryName = Literal[names("query")]
     PlacementName = Literal[names("placement")]
     WishName = Literal[names("wish")]
 
 
 def score(name: str, candidate: Group, anchors: Sequence[Group], stand: Stand) -> float:
-    """How well one `candidate` stands in relation `name` to the anchors; see `scores`."""
+    """How well one `candidate` fulfils relation `name` to the anchors; see `scores`."""
     flat = candidate.level == "structure"
     return float(scores(name, Boxes.of([candidate.box]), anchors, stand, np.array([flat]))[0])
 
@@ -316,17 +316,17 @@ def score(name: str, candidate: Group, anchors: Sequence[Group], stand: Stand) -
 def scores(
     name: str, candidates: Boxes, anchors: Sequence[Group], stand: Stand, structure: NDArray[np.bool_] | None = None
 ) -> F64:
-    """`[C]` how well each candidate stands in relation `name` ("between" takes two anchors, all others the first).
+    """`[C]` how well each candidate fulfils relation `name` ("between" uses two anchors, all others the first).
 
     Args:
         structure: `[C]`, which candidates are floors, walls or ceilings; None: none of them.
 
     Raises:
-        ValueError: the relation is judged by no geometry of boxes.
+        ValueError: the relation has no scoring function.
     """
     measure = named(name).score
     if measure is None:
-        raise ValueError(f"{name} is no relation of boxes alone")
+        raise ValueError(f"{name} cannot be scored from boxes alone")
     flags = np.zeros(len(candidates), bool) if structure is None else structure
     parties = [Things(Boxes.of([a.box]), np.array([a.level == "structure"]), a.label == "wall") for a in anchors]
     return measure(Things(candidates, flags), parties, stand)

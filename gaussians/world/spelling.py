@@ -1,4 +1,4 @@
-"""Misspelt words: the known names spelt most like one, and the words that it is one slip of the keyboard from."""
+"""Correct misspelt words: find names of similar spelling, and known words that are one typing error away."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ SHORTEST = 4  # letters; shorter words have too many neighbours
 
 _LETTERS = "abcdefghijklmnopqrstuvwxyz"
 _ROWS = ("qwertyuiop", "asdfghjkl", "zxcvbnm")
-_ALIKE = ("aeiouy", "ckqs", "sz", "gj", "fv")  # letters that are taken for each other by their sound
+_ALIKE = ("aeiouy", "ckqs", "sz", "gj", "fv")  # letters that are confused because they sound alike
 
 
 def nearest(said: str, names: Iterable[str], most: int = 3, likeness: float = 0.6) -> tuple[str, ...]:
-    """The names spelt most like `said`, the best first: those of a ratio of matching letters above `likeness`."""
+    """Up to `most` names whose ratio of matching letters with `said` is at least `likeness`, the best first."""
     import difflib
 
     return tuple(difflib.get_close_matches(said, names, n=most, cutoff=likeness))
@@ -33,11 +33,11 @@ def one_slip(text: str, words: Collection[str]) -> frozenset[str]:
 
 
 def likely_slips(text: str, words: Collection[str]) -> frozenset[str]:
-    """Of the words one slip away, those that `text` is probably meant to be.
+    """The words one typing error away that `text` is probably meant to be.
 
-    There is no dictionary, so a word that we do not know may still be spelt right: "gravel" is no "travel", a "painter"
-    no "printer". Therefore the first letter must agree, as people seldom miss it; a wrong letter must be next to the
-    right one on the keyboard or sound like it; and in four letters only an exchange of two counts.
+    There is no dictionary, so an unknown word may be spelt right: "gravel" is not "travel", "painter" not "printer".
+    Therefore the first letter must agree, as it is seldom mistyped; a wrong letter must be next to the right one on the
+    keyboard or sound like it; and in words of four letters only an exchange of two letters counts.
     """
     return frozenset(w for w in one_slip(text, words) if _is_exchange(text, w) or _is_likely(text, w))
 
@@ -50,7 +50,7 @@ def _is_likely(text: str, word: str) -> bool:
 
 
 def _is_exchange(text: str, word: str) -> bool:
-    """Whether two neighbouring letters were exchanged, which is the only slip that keeps all letters."""
+    """Whether two neighbouring letters were exchanged, which is the only single error that keeps all letters."""
     return len(text) == len(word) and sorted(text) == sorted(word)
 
 
@@ -63,7 +63,7 @@ def _are_near(a: str, b: str) -> bool:
 
 
 def _neighbours(text: str) -> Iterator[str]:
-    """Every string one slip away."""
+    """Every string that is one typing error away."""
     for i in range(len(text) + 1):
         head, tail = text[:i], text[i:]
         yield from (head + c + tail for c in _LETTERS)

@@ -1,7 +1,7 @@
-"""What rests on what in a room, told from upright boxes: each other, the floor, a wall, the ceiling; and by how much.
+"""Find from upright boxes what a thing rests on: another thing, the floor, a wall or the ceiling.
 
-A room has its origin at the centre of the floor; lengths are metres. How well "on" holds between the groups of a scene
-of any scale is a score (see `relations`); what carries and moves along with a thing is decided from it here.
+A room has its origin at the centre of the floor; lengths are metres. In a scene of any scale, `standing_on` finds what
+moves along with a thing, from the score of the relation "on" (see `relations`).
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from .relation_geometry import HOLDS, Stand
 from .relations import score
 
 SHELL = ("floor", "wall", "ceiling")
-CONTACT = 0.12  # of the smaller height: measured boxes are that blurred where a thing's underside meets another's top
-_THIN = 0.05  # metres: what both heights count as at least there, or nothing would ever lie on a rug
-FIXED = 0.1  # metres between a wall or the ceiling and what is fixed to it: brackets and frames
-AIR = 0.02  # metres of air under a thing that still stands
+CONTACT = 0.12  # of the smaller height: error of measured boxes where a thing's underside meets another's top
+_THIN = 0.05  # metres: least height for `CONTACT`, so that things can stand on a thin rug
+FIXED = 0.1  # largest metres between a wall or the ceiling and a thing fixed to it: brackets and frames
+AIR = 0.02  # largest metres of air under a thing that counts as standing
 _GROUNDED = (0.05, 0.1)  # of the room's height, and of its own: an underside lower than either is on the floor
-_TOPMOST = 0.97  # of the room's height: what reaches higher, and stands on nothing, hangs from the ceiling
-SHEET = 20.0  # a thing longer than so many times its height is a rug, which slides away from under a chair
+_TOPMOST = 0.97  # of the room's height: a thing that reaches higher, and stands on nothing, hangs from the ceiling
+SHEET = 20.0  # a thing longer than this times its height is a sheet, as a rug, which moves without the things on it
 
 
 def is_stepped_on(support: int | str, height: float) -> bool:
@@ -36,7 +36,7 @@ def is_stepped_on(support: int | str, height: float) -> bool:
 
 
 def is_sheet(size: Vec3) -> bool:
-    """Whether a thing is so thin for its length that it does not take along what stands on it; at any scale."""
+    """Whether a thing is so thin for its length that things on it do not move along; at any scale."""
     return max(size[:2]) > SHEET * size[2]
 
 
@@ -53,12 +53,15 @@ def aside(upper: YawBox, lower: YawBox) -> float:
 
 
 def air(upper: YawBox, lower: YawBox) -> float:
-    """Metres of height between the underside of `upper` and the box of `lower`, in which it may stand, as on a seat."""
+    """Metres of height between the underside of `upper` and `lower`; negative where it is inside, as on a seat."""
     return max(upper.low - lower.high, lower.low - upper.low)
 
 
 def touches_top(upper: YawBox, lower: YawBox) -> bool:
-    """Whether the underside of `upper` meets the top of `lower` below its middle, as far as measured boxes tell."""
+    """Whether the underside of `upper` meets the top of `lower`, within the error of measured boxes.
+
+    The middle of `upper` must be over the footprint of `lower`, and higher than its middle.
+    """
     if lower.low + lower.h / 2 >= upper.low + upper.h / 2 or aside(upper, lower) > 0:
         return False
     return abs(upper.low - lower.high) <= CONTACT * max(min(lower.h, upper.h), _THIN)
@@ -67,14 +70,15 @@ def touches_top(upper: YawBox, lower: YawBox) -> bool:
 def support_of(
     index: int, boxes: Sequence[YawBox], room: Vec3, fixture: bool
 ) -> int | Literal["floor", "wall", "ceiling"]:
-    """What a thing rests on: another one's index in `boxes`, or the room's shell.
+    """What a thing rests on: the index of another one in `boxes`, or "floor", "wall" or "ceiling".
 
-    The highest box whose top touches its underside; else the wall that a fixture is at; else the floor; else the
-    smallest box that its underside is in (a seat, a shelf); else ceiling or wall.
+    In this order: the highest box whose top touches its underside; the wall, for a fixture at one; the floor; the
+    ceiling; the smallest box that its underside is inside (a seat, a shelf); the wall for fixtures and things at one;
+    the floor.
 
     Args:
         index: row of the thing.
-        fixture: whether such things hang on walls.
+        fixture: whether things of this kind hang on walls.
     """
     box = boxes[index]
     others = [i for i in range(len(boxes)) if i != index]
@@ -95,7 +99,7 @@ def support_of(
 
 
 def standing_on(field: LanguageField, frame: Frame, support: Group) -> tuple[Group, ...]:
-    """Objects of a scene that stand directly on an object, or in it as on a shelf; none on a rug."""
+    """Objects of a scene that stand directly on an object, or in it as on a shelf; none for a sheet (a rug)."""
     if support.level != "object" or is_sheet(support.box.size):
         return ()
     east, north, up = frame.basis()

@@ -1,7 +1,9 @@
-"""English nouns: singular, plural and head; and noun phrases in one form for encoders with a finite vocabulary.
+"""English nouns: singular, plural and head; and normalised noun phrases for encoders with a finite vocabulary.
 
-Every function takes lower-case text. A plural of two nouns is read as the commoner one: "axes" are tools and "bases"
-are feet of lamps, so that `singular(plural(noun)) == noun` holds for "axe" and "base" but not for "axis" and "basis".
+Every function but `normalise` takes lower-case text.
+
+A plural of two nouns is read as the commoner one: "axes" are tools and "bases" are feet of lamps, so that
+`singular(plural(noun)) == noun` holds for "axe" and "base" but not for "axis" and "basis".
 """
 
 from __future__ import annotations
@@ -9,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-PROMPT = "a photo of a {}"  # what encoders trained on captions of photographs are shown a name as
+PROMPT = "a photo of a {}"  # prompt for encoders that were trained on captions of photographs
 
 _WORD = re.compile(r"[a-z0-9]+")
 _FRAMED = re.compile(
@@ -28,7 +30,7 @@ MASS = _bag(
     "furniture cutlery clutter bedding clothing luggage glassware crockery silverware rubbish trash litter garbage "
     "foliage greenery seating lighting electronics stuff"
 )
-# Nouns whose singular nobody says of the thing.
+# Nouns that are used in the plural only.
 PLURAL_ONLY = _bag(
     "scissors trousers jeans pants shorts stairs headphones binoculars pliers tongs pyjamas pajamas sunglasses "
     "eyeglasses goggles tights tweezers clothes spectacles dungarees overalls leggings knickers panties underpants "
@@ -98,8 +100,8 @@ _LATIN = {
     **{f"{stem}x": stem for stem in _bag("bureau chateau gateau plateau tableau trousseau")},
     "indices": "index", "matrices": "matrix", "vertices": "vertex", "appendices": "appendix", "codices": "codex",
 }  # fmt: skip
-# Of these nouns the regular plural is the commoner one.
-_SECOND = _bag(
+# Irregular plurals that are rarer than the regular plural; they are only read, never formed.
+_RARE_PLURALS = _bag(
     "octopi hippopotami hibisci croci gladioli foci aquaria terraria planetaria stadia auditoria sanatoria memoranda "
     "indices bureaux chateaux gateaux plateaux tableaux trousseaux formulae antennae automata"
 )
@@ -108,11 +110,11 @@ _IRREGULAR = {
     "mice": "mouse", "dormice": "dormouse", "lice": "louse", "geese": "goose", "dice": "die", "oxen": "ox",
     "topazes": "topaz", "tvs": "tv", "pcs": "pc", "cds": "cd",
 }  # fmt: skip
-_PLURAL = {one: many for many, one in _IRREGULAR.items() if many not in _SECOND}
+_PLURAL = {one: many for many, one in _IRREGULAR.items() if many not in _RARE_PLURALS}
 
 _UNCHANGED = MASS | PLURAL_ONLY | _INVARIANT
-# Words that end the head of a phrase: "a table with drawers" is a table. "of" is left to the reader of the phrase, as
-# "a stack of books" is a stack and books.
+# Words that end the head of a phrase: "a table with drawers" is a table. "of" is not among
+# them: "a stack of books" is a stack and books, so callers decide.
 AFTER_HEAD = _bag("with in on from for near at by without made having")
 
 
@@ -130,7 +132,7 @@ def plural(noun: str) -> str:
 
 
 def is_plural(noun: str) -> bool:
-    """Whether the noun says that several are meant ("chairs"), which mass nouns ("furniture") and "stairs" do too."""
+    """Whether the noun stands for several things ("chairs"); true also for mass nouns ("furniture") and "stairs"."""
     word = head(noun)
     return word in MASS or word in PLURAL_ONLY or _singular(word) != word
 

@@ -1,6 +1,6 @@
 """Assemble a layout into one lit cloud: add floor, walls and ceiling, cut openings, bake light and contact shadows.
 
-Layouts come from furnish.py or from a scene graph.
+Layouts come from `furnish` or from a scene graph.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ from .layout import Layout, Placed
 
 Array = NDArray[np.float64]
 STRUCTURE = -1  # owner of floor, walls and ceiling
-SOFT, SHADE = 0.75, 0.4  # contact shadows are kept pale: they stay on the floor when the thing that cast them is gone
+SOFT, SHADE = 0.75, 0.4  # contact shadows are weakened: they stay on the floor when the thing that cast them is removed
 
 
 @dataclass(frozen=True)
 class Look:
-    """How floor and walls look; what is None is drawn by chance.
+    """How floor and walls look; fields that are None are drawn at random.
 
     Attributes:
         floor: "planks", "tiles", "carpet" or "plain".
-        walls: their paint, as `color.parse` takes it.
-        cover: standard deviation of their Gaussians over the length of a cell: more is closer, and less crisp.
+        walls: colour of the paint, as `color.parse` takes it.
+        cover: standard deviation of their Gaussians over the length of a cell: more closes gaps and blurs texture.
     """
 
     floor: str | None = None
@@ -48,7 +48,7 @@ class Raised:
 
     Attributes:
         cloud: `N` Gaussians, floor, walls and ceiling first, then thing after thing.
-        owner: `[N]` int32, index of the thing each belongs to, or `STRUCTURE`.
+        owner: `[N]` int32, index of the thing that each Gaussian belongs to, or `STRUCTURE`.
         faces: name of the face ("floor", "north wall", "ceiling") of each of the structure's Gaussians.
     """
 
@@ -58,12 +58,12 @@ class Raised:
 
 
 def raised(layout: Layout, rng: np.random.Generator, detail: float, ceiling: bool, look: Look = Look()) -> Raised:
-    """Everything as one cloud, lit together; `rng` chooses the lamp and, where `look` is silent, the surfaces."""
+    """The layout as one cloud, lit together; `rng` chooses the light and the surfaces that `look` leaves open."""
     azimuth = float(rng.uniform(0, 2 * math.pi))
     sun = np.array([0.6 * math.cos(azimuth), 0.6 * math.sin(azimuth), 0.8])
     shell = _shell(layout, rng, ceiling, look)
     samples = _cut_openings(sampling.sample(shell, 0.062 / math.sqrt(detail)), layout)
-    placed = [_stand(t, sun) for t in layout.things]
+    placed = [_placed_cloud(t, sun) for t in layout.things]
     solid = np.concatenate([samples.xyz, *(c.means.numpy().astype(np.float64) for c in placed)])
     space = light.occupancy(solid, step=0.06)
     bright = light.bake(samples.xyz, samples.normal, space, sun)
@@ -79,15 +79,15 @@ def raised(layout: Layout, rng: np.random.Generator, detail: float, ceiling: boo
 
 
 def _faces(shell: list[Piece]) -> list[str]:
-    """The face each piece belongs to; a skirting board to the wall that was put up before it."""
+    """The face that each piece belongs to; a skirting board belongs to the wall before it in the list."""
     faces: list[str] = []
     for piece in shell:
         faces.append(faces[-1] if piece.part == "skirting" else piece.part)
     return faces
 
 
-def _stand(thing: Placed, sun: Array) -> GaussianCloud:
-    """The asset under the room's lamp, turned and moved to its place."""
+def _placed_cloud(thing: Placed, sun: Array) -> GaussianCloud:
+    """The asset under the light of the room, turned and moved to its place."""
     a, b = thing.asset, thing.box
     c, s = math.cos(math.radians(b.yaw)), math.sin(math.radians(b.yaw))
     local = (float(c * sun[0] + s * sun[1]), float(-s * sun[0] + c * sun[1]), float(sun[2]))
@@ -102,7 +102,7 @@ def _stand(thing: Placed, sun: Array) -> GaussianCloud:
 
 
 def _shell(layout: Layout, rng: np.random.Generator, ceiling: bool, look: Look) -> list[Piece]:
-    """Floor, walls with skirting boards, perhaps a ceiling."""
+    """Floor, walls with skirting boards, and a ceiling if there is to be one."""
     tone = Tone(rng, "light")
     w, d, h = layout.w, layout.d, layout.h
     drawn = str(rng.choice(["planks", "planks", "tiles", "carpet", "plain"]))
@@ -144,7 +144,7 @@ def _shell(layout: Layout, rng: np.random.Generator, ceiling: bool, look: Look) 
 
 
 def _floor(layout: Layout, material: Material) -> list[Piece]:
-    """The floor in rectangles, finer under rugs: large cells just below a thin sheet would show through it."""
+    """The floor in rectangles, finer under rugs, as large Gaussians just below a thin sheet show through it."""
     xs, ys = [-layout.w / 2, layout.w / 2], [-layout.d / 2, layout.d / 2]
     covers = []
     for t in (layout.things[i] for i in layout.rugs()):
@@ -170,7 +170,7 @@ def _pair(rng: np.random.Generator, table: tuple[tuple[str, str], ...]) -> tuple
 
 
 def _cut_openings(samples: sampling.Samples, layout: Layout) -> sampling.Samples:
-    """Take the wall away behind windows and doors."""
+    """Remove the samples of walls behind windows and doors."""
     keep = np.ones(len(samples.xyz), dtype=bool)
     for t in layout.things:
         if t.asset.kind in ("window", "door"):

@@ -1,6 +1,6 @@
-"""`furnish`: make a furnished room as one scene, with the ground truth about its things beside it.
+"""`furnish`: generate a furnished room from a seed, as a scene with the ground truth about its things.
 
-assemble.py turns the layout into Gaussians. The returned scene has no groups; measurements compare with `Room.truth`.
+The returned scene has no groups; measurements compare with `Room.truth`.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ WALLS = ("north", "west", "east", "south")
 
 @dataclass(frozen=True)
 class TruthObject:
-    """One object as it was placed.
+    """The ground truth of one object.
 
     Attributes:
         id: its number in `Truth.ids`.
@@ -36,7 +36,7 @@ class TruthObject:
         size: (w, d, h) of its oriented box, metres.
         position: centre of that box, world, metres.
         yaw: degrees counter-clockwise from facing -y.
-        support: id of what it stands on, or "floor", "wall", "ceiling".
+        support: id of the object that it stands on, or "floor", "wall", "ceiling".
         parts: part names.
     """
 
@@ -52,7 +52,7 @@ class TruthObject:
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """Ground truth beside a scene: `ids [N]` int32 object per Gaussian (-1: floor and walls), and the objects."""
+    """Ground truth of a scene: `ids` `[N]` int32, object of each Gaussian (-1: floor and walls), and the objects."""
 
     ids: Tensor
     objects: tuple[TruthObject, ...]
@@ -60,7 +60,7 @@ class Truth:
 
 @dataclass(frozen=True, eq=False)
 class Room:
-    """A furnished room: the scene to work on, the truth to measure with, its kind and inner size (w, d, h)."""
+    """A furnished room: its scene, ground truth, kind and inner size (w, d, h) in metres."""
 
     scene: Scene
     truth: Truth
@@ -69,7 +69,7 @@ class Room:
 
 
 def room_kinds() -> tuple[str, ...]:
-    """What `furnish` can furnish."""
+    """The kinds of rooms that `furnish` can make."""
     return tuple(recipes.RECIPES)
 
 
@@ -85,15 +85,15 @@ def furnish(
     """A furnished room; the same arguments give the same bytes.
 
     Args:
-        seed: chooses everything.
+        seed: of all random choices.
         kind: one of `room_kinds()`, or "any".
-        objects: the least number of objects to aim for (3 to 40); the recipe's own number if None, 12 at least.
+        objects: the least number of objects to aim for (3 to 40), random from 12 to 17 if None; recipes may place more.
         detail: factor on the number of Gaussians (1: about 80,000 to 150,000 in all).
-        include: kinds that are added to what the recipe brings, where they fit.
-        ceiling: whether to close the room above.
+        include: kinds that are added to those of the recipe, where they fit.
+        ceiling: whether the room has a ceiling.
 
     Raises:
-        UserError: for an unknown kind of room or object, or a number out of range.
+        UserError: the kind of room or object is unknown, or the number is out of range.
     """
     if kind != "any" and kind not in recipes.RECIPES:
         raise UserError(f"unknown kind of room {kind!r}; known: any, {', '.join(recipes.RECIPES)}")
@@ -110,7 +110,7 @@ def furnish(
     get = recipes.Supplier(rng, detail)
     recipes.openings(layout, get)
     for extra in include:
-        find(extra)  # refuses what nothing draws
+        find(extra)  # raises for a kind without a builder
         _add(layout, get, extra)
     recipe(layout, get)
     recipes.fill_up(layout, get, objects or int(rng.integers(12, 18)))
@@ -118,7 +118,7 @@ def furnish(
 
 
 def _walls(rng: np.random.Generator) -> tuple[str, ...]:
-    """Two to four walls; the south is left open most often, for looking in."""
+    """Two to four walls; most rooms have an open south side, for views from outside."""
     draw = rng.random()
     if draw < 0.6:
         return WALLS[:3]
@@ -128,7 +128,7 @@ def _walls(rng: np.random.Generator) -> tuple[str, ...]:
 
 
 def _add(layout: Layout, get: recipes.Supplier, name: str) -> None:
-    """Put something asked for where its kind lives."""
+    """Put a requested thing where its kind belongs."""
     thing, known = get(name), kinds.find(name)
     assert known is not None
     if known.support == "wall":
@@ -155,7 +155,7 @@ def _add(layout: Layout, get: recipes.Supplier, name: str) -> None:
 
 
 def assemble(layout: Layout, name: str, rng: np.random.Generator, detail: float, ceiling: bool) -> Room:
-    """Everything as one cloud, lit together."""
+    """The room of a layout, with its scene and ground truth."""
     built = raised(layout, rng, detail, ceiling)
     truth = Truth(built.owner, tuple(_describe(i, t) for i, t in enumerate(layout.things)))
     frame = Frame((0.0, 0.0, 1.0), 0.0, 1.0, "given", "given")

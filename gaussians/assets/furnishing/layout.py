@@ -1,6 +1,6 @@
-"""Positions of things in a generated room: upright oriented boxes, free floor, supporting surfaces, walls, clearances.
+"""Place things in a generated room without collisions: on the floor, against walls, on walls, on other things.
 
-recipes.py says which furniture belongs in which room.
+`recipes` defines which furniture belongs in which kind of room.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from ...world.box import YawBox, meet
 from ..modeling.make import Asset
 
 Array = NDArray[np.float64]
-GAP = 0.035  # between neighbours, and between a back and a wall (skirting boards)
-TOUCHING = 1e-4  # metres that two boxes may be in each other
-HANG = 0.015  # between a picture's back and the wall
+GAP = 0.035  # metres between neighbours, and between a back and a wall (skirting boards)
+TOUCHING = 1e-4  # metres by which two boxes may penetrate each other
+HANG = 0.015  # metres between a picture's back and the wall
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,9 +36,9 @@ class Layout:
     Attributes:
         w, d, h: inner size, metres.
         walls: which of "north", "west", "east", "south" exist.
-        rng: the only source of chance.
-        things: what stands so far.
-        kept_free: boxes nothing may enter (before doors, the way in).
+        rng: the only source of randomness.
+        things: placed so far.
+        kept_free: boxes that nothing may enter (the floor before doors).
     """
 
     w: float
@@ -50,7 +50,7 @@ class Layout:
     kept_free: list[YawBox] = field(default_factory=list)
 
     def free(self, box: YawBox, on_wall: bool = False, ignore: tuple[int, ...] = ()) -> bool:
-        """Whether a box lies inside the room and touches nothing."""
+        """Whether a box lies inside the room and meets no other thing; unless `on_wall`, also no box of `kept_free`."""
         c = box.corners()
         if np.abs(c[:, 0]).max() > self.w / 2 + 1e-6 or np.abs(c[:, 1]).max() > self.d / 2 + 1e-6 or box.high > self.h:
             return False
@@ -59,12 +59,12 @@ class Layout:
         return on_wall or not any(meet(box, k, TOUCHING) for k in self.kept_free)
 
     def put(self, asset: Asset, box: YawBox, support: int | str) -> int:
-        """Add a thing without asking; its index."""
+        """Add a thing without a test of its place; returns its index."""
         self.things.append(Placed(asset, box, support))
         return len(self.things) - 1
 
     def try_put(self, asset: Asset, x: float, y: float, yaw: float, margin: float = 0.0) -> int | None:
-        """Stand it on the floor, or on a rug that lies wholly under it, if that place is free."""
+        """Put it on the floor, or on a rug that lies wholly under it, if that place is free; its index, else None."""
         w, d, h = asset.size
         box = YawBox(x, y, 0.0, w, d, h, yaw)
         support: int | str = "floor"
@@ -83,7 +83,7 @@ class Layout:
     def against(
         self, asset: Asset, walls: tuple[str, ...] | None = None, at: float | None = None, front: float = 0.45
     ) -> int | None:
-        """Back to a wall, at the fraction `at` of its length or anywhere, with `front` metres free before it."""
+        """Put its back to a wall, at the fraction `at` of the wall's length or anywhere, `front` metres free before."""
         w, d, _ = asset.size
         names = [n for n in (walls or self.walls) if n in self.walls]
         for k in range(16):
@@ -121,7 +121,7 @@ class Layout:
         return self.w / 2 - out, -along, -90.0
 
     def hang(self, asset: Asset, wall: str, along: float, low: float, flush: bool = False) -> int | None:
-        """On a wall with its lower edge at height `low`; `flush` for what is set into the wall."""
+        """Hang it on a wall with its lower edge at height `low`; `flush` for things that are set into the wall."""
         w, d, h = asset.size
         reach = (self.w if wall in ("north", "south") else self.d) / 2 - w / 2 - 0.03
         if reach < 0 or abs(along) > reach or low + h > self.h - 0.03:
@@ -133,13 +133,13 @@ class Layout:
     def near(
         self, asset: Asset, anchor: int, right: float, back: float, turn: float = 0.0, margin: float = 0.0
     ) -> int | None:
-        """Stand it at an offset along the anchor's own axes, turned by `turn` against it."""
+        """Put it at an offset along the anchor's own axes, turned by `turn` degrees relative to the anchor."""
         box = self.things[anchor].box
         x, y = box.world(right, back)
         return self.try_put(asset, x, y, box.yaw + turn, margin)
 
     def anywhere(self, asset: Asset, margin: float = 0.3, edge: bool = True) -> int | None:
-        """On some free spot of the floor, near the walls if `edge`, with `margin` around."""
+        """Put it on a random free spot of the floor, near the walls if `edge`, with `margin` metres around."""
         w, d, _ = asset.size
         reach = math.hypot(w, d) / 2 + 0.03
         for _ in range(30):
@@ -152,7 +152,7 @@ class Layout:
         return None
 
     def corner(self, asset: Asset) -> int | None:
-        """In a corner of the room."""
+        """Put it in a corner of the room."""
         w, d, _ = asset.size
         for k in self.rng.permutation(4):
             sx, sy = (-1, 1)[k % 2], (-1, 1)[k // 2]
@@ -165,7 +165,7 @@ class Layout:
     def on_top(
         self, asset: Asset, anchor: int, right: float | None = None, back: float | None = None, turn: float = 0.0
     ) -> int | None:
-        """On the anchor's upper face, at an offset along its axes or anywhere that carries all of it."""
+        """Put it on the anchor's upper face, at an offset along its axes or anywhere; all of it must be supported."""
         base = self.things[anchor].box
         w, d, h = asset.size
         turned = math.radians(turn)

@@ -1,4 +1,4 @@
-"""Recipes of rooms: which kinds of furniture a room gets and how they are arranged; layout.py tests if they fit."""
+"""Recipes of rooms: which kinds of furniture a room gets and how they are arranged; `layout` tests if they fit."""
 
 from __future__ import annotations
 
@@ -35,23 +35,23 @@ ODD_COLORS = ("red", "orange", "yellow", "green", "teal", "blue", "purple", "pin
 
 
 class Supplier:
-    """Makes assets for one room, each of its own seed, at one level of detail and under one lamp."""
+    """Makes assets for one room, each with its own seed, at one level of detail."""
 
     def __init__(self, rng: Rng, detail: float) -> None:
         self.rng, self.detail = rng, detail
 
     def __call__(self, kind: str, like: Asset | None = None, color: str | None = None) -> Asset:
-        """A new asset, or another one of the design of `like`."""
+        """A new asset, or a copy of the design of `like`."""
         seed = like.seed if like is not None else int(self.rng.integers(1 << 30))
         return make(kind, seed, color=color, detail=self.detail)
 
     def odd_color(self) -> str:
-        """A colour word for the one that differs."""
+        """A random colour word for the one asset that differs from others of its design."""
         return str(self.rng.choice(ODD_COLORS))
 
 
 def dress(room: Layout, get: Supplier, anchor: int | None, like: str, count: int) -> None:
-    """Small things on top of a piece of furniture; one may repeat."""
+    """Put small things on top of a piece of furniture; one of them may occur twice."""
     if anchor is None:
         return
     names = list(room.rng.permutation(SMALL[like])[:count])
@@ -62,7 +62,7 @@ def dress(room: Layout, get: Supplier, anchor: int | None, like: str, count: int
 
 
 def openings(room: Layout, get: Supplier) -> None:
-    """A door, one or two windows, perhaps curtains beside one."""
+    """Add a door, and one or two windows."""
     rng = room.rng
     walls = list(rng.permutation(room.walls))
     door = get("door")
@@ -83,7 +83,7 @@ def openings(room: Layout, get: Supplier) -> None:
 
 
 def pictures(room: Layout, get: Supplier, count: int) -> None:
-    """Paintings, mirrors and clocks at eye height, where the wall is free."""
+    """Hang paintings, mirrors and clocks at eye height, where the wall is free."""
     for _ in range(count):
         thing = get(str(room.rng.choice(["painting", "painting", "painting", "mirror", "clock"])))
         lowest = 0.55 if thing.kind == "mirror" else 0.95
@@ -96,7 +96,7 @@ def pictures(room: Layout, get: Supplier, count: int) -> None:
 
 
 def around_table(room: Layout, get: Supplier, table: int, kind: str, count: int) -> None:
-    """Chairs of one design about a table, drawn back from its edge; sometimes one of another colour."""
+    """Put chairs of one design around a table, at a distance from its edge; sometimes one of another colour."""
     box = room.things[table].box
     first = get(kind)
     odd = int(room.rng.integers(count)) if chance(room.rng, 0.35) else -1
@@ -222,7 +222,7 @@ def _computer(room: Layout, get: Supplier, desk: int) -> None:
 
 
 def kitchen(room: Layout, get: Supplier) -> None:
-    """A row of fridge, cupboards, sink and stove along one wall, a table with chairs."""
+    """A row of fridge, cabinets, sink and stove along one wall, and a table with chairs."""
     rng = room.rng
     wall = str(rng.choice(room.walls))
     row = [str(k) for k in rng.permutation(["cabinet", "sink", "stove", "cabinet", "fridge"])]
@@ -248,7 +248,7 @@ def kitchen(room: Layout, get: Supplier) -> None:
 
 
 def _dining(room: Layout, get: Supplier, chairs: int) -> None:
-    """A laid table with chairs, somewhere in the free middle."""
+    """A table with things on it and chairs, near the middle of the room."""
     rng, table = room.rng, get("table")
     for _ in range(20):
         x, y = float(rng.uniform(-0.2, 0.2) * room.w), float(rng.uniform(-0.2, 0.2) * room.d)
@@ -261,7 +261,7 @@ def _dining(room: Layout, get: Supplier, chairs: int) -> None:
 
 
 def dining_room(room: Layout, get: Supplier) -> None:
-    """A big table with chairs, a sideboard, a lamp over or beside it."""
+    """A table with chairs, cabinets, perhaps a floor lamp and other furniture."""
     rng = room.rng
     _dining(room, get, int(rng.integers(3, 7)))
     dress(room, get, room.against(get("cabinet")), "cabinet", int(rng.integers(2, 4)))
@@ -279,7 +279,7 @@ def dining_room(room: Layout, get: Supplier) -> None:
 
 
 def studio(room: Layout, get: Supplier) -> None:
-    """A place to play: instruments, easel-like screens, toys, a bicycle, stools, a desk."""
+    """A studio: instruments, folding screens, a bicycle, a desk."""
     rng = room.rng
     for kind, p in (
         ("piano", 0.6),
@@ -309,7 +309,7 @@ def studio(room: Layout, get: Supplier) -> None:
 
 
 def _extras(room: Layout, get: Supplier, rugs: bool = True) -> None:
-    """Plants, pictures and loose things; a bare room gets more of them."""
+    """Plants, pictures and loose things."""
     rng = room.rng
     pictures(room, get, int(rng.integers(1, 4)))
     for _ in range(int(rng.integers(1, 3))):
@@ -340,7 +340,7 @@ RECIPES: dict[str, tuple[Callable[[Layout, Supplier], None], tuple[float, float]
 
 
 def fill_up(room: Layout, get: Supplier, least: int) -> None:
-    """Loose things until there are `least` objects or nothing fits."""
+    """Add loose things until there are `least` objects, at most 40 attempts."""
     for _ in range(40):
         if len(room.things) >= least:
             return

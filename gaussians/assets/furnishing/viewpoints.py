@@ -14,11 +14,11 @@ from ...world.person import EYE_HEIGHT
 from .layout import Layout
 
 Array = NDArray[np.float64]
-_REACH = np.concatenate([[0.1], 0.2 * np.ones(15)]).cumsum()  # metres along a ray: where it is looked for things
+_REACH = np.concatenate([[0.1], 0.2 * np.ones(15)]).cumsum()  # metres along a ray at which it is tested for hits
 
 
 def cameras(layout: Layout) -> tuple[Camera, ...]:
-    """An overview first (from beyond the open side where there is one), then the clearest eye-height views."""
+    """An overview (from outside the open south side where there is one), then the clearest views at eye height."""
     w, d, h = layout.w, layout.d, layout.h
     side = _clearer_side(layout)
     if "south" in layout.walls:
@@ -29,9 +29,9 @@ def cameras(layout: Layout) -> tuple[Camera, ...]:
 
 
 def overview(layout: Layout, ceiling: bool) -> Camera:
-    """The whole room from beyond its open south side, from above the walls, or below a ceiling.
+    """A camera outside the open south side that sees the whole room, from above the walls, or from below a ceiling.
 
-    It stands back until the room's width and depth fill the picture.
+    Its distance from the room grows with the width of the room.
     """
     w, d, h = layout.w, layout.d, layout.h
     side, fov = _clearer_side(layout), 46.0
@@ -42,14 +42,14 @@ def overview(layout: Layout, ceiling: bool) -> Camera:
 
 
 def _clearer_side(layout: Layout) -> float:
-    """The front corner from which one sees farther: 1 the right one, -1 the left one."""
+    """The front corner with the longer line of sight: 1 for the right one, -1 for the left one."""
     w, d, h = layout.w, layout.d, layout.h
     right, left = (_clear(layout, (s * 0.42 * w, -0.45 * d, h - 0.3)) for s in (1, -1))
     return 1.0 if right >= left else -1.0
 
 
 def eye_views(layout: Layout) -> tuple[Camera, ...]:
-    """Up to five views at eye height towards the middle, the clearest first, apart from each other."""
+    """Up to five views at eye height towards the middle, the clearest first, from positions apart from each other."""
     w, d = layout.w, layout.d
     ring = [(math.cos(a), math.sin(a)) for a in np.linspace(-math.pi / 2, 1.5 * math.pi, 17)[:-1]]
     spots = []
@@ -59,7 +59,7 @@ def eye_views(layout: Layout) -> tuple[Camera, ...]:
         spots.append((_clear(layout, eye), eye))
     spots.sort(key=lambda s: -s[0])
     eyes = [spots[0][1]]
-    for _, eye in spots[1:]:  # clear ones, apart from each other
+    for _, eye in spots[1:]:
         if len(eyes) < 5 and all(math.dist(eye, e) > 0.3 * w for e in eyes):
             eyes.append(eye)
     return tuple(
@@ -69,7 +69,7 @@ def eye_views(layout: Layout) -> tuple[Camera, ...]:
 
 
 def _clear(layout: Layout, eye: Vec3) -> float:
-    """How far one sees from an eye towards the middle, metres, averaged over a fan of rays; -1 inside something."""
+    """Mean line of sight from an eye towards the middle, metres, over a fan of rays; -1 inside a thing."""
     tall = [t.box for t in layout.things if t.support != "wall"]
     if not tall:
         return _REACH[-1]
