@@ -33,6 +33,8 @@ class Kind:
         size: lowest and highest width x, depth y and height z as sold, metres.
         also: other words for it.
         loosely: words that mean it only if they are the whole name: a "bag" is a backpack, a "sleeping bag" is not.
+        labels: other words that mean it only as the label of a thing, because sentences use them otherwise: "watch".
+        sorts: whether words before its name tell sorts of it apart: a "writing desk" is no "computer desk".
         one: for a collective name ("ceiling beams"), the kind of each single thing.
         like: the kind that it replaces in a room: a room with a queen bed needs no other bed.
         alike: kinds whose names people use for it, and the reverse: a "loveseat" may be called a sofa.
@@ -58,6 +60,8 @@ class Kind:
     size: tuple[Range, Range, Range]
     also: tuple[str, ...] = ()
     loosely: tuple[str, ...] = ()
+    labels: tuple[str, ...] = ()
+    sorts: bool = True
     one: str | None = None
     like: str | None = None
     alike: tuple[str, ...] = ()
@@ -86,7 +90,7 @@ class Kind:
     @property
     def names(self) -> tuple[str, ...]:
         """Every word for it, its own name first."""
-        return (self.name, *self.also, *self.loosely)
+        return (self.name, *self.also, *self.loosely, *self.labels)
 
     @property
     def is_rug(self) -> bool:
@@ -188,7 +192,7 @@ def is_door(label: str) -> bool:
 
 
 def _is_loose(words: Phrase, kind: Kind) -> bool:
-    loose = {words_of(n) for n in kind.loosely}
+    loose = {words_of(n) for n in (*kind.loosely, *kind.labels)}
     return words in loose or any((*w[:-1], singular(w[-1])) == words for w in loose)
 
 
@@ -246,7 +250,7 @@ def same(phrase: Phrase) -> frozenset[Phrase]:
     names = {normalise(n) for n in kind.names if _names_kind(normalise(n), kind)}
     if members is None:  # a word for a family does not mean kinds that are only like the one it names
         names |= {normalise(n) for other in _alike()[kind.name] for n in other.names} - _families().keys()
-    sort = len(phrase) > len(own) and phrase[-len(own) :] == own
+    sort = kind.sorts and len(phrase) > len(own) and phrase[-len(own) :] == own
     return frozenset(found | {n for n in names if not (sort and len(n) > len(own) and n[-len(own) :] == own)})
 
 

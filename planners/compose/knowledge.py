@@ -152,7 +152,7 @@ Table = Mapping[tuple[str, ...], str]
 def thing_words() -> Table:
     """Names of things as tuples of words, the last one singular, and what they name."""
     every = kinds.table().kinds.values()
-    told = {_words(a): k.one or k.name for k in every for a in k.names}
+    told = {_words(a): k.one or k.name for k in every for a in k.names if a not in k.labels}
     told = {w: name for w, name in told.items() if w not in room_words()}  # here a closet is a room, not a wardrobe
     return MappingProxyType({(*w[:-1], singular(w[-1])): name for w, name in told.items()} | told)
 
