@@ -244,9 +244,7 @@ def _pattern_turn(colors: Sample, departures: Tensor, mean: Tensor, asked: Tenso
 
 def _hue_rotation(angle: float) -> Tensor:
     """Rotation of the plane of constant luma by a hue angle (radians, Lab's sense), as a `[3, 3]` map that keeps luma.
-
-    The plane's axes are the display colours in Lab's +a and +b directions from mid grey.
-    """
+    The plane's axes are the display colours in Lab's +a and +b directions from mid grey."""
     grey = torch.tensor([60.0, 0.0, 0.0], dtype=torch.float64)
     toward = lab_to_rgb(grey + torch.eye(3, dtype=torch.float64)[1:]) - lab_to_rgb(grey)
     weights = torch.tensor(LUMA, dtype=torch.float64)

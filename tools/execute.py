@@ -91,11 +91,8 @@ def _resolve(scene: Scene, op: EditOp, context: Context) -> Selection:
 
 
 def _remaining(scene: Scene, selection: Selection) -> Selection:
-    """The selection without Gaussians that were deleted since it was made ("it" after a deletion).
-
-    Raises:
-        AbsentError: none is left.
-    """
+    """The selection without Gaussians that were deleted since it was made ("it" after a deletion). Raises AbsentError
+    if none is left."""
     present = mask_of(scene.cloud, selection.ids)
     left = int(present.sum())
     if left == 0:

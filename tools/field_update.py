@@ -28,7 +28,7 @@ def recount(field: LanguageField | None, cloud: GaussianCloud) -> LanguageField 
     """The table with the counts of `cloud`; an object's count includes its parts."""
     if field is None:
         return None
-    own = _counts(cloud, len(field.groups))
+    own = _counts(cloud.group, field)[: len(field.groups)].tolist()
     total = list(own)
     for group in field.groups:
         if group.parent >= 0:
@@ -36,10 +36,9 @@ def recount(field: LanguageField | None, cloud: GaussianCloud) -> LanguageField 
     return _with_groups(field, {g.id: replace(g, count=total[g.id]) for g in field.groups if g.count != total[g.id]})
 
 
-def _counts(cloud: GaussianCloud, groups: int) -> list[int]:
-    # Row 0 counts the Gaussians of no group.
-    counts = torch.bincount((cloud.group + 1).clamp(min=0), minlength=groups + 1)
-    return [int(n) for n in counts[1 : groups + 1]]
+def _counts(rows: Tensor, field: LanguageField) -> Tensor:
+    """How many of `rows`, the groups of some Gaussians, are each group of the table; those of no group are left out."""
+    return torch.bincount((rows + 1).clamp(min=0), minlength=len(field.groups) + 1)[1:]
 
 
 def with_measures(scene: Scene, ids: Tensor, axes: Mapping[int, Axes] | None = None) -> LanguageField | None:
@@ -74,9 +73,9 @@ def after_move(before: Scene, cloud: GaussianCloud, moved: Sequence[Affine]) -> 
     if field is None:
         return None
     turned: dict[int, Axes] = {}
-    sizes = _counts(before.cloud, len(field.groups))
+    sizes = _counts(before.cloud.group, field).tolist()
     for body in moved:
-        counts = torch.bincount((before.cloud.group[body.source] + 1).clamp(min=0), minlength=len(sizes) + 1)[1:]
+        counts = _counts(before.cloud.group[body.source], field)
         for group in _holding(field, counts):
             leaves = field.leaves(group.id)
             if sum(int(counts[i]) for i in leaves) == sum(sizes[i] for i in leaves):
@@ -95,8 +94,7 @@ def after_removal(before: Scene, cloud: GaussianCloud, removed: Tensor) -> Langu
     field = before.language
     if field is None:
         return None
-    lost = before.cloud.group[mask_of(before.cloud, removed)]
-    counts = torch.bincount((lost + 1).clamp(min=0), minlength=len(field.groups) + 1)[1:]
+    counts = _counts(before.cloud.group[mask_of(before.cloud, removed)], field)
     # A removed part has no rows left, so its object is found through the object's other parts.
     leaves = sorted({leaf for g in _holding(field, counts) for leaf in field.leaves(g.id)})
     affected = torch.tensor(leaves, dtype=torch.int32, device=cloud.device)
@@ -113,7 +111,7 @@ def _holding(field: LanguageField, counts: Tensor) -> list[Group]:
 
 def _holders(field: LanguageField, cloud: GaussianCloud, ids: Tensor) -> list[tuple[Group, Tensor]]:
     """Groups that hold one of the Gaussians `ids`, each with all its rows."""
-    counts = torch.bincount((cloud.group[mask_of(cloud, ids)] + 1).clamp(min=0), minlength=len(field.groups) + 1)[1:]
+    counts = _counts(cloud.group[mask_of(cloud, ids)], field)
     return [(group, rows_in(cloud, field, group.id)) for group in _holding(field, counts)]
 
 

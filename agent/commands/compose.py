@@ -82,7 +82,9 @@ def command(
 
         built = construct(graph, seed=seed, assets=assets, detail=detail)
         seconds |= built.seconds
-        _print_built(built)
+        for note in built.notes:
+            terminal.say(f"note: {note}")
+        terminal.say(f"built {len(built.ids)} things of {len(built.scene.cloud):,} Gaussians")
     with timed(seconds, "write"):
         _write(graph, built, targets)
     seconds["total"] = time.perf_counter() - started
@@ -91,11 +93,8 @@ def command(
 
 
 def _check_paths(targets: _Targets, assets: Path | None) -> None:
-    """Check before the work that all files can be written and the folder of assets exists.
-
-    Raises:
-        UserError: a file would be overwritten, has the wrong suffix or no folder; or there is no folder of assets.
-    """
+    """Check before the work that all files can be written and the folder of assets exists. Raises UserError if a file
+    would be overwritten, has the wrong suffix or no folder; or there is no folder of assets."""
     from ...gaussians.errors import UserError
     from ..output_files import refuse_existing, require_png
 
@@ -165,12 +164,6 @@ def _print_violations(graph: SceneGraph) -> None:
     terminal.say(
         f"check: {len(lines)} things are wrong{more}" if lines else f"check: {_counted(graph)}; nothing is wrong"
     )
-
-
-def _print_built(built: Built) -> None:
-    for note in built.notes:
-        terminal.say(f"note: {note}")
-    terminal.say(f"built {len(built.ids)} things of {len(built.scene.cloud):,} Gaussians")
 
 
 def _write(graph: SceneGraph, built: Built | None, targets: _Targets) -> None:

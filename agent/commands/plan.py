@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from ..options import Batch, Budget, Debug, Encoder, Json, Picture, Planner, View
 from ..terminal.output import read_batch, terminal
-
-if TYPE_CHECKING:
-    from ..session.opening import SessionOptions
 
 Answer = Callable[[str, str | None], dict[str, Any]]  # arguments: the instruction and the previous one
 
@@ -46,7 +44,8 @@ def command(
     With a scene the plan is also run on a copy, so that the answer shows what `edit` would do.
     """
     from ...gaussians.errors import UserError
-    from ..session.opening import SessionOptions
+    from ..session.opening import SessionOptions, open_session
+    from ..session.plan_report import resolved_plan
 
     given = arguments or []
     if len(given) > (1 if batch else 2) or (not given and batch is None):
@@ -60,7 +59,8 @@ def command(
         raise UserError('--resolve needs a scene or a graph: scenewright plan "TEXT" --graph ROOM.json --resolve')
     rows = read_batch(str(batch)) if batch else [{"text": given[-1]}]
     if path is not None:
-        answer = _in_scene(SessionOptions(path, planner, encoder, view, budget=budget, picture=picture))
+        session, _ = open_session(SessionOptions(path, planner, encoder, view, budget=budget, picture=picture))
+        answer: Answer = partial(resolved_plan, session)
     else:
         answer = _without_scene(graph, planner, budget)
     for row in rows:
@@ -84,14 +84,6 @@ def _batch_answer(answer: Answer, row: dict[str, Any]) -> dict[str, Any]:
         return rejected_json(str(error))
 
 
-def _in_scene(options: SessionOptions) -> Answer:
-    from ..session.opening import open_session
-    from ..session.plan_report import resolved_plan
-
-    session, _ = open_session(options)
-    return lambda text, context: resolved_plan(session, text, context)
-
-
 def _without_scene(graph: Path | None, planner: str, budget: str | None) -> Answer:
     """Answers that resolve targets on a graph, or, without one, leave them as queries."""
     from ...planners import load as load_planner
@@ -105,5 +97,4 @@ def _without_scene(graph: Path | None, planner: str, budget: str | None) -> Answ
     from ...planners.rooms.graph import SceneGraph
     from ...planners.rooms.graph_scene import Stage
 
-    stage = Stage.of(SceneGraph.read(graph))
-    return lambda text, context: graph_plan(stage, planner_used, text, context)
+    return partial(graph_plan, Stage.of(SceneGraph.read(graph)), planner_used)

@@ -88,11 +88,8 @@ def command(
 
 
 def _check_options(given: list[str], output: Path, film: bool) -> None:
-    """Check that the given options fit together and fit the output.
-
-    Raises:
-        UserError: they do not; the message names them.
-    """
+    """Check that the given options fit together and fit the output. Raises UserError if they do not; the message names
+    them."""
     from ...gaussians.errors import UserError
 
     which = [option for option in given if option in ("--view", "--orbit", "--cameras", "--path")]
@@ -106,11 +103,8 @@ def _check_options(given: list[str], output: Path, film: bool) -> None:
 
 
 def _check_channels(alpha: bool, depth: bool, output: Path) -> None:
-    """Check that transparency or depth is written to PNGs.
-
-    Raises:
-        UserError: both are requested, or the output format cannot store them.
-    """
+    """Check that transparency or depth is written to PNGs. Raises UserError if both are requested, or the output format
+    cannot store them."""
     from ...gaussians.errors import UserError
 
     if alpha and depth:

@@ -166,10 +166,8 @@ class Demo:
                 targets.things = [t for t in targets.things if t not in turn.about]
 
     def _first_that_fits(self, session: Session, part: ScriptPart, targets: Targets, truth: Ids) -> Turn | None:
-        """The first instruction of a part of the script that has its expected outcome in a dry run.
-
-        An instruction that would select the wrong thing is skipped and added to `passed_over`.
-        """
+        """The first instruction of a part of the script that has its expected outcome in a dry run. An instruction that
+        would select the wrong thing is skipped and added to `passed_over`."""
         mistaken: set[int] = set()
         for turn in itertools.islice(part(targets), MAX_TRIES):
             if mistaken & {t.id for t in turn.about}:

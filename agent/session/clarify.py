@@ -86,11 +86,8 @@ def plan_with_answer(question: Question, answer: str, parse: Callable[[str], Que
 
 
 def _require_choice(question: Question, chosen: Query, answer: str) -> None:
-    """Check that the answer selects only candidates of the question.
-
-    Raises:
-        UserError: the query finds nothing, or something that is not a candidate.
-    """
+    """Check that the answer selects only candidates of the question. Raises UserError if the query finds nothing, or
+    something that is not a candidate."""
     if question.selection.verdict != "ambiguous":
         return
     found = question.resolve(chosen)
@@ -119,11 +116,8 @@ def _choice(
 
 
 def _picked(query: Query, candidate: Candidate) -> Query:
-    """A query for the candidate's group; the words are kept for messages only.
-
-    Raises:
-        UserError: the candidate is a place or a part without a row in the table of groups, so a number cannot pick it.
-    """
+    """A query for the candidate's group; the words are kept for messages only. Raises UserError if the candidate is a
+    place or a part without a row in the table of groups, so a number cannot pick it."""
     if candidate.group < 0:
         raise UserError("that one cannot be picked by number; say where it is ('the left one'), or 'all'")
     return Query(text=query.text, colors=query.colors, size=query.size, groups=(candidate.group,))

@@ -79,9 +79,7 @@ def open_session(options: SessionOptions) -> tuple[Session, bool]:
 
 def _with_saved_field(loaded: Scene, scene: Scene, options: SessionOptions) -> tuple[Scene, str | Encoder]:
     """The scene with its saved field if that was made with this encoder; and the encoder, loaded only if needed.
-
-    `scene` is `loaded` in the frame that the user gave; a field that was made in another frame is not used.
-    """
+    `scene` is `loaded` in the frame that the user gave; a field that was made in another frame is not used."""
     from ...gaussians.language import encoders
     from ...gaussians.language.field.store import load_field, mismatch
 

@@ -98,11 +98,8 @@ def _why(chat: Conversation, text: str) -> None:
 
 
 def _metres(text: str) -> float:
-    """The distance of /grow and /shrink; `STEP` if the text is empty.
-
-    Raises:
-        UserError: the text is not a distance above 0 and up to 100 m.
-    """
+    """The distance of /grow and /shrink; `STEP` if the text is empty. Raises UserError if the text is not a distance
+    above 0 and up to 100 m."""
     try:
         by = float(text.removesuffix("m").strip() or STEP)
     except ValueError as error:

@@ -257,10 +257,8 @@ class Prepared:
 
 
 def _supported(problem: Problem) -> Iterator[Item]:
-    """The items, where a hard wish "on" or "inside" changes the support from the floor to the other item.
-
-    The carrier of a required item becomes required too.
-    """
+    """The items, where a hard wish "on" or "inside" changes the support from the floor to the other item. The carrier
+    of a required item becomes required too."""
     onto = {w.subject: w.objects[0] for w in reversed(problem.wishes) if w.hard and w.name in ("on", "inside")}
     items: dict[int | str, Item] = {}
     for item in problem.items:

@@ -81,12 +81,7 @@ def add_crowding_cost(state: State, body: Body, lattice: Lattice, solids: list[t
 
 
 def use_cost(
-    state: State,
-    lattice: Lattice,
-    member: Member,
-    moving: YawBox,
-    solids: list[tuple[int, YawBox]],
-    frame: YawBox,
+    state: State, lattice: Lattice, member: Member, moving: YawBox, solids: list[tuple[int, YawBox]], frame: YawBox
 ) -> F64:
     """The cost of standing in another thing's use zone, or of having a blocked use zone."""
     cost = np.zeros((len(lattice.xs), len(lattice.ys)))

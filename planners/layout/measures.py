@@ -218,12 +218,7 @@ def _between(one: YawBox, a: YawBox, b: YawBox) -> Measured:
 def walls_gaps(one: YawBox, size: Sequence[float]) -> tuple[Any, Any, Any, Any]:
     """Metres from a footprint to the walls at left, right, front and back of the room."""
     hx, hy = one.half
-    return (
-        one.x - hx + size[0] / 2,
-        size[0] / 2 - one.x - hx,
-        one.y - hy + size[1] / 2,
-        size[1] / 2 - one.y - hy,
-    )
+    return (one.x - hx + size[0] / 2, size[0] / 2 - one.x - hx, one.y - hy + size[1] / 2, size[1] / 2 - one.y - hy)
 
 
 def _wall_of(one: YawBox, size: Sequence[float]) -> int:

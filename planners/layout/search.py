@@ -226,10 +226,8 @@ class Search:
         return bool(failing)
 
     def _raise_soft_urgency(self, state: State) -> bool:
-        """Raise the urgency of things away from their wall, with a blocked use zone or a broken soft wish.
-
-        Returns whether there were any.
-        """
+        """Raise the urgency of things away from their wall, with a blocked use zone or a broken soft wish. Returns
+        whether there were any."""
         imperfect = {*state.away_from_wall(), *state.blocked_use()}
         for row, wish in enumerate(self.prepared.problem.wishes):
             if not wish.hard and not state.holds(row)[0]:

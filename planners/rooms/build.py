@@ -133,11 +133,8 @@ def construct(
 
 
 def _refuse(graph: Drawn, detail: float) -> None:
-    """Refuse a graph that cannot be built, before anything is built.
-
-    Raises:
-        UserError: the detail, the room's size or the number of nodes is out of range.
-    """
+    """Refuse a graph that cannot be built, before anything is built. Raises UserError if the detail, the room's size or
+    the number of nodes is out of range."""
     if not 0.05 <= detail <= 8:
         raise UserError(f"detail must be between 0.05 and 8, got {detail:g}")
     if not all(SMALLEST <= side <= LARGEST for side in graph.room.size):

@@ -88,9 +88,9 @@ class Stage:
             UserError: a colour word is unknown.
         """
         meant = self._read(query)
-        found = resolve(self.scene, meant, self.viewer, encoder=self.encoder, last=last)
+        found = self._resolve(meant, last)
         for other in _otherwise(meant, found.verdict):
-            again = resolve(self.scene, other, self.viewer, encoder=self.encoder, last=last)
+            again = self._resolve(other, last)
             if again.verdict == "found" or (found.verdict, again.verdict) == ("absent", "ambiguous"):
                 return again
         if found.verdict == "absent" and (near := self._beside(meant, last)) is not None:
@@ -100,16 +100,17 @@ class Stage:
             return again if again.verdict != "absent" else found
         return found
 
+    def _resolve(self, query: Query, last: Selection | None) -> Selection:
+        return resolve(self.scene, query, self.viewer, encoder=self.encoder, last=last)
+
     def _beside(self, query: Query, last: Selection | None) -> Selection | None:
         """The result for "next to" between small things less than `_REACH` apart, whatever their size; None if none."""
         beside = [r for r in query.relations if r.name == "next_to"]
         if len(beside) != 1 or query.pick != "one":
             return None
         near = tuple(r.model_copy(update={"name": "nearest_to"}) if r in beside else r for r in query.relations)
-        found = resolve(
-            self.scene, query.model_copy(update={"relations": near}), self.viewer, encoder=self.encoder, last=last
-        )
-        anchor = resolve(self.scene, beside[0].anchors[0], self.viewer, encoder=self.encoder, last=last)
+        found = self._resolve(query.model_copy(update={"relations": near}), last)
+        anchor = self._resolve(beside[0].anchors[0], last)
         if found.verdict != "found" or not anchor.groups or len(found.groups) != 1:
             return None
         gap = min(distance(self.group(found.groups[0]).box, self.group(a).box) for a in anchor.groups)

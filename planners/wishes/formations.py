@@ -61,10 +61,7 @@ def _at_table(room: Room, things: Sequence[Node], table: Node) -> None:
 
 def _find_place(room: Room, goal: Formation, things: Sequence[Node], about: Node | None) -> Slots:
     """The slots of the figure at the best place where it fits; if it fits nowhere, floor is cleared for it first.
-
-    Raises:
-        WishError: there is no room for it even then.
-    """
+    Raises WishError if there is no room for it even then."""
     if found := _shortest_free(room, goal, things, about):
         return found
     reach = max(math.hypot(x, y) for x, y, _ in _slots(goal, things, None, (0.0, 0.0), 0.0))

@@ -77,11 +77,8 @@ def _move(now: Room, there: Node) -> Arrange:
 
 
 def _set_aside(now: Room, waiting: Mapping[Id, Node], known: frozenset[frozenset[Id]], parked: set[Id]) -> Arrange:
-    """Move the smallest waiting thing to a place where it blocks nothing; each thing is set aside only once.
-
-    Raises:
-        WishError: there is no such place.
-    """
+    """Move the smallest waiting thing to a place where it blocks nothing; each thing is set aside only once. Raises
+    WishError if there is no such place."""
     goals = list(waiting.values())
     for id in sorted(set(waiting) - parked, key=lambda i: math.prod(now.nodes[i].size[:2])):
         node = now.nodes[id]

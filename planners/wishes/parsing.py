@@ -210,10 +210,8 @@ def _plain(words: Sequence[str]) -> list[str]:
 
 
 def _refers_back(words: Sequence[str], ops: Sequence[EditOp]) -> bool:
-    """Whether a clause refers to a thing that another clause names ("it", "the red ones").
-
-    Next to a wish, which moves many things, such a reference is ambiguous.
-    """
+    """Whether a clause refers to a thing that another clause names ("it", "the red ones"). Next to a wish, which moves
+    many things, such a reference is ambiguous."""
     nameless = any(query is not None and not query.text for query in (op.query() for op in ops))
     return '"last":true' in ops[0].model_dump_json() or (nameless and bool(_ONES & set(words)))
 

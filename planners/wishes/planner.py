@@ -60,11 +60,8 @@ class WishPlanner:
         return EditPlan(instruction=text, planner=NAME, seconds=time.perf_counter() - started, **told)
 
     def _planned(self, reading: ParsedInstruction, observation: Observation | None) -> dict[str, Any]:
-        """The fields of the plan: operations and reason, or a verdict and reason.
-
-        Raises:
-            WishError: a wish cannot be fulfilled.
-        """
+        """The fields of the plan: operations and reason, or a verdict and reason. Raises WishError if a wish cannot be
+        fulfilled."""
         # Imported here because the solver takes half a second to import and few instructions are wishes.
         from . import achieve
         from .move_order import ordered_moves
@@ -89,11 +86,8 @@ class WishPlanner:
 
 
 def _refuse_worse(before: SceneGraph, after: SceneGraph) -> None:
-    """Raise if the change causes violations (overlaps, things outside the room or in the air) that were not there.
-
-    Raises:
-        WishError: it does.
-    """
+    """Raise WishError if the change causes violations that were not there: overlaps, things outside the room or in the
+    air."""
     from ..rooms.check import check
 
     known = {_key(v) for v in check(before.model_copy(update={"relations": ()})).violations}

@@ -43,11 +43,7 @@ def rearrange(
 
 
 def rearrange_stepwise(
-    room: Room,
-    tries: Sequence[frozenset[Id]],
-    wishes: Sequence[LayoutWish],
-    discs: Sequence[Keepout],
-    complaint: str,
+    room: Room, tries: Sequence[frozenset[Id]], wishes: Sequence[LayoutWish], discs: Sequence[Keepout], complaint: str
 ) -> None:
     """Rearrange with the first set of movable things in `tries` that has a solution and blocks no door.
 
@@ -102,10 +98,8 @@ def _sits(node: Node, table: Node) -> bool:
 
 
 def _yaw_of_thing(room: Room, node: Node) -> float:
-    """The yaw of a thing in degrees, from that of its item in the problem, which may be turned by 90 degrees.
-
-    A thing without a front is turned as little as its footprint allows.
-    """
+    """The yaw of a thing in degrees, from that of its item in the problem, which may be turned by 90 degrees. A thing
+    without a front is turned as little as its footprint allows."""
     was = room.nodes[node.id]
     yaw = wrapped(node.yaw - 90.0) if is_crosswise(was) else node.yaw
     if _has_front(was):

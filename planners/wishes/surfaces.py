@@ -77,18 +77,9 @@ def _is_loose(room: Room, node: Node) -> bool:
 
 def _surfaces(room: Room) -> list[Node]:
     """Furniture that things can be put on, storage before tables, then by size."""
-    found = [n for n in room.nodes.values() if _carries(n) and n.support == "floor"]
-    return sorted(found, key=lambda n: (not _stores(n), -n.size[0] * n.size[1]))
-
-
-def _carries(node: Node) -> bool:
-    kind = kinds.of(node.label)
-    return kind is not None and (kind.top or kind.stores)
-
-
-def _stores(node: Node) -> bool:
-    kind = kinds.of(node.label)
-    return kind is not None and kind.stores
+    known = [(n, kind) for n in room.nodes.values() if n.support == "floor" and (kind := kinds.of(n.label)) is not None]
+    found = [(n, kind.stores) for n, kind in known if kind.top or kind.stores]
+    return [n for n, _ in sorted(found, key=lambda f: (not f[1], -f[0].size[0] * f[0].size[1]))]
 
 
 def _is_used(node: Node) -> bool:
@@ -177,10 +168,8 @@ def _gap(node: Node, table: Node) -> float:
 
 
 def _places(table: Node, seats: Sequence[Node], people: int) -> list[Place] | None:
-    """Places of the plates in the table's frame: in front of the seats, then where there is most room.
-
-    None if they do not fit.
-    """
+    """Places of the plates in the table's frame: in front of the seats, then where there is most room. None if they do
+    not fit."""
     chosen: list[Place] = []
     before = [_before(table, *table.box.local(_middle(n))[0, :2]) for n in seats]
     for options in (before, _rim(table)):

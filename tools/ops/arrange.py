@@ -79,11 +79,8 @@ class Arrange(TargetedOp):
     def _put_down(
         self, before: Scene, after: Scene, body: Body, offset: Array, matrix: Array, context: Context
     ) -> Affine:
-        """The map requested for a body, with the height of its new support.
-
-        Raises:
-            InstructionError: the body had a support and has none at the new position.
-        """
+        """The map requested for a body, with the height of its new support. Raises InstructionError if the body had a
+        support and has none at the new position."""
         now = support_height(after, body, context)
         if now is None and support_height(before, body, context) is not None:
             raise InstructionError(f"nothing there would carry the {body.label or 'thing'}: give another place")

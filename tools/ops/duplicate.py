@@ -32,8 +32,7 @@ class Duplicate(TargetedOp):
 
     model_config = ConfigDict(
         json_schema_extra=either(
-            {"direction": given(), "place": NOT_GIVEN},
-            {"direction": NOT_GIVEN, "distance": NOT_GIVEN},
+            {"direction": given(), "place": NOT_GIVEN}, {"direction": NOT_GIVEN, "distance": NOT_GIVEN}
         )
     )
     example: ClassVar[tuple[str, dict[str, Any]]] = (

@@ -71,11 +71,8 @@ class Exchange(TargetedOp):
         return with_carried(scene, bodies)
 
     def _to(self, scene: Scene, around: Surroundings, one: Body, other: Body) -> Affine:
-        """The map that brings one thing to the other's place.
-
-        Raises:
-            InstructionError: one stands and the other hangs, or there is no room.
-        """
+        """The map that brings one thing to the other's place. Raises InstructionError if one stands and the other
+        hangs, or there is no room."""
         up, hanging = scene.frame.up_vector, [support_height(scene, b, around.context) is None for b in (one, other)]
         if hanging[0] != hanging[1]:
             raise InstructionError("one of them stands and the other hangs: they cannot change places")

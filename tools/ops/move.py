@@ -20,16 +20,7 @@ from ..checks import collision_free, count_matches, moved_as_asked, overlap_note
 from ..cloud_diff import Draft
 from ..field_update import after_move
 from ..operation import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
-from ..placement.bodies import (
-    Array,
-    Body,
-    bodies_of,
-    centimetre,
-    contact_box,
-    groups_of,
-    heading,
-    mask_of_bodies,
-)
+from ..placement.bodies import Array, Body, bodies_of, centimetre, contact_box, groups_of, heading, mask_of_bodies
 from ..placement.overhead import place_above
 from ..placement.place import free_spot
 from ..placement.surroundings import Surroundings

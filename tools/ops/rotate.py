@@ -36,8 +36,7 @@ class Rotate(TargetedOp):
 
     model_config = ConfigDict(
         json_schema_extra=either(
-            {"degrees": given(), "toward": NOT_GIVEN},
-            {"toward": given(), "axis": {"enum": ["up"]}},
+            {"degrees": given(), "toward": NOT_GIVEN}, {"toward": given(), "axis": {"enum": ["up"]}}
         )
     )
     example: ClassVar[tuple[str, dict[str, Any]]] = (

@@ -87,11 +87,8 @@ class Scale(TargetedOp):
         return None if self.axis == "all" else np.array(body.box.axes[_side(body, self.axis, across)])
 
     def _factor(self, scene: Scene, body: Body, across: Array) -> float:
-        """The factor by which this body is scaled.
-
-        Raises:
-            InstructionError: its length would change by more than a factor of a hundred.
-        """
+        """The factor by which this body is scaled. Raises InstructionError if its length would change by more than a
+        factor of a hundred."""
         if self.length is None:
             return self.factor or 1.0
         side, length = self.length

@@ -208,9 +208,7 @@ def beside_region(
 
 def _wanted_side(around: Surroundings, anchor: Body, plan: Array, kind: RelationKind, start: Array | None) -> Array:
     """`[2]` unit vector to the requested side, else to the side the thing is on now, else to the viewer's right.
-
-    "Opposite" a thing whose front is unknown is on the viewer's side of it.
-    """
+    "Opposite" a thing whose front is unknown is on the viewer's side of it."""
     front = front_of(around.scene, anchor) if kind.own_frame else None
     viewer = viewer_stand(around.context.viewer, around.frame.up_vector, 1.0)
     direction = viewer.side(kind.aim or (1.0, 0.0)) if front is None else front

@@ -85,10 +85,7 @@ def embed(
 
 def _vector(track: Track, encoder: Encoder) -> NDArray[np.float32] | None:
     """The vector of a track: that of its masks, else the weighted mean of its labels' text vectors if it has a label.
-
-    Raises:
-        UserError: the vectors of the masks have another width than the encoder's.
-    """
+    Raises UserError if the vectors of the masks have another width than the encoder's."""
     if track.vector is not None:
         if len(track.vector) != encoder.dim:
             raise UserError(

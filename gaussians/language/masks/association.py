@@ -189,10 +189,8 @@ def _table(columns: Sequence[tuple[NDArray[np.int64], F64]], count: int) -> csr_
 
 
 def _join_similar(overlap: F32, union: F32, likeness: F32) -> list[list[int]]:
-    """Join the two most similar tracks until no two reach JOIN_IOU.
-
-    The similarity of tracks is summed over all pairs of their masks, so that one wrong mask cannot chain two objects.
-    """
+    """Join the two most similar tracks until no two reach JOIN_IOU. The similarity of tracks is summed over all pairs
+    of their masks, so that one wrong mask cannot chain two objects."""
     shared, whole = (overlap * likeness).astype(np.float64), union.astype(np.float64)
     members = {i: [i] for i in range(len(shared))}
     version = np.zeros(len(shared), np.int64)

@@ -88,11 +88,7 @@ def _mostly_in(held: dict[int, NDArray[np.bool_]], k: int) -> list[int]:
 
 
 def apply_tracks(
-    surface: Surface,
-    labels: I32,
-    segments: Sequence[Segment],
-    tracks: Tracks,
-    vectors: Sequence[F32 | None],
+    surface: Surface, labels: I32, segments: Sequence[Segment], tracks: Tracks, vectors: Sequence[F32 | None]
 ) -> tuple[I32, list[Segment], I32]:
     """Revise a segmentation by tracks of masks.
 
@@ -197,7 +193,7 @@ def _whole_objects(segments: Sequence[Segment]) -> list[tuple[int, ...]]:
 
 def _object(
     members: NDArray[np.integer], vector: F32 | None, parts: I32, own: int, near: dict[int, set[int]], lab: F64,
-    size: NDArray[np.int64],
+    size: NDArray[np.int64]
 ) -> list[Segment]:  # fmt: skip
     """One object as segment `own`, followed by its parts: those of masks, then patches of one colour of the rest."""
     shown = sorted(set(parts[members].tolist()) - {UNASSIGNED})

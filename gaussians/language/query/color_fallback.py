@@ -186,10 +186,8 @@ def _rows_of_hue(scene: Scene, field: LanguageField, query: Query, owner: int) -
 
 
 def _with_shadows(scene: Scene, rows: NDArray[np.int64], barred: frozenset[int]) -> NDArray[np.int64]:
-    """The rows and the dark Gaussians among them.
-
-    Trained scenes represent folds by coloured Gaussians over nearly black ones, which have no hue of their own.
-    """
+    """The rows and the dark Gaussians among them. Trained scenes represent folds by coloured Gaussians over nearly
+    black ones, which have no hue of their own."""
     cloud = scene.cloud
     chosen = np.zeros(len(cloud), bool)
     chosen[rows] = True
@@ -210,10 +208,8 @@ def _with_shadows(scene: Scene, rows: NDArray[np.int64], barred: frozenset[int])
 def _with_whole_parts(
     scene: Scene, field: LanguageField, query: Query, rows: NDArray[np.int64], barred: frozenset[int]
 ) -> NDArray[np.int64]:
-    """The rows, and each part of the query's colour of which they contain at least PART_TAKEN.
-
-    Single threads and folds of a cloth may be too dark to have its colour; the segmentation has them in its parts.
-    """
+    """The rows, and each part of the query's colour of which they contain at least PART_TAKEN. Single threads and folds
+    of a cloth may be too dark to have its colour; the segmentation has them in its parts."""
     column = scene.cloud.group.numpy()
     held = np.bincount(column[rows] + 1, minlength=len(field.groups) + 1)[1:]
     total = np.bincount(column + 1, minlength=len(field.groups) + 1)[1:]

@@ -58,10 +58,8 @@ def _ids(cloud: GaussianCloud, flags: NDArray[np.bool_]) -> Tensor:
 
 
 def _near(cloud: GaussianCloud, source: NDArray[np.bool_], among: NDArray[np.bool_], by: float) -> NDArray[np.bool_]:
-    """Whether each row `[N]` is in `among` and within `by` of a row of `source`.
-
-    Only rows near the smaller set are searched, by cells: the rest of a large scene costs a comparison of coordinates.
-    """
+    """Whether each row `[N]` is in `among` and within `by` of a row of `source`. Only rows near the smaller set are
+    searched, by cells: the rest of a large scene costs a comparison of coordinates."""
     from scipy.spatial import cKDTree
 
     found = np.zeros(len(cloud), bool)

@@ -45,10 +45,8 @@ def estimate_frame(surface: Surface, cameras: Sequence[Camera], known: Frame) ->
 
 
 def _up_from_cameras(surface: Surface, cameras: Sequence[Camera]) -> F64:
-    """The most layered direction that agrees with the cameras: near their mean up vector, and level right vectors.
-
-    The mean up vector alone leans forward where all cameras look down on the scene from one side.
-    """
+    """The most layered direction that agrees with the cameras: near their mean up vector, and level right vectors. The
+    mean up vector alone leans forward where all cameras look down on the scene from one side."""
     mean = -np.mean([c.world_to_camera[1, :3] for c in cameras], axis=0)
     mean /= max(float(np.linalg.norm(mean)), 1e-12)
     around = np.concatenate([mean[None], _directions()])

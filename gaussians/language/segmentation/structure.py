@@ -122,10 +122,8 @@ def _plane_cells(along: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def _tilt(off: NDArray[np.float64], along: NDArray[np.float64], cell: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Correction of the distance at each point `[M]`: a trimmed linear fit to the medians of the cells.
-
-    Medians of cells keep densely sampled objects on a sparsely sampled wall from pulling the fit towards them.
-    """
+    """Correction of the distance at each point `[M]`: a trimmed linear fit to the medians of the cells. Medians of
+    cells keep densely sampled objects on a sparsely sampled wall from pulling the fit towards them."""
     order = np.lexsort((off, cell))
     starts = np.flatnonzero(np.r_[True, np.diff(cell[order]) > 0])
     middle = order[starts + np.diff(np.r_[starts, len(order)]) // 2]
@@ -153,10 +151,8 @@ def _medians(off: NDArray[np.float64], own: NDArray[np.int32], count: int) -> ND
 
 
 def _broadest_level(middle: NDArray[np.float64], breadth: NDArray[np.int64], tight: float) -> int:
-    """The broadest superpoint at the distance from the plane at which most cells lie.
-
-    The broadest superpoint alone does not decide: one plank of a floor is narrower than the rug on it.
-    """
+    """The broadest superpoint at the distance from the plane at which most cells lie. The broadest superpoint alone
+    does not decide: one plank of a floor is narrower than the rug on it."""
     candidates = [c for c in np.argsort(-breadth, kind="stable")[:MAX_LEVELS] if breadth[c] > 0]
     support = [int(breadth[np.abs(middle - middle[c]) < tight].sum()) for c in candidates]
     best = middle[candidates[int(np.argmax(support))]]

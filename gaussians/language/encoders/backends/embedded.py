@@ -142,7 +142,4 @@ def _resampled(images: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:
 
 
 def _unit(rows: NDArray[np.floating]) -> NDArray[np.float32]:
-    result: NDArray[np.float32] = (rows / np.maximum(np.linalg.norm(rows, axis=1, keepdims=True), 1e-12)).astype(
-        np.float32
-    )
-    return result
+    return np.asarray(rows / np.maximum(np.linalg.norm(rows, axis=1, keepdims=True), 1e-12), dtype=np.float32)

@@ -195,11 +195,8 @@ class Onnx:
 
 
 def _run(session: Any, feeds: dict[str, NDArray[Any]], outputs: Sequence[str]) -> NDArray[np.float32]:
-    """The first of `outputs` that the graph has, `[B, D]`.
-
-    Raises:
-        BackendError: the graph needs another input, has no such output, or fails.
-    """
+    """The first of `outputs` that the graph has, `[B, D]`. Raises BackendError if the graph needs another input, has no
+    such output, or fails."""
     given = {}
     for wanted in session.get_inputs():
         if wanted.name not in feeds:

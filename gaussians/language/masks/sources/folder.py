@@ -106,11 +106,8 @@ def _readers(path: Path) -> dict[str, Reader]:
 
 
 def _sized(camera: Camera, width: int, height: int) -> Camera:
-    """The camera at the size of the masks.
-
-    Raises:
-        UserError: the masks have another aspect ratio than the photograph.
-    """
+    """The camera at the size of the masks. Raises UserError if the masks have another aspect ratio than the
+    photograph."""
     gain = width / camera.width
     if abs(camera.height * gain - height) > MAX_RESIDUAL * max(gain, 1):
         raise UserError(f"masks of {width}x{height} do not fit a photograph of {camera.width}x{camera.height}")
