@@ -49,6 +49,12 @@ def moved_as_asked(before: Scene, after: Scene, moved: tuple[Affine, ...]) -> Ch
     )
 
 
+def placed(outcome: Outcome) -> tuple[Check, ...]:
+    """The checks `supported` and `collision_free` of the bodies that were placed; empty if there are none."""
+    checks = supported(outcome.scene, outcome.moved), collision_free(outcome.scene, outcome.moved)
+    return tuple(c for c in checks if c is not None)
+
+
 def supported(after: Scene, moved: tuple[Affine, ...]) -> Check | None:
     """Gap between the underside of each placed body and its supporting surface; None if nothing was placed."""
     up, gaps, bound = after.frame.up_vector, [], 0.0

@@ -14,7 +14,7 @@ from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import either, nonzero
 from ..carried_objects import carried_note, rows_with_carried, with_carried
-from ..checks import collision_free, count_matches, moved_as_asked, supported
+from ..checks import count_matches, moved_as_asked, placed
 from ..cloud_diff import Draft
 from ..field_update import after_move
 from ..operation import Affine, Context, Metres, Outcome, TargetedOp
@@ -88,6 +88,4 @@ class Arrange(TargetedOp):
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         after = outcome.scene
-        checks = [moved_as_asked(before, after, outcome.moved), count_matches(before, after, outcome)]
-        checks += [c for c in (supported(after, outcome.moved), collision_free(after, outcome.moved)) if c is not None]
-        return tuple(checks)
+        return moved_as_asked(before, after, outcome.moved), count_matches(before, after, outcome), *placed(outcome)

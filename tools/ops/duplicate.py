@@ -13,7 +13,7 @@ from ...gaussians.language.field.measure import solid_points
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
-from ..checks import collision_free, count_matches, moved_as_asked, overlap_notes, supported
+from ..checks import count_matches, moved_as_asked, overlap_notes, placed
 from ..cloud_diff import Draft, selection_of
 from ..new_objects import NewObjects
 from ..operation import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
@@ -102,6 +102,4 @@ class Duplicate(TargetedOp):
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         after = outcome.scene
-        checks = [moved_as_asked(before, after, outcome.moved), count_matches(before, after, outcome)]
-        checks += [c for c in (supported(after, outcome.moved), collision_free(after, outcome.moved)) if c is not None]
-        return tuple(checks)
+        return moved_as_asked(before, after, outcome.moved), count_matches(before, after, outcome), *placed(outcome)

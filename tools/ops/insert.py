@@ -11,7 +11,7 @@ from torch import Tensor
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
-from ..checks import collision_free, count_matches, out_of_view_note, supported
+from ..checks import count_matches, out_of_view_note, placed
 from ..cloud_diff import rows_of
 from ..new_objects import (
     AssetRequest,
@@ -77,8 +77,7 @@ class Insert(EditOp):
         there = len(rows_of(after.cloud, outcome.added))
         checks = [at_least("inserted", there, 1, "Gaussians", f"{there:,} Gaussians of {self.subject()} are there")]
         checks.append(count_matches(before, after, outcome))
-        checks += [c for c in (supported(after, outcome.moved), collision_free(after, outcome.moved)) if c is not None]
-        return tuple(checks)
+        return *checks, *placed(outcome)
 
     def may_change(self, scene: Scene, selection: Selection) -> Tensor:
         return torch.zeros(len(scene.cloud), dtype=torch.bool, device=scene.cloud.device)

@@ -16,7 +16,7 @@ from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
 from ..carried_objects import carried_note, rows_with_carried, with_carried
-from ..checks import collision_free, count_matches, moved_as_asked, overlap_notes, supported
+from ..checks import count_matches, moved_as_asked, overlap_notes, placed
 from ..cloud_diff import Draft
 from ..field_update import after_move
 from ..operation import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
@@ -144,8 +144,7 @@ class Move(TargetedOp):
         checks = [moved_as_asked(before, after, outcome.moved), count_matches(before, after, outcome)]
         if self.distance is not None:
             checks.append(self._distance_kept(before, outcome))
-        checks += [c for c in (supported(after, outcome.moved), collision_free(after, outcome.moved)) if c is not None]
-        return tuple(checks)
+        return *checks, *placed(outcome)
 
     def _distance_kept(self, before: Scene, outcome: Outcome) -> Check:
         """The mean of the centres moved by the given distance."""

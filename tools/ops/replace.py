@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Literal
 
 from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.scene import Scene
-from ..checks import collision_free, count_matches, none_left, supported
+from ..checks import count_matches, none_left, placed
 from ..cloud_diff import selection_of
 from ..new_objects import (
     AssetRequest,
@@ -60,6 +60,4 @@ class Replace(TargetedOp):
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         after = outcome.scene
-        checks = [none_left(after, outcome), count_matches(before, after, outcome)]
-        checks += [c for c in (supported(after, outcome.moved), collision_free(after, outcome.moved)) if c is not None]
-        return tuple(checks)
+        return none_left(after, outcome), count_matches(before, after, outcome), *placed(outcome)

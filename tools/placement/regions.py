@@ -12,6 +12,7 @@ import numpy as np
 
 from ...gaussians.camera import Vec3
 from ...gaussians.errors import InstructionError
+from ...gaussians.language.field.measure import solid_points
 from ...gaussians.world.box import Axes
 from ...gaussians.world.relation_geometry import viewer_stand
 from ...gaussians.world.relations import RelationKind, named
@@ -108,7 +109,7 @@ def _wall_distance(around: Surroundings, p: Array, low: Array, high: Array) -> A
 def _top_regions(
     around: Surroundings, size: Vec3, plan: Array, anchor: Body, relation: str, start: Array | None
 ) -> list[Region]:
-    points = around.points_of(anchor)
+    points = solid_points(around.scene.cloud, anchor.rows)
     local = points @ plan.T
     low, high = np.quantile(local, [0.01, 0.99], axis=0)
     middle = (low + high) / 2
@@ -130,7 +131,7 @@ def _top_regions(
 
 
 def _inner_regions(around: Surroundings, size: Vec3, plan: Array, anchor: Body) -> list[Region]:
-    points = around.points_of(anchor)
+    points = solid_points(around.scene.cloud, anchor.rows)
     local, heights = points @ plan.T, points @ around.up
     half = np.array(size[:2]) / 2
     low, high = local.min(axis=0) + half, local.max(axis=0) - half
@@ -153,7 +154,7 @@ def _inner_regions(around: Surroundings, size: Vec3, plan: Array, anchor: Body) 
 
 
 def _under_region(around: Surroundings, plan: Array, anchor: Body) -> Region:
-    local = around.points_of(anchor) @ plan.T
+    local = solid_points(around.scene.cloud, anchor.rows) @ plan.T
     low, high = np.quantile(local, [0.01, 0.99], axis=0)
     middle = (low + high) / 2
     height, surface = around.base_under(anchor, plan)

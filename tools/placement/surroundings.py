@@ -9,12 +9,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
 from ...gaussians.camera import Vec3
-from ...gaussians.language.field.measure import OPAQUE, solid_points
+from ...gaussians.language.field.measure import solid_points
 from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.box import Axes, Box
 from ..operation import Context
@@ -144,12 +143,6 @@ class Surroundings:
         local = self.solid[near].astype(np.float64)
         level = float(np.median(heights[near]))
         return level, np.column_stack([local @ plan.T, heights[near]])
-
-    def points_of(self, body: Body) -> Array:
-        cloud = self.scene.cloud
-        points = cloud.means[body.rows].to(torch.float64).cpu().numpy()
-        solid = (cloud.opacities[body.rows] >= OPAQUE).cpu().numpy()
-        return points[solid] if solid.any() else points
 
     def tolerance(self, anchor: Body) -> float:
         """Allowed unevenness of a surface: 3 % of its owner's height, between 1 and 4 centimetres."""
