@@ -34,6 +34,7 @@ class Kind:
         also: other words for it.
         loosely: words that mean it only if they are the whole name: a "bag" is a backpack, a "sleeping bag" is not.
         labels: other words that mean it only as the label of a thing, because sentences use them otherwise: "watch".
+        narrower: words that ask for it and mean less than it: a sort ("fern"), or what it holds ("towels").
         sorts: whether words before its name tell sorts of it apart: a "writing desk" is no "computer desk".
         one: for a collective name ("ceiling beams"), the kind of each single thing.
         like: the kind that it replaces in a room: a room with a queen bed needs no other bed.
@@ -61,6 +62,7 @@ class Kind:
     also: tuple[str, ...] = ()
     loosely: tuple[str, ...] = ()
     labels: tuple[str, ...] = ()
+    narrower: tuple[str, ...] = ()
     sorts: bool = True
     one: str | None = None
     like: str | None = None
@@ -90,7 +92,7 @@ class Kind:
     @property
     def names(self) -> tuple[str, ...]:
         """Every word for it, its own name first."""
-        return (self.name, *self.also, *self.loosely, *self.labels)
+        return tuple(dict.fromkeys((self.name, *self.also, *self.loosely, *self.labels, *self.narrower)))
 
     @property
     def is_rug(self) -> bool:
@@ -244,12 +246,13 @@ def same(phrase: Phrase) -> frozenset[Phrase]:
     members = _families().get(phrase)
     found = {phrase} | {word for word, others in _families().items() if others == members}
     kind = _by_phrase().get(phrase)
-    if kind is None or not _names_kind(phrase, kind):
+    if kind is None or phrase in _narrower(kind) or not _names_kind(phrase, kind):
         return frozenset(found)
     own = normalise(kind.name)
     names = {normalise(n) for n in kind.names if _names_kind(normalise(n), kind)}
     if members is None:  # a word for a family does not mean kinds that are only like the one it names
         names |= {normalise(n) for other in _alike()[kind.name] for n in other.names} - _families().keys()
+    names -= _narrower(kind).union(*(_narrower(other) for other in _alike()[kind.name]))
     sort = kind.sorts and len(phrase) > len(own) and phrase[-len(own) :] == own
     return frozenset(found | {n for n in names if not (sort and len(n) > len(own) and n[-len(own) :] == own)})
 
@@ -264,7 +267,20 @@ def _names_kind(phrase: Phrase, kind: Kind) -> bool:
 @cache
 def narrower(phrase: Phrase) -> frozenset[Phrase]:
     """What a word for a family covers, with every synonym; empty for other words."""
-    return frozenset(p for member in _families().get(phrase, ()) for p in same(member))
+    members = _families().get(phrase, ())
+    kinds = (_by_phrase()[member] for member in members if member in _by_phrase())
+    named = frozenset(p for member in members for p in same(member) - whole_labels() | {member})
+    return named.union(*(_narrower(kind) for kind in kinds))
+
+
+def _narrower(kind: Kind) -> frozenset[Phrase]:
+    return frozenset(normalise(n) for n in kind.narrower)
+
+
+@cache
+def whole_labels() -> frozenset[Phrase]:
+    """Words for a kind that name it only where they are the whole label."""
+    return frozenset(normalise(n) for k in table().kinds.values() for n in (*k.loosely, *k.labels))
 
 
 @cache

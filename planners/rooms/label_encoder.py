@@ -175,7 +175,9 @@ def _names(asked: Phrase, label: Phrase) -> float:
     """ALIKE: the label ends with what is asked, holds all of it with its head, or is a synonym of it as a whole. LOOSE:
     it only ends with a synonym ("lamp": ceiling light)."""
     alike = _alike(asked)
-    ends = alike - {asked[-1:]} if len(asked) > 1 else alike  # a square table ends like a round one
+    ends = (
+        alike - kinds.whole_labels() - ({asked[-1:]} if len(asked) > 1 else set())
+    )  # a square table ends like a round one
     best = NOT
     for form in _forms(label):
         if form[-len(asked) :] == asked or form in alike or asked in _alike(form):

@@ -159,6 +159,19 @@ def test_a_word_for_a_family_may_also_name_one_kind(kind: str, word: str) -> Non
     assert agreement("table lamp", ("lamp",))[0] < THRESHOLD  # a lamp may be any of them
 
 
+@pytest.mark.parametrize(
+    ("asked", "label"),
+    [("cactus", "potted fern"), ("herbs", "fern"), ("tomato plants", "potted fern"), ("shelf", "magazine rack"),
+     ("shelves", "shoe rack"), ("towels", "towel rail"), ("flowers", "potted plant")],
+)  # fmt: skip
+def test_one_sort_is_no_other_and_contents_are_no_holder(asked: str, label: str) -> None:
+    assert agreement(asked, (label,))[0] < THRESHOLD
+
+
+def test_a_word_for_a_family_covers_the_sorts_of_its_members() -> None:
+    assert min(agreement("plants", ("fern", "cactus", "apple tree", "rose bush"))) >= THRESHOLD
+
+
 def test_synonyms_are_mutual() -> None:
     assert ("couch",) in same(("sofa",)) and ("sofa",) in same(("couch",))
     assert ("couch",) in narrower(("seat",)) and narrower(("sofa",)) == frozenset()
