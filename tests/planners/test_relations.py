@@ -210,9 +210,9 @@ def test_an_entry_is_all_that_a_relation_takes(tmp_path: Path) -> None:
     shutil.copytree(home, copy, ignore=shutil.ignore_patterns("__pycache__", "benchmarks", "training", "agent"))
     table = copy / "gaussians" / "world" / "relations.py"
     text = table.read_text(encoding="utf-8")
-    mark = "    # Of placements only.\n"
-    assert text.count(mark) == 1
-    table.write_text(text.replace(mark, ENTRY + mark), encoding="utf-8")
+    start = "KINDS: tuple[RelationKind, ...] = (\n"
+    assert text.count(start) == 1
+    table.write_text(text.replace(start, start + ENTRY.lstrip("\n")), encoding="utf-8")
     done = subprocess.run(
         [sys.executable, "-c", PROOF], env={**os.environ, "PYTHONPATH": str(tmp_path)}, cwd=tmp_path,
         capture_output=True, text=True, check=False,
