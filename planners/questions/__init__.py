@@ -1,0 +1,1 @@
+"""Questions about a scene: read from words, answered from boxes, colours and relations."""
