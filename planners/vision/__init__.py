@@ -1,1 +1,1 @@
-"""Questions to vision-language models about rendered pictures, and their replies, which are checked before they count."""
+"""Questions to vision-language models about rendered pictures, and their replies, checked before they count."""

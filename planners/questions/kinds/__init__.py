@@ -1,0 +1,5 @@
+"""The kinds of questions that geometry answers, one module each with a `KIND`, in the order in which they are tried."""
+
+from . import existence
+
+KINDS = (existence.KIND,)

@@ -1,0 +1,276 @@
+"""`Survey`: a scene or scene graph measured once, so that questions are answered from boxes, colours and relations.
+
+All lengths are metres in the frame of the scene graph: z up, the origin at the centre of the floor. The words of a
+question are resolved in the scene itself, with its encoder and its measured colours, or on the stage of a graph.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...gaussians.language.query.query import Query
+from ...gaussians.language.query.selection import Selection
+from ...gaussians.world import kinds, relations
+from ...gaussians.world.box import distance
+from ...gaussians.world.relation_geometry import HOLDS, Stand
+from ...gaussians.world.support import SHELL
+from ...gaussians.world.words import plural
+from ..rooms.graph import SceneGraph
+from ..rooms.graph_scene import Id, Stage
+from ..rooms.node import Node
+
+if TYPE_CHECKING:
+    from ...gaussians.camera import Camera
+    from ...gaussians.language.encoders import Encoder
+    from ...gaussians.language.field.language_field import Group
+    from ...gaussians.scene import Scene
+
+Finder = Callable[[Query], Selection]  # a query to rows of the stage
+
+
+@dataclass(frozen=True, eq=False)
+class Thing:
+    """One thing of a survey, or the floor, a wall or the ceiling.
+
+    Attributes:
+        id: its id in the scene graph; "floor", "wall" or "ceiling" for those without a node.
+        row: its row on the stage.
+        label: what it is, "" if nobody could tell.
+        node: its node; None for a floor, wall or ceiling without one.
+        group: its row of the stage's table, with its box.
+    """
+
+    id: Id
+    row: int
+    label: str
+    node: Node | None
+    group: Group
+
+    @property
+    def color(self) -> str:
+        """Name of its main colour, "" if unknown."""
+        return self.node.color if self.node is not None else ""
+
+    @property
+    def name(self) -> str:
+        """Its label, or "unnamed thing"."""
+        return self.label or "unnamed thing"
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a query means in a survey.
+
+    Attributes:
+        verdict: "found", "ambiguous" or "absent".
+        things: what was found, or the candidates of an ambiguous query; none if it is absent.
+        near: of an absent query the nearest things.
+        reason: one sentence for a person.
+    """
+
+    verdict: str
+    things: tuple[Thing, ...]
+    near: tuple[Thing, ...] = ()
+    reason: str = ""
+
+
+class NotResolved(Exception):  # not an error: asking.py tells it as an answer
+    """A phrase of a question is absent or ambiguous; `found` says which, `query` is the phrase."""
+
+    def __init__(self, query: Query, found: Found) -> None:
+        super().__init__(found.reason)
+        self.query, self.found = query, found
+
+
+@dataclass(frozen=True, eq=False)
+class Survey:
+    """A scene as questions see it.
+
+    Attributes:
+        graph: the scene graph, with the viewer if there is one.
+        stage: the boxes, colours and relations of the graph's nodes.
+        finder: resolves queries to rows of the stage.
+        last: ids that "it" refers to.
+        fronts: ids of the things whose front is known: on the -y side of their box.
+    """
+
+    graph: SceneGraph
+    stage: Stage
+    finder: Finder
+    last: tuple[Id, ...] = ()
+    fronts: frozenset[Id] | None = None
+    _memory: dict[str, Found] = field(default_factory=dict)
+
+    @classmethod
+    def of_graph(cls, graph: SceneGraph, last: Sequence[Id] = ()) -> Survey:
+        """The survey of a written scene graph."""
+        stage = Stage.of(graph)
+        rows = tuple(stage.ids.index(i) for i in last if i in stage.ids)
+        before = stage.find(Query(groups=rows)) if rows else None
+        return cls(graph, stage, lambda query: stage.find(query, before), tuple(last))
+
+    @classmethod
+    def of_scene(cls, scene: Scene, viewer: Camera, encoder: Encoder | None, last: Selection | None = None) -> Survey:
+        """The survey of an embedded scene as `viewer` sees it; "it" refers to `last`.
+
+        Raises:
+            UserError: the scene has no language field, or is larger than a graph may be.
+        """
+        from ...gaussians.language.query.resolve import resolve
+
+        graph = SceneGraph.from_scene(scene, viewer)
+        stage = Stage.of(graph)
+        assert scene.language is not None
+        structure = {g.id: g.label for g in scene.language.groups if g.level == "structure"}
+        rows = {id: row for row, id in reversed(list(enumerate(stage.ids)))}
+
+        def find(query: Query) -> Selection:
+            found = resolve(scene, query, viewer, encoder=encoder, last=last)
+            return _on_stage(found, rows, structure)
+
+        return cls(graph, stage, find, last.groups if last is not None else ())
+
+    # -- things -----------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def things(self) -> tuple[Thing, ...]:
+        """Everything with a node, in the order of the graph."""
+        return tuple(self.at(row) for row in range(len(self.graph.nodes)))
+
+    def at(self, row: int) -> Thing:
+        """The thing at a row of the stage."""
+        node = self.graph.nodes[row] if row < len(self.graph.nodes) else None
+        group = self.stage.group(row)
+        return Thing(self.stage.ids[row], row, node.label if node else group.label, node, group)
+
+    def thing(self, id: Id) -> Thing:
+        """The thing with this id of the graph."""
+        return self.at(self.stage.ids.index(id))
+
+    def find(self, query: Query) -> Found:
+        """What a query means here, whatever the verdict."""
+        key = query.model_dump_json(exclude_defaults=True)
+        if key not in self._memory:
+            found = self.finder(query)
+            rows = tuple(dict.fromkeys(c.group for c in found.candidates if c.group >= 0))
+            things = found.groups if found.verdict == "found" else rows if found.verdict == "ambiguous" else ()
+            near = rows[:3] if found.verdict == "absent" else ()
+            self._memory[key] = Found(
+                found.verdict, tuple(map(self.at, things)), tuple(map(self.at, near)), self.stage.told(found.reason)
+            )
+        return self._memory[key]
+
+    def all_of(self, query: Query) -> tuple[Thing, ...]:
+        """Everything that a query describes, however many are meant; none if it is absent."""
+        found = self.find(
+            query.model_copy(update={"pick": "all", "count": None}) if query.pick in ("one", "any") else query
+        )
+        return found.things if found.verdict == "found" else ()
+
+    def one(self, query: Query) -> Thing:
+        """The one thing that a query describes.
+
+        Raises:
+            NotResolved: it is absent, or there are several.
+        """
+        found = self.find(query)
+        if found.verdict != "found" or not found.things:
+            raise NotResolved(query, found)
+        if len({t.id for t in found.things}) > 1 and not self._is_shell(found.things):
+            raise NotResolved(query, Found("ambiguous", found.things, reason=found.reason))
+        return found.things[0]
+
+    def some(self, query: Query) -> tuple[Thing, ...]:
+        """The things that a query describes, at least one.
+
+        Raises:
+            NotResolved: it is absent or ambiguous.
+        """
+        found = self.find(query)
+        if found.verdict != "found" or not found.things:
+            raise NotResolved(query, found)
+        return found.things
+
+    @staticmethod
+    def _is_shell(things: Iterable[Thing]) -> bool:
+        return all(t.label in SHELL for t in things)
+
+    # -- geometry ---------------------------------------------------------------------------------------------------
+
+    @property
+    def stand(self) -> Stand:
+        """The viewer's frame of reference."""
+        return self.stage.stand
+
+    def holds(self, relation: str, thing: Thing, anchors: Sequence[Thing], stand: Stand | None = None) -> bool:
+        """Whether a relation holds between a thing and its anchors, in the viewer's frame unless another is given."""
+        return relations.score(relation, thing.group, [a.group for a in anchors], stand or self.stand) >= HOLDS
+
+    @staticmethod
+    def gap(a: Thing, b: Thing) -> float:
+        """Metres between the surfaces of two boxes; 0 where they touch."""
+        return max(distance(a.group.box, b.group.box), 0.0)
+
+    @staticmethod
+    def between_centers(a: Thing, b: Thing) -> float:
+        """Metres between the centres of two boxes."""
+        return float(np.linalg.norm(np.array(a.group.box.center) - np.array(b.group.box.center)))
+
+    def has_front(self, thing: Thing) -> bool:
+        """Whether it is known which side of a thing is its front."""
+        if self.fronts is not None:
+            return thing.id in self.fronts
+        kind = kinds.of(thing.label)
+        return kind is not None and (kind.front or kind.seats > 0)
+
+    # -- words ------------------------------------------------------------------------------------------------------
+
+    def named(self, thing: Thing) -> str:
+        """A definite description that tells a thing from the others as far as label and colour do: "the red chair"."""
+        if not thing.label:
+            return f"the unnamed thing ({thing.id})"
+        alike = [t for t in self.things if t.label == thing.label]
+        if len(alike) <= 1:
+            return f"the {thing.label}"
+        if thing.color and sum(t.color == thing.color for t in alike) == 1:
+            return f"the {thing.color} {thing.label}"
+        return f"the {thing.label} ({thing.id})"
+
+    @staticmethod
+    def counted(things: Sequence[Thing]) -> str:
+        """Things by label with their numbers: "2 chairs, a lamp and 3 unnamed things"."""
+        labels: dict[str, int] = {}
+        for t in things:
+            labels[t.name] = labels.get(t.name, 0) + 1
+        return listed([f"{n} {plural(name)}" if n > 1 else with_article(name) for name, n in labels.items()])
+
+
+def listed(items: Sequence[str]) -> str:
+    """Items as one enumeration: "a, b and c"; "nothing" if there are none."""
+    if not items:
+        return "nothing"
+    return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} and {items[-1]}"
+
+
+def with_article(noun: str) -> str:
+    """A noun with "a" or "an"; plurals stay as they are."""
+    if noun.endswith("s") and plural(noun) == noun:
+        return noun
+    return f"{'an' if noun[:1] in 'aeiou' else 'a'} {noun}"
+
+
+def _on_stage(found: Selection, rows: dict[Id, int], structure: dict[int, str]) -> Selection:
+    """A selection of a scene with the rows of the stage in place of group ids; groups without a row are left out."""
+
+    def row(group: int) -> int:
+        return rows.get(group, rows.get(structure.get(group, ""), -1))
+
+    groups = tuple(dict.fromkeys(r for g in found.groups if (r := row(g)) >= 0))
+    candidates = tuple(replace(c, group=row(c.group)) for c in found.candidates)
+    verdict = "absent" if found.verdict == "found" and not groups else found.verdict
+    return replace(found, verdict=verdict, groups=groups, candidates=candidates)
