@@ -18,7 +18,7 @@ from ..gaussians.errors import ScenewrightError
 from .terminal.output import error_json, terminal
 
 VERBS = (
-    "demo", "info", "embed", "select", "plan", "schema", "check", "compose", "edit", "chat", "render", "convert",
+    "demo", "info", "embed", "select", "ask", "plan", "schema", "check", "compose", "edit", "chat", "render", "convert",
     "fit", "bench", "doctor",
 )  # fmt: skip
 

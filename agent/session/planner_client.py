@@ -112,6 +112,16 @@ class PlannerClient:
         self.last = self._planner.plan(text, previous=previous, observation=self._observation)
         return self.last
 
+    def reads_as_question(self, text: str) -> bool | None:
+        """Whether the grammar takes a text for a question: no if it plans an edit, None if it cannot tell."""
+        from ...planners.cascade import without_model
+        from ...planners.grammar.tagging.non_edits import QUESTION
+
+        plan = without_model(self._planner).plan(text, observation=self._observation)
+        if plan.ok or plan.verdict == "unsafe":
+            return False
+        return True if plan.verdict == "not_an_edit" and QUESTION in plan.reason else None
+
     def noun_phrase(self, text: str) -> Query | None:
         """A short noun phrase as a query, without asking the model of a cascade; None if it cannot be read."""
         from ...planners.cascade import without_model

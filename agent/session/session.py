@@ -20,6 +20,7 @@ from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ...gaussians.timing import timed
 from . import log as session_log
+from .asker import Asker
 from .clarify import Question, plan_with_answer
 from .history import History, State
 from .observation import graph_of, picture_of
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
     from ...gaussians.language.query.explain import Explanation
     from ...planners.budget import Budget
     from ...planners.plan import EditPlan, Planner, Usage
+    from ...planners.questions.answer import Answer
+    from ...planners.questions.survey import Survey
     from ...planners.rooms.graph import SceneGraph
     from ...tools.operation import Context
 
@@ -88,6 +91,7 @@ class Session:
         # The planner comes first, so that an unknown name creates no log file.
         self._planner = PlannerClient(planner, self, budget, pictures, self._progress)
         self._encoder = encoder
+        self._asker = Asker()
         self._viewer = viewer
         self._seed = seed
         self.pixel_checks = pixel_checks
@@ -313,6 +317,41 @@ class Session:
             found = self._context(None).resolve(scene, about)
             last = found if found.verdict == "found" else None
         self._history.amend(replace(self._history.present, last=last, context=text or ""))
+
+    # -- questions --------------------------------------------------------------------------------------------------
+
+    def ask(self, text: str) -> Answer:
+        """The answer to a question about the scene; "it" then refers to what the answer is about.
+
+        Geometry answers what boxes, colours and relations decide. A question that it cannot answer has the answer None,
+        and the text says why. The scene does not change, but may become embedded.
+
+        Raises:
+            UserError: the question is too long, or the scene is larger than a graph may be.
+        """
+        from ...planners.questions.asking import answer
+        from ...planners.questions.topic import topic
+
+        survey = self.survey()
+        given = answer(text, survey)
+        if groups := tuple(id for id in topic(given, survey) if isinstance(id, int)):
+            found = self._context(None).resolve(self.scene, Query(groups=groups[:256]))
+            self._history.amend(replace(self._history.present, last=found))
+        return given
+
+    def is_question(self, text: str) -> bool:
+        """Whether a text is a question rather than an instruction; an order in polite words is an instruction."""
+        reading = self._planner.reads_as_question(text)
+        if reading is not None:
+            return reading
+        from ...planners.questions.reading.words import asks
+
+        return asks(text)
+
+    def survey(self) -> Survey:
+        """The scene as questions see it: boxes, colours and relations of its things; measured once for each scene."""
+        self.embed()
+        return self._asker.survey(self.scene, self.viewer, self.encoder, self.last)
 
     def replay(self, log: str | Path, *, session: int = -1, skip_failed: bool = False) -> list[Replayed]:
         """Carry out the edits of a logged session on this scene.

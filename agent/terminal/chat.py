@@ -1,7 +1,7 @@
 """The chat: passes each line to the session or to a slash command, and shows the result.
 
-A line is a command (`slash_commands.py`), an answer to an open question, or an instruction. Lines come from
-`input_lines.py`.
+A line is a command (`slash_commands.py`), an answer to an open question, a question about the scene, or an
+instruction. Lines come from `input_lines.py`.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class Chat:
             self.terminal.say("the edited scene was not saved")
 
     def say(self, line: str) -> None:
-        """Handle one line: a command, an answer to an open question, or an instruction. Errors become one sentence."""
+        """Handle one line: a command, an answer, a question or an instruction. Errors become one sentence."""
         self._previous_plan = self.session.planned
         try:
             with self.terminal.interruptible():
@@ -105,13 +105,24 @@ class Chat:
             try:
                 result = self.session.answer(text)
             except UserError:
+                if self.session.is_question(text):
+                    self._question(text)  # the open question stays open
+                    return
                 plan = self.session.plan(text)
                 if not plan.ops:
                     raise  # neither an answer nor an instruction: the question stays open
                 result = self.session.apply(plan, planned_in=plan.seconds)  # closes the question
+        elif undo_or_redo(text) is None and self.session.is_question(text):
+            self._question(text)
+            return
         else:
             result = self.session.do(text)
         self.show_result(result)
+
+    def _question(self, text: str) -> None:
+        """Answer a question about the scene."""
+        answer = self.session.ask(text)
+        self.tell(answer.text, answer.to_json(), "default" if answer.answer is not None else "yellow")
 
     def show_result(self, result: Result) -> None:
         """Print the result and, on an interactive terminal, a picture."""
@@ -166,7 +177,7 @@ class Chat:
     def _greet(self) -> None:
         path, count = self.session.scene.path, len(self.session.scene.cloud)
         self.terminal.say(
-            f"{path.name if path else 'scene'}: {count:,} Gaussians. Say what to change; /help lists more."
+            f"{path.name if path else 'scene'}: {count:,} Gaussians. Say what to change, or ask; /help lists more."
         )
         self.show_picture()
 

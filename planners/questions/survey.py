@@ -109,10 +109,17 @@ class Survey:
     @classmethod
     def of_graph(cls, graph: SceneGraph, last: Sequence[Id] = ()) -> Survey:
         """The survey of a written scene graph."""
-        stage = Stage.of(graph)
+        return cls._on(Stage.of(graph), last)
+
+    @classmethod
+    def _on(cls, stage: Stage, last: Sequence[Id]) -> Survey:
         rows = tuple(stage.ids.index(i) for i in last if i in stage.ids)
         before = stage.find(Query(groups=rows)) if rows else None
-        return cls(graph, stage, lambda query: stage.find(query, before), tuple(last))
+        return cls(stage.graph, stage, lambda query: stage.find(query, before), tuple(last))
+
+    def remembering(self, ids: Sequence[Id]) -> Survey:
+        """The survey of the same written graph in which "it" refers to these ids."""
+        return self._on(self.stage, ids)
 
     @classmethod
     def of_scene(cls, scene: Scene, viewer: Camera, encoder: Encoder | None, last: Selection | None = None) -> Survey:

@@ -13,6 +13,7 @@ from .tags import Clause
 from .words import Word, bag
 
 CHAT = "this asks for nothing"
+QUESTION = "this is a question, not an edit"
 FORBIDDEN = "it says what not to do, and asks for no change"
 STATEMENT = "this is a statement, not an edit"
 _JUDGING = bag("looks look seems seem feels sounds works good great nice fine better perfect lovely")
@@ -35,7 +36,7 @@ def refuse_non_edit(clause: Clause, sentence: Sequence[Word], mark: str) -> None
         raise Refusal(FORBIDDEN, "not", verdict="not_an_edit")
     asked = clause.tags[1] if clause.verb == "SELECT" and len(clause.tags) > 1 else None
     if asked and asked.type != "EVERYTHING" and asked.words[0].text in lexicon.QUESTION:
-        raise Refusal("this is a question, not an edit", clause.tags[1].text, verdict="not_an_edit")
+        raise Refusal(QUESTION, clause.tags[1].text, verdict="not_an_edit")
     if clause.verb or clause.unsupported:
         return
     texts = [w.text for w in sentence if w.text != ","]
@@ -49,7 +50,7 @@ def refuse_non_edit(clause: Clause, sentence: Sequence[Word], mark: str) -> None
     if texts[:3] == ["do", "the", "same"] or any(t.type == "SHOULD" for t in clause.tags):
         return
     if first in lexicon.QUESTION or first in lexicon.ASKING or mark == "?":
-        raise Refusal("this is a question, not an edit", first, verdict="not_an_edit")
+        raise Refusal(QUESTION, first, verdict="not_an_edit")
     own = [w.text for t in clause.tags for w in t.words]
     judges = own[:1] in (["that"], ["this"], ["it"], ["looks"]) and bool(_JUDGING & set(own))
     if first in lexicon.STATEMENT or judges or _BEING & set(texts):

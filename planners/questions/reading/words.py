@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 
 from ....gaussians.errors import UserError
-from ...grammar.tagging.words import clean, split
+from ...grammar.tagging.words import bag, clean, split
 
 MAX_CHARS = 1000
 
@@ -31,6 +31,10 @@ _ASKING = re.compile(
     r"can not tell|do not know|forgot|need to find out)"
     r"|^(?:what i want to know is|the question is|my question is)"
     r"|^(?:is it (?:true|right|correct)|am i (?:right|correct))(?: in (?:thinking|saying|assuming))?(?: that)?"
+)
+_FIRST_WORDS = bag(
+    "what which where who whose when why how is are was were does do did can could has have will would should whether "
+    "list name count describe measure any"
 )
 _KEPT = {"list", "name", "count", "describe", "measure", "show me", "give me", "name me", "see"}
 _CLOSERS = re.compile(
@@ -59,6 +63,12 @@ def plain_words(text: str) -> tuple[str, ...]:
     said = " ".join(w.text for w in split(clean(text)) if w.text not in (".", "?", "!", ";", ":"))
     said = f" {said} ".replace(" , ", " , ").strip(" ,")
     return tuple(_stripped(said).split())
+
+
+def asks(text: str) -> bool:
+    """Whether a text that is no edit is a question: by its first word or its question mark."""
+    words = plain_words(text)
+    return bool(words) and (text.rstrip().endswith("?") or words[0] in _FIRST_WORDS)
 
 
 def _stripped(said: str) -> str:

@@ -1,0 +1,38 @@
+"""Answers questions about a session's scene: from geometry, and from a vision-language model where one is named."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ...gaussians.camera import Camera
+    from ...gaussians.language.encoders import Encoder
+    from ...gaussians.language.query.selection import Selection
+    from ...gaussians.scene import Scene
+    from ...planners.questions.survey import Survey
+
+
+@dataclass
+class Asker:
+    """Keeps the survey of the present scene, so that only the first question after an edit measures it."""
+
+    _survey: Survey | None = field(default=None, init=False)
+    _of: tuple[object, ...] = field(default=(), init=False)
+
+    def survey(self, scene: Scene, viewer: Camera, encoder: Encoder | None, last: Selection | None) -> Survey:
+        """The survey of an embedded scene; "it" refers to `last`.
+
+        Raises:
+            UserError: the scene is larger than a scene graph may be.
+        """
+        from ...planners.questions.survey import Survey
+
+        of = (scene.cloud, scene.language, viewer, last)
+        if (
+            self._survey is None
+            or len(self._of) != len(of)
+            or any(a is not b for a, b in zip(self._of, of, strict=True))
+        ):
+            self._survey, self._of = Survey.of_scene(scene, viewer, encoder, last), of
+        return self._survey
