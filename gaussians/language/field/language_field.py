@@ -18,6 +18,7 @@ from ...errors import BackendError
 from ...world.box import Box, Boxes
 
 Level = Literal["object", "part", "structure"]
+NamedBy = Literal["", "sight", "caption"]
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,8 @@ class Group:
         count: number of its Gaussians.
         views: number of the views that see it.
         confidence: share of its Gaussians that are surface points, in [0, 1]; the others joined it by distance.
+        named_by: who gave it its name later: "sight" (a vision model that was asked which thing a phrase means) or
+            "caption" (one that named all things); "" for names by the encoder or the masks.
     """
 
     id: int
@@ -47,6 +50,7 @@ class Group:
     count: int
     views: int
     confidence: float
+    named_by: NamedBy = ""
 
 
 @dataclass(frozen=True, eq=False)

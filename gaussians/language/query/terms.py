@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ...camera import Vec3
 from ...color import name_of
 from ...errors import BackendError
-from ...world import relations
+from ...world import kinds, relations
 from ...world.box import Boxes
 from ...world.relation_geometry import HOLDS, Stand
 from ...world.words import normalise
@@ -164,7 +164,8 @@ def is_name(text: str) -> bool:
 def name_scores(field: LanguageField, encoder: Encoder | None, text: str, metres_per_unit: float | None) -> F64:
     """Probability `[G]` that each group is a `text`, cached per phrase and field.
 
-    A group with a label but without an embedding (inserted under another encoder) scores 1 or 0 by its label.
+    A group with a label but without an embedding (inserted under another encoder) scores 1 or 0 by its label. One that
+    was given its name scores 1 by that name, and 0 by the name of another kind.
 
     Raises:
         BackendError: there is no encoder, or it is not that of the field.
@@ -182,9 +183,18 @@ def name_scores(field: LanguageField, encoder: Encoder | None, text: str, metres
             g.label_score >= OWN_COLOR and (g.label in meant or label_matches(g.label, text)) for g in field.groups
         ]
         known = np.array(named, dtype=bool)
+        given = np.array([bool(g.named_by) for g in field.groups], dtype=bool)
+        other = np.array([bool(g.named_by) and _another_kind(g.label, text) for g in field.groups], dtype=bool)
         _limit_cache(field)
-        field.answers[key] = np.where(unseen, known.astype(np.float64), sure)
+        by_name = unseen | (given & known) | other
+        field.answers[key] = np.where(by_name, known.astype(np.float64), sure)
     return field.answers[key]
+
+
+def _another_kind(label: str, text: str) -> bool:
+    """Whether a label and a phrase name two different kinds of things."""
+    named, asked = kinds.of(label), kinds.of(text)
+    return named is not None and asked is not None and named is not asked
 
 
 def label_matches(label: str, text: str) -> bool:

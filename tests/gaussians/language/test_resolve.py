@@ -21,6 +21,7 @@ from scenewright.gaussians.language.encoders import Encoder
 from scenewright.gaussians.language.encoders.calibration import Calibration
 from scenewright.gaussians.language.encoders.vocabulary import Vocabulary
 from scenewright.gaussians.language.field.language_field import Group, LanguageField, Level
+from scenewright.gaussians.language.field.naming import joined, with_names
 from scenewright.gaussians.language.query.query import Picks, Query, Relation
 from scenewright.gaussians.language.query.resolve import resolve
 from scenewright.gaussians.language.query.selection import Selection
@@ -559,3 +560,43 @@ def test_resolving_changes_neither_scene_nor_order() -> None:
     once, again = ask(named("chair", pick="all")), ask(named("chair", pick="all"))
     assert SCENE.cloud.digest() == before
     assert torch.equal(once.ids, again.ids) and once.candidates == again.candidates
+
+
+# -- names that were given ---------------------------------------------------------------------------------------------
+
+
+def test_a_given_name_finds_what_the_encoder_does_not_recognise() -> None:
+    given = with_names(SCENE, {BIKE: "bicycle"}, "sight")
+    assert ask(named("bicycle")).verdict == "absent"
+    assert found(named("bicycle"), BIKE, scene=given)
+    assert ask(named("sofa"), given).groups == (SOFA,)
+
+
+def test_a_given_name_outweighs_the_encoder() -> None:
+    given = with_names(SCENE, {VASE: "lamp", LAMP: "vase"}, "sight")
+    assert found(named("lamp"), VASE, scene=given) and found(named("vase"), LAMP, scene=given)
+
+
+def test_a_word_that_no_encoder_knows_can_be_given() -> None:
+    assert found(named("gizmo"), VASE, scene=with_names(SCENE, {VASE: "purple gizmo"}, "caption"))
+
+
+def test_pieces_that_are_joined_are_one_thing_with_all_its_parts() -> None:
+    scene, whole = joined(SCENE, [LAMP, VASE], "kettle", "sight")
+    answer = ask(named("kettle"), scene)
+    assert answer.groups == (whole,)
+    assert answer.ids.tolist() == ids_of(SCENE, LAMP, VASE)
+    assert ask(named("vase"), scene).verdict == "absent"
+    assert scene.language is not None and scene.language.groups[whole].count == 3 * EACH
+    assert torch.equal(scene.cloud.group, SCENE.cloud.group)
+
+
+def test_one_piece_alone_keeps_its_row() -> None:
+    scene, whole = joined(SCENE, [VASE], "kettle", "sight")
+    assert whole == VASE and found(named("kettle"), VASE, scene=scene)
+
+
+@pytest.mark.parametrize("groups", [[], [999], [-1]])
+def test_groups_that_are_not_there_cannot_be_joined(groups: list[int]) -> None:
+    with pytest.raises(UserError):
+        joined(SCENE, groups, "kettle", "sight")
