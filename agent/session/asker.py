@@ -28,11 +28,7 @@ class Asker:
         """
         from ...planners.questions.survey import Survey
 
-        of = (scene.cloud, scene.language, viewer, last)
-        if (
-            self._survey is None
-            or len(self._of) != len(of)
-            or any(a is not b for a, b in zip(self._of, of, strict=True))
-        ):
-            self._survey, self._of = Survey.of_scene(scene, viewer, encoder, last), of
-        return self._survey
+        of = (scene.cloud, scene.language, viewer)
+        if self._survey is None or not all(a is b for a, b in zip(self._of, of, strict=True)):
+            self._survey, self._of = Survey.of_scene(scene, viewer, encoder), of
+        return self._survey.in_scene(scene, viewer, encoder, last)

@@ -63,10 +63,10 @@ def facing_of(
 
 def _away_from_back(cloud: GaussianCloud, rows: NDArray[np.int64], group: Group) -> F64 | None:
     """The direction opposite to the offset of the upper part; None where that offset is small."""
-    taken = cloud[torch.from_numpy(rows[:: max(1, len(rows) // _SAMPLE)])]
-    extents = taken.scales.double().sort(dim=1).values
-    weight: F64 = (extents[:, 1] * extents[:, 2] * taken.opacities).cpu().numpy()
-    points: F64 = taken.means.double().cpu().numpy()
+    taken = torch.from_numpy(np.ascontiguousarray(rows[:: max(1, len(rows) // _SAMPLE)])).to(cloud.device)
+    extents = cloud.scales.index_select(0, taken).double().sort(dim=1).values
+    weight: F64 = (extents[:, 1] * extents[:, 2] * cloud.opacities.index_select(0, taken)).cpu().numpy()
+    points: F64 = cloud.means.index_select(0, taken).double().cpu().numpy()
     place = group.box.local(points) / np.maximum(np.array(group.box.size) / 2, 1e-9)
     upper, lower = place[:, 2] > UPPER, place[:, 2] < LOWER
     if not weight[upper].sum() > 0 or not weight[lower].sum() > 0:

@@ -115,7 +115,12 @@ class Survey:
     def _on(cls, stage: Stage, last: Sequence[Id]) -> Survey:
         rows = tuple(stage.ids.index(i) for i in last if i in stage.ids)
         before = stage.find(Query(groups=rows)) if rows else None
-        return cls(stage.graph, stage, lambda query: stage.find(query, before), tuple(last))
+
+        def find(query: Query) -> Selection:
+            found = stage.find(query, before)
+            return replace(found, reason=stage.told(found.reason))
+
+        return cls(stage.graph, stage, find, tuple(last))
 
     def remembering(self, ids: Sequence[Id]) -> Survey:
         """The survey of the same written graph in which "it" refers to these ids."""
@@ -128,19 +133,26 @@ class Survey:
         Raises:
             UserError: the scene has no language field, or is larger than a graph may be.
         """
-        from ...gaussians.language.query.resolve import resolve
+        survey = cls._measured(Stage.of(SceneGraph.from_scene(scene, viewer)))
+        return survey.in_scene(scene, viewer, encoder, last)
 
-        graph = SceneGraph.from_scene(scene, viewer)
-        stage = Stage.of(graph)
+    @classmethod
+    def _measured(cls, stage: Stage) -> Survey:
+        return cls(stage.graph, stage, stage.find)
+
+    def in_scene(self, scene: Scene, viewer: Camera, encoder: Encoder | None, last: Selection | None) -> Survey:
+        """The same things, with words resolved in the scene that they were read from, where "it" refers to `last`."""
+        from ...gaussians.language.query.resolve import Resolver
+
         assert scene.language is not None
         structure = {g.id: g.label for g in scene.language.groups if g.level == "structure"}
-        rows = {id: row for row, id in reversed(list(enumerate(stage.ids)))}
+        rows = {id: row for row, id in reversed(list(enumerate(self.stage.ids)))}
+        resolver = Resolver(scene, viewer, encoder, last)
 
         def find(query: Query) -> Selection:
-            found = resolve(scene, query, viewer, encoder=encoder, last=last)
-            return _on_stage(found, rows, structure)
+            return _on_stage(resolver.select(query), rows, structure)
 
-        return cls(graph, stage, find, last.groups if last is not None else ())
+        return replace(self, finder=find, last=last.groups if last is not None else (), _memory={})
 
     # -- things -----------------------------------------------------------------------------------------------------
 
@@ -168,7 +180,7 @@ class Survey:
             things = found.groups if found.verdict == "found" else rows if found.verdict == "ambiguous" else ()
             near = rows[:3] if found.verdict == "absent" else ()
             self._memory[key] = Found(
-                found.verdict, tuple(map(self.at, things)), tuple(map(self.at, near)), self.stage.told(found.reason)
+                found.verdict, tuple(map(self.at, things)), tuple(map(self.at, near)), found.reason
             )
         return self._memory[key]
 
