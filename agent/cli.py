@@ -19,7 +19,7 @@ from .terminal.output import error_json, terminal
 
 VERBS = (
     "demo", "info", "embed", "select", "ask", "plan", "schema", "check", "compose", "edit", "chat", "render", "convert",
-    "fit", "bench", "doctor",
+    "mcp", "fit", "bench", "doctor",
 )  # fmt: skip
 
 app = typer.Typer(

@@ -95,7 +95,7 @@ def _named(scene: Scene, view: str) -> Camera:
     for camera in scene.cameras:
         if camera.name and camera.name.lower() == view.lower():
             return camera
-    if view.isdigit() and int(view) < len(scene.cameras):
+    if view.isascii() and view.isdigit() and len(view) < 10 and int(view) < len(scene.cameras):
         return scene.cameras[int(view)]
     known = ", ".join(f"{i} {c.name}".strip() for i, c in enumerate(scene.cameras[:12])) or "none"
     raise UserError(f"no camera {view!r} in this scene (cameras: {known}); or give 'x,y,z:x,y,z' as eye and target")

@@ -11,7 +11,7 @@ from ..terminal.output import terminal
 if TYPE_CHECKING:
     from ...gaussians.language.encoders import Encoder
     from ...gaussians.scene import Frame, Scene
-    from .session import Session
+    from .session import Progress, Session
 
 
 @dataclass(frozen=True)
@@ -44,8 +44,11 @@ class SessionOptions:
     picture: bool = False
 
 
-def open_session(options: SessionOptions) -> tuple[Session, bool]:
+def open_session(options: SessionOptions, progress: Progress | None = None) -> tuple[Session, bool]:
     """A session on the scene, and whether it has a saved language field.
+
+    Args:
+        progress: called during long work; by default it is drawn on the terminal.
 
     Raises:
         FileError: the scene cannot be read.
@@ -66,7 +69,7 @@ def open_session(options: SessionOptions) -> tuple[Session, bool]:
         planner=options.planner,
         encoder=encoder,
         log=options.log,
-        progress=terminal.progress,
+        progress=progress or terminal.progress,
         seed=options.seed,
         pixel_checks=options.pixel_checks,
         budget=options.budget,

@@ -1,0 +1,92 @@
+"""Tools that look at the scene: pictures, the scene graph, and the check of it."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Annotated
+
+from pydantic import Field
+
+from ...planners.model.prompt.labels import sanitize
+from . import views
+from .limits import Arguments
+from .reply import MAX_SIDE, Reply
+from .tool import READS, Desk, Tool, tool
+
+_VIEWER = ("", "viewer")
+_MOST_VIOLATIONS = 100
+
+
+class RenderArguments(Arguments):
+    """Arguments of `render`."""
+
+    camera: Annotated[str, Field(max_length=200)] = "viewer"
+    """"viewer" (whose left and right are meant), "auto", a camera of the scene by name or number, or eye and target in
+    world coordinates as "x,y,z:x,y,z"."""
+    width: Annotated[int, Field(ge=32, le=MAX_SIDE, strict=True)] = 768
+    """Pixels."""
+    height: Annotated[int, Field(ge=32, le=MAX_SIDE, strict=True)] | None = None
+    """Pixels; by default as the camera's own aspect wants."""
+
+
+class GraphArguments(Arguments):
+    """Arguments of `graph`."""
+
+    most: Annotated[int, Field(ge=1, le=2000, strict=True)] = 200
+    """At most so many things, the largest first."""
+
+
+class NoArguments(Arguments):
+    """For tools that take no arguments."""
+
+
+def _render(desk: Desk, said: RenderArguments) -> Reply:
+    """Return a picture of the scene from a camera, as an image."""
+    from ..pictures.named_cameras import choose_view
+
+    session = desk.session
+    chosen = session.viewer if said.camera.lower() in _VIEWER else choose_view(session.scene, said.camera)
+    drawn, camera = views.of_camera(session, chosen, said.width, said.height)
+    eye, forward = ([round(float(v), 4) for v in vector] for vector in (camera.position, camera.forward))
+    known = [c.name or str(number) for number, c in enumerate(session.scene.cameras[:100])]
+    data = {
+        "verdict": "ok", "width": camera.width, "height": camera.height, "eye": eye, "forward": forward,
+        "up": list(session.scene.frame.up), "cameras": known,
+    }  # fmt: skip
+    name = camera.name or said.camera or "viewer"
+    return Reply(f"the scene from {name}, {camera.width}x{camera.height} pixels", data, (drawn,))
+
+
+def _graph(desk: Desk, said: GraphArguments) -> Reply:
+    """Return the scene graph: every thing with its id, name, colour, size, position and what it stands on. Metres, z
+    up, origin at the centre of the floor; ids are the `groups` of a query."""
+    graph = sanitize(desk.session.graph())
+    ranked = sorted(graph.nodes, key=lambda n: (-n.size[0] * n.size[1] * n.size[2], str(n.id)))
+    kept = {n.id for n in ranked[: said.most]}
+    data = graph.model_dump(mode="json", exclude_none=True)
+    data["nodes"] = [n for n in data["nodes"] if n["id"] in kept]
+    data["relations"] = [r for r in data["relations"] if r[0] in kept and r[2] in kept]
+    left_out = len(graph.nodes) - len(data["nodes"])
+    more = f"; {left_out} smaller ones were left out" if left_out else ""
+    text = f"{len(data['nodes'])} things in a room of {' x '.join(f'{s:.2f}' for s in graph.room.size)} m{more}"
+    return Reply(text, {"verdict": "ok", "graph": data, "left_out": left_out})
+
+
+def _check(desk: Desk, said: NoArguments) -> Reply:
+    """Check the scene: collisions, things outside the room or without support, and what cannot be reached on foot."""
+    from ...planners.rooms.check import check, sentences
+
+    report = check(sanitize(desk.session.graph()))
+    shown = report.violations[:_MOST_VIOLATIONS]
+    lines = sentences(shown) or ["nothing is wrong"]
+    data = {**asdict(report), "verdict": "ok", "ok": report.ok, "violations": [asdict(v) for v in shown]}
+    return Reply("\n".join(lines), {**data, "count": len(report.violations)})
+
+
+def looking_tools() -> list[Tool]:
+    """The tools of this module."""
+    return [
+        tool("render", RenderArguments, READS, _render),
+        tool("graph", GraphArguments, READS, _graph),
+        tool("check", NoArguments, READS, _check),
+    ]

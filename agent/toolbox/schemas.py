@@ -1,0 +1,50 @@
+"""JSON Schemas of arguments as tool servers and function-calling interfaces take them: small, an object at the root.
+
+Some interfaces refuse `anyOf` at the root of a function's schema, and all schemas are sent to a model with every
+request. What is left out here is still checked when the function is called.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel
+
+Keywords = dict[str, Any]  # of JSON Schema
+_NULL = {"type": "null"}
+
+
+def argument_schema(model: type[BaseModel], without: tuple[str, ...] = ()) -> Keywords:
+    """The schema of a model's fields, without titles, null alternatives, and combinations of fields.
+
+    Args:
+        without: fields to leave out.
+    """
+    made = model.model_json_schema()
+    for name in without:
+        made["properties"].pop(name, None)
+    made["required"] = [name for name in made.get("required", []) if name not in without]
+    made.pop("description", None)
+    return _compact(made)
+
+
+def _compact(schema: Keywords) -> Keywords:
+    """A schema of an object or value, and all schemas in it, made smaller; what it allows is the same or more."""
+    kept = {k: v for k, v in schema.items() if k != "title" and not (k == "default" and v in (None, [], ()))}
+    if "properties" in kept:
+        kept.pop("anyOf", None)  # combinations of fields; the model's validators check them
+        kept["properties"] = {name: _compact(field) for name, field in kept["properties"].items()}
+    if "$defs" in kept:
+        kept["$defs"] = {name: _compact(definition) for name, definition in kept["$defs"].items()}
+    if isinstance(kept.get("items"), dict):
+        kept["items"] = _compact(kept["items"])
+    if "prefixItems" in kept:
+        kept["prefixItems"] = [_compact(item) for item in kept["prefixItems"]]
+    if "anyOf" in kept:
+        options = [_compact(option) for option in kept.pop("anyOf") if option != _NULL]
+        kept = (
+            {**kept, **options[0]} if len(options) == 1 and not kept.keys() & options[0] else {**kept, "anyOf": options}
+        )
+    if not kept.get("required", True):
+        del kept["required"]
+    return kept
