@@ -76,10 +76,13 @@ class Camera:
         eye_, target_, up_ = (np.asarray(v, dtype=np.float64) for v in (eye, target, up))
         if not 0 < fov_y < 180:
             raise UserError(f"Camera.look_at: the field of view must lie between 0 and 180 degrees, got {fov_y}")
-        forward = target_ - eye_
-        length = float(np.linalg.norm(forward))
+        with np.errstate(over="ignore", invalid="ignore"):
+            forward = target_ - eye_
+            length = float(np.linalg.norm(forward))
         if not length > 0:
             raise UserError("Camera.look_at: eye and target are the same point")
+        if not math.isfinite(length):
+            raise UserError("Camera.look_at: eye and target are too far apart")
         forward /= length
         right = np.cross(forward, up_)
         if np.linalg.norm(right) < 1e-6 * max(1.0, float(np.linalg.norm(up_))):

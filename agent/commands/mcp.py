@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from ..options import Budget, Debug, Encoder, Log, Picture, Planner, Scale, SceneFile, Seed, Size, Up, View
+from ..options import Budget, Debug, Encoder, Json, Log, Picture, Planner, Scale, SceneFile, Seed, Size, Up, View
 
 
 def command(
@@ -25,9 +25,13 @@ def command(
     size: Size = None,
     log: Log = None,
     seed: Seed = 0,
+    as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Serve a scene to MCP clients (stdin and stdout): they edit, look, ask, undo, and save to the scene's folder."""
+    """Serve a scene to MCP clients: they edit, look, ask, undo, and save to the folder of the scene.
+
+    By default over stdin and stdout, as most clients start a server. --json: with --http, print the address as JSON.
+    """
     from ...gaussians.errors import BackendError
     from ..session.opening import SessionOptions, open_session
     from ..toolbox.progress import Progress

@@ -94,9 +94,8 @@ class SceneServer(MCPServer[Any]):
         self, name: str, arguments: dict[str, Any], context: Context[Any, Any] | None = None
     ) -> CallToolResult | InputRequiredResult:
         """Call a tool. A call that is ambiguous asks the user, if the client can; else the candidates are told."""
-        asked = context.request_state if context is not None else None
-        if context is not None and asked:
-            return await self._resumed(context, asked)
+        if context is not None and context.request_state:
+            return await self._resumed(context, context.request_state)
         reply = await self._call(name, arguments, context)
         if context is None or not _can_ask(context):
             return _result(reply)
@@ -104,23 +103,25 @@ class SceneServer(MCPServer[Any]):
             if not reply.asks:
                 break
             if _asks_in_results(context):
-                return _question(reply)
+                return _question(reply, 1)
             answer = await context.session.elicit_form(reply.text, _FORM, related_request_id=context.request_id)
             if (said := _said(answer)) is None:
                 break
             reply = await self._call("answer", {"answer": said, "question": reply.asks}, context)
         return _result(reply)
 
-    async def _resumed(self, context: Context[Any, Any], asked: str) -> CallToolResult | InputRequiredResult:
+    async def _resumed(self, context: Context[Any, Any], state: str) -> CallToolResult | InputRequiredResult:
         """A call whose question was answered by the user: it goes on with the answer."""
+        count, _, asked = state.partition(" ")  # as `_question` wrote it; the protocol's layer below seals it
         answer = (context.input_responses or {}).get(_ANSWER)
         said = _said(answer) if isinstance(answer, ElicitResult) else None
         if said is None:
-            state = await anyio.to_thread.run_sync(self._toolbox.state)
+            scene = await anyio.to_thread.run_sync(self._toolbox.state)
             reason = "the user did not choose; nothing was changed"
-            return _result(Reply(reason, {"verdict": "ambiguous", "reason": reason, "scene": state}, failed=True))
+            return _result(Reply(reason, {"verdict": "ambiguous", "reason": reason, "scene": scene}, failed=True))
         reply = await self._call("answer", {"answer": said, "question": asked}, context)
-        return _question(reply) if reply.asks else _result(reply)
+        again = reply.asks and int(count) < _ASKED_AT_MOST
+        return _question(reply, int(count) + 1) if again else _result(reply)
 
     async def _call(self, name: str, arguments: dict[str, Any], context: Context[Any, Any] | None) -> Reply:
         report = partial(_report, context) if context is not None else None
@@ -161,10 +162,10 @@ def _result(reply: Reply) -> CallToolResult:
     return CallToolResult(content=[*texts, *images], structured_content=json.loads(data), is_error=reply.failed)
 
 
-def _question(reply: Reply) -> InputRequiredResult:
-    """The question that a reply leaves open, for a client that calls again with the answer."""
+def _question(reply: Reply, count: int) -> InputRequiredResult:
+    """The question that a reply leaves open, the `count`-th of a call; the client calls again with the answer."""
     request = ElicitRequest(params=ElicitRequestFormParams(message=reply.text, requested_schema=_FORM))
-    return InputRequiredResult(input_requests={_ANSWER: request}, request_state=reply.asks)
+    return InputRequiredResult(input_requests={_ANSWER: request}, request_state=f"{count} {reply.asks}")
 
 
 def _can_ask(context: Context[Any, Any]) -> bool:

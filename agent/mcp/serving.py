@@ -39,7 +39,10 @@ def serve_http(server: SceneServer, port: int) -> None:
     port = listening.getsockname()[1]
     app = server.streamable_http_app(host=HOST, transport_security=local_only(port))
     config = uvicorn.Config(app, log_config=None, access_log=False, lifespan="on", timeout_graceful_shutdown=2)
-    terminal.say(f"MCP server: http://{HOST}:{port}/mcp (Ctrl-C stops it)")
+    url = f"http://{HOST}:{port}/mcp"
+    if terminal.as_json:
+        terminal.row({"url": url})
+    terminal.say(f"MCP server: {url} (Ctrl-C stops it)")
     with listening:
         anyio.run(lambda: uvicorn.Server(config).serve(sockets=[listening]))
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import unicodedata
 from collections.abc import Mapping
 from typing import Any
@@ -62,7 +61,7 @@ def _check_scalar(value: object) -> int:
     if isinstance(value, bool) or value is None:
         return 0
     if isinstance(value, int | float):
-        if not math.isfinite(value) or abs(value) > MAX_NUMBER:
+        if not abs(value) <= MAX_NUMBER:  # also false of NaN
             raise ArgumentError("a number is not finite or is larger than 2^53")
         return 0
     raise ArgumentError(f"a value is of type {type(value).__name__}, which JSON does not have")

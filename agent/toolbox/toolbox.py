@@ -59,7 +59,7 @@ class Toolbox:
         listed = [*instruction_tools(), *looking_tools(), *saving, *operation_tools()]
         self.tools: dict[str, Tool] = {t.name: t for t in listed}
         self._progress = progress or Progress()
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
         self._digests: weakref.WeakKeyDictionary[GaussianCloud, str] = weakref.WeakKeyDictionary()
         self._asked: tuple[Question | None, int] = (None, 0)
 
@@ -89,12 +89,10 @@ class Toolbox:
 
     def state(self) -> dict[str, Any]:
         """The present state of the scene, as in every reply."""
-        scene = self.session.scene
-        return {
-            "digest": self._digest(scene.cloud),
-            "gaussians": len(scene.cloud),
-            "undo": min(len(self.session.done), DEPTH),
-        }
+        with self._lock:
+            cloud = self.session.scene.cloud
+            undo = min(len(self.session.done), DEPTH)
+            return {"digest": self._digest(cloud), "gaussians": len(cloud), "undo": undo}
 
     def _run(self, name: str, arguments: Any) -> Reply:
         asked_before = self.session.question
