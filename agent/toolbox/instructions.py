@@ -11,11 +11,10 @@ from ...gaussians.language.query.query import Query
 from ..session.history import DEPTH
 from ..session.plan_report import selection_json
 from . import views
-from .limits import MAX_TEXT, Arguments
+from .limits import Arguments, Text
 from .reply import Reply, edited, numbered_candidates, png
 from .tool import READS, Desk, Hints, Tool, tool
 
-Text = Annotated[str, Field(min_length=1, max_length=MAX_TEXT)]
 Picture = Annotated[bool, Field(strict=True, description="Also return a picture of the scene afterwards.")]
 
 
@@ -42,7 +41,7 @@ class AnswerArguments(Arguments):
 class SelectArguments(Arguments):
     """Arguments of `select`."""
 
-    target: Annotated[str, Field(min_length=1, max_length=MAX_TEXT)] | Query
+    target: Text | Query
     """What to select: words ("the chair next to the window") or a query."""
     picture: Annotated[bool, Field(strict=True)] = False
     """Also return a picture: the selection highlighted, or the candidates numbered."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, Field, ValidationError
 
 from ...gaussians.errors import UserError
 
@@ -15,6 +15,8 @@ MAX_TOTAL = 65_536  # characters of all strings of a call
 MAX_VALUES = 4096  # values in a call
 MAX_DEPTH = 40  # a query with relations nested eight deep has 33 levels
 MAX_NUMBER = 2**53  # a larger integer is not exact in JSON
+
+Text = Annotated[str, Field(min_length=1, max_length=MAX_TEXT)]
 
 
 class ArgumentError(UserError):

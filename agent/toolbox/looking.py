@@ -1,4 +1,4 @@
-"""Tools that look at the scene: pictures, the scene graph, and the check of it."""
+"""Tools that look at the scene: pictures, answers to questions, the scene graph, and the check of it."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from pydantic import Field
 
 from ...planners.model.prompt.labels import sanitize
 from . import views
-from .limits import Arguments
-from .reply import MAX_SIDE, Reply
+from .limits import Arguments, Text
+from .reply import MAX_SIDE, Reply, png
 from .tool import READS, Desk, Tool, tool
 
 _VIEWER = ("", "viewer")
@@ -36,6 +36,15 @@ class GraphArguments(Arguments):
     """At most so many things, the largest first."""
 
 
+class AskArguments(Arguments):
+    """Arguments of `ask`."""
+
+    question: Text
+    """A question in words: "how far is the sofa from the window?", "what is on the desk?"."""
+    picture: Annotated[bool, Field(strict=True)] = False
+    """Also return a picture in which what the answer is about is highlighted."""
+
+
 class NoArguments(Arguments):
     """For tools that take no arguments."""
 
@@ -55,6 +64,20 @@ def _render(desk: Desk, said: RenderArguments) -> Reply:
     }  # fmt: skip
     name = camera.name or said.camera or "viewer"
     return Reply(f"the scene from {name}, {camera.width}x{camera.height} pixels", data, (drawn,))
+
+
+def _ask(desk: Desk, said: AskArguments) -> Reply:
+    """Answer a question about the scene: what is there, how many, how large, how far, where, what fits, which way. The
+    scene is not changed; "it" then means what the answer is about. An answer of null says that nothing here tells."""
+    from ..pictures.scene_pictures import spotlight
+
+    session = desk.session
+    answer = session.ask(said.question)
+    about = session.last if answer.evidence.ids else None
+    pictures: tuple[bytes, ...] = ()
+    if said.picture and about is not None:
+        pictures = (png(spotlight(session.scene, views.sized(session.viewer, views.WIDTH), about)),)
+    return Reply(answer.text, {"verdict": "ok", **answer.to_json()}, pictures)
 
 
 def _graph(desk: Desk, said: GraphArguments) -> Reply:
@@ -87,6 +110,7 @@ def looking_tools() -> list[Tool]:
     """The tools of this module."""
     return [
         tool("render", RenderArguments, READS, _render),
+        tool("ask", AskArguments, READS, _ask),
         tool("graph", GraphArguments, READS, _graph),
         tool("check", NoArguments, READS, _check),
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 from collections.abc import Callable
 from typing import Any
@@ -32,7 +33,7 @@ def _tool(name: str, op: type[EditOp]) -> Tool:
     example = json.dumps({k: v for k, v in data.items() if k != "op"}, ensure_ascii=False)
     schema = argument_schema(op, without=("op",))
     schema["properties"] = {**schema["properties"], "picture": PICTURE}
-    described = f'{(op.__doc__ or "").strip()}\n\nExample: "{words}" is {example}'
+    described = f'{inspect.cleandoc(op.__doc__ or "")}\n\nExample: "{words}" is {example}'
     return Tool(name, described, schema, _runs(name), Hints(False, name in _REMOVES, name in _ABSOLUTE))
 
 

@@ -36,6 +36,10 @@ class Toolbox:
     Gaussians, how many instructions can be undone, and a digest that is equal only for scenes whose Gaussians are equal
     bit for bit.
 
+        toolbox = Toolbox(session, folder="scenes")
+        functions = toolbox.definitions()  # into the request to a language model
+        reply = toolbox.call("recolor", {"target": {"text": "sofa"}, "color": "red"})  # as it asked for
+
     Args:
         session: the session.
         folder: the only folder that `save` writes to; without one there is no `save`.

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .agent.session.result import Result
     from .agent.session.session import Session
+    from .agent.toolbox.toolbox import Toolbox
     from .gaussians.assets import Asset, Room, furnish, kinds, make
     from .gaussians.camera import Camera, Render
     from .gaussians.cloud import GaussianCloud
@@ -48,6 +49,7 @@ os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 _HOME = {
     "Session": ".agent.session.session",
     "Result": ".agent.session.result",
+    "Toolbox": ".agent.toolbox.toolbox",
     "load": ".gaussians.files",
     "save": ".gaussians.files",
     "render": ".gaussians.render",
@@ -106,6 +108,7 @@ __all__ = [
     "ScenewrightError",
     "Selection",
     "Session",
+    "Toolbox",
     "UserError",
     "compose",
     "embed",

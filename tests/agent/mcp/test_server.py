@@ -149,7 +149,7 @@ def test_tools_are_listed_with_schemas_and_hints(toolbox: Toolbox) -> None:
     listed = {tool.name: tool for tool in talk(toolbox, work)}
     assert set(listed) == set(toolbox.tools)
     reading = {name for name, tool in listed.items() if tool.annotations.read_only_hint}
-    assert {"render", "graph", "check", "select"} <= reading
+    assert {"render", "ask", "graph", "check", "select"} <= reading
     assert not reading & {"do", "answer", "undo", "redo", "save", "move", "insert", "delete"}
     assert {n for n in ("delete", "isolate", "replace", "do", "save") if listed[n].annotations.destructive_hint} == {
         "delete", "isolate", "replace", "do", "save"
@@ -229,6 +229,7 @@ def hostile_calls(toolbox: Toolbox, seed: int = 11) -> list[tuple[str, Any]]:
     calls += [("arrange", {"target": GREEN, "x": x}) for x in (float("nan"), 1e300, "far", [1])]
     calls += [("select", {"target": t, "picture": True}) for t in TEXTS]
     calls += [("undo", {"steps": s}) for s in (0, -1, 10**9, "1", None)]
+    calls += [("ask", {"question": v, "picture": True}) for v in VALUES]
     calls += [("redo", {"steps": "1; rm -rf"}), ("graph", {"most": -1}), ("check", {"path": "/etc/passwd"})]
     return calls
 

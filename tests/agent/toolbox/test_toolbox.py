@@ -136,6 +136,16 @@ def test_questions_are_not_edits_and_are_sent_to_ask(toolbox: Toolbox) -> None:
     assert reply.data["verdict"] == "not_an_edit" and "`ask`" in reply.text
 
 
+def test_questions_are_answered_and_it_then_means_what_they_are_about(toolbox: Toolbox) -> None:
+    before = toolbox.state()
+    reply = toolbox.call("ask", {"question": "is there a green thing?", "picture": True})
+    told = toolbox.session.ask("is there a green thing?")
+    assert reply.data == {"verdict": "ok", **told.to_json(), "scene": before} and reply.text == told.text
+    assert reply.data["answer"] == "yes" and reply.data["evidence"]["ids"] == [1] and len(reply.pictures) == 1
+    assert toolbox.call("do", {"instruction": "delete it"}).data["receipts"][0]["selection"]["groups"] == [1]
+    assert toolbox.call("ask", {"question": "who owns this place?"}).data["answer"] is None
+
+
 def test_select_finds_by_words_and_by_query_and_is_no_step(toolbox: Toolbox) -> None:
     by_words = toolbox.call("select", {"target": "the green thing", "picture": True})
     assert by_words.data["verdict"] == "found" and by_words.data["groups"] == [1] and len(by_words.pictures) == 1
