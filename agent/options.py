@@ -60,7 +60,7 @@ Budget = Annotated[
     str | None,
     typer.Option(
         "--budget", metavar="LIMITS",
-        help="Limit for language models: seconds per instruction, dollars per session: '20s', '0.05usd' or both.",
+        help="Limit for models: seconds per instruction, dollars per session, views and tokens per question: '20s,0.05usd,8views'.",
     ),
 ]  # fmt: skip
 Picture = Annotated[

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 from ..gaussians.errors import BackendError, ScenewrightError, UserError
 from .plan import EditPlan, NoPlanError, Observation, Planner, Usage
@@ -15,9 +16,10 @@ from .plan import EditPlan, NoPlanError, Observation, Planner, Usage
 Progress = Callable[[str, float], None]  # called with the stage in words and the share done in [0, 1]
 
 SECONDS = 60.0  # default limit on waiting for a model
-_MAXIMUM = {"seconds": 86_400.0, "dollars": 1e6}
+_MAXIMUM = {"seconds": 86_400.0, "dollars": 1e6, "views": 1000.0, "tokens": 1e9}
+_WHOLE = ("views", "tokens")  # counts
 _PART = re.compile(
-    r"(?P<dollar>\$)?\s*(?P<number>\d+(?:\.\d*)?|\.\d+)\s*(?P<unit>s|sec|secs|seconds?|usd|dollars?)?", re.IGNORECASE
+    r"(?P<dollar>\$)?\s*(?P<number>\d+(?:\.\d*)?|\.\d+)\s*(?P<unit>s|sec|secs|seconds?|usd|dollars?|views?|tokens?)?", re.IGNORECASE
 )
 
 
@@ -34,31 +36,43 @@ class Budget:
             they see for the first time does not count.
         dollars: what one session may spend; None sets no limit. It is checked before each instruction, so the last
             instruction may exceed it. Models without a known price (own servers, local models) cost nothing here.
+        views: pictures that a vision model is shown for one question; None leaves it to the question.
+        tokens: what one question may cost, prompts and answers together; checked before each request. None sets no
+            limit.
     """
 
     seconds: float = SECONDS
     dollars: float | None = None
+    views: int | None = None
+    tokens: int | None = None
 
     @classmethod
     def parse(cls, text: str) -> Budget:
-        """Parse "20s", "0.05usd" or "$0.05", or both: "20s,0.05usd".
+        """Parse any of "20s", "0.05usd" or "$0.05", "8views" and "20000tokens", with commas in between.
 
         Raises:
             UserError: the text is not a budget.
         """
-        said: dict[str, float] = {}
+        said: dict[str, Any] = {}
         for part in text.split(","):
             found = _PART.fullmatch(part.strip())
             unit = (found["unit"] or "").lower() if found else ""
-            name = "dollars" if found and (found["dollar"] or unit.startswith(("u", "d"))) else "seconds"
+            name = _measured(unit) if unit else "dollars"
             clear = found is not None and bool(found["dollar"]) != bool(unit) and name not in said
-            if not clear or found is None or not 0 < float(found["number"]) <= _MAXIMUM[name]:
+            number = float(found["number"]) if found else 0.0
+            if not clear or not 0 < number <= _MAXIMUM[name] or (name in _WHOLE and number != int(number)):
                 raise UserError(
-                    f"{text!r} is not a budget; write seconds for an instruction, dollars for the session or both, "
-                    "above zero: 20s or 0.05usd or 20s,0.05usd (to ask no model at all: --planner grammar)"
+                    f"{text!r} is not a budget; write seconds for an instruction, dollars for the session, views or "
+                    "tokens for a question, or several, above zero: 20s or 0.05usd or 20s,0.05usd,8views,20000tokens "
+                    "(to ask no model at all: --planner grammar)"
                 )
-            said[name] = float(found["number"])
+            said[name] = int(number) if name in _WHOLE else number
         return cls(**said)
+
+
+def _measured(unit: str) -> str:
+    """The field of a budget that a unit measures."""
+    return {"u": "dollars", "d": "dollars", "v": "views", "t": "tokens"}.get(unit[0], "seconds")
 
 
 class Ledger:

@@ -13,11 +13,18 @@ OnText = Callable[[str], None]  # called with each piece of the answer as it is 
 
 @dataclass(frozen=True)
 class Message:
-    """One turn of a conversation: role, text, and at most one image (PNG)."""
+    """One turn of a conversation.
+
+    Attributes:
+        role: who speaks.
+        text: what is said.
+        pictures: PNG, JPEG or WebP, of any size; a back end scales them down to what its model reads. Only users show
+            pictures. In front of several, a back end writes "Picture 1:" and so on, so that the text can name them.
+    """
 
     role: Literal["system", "user", "assistant"]
     text: str
-    picture: bytes | None = None
+    pictures: tuple[bytes, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -47,6 +47,23 @@ def test_a_budget_in_words(text: str, seconds: float | None, dollars: float | No
         assert Budget.parse(text) == Budget(seconds, dollars)
 
 
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("8views", Budget(views=8)), ("1 view", Budget(views=1)), ("20000tokens", Budget(tokens=20_000)),
+        ("20s,0.05usd,8views,20000tokens", Budget(20, 0.05, 8, 20_000)), ("3 Tokens , $1", Budget(dollars=1, tokens=3)),
+        ("0views", None), ("1.5views", None), ("2views,3views", None), ("$8views", None), ("9999views", None),
+        ("2.5tokens", None), ("-1tokens", None), ("views", None), ("8v", None),
+    ],
+)  # fmt: skip
+def test_views_and_tokens_are_counts_of_a_question(text: str, wanted: Budget | None) -> None:
+    if wanted is None:
+        with pytest.raises(UserError, match="tokens for a question"):
+            Budget.parse(text)
+    else:
+        assert Budget.parse(text) == wanted
+
+
 @given(st.text(max_size=30))
 def test_any_text_is_a_budget_or_a_user_error(text: str) -> None:
     try:

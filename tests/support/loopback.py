@@ -6,6 +6,8 @@ request, the last of them repeated; a turn is a `Turn`, or a function from the r
 
 from __future__ import annotations
 
+import base64
+import io
 import json
 import ssl
 import threading
@@ -15,6 +17,17 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any, ClassVar
+
+import numpy as np
+from PIL import Image
+
+
+def png(width: int, height: int, seed: int = 0) -> bytes:
+    """A picture of noise, so that no two seeds give the same bytes."""
+    out = io.BytesIO()
+    noise = np.random.default_rng(seed).integers(0, 256, (height, width, 3), dtype=np.uint8)
+    Image.fromarray(noise).save(out, "PNG")
+    return out.getvalue()
 
 
 @dataclass(frozen=True)
@@ -180,9 +193,11 @@ class OpenAI:
         return body.get("response_format", {}).get("json_schema", {}).get("schema")
 
     @staticmethod
-    def picture(body: dict[str, Any]) -> str:
-        (part,) = (p for p in body["messages"][-1]["content"] if p["type"] == "image_url")
-        return part["image_url"]["url"].removeprefix("data:image/png;base64,")
+    def pictures(body: dict[str, Any]) -> list[bytes]:
+        """The pictures of the last message."""
+        urls = [p["image_url"]["url"] for p in body["messages"][-1]["content"] if p["type"] == "image_url"]
+        assert all(url.startswith("data:image/") for url in urls)
+        return [base64.b64decode(url.partition(";base64,")[2]) for url in urls]
 
 
 class Anthropic:
@@ -234,9 +249,11 @@ class Anthropic:
         return next((tool["input_schema"] for tool in body.get("tools", ())), None)
 
     @staticmethod
-    def picture(body: dict[str, Any]) -> str:
-        (part,) = (p for p in body["messages"][-1]["content"] if p["type"] == "image")
-        return part["source"]["data"]
+    def pictures(body: dict[str, Any]) -> list[bytes]:
+        """The pictures of the last message."""
+        sources = [p["source"] for p in body["messages"][-1]["content"] if p["type"] == "image"]
+        assert all(source["type"] == "base64" for source in sources)
+        return [base64.b64decode(source["data"]) for source in sources]
 
 
 class Google:
@@ -278,6 +295,11 @@ class Google:
         return body.get("generationConfig", {}).get("responseJsonSchema")
 
     @staticmethod
-    def picture(body: dict[str, Any]) -> str:
-        (data,) = (p["inlineData"]["data"] for p in body["contents"][-1]["parts"] if "inlineData" in p)
-        return data.replace("-", "+").replace("_", "/")  # its client writes the other alphabet, which it takes too
+    def pictures(body: dict[str, Any]) -> list[bytes]:
+        """The pictures of the last message, whichever of base64's alphabets its client writes."""
+        parts = body["contents"][-1]["parts"]
+        return [base64.urlsafe_b64decode(_urlsafe(p["inlineData"]["data"])) for p in parts if "inlineData" in p]
+
+
+def _urlsafe(data: str) -> str:
+    return data.replace("+", "-").replace("/", "_")

@@ -71,7 +71,8 @@ def messages(request: Request, window: int) -> tuple[Message, ...]:
     asked = bare
     if request.graph is not None:
         asked = _asked(request, described(request.graph, (request.text, request.previous or ""), min(left, MAX_TOKENS)))
-    return Message("system", rules), Message("user", asked, request.picture)
+    pictures = (request.picture,) if request.picture is not None else ()
+    return Message("system", rules), Message("user", asked, pictures)
 
 
 def repaired(first: tuple[Message, ...], answer: str, fault: str) -> tuple[Message, ...]:

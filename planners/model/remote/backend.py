@@ -13,6 +13,7 @@ from typing import Any
 
 from ....gaussians.errors import BackendError
 from ...plan import Usage
+from .. import pictures
 from ..backend import Answer, Message, ModelBackend, OnText, UnreachableError
 from . import errors, http, wire
 from .address import Address, read
@@ -22,6 +23,7 @@ from .wire import Reply
 
 HOSTED_WINDOW = 128_000  # tokens; the minimum of the models that the three providers now offer
 NEAR_WINDOW = 8_192  # twice the default of Ollama and llama.cpp, 4096, which is too few for any plan
+_PICTURES = {"openai": pictures.OPENAI, "anthropic": pictures.ANTHROPIC, "google": pictures.GOOGLE}
 # Prefixes of hosted models without image input; all others accept images.
 _WITHOUT_IMAGES = ("gpt-3.5", "o1-mini", "o1-preview", "o3-mini", "claude-2", "claude-instant", "gemini-1.0", "text-")
 
@@ -76,7 +78,9 @@ class Remote:
         Raises:
             UnreachableError: there was no answer; the message says why and what to do, and contains no key.
             BackendError: the libraries are broken.
+            UserError: a picture of a message cannot be read.
         """
+        messages = pictures.fitted(messages, _PICTURES[self._address.kind])
         try:
             wire.import_libraries(self._address.kind)
         except ImportError as error:

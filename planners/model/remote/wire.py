@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
+from .. import pictures
 from ..backend import Message
 from .address import Address, Kind
 from .errors import Extras, NothingError
@@ -32,7 +33,7 @@ class Question:
     """One request.
 
     Attributes:
-        messages, schema: as in `ModelBackend.answer`.
+        messages, schema: as in `ModelBackend.answer`; pictures within the limits of the server.
         extras: optional parameters.
         seconds: time limit of the connection.
         emit: called with the pieces of the answer, or with the whole if it is not streamed; None: not streamed.
@@ -197,11 +198,15 @@ def _turns(messages: Sequence[Message]) -> list[ModelMessage]:
             turns.append(parts.ModelResponse([parts.TextPart(message.text or "(nothing)")]))
         elif message.role == "system":
             turns.append(parts.ModelRequest([parts.SystemPromptPart(message.text)]))
-        elif message.picture is None:
+        elif not message.pictures:
             turns.append(parts.ModelRequest([parts.UserPromptPart(message.text)]))
         else:
-            picture = parts.BinaryContent(message.picture, media_type="image/png")
-            turns.append(parts.ModelRequest([parts.UserPromptPart([picture, message.text])]))
+            content: list[parts.UserContent] = []
+            for part in pictures.parts(message):
+                if isinstance(part, bytes):
+                    part = parts.BinaryContent(part, media_type=pictures.media_type(part))
+                content.append(part)
+            turns.append(parts.ModelRequest([parts.UserPromptPart(content)]))
     return turns
 
 

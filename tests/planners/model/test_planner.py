@@ -120,7 +120,7 @@ def test_a_scene_that_cannot_be_looked_at_is_left_out() -> None:
 def test_a_picture_goes_only_to_who_sees_and_only_if_wanted(sees: bool, wanted: bool, sent: bool) -> None:
     backend, observation = ScriptedModel(ok(delete("vase")), sees=sees), Seen()
     ModelPlanner(backend, pictures=wanted).plan("delete the vase", observation=observation)
-    assert backend.asked[0][1].picture == (PNG if sent else None) and observation.pictures == int(sent)
+    assert backend.asked[0][1].pictures == ((PNG,) if sent else ()) and observation.pictures == int(sent)
 
 
 def test_what_came_before_is_told_and_means_it() -> None:

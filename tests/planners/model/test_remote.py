@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import base64
 import functools
 import importlib.util
 import json
@@ -36,7 +35,7 @@ WIRES = [wires.OpenAI, wires.Anthropic, wires.Google]
 each_wire = pytest.mark.parametrize("wire", WIRES, ids=[wire.kind for wire in WIRES])
 
 KEY = "sk-scenewright-0123456789-abcdefghij"
-PNG = b"\x89PNG\r\n\x1a\n" + bytes(range(256))
+PNG = wires.png(40, 30)
 PLAN = '{"instruction": "delete the cup", "ops": []}'
 TALK = [Message("system", "Answer in JSON."), Message("user", "delete the cup")]
 VARIABLES = ("OPENAI", "ANTHROPIC", "GOOGLE", "GEMINI", "SCENEWRIGHT")
@@ -143,8 +142,8 @@ def test_a_picture_arrives_whole(wire: Wire) -> None:
     with wires.serving(wire.answer(PLAN)) as server:
         model = model_at(wire, server.url)
         assert model.sees
-        model.answer([TALK[0], Message("user", "look", PNG)], schema("plan"), seconds=30)
-    assert base64.b64decode(wire.picture(server.asked[0].body)) == PNG
+        model.answer([TALK[0], Message("user", "look", (PNG,))], schema("plan"), seconds=30)
+    assert wire.pictures(server.asked[0].body) == [PNG]
 
 
 @each_wire

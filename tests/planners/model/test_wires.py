@@ -22,7 +22,7 @@ WIRES = [wires.OpenAI, wires.Anthropic, wires.Google]
 each_wire = pytest.mark.parametrize("wire", WIRES, ids=[wire.kind for wire in WIRES])
 
 LIVING_ROOM = SceneGraph.read(Path(__file__).parents[1] / "written" / "living_room.json")
-PNG = b"\x89PNG\r\n\x1a\n" + bytes(range(256))
+PNG = wires.png(40, 30)
 PLAN = json.dumps({"verdict": "ok", "ops": [{"op": "delete", "target": {"text": "vase"}}]})
 REFUSED = json.dumps({"verdict": "ok", "ops": [{"op": "isolate", "target": {"text": "vase"}}]})
 
