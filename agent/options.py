@@ -60,7 +60,7 @@ Budget = Annotated[
     str | None,
     typer.Option(
         "--budget", metavar="LIMITS",
-        help="Limit for models: seconds per instruction, dollars per session, views and tokens per question: '20s,0.05usd,8views'.",
+        help="Limits for models: seconds per instruction, dollars per session, views, tokens: '20s,0.05usd,8views'.",
     ),
 ]  # fmt: skip
 Picture = Annotated[

@@ -19,7 +19,9 @@ SECONDS = 60.0  # default limit on waiting for a model
 _MAXIMUM = {"seconds": 86_400.0, "dollars": 1e6, "views": 1000.0, "tokens": 1e9}
 _WHOLE = ("views", "tokens")  # counts
 _PART = re.compile(
-    r"(?P<dollar>\$)?\s*(?P<number>\d+(?:\.\d*)?|\.\d+)\s*(?P<unit>s|sec|secs|seconds?|usd|dollars?|views?|tokens?)?", re.IGNORECASE
+    r"(?P<dollar>\$)?\s*(?P<number>\d+(?:\.\d*)?|\.\d+)\s*"
+    r"(?P<unit>s|sec|secs|seconds?|usd|dollars?|views?|tokens?)?",
+    re.IGNORECASE,
 )
 
 

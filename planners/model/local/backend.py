@@ -1,4 +1,4 @@
-"""A local language model through transformers with constrained decoding: `transformers:FOLDER`.
+"""A local language or vision-language model of transformers with constrained decoding: `transformers:FOLDER`.
 
 Decoding is greedy and deterministic. Tokens that the schema forces are appended without sampling, and the KV cache of
 the prefix shared with the last prompt (mostly instructions and examples) is reused. It is reused in whole chunks, so
@@ -15,9 +15,10 @@ from typing import Any
 
 from ...plan import Usage
 from ..backend import Answer, Message, OnText, UnreachableError
-from . import checkpoint
+from . import checkpoint, sight
 from .constrained import Constrained, Vocabulary
 from .conversation import prompt_tokens
+from .sight import Prompt
 
 _CHUNK = 256  # prompt tokens per forward pass; the time limit is checked in between
 _MIN_ANSWER = 64  # minimum tokens for an answer; a prompt that leaves fewer is an error
@@ -36,10 +37,10 @@ def load(path: str) -> LocalModel:
 
 
 class LocalModel:
-    """A causal language model; see `ModelBackend`. Not for several threads at once.
+    """A causal or image-text-to-text model; see `ModelBackend`. Not for several threads at once.
 
     Args:
-        parts: the model and its tokenizer.
+        parts: the model, its tokenizer, and its processor if it reads pictures.
         name: name in receipts.
         max_tokens: maximum tokens of an answer; longer ones are closed early.
         temperature: 0 takes the most probable token; above 0 tokens are sampled, deterministically by `seed`.
@@ -48,8 +49,6 @@ class LocalModel:
     Raises:
         BackendError: the tokenizer cannot be constrained.
     """
-
-    sees = False
 
     def __init__(
         self,
@@ -62,13 +61,19 @@ class LocalModel:
     ) -> None:
         self.name, self.window = name, parts.window
         self.max_tokens, self.temperature, self.seed = max_tokens, temperature, seed
-        self._model, self._tokenizer = parts.model, parts.tokenizer
+        self._model, self._tokenizer, self._processor = parts.model, parts.tokenizer, parts.processor
         self._vocabulary = Vocabulary(_serialized(parts.tokenizer), parts.rows, _end_tokens(parts))
         # Logits of the last token only; those of a whole prompt would need more memory than the model.
         last_alone = "logits_to_keep" in signature(parts.model.forward).parameters
         self._options = {"use_cache": True, **({"logits_to_keep": 1} if last_alone else {})}
         self._read: list[int] = []  # tokens in the KV cache
+        self._seen = False  # whether the cache holds pictures
         self._cache: Any = None
+
+    @property
+    def sees(self) -> bool:
+        """Whether it reads pictures."""
+        return self._processor is not None
 
     def answer(
         self, messages: Sequence[Message], schema: dict[str, Any], *, seconds: float, on_text: OnText | None = None
@@ -78,15 +83,21 @@ class LocalModel:
 
         Raises:
             UnreachableError: the prompt does not fit the model's window, the schema cannot be followed, no token was
-                generated in time, or the memory did not suffice.
+                generated in time, the memory did not suffice, or pictures are shown to a model that reads none.
+            UserError: a picture cannot be read.
         """
         started = time.perf_counter()
-        prompt = prompt_tokens(self._tokenizer, messages)
-        room = min(self.max_tokens, self.window - len(prompt))
+        try:
+            prompt = self._prompt(messages)
+        except _FAILURES as error:
+            raise self._failed(error) from error
+        size = len(prompt.tokens)
+        room = min(self.max_tokens, self.window - size)
         if room < min(_MIN_ANSWER, self.max_tokens):
+            fewer = "show fewer pictures" if prompt.tensors else "a scene with fewer objects"
             raise UnreachableError(
-                f"the prompt has {len(prompt)} tokens and the window of {self.name} is {self.window}; "
-                "use a model with a longer window, or a scene with fewer objects"
+                f"the prompt has {size} tokens and the window of {self.name} is {self.window}; "
+                f"use a model with a longer window, or {fewer}"
             )
         text = Constrained(self._vocabulary, schema)
         try:
@@ -94,10 +105,17 @@ class LocalModel:
         except _FAILURES as error:
             raise self._failed(error) from error
         spent = round(time.perf_counter() - started, 3)
-        usage = Usage(model=self.name[:200], requests=1, input_tokens=len(prompt), output_tokens=taken, seconds=spent)
+        usage = Usage(model=self.name[:200], requests=1, input_tokens=size, output_tokens=taken, seconds=spent)
         return Answer(text.text, usage, "done" if taken == len(text.tokens) else "closed")
 
-    def _write(self, prompt: list[int], text: Constrained, room: int, until: float, on_text: OnText) -> int:
+    def _prompt(self, messages: Sequence[Message]) -> Prompt:
+        if self._processor is not None:
+            return sight.prompt(self._processor, messages, self._model)
+        if any(message.pictures for message in messages):
+            raise UnreachableError(f"{self.name} reads no pictures; use a model that does (LLaVA and the like)")
+        return Prompt(prompt_tokens(self._tokenizer, messages))
+
+    def _write(self, prompt: Prompt, text: Constrained, room: int, until: float, on_text: OnText) -> int:
         """Generate the whole answer; return the number of its tokens before it was closed without the model."""
         import torch
 
@@ -112,17 +130,22 @@ class LocalModel:
             if not text.done and len(text.tokens) < room:
                 scores = self._forward(fresh)
         if not told and not text.done and time.perf_counter() >= until:
-            raise UnreachableError(self._too_slow(len(prompt)))
+            raise UnreachableError(self._too_slow(len(prompt.tokens)))
         taken = len(text.tokens)
         if not text.done:
             text.close()
             on_text(text.text.removeprefix(told))
         return taken
 
-    def _scores(self, prompt: list[int], forced: list[int], until: float) -> Any:
+    def _scores(self, given: Prompt, forced: list[int], until: float) -> Any:
         """Logits `[V]` of the token after the prompt and the tokens that the schema forces first."""
-        self._reuse_cache(prompt)
-        scores = None
+        prompt, scores = given.tokens, None
+        if given.tensors:  # pictures are read with the whole prompt at once, and never from the cache
+            self._cache, self._read = None, []
+            scores = self._forward(prompt, **given.tensors)
+        else:
+            self._reuse_cache([] if self._seen else prompt)
+        self._seen = bool(given.tensors)
         while len(self._read) < len(prompt):
             if time.perf_counter() > until:
                 raise UnreachableError(self._too_slow(len(prompt)))
@@ -143,14 +166,14 @@ class LocalModel:
         else:
             self._cache, self._read = None, []
 
-    def _forward(self, tokens: list[int]) -> Any:
-        """Run the model on tokens; return logits `[V]` of the next one."""
+    def _forward(self, tokens: list[int], **pictured: Any) -> Any:
+        """Run the model on tokens, and on the tensors of pictures among them; return logits `[V]` of the next one."""
         import torch
 
         cache, self._cache = self._cache, None  # dropped if the forward pass fails
         with torch.inference_mode():
             ids = torch.tensor([tokens], device=self._model.device)
-            said = self._model(input_ids=ids, past_key_values=cache, **self._options)
+            said = self._model(input_ids=ids, past_key_values=cache, **pictured, **self._options)
         self._cache = said.past_key_values
         self._read += tokens
         return said.logits[0, -1].float().cpu()

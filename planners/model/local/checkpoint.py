@@ -1,4 +1,4 @@
-"""Load a causal language model of transformers from a folder, or download it by name, without running its code.
+"""Load a causal or image-text-to-text model of transformers from a folder or by name, without running its code.
 
 Weights are read as safetensors only, since pickles run code when they are read, and Python files in a model folder are
 never executed.
@@ -7,7 +7,7 @@ never executed.
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -26,6 +26,7 @@ _WANTED = (
     "*.jinja",
 )  # downloaded files: no pickles, no Python
 _OTHER_FORMATS = ("original/*", "onnx/*", "consolidated*")  # the same weights in other formats
+_PROCESSOR_FILES = ("preprocessor_config.json", "processor_config.json")
 _AS_SAVED = 4 * 2**30  # bytes of weights above which a CPU keeps the saved precision instead of float32
 _WINDOW = 4096  # tokens, if the model does not state its window
 
@@ -39,12 +40,14 @@ class Checkpoint:
         tokenizer: a fast one.
         window: maximum tokens of prompt and answer.
         rows: number of rows of the embedding table, one per token id.
+        processor: turns pictures and text into input tensors; None for a model that reads text only.
     """
 
     model: Any
     tokenizer: Any
     window: int
     rows: int
+    processor: Any = None
 
 
 def read(argument: str) -> Checkpoint:
@@ -124,9 +127,11 @@ def _read(transformers: Any, folder: Path) -> Checkpoint:
     try:
         with _quiet(transformers):
             config = transformers.AutoConfig.from_pretrained(folder, **safe)
-            _check_kind(transformers, config, named)
-            tokenizer = transformers.AutoTokenizer.from_pretrained(folder, **safe)
-            model, told = transformers.AutoModelForCausalLM.from_pretrained(
+            sees = _check_kind(transformers, config, folder)
+            processor = transformers.AutoProcessor.from_pretrained(folder, **safe) if sees else None
+            tokenizer = processor.tokenizer if sees else transformers.AutoTokenizer.from_pretrained(folder, **safe)
+            kind = transformers.AutoModelForImageTextToText if sees else transformers.AutoModelForCausalLM
+            model, told = kind.from_pretrained(
                 folder, dtype=_dtype(folder), use_safetensors=True, output_loading_info=True, **safe
             )
             _check_parts(model, tokenizer, told, named)
@@ -137,17 +142,39 @@ def _read(transformers: Any, folder: Path) -> Checkpoint:
         raise BackendError(f"{named} does not fit into memory; use a smaller model") from error
     except Exception as error:  # transformers, tokenizers, safetensors and torch raise many types
         raise BackendError(_advice(named, error)) from error
-    return Checkpoint(model, tokenizer, _window(config, tokenizer), _rows(model))
+    return Checkpoint(model, tokenizer, _window(config, tokenizer), _rows(model), processor)
 
 
-def _check_kind(transformers: Any, config: Any, named: str) -> None:
-    """Refuse models that are not causal language models; encoders and translators would load with missing layers."""
-    known = transformers.models.auto.modeling_auto.MODEL_FOR_CAUSAL_LM_MAPPING_NAMES
-    kinds, saved = known.get(config.model_type, ()), tuple(getattr(config, "architectures", None) or ())
-    kinds = (kinds,) if isinstance(kinds, str) else tuple(kinds)
-    if not kinds or (saved and not set(saved) & set(kinds)):
-        what = saved[0] if saved else config.model_type
-        raise BackendError(f"{named} is a {what}, not a causal language model (…ForCausalLM); use one that is")
+def _check_kind(transformers: Any, config: Any, folder: Path) -> bool:
+    """Whether it is an image-text-to-text model with its processor; else it must be a causal language model.
+
+    Encoders and translators would load with missing layers.
+
+    Raises:
+        BackendError: it is neither.
+    """
+    auto = transformers.models.auto.modeling_auto
+    saved = set(getattr(config, "architectures", None) or ())
+
+    def among(known: Mapping[str, str | Sequence[str]]) -> bool:
+        kinds = known.get(config.model_type, ())
+        kinds = {kinds} if isinstance(kinds, str) else set(kinds)
+        return bool(kinds & saved if saved else kinds)
+
+    reads_pictures = any((folder / name).is_file() for name in _PROCESSOR_FILES)
+    if among(auto.MODEL_FOR_IMAGE_TEXT_TO_TEXT_MAPPING_NAMES) and reads_pictures:
+        return True
+    if among(auto.MODEL_FOR_CAUSAL_LM_MAPPING_NAMES):
+        return False
+    if among(auto.MODEL_FOR_IMAGE_TEXT_TO_TEXT_MAPPING_NAMES):
+        raise BackendError(
+            f"{folder} holds no {_PROCESSOR_FILES[0]}, which says how pictures are read; get the whole model"
+        )
+    what = next(iter(getattr(config, "architectures", None) or ()), config.model_type)
+    raise BackendError(
+        f"{folder} is a {what}, not a causal language model (…ForCausalLM) and none that answers about pictures "
+        "(LLaVA and the like); use one that is"
+    )
 
 
 def _check_parts(model: Any, tokenizer: Any, told: dict[str, Any], named: str) -> None:
@@ -188,7 +215,7 @@ def _advice(named: str, error: Exception) -> str:
     return f"cannot load {named} ({type(error).__name__}: {told[0] if told else 'no reason given'}); " + (
         "it does not fit into memory: use a smaller model"
         if "out of memory" in str(error).lower() or "allocate" in str(error)
-        else "give transformers:FOLDER of a causal language model as save_pretrained writes it, weights as safetensors"
+        else "give transformers:FOLDER of a language model as save_pretrained writes it, weights as safetensors"
     )
 
 

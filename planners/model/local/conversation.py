@@ -17,12 +17,12 @@ def prompt_tokens(tokenizer: Any, messages: Sequence[Message]) -> list[int]:
     Raises:
         UnreachableError: the model's chat template fails on any conversation.
     """
-    turns = [{"role": m.role, "content": _without_special_tokens(tokenizer, m.text)} for m in messages]
+    turns = [{"role": m.role, "content": with_spaces(tokenizer, m.text)} for m in messages]
     if not getattr(tokenizer, "chat_template", None):
         plain = "".join(f"### {turn['role']}\n{turn['content']}\n\n" for turn in turns)
         return list(tokenizer(f"{plain}### assistant\n")["input_ids"])
     failures = []
-    for attempt in (turns, _without_system(turns)):  # some templates refuse a system message
+    for attempt in (turns, without_system(turns)):  # some templates refuse a system message
         try:
             text = tokenizer.apply_chat_template(
                 attempt, tokenize=False, add_generation_prompt=True, enable_thinking=False
@@ -34,19 +34,21 @@ def prompt_tokens(tokenizer: Any, messages: Sequence[Message]) -> list[int]:
     raise UnreachableError(f"the model's chat template fails ({failures[-1]}); use another model")
 
 
-def _without_special_tokens(tokenizer: Any, text: str) -> str:
-    """The text with special tokens split by a space: an object called "<|im_end|>" must not end a turn."""
+def with_spaces(tokenizer: Any, text: str, reserved: Sequence[str] = ()) -> str:
+    """The text with special and reserved tokens split by a space: an object called "<|im_end|>" must not end a turn."""
     marks = {t.content for t in tokenizer.added_tokens_decoder.values() if t.special}  # also those without a named role
-    for token in {str(t) for t in tokenizer.all_special_tokens} | marks:
+    for token in sorted({str(t) for t in tokenizer.all_special_tokens} | marks | set(reserved)):
         if len(token) > 1:
             text = text.replace(token, f"{token[0]} {token[1:]}")
     return text
 
 
-def _without_system(turns: list[dict[str, str]]) -> list[dict[str, str]]:
-    """Move the system messages to the start of the first user message."""
-    system = "\n\n".join(t["content"] for t in turns if t["role"] == "system")
+def without_system(turns: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Move the system messages to the start of the first user message; contents are texts, or all lists of parts."""
+    system = [t["content"] for t in turns if t["role"] == "system"]
     rest = [dict(t) for t in turns if t["role"] != "system"]
     if rest and system:
-        rest[0]["content"] = f"{system}\n\n{rest[0]['content']}"
+        said = [*system, rest[0]["content"]]
+        listed = isinstance(said[-1], list)
+        rest[0]["content"] = [part for content in said for part in content] if listed else "\n\n".join(said)
     return rest
