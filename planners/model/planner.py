@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import time
-import unicodedata
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -19,6 +18,7 @@ from .prompt.labels import sanitize
 from .prompt.messages import Request, messages, prompt_hash, repaired
 from .verify import reply
 from .verify.guard import Fault, Guard
+from .verify.json_reply import printable
 
 Progress = Callable[[str, float], None]  # stage in words, share done in [0, 1]
 
@@ -87,8 +87,8 @@ class ModelPlanner:
             planner=self.name[:200],
             prompt_hash=prompt_hash(),
             verdict=outcome.verdict,
-            reason=_plain(outcome.reason),
-            unknown=tuple(filter(None, (_plain(word)[:200] for word in outcome.unknown))),
+            reason=printable(outcome.reason, _REASON_CHARS),
+            unknown=tuple(filter(None, (printable(word, 200) for word in outcome.unknown))),
             seconds=time.monotonic() - started,
             usage=conversation.usage,
         )
@@ -108,7 +108,7 @@ class ModelPlanner:
             return _Outcome("ok", review.standing[1])
         asked = conversation.usage.requests if conversation.usage is not None else 0
         late = f" within {self._seconds:g} s (--budget gives it more)" if conversation.late else ""
-        last = f"; at last: {_plain(review.wrong)}" if review.wrong else ""
+        last = f"; at last: {printable(review.wrong, _REASON_CHARS)}" if review.wrong else ""
         problem = f"{self.name} gave no valid plan in {asked} attempt(s){late}{last}"
         raise NoPlanError(f"{problem}. Say it more simply, or use another model", conversation.usage)
 
@@ -257,9 +257,3 @@ def _require_words(text: str) -> None:
         raise UserError("the instruction is empty; say what to do")
     if any("\ud800" <= c <= "\udfff" for c in text):
         raise UserError("the text is not UTF-8; type it again, or set the terminal to UTF-8")
-
-
-def _plain(text: str) -> str:
-    """A model's text made printable: one line, without control characters, truncated."""
-    line = " ".join("".join(" " if unicodedata.category(c)[0] == "C" else c for c in text).split())
-    return line if len(line) <= _REASON_CHARS else line[: _REASON_CHARS - 1] + "…"

@@ -128,7 +128,7 @@ def _read(transformers: Any, folder: Path) -> Checkpoint:
         with _quiet(transformers):
             config = transformers.AutoConfig.from_pretrained(folder, **safe)
             sees = _check_kind(transformers, config, folder)
-            processor = transformers.AutoProcessor.from_pretrained(folder, **safe) if sees else None
+            processor: Any = transformers.AutoProcessor.from_pretrained(folder, **safe) if sees else None
             tokenizer = processor.tokenizer if sees else transformers.AutoTokenizer.from_pretrained(folder, **safe)
             kind = transformers.AutoModelForImageTextToText if sees else transformers.AutoModelForCausalLM
             model, told = kind.from_pretrained(
@@ -157,8 +157,8 @@ def _check_kind(transformers: Any, config: Any, folder: Path) -> bool:
     saved = set(getattr(config, "architectures", None) or ())
 
     def among(known: Mapping[str, str | Sequence[str]]) -> bool:
-        kinds = known.get(config.model_type, ())
-        kinds = {kinds} if isinstance(kinds, str) else set(kinds)
+        named = known.get(config.model_type, ())
+        kinds = {named} if isinstance(named, str) else set(named)
         return bool(kinds & saved if saved else kinds)
 
     reads_pictures = any((folder / name).is_file() for name in _PROCESSOR_FILES)

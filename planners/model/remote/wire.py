@@ -203,9 +203,10 @@ def _turns(messages: Sequence[Message]) -> list[ModelMessage]:
         else:
             content: list[parts.UserContent] = []
             for part in pictures.parts(message):
-                if isinstance(part, bytes):
-                    part = parts.BinaryContent(part, media_type=pictures.media_type(part))
-                content.append(part)
+                if isinstance(part, str):
+                    content.append(part)
+                else:
+                    content.append(parts.BinaryContent(part, media_type=pictures.media_type(part)))
             turns.append(parts.ModelRequest([parts.UserPromptPart(content)]))
     return turns
 

@@ -13,17 +13,11 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from ....tools.alternatives import either, given
 from ....tools.registry import AnyOp
 from ...plan import MAX_OPS, Verdict
-from .strict_json import DECODER, TooDeepError, given_only
+from .json_reply import MAX_CHARS as MAX_CHARS
+from .json_reply import Location, bare, given_object, told
+from .json_reply import ReplyError as ReplyError
 
-MAX_CHARS = 65_536  # of an answer; the longest plans are a tenth of it
-_FAULTS = 4  # reported at once
-_FAULT_CHARS = 240  # of each
 _HESITANT = ("absent", "ambiguous")
-_UNTOLD = ("title", "description", "examples", "default")  # keywords left out of the schema; the prompt covers them
-
-
-class ReplyError(ValueError):
-    """An answer is not a valid reply. The message is for the model: short, which field, and what it allows."""
 
 
 class Reply(BaseModel):
@@ -69,7 +63,7 @@ class Reply(BaseModel):
 
 @cache
 def _schema() -> dict[str, Any]:
-    made: dict[str, Any] = _bare(Reply.model_json_schema())
+    made: dict[str, Any] = bare(Reply.model_json_schema())
     for definition in made["$defs"].values():
         if "const" in definition["properties"].get("op", {}):  # `op` has a default in our types; models must write it
             definition["required"] = ["op", *definition.get("required", [])]
@@ -81,16 +75,6 @@ def schema() -> dict[str, Any]:
     return dict(_schema())
 
 
-def _bare(node: Any) -> Any:
-    """A schema without descriptive keywords; properties with such names are kept."""
-    if isinstance(node, list):
-        return [_bare(item) for item in node]
-    if not isinstance(node, dict):
-        return node
-    named = {k: {n: _bare(v) for n, v in node[k].items()} for k in ("properties", "$defs") if k in node}
-    return {k: _bare(v) for k, v in node.items() if k not in (*_UNTOLD, *named)} | named
-
-
 def read(text: str) -> Reply:
     """Parse the reply in an answer: one JSON object, possibly in a code fence or between text without braces.
 
@@ -99,54 +83,13 @@ def read(text: str) -> Reply:
     Raises:
         ReplyError: there is no object, more than one, or it is not valid.
     """
-    if len(text) > MAX_CHARS:
-        raise ReplyError(f"the answer has {len(text)} characters, at most {MAX_CHARS} are read; answer shorter")
     try:
-        return Reply.model_validate(given_only(_object(text)))
+        return Reply.model_validate(given_object(text))
     except ValidationError as error:
-        raise ReplyError(_told(error)) from error
-    except (TooDeepError, RecursionError) as error:
-        raise ReplyError("the JSON is nested too deeply") from error
+        raise ReplyError(told(error, _siblings)) from error
 
 
-def _object(text: str) -> dict[str, Any]:
-    """The only JSON object in a text.
-
-    It must start at the first brace, and no brackets may follow it. Trying later braces could take a part of a broken
-    answer for the whole.
-    """
-    start = text.find("{")
-    if start < 0:
-        raise ReplyError("the answer holds no JSON object; answer with one JSON object and nothing else")
-    try:
-        found, end = DECODER.raw_decode(text, start)
-    except ValueError as error:
-        raise ReplyError(f"the answer is no valid JSON: {str(error)[:_FAULT_CHARS]}") from error
-    if any(c in text[:start] + text[end:] for c in "{}[]"):
-        raise ReplyError("the answer holds more than one JSON object; answer with one and nothing else")
-    assert isinstance(found, dict)
-    return found
-
-
-def _told(error: ValidationError) -> str:
-    """The first few errors as text for the model, each with its field and what it allows."""
-    faults = error.errors(include_url=False, include_input=False)
-    told = [f"{_place(f['loc'])}: {_fault(f)}"[:_FAULT_CHARS] for f in faults[:_FAULTS]]
-    return "\n".join([*told, *([f"and {len(faults) - _FAULTS} more"] if len(faults) > _FAULTS else [])])
-
-
-def _fault(fault: Any) -> str:
-    said = str(fault["msg"]).removeprefix("Value error, ")
-    if fault["type"] == "extra_forbidden":
-        return f"there is no such field here; fields are {', '.join(_siblings(fault['loc']))}"
-    return said
-
-
-def _place(loc: tuple[int | str, ...]) -> str:
-    return ".".join(str(part) for part in loc) or "the answer"
-
-
-def _siblings(loc: tuple[int | str, ...]) -> list[str]:
+def _siblings(loc: Location) -> list[str]:
     """Names of the fields at the level of `loc`, from the schema; the tag of a union's option is a step of its own."""
     options = [_schema()]
     for part in loc[:-1]:

@@ -1,0 +1,406 @@
+"""Answer a question from rendered pictures: choose views, ask a vision model, show what it asks for, vote, and stop.
+
+The loop ends when the model is sure, or when the views, seconds, tokens or dollars of the budget are spent. "I cannot
+tell from these views" is an answer. What geometry measured goes along as data, and contradictions to it are told.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Annotated, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from ... import prompts
+from ..budget import Ledger, OverBudgetError, Progress
+from ..model.backend import Message, ModelBackend, UnreachableError
+from ..model.prompt.examples import quoted
+from ..model.prompt.labels import plain
+from ..model.prompt.pruning import tokens
+from ..model.verify.json_reply import ReplyError, printable
+from ..questions.answer import Answer, AnswerType, Evidence
+from .asking import NoReplyError, Purse, ask, described, require_sight, shown_marks
+from .facts import Facts, same
+from .looker import Looker, Shown
+
+SURE = 0.75  # confidence from which an answer stands without another look; see `Terms.sure`
+MAX_CHARS = 1000  # of a question
+_ROUNDS = 6  # requests for more pictures in one sample, whatever the budget
+_PICTURE_TOKENS = 1100  # estimate of what a model counts for a picture 768 pixels wide
+_REPLY_TOKENS, _FACTS_TOKENS = 700, 3000
+_LABEL, _REASON, _ANSWER = 80, 300, 400  # characters
+_MARK = re.compile(r"#(\d{1,6})\b")
+_WANTED = {
+    "yesno": 'The answer is "yes" or "no" (answer_type "yesno").',
+    "number": 'The answer is a count (answer_type "number").',
+    "metres": 'The answer is a length in metres (answer_type "metres").',
+    "label": 'The answer is one short label (answer_type "label").',
+    "list": 'The answer is a list of labels (answer_type "list").',
+    "text": 'The answer is a sentence (answer_type "text").',
+}
+
+Word = Annotated[str, Field(min_length=1, max_length=_LABEL, strict=True)]
+Number = Annotated[int, Field(ge=0, le=10**6, strict=True)]
+
+
+class SeenReply(BaseModel):
+    """What a vision model answers to a question; the prompt `vision_ask` explains the fields."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    because: Annotated[str, Field(max_length=_REASON, strict=True)] = ""
+    answer: (
+        Annotated[float, Field(ge=-1e5, le=1e5, allow_inf_nan=False, strict=True)]
+        | Annotated[str, Field(min_length=1, max_length=_ANSWER, strict=True)]
+        | Annotated[tuple[Word, ...], Field(max_length=24)]
+        | None
+    ) = None
+    answer_type: AnswerType
+    confidence: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False, strict=True)]
+    evidence_views: Annotated[tuple[Number, ...], Field(max_length=16)] = ()
+    things: Annotated[tuple[Number, ...], Field(max_length=24)] = ()
+    need_more: Annotated[tuple[Word, ...], Field(max_length=4)] = ()
+    cannot_tell: Annotated[str, Field(max_length=_REASON, strict=True)] = ""
+
+    @model_validator(mode="after")
+    def _whole(self) -> Self:
+        if self.answer is None:
+            if not self.cannot_tell.strip() and not self.need_more:
+                raise ValueError("without an answer, say in cannot_tell why, or ask for pictures in need_more")
+            return self
+        if self.cannot_tell:
+            raise ValueError("give either an answer or cannot_tell")
+        value, kind = self.answer, self.answer_type
+        fits = {
+            "yesno": value in ("yes", "no"),
+            "number": isinstance(value, float) and value >= 0,
+            "metres": isinstance(value, float),
+            "label": isinstance(value, str) and len(value) <= _LABEL,
+            "list": isinstance(value, tuple),
+            "text": isinstance(value, str),
+        }
+        if not fits[kind]:
+            raise ValueError(f'the answer does not fit answer_type "{kind}"')
+        return self
+
+
+@dataclass(frozen=True)
+class Terms:
+    """How a question is asked.
+
+    Attributes:
+        answer_type: the type that the question asks for; None leaves it to the model.
+        groups: ids of the groups that the question names; the first pictures show them. Empty: the whole scene.
+        first: pictures of the first request.
+        marks: whether numbers are drawn on things.
+        sure: confidence from which an answer stands without another look.
+        samples: most conversations, each with other pictures where there are any; their answers are voted on.
+        ledger: budget and spending of the session; a budget of its own where there is none.
+        progress: called while the model is waited for.
+    """
+
+    answer_type: AnswerType | None = None
+    groups: tuple[int, ...] = ()
+    first: int = 3
+    marks: bool = True
+    sure: float = SURE
+    samples: int = 3
+    ledger: Ledger | None = field(default=None, compare=False)
+    progress: Progress | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True)
+class Sample:
+    """The reply of one conversation.
+
+    Attributes:
+        reply: the last one.
+        shown: the pictures that it was given.
+        doubt: what was still wrong with it after a repair.
+    """
+
+    reply: SeenReply
+    shown: tuple[Shown, ...]
+    doubt: str = ""
+
+
+def ask_about(text: str, facts: Facts, looker: Looker, backend: ModelBackend, terms: Terms | None = None) -> Answer:
+    """The answer to a question from pictures.
+
+    Without a usable reply the answer is None, its source "none", and its text says why.
+
+    Args:
+        text: the question.
+        facts: what geometry measured.
+        looker: renders the pictures.
+        backend: a model that reads pictures.
+
+    Raises:
+        BackendError: the model reads no pictures, cannot be reached, or the session's budget was used up before.
+    """
+    terms = terms or Terms()
+    require_sight(backend)
+    purse = Purse(terms.ledger, terms.progress)
+    purse.require()
+    loop = _Loop(printable(text, MAX_CHARS), facts, looker, backend, terms, purse)
+    stopped = ""
+    samples: list[Sample] = []
+    for turn in range(max(terms.samples, 1)):
+        try:
+            sample = loop.sample(turn)
+        except (OverBudgetError, NoReplyError) as error:
+            stopped = str(error)
+            break
+        except UnreachableError as error:
+            if not samples and loop.last is None:
+                raise
+            stopped = str(error)
+            break
+        if sample is None:
+            break
+        samples.append(sample)
+        if sample.reply.confidence >= terms.sure:
+            break
+    if loop.last is not None and loop.last not in samples:
+        samples.append(loop.last)
+    if not samples:
+        return _nothing(stopped or "there is no picture to look at", terms, purse)
+    return loop.result(samples, stopped)
+
+
+class _Loop:
+    """The conversations about one question.
+
+    Attributes:
+        last: the newest reply, also of a conversation that was cut short.
+    """
+
+    def __init__(
+        self, question: str, facts: Facts, looker: Looker, backend: ModelBackend, terms: Terms, purse: Purse
+    ) -> None:
+        self._question, self._facts, self._looker, self._backend = question, facts, looker, backend
+        self._terms, self._purse = terms, purse
+        self._rendered: dict[str, Shown] = {}
+        self.last: Sample | None = None
+
+    def sample(self, turn: int) -> Sample | None:
+        """One conversation: ask, show what is asked for, and ask again; None if nothing new can be shown.
+
+        Raises:
+            NoReplyError, UnreachableError, OverBudgetError: as `asking.ask`.
+        """
+        shown, asked = self._first(turn), set[str]()
+        missing: tuple[str, ...] = ()
+        if not shown:
+            return None
+        for _ in range(_ROUNDS):
+            sample = self._ask(shown, missing)
+            self.last = sample
+            wanted = [one for one in dict.fromkeys(sample.reply.need_more) if one not in asked]
+            if sample.reply.confidence >= self._terms.sure and sample.reply.answer is not None:
+                return sample
+            if not wanted:
+                return sample
+            asked.update(wanted)
+            more, missing = self._look(wanted)
+            shown = _fitting((*shown, *(one for one in more if one not in shown)), self._most)
+        return sample
+
+    @property
+    def _most(self) -> int:
+        """Pictures that fit the model's window beside the prompt."""
+        prompt = tokens(prompts.load("vision_ask").text) + tokens(self._question) + 300
+        return max(1, (self._backend.window - _REPLY_TOKENS - prompt) // _PICTURE_TOKENS)
+
+    def _first(self, turn: int) -> tuple[Shown, ...]:
+        """The pictures that a conversation begins with; later ones begin with others, or with the same turned round."""
+        if turn == 0:
+            count = self._purse.take(min(self._terms.first, self._most))
+            made = self._looker.overview(self._terms.groups, count, self._terms.marks) if count else ()
+            self._rendered.update({one.name: one for one in made[:count]})
+            return made[:count]
+        seen = tuple(self._rendered.values())
+        fresh, _ = self._look(["overview"])
+        fresh = tuple(one for one in fresh if one not in seen)
+        kept = tuple(reversed(seen))[: max(self._most - len(fresh), 0)]
+        return (*fresh, *kept)
+
+    def _look(self, wanted: Sequence[str]) -> tuple[tuple[Shown, ...], tuple[str, ...]]:
+        """The pictures that were asked for, and the requests that cannot be met or are over the budget."""
+        shown: list[Shown] = []
+        missing: list[str] = []
+        for request in wanted:
+            made = self._looker.look(request) if self._purse.views > 0 else None
+            if made is None:
+                missing.append(request)
+                continue
+            if made.name not in self._rendered:
+                self._purse.take(1)
+                self._rendered[made.name] = made
+            shown.append(made)
+        return tuple(shown), tuple(missing)
+
+    def _ask(self, shown: tuple[Shown, ...], missing: Sequence[str]) -> Sample:
+        marks = shown_marks(shown)
+        stage = f"asking {self._backend.name} about {len(shown)} picture{'s' if len(shown) != 1 else ''}"
+        said = ask(
+            self._backend,
+            self._messages(shown, missing, marks),
+            SeenReply,
+            lambda reply: self._check(reply, len(shown), marks),
+            self._purse,
+            stage,
+        )
+        return Sample(said.reply, shown, said.doubt)
+
+    def _messages(self, shown: tuple[Shown, ...], missing: Sequence[str], marks: dict[int, int]) -> list[Message]:
+        rules = prompts.load("vision_ask").text
+        pictures = described(shown)
+        used = tokens(rules) + tokens(pictures) + tokens(self._question) + 200 + _PICTURE_TOKENS * len(shown)
+        room = min(self._backend.window - _REPLY_TOKENS - used, _FACTS_TOKENS)
+        before = ""
+        if missing:
+            told = ", ".join(printable(one, 40) for one in missing)
+            before = f"\nThese pictures cannot be shown: {told}. Answer with what there is."
+        elif self._purse.views <= 0:
+            before = "\nNo more pictures can be shown. Answer with what there is."
+        kind = self._terms.answer_type
+        request = prompts.load("vision_ask_request").fill(
+            pictures=pictures,
+            facts=self._facts.table(self._question, marks, max(room, 0)),
+            before=before,
+            wanted=_WANTED[kind] if kind else "Choose the answer_type that the question asks for.",
+            question=quoted(self._question),
+        )
+        return [Message("system", rules), Message("user", request, tuple(one.png for one in shown))]
+
+    def _check(self, reply: SeenReply, count: int, marks: dict[int, int]) -> str:
+        """What the type of a reply cannot say.
+
+        Raises:
+            ReplyError: the answer is of the wrong type, or names what cannot be a name.
+        """
+        wanted = self._terms.answer_type
+        if wanted is not None and reply.answer is not None and reply.answer_type != wanted:
+            raise ReplyError(f'answer_type: the question asks for "{wanted}", not "{reply.answer_type}"')
+        if reply.answer_type in ("label", "list"):
+            names = reply.answer if isinstance(reply.answer, tuple) else (reply.answer,)
+            if any(isinstance(name, str) and plain(name) is None for name in names):
+                raise ReplyError("answer: a label is a short name such as 'floor lamp' or 'dark red'")
+        if isinstance(reply.answer, str) and not printable(reply.answer, _ANSWER):
+            raise ReplyError("answer: it is empty")
+        faults = []
+        if unknown := sorted(set(reply.evidence_views) - set(range(1, count + 1))):
+            faults.append(f"evidence_views: there is no picture {unknown[0]}, pictures are 1 to {count}")
+        mentioned = {int(found) for found in _MARK.findall(f"{reply.because} {reply.answer} {reply.cannot_tell}")}
+        if unknown := sorted((set(reply.things) | mentioned) - set(marks)):
+            there = ", ".join(f"#{mark}" for mark in sorted(marks)) or "none"
+            faults.append(f"things: no picture shows the number {unknown[0]}; numbers are {there}")
+        return "\n".join(faults)
+
+    def result(self, samples: Sequence[Sample], stopped: str) -> Answer:
+        """The answer that most samples give, weighted by their confidence."""
+        answered = [sample for sample in samples if sample.reply.answer is not None]
+        silent = [sample for sample in samples if sample.reply.answer is None]
+        camps: list[list[Sample]] = []
+        for sample in answered:
+            for camp in camps:
+                first = camp[0].reply
+                if first.answer_type == sample.reply.answer_type and same(
+                    first.answer, sample.reply.answer, first.answer_type
+                ):
+                    camp.append(sample)
+                    break
+            else:
+                camps.append([sample])
+        camps.sort(key=lambda camp: -_weight(camp))
+        if not camps or _weight(silent) > _weight(camps[0]):
+            return self._silent(max(silent, key=lambda sample: sample.reply.confidence), stopped)
+        total = _weight(answered) + _weight(silent)
+        best = max(camps[0], key=lambda sample: sample.reply.confidence)
+        share = _weight(camps[0]) / total if total > 0 else 0.0
+        return self._told(best, best.reply.confidence * share, len(camps[0]), len(samples))
+
+    def _told(self, sample: Sample, confidence: float, votes: int, of: int) -> Answer:
+        reply, marks = sample.reply, shown_marks(sample.shown)
+        value = _cleaned(reply.answer)
+        against = self._facts.contradictions(self._question, value, reply.answer_type)
+        if sample.doubt:
+            against.append("The model refers to pictures or numbers that it was not shown.")
+        voted = f" ({votes} of {of} looks agree.)" if of > 1 else ""
+        ids = tuple(dict.fromkeys(marks[mark] for mark in reply.things if mark in marks))
+        names = [sample.shown[n - 1].name for n in reply.evidence_views if 1 <= n <= len(sample.shown)]
+        return Answer(
+            answer=value,
+            answer_type=reply.answer_type,
+            text=" ".join([_sentence(value, reply) + voted, *against]),
+            confidence=round(confidence / (2 if against else 1), 4),
+            source="vlm",
+            evidence=Evidence(ids=ids, views=tuple(dict.fromkeys(names))),
+            unit="m" if reply.answer_type == "metres" else "",
+            usage=self._purse.usage,
+        )
+
+    def _silent(self, sample: Sample, stopped: str) -> Answer:
+        reply = sample.reply
+        why = printable(reply.cannot_tell, _REASON) or stopped or "the pictures that it asked for cannot be shown"
+        count = len(self._rendered)
+        return Answer(
+            answer=None,
+            answer_type=self._terms.answer_type or reply.answer_type,
+            text=f"I cannot tell from {count} view{'s' if count != 1 else ''}: {_ended(why)}",
+            confidence=reply.confidence,
+            source="none",
+            evidence=Evidence(views=tuple(self._rendered)),
+            usage=self._purse.usage,
+        )
+
+
+def _nothing(why: str, terms: Terms, purse: Purse) -> Answer:
+    """The answer where no reply was usable."""
+    return Answer(
+        answer=None,
+        answer_type=terms.answer_type or "text",
+        text=f"I cannot tell: {_ended(why)}",
+        confidence=0.0,
+        source="none",
+        usage=purse.usage,
+    )
+
+
+def _fitting(shown: tuple[Shown, ...], most: int) -> tuple[Shown, ...]:
+    """At most so many pictures: the first, and the newest."""
+    return shown if len(shown) <= most else (*shown[:1], *shown[len(shown) - most + 1 :])
+
+
+def _weight(samples: Sequence[Sample]) -> float:
+    return sum(sample.reply.confidence for sample in samples)
+
+
+def _cleaned(answer: float | str | tuple[str, ...] | None) -> float | str | tuple[str, ...] | None:
+    """An answer without control characters; labels as they may be shown and kept."""
+    if isinstance(answer, str):
+        return printable(answer, _ANSWER)
+    if isinstance(answer, tuple):
+        return tuple(dict.fromkeys(printable(one, _LABEL) for one in answer))
+    return answer
+
+
+def _sentence(value: float | str | tuple[str, ...] | None, reply: SeenReply) -> str:
+    because = printable(reply.because, _REASON)
+    if reply.answer_type == "text":
+        return _ended(str(value))
+    if isinstance(value, float):
+        told = f"{value:.2f} m" if reply.answer_type == "metres" else f"{value:g}"
+    elif isinstance(value, tuple):
+        told = ", ".join(value) or "nothing"
+    else:
+        told = str(value)
+    told = told[:1].upper() + told[1:]
+    return f"{told}: {_ended(because)}" if because else f"{told}."
+
+
+def _ended(text: str) -> str:
+    return text if text.endswith((".", "!", "?", "…")) else f"{text}."
