@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from .answer import Answer
+from .answer import Answer, AnswerType
 from .reading.phrase_templates import Template
 from .reading.situation import Situation
-from .survey import Survey
+from .survey import Survey, Thing
 
 
 @dataclass(frozen=True)
@@ -20,11 +20,32 @@ class Asked:
         text: as asked.
         slots: the values of the template's holes, by name.
         situation: where the person who asks says to be, None if nothing is said.
+        words: of the question, in plain form.
     """
 
     text: str
     slots: Mapping[str, Any] = field(default_factory=dict)
     situation: Situation | None = None
+    words: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Undecided:
+    """A question that boxes, labels and colours cannot answer.
+
+    Attributes:
+        text: one sentence that says why.
+        sight: whether somebody who sees pictures of the scene may answer it: material, text, state, style.
+        answer_type: the type that the question asks for.
+        things: what it is about.
+        confidence: estimated probability that it cannot be answered from geometry.
+    """
+
+    text: str
+    sight: bool
+    answer_type: AnswerType = "text"
+    things: tuple[Thing, ...] = ()
+    confidence: float = 0.95
 
 
 @dataclass(frozen=True)
@@ -34,10 +55,10 @@ class Kind:
     Attributes:
         name: short name, for `--json` and benchmarks.
         templates: the ways of asking it, the most specific first.
-        answer: the answer, None if the filled template is no such question after all; raises `NotResolved` where a
-            phrase is absent or ambiguous.
+        answer: the answer, or why there is none; None if the filled template is no such question after all. Raises
+            `NotResolved` where a phrase is absent or ambiguous.
     """
 
     name: str
     templates: tuple[Template, ...]
-    answer: Callable[[Asked, Survey], Answer | None]
+    answer: Callable[[Asked, Survey], Answer | Undecided | None]

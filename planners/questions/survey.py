@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...gaussians.color import BASIC, FAMILIES, plain_color
+from ...gaussians.language.query.attributes import COLOR_HOLDS, color_scores
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.world import kinds, relations
@@ -23,12 +25,19 @@ from ...gaussians.world.words import plural
 from ..rooms.graph import SceneGraph
 from ..rooms.graph_scene import Id, Stage
 from ..rooms.node import Node
+from .naming import named
+from .reading import families
+from .reading.noun_phrase import BY_ID
 
 if TYPE_CHECKING:
     from ...gaussians.camera import Camera
     from ...gaussians.language.encoders import Encoder
     from ...gaussians.language.field.language_field import Group
     from ...gaussians.scene import Scene
+
+_MEMORY = 4096  # queries whose results are kept
+# Relations that are read as to whichever anchor fits: "the lamp on the desk" where there are two desks.
+_LOOSE = frozenset({"on", "inside", "under", "below", "above", "next_to"})
 
 Finder = Callable[[Query], Selection]  # a query to rows of the stage
 
@@ -71,12 +80,14 @@ class Found:
         things: what was found, or the candidates of an ambiguous query; none if it is absent.
         near: of an absent query the nearest things.
         reason: one sentence for a person.
+        about: the phrase within the query that is absent or ambiguous; None: the query itself.
     """
 
     verdict: str
     things: tuple[Thing, ...]
     near: tuple[Thing, ...] = ()
     reason: str = ""
+    about: Query | None = None
 
 
 class NotResolved(Exception):  # not an error: asking.py tells it as an answer
@@ -84,7 +95,7 @@ class NotResolved(Exception):  # not an error: asking.py tells it as an answer
 
     def __init__(self, query: Query, found: Found) -> None:
         super().__init__(found.reason)
-        self.query, self.found = query, found
+        self.query, self.found = found.about or query, found
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,6 +116,7 @@ class Survey:
     last: tuple[Id, ...] = ()
     fronts: frozenset[Id] | None = None
     _memory: dict[str, Found] = field(default_factory=dict)
+    _names: dict[Id, str] = field(default_factory=dict)
 
     @classmethod
     def of_graph(cls, graph: SceneGraph, last: Sequence[Id] = ()) -> Survey:
@@ -175,14 +187,80 @@ class Survey:
         """What a query means here, whatever the verdict."""
         key = query.model_dump_json(exclude_defaults=True)
         if key not in self._memory:
-            found = self.finder(query)
-            rows = tuple(dict.fromkeys(c.group for c in found.candidates if c.group >= 0))
-            things = found.groups if found.verdict == "found" else rows if found.verdict == "ambiguous" else ()
-            near = rows[:3] if found.verdict == "absent" else ()
-            self._memory[key] = Found(
-                found.verdict, tuple(map(self.at, things)), tuple(map(self.at, near)), found.reason
-            )
+            if len(self._memory) >= _MEMORY:
+                self._memory.clear()
+            self._memory[key] = self._found(query)
         return self._memory[key]
+
+    def _found(self, query: Query) -> Found:
+        for relation in query.relations:
+            for anchor in relation.anchors:
+                if anchor.text.startswith(f"{BY_ID} ") or anchor.text in families.named():
+                    there = self.find(anchor)
+                    if there.verdict != "found":
+                        return replace(there, about=there.about or anchor)
+                    rows = Query(groups=tuple(t.row for t in there.things))
+                    return self._found(_with(query, anchor, rows))
+        if query.text.startswith(f"{BY_ID} "):
+            things = tuple(t for t in self.things if str(t.id) == query.text.removeprefix(f"{BY_ID} "))
+            return Found("found" if things else "absent", things)
+        if query.text in families.named() and not query.groups:
+            return self._of_family(query)
+        found = self.finder(query)
+        rows = tuple(dict.fromkeys(c.group for c in found.candidates if c.group >= 0))
+        if found.verdict != "found" and (about := self._at_fault(query)) is not None:
+            there = self.find(about)
+            return replace(there, about=there.about or about)
+        things = found.groups if found.verdict == "found" else rows if found.verdict == "ambiguous" else ()
+        near = self._near(query, rows[:3]) if found.verdict == "absent" else ()
+        return Found(found.verdict, tuple(map(self.at, things)), near, found.reason)
+
+    def _of_family(self, query: Query) -> Found:
+        """What a query for a family means: "the tallest piece of furniture"."""
+        every = self.finder(query.model_copy(update={"text": "", "pick": "all", "count": None}))
+        if every.verdict == "ambiguous":
+            about = self._at_fault(query)
+            return replace(self.find(about), about=about) if about else Found("absent", ())
+        things = [self.at(g) for g in every.groups] if every.verdict == "found" else []
+        rows = tuple(dict.fromkeys(t.row for t in things if families.holds(query.text, t.label)))
+        members = tuple(map(self.at, rows))
+        if not members or query.pick in ("all", "rest") and query.count in (None, len(members)):
+            return Found("found" if members else "absent", members)
+        if query.pick == "any" or len(members) == 1 and query.pick != "all":
+            return Found("found", members[:1])
+        if query.pick in ("one", "all"):
+            return Found("ambiguous", members, reason=f"{query.describe()}: {len(members)} things match")
+        return Found("found", members[:1]) if len(members) == 1 else self._picked(query, members)
+
+    def _picked(self, query: Query, members: Sequence[Thing]) -> Found:
+        """The one of several things that a superlative picks."""
+        from .picking import picked
+
+        thing = picked(self, query, members)
+        return Found("found", (thing,)) if thing is not None else Found("ambiguous", tuple(members))
+
+    def _at_fault(self, query: Query) -> Query | None:
+        """The phrase within a query that is absent or ambiguous by itself, None if none is."""
+        for relation in query.relations:
+            for anchor in relation.anchors:
+                if anchor.text in SHELL or anchor.last or (anchor.pick == "one" and relation.name in _LOOSE):
+                    every = anchor.model_copy(update={"pick": "all"})
+                    if anchor.text not in SHELL and not anchor.last and self.find(every).verdict == "absent":
+                        return anchor
+                    continue
+                if self.find(anchor).verdict != "found":
+                    return anchor
+        return next((q for q in (*query.exclude, *query.also) if self.find(q).verdict != "found"), None)
+
+    def _near(self, query: Query, rows: Sequence[int]) -> tuple[Thing, ...]:
+        """Of an absent query, things that a person would think of: of that name but of another colour or elsewhere,
+        or of the same family; in a scene what looks most alike."""
+        if query.text and (query.colors or query.relations or query.not_colors or query.size):
+            named = self.find(Query(text=query.text, pick="all"))
+            if named.verdict == "found":
+                return named.things[:3]
+        alike = [t for t in self.things if t.label and families.related(query.text, t.label)] if query.text else []
+        return tuple(alike[:3] or (map(self.at, rows) if self.fronts is not None else ()))
 
     def all_of(self, query: Query) -> tuple[Thing, ...]:
         """Everything that a query describes, however many are meant; none if it is absent."""
@@ -250,15 +328,26 @@ class Survey:
     # -- words ------------------------------------------------------------------------------------------------------
 
     def named(self, thing: Thing) -> str:
-        """A definite description that tells a thing from the others as far as label and colour do: "the red chair"."""
-        if not thing.label:
-            return f"the unnamed thing ({thing.id})"
-        alike = [t for t in self.things if t.label == thing.label]
-        if len(alike) <= 1:
-            return f"the {thing.label}"
-        if thing.color and sum(t.color == thing.color for t in alike) == 1:
-            return f"the {thing.color} {thing.label}"
-        return f"the {thing.label} ({thing.id})"
+        """A definite description that tells a thing from the others: "the red chair", "the lamp on the desk".
+
+        A number in brackets is its id, where colour and place do not tell it from the others.
+        """
+        if thing.id not in self._names:
+            self._names[thing.id] = named(self, thing)
+        return self._names[thing.id]
+
+    def has_color(self, thing: Thing, word: str) -> bool | None:
+        """Whether a thing has a colour as its main colour; None if its colour is unknown."""
+        if not thing.color:
+            return None
+        own, asked = plain_color(thing.color), plain_color(word)
+        if own == asked:
+            return True
+        basic = asked if asked in BASIC else FAMILIES.get(asked.replace(" ", ""))
+        of = own if own in BASIC else FAMILIES.get(own.replace(" ", "")) or own.split()[-1]
+        if asked in BASIC and of in BASIC and self.fronts is None:
+            return of == basic
+        return float(color_scores(word, np.array(thing.group.lab))) >= COLOR_HOLDS
 
     @staticmethod
     def counted(things: Sequence[Thing]) -> str:
@@ -267,6 +356,14 @@ class Survey:
         for t in things:
             labels[t.name] = labels.get(t.name, 0) + 1
         return listed([f"{n} {plural(name)}" if n > 1 else with_article(name) for name, n in labels.items()])
+
+
+def _with(query: Query, anchor: Query, other: Query) -> Query:
+    """A query with another anchor in place of one of its anchors."""
+    relations = tuple(
+        r.model_copy(update={"anchors": tuple(other if a == anchor else a for a in r.anchors)}) for r in query.relations
+    )
+    return query.model_copy(update={"relations": relations})
 
 
 def listed(items: Sequence[str]) -> str:

@@ -1,39 +1,50 @@
-"""Readers of the holes of templates: noun phrases, numbers, lengths, colours and free words, by type."""
+"""Readers of the holes of templates, by type: noun phrases, numbers, lengths, units, colours, dimensions, free words.
+
+    {x}            Query: a noun phrase          {x:noun}    its words, if they are a noun phrase
+    {n:number}     float                         {l:length}  float, metres
+    {u:unit}       Unit                          {c:color}   a basic or other colour word, no material
+    {p:place}      words from a preposition on, such as "on the desk"
+    {d:dimension}  Dimension: "wide", "height"   {m:more}    More: "taller", "less wide"
+    {s:superlative} Superlative: "tallest", "second largest"
+    {w:words}      any words
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache, lru_cache
 
-from ....gaussians.color import parse as parse_color
-from ....gaussians.errors import UserError
-from ....gaussians.world.lengths import in_metres
+from ....gaussians.world import relations
+from ....gaussians.world.lengths import IN_METRES, METRES, UNITS, in_metres
 from ...grammar.vocabulary import quantities
 from . import noun_phrase
+from .colors import color
+from .measures import Unit, dimension, more, superlative
 from .phrase_templates import HoleReader, Words
 
-
 def number(words: Words) -> float | None:
-    """A number in digits or words."""
+    """A number in digits or words; "no" is none."""
     found = quantities.read(words)
     return found.value if found and found.kind == "NUMBER" and found.taken == len(words) else None
 
 
 def length(words: Words) -> float | None:
     """A length with its unit, in metres."""
-    found = quantities.read(words)
-    return (
-        in_metres(found.value, found.unit) if found and found.kind == "LENGTH" and found.taken == len(words) else None
-    )
+    said = words[1:] if words[:1] in (("about",), ("around",)) else words
+    found = quantities.read(said) if said else None
+    fits = found is not None and found.kind == "LENGTH" and found.taken == len(said)
+    return in_metres(found.value, found.unit) if found is not None and fits else None
 
 
-def color(words: Words) -> str | None:
-    """A colour word, as written."""
+def unit(words: Words) -> Unit | None:
+    """A unit of length: "metres", "ft", "inches"."""
     said = " ".join(words)
-    try:
-        parse_color(said)
-    except UserError:
+    if said in ("in", "'", '"', "units", "unit"):
         return None
-    return said
+    short = UNITS.get(said)
+    if short in METRES:
+        return Unit(str(short), METRES[str(short)])
+    return Unit(said[:2], IN_METRES[said]) if said in IN_METRES else None
 
 
 def free(words: Words) -> str | None:
@@ -41,10 +52,36 @@ def free(words: Words) -> str | None:
     return " ".join(words) or None
 
 
+def noun(words: Words) -> Words | None:
+    """The words of a noun phrase."""
+    return words if noun_phrase.thing(words) is not None else None
+
+
+@cache
+def _prepositions() -> frozenset[str]:
+    """First words of the relations of queries."""
+    phrases = (p for kind in relations.KINDS for p in (*kind.phrases.in_commands(), *kind.alone.in_commands()))
+    return frozenset(p.split()[0] for p in phrases) | {"closest", "nearest", "farthest", "hanging", "standing", "lying"}
+
+
+@lru_cache(maxsize=4096)
+def place(words: Words) -> Words | None:
+    """Words that say where a thing is: "on the desk", "to the left of the bed"."""
+    if len(words) < 2 or words[0] not in _prepositions():
+        return None
+    return words if noun_phrase.thing(("thing", *words)) is not None else None
+
+
 READERS: Mapping[str, HoleReader] = {
     "thing": noun_phrase.thing,
+    "noun": noun,
     "number": number,
     "length": length,
+    "unit": unit,
     "color": color,
+    "place": place,
+    "dimension": dimension,
+    "more": more,
+    "superlative": superlative,
     "words": free,
 }

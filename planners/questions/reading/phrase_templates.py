@@ -13,7 +13,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
+
+from .words import SPELT
 
 Words = tuple[str, ...]
 Slots = dict[str, Any]
@@ -58,6 +61,19 @@ class Template:
     source: str
     parts: _Sequence
 
+    @cached_property
+    def needs(self) -> tuple[frozenset[str], ...]:
+        """Sets of words: a question that lacks all words of one of them cannot fill the template."""
+        return _needs(self.parts)
+
+    @cached_property
+    def _start(self) -> _State:
+        return _compiled(self.parts, _END)
+
+    def may_match(self, words: frozenset[str]) -> bool:
+        """Whether a question of these words has the words that the template cannot do without."""
+        return not any(need.isdisjoint(words) for need in self.needs)
+
     def match(self, words: Words, readers: Mapping[str, HoleReader]) -> Iterator[Slots]:
         """Every way in which the words fill the template; earlier holes take as few words as they can.
 
@@ -65,7 +81,8 @@ class Template:
             words: of the whole question.
             readers: the reader of each type of hole.
         """
-        yield from _fill(self.parts, words, 0, {}, readers)
+        if self.may_match(frozenset(words)):
+            yield from _fill(self._start, words, 0, {}, readers)
 
 
 def templates(notation: str) -> tuple[Template, ...]:
@@ -113,7 +130,7 @@ def _sequence(pieces: Sequence[str], at: int) -> tuple[_Sequence, int]:
             name, _, kind = piece[1:-1].partition(":")
             parts.append(_Hole(name, kind or "thing"))
         else:
-            parts.append(_Word(piece))
+            parts.append(_Word(SPELT.get(piece, piece)))
         at += 1
     return tuple(parts), at
 
@@ -130,26 +147,71 @@ def _choice(pieces: Sequence[str], at: int) -> tuple[_Choice, int]:
             return _Choice(tuple(ways)), at + 1
 
 
-def _fill(parts: _Sequence, words: Words, at: int, slots: Slots, readers: Mapping[str, HoleReader]) -> Iterator[Slots]:
-    """Every way in which `words[at:]` fill the parts, to the last word."""
-    if not parts:
+@dataclass(frozen=True, eq=False)
+class _State:
+    """A part of a template with what follows it.
+
+    Attributes:
+        part: a word, a hole, or None at the end and where ways part.
+        ways: the states that follow; several where ways part, none at the end.
+        starts: the words with which the rest may begin; None if it may begin with a hole or be empty.
+    """
+
+    part: _Word | _Hole | None
+    ways: tuple[_State, ...]
+    starts: frozenset[str] | None
+
+
+_END = _State(None, (), None)
+
+
+def _compiled(parts: _Sequence, after: _State) -> _State:
+    """The state at the beginning of some parts that `after` follows."""
+    for part in reversed(parts):
+        if isinstance(part, _Choice):
+            ways = tuple(_compiled(way, after) for way in part.ways)
+            known = [w.starts for w in ways]
+            starts = None if None in known else frozenset().union(*(k for k in known if k is not None))
+            after = _State(None, ways, starts)
+        else:
+            after = _State(part, (after,), frozenset({part.text}) if isinstance(part, _Word) else None)
+    return after
+
+
+def _needs(parts: _Sequence) -> tuple[frozenset[str], ...]:
+    needs: list[frozenset[str]] = []
+    for part in parts:
+        if isinstance(part, _Word):
+            needs.append(frozenset({part.text}))
+        elif isinstance(part, _Choice):
+            ways = [_needs(way) for way in part.ways]
+            if all(ways):
+                needs.append(frozenset().union(*(way[0] for way in ways)))
+    return tuple(needs)
+
+
+def _fill(state: _State, words: Words, at: int, slots: Slots, readers: Mapping[str, HoleReader]) -> Iterator[Slots]:
+    """Every way in which `words[at:]` fill a state and what follows it, to the last word."""
+    part = state.part
+    if part is None and not state.ways:
         if all(w == "," for w in words[at:]):
             yield slots
         return
-    first, rest = parts[0], parts[1:]
-    while at < len(words) and words[at] == "," and not (isinstance(first, _Word) and first.text == ","):
+    if part is None:
+        for way in state.ways:
+            yield from _fill(way, words, at, slots, readers)
+        return
+    while at < len(words) and words[at] == "," and not (isinstance(part, _Word) and part.text == ","):
         at += 1
-    if isinstance(first, _Word):
-        if at < len(words) and words[at] == first.text:
+    (rest,) = state.ways
+    if isinstance(part, _Word):
+        if at < len(words) and words[at] == part.text:
             yield from _fill(rest, words, at + 1, slots, readers)
-    elif isinstance(first, _Choice):
-        for way in first.ways:
-            yield from _fill((*way, *rest), words, at, slots, readers)
-    else:
-        ends = range(at + 1, min(len(words), at + LONGEST_HOLE) + 1) if rest else (len(words),)
-        for end in ends:
-            if end <= at or (rest and isinstance(rest[0], _Word) and (end >= len(words) or words[end] != rest[0].text)):
-                continue
-            value = readers[first.type](words[at:end])
-            if value is not None:
-                yield from _fill(rest, words, end, {**slots, first.name: value}, readers)
+        return
+    longest = min(len(words), at + LONGEST_HOLE)
+    for end in range(at + 1, longest + 1) if rest is not _END else (len(words),):
+        if rest.starts is not None and (end >= len(words) or words[end] not in rest.starts | {","}):
+            continue
+        value = readers[part.type](words[at:end])
+        if value is not None:
+            yield from _fill(rest, words, end, {**slots, part.name: value}, readers)

@@ -1,7 +1,7 @@
 """Puts a question into a plain form: lower-case words without politeness, hedges and quotation marks.
 
 "Could you tell me, roughly, how far the sofa is from the window, please?" becomes "how far the sofa is from the
-window".
+window". Marks between clauses become commas, and "in this bedroom" becomes "in the room".
 """
 
 from __future__ import annotations
@@ -13,55 +13,117 @@ from ...grammar.tagging.words import bag, clean, split
 
 MAX_CHARS = 1000
 
+_MARKS = frozenset(".?!;:()[]–—")
+_DASH = re.compile(r"(?<=\s)[-–—]+(?=\s)")  # noqa: RUF001
+_THOUSANDS = re.compile(r"(?<=\d),(?=\d{3}\b)")
 _OPENERS = re.compile(
-    r"^(?:(?:hi|hey|hello|ok|okay|so|well|um+|uh+|hmm+|please|quick question|just (?:curious|wondering|checking)|"
-    r"out of curiosity|one more thing|by the way|btw|and|but|also|then|now|oh|right|sorry|excuse me|actually) ?)+"
+    r"^(?:(?:hi|hey|hello|hiya|ok|okay|alright|so|well|um+|uh+|er+m*|hmm+|please|quick question|question|"
+    r"(?:i am )?just (?:curious|wondering|checking|asking)|there (?=, )|everyone|all(?= ,)|good (?:morning|evening|day)|"
+    r"out of curiosity|one more thing|by the way|btw|fyi|and|but|also|then|now|oh|ah|right(?= ,)|sorry|excuse me|actually|"
+    r"listen|look|say(?= ,)|i say|remind me(?: again)?|again|thanks|thank you|in your opinion|as far as you can (?:see|tell)|"
+    r"judging (?:by|from) (?:the )?(?:picture|photo|scene|room|image)s?|from what you (?:can )?see|as it is(?= ,)|"
+    r"(?:for|in|of) (?:the|this) (?:scene|room|picture|photo|image)(?= ,)|in (?:the|this) room(?! (?:and|or)\b)|"
+    r"(?:looking|going) (?:at|by) (?:the|this) (?:room|scene|picture|photo)(?= ,)|in (?:total|all)(?= ,)|overall|generally|"
+    r"approximately|roughly|about(?= how)|around(?= how)|exactly(?= (?:how|what))|just|precisely(?= (?:how|what)))"
+    r"\b(?: ,)* ?)+"
 )
+_YOU = r"(?:you|u|ya|someone|somebody|anyone|anybody|we|i)"
 _ASKING = re.compile(
-    r"^(?:can|could|would|will) (?:you|u|someone|anyone|anybody) (?:please |kindly |maybe |possibly |quickly )?"
-    r"(?:tell me|say|check|work out|figure out|find out|let me know|give me|show me|name me|measure|describe|list|"
-    r"name|count|see)"
-    r"|^(?:please )?(?:tell me|let me know|say|check|work out|figure out|find out|measure)\b"
-    r"|^(?:do|would|might) you (?:happen to )?(?:know|have any idea(?: of)?|reckon|think|say|guess)\b"
-    r"|^(?:have you|you have|got|have) any (?:idea|clue)(?: of| about)?"
-    r"|^any (?:idea|clue|chance|guess)(?: of| about| that)?(?: (?:you|i|we) (?:can|could) (?:tell me|say|know))?"
-    r"|^(?:i am|i was|we are|we were) (?:just )?(?:wondering|curious)(?: about)?"
-    r"|^(?:i am|i was|we are|we were) trying to (?:find out|figure out|work out)"
-    r"|^i (?:just )?(?:wonder|want to know|need to know|would like to know|would love to know|want to ask|"
-    r"can not tell|do not know|forgot|need to find out)"
-    r"|^(?:what i want to know is|the question is|my question is)"
-    r"|^(?:is it (?:true|right|correct)|am i (?:right|correct))(?: in (?:thinking|saying|assuming))?(?: that)?"
+    rf"^(?:can|could|would|will|may|might) {_YOU} (?:please |kindly |maybe |possibly |quickly |just |be able to |help me )*"
+    r"(?:tell me|tell us|say|check|work out|figure out|find out|let me know|give me|show me|name me|measure|describe|list|"
+    r"name|count|see(?= (?:if|whether|how|what|which|where))|confirm|verify|estimate|identify|tell|determine|ask)\b"
+    r"(?: for me)?(?: ,)?"
+    r"|^(?:please )?(?:kindly )?(?:tell me|tell us|let me know|say|check|work out|figure out|find out|measure|confirm|verify|"
+    r"estimate|determine|state|specify|identify)(?: for me)?(?= (?:what|which|how|where|who|whether|if|the|a|is|are|there|when|why|about|,))"
+    r"(?: about)?"
+    r"|^(?:do|would|might|does) (?:you|anyone|anybody) (?:happen to )?(?:know|have any idea(?: of| about)?|have a clue|"
+    r"reckon|think|say|guess|remember|recall|mind (?:telling me|checking))(?: that)?\b"
+    r"|^(?:have you|you have|got|have|has anyone) (?:got )?any (?:idea|clue|thoughts)(?: of| about| on)?"
+    r"|^any (?:idea|clue|chance|guess|thoughts|way)(?: of| about| that| on)?(?: (?:you|i|we) (?:can|could) (?:tell me|say|know))?"
+    r"|^(?:is|would) there (?:be )?any (?:chance|way|possibility)(?: that| of)?(?: (?:you|i) (?:can|could) (?:tell me|say|know))?"
+    r"|^(?:i am|i was|we are|we were|was) (?:just )?(?:wondering|curious|interested in|curious about)(?: about| to know)?"
+    r"|^(?:i am|i was|we are|we were) trying to (?:find out|figure out|work out|see|determine|understand)"
+    r"|^(?:i|we) (?:just |would |really )*(?:wonder|wonder about|want to know|need to know|like to know|love to know|want to ask|"
+    r"can not (?:tell|see)|do not know|forgot|need to find out|am not sure|do not suppose|suppose|think|believe|guess|"
+    r"have a question|need|would like to find out|like to find out|have to know|must know|forget)(?: that)?"
+    r"(?= (?:what|which|how|where|who|whether|if|there|that|the|is|are|we|you|when|why|,))"
+    r"|^(?:i|we) (?:am|are) not (?:quite |entirely )?sure"
+    r"|^(?:what i (?:want|need|would like) to know is|the question is|my question is|here is (?:a|my) question)"
+    r"|^(?:would|is) (?:it|that) be (?:right|correct|fair|true) to say"
+    r"|^(?:is it (?:true|right|correct|the case|a fact|so)|am i (?:right|correct))(?: (?:in|to) (?:thinking|saying|assuming|think|say|assume))?(?: that)?"
+    r"|^(?:would|could) (?:you|one) say(?: that)?"
+    r"|^(?:it is|is it) my (?:impression|guess) that|^i would say(?: that)?|^let us see|^guess"
 )
 _FIRST_WORDS = bag(
     "what which where who whose when why how is are was were does do did can could has have will would should whether "
     "list name count describe measure any"
 )
-_KEPT = {"list", "name", "count", "describe", "measure", "show me", "give me", "name me", "see"}
+_KEPT = ("list", "name", "count", "describe", "measure", "show me", "give me", "name me", "see", "identify", "estimate")
 _CLOSERS = re.compile(
-    r"(?: (?:please|thanks|thank you|cheers|for me|mate|exactly|roughly|approximately|then|though|anyway|by any chance|"
-    r"at all|right now|at the moment|currently|would you say|do you (?:think|reckon|know)|or not|or so|i wonder|"
-    r"can you tell|if you had to guess|in your opinion))+$"
+    r"(?:(?:^| )(?:please|thanks|thank you|thank you very much|many thanks|thx|ta|cheers|for me|mate|pal|buddy|dear|exactly|"
+    r"roughly|approximately|approx|then|though|anyway|by any chance|at all|right now|at the moment|currently|"
+    r"would you say|do you (?:think|reckon|know|suppose|happen to know|believe|guess)|or not|or so|i wonder|"
+    r"(?:can|could) you (?:tell(?: me)?|say|check)|if you (?:had|have) to guess|in your opinion|more or less|ish|give or take|"
+    r"if you (?:do not|would not) mind|if you (?:can|could|may)(?: tell)?|if (?:i|one) may ask|if possible|in total|all in all|all together|"
+    r"altogether|in all|overall|if any|any (?:idea|clue|thoughts)|as far as you (?:know|can (?:see|tell))|actually|"
+    r"exactly speaking|in particular|to be (?:exact|precise)|off the top of your head|you think|you reckon|"
+    r"you (?:can )?(?:tell me|know)|i am (?:curious|asking)|just (?:curious|asking|wondering)|out of curiosity|of interest|"
+    r"ok|okay|huh|eh|innit|now|today|or what|or something))+$"
 )
+_AUX = r"(?:is|are|was|were|does|do|has|have|can|could|would|will|should)"
+_THEM = r"(?:it|there|they|he|she|that|we|i|you)"
 _TAGS = re.compile(
-    r" (?:(?:is|are|was|does|do|has|have|can) not (?:it|there|they|he|she|that|we|i)|right|yes|no|correct)$"
+    rf"(?: , {_AUX} {_THEM}(?: not)?|(?: ,)? {_AUX} not {_THEM}|(?: ,)? (?:yes|yeah|correct|true or false|yes or no)|"
+    r" , (?:right|no)|(?<! my)(?<! the)(?<! your)(?<! or)(?<! to)(?<! its)(?<! hand)(?<! left)(?<! far)(?<! a)(?<! on) right)$"
 )
 _HEDGES = re.compile(
     r"\b(?:roughly|approximately|approx|exactly|precisely|actually|currently|basically|really|just|kind of|sort of|"
-    r"by any chance|perhaps|maybe|possibly)\b "
+    r"by any chance|perhaps|maybe|possibly|probably|simply|honestly|overall|altogether|even|roughly speaking|like ,|"
+    r"more or less|at the moment|right now|please|pls|plz|kindly|the heck|on earth|bloody|damn)\b "
 )
-_WHETHER = re.compile(r"^(?:whether or not|whether|if)\b ?")
+_WHETHER = re.compile(r"^(?:, )*(?:whether or not|whether|if)\b ?")
+_CONTRACTED = {
+    "whats": "what is", "wheres": "where is", "hows": "how is", "whos": "who is", "theres": "there is",
+    "isnt": "is not", "arent": "are not", "doesnt": "does not", "thats": "that is", "whichs": "which is",
+    "im": "i am", "ive": "i have", "cant": "can not", "wasnt": "was not", "dunno": "do not know", "hasnt": "has not",
+    "hasn't": "has not", "haven't": "have not", "havent": "have not", "weren't": "were not", "youre": "you are",
+    "theyre": "they are", "wat": "what", "wot": "what", "wich": "which", "hw": "how", "r": "are", "ur": "your",
+    "gotta": "have got to", "w/": "with", "b/w": "between", "itll": "it will", "it'll": "it will", "they've": "they have",
+    "you've": "you have", "we've": "we have", "theyve": "they have", "youve": "you have", "there're": "there are",
+    "what're": "what are", "where're": "where are", "which's": "which is", "color's": "color is",
+    "when's": "when is", "why's": "why is", "somebody's": "somebody is", "everything's": "everything is",
+}  # fmt: skip
+_HAVE_IS = re.compile(r"\b(what|where|which|who|how|when|colou?r|that|there|one|anything|something|somebody|everything|it) 's\b")
+_ROOMS = (
+    "room|bedroom|living room|livingroom|sitting room|lounge|kitchen|office|study|bathroom|dining room|studio|hall|"
+    "hallway|playroom|nursery|classroom|library|attic|basement|space|place|scene|picture|photo|photograph|image|house|"
+    "home|flat|apartment|area|shop|cafe|workshop|garage|gym|model|view|music room|music studio|guest room|meeting room"
+)
+_IN_ROOM = re.compile(
+    rf"\b(?:anywhere |somewhere |elsewhere |present |available |visible |located )*(?:with)?in(?:side)? (?:of )?"
+    rf"(?:the|this|that|my|our|your|his|her|their)(?: whole| entire| same| current| given)? (?:{_ROOMS})\b(?! (?:'s|wall|door|"
+    r"table|chair|lamp|sink|counter|cabinet|floor|rug|window|desk|furniture)\b)"
+)
+SPELT = {"colour": "color", "colours": "colors", "coloured": "colored", "grey": "gray", "centre": "center",
+          "centres": "centers", "furthest": "farthest", "further": "farther", "metre": "meter", "metres": "meters",
+          "colur": "color", "clour": "color", "coler": "color", "collor": "color", "hight": "height", "heigth": "height",
+          "widht": "width", "lenght": "length", "tallist": "tallest", "bigest": "biggest"}  # fmt: skip
 
 
 def plain_words(text: str) -> tuple[str, ...]:
-    """The words of a question in lower case, without politeness and punctuation; commas are words.
+    """The words of a question in lower case, without politeness; marks between clauses are commas, which are words.
+
+    British spellings of a few words become American ones ("colour", "grey", "metre", "centre", "furthest").
 
     Raises:
         UserError: it is longer than `MAX_CHARS`.
     """
     if len(text) > MAX_CHARS:
         raise UserError(f"the question has {len(text)} characters, at most {MAX_CHARS} are read; ask it in parts")
-    said = " ".join(w.text for w in split(clean(text)) if w.text not in (".", "?", "!", ";", ":"))
-    said = f" {said} ".replace(" , ", " , ").strip(" ,")
+    text = _THOUSANDS.sub("", text)
+    said = " ".join(_plain(w.text) for w in split(clean(_DASH.sub(",", text))))
+    said = _HAVE_IS.sub(r"\1 is", said).replace(" is been ", " has been ").replace(" is got ", " has got ")
+    said = _IN_ROOM.sub("in the room", _commas(said))
     return tuple(_stripped(said).split())
 
 
@@ -69,6 +131,16 @@ def asks(text: str) -> bool:
     """Whether a text that is no edit is a question: by its first word or its question mark."""
     words = plain_words(text)
     return bool(words) and (text.rstrip().endswith("?") or words[0] in _FIRST_WORDS)
+
+
+def _plain(word: str) -> str:
+    if word in _MARKS:
+        return ","
+    return SPELT.get(word) or _CONTRACTED.get(word, word)
+
+
+def _commas(said: str) -> str:
+    return re.sub(r"(?: ?,)+", " ,", f" {said} ").strip(" ,")
 
 
 def _stripped(said: str) -> str:
@@ -79,13 +151,16 @@ def _stripped(said: str) -> str:
     before = ""
     while said != before:
         before = said
-        said = _OPENERS.sub("", said).strip(" ,")
-        said = _CLOSERS.sub("", said).strip(" ,")
-        said = _TAGS.sub("", said).strip(" ,")
+        said = _OPENERS.sub("", said).strip(" ,") or said
+        said = _CLOSERS.sub("", said).strip(" ,") or said
+        said = _TAGS.sub("", said).strip(" ,") or said
         said = _HEDGES.sub("", said)
         asked = _ASKING.match(said)
-        if asked and asked.end() < len(said):
+        if asked and asked.end() and asked.end() < len(said):
             verb = next((k for k in sorted(_KEPT, key=len, reverse=True) if asked.group().endswith(k)), "")
             rest = said[asked.end() :].strip(" ,")
-            said = f"{verb} {rest}" if verb else _WHETHER.sub("whether ", rest)
-    return said
+            said = f"{verb} {rest}" if verb and not _CLAUSE.match(rest) else _WHETHER.sub("whether ", rest)
+    return _commas(said)
+
+
+_CLAUSE = re.compile(r"^(?:what|which|how|where|who|whose|whether|if|when|why|there|is|are|that)\b")

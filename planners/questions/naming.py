@@ -1,0 +1,83 @@
+"""Definite descriptions of things: by label, colour, what they stand on, what they are next to, or their side."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...gaussians.world.support import SHELL
+
+if TYPE_CHECKING:
+    from .survey import Survey, Thing
+
+_BY = 1.0  # metres: largest gap to what a thing is said to be by
+_CLEAR = 0.3  # metres by which the next of its kind must be farther from it, or less far to the side
+_MOST_ALIKE = 12  # things of one label and colour beyond which only their number tells them apart
+
+
+def named(survey: Survey, thing: Thing) -> str:
+    """A description that holds of this thing only: "the sofa", "the red chair", "the chair by the window"."""
+    if thing.node is None:
+        return f"the {thing.name}"
+    if not thing.label:
+        return f"the {thing.color} thing ({thing.id})" if thing.color else f"the unnamed thing ({thing.id})"
+    label = f"the {thing.label}"
+    alike = [t for t in survey.things if t.label == thing.label]
+    if len(alike) <= 1:
+        return label
+    colored = [t for t in alike if t.color == thing.color]
+    if thing.color and len(colored) < len(alike):
+        label, alike = f"the {thing.color} {thing.label}", colored
+    if len(alike) == 1:
+        return label
+    others = [t for t in alike if t.id != thing.id]
+    if len(alike) > _MOST_ALIKE:
+        return f"{label} ({thing.id})"
+    return next(_by_place(survey, thing, others, label), f"{label} ({thing.id})")
+
+
+def _by_place(survey: Survey, thing: Thing, others: Sequence[Thing], label: str) -> Iterator[str]:
+    """Ways of telling a thing from others of its label and colour by where it is, the plainest first."""
+    support = _support(survey, thing)
+    if support is not None and all(_support(survey, o) != support for o in others):
+        yield f"{label} on {_once(survey, support)}"
+    for side, axis in (("left", -survey.stand.right), ("right", survey.stand.right)):
+        if _leads(thing, others, axis):
+            yield f"{label} on the {side}"
+    marks = [t for t in survey.things if t.label and t.label != thing.label and _is_mark(survey, t)]
+    for mark in sorted(marks, key=lambda m: survey.gap(thing, m)):
+        own = survey.gap(thing, mark)
+        if own > _BY:
+            break
+        if all(survey.gap(o, mark) > own + _CLEAR for o in others):
+            yield f"{label} by the {mark.label}"
+    for side, axis in (("at the front", -survey.stand.forward), ("at the back", survey.stand.forward)):
+        if _leads(thing, others, axis):
+            yield f"{label} {side}"
+
+
+def _support(survey: Survey, thing: Thing) -> str | int | None:
+    on = thing.node.support if thing.node else None
+    return None if on in SHELL else on
+
+
+def _once(survey: Survey, id: int | str) -> str:
+    """What a thing stands on in words, without saying where that is in turn."""
+    below = survey.thing(id)
+    alike = [t for t in survey.things if t.label == below.label]
+    if len(alike) == 1 or not below.label:
+        return f"the {below.name}"
+    plain = below.color and sum(t.color == below.color for t in alike) == 1
+    return f"the {below.color} {below.label}" if plain else f"the {below.label} ({below.id})"
+
+
+def _is_mark(survey: Survey, thing: Thing) -> bool:
+    return sum(t.label == thing.label for t in survey.things) == 1 and max(thing.group.box.size) > _CLEAR
+
+
+def _leads(thing: Thing, others: Sequence[Thing], axis: np.ndarray) -> bool:
+    """Whether a thing is farther along a direction than all the others, clearly."""
+    own = float(np.array(thing.group.box.center) @ axis)
+    return all(own > float(np.array(o.group.box.center) @ axis) + _CLEAR for o in others)

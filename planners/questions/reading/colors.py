@@ -1,0 +1,33 @@
+"""Reads colour words of questions; words for materials are none, as whether they hold is seen, not measured."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from ....gaussians.color import parse as parse_color
+from ....gaussians.errors import UserError
+
+Words = tuple[str, ...]
+
+# Colour words that say what a thing is made of; whether they hold is seen, not measured.
+MATERIALS = frozenset(
+    "wood wooden oak walnut mahogany chestnut pine teak cherry maple birch bamboo timber rattan wicker cane straw jute "
+    "metal metallic steel stainless iron aluminium aluminum chrome brass bronze copper leather marble stone concrete "
+    "porcelain ceramic denim reclaimed glass plastic fabric velvet linen cotton wool paper wine sand peach rose rust "
+    "amber ruby sapphire emerald mint".split()  # noqa: SIM905
+)
+_MIXED = {"multicolored", "multicolor", "colorful"}
+
+
+@lru_cache(maxsize=1024)
+def color(words: Words) -> str | None:
+    """A colour word, in American spelling; words for materials are none."""
+    said = " ".join(words).removesuffix(" colored").removesuffix(" in color")
+    last = said.split()[-1] if said.split() else ""
+    if last in MATERIALS or last in _MIXED or len(words) > 4:
+        return None
+    try:
+        parse_color(said)
+    except UserError:
+        return None
+    return said
