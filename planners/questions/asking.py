@@ -1,20 +1,59 @@
 """Answers a question from geometry: words to a filled template, and that to an answer.
 
 text ──reading──► Asked ──kinds──► Answer     (source "none" if no kind of question reads it)
+
+`route` also says whether somebody who sees pictures of the scene may answer what geometry could not.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
 from ...gaussians.language.query.query import Query
+from ..grammar.tagging.words import bag
 from . import kinds
-from .answer import Answer, Evidence
-from .kind import Asked
+from .answer import Answer, AnswerType
+from .kind import Asked, Kind, Undecided
 from .reading.holes import READERS
 from .reading.situation import read_situation
 from .reading.words import plain_words
-from .survey import NotResolved, Survey, listed
+from .survey import NotResolved, Survey, Thing
+from .telling import absent, evidence
 
 NOT_READ = "this question is not understood"
+_TRIED = 8  # candidates of an ambiguous phrase for which a question is answered one by one
+_NEAR = 0.05  # relative difference up to which the answers for all candidates are one answer
+_YES_NO = bag(
+    "is are was were am does do did has have had can could will would should shall may might must whether there got any"
+)
+_OPEN = bag("what which where who whose whom how why when list name count describe show give")
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What geometry made of a question.
+
+    Attributes:
+        answer: the answer; its source is "none" where geometry has none.
+        kind: name of the kind of question, "" if it was not read.
+        sight: whether somebody who sees pictures of the scene may answer it instead; false of what was answered, and
+            of what no picture shows ("who owns it?").
+    """
+
+    answer: Answer
+    kind: str = ""
+    sight: bool = False
+
+
+@dataclass(frozen=True)
+class _Attempt:
+    """A filled template whose question could not be answered as it stands."""
+
+    kind: Kind
+    asked: Asked
+    error: NotResolved
 
 
 def answer(text: str, survey: Survey) -> Answer:
@@ -26,37 +65,138 @@ def answer(text: str, survey: Survey) -> Answer:
     Raises:
         UserError: the text is too long.
     """
-    situation, words = read_situation(plain_words(text))
-    unresolved: NotResolved | None = None
+    return route(text, survey).answer
+
+
+def route(text: str, survey: Survey) -> Reading:
+    """The answer to a question as far as geometry gives one, and who may answer it otherwise.
+
+    Raises:
+        UserError: the text is too long.
+    """
+    words = plain_words(text)
+    situation, rest = read_situation(words)
+    failed: _Attempt | None = None
+    said = frozenset(rest)
     for kind in kinds.KINDS:
         for template in kind.templates:
-            for slots in template.match(words, READERS):
+            if not template.may_match(said):
+                continue
+            for slots in template.match(rest, READERS):
+                asked = Asked(text, slots, situation, rest)
                 try:
-                    given = kind.answer(Asked(text, slots, situation), survey)
+                    given = kind.answer(asked, survey)
                 except NotResolved as error:
-                    unresolved = unresolved or error
+                    failed = failed or _Attempt(kind, asked, error)
                     continue
                 if given is not None:
-                    return given
-    if unresolved is not None:
-        return _not_resolved(unresolved, survey)
-    return Answer(answer=None, answer_type="text", text=NOT_READ, confidence=0.0, source="none")
+                    return _reading(kind, given)
+    if failed is not None:
+        return _unresolved(failed, survey)
+    none = Answer(answer=None, answer_type=expected_type(rest), text=NOT_READ, confidence=0.0, source="none")
+    return Reading(none, sight=True)
 
 
-def _not_resolved(error: NotResolved, survey: Survey) -> Answer:
+def expected_type(words: Sequence[str]) -> AnswerType:
+    """The type of answer that a question asks for, by its first words; "text" if they leave it open."""
+    first = next((w for w in words if w != ","), "")
+    if first in _YES_NO or (first and first not in _OPEN and {"is", "are"} & set(words)):
+        return "text" if "or" in words and "whether" not in words else "yesno"
+    return "number" if words[:2] == ("how", "many") or first == "count" else "text"
+
+
+def _reading(kind: Kind, given: Answer | Undecided) -> Reading:
+    if isinstance(given, Answer):
+        return Reading(given, kind.name, sight=False)
+    none = Answer(
+        answer=None, answer_type=given.answer_type, text=given.text, confidence=given.confidence, source="none",
+        evidence=evidence(given.things),
+    )  # fmt: skip
+    return Reading(none, kind.name, given.sight)
+
+
+# -- phrases that are absent or ambiguous ----------------------------------------------------------------------------
+
+
+def _unresolved(failed: _Attempt, survey: Survey) -> Reading:
     """The answer where a phrase is absent or ambiguous."""
-    said = error.query.describe()
-    if error.found.verdict == "ambiguous":
-        names = [survey.named(t) for t in error.found.things]
-        text = f"“{said}” may be {listed(names)}; say which one."
-        ids = tuple(t.id for t in error.found.things)
-        return Answer(answer=None, answer_type="text", text=text, evidence=Evidence(ids=ids))
-    near = [survey.named(t) for t in error.found.near]
-    told = f" The nearest to that: {listed(near)}." if near else ""
-    ids = tuple(t.id for t in error.found.near)
-    return Answer(answer=None, answer_type="text", text=f"There is no {_bare(error.query)} here.{told}",
-                  source="none", evidence=Evidence(ids=ids))  # fmt: skip
+    error, kind = failed.error, failed.kind
+    kind_of_answer = expected_type(failed.asked.words)
+    if error.found.verdict != "ambiguous":
+        unnamed = any(not t.label for t in survey.things)
+        return Reading(absent(survey, error.query, error.found, kind_of_answer), kind.name, sight=unnamed)
+    given = [(t, _for_one(failed, t, survey)) for t in error.found.things[:_TRIED]]
+    answers = [a for _, a in given if a is not None and a.answer is not None]
+    if len(answers) == len(error.found.things) and (one := _same(answers)) is not None:
+        return Reading(one, kind.name)
+    return Reading(_several(error, given, survey, kind_of_answer), kind.name)
 
 
-def _bare(query: Query) -> str:
-    return query.describe().removeprefix("the ").removeprefix("every ").removeprefix("any ")
+def _for_one(failed: _Attempt, thing: Thing, survey: Survey) -> Answer | None:
+    """The answer if an ambiguous phrase means this thing; None if there is none."""
+    meant = Query(groups=(thing.row,))
+    slots = {name: _replaced(value, failed.error.query, meant) for name, value in failed.asked.slots.items()}
+    if slots == dict(failed.asked.slots):
+        return None
+    asked = Asked(failed.asked.text, slots, failed.asked.situation, failed.asked.words)
+    try:
+        given = failed.kind.answer(asked, survey)
+    except NotResolved:
+        return None
+    return given if isinstance(given, Answer) else None
+
+
+def _replaced(value: Any, phrase: Query, meant: Query) -> Any:
+    """A value of a slot with one phrase in it replaced, however deep it is."""
+    if not isinstance(value, Query):
+        return value
+    if value == phrase:
+        return meant
+    changes: dict[str, Any] = {
+        "relations": tuple(
+            r.model_copy(update={"anchors": tuple(_replaced(a, phrase, meant) for a in r.anchors)})
+            for r in value.relations
+        ),
+        "also": tuple(_replaced(q, phrase, meant) for q in value.also),
+        "exclude": tuple(_replaced(q, phrase, meant) for q in value.exclude),
+    }
+    return value.model_copy(update=changes)
+
+
+def _same(answers: Sequence[Answer]) -> Answer | None:
+    """The one answer that all candidates give, with the evidence of all; None if they differ."""
+    first = answers[0]
+    for other in answers[1:]:
+        a, b = first.answer, other.answer
+        if isinstance(a, float) and isinstance(b, float):
+            if abs(a - b) > _NEAR * max(abs(a), abs(b)):
+                return None
+        elif a != b:
+            return None
+    ids = tuple(dict.fromkeys(i for a in answers for i in a.evidence.ids))
+    sure = min(a.confidence for a in answers)
+    return first.model_copy(update={
+        "confidence": sure, "evidence": first.evidence.model_copy(update={"ids": ids}),
+    })  # fmt: skip
+
+
+def _several(
+    error: NotResolved, given: Sequence[tuple[Thing, Answer | None]], survey: Survey, answer_type: AnswerType
+) -> Answer:
+    """That a phrase means several things, with the answer for each of them."""
+    told = [f"{survey.named(t)}{_value(a)}" for t, a in given]
+    more = len(error.found.things) - len(given)
+    tail = f"; and {more} more" if more > 0 else ""
+    text = f"“{error.query.describe()}” may be {'; '.join(told)}{tail}. Say which one."
+    return Answer(answer=None, answer_type=answer_type, text=text[:4000], confidence=0.8, source="none",
+                  evidence=evidence(error.found.things))  # fmt: skip
+
+
+def _value(given: Answer | None) -> str:
+    """An answer in brackets, "" if there is none."""
+    if given is None or given.answer is None:
+        return ""
+    value: Mapping[str, Any] = given.to_json()
+    said = value["answer"]
+    said = ", ".join(said) if isinstance(said, list) else said
+    return f" ({said}{' ' + given.unit if given.unit else ''})"

@@ -3,28 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...gaussians.world.relation_geometry import Stand
 from ...gaussians.world.support import SHELL
-
-if TYPE_CHECKING:
-    from .survey import Survey, Thing
+from .things import Thing, gap
 
 _BY = 1.0  # metres: largest gap to what a thing is said to be by
 _CLEAR = 0.3  # metres by which the next of its kind must be farther from it, or less far to the side
 _MOST_ALIKE = 12  # things of one label and colour beyond which only their number tells them apart
 
 
-def named(survey: Survey, thing: Thing) -> str:
+def named(thing: Thing, things: Sequence[Thing], stand: Stand) -> str:
     """A description that holds of this thing only: "the sofa", "the red chair", "the chair by the window"."""
     if thing.node is None:
         return f"the {thing.name}"
     if not thing.label:
         return f"the {thing.color} thing ({thing.id})" if thing.color else f"the unnamed thing ({thing.id})"
     label = f"the {thing.label}"
-    alike = [t for t in survey.things if t.label == thing.label]
+    alike = [t for t in things if t.label == thing.label]
     if len(alike) <= 1:
         return label
     colored = [t for t in alike if t.color == thing.color]
@@ -35,46 +33,48 @@ def named(survey: Survey, thing: Thing) -> str:
     others = [t for t in alike if t.id != thing.id]
     if len(alike) > _MOST_ALIKE:
         return f"{label} ({thing.id})"
-    return next(_by_place(survey, thing, others, label), f"{label} ({thing.id})")
+    return next(_by_place(thing, others, label, things, stand), f"{label} ({thing.id})")
 
 
-def _by_place(survey: Survey, thing: Thing, others: Sequence[Thing], label: str) -> Iterator[str]:
+def _by_place(
+    thing: Thing, others: Sequence[Thing], label: str, things: Sequence[Thing], stand: Stand
+) -> Iterator[str]:
     """Ways of telling a thing from others of its label and colour by where it is, the plainest first."""
-    support = _support(survey, thing)
-    if support is not None and all(_support(survey, o) != support for o in others):
-        yield f"{label} on {_once(survey, support)}"
-    for side, axis in (("left", -survey.stand.right), ("right", survey.stand.right)):
+    support = _support(thing)
+    if support is not None and all(_support(o) != support for o in others):
+        yield f"{label} on {_once(support, things)}"
+    for side, axis in (("left", -stand.right), ("right", stand.right)):
         if _leads(thing, others, axis):
             yield f"{label} on the {side}"
-    marks = [t for t in survey.things if t.label and t.label != thing.label and _is_mark(survey, t)]
-    for mark in sorted(marks, key=lambda m: survey.gap(thing, m)):
-        own = survey.gap(thing, mark)
+    marks = [t for t in things if t.label and t.label != thing.label and _is_mark(t, things)]
+    for mark in sorted(marks, key=lambda m: gap(thing, m)):
+        own = gap(thing, mark)
         if own > _BY:
             break
-        if all(survey.gap(o, mark) > own + _CLEAR for o in others):
+        if all(gap(o, mark) > own + _CLEAR for o in others):
             yield f"{label} by the {mark.label}"
-    for side, axis in (("at the front", -survey.stand.forward), ("at the back", survey.stand.forward)):
+    for side, axis in (("at the front", -stand.forward), ("at the back", stand.forward)):
         if _leads(thing, others, axis):
             yield f"{label} {side}"
 
 
-def _support(survey: Survey, thing: Thing) -> str | int | None:
+def _support(thing: Thing) -> str | int | None:
     on = thing.node.support if thing.node else None
     return None if on in SHELL else on
 
 
-def _once(survey: Survey, id: int | str) -> str:
+def _once(id: int | str, things: Sequence[Thing]) -> str:
     """What a thing stands on in words, without saying where that is in turn."""
-    below = survey.thing(id)
-    alike = [t for t in survey.things if t.label == below.label]
+    below = next(t for t in things if t.id == id)
+    alike = [t for t in things if t.label == below.label]
     if len(alike) == 1 or not below.label:
         return f"the {below.name}"
     plain = below.color and sum(t.color == below.color for t in alike) == 1
     return f"the {below.color} {below.label}" if plain else f"the {below.label} ({below.id})"
 
 
-def _is_mark(survey: Survey, thing: Thing) -> bool:
-    return sum(t.label == thing.label for t in survey.things) == 1 and max(thing.group.box.size) > _CLEAR
+def _is_mark(thing: Thing, things: Sequence[Thing]) -> bool:
+    return sum(t.label == thing.label for t in things) == 1 and max(thing.group.box.size) > _CLEAR
 
 
 def _leads(thing: Thing, others: Sequence[Thing], axis: np.ndarray) -> bool:

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...gaussians.language.query.query import Query
+from ...gaussians.world.relation_geometry import Stand
+from .things import Thing
 
-if TYPE_CHECKING:
-    from .survey import Survey, Thing
 
-
-def picked(survey: Survey, query: Query, things: Sequence[Thing]) -> Thing | None:
+def picked(query: Query, things: Sequence[Thing], stand: Stand) -> Thing | None:
     """The thing that the `pick` of a query means, None if it picks none of them."""
-    stand = survey.stand
 
     def at(thing: Thing) -> np.ndarray:
         return np.array(thing.group.box.center)

@@ -18,21 +18,20 @@ from ...gaussians.language.query.attributes import COLOR_HOLDS, color_scores
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.world import kinds, relations
-from ...gaussians.world.box import distance
 from ...gaussians.world.relation_geometry import HOLDS, Stand
 from ...gaussians.world.support import SHELL
 from ...gaussians.world.words import plural
 from ..rooms.graph import SceneGraph
 from ..rooms.graph_scene import Id, Stage
-from ..rooms.node import Node
 from .naming import named
+from .picking import picked
 from .reading import families
 from .reading.noun_phrase import BY_ID
+from .things import Found, NotResolved, Thing, gap
 
 if TYPE_CHECKING:
     from ...gaussians.camera import Camera
     from ...gaussians.language.encoders import Encoder
-    from ...gaussians.language.field.language_field import Group
     from ...gaussians.scene import Scene
 
 _MEMORY = 4096  # queries whose results are kept
@@ -40,62 +39,6 @@ _MEMORY = 4096  # queries whose results are kept
 _LOOSE = frozenset({"on", "inside", "under", "below", "above", "next_to"})
 
 Finder = Callable[[Query], Selection]  # a query to rows of the stage
-
-
-@dataclass(frozen=True, eq=False)
-class Thing:
-    """One thing of a survey, or the floor, a wall or the ceiling.
-
-    Attributes:
-        id: its id in the scene graph; "floor", "wall" or "ceiling" for those without a node.
-        row: its row on the stage.
-        label: what it is, "" if nobody could tell.
-        node: its node; None for a floor, wall or ceiling without one.
-        group: its row of the stage's table, with its box.
-    """
-
-    id: Id
-    row: int
-    label: str
-    node: Node | None
-    group: Group
-
-    @property
-    def color(self) -> str:
-        """Name of its main colour, "" if unknown."""
-        return self.node.color if self.node is not None else ""
-
-    @property
-    def name(self) -> str:
-        """Its label, or "unnamed thing"."""
-        return self.label or "unnamed thing"
-
-
-@dataclass(frozen=True)
-class Found:
-    """What a query means in a survey.
-
-    Attributes:
-        verdict: "found", "ambiguous" or "absent".
-        things: what was found, or the candidates of an ambiguous query; none if it is absent.
-        near: of an absent query the nearest things.
-        reason: one sentence for a person.
-        about: the phrase within the query that is absent or ambiguous; None: the query itself.
-    """
-
-    verdict: str
-    things: tuple[Thing, ...]
-    near: tuple[Thing, ...] = ()
-    reason: str = ""
-    about: Query | None = None
-
-
-class NotResolved(Exception):  # not an error: asking.py tells it as an answer
-    """A phrase of a question is absent or ambiguous; `found` says which, `query` is the phrase."""
-
-    def __init__(self, query: Query, found: Found) -> None:
-        super().__init__(found.reason)
-        self.query, self.found = found.about or query, found
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +50,8 @@ class Survey:
         stage: the boxes, colours and relations of the graph's nodes.
         finder: resolves queries to rows of the stage.
         last: ids that "it" refers to.
-        fronts: ids of the things whose front is known: on the -y side of their box.
+        fronts: ids of the things whose front is known: on the -y side of their box; None: by their kind.
+        measured: whether boxes, colours and labels were measured in a scene, not written by somebody.
     """
 
     graph: SceneGraph
@@ -115,6 +59,7 @@ class Survey:
     finder: Finder
     last: tuple[Id, ...] = ()
     fronts: frozenset[Id] | None = None
+    measured: bool = False
     _memory: dict[str, Found] = field(default_factory=dict)
     _names: dict[Id, str] = field(default_factory=dict)
 
@@ -164,7 +109,7 @@ class Survey:
         def find(query: Query) -> Selection:
             return _on_stage(resolver.select(query), rows, structure)
 
-        return replace(self, finder=find, last=last.groups if last is not None else (), _memory={})
+        return replace(self, finder=find, last=last.groups if last is not None else (), measured=True, _memory={})
 
     # -- things -----------------------------------------------------------------------------------------------------
 
@@ -199,11 +144,11 @@ class Survey:
                     there = self.find(anchor)
                     if there.verdict != "found":
                         return replace(there, about=there.about or anchor)
-                    rows = Query(groups=tuple(t.row for t in there.things))
-                    return self._found(_with(query, anchor, rows))
+                    meant = Query(groups=tuple(t.row for t in there.things))
+                    return self._found(_with(query, anchor, meant))
         if query.text.startswith(f"{BY_ID} "):
-            things = tuple(t for t in self.things if str(t.id) == query.text.removeprefix(f"{BY_ID} "))
-            return Found("found" if things else "absent", things)
+            numbered = tuple(t for t in self.things if str(t.id) == query.text.removeprefix(f"{BY_ID} "))
+            return Found("found" if numbered else "absent", numbered)
         if query.text in families.named() and not query.groups:
             return self._of_family(query)
         found = self.finder(query)
@@ -224,9 +169,9 @@ class Survey:
         things = [self.at(g) for g in every.groups] if every.verdict == "found" else []
         rows = tuple(dict.fromkeys(t.row for t in things if families.holds(query.text, t.label)))
         members = tuple(map(self.at, rows))
-        if not members or query.pick in ("all", "rest") and query.count in (None, len(members)):
+        if not members or (query.pick in ("all", "rest") and query.count in (None, len(members))):
             return Found("found" if members else "absent", members)
-        if query.pick == "any" or len(members) == 1 and query.pick != "all":
+        if query.pick == "any" or (len(members) == 1 and query.pick != "all"):
             return Found("found", members[:1])
         if query.pick in ("one", "all"):
             return Found("ambiguous", members, reason=f"{query.describe()}: {len(members)} things match")
@@ -234,9 +179,7 @@ class Survey:
 
     def _picked(self, query: Query, members: Sequence[Thing]) -> Found:
         """The one of several things that a superlative picks."""
-        from .picking import picked
-
-        thing = picked(self, query, members)
+        thing = picked(query, members, self.stand)
         return Found("found", (thing,)) if thing is not None else Found("ambiguous", tuple(members))
 
     def _at_fault(self, query: Query) -> Query | None:
@@ -260,7 +203,7 @@ class Survey:
             if named.verdict == "found":
                 return named.things[:3]
         alike = [t for t in self.things if t.label and families.related(query.text, t.label)] if query.text else []
-        return tuple(alike[:3] or (map(self.at, rows) if self.fronts is not None else ()))
+        return tuple(alike[:3] or (map(self.at, rows) if self.measured else ()))
 
     def all_of(self, query: Query) -> tuple[Thing, ...]:
         """Everything that a query describes, however many are meant; none if it is absent."""
@@ -311,7 +254,7 @@ class Survey:
     @staticmethod
     def gap(a: Thing, b: Thing) -> float:
         """Metres between the surfaces of two boxes; 0 where they touch."""
-        return max(distance(a.group.box, b.group.box), 0.0)
+        return gap(a, b)
 
     @staticmethod
     def between_centers(a: Thing, b: Thing) -> float:
@@ -333,7 +276,7 @@ class Survey:
         A number in brackets is its id, where colour and place do not tell it from the others.
         """
         if thing.id not in self._names:
-            self._names[thing.id] = named(self, thing)
+            self._names[thing.id] = named(thing, self.things, self.stand)
         return self._names[thing.id]
 
     def has_color(self, thing: Thing, word: str) -> bool | None:
@@ -345,7 +288,7 @@ class Survey:
             return True
         basic = asked if asked in BASIC else FAMILIES.get(asked.replace(" ", ""))
         of = own if own in BASIC else FAMILIES.get(own.replace(" ", "")) or own.split()[-1]
-        if asked in BASIC and of in BASIC and self.fronts is None:
+        if asked in BASIC and of in BASIC and not self.measured:
             return of == basic
         return float(color_scores(word, np.array(thing.group.lab))) >= COLOR_HOLDS
 
@@ -364,6 +307,9 @@ def _with(query: Query, anchor: Query, other: Query) -> Query:
         r.model_copy(update={"anchors": tuple(other if a == anchor else a for a in r.anchors)}) for r in query.relations
     )
     return query.model_copy(update={"relations": relations})
+
+
+__all__ = ["Found", "NotResolved", "Survey", "Thing", "listed", "with_article"]
 
 
 def listed(items: Sequence[str]) -> str:

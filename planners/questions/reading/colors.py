@@ -6,15 +6,16 @@ from functools import lru_cache
 
 from ....gaussians.color import parse as parse_color
 from ....gaussians.errors import UserError
+from ...grammar.tagging.words import bag
 
 Words = tuple[str, ...]
 
 # Colour words that say what a thing is made of; whether they hold is seen, not measured.
-MATERIALS = frozenset(
-    "wood wooden oak walnut mahogany chestnut pine teak cherry maple birch bamboo timber rattan wicker cane straw jute "
-    "metal metallic steel stainless iron aluminium aluminum chrome brass bronze copper leather marble stone concrete "
-    "porcelain ceramic denim reclaimed glass plastic fabric velvet linen cotton wool paper wine sand peach rose rust "
-    "amber ruby sapphire emerald mint".split()  # noqa: SIM905
+MATERIALS = bag(
+    "wood wooden oak walnut mahogany chestnut pine teak cherry maple birch bamboo timber rattan wicker cane straw "
+    "jute metal metallic steel stainless iron aluminium aluminum chrome brass bronze copper leather marble stone "
+    "concrete porcelain ceramic denim reclaimed glass plastic fabric velvet linen cotton wool paper wine sand peach "
+    "rose rust amber ruby sapphire emerald mint"
 )
 _MIXED = {"multicolored", "multicolor", "colorful"}
 

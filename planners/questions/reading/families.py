@@ -23,7 +23,8 @@ _LIGHT_WORDS = frozenset({"lamp", "light", "chandelier", "lantern", "spotlight",
 SAID: Mapping[str, str] = {
     "seat": SEAT, "seating": SEAT, "light": LIGHT, "lighting": LIGHT, "storage": STORAGE, "storage unit": STORAGE,
     "storage furniture": STORAGE, "furniture": FURNITURE, "furnishing": FURNITURE, "light fixture": LIGHT,
-    "light fitting": LIGHT, "furniture piece": FURNITURE, "furniture item": FURNITURE, "household appliance": "appliance",
+    "light fitting": LIGHT, "furniture piece": FURNITURE, "furniture item": FURNITURE,
+    "household appliance": "appliance",
     "kitchen appliance": "appliance", "electrical appliance": "appliance", "electronic device": "electronics",
     "electronic": "electronics", "gadget": "electronics", "seating option": SEAT, "seating place": SEAT,
     "sitting place": SEAT, "home appliance": "appliance", "ornament": "decoration", "soft toy": "toy",
@@ -41,7 +42,7 @@ def holds(family: str, label: str) -> bool:
     """Whether a thing with this label belongs to a family."""
     if family in _USES:
         kind = kinds.of(label)
-        return family == LIGHT and _is_light(label) or kind is not None and _USES[family](kind)
+        return (family == LIGHT and _is_light(label)) or (kind is not None and _USES[family](kind))
     return normalise(label) == normalise(family) or _is_in(family, kinds.of(label))
 
 

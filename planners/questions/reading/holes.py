@@ -1,12 +1,13 @@
 """Readers of the holes of templates, by type: noun phrases, numbers, lengths, units, colours, dimensions, free words.
 
-    {x}            Query: a noun phrase          {x:noun}    its words, if they are a noun phrase
-    {n:number}     float                         {l:length}  float, metres
-    {u:unit}       Unit                          {c:color}   a basic or other colour word, no material
-    {p:place}      words from a preposition on, such as "on the desk"
-    {d:dimension}  Dimension: "wide", "height"   {m:more}    More: "taller", "less wide"
-    {s:superlative} Superlative: "tallest", "second largest"
-    {w:words}      any words
+{x}            Query: a noun phrase          {x:noun}    its words, if they are a noun phrase
+{n:number}     float                         {l:length}  float, metres
+{u:unit}       Unit                          {c:color}   a basic or other colour word, no material
+{p:place}      words from a preposition on, such as "on the desk"
+{d:dimension}  Dimension: "wide", "height"   {m:more}    More: "taller", "less wide"
+{s:superlative} Superlative: "tallest", "second largest"
+{a:amount}     Amount: "more than one", "at least two", "four"
+{w:words}      any words
 """
 
 from __future__ import annotations
@@ -19,8 +20,9 @@ from ....gaussians.world.lengths import IN_METRES, METRES, UNITS, in_metres
 from ...grammar.vocabulary import quantities
 from . import noun_phrase
 from .colors import color
-from .measures import Unit, dimension, more, superlative
+from .measures import Unit, amount, dimension, more, superlative
 from .phrase_templates import HoleReader, Words
+
 
 def number(words: Words) -> float | None:
     """A number in digits or words; "no" is none."""
@@ -83,5 +85,6 @@ READERS: Mapping[str, HoleReader] = {
     "dimension": dimension,
     "more": more,
     "superlative": superlative,
+    "amount": amount,
     "words": free,
 }

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ...grammar.vocabulary.quantities import ORDINALS
+from ...grammar.vocabulary.quantities import read as quantities_read
 
 Words = tuple[str, ...]
+_FAR = 10**9
 Measure = Literal["width", "depth", "height", "length", "thickness", "size", "footprint", "top", "volume"]
 
 
@@ -110,3 +112,51 @@ def superlative(words: Words) -> Superlative | None:
     word = " ".join(rest[1:] if rank else rest)
     found = _MOST.get(word) if word else None
     return Superlative(found[0], found[1], max(rank, 1), word) if found else None
+
+
+@dataclass(frozen=True)
+class Amount:
+    """A condition on a number: `low` to `high`, both included."""
+
+    low: float
+    high: float
+
+    def holds(self, value: float) -> bool:
+        """Whether a number satisfies it."""
+        return self.low <= value <= self.high
+
+
+_BOUNDS: tuple[tuple[str, int, int], ...] = (  # phrase, added to the number for the lowest and for the highest value
+    ("more than", 1, _FAR), ("any more than", 1, _FAR), ("over", 1, _FAR), ("greater than", 1, _FAR),
+    ("no more than", -_FAR, 0), ("not more than", -_FAR, 0), ("no less than", 0, _FAR), ("no fewer than", 0, _FAR),
+    ("at least", 0, _FAR), ("a minimum of", 0, _FAR), ("as many as", 0, _FAR), ("at most", -_FAR, 0),
+    ("a maximum of", -_FAR, 0), ("up to", -_FAR, 0), ("fewer than", -_FAR, -1), ("less than", -_FAR, -1),
+    ("under", -_FAR, -1), ("exactly", 0, 0), ("only", 0, 0), ("precisely", 0, 0), ("no other than", 0, 0),
+    ("a total of", 0, 0),
+)  # fmt: skip
+
+
+def amount(words: Words) -> Amount | None:
+    """A condition on a number: "more than one", "at least 3", "two or more", "four"."""
+    said = " ".join(words)
+    if said in ("several", "multiple", "a couple of", "a pair of", "plenty of", "a few"):
+        return Amount(2, 2) if "couple" in said or "pair" in said else Amount(2, _FAR)
+    for ending, low, high in ((" or more", 0, _FAR), (" or fewer", -_FAR, 0), (" or less", -_FAR, 0)):
+        if said.endswith(ending) and (n := _whole(said.removesuffix(ending))) is not None:
+            return Amount(n + low, n + high)
+    for phrase, low, high in sorted(_BOUNDS, key=lambda b: -len(b[0])):
+        if said.startswith(f"{phrase} ") and (n := _whole(said.removeprefix(f"{phrase} "))) is not None:
+            return Amount(n + low, n + high)
+    n = _whole(said)
+    return None if n is None or said in ("a", "an", "one") else Amount(n, n)
+
+
+def _whole(said: str) -> float | None:
+    words = said.split()
+    if words[:1] == ["the"]:
+        words = words[1:]
+    if words in (["a"], ["an"], ["a", "single"], ["one"], ["single"]):
+        return 1.0
+    found = quantities_read(words) if words else None
+    fits = found is not None and found.kind == "NUMBER" and found.taken == len(words)
+    return found.value if found is not None and fits and found.value == int(found.value) else None

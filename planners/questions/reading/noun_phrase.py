@@ -14,34 +14,53 @@ from ....gaussians.language.query.query import Query
 from ....gaussians.world import kinds
 from ....gaussians.world.words import singular
 from ...grammar import GrammarPlanner
+from ...grammar.tagging.words import bag
 from . import families
 from .colors import color
 
 Words = tuple[str, ...]
 
-_ANYTHING = frozenset(
-    "anything something things thing objects object items item stuff everything belongings".split()  # noqa: SIM905
+_ANYTHING = bag("anything something things thing objects object items item stuff everything belongings")
+_ID = re.compile(
+    r"^(?:the )?(?:object |thing |item )?(?:object|thing|item|number|id|node|group|#) (?:# )?(\d+)$|^#(\d+)$"
 )
-_ID = re.compile(r"^(?:the )?(?:object|thing|item|number|id|node|group|#|object number|thing number|item number|object id) "
-                 r"(?:# )?(\d+)$|^#(\d+)$")  # fmt: skip
 BY_ID = "number"  # text of a query for one thing: "number 7"
-_HERE = r"(?:here|in here|there|in the room|around here|in there|in view|visible|you can see|you see|(?:that|which) you can see|" \
-        r"(?:that|which) is (?:here|there|in the room)|(?:that|which) are (?:here|there|in the room)|anywhere|somewhere|" \
-        r"around|lying about|lying around|hanging around|at all|present|available|there is|there are|of any kind|of some kind)"  # fmt: skip
-_SIT = r"(?:(?:that |which )?(?:i|we|you|one|people|someone|somebody) (?:can|could|might|may) sit(?: down)?(?: on| in| at)?|" \
-       r"to sit(?: down)?(?: on| in)?|(?:suitable )?for sitting(?: on| down)?|to have a seat|(?:that|which) can be sat on|" \
-       r"to be seated|where (?:i|we|you|one) (?:can|could) sit(?: down)?)"  # fmt: skip
-_STORE = r"(?:to (?:store|keep|put away|stow) (?:things|stuff|clothes|items|my things)(?: in| on| away)?|for storage|for storing (?:things|stuff)|" \
-         r"(?:i|we|you) can (?:store|keep|put) (?:things|stuff) in|to put (?:things|stuff) in)"  # fmt: skip
-_LIGHT = r"(?:(?:that|which) (?:gives?|emits?|makes?|produces?) light|giving light|to light the room|for light|that lights? up|for lighting)"
-_SOME = r"(?:anything|something|things|stuff|anywhere|somewhere|everything|thing|objects?|items?|(?:a )?places?|spots?|pieces? of furniture|furniture)"
+_HERE = (
+    r"(?:here|in here|there|in the room|around here|in there|in view|visible|you can see|you see|(?:that|"
+    r"which) you can see|"
+    r"(?:that|which) is (?:here|there|in the room)|(?:that|which) are (?:here|there|in the room)|anywhere|somewhere|"
+    r"around|lying about|lying around|hanging around|at all|present|available|there is|there are|of any kind|"
+    r"of some kind)"
+)
+_SIT = (
+    r"(?:(?:that |which )?(?:i|we|you|one|people|someone|somebody) (?:can|could|might|may) sit(?: down)?(?: on| in|"
+    r" at)?|"
+    r"to sit(?: down)?(?: on| in)?|(?:suitable )?for sitting(?: on| down)?|to have a seat|(?:that|which) can be sat on|"
+    r"to be seated|where (?:i|we|you|one) (?:can|could) sit(?: down)?)"
+)
+_STORE = (
+    r"(?:to (?:store|keep|put away|stow) (?:things|stuff|clothes|items|my things)(?: in| on| away)?|for storage|"
+    r"for storing (?:things|stuff)|"
+    r"(?:i|we|you) can (?:store|keep|put) (?:things|stuff) in|to put (?:things|stuff) in)"
+)
+_LIGHT = (
+    r"(?:(?:that|which) (?:gives?|emits?|makes?|produces?) light|giving light|to light the room|for light|"
+    r"that lights? up|for lighting)"
+)
+_SOME = (
+    r"(?:anything|something|things|stuff|anywhere|somewhere|everything|thing|objects?|items?|(?:a )?places?|spots?|"
+    r"pieces? of furniture|furniture)"
+)
 _REWRITES: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(pattern), said)
     for pattern, said in (
         (rf" {_HERE}$", ""),
-        (r"^(?:there (?:is|are)|such a thing as|things like|something like|anything like|like|any sign of|any kind of|any sort of|"
-         r"some kind of|some sort of|any type of|a kind of|a type of|one of the|a single|even a|even one|at least one|one or more|"
-         r"any one of the|any of (?:the|these|those)|some of the|(?:a )?few|several|what|which|a lot of|lots of|many|much|enough)"
+        (r"^(?:there (?:is|are)|such a thing as|things like|something like|anything like|like|any sign of|"
+         r"any kind of|any sort of|"
+         r"some kind of|some sort of|any type of|a kind of|a type of|one of the|a single|even a|even one|"
+         r"at least one|one or more|"
+         r"any one of the|any of (?:the|these|those)|some of the|(?:a )?few|several|what|which|a lot of|lots of|"
+         r"many|much|enough)"
          r" (?=\w)", ""),
         (r"\bthe viewer 's (left|right)\b", r"the \1"),
         (rf"^(?:{_SOME}|seats?) {_SIT}", "qseats"),
@@ -60,21 +79,30 @@ _REWRITES: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (r"\bpieces? of (art(?:work)?|art)\b", "pictures"),
         (r"\b(?:some|any)(things?) (?:that|which) (?:is|are) \b", r"any\1 "),
         (r"^(?:something|anything|stuff|things?) (?:coloured|colored|in|of (?:the )?color) (\w+)$", r"any \1 thing"),
-        (r"\b(chairs?|sofas?|tables?|lamps?|things?|objects?|items?|\w+s?) (?:that|which|who) (?:is |are )?(?:currently )?"
-         r"(?:stands?|sits?|lies?|rests?|standing|sitting|lying|resting|located|placed|positioned|situated|found|kept|to be found)"
-         r" (on|in|by|next|near|at|under|behind|beside|between|against|above|below|beneath|underneath|inside|to)\b", r"\1 \2"),
+        (r"\b(chairs?|sofas?|tables?|lamps?|things?|objects?|items?|\w+s?) (?:that|which|who) (?:is |"
+         r"are )?(?:currently )?"
+         r"(?:stands?|sits?|lies?|rests?|standing|sitting|lying|resting|located|placed|positioned|situated|found|"
+         r"kept|to be found)"
+         r" (on|in|by|next|near|at|under|behind|beside|between|against|above|below|beneath|underneath|inside|"
+         r"to)\b", r"\1 \2"),
         (r"\b(?:that|which) (?:hangs?|is hung|are hung|is hanging|are hanging|is mounted|are mounted) ", "hanging "),
         (r"\bhanging (?:down )?(?:from|off) the (wall|ceiling)\b", r"on the \1"),
         (r"\bhanging up\b", "hanging"),
-        (r"\b(?:hung|mounted|fixed|attached|fastened|leaning|propped)(?: up)? (on|to|over|above|against|by)\b",
-         lambda m: {"to": "on"}.get(m[1], m[1])),
-        (r"\b(?:standing|sitting|lying|resting|located|placed|positioned|situated|found|kept|stood|sat|put|left|set|parked|stored|"
-         r"laid|arranged|displayed|piled|stacked|fitted|installed)(?: up| down| right)? (?=(?:on|in|by|next|near|at|under|behind|"
-         r"beside|between|against|above|below|beneath|underneath|inside|to the|atop|in front|close|opposite|around)\b)", ""),
-        (r" ,? ?(?:not|but not|not including|not counting|excluding|except for|except|other than|apart from|besides|ignoring|aside "
+        (r"\b(?:hung|mounted|fixed|attached|fastened|leaning|propped)(?: up)? (on|over|above|against|by)\b",
+         r"\1"),
+        (r"\b(?:fixed|attached|fastened) to\b", "on"),
+        (r"\b(?:standing|sitting|lying|resting|located|placed|positioned|situated|found|kept|stood|sat|put|left|set|"
+         r"parked|stored|"
+         r"laid|arranged|displayed|piled|stacked|fitted|installed)(?: up| down| right)? (?=(?:on|in|by|next|near|at|"
+         r"under|behind|"
+         r"beside|between|against|above|below|beneath|underneath|inside|to the|atop|in front|close|opposite|"
+         r"around)\b)", ""),
+        (r" ,? ?(?:not|but not|not including|not counting|excluding|except for|except|other than|apart from|besides|"
+         r"ignoring|aside "
          r"from|leaving out|without counting) (?=the |a |any |\w+$)", " except "),
         (r"^(?:any|some)(?:thing)? else(?: but| than| besides| except)? (?:the )?(?=\w)", "anything except the "),
-        (r"^the (?:color|colour|shade|height|width|depth|length|size|dimensions|number|amount|distance|gap|position|location) .*$", ""),
+        (r"^the (?:color|colour|shade|height|width|depth|length|size|dimensions|number|amount|distance|gap|position|"
+         r"location) .*$", ""),
     )
 )  # fmt: skip
 _COLORED = re.compile(r"^(?:something|anything|everything|stuff|all|things|objects|items|what|one|ones) (\w+)(?= |$)")
@@ -82,24 +110,27 @@ _TOKENS = {
     "qseat": families.SEAT, "qlight": families.LIGHT, "qstore": families.STORAGE, "qpiece": families.FURNITURE,
 }  # fmt: skip
 # Heads of noun phrases that name no thing that could be found in a scene.
-_NO_THINGS = frozenset(
-    "tune time use order way front back side middle center top bottom end edge reach view sight shape condition mood style place room "
-    "space weather date day night morning evening weekend weekends year age price cost value brand make model owner "
-    "company name reason purpose question idea problem thought color size height width depth length weight area "
-    "volume dimension dimensions distance gap direction position location orientation number amount total sum average lot bit kind sort type "
-    "difference left right everyone everybody anyone anybody someone somebody nobody me you us them him her i we it they myself "
-    "yourself person people man woman owner designer shade material texture pattern smell sound noise temperature heat "
-    "cold warm hot comfortable comfy cosy cozy nice beautiful pretty ugly clean dirty tidy messy open closed shut "
-    "locked empty full broken new old cheap expensive heavy big small large tall wide deep long short high low "
-    "bigger smaller taller wider deeper longer shorter higher lower larger closer nearer farther longest widest deepest narrowest "
-    "highest lowest thinnest thickest closest nearest farthest same different similar equal aligned level straight "
-    "common sure able possible likely red danger safe safety space walkway path route walk foot work living being "
-    "what which who where when why how many much not no yes is are was were be been do does did have has had can could would will "
-    "should there here this that these those than as so if whether and or but of to from for with".split()  # noqa: SIM905
+_NO_THINGS = bag(
+    "tune time use order way front back side middle center top bottom end edge reach view sight shape condition "
+    "mood style place room space weather date day night morning evening weekend weekends year age price cost value "
+    "brand make model owner company name reason purpose question idea problem thought color size height width depth "
+    "length weight area volume dimension dimensions distance gap direction position location orientation number "
+    "amount total sum average lot bit kind sort type difference left right everyone everybody anyone anybody "
+    "someone somebody nobody me you us them him her i we it they myself yourself person people man woman owner "
+    "designer shade material texture pattern smell sound noise temperature heat cold warm hot comfortable comfy "
+    "cosy cozy nice beautiful pretty ugly clean dirty tidy messy open closed shut locked empty full broken new old "
+    "cheap expensive heavy big small large tall wide deep long short high low bigger smaller taller wider deeper "
+    "longer shorter higher lower larger closer nearer farther longest widest deepest narrowest highest lowest "
+    "thinnest thickest closest nearest farthest same different similar equal aligned level straight common sure "
+    "able possible likely red danger safe safety space walkway path route walk foot work living being what which "
+    "who where when why how many much not no yes is are was were be been do does did have has had can could would "
+    "will should there here this that these those than as so if whether and or but of to from for with"
 )
 _VERBS = re.compile(
-    r"\b(?:is|are|was|were|be|been|does|do|did|has|have|had|can|could|would|will|should|whether|how|what|which|who|where|when|"
-    r"why|than|there|if|get|walk|fit|sit|see|look|looks|stand|stands|hang|hangs|lie|lies|belong|belongs|cost|costs|goes|go)\b"
+    r"\b(?:is|are|was|were|be|been|does|do|did|has|have|had|can|could|would|will|should|whether|how|what|which|who|"
+    r"where|when|"
+    r"why|than|there|if|get|walk|fit|sit|see|look|looks|stand|stands|hang|hangs|lie|lies|belong|belongs|cost|costs|"
+    r"goes|go)\b"
 )
 _LAST = frozenset({"it", "them", "this", "that", "these", "those", "this one", "that one", "this thing", "that thing"})
 
@@ -123,7 +154,8 @@ def thing(words: Words) -> Query | None:
         return None
     if len(plan.ops) != 1 or plan.ops[0].op != "select":
         return None
-    return _checked(plan.ops[0].query())
+    query = plan.ops[0].query()
+    return _checked(query) if query is not None else None
 
 
 def _plainly(said: str) -> str:
@@ -138,7 +170,7 @@ def _plainly(said: str) -> str:
         rest = said[colored.end() :].strip()
         every = "all" if said.startswith(("everything", "all")) else "any"
         said = f"{every} {colored[1]} thing{'s' if every == 'all' else ''} {rest}".strip()
-    if said.startswith(("any ", "some ")) and not said.split()[1] in ("of", "other"):
+    if said.startswith(("any ", "some ")) and said.split()[1] not in ("of", "other"):
         said = said.partition(" ")[2]
     if said.startswith("something"):
         said = "anything" + said.removeprefix("something")
@@ -148,7 +180,9 @@ def _plainly(said: str) -> str:
 @cache
 def _of_kinds() -> dict[str, str]:
     """Names of kinds with "of" in them ("chest of drawers"), which the grammar would read as parts, and plain names."""
-    return {n: k.name for k in kinds.table().kinds.values() for n in k.names if " of " in n} | {"set of drawers": "dresser"}
+    return {n: k.name for k in kinds.table().kinds.values() for n in k.names if " of " in n} | {
+        "set of drawers": "dresser"
+    }
 
 
 @cache

@@ -14,43 +14,56 @@ from ...grammar.tagging.words import bag, clean, split
 MAX_CHARS = 1000
 
 _MARKS = frozenset(".?!;:()[]–—")
-_DASH = re.compile(r"(?<=\s)[-–—]+(?=\s)")  # noqa: RUF001
+_DASH = re.compile(r"(?<=\s)[-–—]+(?=\s)")
 _THOUSANDS = re.compile(r"(?<=\d),(?=\d{3}\b)")
 _OPENERS = re.compile(
     r"^(?:(?:hi|hey|hello|hiya|ok|okay|alright|so|well|um+|uh+|er+m*|hmm+|please|quick question|question|"
-    r"(?:i am )?just (?:curious|wondering|checking|asking)|there (?=, )|everyone|all(?= ,)|good (?:morning|evening|day)|"
-    r"out of curiosity|one more thing|by the way|btw|fyi|and|but|also|then|now|oh|ah|right(?= ,)|sorry|excuse me|actually|"
-    r"listen|look|say(?= ,)|i say|remind me(?: again)?|again|thanks|thank you|in your opinion|as far as you can (?:see|tell)|"
+    r"(?:i am )?just (?:curious|wondering|checking|asking)|there (?=, )|everyone|all(?= ,)|good (?:morning|evening|"
+    r"day)|"
+    r"out of curiosity|one more thing|by the way|btw|fyi|and|but|also|then|now|oh|ah|right(?= ,)|sorry|excuse me|"
+    r"actually|"
+    r"listen|look|say(?= ,)|i say|remind me(?: again)?|again|thanks|thank you|in your opinion|"
+    r"as far as you can (?:see|tell)|"
     r"judging (?:by|from) (?:the )?(?:picture|photo|scene|room|image)s?|from what you (?:can )?see|as it is(?= ,)|"
     r"(?:for|in|of) (?:the|this) (?:scene|room|picture|photo|image)(?= ,)|in (?:the|this) room(?! (?:and|or)\b)|"
-    r"(?:looking|going) (?:at|by) (?:the|this) (?:room|scene|picture|photo)(?= ,)|in (?:total|all)(?= ,)|overall|generally|"
+    r"(?:looking|going) (?:at|by) (?:the|this) (?:room|scene|picture|photo)(?= ,)|in (?:total|all)(?= ,)|overall|"
+    r"generally|"
     r"approximately|roughly|about(?= how)|around(?= how)|exactly(?= (?:how|what))|just|precisely(?= (?:how|what)))"
     r"\b(?: ,)* ?)+"
 )
 _YOU = r"(?:you|u|ya|someone|somebody|anyone|anybody|we|i)"
 _ASKING = re.compile(
-    rf"^(?:can|could|would|will|may|might) {_YOU} (?:please |kindly |maybe |possibly |quickly |just |be able to |help me )*"
-    r"(?:tell me|tell us|say|check|work out|figure out|find out|let me know|give me|show me|name me|measure|describe|list|"
+    rf"^(?:can|could|would|will|may|might) {_YOU} (?:please |kindly |maybe |possibly |quickly |just |be able to |"
+    rf"help me )*"
+    r"(?:tell me|tell us|say|check|work out|figure out|find out|let me know|give me|show me|name me|measure|"
+    r"describe|list|"
     r"name|count|see(?= (?:if|whether|how|what|which|where))|confirm|verify|estimate|identify|tell|determine|ask)\b"
     r"(?: for me)?(?: ,)?"
-    r"|^(?:please )?(?:kindly )?(?:tell me|tell us|let me know|say|check|work out|figure out|find out|measure|confirm|verify|"
-    r"estimate|determine|state|specify|identify)(?: for me)?(?= (?:what|which|how|where|who|whether|if|the|a|is|are|there|when|why|about|,))"
+    r"|^(?:please )?(?:kindly )?(?:tell me|tell us|let me know|say|check|work out|figure out|find out|measure|"
+    r"confirm|verify|"
+    r"estimate|determine|state|specify|identify)(?: for me)?(?= (?:what|which|how|where|who|whether|if|the|a|is|are|"
+    r"there|when|why|about|,))"
     r"(?: about)?"
     r"|^(?:do|would|might|does) (?:you|anyone|anybody) (?:happen to )?(?:know|have any idea(?: of| about)?|have a clue|"
     r"reckon|think|say|guess|remember|recall|mind (?:telling me|checking))(?: that)?\b"
     r"|^(?:have you|you have|got|have|has anyone) (?:got )?any (?:idea|clue|thoughts)(?: of| about| on)?"
-    r"|^any (?:idea|clue|chance|guess|thoughts|way)(?: of| about| that| on)?(?: (?:you|i|we) (?:can|could) (?:tell me|say|know))?"
-    r"|^(?:is|would) there (?:be )?any (?:chance|way|possibility)(?: that| of)?(?: (?:you|i) (?:can|could) (?:tell me|say|know))?"
-    r"|^(?:i am|i was|we are|we were|was) (?:just )?(?:wondering|curious|interested in|curious about)(?: about| to know)?"
+    r"|^any (?:idea|clue|chance|guess|thoughts|way)(?: of| about| that| on)?(?: (?:you|i|we) (?:can|"
+    r"could) (?:tell me|say|know))?"
+    r"|^(?:is|would) there (?:be )?any (?:chance|way|possibility)(?: that| of)?(?: (?:you|i) (?:can|"
+    r"could) (?:tell me|say|know))?"
+    r"|^(?:i am|i was|we are|we were|was) (?:just )?(?:wondering|curious|interested in|curious about)(?: about|"
+    r" to know)?"
     r"|^(?:i am|i was|we are|we were) trying to (?:find out|figure out|work out|see|determine|understand)"
-    r"|^(?:i|we) (?:just |would |really )*(?:wonder|wonder about|want to know|need to know|like to know|love to know|want to ask|"
+    r"|^(?:i|we) (?:just |would |really )*(?:wonder|wonder about|want to know|need to know|like to know|"
+    r"love to know|want to ask|"
     r"can not (?:tell|see)|do not know|forgot|need to find out|am not sure|do not suppose|suppose|think|believe|guess|"
     r"have a question|need|would like to find out|like to find out|have to know|must know|forget)(?: that)?"
     r"(?= (?:what|which|how|where|who|whether|if|there|that|the|is|are|we|you|when|why|,))"
     r"|^(?:i|we) (?:am|are) not (?:quite |entirely )?sure"
     r"|^(?:what i (?:want|need|would like) to know is|the question is|my question is|here is (?:a|my) question)"
     r"|^(?:would|is) (?:it|that) be (?:right|correct|fair|true) to say"
-    r"|^(?:is it (?:true|right|correct|the case|a fact|so)|am i (?:right|correct))(?: (?:in|to) (?:thinking|saying|assuming|think|say|assume))?(?: that)?"
+    r"|^(?:is it (?:true|right|correct|the case|a fact|so)|am i (?:right|correct))(?: (?:in|to) (?:thinking|saying|"
+    r"assuming|think|say|assume))?(?: that)?"
     r"|^(?:would|could) (?:you|one) say(?: that)?"
     r"|^(?:it is|is it) my (?:impression|guess) that|^i would say(?: that)?|^let us see|^guess"
 )
@@ -60,21 +73,26 @@ _FIRST_WORDS = bag(
 )
 _KEPT = ("list", "name", "count", "describe", "measure", "show me", "give me", "name me", "see", "identify", "estimate")
 _CLOSERS = re.compile(
-    r"(?:(?:^| )(?:please|thanks|thank you|thank you very much|many thanks|thx|ta|cheers|for me|mate|pal|buddy|dear|exactly|"
+    r"(?:(?:^| )(?:please|thanks|thank you|thank you very much|many thanks|thx|ta|cheers|for me|mate|pal|buddy|dear|"
+    r"exactly|"
     r"roughly|approximately|approx|then|though|anyway|by any chance|at all|right now|at the moment|currently|"
     r"would you say|do you (?:think|reckon|know|suppose|happen to know|believe|guess)|or not|or so|i wonder|"
-    r"(?:can|could) you (?:tell(?: me)?|say|check)|if you (?:had|have) to guess|in your opinion|more or less|ish|give or take|"
-    r"if you (?:do not|would not) mind|if you (?:can|could|may)(?: tell)?|if (?:i|one) may ask|if possible|in total|all in all|all together|"
+    r"(?:can|could) you (?:tell(?: me)?|say|check)|if you (?:had|have) to guess|in your opinion|more or less|ish|"
+    r"give or take|"
+    r"if you (?:do not|would not) mind|if you (?:can|could|may)(?: tell)?|if (?:i|one) may ask|if possible|in total|"
+    r"all in all|all together|"
     r"altogether|in all|overall|if any|any (?:idea|clue|thoughts)|as far as you (?:know|can (?:see|tell))|actually|"
     r"exactly speaking|in particular|to be (?:exact|precise)|off the top of your head|you think|you reckon|"
-    r"you (?:can )?(?:tell me|know)|i am (?:curious|asking)|just (?:curious|asking|wondering)|out of curiosity|of interest|"
+    r"you (?:can )?(?:tell me|know)|i am (?:curious|asking)|just (?:curious|asking|wondering)|out of curiosity|"
+    r"of interest|"
     r"ok|okay|huh|eh|innit|now|today|or what|or something))+$"
 )
 _AUX = r"(?:is|are|was|were|does|do|has|have|can|could|would|will|should)"
 _THEM = r"(?:it|there|they|he|she|that|we|i|you)"
 _TAGS = re.compile(
     rf"(?: , {_AUX} {_THEM}(?: not)?|(?: ,)? {_AUX} not {_THEM}|(?: ,)? (?:yes|yeah|correct|true or false|yes or no)|"
-    r" , (?:right|no)|(?<! my)(?<! the)(?<! your)(?<! or)(?<! to)(?<! its)(?<! hand)(?<! left)(?<! far)(?<! a)(?<! on) right)$"
+    r" , (?:right|no)|"
+    r"(?<! my)(?<! the)(?<! your)(?<! or)(?<! to)(?<! its)(?<! hand)(?<! left)(?<! far)(?<! a)(?<! on) right)$"
 )
 _HEDGES = re.compile(
     r"\b(?:roughly|approximately|approx|exactly|precisely|actually|currently|basically|really|just|kind of|sort of|"
@@ -88,12 +106,15 @@ _CONTRACTED = {
     "im": "i am", "ive": "i have", "cant": "can not", "wasnt": "was not", "dunno": "do not know", "hasnt": "has not",
     "hasn't": "has not", "haven't": "have not", "havent": "have not", "weren't": "were not", "youre": "you are",
     "theyre": "they are", "wat": "what", "wot": "what", "wich": "which", "hw": "how", "r": "are", "ur": "your",
-    "gotta": "have got to", "w/": "with", "b/w": "between", "itll": "it will", "it'll": "it will", "they've": "they have",
+    "gotta": "have got to", "w/": "with", "b/w": "between", "itll": "it will", "it'll": "it will",
+    "they've": "they have",
     "you've": "you have", "we've": "we have", "theyve": "they have", "youve": "you have", "there're": "there are",
     "what're": "what are", "where're": "where are", "which's": "which is", "color's": "color is",
     "when's": "when is", "why's": "why is", "somebody's": "somebody is", "everything's": "everything is",
 }  # fmt: skip
-_HAVE_IS = re.compile(r"\b(what|where|which|who|how|when|colou?r|that|there|one|anything|something|somebody|everything|it) 's\b")
+_HAVE_IS = re.compile(
+    r"\b(what|where|which|who|how|when|colou?r|that|there|one|anything|something|somebody|everything|it) 's\b"
+)
 _ROOMS = (
     "room|bedroom|living room|livingroom|sitting room|lounge|kitchen|office|study|bathroom|dining room|studio|hall|"
     "hallway|playroom|nursery|classroom|library|attic|basement|space|place|scene|picture|photo|photograph|image|house|"
@@ -101,12 +122,23 @@ _ROOMS = (
 )
 _IN_ROOM = re.compile(
     rf"\b(?:anywhere |somewhere |elsewhere |present |available |visible |located )*(?:with)?in(?:side)? (?:of )?"
-    rf"(?:the|this|that|my|our|your|his|her|their)(?: whole| entire| same| current| given)? (?:{_ROOMS})\b(?! (?:'s|wall|door|"
+    rf"(?:the|this|that|my|our|your|his|her|their)(?: whole| entire| same| current| given)? (?:{_ROOMS})\b(?! (?:'s|"
+    rf"wall|door|"
     r"table|chair|lamp|sink|counter|cabinet|floor|rug|window|desk|furniture)\b)"
+)
+_THE_ROOM = re.compile(
+    r"\b(?:the|this|that|my|our|your)(?: whole| entire)? (?:bedroom|living room|livingroom|sitting room|kitchen|"
+    r"office|bathroom|"
+    r"dining room|studio|playroom|nursery|classroom|place|scene|apartment|flat|house|music room|guest room|"
+    r"meeting room)"
+    r"(?=$| (?:,|have|has|contain|contains|include|includes|is|are|be|look|looks|with|that|from|and|or|got|does|"
+    r"feel|feels|as|at|"
+    r"without|before|after|when|if|measure|measures|need|needs|offer|offers|'s (?!wall|door))\b| ,)"
 )
 SPELT = {"colour": "color", "colours": "colors", "coloured": "colored", "grey": "gray", "centre": "center",
           "centres": "centers", "furthest": "farthest", "further": "farther", "metre": "meter", "metres": "meters",
-          "colur": "color", "clour": "color", "coler": "color", "collor": "color", "hight": "height", "heigth": "height",
+          "colur": "color", "clour": "color", "coler": "color", "collor": "color", "hight": "height",
+          "heigth": "height",
           "widht": "width", "lenght": "length", "tallist": "tallest", "bigest": "biggest"}  # fmt: skip
 
 
@@ -123,7 +155,7 @@ def plain_words(text: str) -> tuple[str, ...]:
     text = _THOUSANDS.sub("", text)
     said = " ".join(_plain(w.text) for w in split(clean(_DASH.sub(",", text))))
     said = _HAVE_IS.sub(r"\1 is", said).replace(" is been ", " has been ").replace(" is got ", " has got ")
-    said = _IN_ROOM.sub("in the room", _commas(said))
+    said = _THE_ROOM.sub("the room", _IN_ROOM.sub("in the room", _commas(said)))
     return tuple(_stripped(said).split())
 
 

@@ -1,0 +1,199 @@
+"""How many there are, and conditions on numbers: "how many seats?", "are there more than two lamps?"."""
+
+from __future__ import annotations
+
+from ....gaussians.language.query.query import Query
+from ....gaussians.world import kinds
+from ....gaussians.world.words import plural
+from ..answer import Answer
+from ..kind import Asked, Kind
+from ..reading import families
+from ..reading.measures import Amount
+from ..reading.noun_phrase import thing as noun_phrase
+from ..reading.phrase_templates import templates
+from ..resolving import all_of
+from ..survey import Survey, Thing, listed
+from ..telling import GRAPH_SURE, absent_text, bare, label, number, yes_no
+
+_ROOM = "(the room|this room|it|this place|the scene|this scene|this|we|you|i|they|people)"
+_HOLD = "(have|contain|hold|include|see|find|spot|count|got|own|make out|get|possess|feature|notice|identify|detect)"
+_PHRASES = f"""
+    how many (people|persons|guests|visitors|adults|of us|friends|folks|diners) (can|could|may|might|would|will) \
+        [comfortably|possibly] (sit|be seated|sit down|find a seat|have a seat|take a seat|get a seat|be able to sit|\
+        be sitting) [down] [at once|at the same time|together|for dinner|for a meal|to eat|for lunch|for breakfast] \
+        [here|in here|in the room|at the same time]
+    how many (people|persons|guests) (does|do|can|could) (the room|this room|it|we|i|you) (seat|accommodate|sit) [at \
+        once|at the same time]
+    (is|are) there {{n:amount}} {{x}}
+    [whether] there (is|are) {{n:amount}} {{x}}
+    (does|do|did|has|have|can|could) {_ROOM} {_HOLD} {{n:amount}} {{x}}
+    [whether] {_ROOM} (has|have|contains|holds|includes|has got) {{n:amount}} {{x}}
+    (is|are) the number of {{x}} {{n:amount}}
+    is the number of {{x}} (greater than|more than|bigger than|larger than|higher than) {{more}}
+    (are|is) {{n:amount}} {{x}} (here|in here|in the room|there|present)
+    (are|is) {{n:amount}} of {{of}} {{c:color}}
+    (is|are) there (an odd|an uneven) number of {{odd}}
+    (is|are) there an even number of {{even}}
+    (is|are) the (number|amount) of {{odd}} (odd|uneven)
+    (is|are) the (number|amount) of {{even}} even
+    (is|are) the (number|amount) of {{parity}} (odd or even|even or odd|an even or odd number|an odd or even number|\
+        uneven or even|even or uneven)
+    (is|are) there (an even or odd|an odd or even|even or odd|odd or even) (number|amount) of {{parity}}
+    can the (number|amount) of {{x}} be divided by {{by:number}} [without remainder|evenly]
+    (is|are) there (more|a greater number of|a larger number of) {{a}} than {{b}}
+    [whether] there (is|are) (more) {{a}} than {{b}}
+    (does|do|can) {_ROOM} {_HOLD} more {{a}} than {{b}}
+    (is|are) there (fewer|less) {{b}} than {{a}}
+    (does|do|can) {_ROOM} {_HOLD} (fewer|less) {{b}} than {{a}}
+    (is|are) there as many {{same_a}} as [there are] {{same_b}}
+    (is|are) there (the same|an equal) number of {{same_a}} (and|as) [there are] {{same_b}}
+    (is|are) the number of {{same_a}} (the same as|equal to) the number of {{same_b}}
+    (what|which) (is|are) there more of [here|in here|in the room] {{which_a}} or {{which_b}}
+    (is|are) there more {{which_a}} or [more] {{which_b}}
+    how many more {{diff_a}} (are there than|than) {{diff_b}} [are there|do we have|does the room have|can you see]
+    how many more {{diff_a}} than {{diff_b}} (are there|do we have)
+    (how many|what number of) (of the|of these|of those|of all the|of all) {{x}} (are|is|look|looks) {{c:color}}
+    (how many|what number of) {{x}} (are|is|look|looks) [there that are|colored] {{c:color}}
+    (how many|what number of) {{noun:noun}} (is|are|stand|stands|lie|lies|sit|sits|hang|hangs|rest|rests|can be found|\
+        can be seen|can i find|can you find|do we have|do you see|can you see|can i see|are there|is there|there are|\
+        do i have) [there|standing|sitting|lying|placed|located|positioned|hanging|resting|found|stored|kept|mounted|\
+        hung|to be found|stood] {{place:place}}
+    (how many|what number of) {{noun:noun}} does {{holder}} (have|hold|carry|contain|support) [on it|on top|in it|\
+        inside|on top of it]
+    (how many|what number of) {{x}} [in total|in all|altogether|exactly]
+    (how many|what number of) {{x}} (is|are|was|were|would be) [there|visible|present|in view|here|in here|in the \
+        room|around|shown|standing around|lying around] [in total|in the room|in here|here|altogether|that you can \
+        see|that you see|all together]
+    (how many|what number of) {{x}} there (is|are) [in the room|in here|here]
+    (how many|what number of) {{x}} (do|does|can|could|did|have|has) {_ROOM} [altogether] [{_HOLD}] [in total|in the \
+        room|in here|here]
+    (how many|what number of) {{x}} (can|could) be (seen|found|counted|spotted) [in the room|in here|here]
+    (how many|what number of) {{x}} {_ROOM} (has|have|contains|holds|includes|has got|have got|can see|see) [in total|\
+        in the room|in here|here]
+    (how many|what number of) (of the things|things|objects|items|of them|of these) [here|in the room|in here] are {{x}}
+    [what is|what was] [the] [total|exact|overall] (number|amount|count|quantity) of {{x}} [in total|in the room|in \
+        here|here|that you can see|present|visible]
+    count [me|up|all|for me] {{x}} [in the room|in here|here]
+    count how many {{x}} (there are|are there) [in the room|in here|here]
+    how many times does {{x}} (appear|occur) [here|in the room]
+    {{x}} (how many|count|number) [are there|of them]
+"""
+
+
+def answer(asked: Asked, survey: Survey) -> Answer | None:
+    """A count, or whether a condition on counts holds."""
+    slots = asked.slots
+    if "which_a" in slots or "diff_a" in slots or "same_a" in slots or "a" in slots:
+        return _compared(asked, survey)
+    if not slots:
+        return _places_to_sit(survey)
+    if "odd" in slots or "even" in slots or "parity" in slots or "by" in slots:
+        return _parity(asked, survey)
+    if "more" in slots:
+        return None
+    query = _described(asked)
+    if query is None or query.last:
+        return None
+    if "n" in slots:
+        return _condition(slots["n"], query, survey)
+    return _count(query, survey)
+
+
+def _described(asked: Asked) -> Query | None:
+    """What is counted: with a colour or a place that the template has apart."""
+    slots = asked.slots
+    if "noun" in slots:
+        if "holder" in slots:
+            return None
+        return noun_phrase((*slots["noun"], *slots["place"]))
+    query: Query = slots["of"] if "of" in slots else slots["x"]
+    if "c" in slots:
+        if query.also:
+            return None
+        query = query.model_copy(update={"colors": (*query.colors, slots["c"])})
+    return query
+
+
+def _count(query: Query, survey: Survey) -> Answer:
+    things, found = all_of(survey, query)
+    if not things:
+        return number(0, absent_text(survey, found.about or query, found), found.near, GRAPH_SURE - 0.03)
+    verb = "is" if len(things) == 1 else "are"
+    names = (
+        f": {listed([survey.named(t) for t in things])}"
+        if 1 < len(things) <= 8 and query.text != things[0].label
+        else ""
+    )
+    sure = 0.9 if query.text in families.named() else GRAPH_SURE
+    return number(len(things), f"There {verb} {survey.counted(things)}{names}.", things, sure)
+
+
+def _condition(amount: Amount, query: Query, survey: Survey) -> Answer | None:
+    if query.count is not None:
+        return None
+    things, found = all_of(survey, query)
+    if not things:
+        return yes_no(amount.holds(0), _lower(absent_text(survey, found.about or query, found)), found.near)
+    verb = "is" if len(things) == 1 else "are"
+    return yes_no(amount.holds(len(things)), f"there {verb} {survey.counted(things)}.", things)
+
+
+def _parity(asked: Asked, survey: Survey) -> Answer:
+    slots = asked.slots
+    name = next(n for n in ("odd", "even", "parity", "x") if n in slots)
+    things, _ = all_of(survey, slots[name])
+    n = len(things)
+    told = f"there {'is' if n == 1 else 'are'} {survey.counted(things) if things else 'none'}."
+    if name == "parity":
+        said = "odd" if n % 2 else "even"
+        return Answer(answer=said, answer_type="label", text=f"{said.capitalize()}: {told}", confidence=GRAPH_SURE,
+                      evidence=yes_no(True, told, things).evidence)  # fmt: skip
+    if name == "x":
+        by = int(slots["by"]) or 1
+        return yes_no(n % by == 0, told, things)
+    return yes_no((n % 2 == 1) == (name == "odd"), told, things)
+
+
+def _compared(asked: Asked, survey: Survey) -> Answer | None:
+    """Numbers of two kinds of things compared."""
+    slots = asked.slots
+    form = next(f for f in ("which_", "diff_", "same_", "") if f"{f}a" in slots)
+    a, b = slots[f"{form}a"], slots[f"{form}b"]
+    if a.also or b.also:
+        return None
+    (ones, _), (others, _) = all_of(survey, a), all_of(survey, b)
+    n, m = len(ones), len(others)
+    told = f"{_number(n, a)}, {_number(m, b)}"
+    things = [*ones, *others]
+    if form == "which_":
+        if n == m:
+            return Answer(answer="equal", answer_type="label", text=f"As many of each: {told}.", confidence=0.8)
+        said = plural(bare(a if n > m else b))
+        return label(things[0], f"More {said}: {told}.", others=things[1:], said=said)
+    if form == "diff_":
+        return number(n - m, f"{told}, that is {n - m} more.", things)
+    if form == "same_":
+        return yes_no(n == m, f"there are {told}.", things)
+    return yes_no(n > m, f"there are {told}.", things)
+
+
+def _places_to_sit(survey: Survey) -> Answer:
+    """How many people find a seat, by the seats that things of each kind have."""
+    seats: list[Thing] = [t for t in survey.things if families.holds(families.SEAT, t.label)]
+    places = {t.id: kind.seats if (kind := kinds.of(t.label)) else 1 for t in seats}
+    told = listed([f"{survey.named(t)} ({places[t.id]})" for t in seats])
+    total = sum(places.values())
+    return number(
+        total, f"There are seats for about {total}: {told}." if seats else "There is nothing to sit on.", seats, 0.75
+    )
+
+
+def _number(n: int, query: Query) -> str:
+    return f"{n} {bare(query) if n == 1 else plural(bare(query))}"
+
+
+def _lower(text: str) -> str:
+    return text[0].lower() + text[1:]
+
+
+KIND = Kind("counting", templates(_PHRASES), answer)
