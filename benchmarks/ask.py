@@ -1,0 +1,79 @@
+"""bench ask: questions answered from geometry and from views, edits judged, and what both cost.
+
+Generated questions have an exact truth that the product's code has no part in (`_ask/generate.py`); written ones are
+judged by what people wrote down (`_ask/written.py`). Each other measure is a module of `_ask`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from statistics import fmean
+
+from ..gaussians.language import encoders
+from . import _ask
+from ._ask import generated, speed, written
+from ._ask.question import Judged
+from ._ask.rooms import Known
+from ._select.cases import Part
+from .harness import Metric, Point, Result
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How much is asked.
+
+    Attributes:
+        rooms, questions: seeds of furnished rooms and the number of questions over them.
+        graphs, graph_seed, graph_questions: the same of composed graphs, with seeds from `graph_seed` on.
+        detail: factor on the number of Gaussians of furnished rooms.
+    """
+
+    rooms: tuple[int, ...]
+    questions: int
+    graphs: int
+    graph_seed: int
+    graph_questions: int
+    detail: float = 1.0
+
+
+FULL = Plan(tuple(range(7801, 7821)), 600, 24, 7830, 300)
+QUICK = Plan((7801,), 60, 6, 7830, 60, 0.4)
+
+
+def run(quick: bool = False) -> Result:
+    """All measures, in the order of the table that they answer."""
+    plan, encoder = QUICK if quick else FULL, encoders.load("auto")
+    graphs = generated.graph_rooms(plan.graphs, plan.graph_seed)
+    on_graphs = generated.asked(graphs, generated.every_kind(), plan.graph_questions)
+    known = generated.gaussian_rooms(plan.rooms, encoder, plan.detail)
+    in_rooms = generated.asked(known, generated.shown_kinds(encoder), plan.questions)
+    parts = [
+        Part(tuple(generated.metrics(in_rooms, "gaussians")), (_point(in_rooms, "rooms of Gaussians", known, True),)),
+        Part(tuple(generated.metrics(on_graphs, "graphs")), (_point(on_graphs, "scene graphs", graphs, False),)),
+        _written(),
+        Part(tuple(speed.measure(known[0], encoder, plan.detail, quick))),
+    ]
+    return Result(
+        title="questions answered",
+        accuracy="share right",
+        metrics=tuple(m for part in parts for m in part.metrics),
+        points=tuple(p for part in parts for p in part.points),
+        notes=(*_ask.NOTES, *(n for part in parts for n in part.notes)),
+        seeds=(*plan.rooms, *range(plan.graph_seed, plan.graph_seed + plan.graphs)),
+    )
+
+
+def _point(judged: Sequence[Judged], setting: str, known: Sequence[Known], default: bool) -> Point:
+    """Share right against seconds an answer."""
+    size = fmean(k.case.field_bytes for k in known if k.case is not None) if default else 0.0
+    seconds = fmean(j.seconds for j in judged)
+    return Point("geometry", setting, seconds, fmean(j.right for j in judged), int(size), default)
+
+
+def _written() -> Part:
+    """Both sets of written questions, as far as they are there."""
+    metrics = list[Metric]()
+    for which in written.SETS:
+        metrics += written.metrics(which, written.measure(which))
+    return Part(tuple(metrics))
