@@ -197,13 +197,27 @@ class Survey:
 
     def _near(self, query: Query, rows: Sequence[int]) -> tuple[Thing, ...]:
         """Of an absent query, things that a person would think of: of that name but of another colour or elsewhere,
-        or of the same family; in a scene what looks most alike."""
+        or of the same family; else what looks most alike, and in a graph what is as large."""
         if query.text and (query.colors or query.relations or query.not_colors or query.size):
             named = self.find(Query(text=query.text, pick="all"))
             if named.verdict == "found":
                 return named.things[:3]
-        alike = [t for t in self.things if t.label and families.related(query.text, t.label)] if query.text else []
-        return tuple(alike[:3] or (map(self.at, rows) if self.measured else ()))
+        if not query.text:
+            return tuple(map(self.at, rows))
+        alike = [t for t in self.things if t.label and families.related(query.text, t.label)]
+        if alike or self.measured:
+            return tuple(alike[:3] or map(self.at, rows))
+        kind = kinds.of(query.text)
+        return tuple(map(self.at, rows)) if kind is None else self._as_large_as(kind)
+
+    def _as_large_as(self, kind: kinds.Kind) -> tuple[Thing, ...]:
+        """The things whose size is nearest to that of a kind as sold."""
+        sold = np.log([sum(side) / 2 for side in kind.size])
+
+        def apart(thing: Thing) -> float:
+            return float(np.abs(np.log(np.maximum(thing.group.box.size, 1e-3)) - sold).sum())
+
+        return tuple(sorted(self.things, key=apart)[:3])
 
     def all_of(self, query: Query) -> tuple[Thing, ...]:
         """Everything that a query describes, however many are meant; none if it is absent."""
