@@ -17,7 +17,7 @@ from pydantic import BaseModel, ValidationError
 from ... import prompts
 from ...gaussians.errors import BackendError
 from ..budget import Ledger, OverBudgetError, Progress
-from ..model.backend import Answer, Message, ModelBackend, UnreachableError
+from ..model.backend import Answer, Message, ModelBackend, OnText, UnreachableError
 from ..model.verify.json_reply import Location, ReplyError, bare, given_object, printable, told
 from ..plan import NoPlanError, Usage
 from .looker import Shown
@@ -52,7 +52,8 @@ class Purse:
 
     Args:
         ledger: the session's budget and spending; all usage is added to it.
-        progress: called with the stage in words and the share of the time limit that has passed.
+        progress: called with the stage in words and the share of the time limit that has passed; without it replies
+            are not streamed.
         views: limit on pictures where the budget sets none.
 
     Attributes:
@@ -62,7 +63,7 @@ class Purse:
 
     def __init__(self, ledger: Ledger | None = None, progress: Progress | None = None, views: int = 8) -> None:
         self._ledger = ledger or Ledger()
-        self._progress = progress or (lambda stage, share: None)
+        self._progress = progress
         self._begun = time.monotonic()
         self.usage: Usage | None = None
         self.views = self._ledger.budget.views or views
@@ -100,8 +101,13 @@ class Purse:
 
     def report(self, stage: str) -> None:
         """Tell that something happens."""
-        passed = time.monotonic() - self._begun
-        self._progress(f"{stage} ({passed:.0f} s)", min(max(passed / self._ledger.budget.seconds, 0.0), 0.99))
+        if self._progress is not None:
+            passed = time.monotonic() - self._begun
+            self._progress(f"{stage} ({passed:.0f} s)", min(max(passed / self._ledger.budget.seconds, 0.0), 0.99))
+
+    def listener(self, stage: str) -> OnText | None:
+        """Takes the pieces of a streamed reply; None if nobody is told of them."""
+        return None if self._progress is None else lambda piece: self.report(stage)
 
 
 def require_sight(backend: ModelBackend) -> None:
@@ -153,13 +159,20 @@ def read(text: str, kind: type[T]) -> T:
 
 
 def ask(
-    backend: ModelBackend, messages: Sequence[Message], kind: type[T], check: Check[T], purse: Purse, stage: str
+    backend: ModelBackend,
+    messages: Sequence[Message],
+    kind: type[T],
+    check: Check[T],
+    purse: Purse,
+    stage: str,
+    attempts: int = _ATTEMPTS,
 ) -> Said[T]:
     """The reply to messages; one that is invalid or fails the check is repaired once.
 
     Args:
         check: faults of a valid reply, told to the model once; a reply that still has them is returned with them.
         stage: what is done, for the progress.
+        attempts: requests, all but the first to repair.
 
     Raises:
         NoReplyError: no valid reply after the repair, or the model declined.
@@ -167,7 +180,7 @@ def ask(
         OverBudgetError: the budget is used up before a request.
     """
     talk, fault = list(messages), ""
-    for attempt in range(_ATTEMPTS):
+    for attempt in range(attempts):
         answer = _answer(backend, talk, schema(kind), purse, stage)
         if answer.end == "declined":
             raise NoReplyError(f"{backend.name} declined: {printable(answer.text, _TOLD_CHARS)}", purse.usage)
@@ -179,7 +192,7 @@ def ask(
             fault = check(doubted)
         except ReplyError as error:
             doubted, fault = None, _CUT if answer.end == "cut" else str(error)
-        if doubted is not None and (not fault or attempt + 1 == _ATTEMPTS):
+        if doubted is not None and (not fault or attempt + 1 == attempts):
             return Said(doubted, fault)
         talk = [*messages, *_repair(answer.text, fault)]
     raise NoReplyError(f"{backend.name} gave no usable reply; at last: {printable(fault, _TOLD_CHARS)}", purse.usage)
@@ -189,7 +202,7 @@ def _answer(backend: ModelBackend, talk: Sequence[Message], given: dict[str, Any
     purse.require()
     purse.report(stage)
     try:
-        answer = backend.answer(talk, given, seconds=purse.seconds, on_text=lambda piece: purse.report(stage))
+        answer = backend.answer(talk, given, seconds=purse.seconds, on_text=purse.listener(stage))
     except UnreachableError as error:
         purse.add(error.usage)
         raise UnreachableError(str(error), purse.usage) from error

@@ -70,7 +70,8 @@ class Facts:
         return "\n".join([*lines, *(kept[i] for i in sorted(kept)), *more])
 
     def _sentences(self) -> list[str]:
-        measured = [f"Measured answer: {self.measured.text}"] if self.measured and self.measured.text else []
+        known = self.measured
+        measured = [f"Measured answer: {known.text}"] if known is not None and known.answer is not None else []
         return [*measured, *self.notes]
 
     def contradictions(self, question: str, answer: object, answer_type: str) -> list[str]:

@@ -17,7 +17,7 @@ from ..plan import Usage
 from .asking import NoReplyError, Purse, ask, described, require_sight, shown_marks
 from .looker import Looker, Shown
 
-PICTURES = 3  # of a query, the confirming one among them
+PICTURES, REQUESTS = 3, 2  # of a query, the confirming one among them
 _PHRASE, _REASON = 200, 300  # characters
 
 Number = Annotated[int, Field(ge=0, le=10**6, strict=True)]
@@ -48,7 +48,7 @@ class Pointed:
     Attributes:
         groups: ids of the groups that are meant, in the order of the reply; empty if none is.
         part: whether only a part of the group is meant.
-        confidence: the model's estimate; the lower one of both looks, halved where the second look did not confirm.
+        confidence: the model's estimate; the lower one of both looks, halved where the second one contradicts.
         confirmed: whether a second picture gave the same groups.
         because: by what the model recognised it, for the user.
         views: names of the pictures that were sent.
@@ -69,7 +69,8 @@ def point(
 ) -> Pointed:
     """The groups that a phrase means: two pictures of the candidates, then a third that confirms.
 
-    Without a second look (budget, no other picture, a model that fails then) the first stands, unconfirmed.
+    Without a second look (budget, no other picture, a model that fails then, a first reply that had to be repaired) the
+    first stands, unconfirmed. There are never more than `PICTURES` pictures and `REQUESTS` requests.
 
     Args:
         groups: ids of the candidates; empty: what the looker marks in the whole scene.
@@ -83,37 +84,44 @@ def point(
     purse.require()
     count = purse.take(min(PICTURES - 1, max(purse.views - 1, 1)))
     shown = looker.overview(groups, count)[:count] if count else ()
-    if not shown_marks(shown):
-        return Pointed((), False, 0.0, False, "no picture shows a numbered thing", tuple(one.name for one in shown))
-    reply = pointed(phrase, shown, backend, purse)
     marks = shown_marks(shown)
-    first = tuple(marks[mark] for mark in dict.fromkeys(reply.meant) if mark in marks)
-    views = [one.name for one in shown]
-    second = _second(phrase, reply, marks, shown, looker, purse)
-    again: PointReply | None = None
+    if not marks:
+        return Pointed((), False, 0.0, False, "no picture shows a numbered thing", tuple(one.name for one in shown))
+    before = purse.usage.requests if purse.usage else 0
+    reply = pointed(phrase, shown, backend, purse)
+    found = tuple(marks[mark] for mark in dict.fromkeys(reply.meant))
+    repaired = purse.usage is not None and purse.usage.requests - before >= REQUESTS
+    second = None if repaired else _second(reply, shown, looker, purse)
+    confirmed, confidence = False, reply.confidence
     if second is not None:
-        views.append(second.name)
-        try:
-            again = pointed(phrase, (second,), backend, purse)
-        except (NoReplyError, UnreachableError, OverBudgetError):
-            again = None
-    confirmed = again is not None and {second.numbers.get(m) for m in again.meant} == set(first) if second else False
-    confidence = reply.confidence if again is None else min(reply.confidence, again.confidence)
-    if again is not None and not confirmed:
-        confidence /= 2
-    return Pointed(
-        first,
-        reply.parts,
-        round(confidence, 4),
-        confirmed,
-        printable(reply.because, _REASON),
-        tuple(views),
-        purse.usage,
-    )
+        confirmed, confidence = _confirmed(phrase, reply, set(found), second, backend, purse)
+    because = printable(reply.because, _REASON)
+    views = tuple(one.name for one in (*shown, *((second,) if second else ())))
+    return Pointed(found, reply.parts, round(confidence, 4), confirmed, because, views, purse.usage)
 
 
-def pointed(phrase: str, shown: Sequence[Shown], backend: ModelBackend, purse: Purse) -> PointReply:
-    """What one request says about the numbers in pictures; `meant` holds only numbers that they show.
+def _confirmed(
+    phrase: str, reply: PointReply, found: set[int], second: Shown, backend: ModelBackend, purse: Purse
+) -> tuple[bool, float]:
+    """Whether another picture gives the same groups, and the confidence after it."""
+    try:
+        again = pointed(phrase, (second,), backend, purse, attempts=1)
+    except NoReplyError:
+        return False, reply.confidence / 2
+    except (UnreachableError, OverBudgetError):
+        return False, reply.confidence
+    lower = min(reply.confidence, again.confidence)
+    same = {second.numbers[mark] for mark in again.meant} == found
+    return same, lower if same else lower / 2
+
+
+def pointed(
+    phrase: str, shown: Sequence[Shown], backend: ModelBackend, purse: Purse, attempts: int = REQUESTS
+) -> PointReply:
+    """What a model says about the numbers in pictures; `meant` holds only numbers that they show.
+
+    Args:
+        attempts: requests, all but the first to repair a reply.
 
     Raises:
         BackendError: as `point`.
@@ -133,12 +141,11 @@ def pointed(phrase: str, shown: Sequence[Shown], backend: ModelBackend, purse: P
             raise ReplyError(f"meant: no picture shows the number {unknown[0]}; numbers are {there}")
         return ""
 
-    return ask(backend, messages, PointReply, check, purse, f"{backend.name} looks for {printable(phrase, 40)}").reply
+    stage = f"{backend.name} looks for {printable(phrase, 40)}"
+    return ask(backend, messages, PointReply, check, purse, stage, attempts).reply
 
 
-def _second(
-    phrase: str, reply: PointReply, marks: dict[int, int], shown: Sequence[Shown], looker: Looker, purse: Purse
-) -> Shown | None:
+def _second(reply: PointReply, shown: Sequence[Shown], looker: Looker, purse: Purse) -> Shown | None:
     """Another picture that shows what is meant: near a single thing, else of the whole; None if there is none."""
     if not purse.take(1):
         return None
