@@ -104,7 +104,7 @@ class SceneServer(MCPServer[Any]):
                 break
             if _asks_in_results(context):
                 return _question(reply, 1)
-            answer = await context.session.elicit_form(reply.text, _FORM, related_request_id=context.request_id)
+            answer = await context.session.elicit_form(reply.form, _FORM, related_request_id=context.request_id)
             if (said := _said(answer)) is None:
                 break
             reply = await self._call("answer", {"answer": said, "question": reply.asks}, context)
@@ -164,7 +164,7 @@ def _result(reply: Reply) -> CallToolResult:
 
 def _question(reply: Reply, count: int) -> InputRequiredResult:
     """The question that a reply leaves open, the `count`-th of a call; the client calls again with the answer."""
-    request = ElicitRequest(params=ElicitRequestFormParams(message=reply.text, requested_schema=_FORM))
+    request = ElicitRequest(params=ElicitRequestFormParams(message=reply.form, requested_schema=_FORM))
     return InputRequiredResult(input_requests={_ANSWER: request}, request_state=f"{count} {reply.asks}")
 
 

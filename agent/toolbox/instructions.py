@@ -113,8 +113,8 @@ def instruction_tools() -> list[Tool]:
     """The tools of this module."""
     return [
         tool("do", DoArguments, Hints(destructive=True), _do),
-        tool("answer", AnswerArguments, Hints(destructive=True), _answer),
+        tool("answer", AnswerArguments, Hints(destructive=True), _answer, needs_field=False),
         tool("select", SelectArguments, READS, _select),
-        tool("undo", StepArguments, Hints(destructive=True), _undo),
-        tool("redo", StepArguments, Hints(), _redo),
+        tool("undo", StepArguments, Hints(destructive=True), _undo, needs_field=False),
+        tool("redo", StepArguments, Hints(), _redo, needs_field=False),
     ]

@@ -109,7 +109,7 @@ def _check(desk: Desk, said: NoArguments) -> Reply:
 def looking_tools() -> list[Tool]:
     """The tools of this module."""
     return [
-        tool("render", RenderArguments, READS, _render),
+        tool("render", RenderArguments, READS, _render, needs_field=False),
         tool("ask", AskArguments, READS, _ask),
         tool("graph", GraphArguments, READS, _graph),
         tool("check", NoArguments, READS, _check),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 Report = Callable[[float, str], None]  # progress, and the stage in words
 
@@ -18,6 +19,7 @@ class Progress:
 
     def __init__(self) -> None:
         self._report: Report | None = None
+        self._held: list[BaseException] | None = None
         self._stage, self._finished, self._last = "", 0, 0.0
 
     def listen(self, report: Report | None) -> None:
@@ -36,4 +38,25 @@ class Progress:
         value = self._finished + share
         if value >= self._last + _STEP:
             self._last = value
+            self._tell(value, stage)
+
+    @contextmanager
+    def uninterrupted(self) -> Iterator[None]:
+        """A context for work that is worth finishing: what `report` raises in it is raised at its end."""
+        self._held = []
+        try:
+            yield
+            if self._held:
+                raise self._held[0]
+        finally:
+            self._held = None
+
+    def _tell(self, value: float, stage: str) -> None:
+        assert self._report is not None
+        try:
             self._report(value, stage)
+        except BaseException as interruption:
+            if self._held is None:
+                raise
+            self._held.append(interruption)
+            self._report = None

@@ -34,6 +34,7 @@ class Reply:
         pictures: PNG files.
         failed: whether nothing was done.
         asks: id of the question that was left open by an ambiguity, "" if there is none.
+        form: that question for a person who can answer it at once.
     """
 
     text: str
@@ -41,6 +42,7 @@ class Reply:
     pictures: tuple[bytes, ...] = ()
     failed: bool = False
     asks: str = ""
+    form: str = ""
 
     def plus(self, **data: Any) -> Reply:
         """This reply with more data."""
@@ -83,10 +85,10 @@ def refused(error: ScenewrightError) -> Reply:
 def asked_back(reply: Reply, question: Question, viewer: Camera, id: str) -> Reply:
     """A refusal with the candidates of the question that it leaves open, and how to answer it."""
     numbered = numbered_candidates(question.candidates, viewer)
-    lines = [reply.text, *(f"  {c['number']}. {c['said']}" for c in numbered), HOW_TO_ANSWER]
+    form = "\n".join([reply.text, *(f"  {c['number']}. {c['said']}" for c in numbered)])
     data = {**reply.data, "candidates": numbered, "question": id, "how_to_answer": HOW_TO_ANSWER}
     asks = id if question.selection.verdict == "ambiguous" else ""
-    return replace(reply, text="\n".join(lines), data=data, asks=asks)
+    return replace(reply, text=f"{form}\n{HOW_TO_ANSWER}", data=data, asks=asks, form=form)
 
 
 def numbered_candidates(candidates: Sequence[Candidate], viewer: Camera) -> list[dict[str, Any]]:

@@ -45,4 +45,4 @@ def _save(desk: Desk, said: SaveArguments) -> Reply:
 
 def saving_tools() -> list[Tool]:
     """The tools of this module."""
-    return [tool("save", SaveArguments, Hints(destructive=True, idempotent=True), _save)]
+    return [tool("save", SaveArguments, Hints(destructive=True, idempotent=True), _save, needs_field=False)]

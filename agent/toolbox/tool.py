@@ -59,6 +59,7 @@ class Tool:
         schema: JSON Schema of its arguments, an object.
         run: does it; the arguments are checked there. Raises ScenewrightError, and then nothing was changed.
         hints: what it does to the scene and to files.
+        needs_field: whether it looks for things, for which the scene must be embedded.
     """
 
     name: str
@@ -66,12 +67,15 @@ class Tool:
     schema: dict[str, Any]
     run: Callable[[Desk, dict[str, Any]], Reply]
     hints: Hints = Hints()
+    needs_field: bool = True
 
 
 A = TypeVar("A", bound=Arguments)
 
 
-def tool(name: str, arguments: type[A], hints: Hints, work: Callable[[Desk, A], Reply]) -> Tool:
+def tool(
+    name: str, arguments: type[A], hints: Hints, work: Callable[[Desk, A], Reply], *, needs_field: bool = True
+) -> Tool:
     """A tool whose arguments are a model; the docstring of `work` is its description."""
 
     def run(desk: Desk, given: dict[str, Any]) -> Reply:
@@ -81,4 +85,4 @@ def tool(name: str, arguments: type[A], hints: Hints, work: Callable[[Desk, A], 
             raise complaint(error, name) from error
         return work(desk, said)
 
-    return Tool(name, " ".join((work.__doc__ or "").split()), argument_schema(arguments), run, hints)
+    return Tool(name, " ".join((work.__doc__ or "").split()), argument_schema(arguments), run, hints, needs_field)

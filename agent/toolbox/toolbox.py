@@ -5,6 +5,8 @@ from __future__ import annotations
 import logging
 import threading
 import weakref
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -108,6 +110,8 @@ class Toolbox:
             if name == "answer":
                 self._require_open(given.get("question"))
             self._progress(name, 0.01)
+            if tool.needs_field:
+                self._embed()
             reply = tool.run(self._desk, given)
             self._progress("done", 1.0)
             return reply
@@ -119,6 +123,13 @@ class Toolbox:
             reason = f"internal error ({type(error).__name__}); the scene is as it was. Please report it"
             return Reply(reason, {"verdict": "internal", "reason": reason}, failed=True)
 
+    def _embed(self) -> None:
+        """Embed the scene if it is not yet. A caller that gives up meanwhile does not interrupt this: clients have time
+        limits, and the next call finds it done. If it fails, a tool that cannot do without says why."""
+        if self.session.scene.language is None:
+            with self._progress.uninterrupted(), suppress(ScenewrightError):
+                self.session.embed()
+
     def _refused(self, error: ScenewrightError) -> Reply:
         """The refusal; with the candidates and a picture of them if a question is open."""
         reply = refused(error)
@@ -126,7 +137,7 @@ class Toolbox:
         if isinstance(error, ArgumentError) or question is None or not question.candidates:
             return reply
         reply = asked_back(reply, question, self.session.viewer, self._question_id(question))
-        return Reply(reply.text, reply.data, (views.of_question(self.session, question),), True, reply.asks)
+        return replace(reply, pictures=(views.of_question(self.session, question),))
 
     def _question_id(self, question: Question) -> str:
         if question is not self._asked[0]:

@@ -101,6 +101,7 @@ def test_an_ambiguity_is_asked_where_the_client_can(toolbox: Toolbox, mode: str,
     result = talk(toolbox, work, mode=mode, elicitation_callback=fill)
     assert not result.is_error and result.structured_content["receipts"][0]["selection"]["groups"] == [0]
     assert len(forms) == 1 and "1. red" in forms[0].message and "2. red" in forms[0].message
+    assert "`answer`" not in forms[0].message  # the form is for a person
     assert forms[0].requested_schema["properties"]["choice"]["type"] == "string"
 
 

@@ -240,6 +240,38 @@ def test_a_listener_that_raises_ends_the_call_and_the_scene_stays(toolbox: Toolb
     assert not toolbox.call("do", {"instruction": "delete the green thing"}).failed
 
 
+def test_embedding_is_finished_for_a_caller_that_gives_up(
+    boxes: Scene, encoder: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Clients have time limits; embedding anew for each call would never end."""
+    from scenewright.gaussians.language.field import embed
+
+    class Cancelled(BaseException):
+        pass
+
+    def slowly(scene: Scene, encoder: Any, *, progress: Any) -> Scene:
+        for step in range(1, 6):
+            progress("segments", step / 5)
+        return boxes
+
+    heard: list[str] = []
+
+    def cancel(value: float, stage: str) -> None:
+        heard.append(stage)
+        if stage == "segments":
+            raise Cancelled
+
+    monkeypatch.setattr(embed, "embed", slowly)
+    progress = Progress()
+    bare = boxes.replace(language=None)
+    toolbox = Toolbox(Session(bare, encoder=encoder, viewer=boxes.cameras[0], progress=progress), progress=progress)
+    with pytest.raises(Cancelled):
+        toolbox.call("do", {"instruction": "delete the green thing"}, cancel)
+    assert heard == ["do", "segments"] and toolbox.state()["undo"] == 0
+    assert toolbox.session.scene.language is not None
+    assert not toolbox.call("do", {"instruction": "delete the green thing"}).failed
+
+
 @given(st.lists(st.tuples(st.sampled_from("abc"), st.floats(-0.5, 1.5)), max_size=60))
 def test_progress_strictly_increases(steps: list[tuple[str, float]]) -> None:
     progress, heard = Progress(), []
