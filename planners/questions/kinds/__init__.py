@@ -1,5 +1,14 @@
 """The kinds of questions that geometry answers, one module each with a `KIND`, in the order in which they are tried."""
 
-from . import color, counting, existence, size
+from . import color, comparison, counting, existence, identity, listing, size, superlative
 
-KINDS = (counting.KIND, existence.KIND, color.KIND, size.KIND)
+KINDS = (
+    identity.KIND,
+    counting.KIND,
+    existence.KIND,
+    superlative.KIND,
+    color.KIND,
+    comparison.KIND,
+    size.KIND,
+    listing.KIND,
+)

@@ -17,6 +17,7 @@ from functools import cache, lru_cache
 
 from ....gaussians.world import relations
 from ....gaussians.world.lengths import IN_METRES, METRES, UNITS, in_metres
+from ....gaussians.world.words import singular
 from ...grammar.vocabulary import quantities
 from . import noun_phrase
 from .colors import color
@@ -74,6 +75,23 @@ def place(words: Words) -> Words | None:
     return words if noun_phrase.thing(("thing", *words)) is not None else None
 
 
+_COLUMNS: Mapping[str, tuple[str, ...]] = {
+    **dict.fromkeys(("size", "dimension", "measurement", "measure", "extent"), ("width", "depth", "height")),
+    **dict.fromkeys(("position", "location", "place", "coordinate", "whereabouts"), ("x", "y", "z")),
+    **dict.fromkeys(("width", "length", "breadth"), ("width",)),
+    "depth": ("depth",), "height": ("height",), "color": ("color",), "support": ("on",),
+    "id": (), "number": (), "name": (), "label": (),
+}  # fmt: skip
+
+
+def columns(words: Words) -> tuple[str, ...] | None:
+    """Columns of a table: "sizes and colours" to width, depth, height and colour."""
+    said = [singular(w) for w in words if w not in (",", "and", "the", "their", "its", "plus")]
+    if not said or any(w not in _COLUMNS for w in said):
+        return None
+    return tuple(dict.fromkeys(c for w in said for c in _COLUMNS[w])) or None
+
+
 READERS: Mapping[str, HoleReader] = {
     "thing": noun_phrase.thing,
     "noun": noun,
@@ -86,5 +104,6 @@ READERS: Mapping[str, HoleReader] = {
     "more": more,
     "superlative": superlative,
     "amount": amount,
+    "columns": columns,
     "words": free,
 }

@@ -127,7 +127,8 @@ _NO_THINGS = bag(
     "will should there here this that these those than as so if whether and or but of to from for with"
 )
 _VERBS = re.compile(
-    r"\b(?:is|are|was|were|be|been|does|do|did|has|have|had|can|could|would|will|should|whether|how|what|which|who|"
+    r"\b(?:is|are|was|were|be|been|does|do|did|has|have|had|(?<!trash )(?<!garbage )(?<!tin )(?<!watering )(?<!soda )(?<!spray )"
+    r"(?<!paint )(?<!rubbish )(?<!waste )can|could|would|will|should|whether|how|what|which|who|"
     r"where|when|"
     r"why|than|there|if|get|walk|fit|sit|see|look|looks|stand|stands|hang|hangs|lie|lies|belong|belongs|cost|costs|"
     r"goes|go)\b"
