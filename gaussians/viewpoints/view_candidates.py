@@ -1,0 +1,238 @@
+"""Candidate views of a scene: its own cameras, overviews from outside, views from where a person stands, close-ups."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..camera import Camera
+from ..scene import Scene
+from ..world.box import Box
+from .coverage import fit_camera
+from .cutaway import NOTHING, Cut, from_above, toward_inside
+from .free_space import FreeSpace
+
+F64 = NDArray[np.float64]
+Kind = Literal["camera", "overview", "walk-in", "close-up", "plan"]
+
+OVERVIEW_ELEVATIONS = (32.0, 55.0)  # degrees above the horizon
+OVERVIEW_FOV = 40.0  # degrees, vertical
+CLOSE_FOV = 50.0
+CLOSE_ELEVATIONS = (12.0, 38.0)
+CLOSE_AZIMUTHS = 8  # sides that a close-up is taken from, relative to the thing's box
+CLOSE_UPS_OF = 6  # most groups that close-ups are made of; more are shown by views of the whole
+DISTANCES = (1.0, 0.75, 0.5)  # of the distance at which the thing fills the image; nearer ones where there is no room
+FILLS = 1.25  # the thing's circumscribed sphere takes 1 / FILLS of the image's height in a close-up
+CLEARANCE = 1.5  # voxels between an eye and the nearest surface
+STANDS = 8  # places in free space
+FOV_LIMITS = (30.0, 85.0)  # degrees, vertical, of views fitted to what they show
+PLAN_FOV = 12.0  # degrees: so narrow that a view from above is nearly a plan
+TALL = 0.95  # share of the image that a fitted view fills
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """A camera with what is cut away before it is rendered.
+
+    Attributes:
+        name: unique among the candidates of a scene: "overview 2", "close-up 12.3", or a camera's own name.
+        kind: how it was made.
+        camera: pose, intrinsics and image size.
+        cut: what is not drawn.
+    """
+
+    name: str
+    kind: Kind
+    camera: Camera
+    cut: Cut = NOTHING
+
+
+def candidate_views(
+    scene: Scene, groups: Sequence[int], size: tuple[int, int], space: FreeSpace | None = None
+) -> list[View]:
+    """All candidates that may show `groups` (of the whole scene if empty), as images of `size` pixels."""
+    space = space or FreeSpace.of(scene.cloud, scene.frame)
+    found = own_views(scene, size) + overviews(scene, groups, size, space) + walk_ins(scene, groups, size, space)
+    if len(groups) <= CLOSE_UPS_OF:
+        for group in groups:
+            found += close_ups(scene, group, size, space)
+    return found
+
+
+def own_views(scene: Scene, size: tuple[int, int]) -> list[View]:
+    """The cameras that came with the scene, whole in images of `size`."""
+    names: dict[str, int] = {}
+    found = []
+    for i, camera in enumerate(scene.cameras):
+        name = camera.name or f"camera {i}"
+        names[name] = names.get(name, 0) + 1
+        shown = name if names[name] == 1 else f"{name} ({names[name]})"
+        found.append(View(shown, "camera", fit_camera(camera, *size)))
+    return found
+
+
+def overviews(scene: Scene, groups: Sequence[int], size: tuple[int, int], space: FreeSpace) -> list[View]:
+    """Views of the whole from outside, above its corners, with ceiling and near walls cut away."""
+    basis = scene.frame.basis()
+    low, high = bounds(scene, groups, space)
+    points = _corners(low, high) @ basis
+    center, radius = (low + high) / 2, float(np.linalg.norm(high - low)) / 2 + 1e-6
+    found: list[View] = []
+    for elevation in OVERVIEW_ELEVATIONS:
+        for k in range(4):
+            a, e = np.radians(45.0 + 90.0 * k), np.radians(elevation)
+            toward = np.array([np.cos(a) * np.cos(e), np.sin(a) * np.cos(e), np.sin(e)])
+            camera = _framing(center @ basis, toward @ basis, points, scene, size, OVERVIEW_FOV, radius)
+            name = f"overview {len(found) + 1}"
+            cut = toward_inside(scene, camera.position, groups)
+            found.append(View(name, "overview", replace(camera, name=name), cut))
+    return found
+
+
+def walk_ins(scene: Scene, groups: Sequence[int], size: tuple[int, int], space: FreeSpace) -> list[View]:
+    """Views from free places at eye height: of `groups` if they fit into one, else in three directions each."""
+    boxes = _boxes(scene, groups)
+    near = np.mean([b.center for b in boxes], axis=0) if boxes else None
+    eyes = space.stands(STANDS, space.eye_height, near)
+    found = []
+    for i, eye in enumerate(eyes, start=1):
+        if boxes:
+            cameras = [fitted_camera(eye, boxes, scene, size)]
+        else:
+            cameras = [_level_camera(eye, space.middle, turn, scene, size) for turn in (0.0, 65.0, -65.0)]
+        for k, camera in enumerate(cameras):
+            name = f"walk-in {i}" + (".abc"[k] if k else "")
+            found.append(View(name, "walk-in", replace(camera, name=name)))
+    return found
+
+
+def close_ups(scene: Scene, group: int, size: tuple[int, int], space: FreeSpace) -> list[View]:
+    """Views of one group from its sides, from where there is room for a camera."""
+    assert scene.language is not None
+    box = scene.language.groups[group].box
+    found: list[View] = []
+    for elevation in CLOSE_ELEVATIONS:
+        for k in range(CLOSE_AZIMUTHS):
+            a = 2 * np.pi * k / CLOSE_AZIMUTHS
+            side = np.cos(a) * np.array(box.axes[0]) + np.sin(a) * np.array(box.axes[1])
+            camera = side_camera(scene, [box], side, elevation, size, space)
+            if camera is not None:
+                name = f"close-up {group}.{len(found) + 1}"
+                found.append(View(name, "close-up", replace(camera, name=name)))
+    return found
+
+
+def side_camera(
+    scene: Scene, boxes: Sequence[Box], side: F64, elevation: float, size: tuple[int, int], space: FreeSpace,
+    far: float = 1.0,
+) -> Camera | None:  # fmt: skip
+    """The camera that shows boxes from one side, as far away as there is room up to `far` times what fills the image.
+
+    Args:
+        side: `[3]` level direction from the boxes to the camera, world.
+        elevation: degrees above the horizon.
+
+    Returns:
+        None if the eye would be inside something at every distance, or something hides the boxes from it.
+    """
+    corners = np.concatenate([box.corners() for box in boxes])
+    center = (corners.min(axis=0) + corners.max(axis=0)) / 2
+    radius = max(float(np.linalg.norm(corners - center, axis=1).max()), 1e-6)
+    e = np.radians(elevation)
+    toward = np.cos(e) * side / max(float(np.linalg.norm(side)), 1e-12) + np.sin(e) * scene.frame.up_vector
+    narrow = min(1.0, size[0] / size[1])
+    fills = FILLS * radius / (np.sin(np.radians(CLOSE_FOV) / 2) * narrow)
+    for share in (far, *(d for d in DISTANCES if d < far)):
+        eye = center + share * fills * toward
+        clear = float(space.clearance(eye[None])[0])
+        if clear < CLEARANCE * space.step or not space.sees(eye, center, radius):
+            continue
+        fov = 2 * float(np.degrees(np.arctan(np.tan(np.radians(CLOSE_FOV) / 2) / min(share, 1.0))))
+        return Camera.look_at(eye, center, scene.frame.up, *size, min(fov, FOV_LIMITS[1]), "side")
+    return None
+
+
+def fitted_camera(eye: F64, boxes: Sequence[Box], scene: Scene, size: tuple[int, int]) -> Camera:
+    """The camera at `eye` `[3]` with the narrowest field of view that holds all boxes, within `FOV_LIMITS`."""
+    corners = np.concatenate([box.corners() for box in boxes])
+    ways = corners - eye
+    ways /= np.maximum(np.linalg.norm(ways, axis=1, keepdims=True), 1e-9)
+    middle = ways.mean(axis=0)
+    if np.linalg.norm(middle) < 1e-6:
+        middle = scene.frame.basis()[0]
+    camera = Camera.look_at(eye, eye + middle, scene.frame.up, *size, 60.0, "fitted")
+    local = ways @ camera.world_to_camera[:3, :3].T
+    ahead = local[local[:, 2] > 0.05]
+    if len(ahead) < len(local):
+        return Camera.look_at(eye, eye + middle, scene.frame.up, *size, FOV_LIMITS[1], "fitted")
+    aspect = size[0] / size[1]
+    needed = max(
+        float(np.abs(ahead[:, 1] / ahead[:, 2]).max()), float(np.abs(ahead[:, 0] / ahead[:, 2]).max()) / aspect
+    )
+    fov = float(np.clip(2 * np.degrees(np.arctan(needed / TALL * 1.15)), *FOV_LIMITS))
+    return Camera.look_at(eye, eye + middle, scene.frame.up, *size, fov, "fitted")
+
+
+def plan(scene: Scene, groups: Sequence[int], size: tuple[int, int], space: FreeSpace) -> View:
+    """The view from above, nearly without perspective, north up: of the whole scene, with the ceiling cut away.
+
+    `groups` are kept even where they are above the cut.
+    """
+    basis = scene.frame.basis()
+    low, high = bounds(scene, groups, space)
+    cut = from_above(scene, groups)
+    top = min(float(high[2]), cut.above) if cut.above is not None else float(high[2])
+    center = np.array([*(low + high)[:2] / 2, top])
+    span = np.maximum(high - low, 1e-6)
+    half = max(span[1], span[0] * size[1] / size[0]) / 2 / TALL
+    eye = center + np.array([0, 0, half / np.tan(np.radians(PLAN_FOV) / 2)])
+    camera = Camera.look_at(eye @ basis, center @ basis, basis[1], *size, PLAN_FOV, "plan")
+    return View("plan", "plan", camera, cut)
+
+
+def bounds(scene: Scene, groups: Sequence[int], space: FreeSpace) -> tuple[F64, F64]:
+    """Lowest and highest corner `[3]` of what a view of the whole shows, in the frame's basis.
+
+    These are the bounds of the free space, which leave out far floaters, widened to the boxes of `groups`.
+    """
+    boxes = _boxes(scene, groups)
+    if not boxes:
+        return space.low, space.high
+    corners = np.concatenate([b.corners() for b in boxes]) @ scene.frame.basis().T
+    return np.minimum(space.low, corners.min(axis=0)), np.maximum(space.high, corners.max(axis=0))
+
+
+def _framing(
+    center: F64, toward: F64, points: F64, scene: Scene, size: tuple[int, int], fov: float, radius: float
+) -> Camera:
+    """The nearest camera in the direction `toward` from `center` whose image holds all `points` `[P, 3]`, world."""
+    low, high = 0.5 * radius, 6.0 * radius / np.tan(np.radians(fov) / 2)
+    for _ in range(16):
+        distance = (low + high) / 2
+        camera = Camera.look_at(center + distance * toward, center, scene.frame.up, *size, fov, "overview")
+        pixels, depth = camera.project(points)
+        held = bool(camera.contains(pixels, depth).all())
+        low, high = (low, distance) if held else (distance, high)
+    return Camera.look_at(center + high * toward, center, scene.frame.up, *size, fov, "overview")
+
+
+def _level_camera(eye: F64, middle: F64, turn: float, scene: Scene, size: tuple[int, int]) -> Camera:
+    """A camera at `eye` toward the scene's middle, turned by degrees about up and tilted slightly down."""
+    east, north, up = scene.frame.basis()
+    gap = middle - eye
+    azimuth = np.arctan2(gap @ north, gap @ east) + np.radians(turn)
+    aim = np.cos(azimuth) * east + np.sin(azimuth) * north - 0.2 * up
+    return Camera.look_at(eye, eye + aim, up, *size, 70.0, "walk-in")
+
+
+def _boxes(scene: Scene, groups: Sequence[int]) -> list[Box]:
+    assert scene.language is not None
+    return [scene.language.groups[g].box for g in groups]
+
+
+def _corners(low: F64, high: F64) -> F64:
+    return np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
