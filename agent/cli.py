@@ -18,8 +18,8 @@ from ..gaussians.errors import ScenewrightError
 from .terminal.output import error_json, terminal
 
 VERBS = (
-    "demo", "info", "embed", "select", "ask", "plan", "schema", "check", "compose", "edit", "chat", "render", "convert",
-    "mcp", "fit", "bench", "doctor",
+    "demo", "info", "embed", "select", "ask", "plan", "schema", "check", "compose", "edit", "chat", "render", "find-view",
+    "convert", "mcp", "fit", "bench", "doctor",
 )  # fmt: skip
 
 app = typer.Typer(
@@ -51,7 +51,7 @@ def _root(
 
 
 def _add(verb: str) -> None:
-    module = importlib.import_module(f".commands.{verb}", __package__)
+    module = importlib.import_module(f".commands.{verb.replace('-', '_')}", __package__)
     app.command(verb)(module.command)
 
 

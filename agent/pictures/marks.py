@@ -22,8 +22,10 @@ Color = tuple[int, int, int]
 LEAST_PIXELS = 12  # of a picture 640 pixels high, from which a thing is visible and gets its mark
 RADIUS = 1 / 48  # of a mark, of the picture's height
 LEAST_RADIUS = 9  # pixels
+SPECK = 0.02  # of a thing's pixels: pieces and holes below it are not outlined
 RINGS = (1.6, 2.6, 3.8, 5.4)  # distances at which marks beside a thing are tried, in radii
 WAYS = 16  # directions that are tried at each distance
+COVERS = 0.15  # share of a thing that its mark may cover without cost
 INK, PAPER = (24, 24, 28), (255, 255, 255)
 
 
@@ -91,20 +93,19 @@ def draw_marks(
         the picture, and where the marks are, those of the smallest things first.
     """
     shown = visible(labels, len(marks))
-    drawn = _outlined(image, labels, [marks[i].color for i in range(len(marks))], shown) if outlines else image
+    drawn = outlined(image, labels, [marks[i].color for i in range(len(marks))], shown) if outlines else image
     placed = place(labels, marks, shown)
     return draw_placed(drawn, marks, placed), placed
 
 
 def place(labels: Labels, marks: Sequence[Mark], shown: Sequence[int]) -> tuple[Placed, ...]:
     """Positions of the marks of the things `shown`; things with the least room for a mark are placed first."""
-    font = _font(labels.shape[0])
     anchors = [_anchor(labels == i) for i in shown]
     found: list[Placed] = []
     for k in sorted(range(len(shown)), key=lambda k: anchors[k][1]):
-        half = _half(marks[shown[k]].text, font, labels.shape[0])
+        half = half_size(marks[shown[k]].text, labels.shape[0])
         (x, y), room = anchors[k]
-        at = _free_place(labels, shown[k], (x, y), room, half, found)
+        at = free_place(labels, shown[k], (x, y), room, half, found)
         found.append(Placed(shown[k], at, (x, y), half))
     return tuple(found)
 
@@ -138,7 +139,8 @@ def outline(image: Picture, mask: NDArray[np.bool_], color: Color, width: int = 
     return drawn
 
 
-def _outlined(image: Picture, labels: Labels, colors: Sequence[Color], shown: Sequence[int]) -> Picture:
+def outlined(image: Picture, labels: Labels, colors: Sequence[Color], shown: Sequence[int]) -> Picture:
+    """The picture with the borders of the things `shown`; `colors[i]` belongs to label i."""
     width = max(2, round(labels.shape[0] / 240))
     drawn = image.copy()
     for i in shown:
@@ -152,23 +154,7 @@ def _outlined(image: Picture, labels: Labels, colors: Sequence[Color], shown: Se
     return drawn
 
 
-def _smooth(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """A mask without the specks that single Gaussians leave, as long as something is left."""
-    opened = ndimage.binary_opening(mask, iterations=1)
-    return np.asarray(opened if opened.sum() > 0.5 * mask.sum() else mask)
-
-
-def _anchor(mask: NDArray[np.bool_]) -> tuple[tuple[float, float], float]:
-    """The pixel (x, y) of a mask that lies farthest within it, and its distance to the border."""
-    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    top, left = int(rows[0]), int(columns[0])
-    inner = mask[top : rows[-1] + 1, left : columns[-1] + 1]
-    distance = ndimage.distance_transform_edt(np.pad(inner, 1))[1:-1, 1:-1]
-    y, x = np.unravel_index(int(np.argmax(distance)), distance.shape)
-    return (left + float(x) + 0.5, top + float(y) + 0.5), float(distance[y, x])
-
-
-def _free_place(
+def free_place(
     labels: Labels,
     own: int,
     anchor: tuple[float, float],
@@ -180,6 +166,7 @@ def _free_place(
     height, width = labels.shape
     ways = 2 * np.pi * np.arange(WAYS) / WAYS
     size = max(half)
+    total = max(1, int((labels == own).sum()))
     tries = [anchor] + [
         (anchor[0] + r * size * np.cos(a), anchor[1] + r * size * np.sin(a)) for r in RINGS for a in ways
     ]
@@ -190,6 +177,7 @@ def _free_place(
         cost = _overlap((x, y), half, taken) * 20.0
         under = labels[max(0, int(y - half[1])) : int(y + half[1]) + 1, max(0, int(x - half[0])) : int(x + half[0]) + 1]
         cost += 3.0 * float(((under >= 0) & (under != own)).mean())
+        cost += 2.0 * max(0.0, float((under == own).sum()) / total - COVERS)
         if k == 0:
             cost += 0.0 if room >= 1.2 * min(half) else 2.0 * (1 - room / (1.2 * min(half)))
         else:
@@ -197,6 +185,34 @@ def _free_place(
         if cost < least - 1e-9:
             best, least = (x, y), cost
     return best
+
+
+def half_size(text: str, height: int) -> tuple[float, float]:
+    """Half width and half height of the mark for a text, pixels, in a picture of `height` pixels."""
+    radius = float(max(LEAST_RADIUS, round(height * RADIUS)))
+    return max(radius, _font(height).getlength(text) / 2 + 0.45 * radius), radius
+
+
+def _smooth(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """A mask without the specks and holes that single Gaussians leave: pieces below `SPECK` of its pixels."""
+    least = SPECK * mask.sum()
+    for value in (True, False):
+        pieces, count = ndimage.label(mask == value)
+        if count > 1:
+            small = np.bincount(pieces.ravel()) < least
+            small[0] = False
+            mask = mask ^ small[pieces]
+    return np.asarray(mask)
+
+
+def _anchor(mask: NDArray[np.bool_]) -> tuple[tuple[float, float], float]:
+    """The pixel (x, y) of a mask that lies farthest within it, and its distance to the border."""
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    top, left = int(rows[0]), int(columns[0])
+    inner = mask[top : rows[-1] + 1, left : columns[-1] + 1]
+    distance = ndimage.distance_transform_edt(np.pad(inner, 1))[1:-1, 1:-1]
+    y, x = np.unravel_index(int(np.argmax(distance)), distance.shape)
+    return (left + float(x) + 0.5, top + float(y) + 0.5), float(distance[y, x])
 
 
 def _overlap(at: tuple[float, float], half: tuple[float, float], taken: Sequence[Placed]) -> float:
@@ -214,12 +230,6 @@ def _overlap(at: tuple[float, float], half: tuple[float, float], taken: Sequence
 def _disc(draw: ImageDraw.ImageDraw, at: tuple[float, float], radius: float, color: Color) -> None:
     x, y = at
     draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=color, outline=INK)
-
-
-def _half(text: str, font: ImageFont.FreeTypeFont | ImageFont.ImageFont, height: int) -> tuple[float, float]:
-    """Half width and half height of the mark for a text."""
-    radius = float(max(LEAST_RADIUS, round(height * RADIUS)))
-    return max(radius, font.getlength(text) / 2 + 0.45 * radius), radius
 
 
 def _font(height: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:

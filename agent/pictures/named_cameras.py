@@ -30,10 +30,11 @@ def choose_view(scene: Scene, view: str = "auto", size: str | None = None) -> Ca
     if view == "auto":
         camera = default_view(scene)
     elif ":" in view and "," in view:
-        eye, target = (_point(part) for part in view.split(":", 1))
-        camera = Camera.look_at(eye, target, scene.frame.up, *PICTURE, fov_y=_FOV_Y, name="given")
+        eye, target, *angle = view.split(":", 2)
+        fov = _angle(angle[0]) if angle else _FOV_Y
+        camera = Camera.look_at(_point(eye), _point(target), scene.frame.up, *PICTURE, fov_y=fov, name="given")
     else:
-        camera = _named(scene, view)
+        camera = scene.cameras[camera_index(scene, view)]
     if size is None:
         return camera
     from ...gaussians.viewpoints.coverage import fit_camera
@@ -91,14 +92,42 @@ def parse_size(text: str) -> tuple[int, int]:
     return size
 
 
-def _named(scene: Scene, view: str) -> Camera:
-    for camera in scene.cameras:
+def camera_index(scene: Scene, view: str) -> int:
+    """The number of the scene's camera that a name or number means.
+
+    Raises:
+        UserError: there is none.
+    """
+    for i, camera in enumerate(scene.cameras):
         if camera.name and camera.name.lower() == view.lower():
-            return camera
+            return i
     if view.isascii() and view.isdigit() and len(view) < 10 and int(view) < len(scene.cameras):
-        return scene.cameras[int(view)]
+        return int(view)
     known = ", ".join(f"{i} {c.name}".strip() for i, c in enumerate(scene.cameras[:12])) or "none"
     raise UserError(f"no camera {view!r} in this scene (cameras: {known}); or give 'x,y,z:x,y,z' as eye and target")
+
+
+def view_text(camera: Camera) -> str:
+    """A camera as `choose_view` takes it: 'eye:target:angle', exact to a thousandth of a unit and of a degree.
+
+    `choose_view` gives the same view for pictures of the camera's size, if it is not rolled.
+    """
+    eye, ahead = camera.position, camera.position + camera.forward
+    gain = min(camera.width / PICTURE[0], camera.height / PICTURE[1])
+    angle = 2 * math.degrees(math.atan(PICTURE[1] / 2 / (camera.fy / gain)))
+    points = (",".join(f"{round(float(c), 4) + 0.0:g}" for c in point) for point in (eye, ahead))
+    return ":".join([*points, f"{angle:.3f}"])
+
+
+def _angle(text: str) -> float:
+    """The vertical field of view of a view, degrees."""
+    try:
+        angle = float(text)
+    except ValueError:
+        angle = math.nan
+    if not 0 < angle < 180:
+        raise UserError(f"{text!r} is not a field of view; give degrees between 0 and 180, e.g. 0,-3,1.5:0,0,1:55")
+    return angle
 
 
 def _point(text: str) -> Vec3:

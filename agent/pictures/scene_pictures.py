@@ -42,21 +42,31 @@ def after(result: Result, camera: Camera) -> Picture:
 
 
 def numbered(scene: Scene, camera: Camera, candidates: Sequence[Candidate]) -> Picture:
-    """The scene with a number at each candidate that lies in front of the camera."""
-    from PIL import Image, ImageDraw, ImageFont
+    """The scene with a number at each candidate that the camera sees; candidates without a group at their centre."""
+    from .marked_views import draw_view
+    from .marks import draw_marks, numbered_marks
 
-    image = Image.fromarray(picture(scene, camera))
-    draw = ImageDraw.Draw(image)
+    if scene.language is None or any(c.group < 0 for c in candidates):
+        return _numbered_at_centres(scene, camera, candidates)
+    drawing = draw_view(scene, camera, [c.group for c in candidates])
+    return draw_marks(drawing.image, drawing.labels, numbered_marks(len(candidates)), outlines=False)[0]
+
+
+def _numbered_at_centres(scene: Scene, camera: Camera, candidates: Sequence[Candidate]) -> Picture:
+    """The scene with a number at the centre of each candidate that lies in front of the camera."""
+    from .marks import Placed, draw_placed, half_size, numbered_marks
+
+    marks = numbered_marks(len(candidates))
     pixels, depth = camera.project(np.array([c.center for c in candidates], dtype=np.float64).reshape(-1, 3))
-    radius = max(11, camera.height // 28)
-    font = ImageFont.load_default(round(radius * 1.3))
-    for number, ((x, y), z) in enumerate(zip(pixels, depth, strict=True), start=1):
-        if z <= 0:
-            continue
-        x, y = (float(np.clip(v, radius, side - radius)) for v, side in ((x, camera.width), (y, camera.height)))
-        draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=tuple(_MARK.tolist()), outline=(30, 30, 34))
-        draw.text((x, y), str(number), fill=(30, 30, 34), font=font, anchor="mm")
-    return np.asarray(image)
+    placed = []
+    for i in np.flatnonzero(depth > 0):
+        half = half_size(marks[i].text, camera.height)
+        x, y = (
+            float(np.clip(v, h, side - h))
+            for v, h, side in zip(pixels[i], half, (camera.width, camera.height), strict=True)
+        )
+        placed.append(Placed(int(i), (x, y), (x, y), half))
+    return draw_placed(picture(scene, camera), marks, placed)
 
 
 def _edge(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:

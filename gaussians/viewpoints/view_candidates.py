@@ -39,7 +39,8 @@ class View:
     """A camera with what is cut away before it is rendered.
 
     Attributes:
-        name: unique among the candidates of a scene: "overview 2", "close-up 12.3", or a camera's own name.
+        name: unique among the candidates of a scene: "overview 2", "close-up 12.3", or "camera 3" for the scene's own,
+            counted from 0; `camera.name` holds what its file calls it.
         kind: how it was made.
         camera: pose, intrinsics and image size.
         cut: what is not drawn.
@@ -65,14 +66,7 @@ def candidate_views(
 
 def own_views(scene: Scene, size: tuple[int, int]) -> list[View]:
     """The cameras that came with the scene, whole in images of `size`."""
-    names: dict[str, int] = {}
-    found = []
-    for i, camera in enumerate(scene.cameras):
-        name = camera.name or f"camera {i}"
-        names[name] = names.get(name, 0) + 1
-        shown = name if names[name] == 1 else f"{name} ({names[name]})"
-        found.append(View(shown, "camera", fit_camera(camera, *size)))
-    return found
+    return [View(f"camera {i}", "camera", fit_camera(camera, *size)) for i, camera in enumerate(scene.cameras)]
 
 
 def overviews(scene: Scene, groups: Sequence[int], size: tuple[int, int], space: FreeSpace) -> list[View]:

@@ -63,6 +63,11 @@ class RoomFrame:
         x, y, z = ((self.basis @ world - self.origin) * self.scale).tolist()
         return (x, y, z)
 
+    def world(self, point: Point) -> NDArray[np.float64]:
+        """A point of the graph's frame in the scene, `[3]`, scene units: the inverse of `point`."""
+        place: NDArray[np.float64] = (np.array(point) / self.scale + self.origin) @ self.basis
+        return place
+
     def viewpoint(self, camera: Camera) -> Viewpoint:
         """Where a camera stands, and a point one unit before it."""
         eye = camera.position
