@@ -77,8 +77,8 @@ View = Annotated[
     str,
     typer.Option(
         "--view", metavar="VIEW",
-        help="Viewer: a camera of the scene by number or name, 'x,y,z:x,y,z' as eye and target (and ':55' for a field of "
-        "view of 55 degrees), or 'auto'.",
+        help="Viewer: a camera of the scene by number or name, 'x,y,z:x,y,z' as eye and target (and ':55' for a field "
+        "of view of 55 degrees), or 'auto'.",
     ),
 ]  # fmt: skip
 Size = Annotated[str | None, typer.Option("--size", metavar="WxH", help="Size of pictures in pixels, e.g. 1280x720.")]

@@ -11,7 +11,7 @@ from ...gaussians.camera import Camera
 from ...gaussians.render import render
 from ...gaussians.scene import Scene
 from ...gaussians.viewpoints.cutaway import NOTHING, Cut
-from ...gaussians.viewpoints.visibility import label_table, labels_of
+from ...gaussians.viewpoints.visibility import label_table, visible_labels
 from .marks import Labels, Mark, Picture, Placed, draw_marks
 
 BACKGROUND = (0.93, 0.93, 0.92)  # display space, where a cut or a capture's border leaves nothing
@@ -44,9 +44,9 @@ def draw_view(scene: Scene, camera: Camera, groups: Sequence[int], cut: Cut = NO
     """
     assert scene.language is not None
     drawn = render(cut.apply(scene), camera, BACKGROUND if cut else (0.0, 0.0, 0.0))
-    labels = labels_of(drawn.group.cpu().numpy(), label_table(scene.language, groups))
-    faint = (drawn.alpha < 0.5).cpu().numpy()
-    return Drawing(drawn.to_uint8(), np.where(faint, -1, labels).astype(np.int32), camera)
+    boxes = [scene.language.groups[g].box for g in groups]
+    labels = visible_labels(drawn, camera, label_table(scene.language, groups), boxes)
+    return Drawing(drawn.to_uint8(), labels, camera)
 
 
 def mark_view(

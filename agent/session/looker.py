@@ -33,7 +33,7 @@ _SIDES: Mapping[str, Side | None] = {
     "below": "below",
 }  # fmt: skip
 _REQUEST = re.compile(r"\s*(?P<verb>[a-z]+)(?:\s*:\s*(?P<what>\S.{0,199}))?\s*", re.IGNORECASE)
-_THING = re.compile(r"(?P<mark>#?)(?P<number>\d{1,9})")
+_THING = re.compile(r"(?P<mark>#?)(?P<number>[0-9]{1,9})")
 
 
 class SceneLooker:

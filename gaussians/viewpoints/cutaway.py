@@ -75,7 +75,7 @@ def from_above(scene: Scene, groups: Sequence[int] = ()) -> Cut:
 
 def toward_inside(scene: Scene, eye: F64, groups: Sequence[int] = ()) -> Cut:
     """The cut for a view from `eye` `[3]` outside a room: as from above, and the walls between eye and room with the
-    flat things on them. `groups` are kept."""
+    flat things on them; from below also the floor. `groups` are kept."""
     field = _field(scene)
     cut = from_above(scene, groups)
     gone = set(cut.groups)
@@ -86,7 +86,29 @@ def toward_inside(scene: Scene, eye: F64, groups: Sequence[int] = ()) -> Cut:
         if middle * outside < 0:
             gone.add(wall.id)
             gone.update(g.id for g in objects if _hangs_on(g, wall, thin, field.typical_size))
+    up = scene.frame.up_vector
+    floors = [g for g in field.groups if g.level == "structure" and g.label == "floor" and g.count]
+    gone.update(g.id for g in floors if float(eye @ up) < g.box.bottom(up))
     return Cut(frozenset(gone) - frozenset(groups), cut.above)
+
+
+def wall_between(scene: Scene, eye: F64, target: F64) -> bool:
+    """Whether a wall hides a point `target` `[3]` of a room from an `eye` `[3]` outside it.
+
+    A thing that hangs on the wall overlaps its plane; it counts as inside the room.
+    """
+    field = _field(scene)
+    for wall in (g for g in field.groups if g.level == "structure" and g.label == "wall" and g.count):
+        thin = int(np.argmin(wall.box.size[:2]))
+        local = wall.box.local(np.stack([field.middle, eye, target]))
+        middle, outside, inner = local[:, thin]
+        if middle * outside >= 0:
+            continue
+        share = min(1.0, outside / (outside - inner)) if outside * (outside - inner) > 0 else 1.0
+        crossing = np.delete(np.abs(local[1] + share * (local[2] - local[1])), thin)
+        if (crossing <= np.delete(np.array(wall.box.size) / 2, thin)).all():
+            return True
+    return False
 
 
 def _hangs_on(thing: Group, wall: Group, thin: int, typical: float) -> bool:

@@ -18,9 +18,11 @@ F64 = NDArray[np.float64]
 
 CELLS = 64  # along the longest side of the scene
 SOLID = 0.3  # opacity from which a Gaussian is part of a surface
-LEAST = 2  # Gaussians in a voxel, from which it counts as occupied; single ones are floaters
-MARGIN = 0.01  # share of the Gaussians at each end of each axis that lie outside the bounds
+LEAST = 4  # Gaussians in and around a voxel from which one in it counts as a surface; fewer are floaters
+MARGIN = 0.01  # share of the Gaussians at each end of each axis that are left out of the bounds
+PADDING = 0.02  # of each side by which the bounds are widened, so that they hold the walls
 BODY = (0.3, 0.75)  # shares of the scene's height between which what stands there blocks a person
+BLOCKS = 1.2  # voxels: a line of sight that passes a surface nearer than this meets it; walls have gaps of a voxel
 AIR = 3  # voxels of free space around the eyes of who stands somewhere
 PLAN_CELLS = 32  # per side of the floor plan in which people stand
 
@@ -54,12 +56,15 @@ class FreeSpace:
         if not len(local):
             return cls(frame, np.zeros(3), np.ones(3), 1.0, np.full((1, 1, 1), np.inf, np.float32), some)
         low, high = np.quantile(some, MARGIN, axis=0), np.quantile(some, 1 - MARGIN, axis=0)
+        low, high = low - PADDING * (high - low), high + PADDING * (high - low)
         step = max(float((high - low).max()) / CELLS, 1e-9)
         shape = np.maximum(np.ceil((high - low) / step).astype(int), 1)
         index = np.floor((local - low) / step).astype(int)
         index = index[((index >= 0) & (index < shape)).all(axis=1)]
         count = np.bincount(np.ravel_multi_index(tuple(index.T), tuple(shape)), minlength=int(shape.prod()))
-        empty = (count < LEAST).reshape(shape)
+        count = count.reshape(shape)
+        around = ndimage.uniform_filter(count.astype(np.float64), 3, mode="constant") * 27
+        empty = (count == 0) | (around < LEAST - 0.5)
         distance = ndimage.distance_transform_edt(empty) * step if not empty.all() else np.full(empty.shape, np.inf)
         return cls(frame, low, high, step, distance.astype(np.float32), some)
 
@@ -107,7 +112,7 @@ class FreeSpace:
             return True
         points = eye + along[:, None] * gap / np.linalg.norm(gap)
         within = self.inside(points)
-        return not bool((self.clearance(points[within]) < self.step / 2).any())
+        return not bool((self.clearance(points[within]) < BLOCKS * self.step).any())
 
     def stands(self, count: int, height: float, near: F64 | None = None) -> F64:
         """Up to `count` points `[S, 3]`, world, at `height` along up, where nothing stands and far apart.

@@ -18,9 +18,9 @@ from ..world.box import Box
 from ..world.facing import facing_in
 from ..world.person import SEATED_EYES
 from ..world.relation_geometry import Stand, object_stand, viewer_stand
-from .cutaway import NOTHING, Cut, toward_inside
+from .cutaway import NOTHING, Cut, toward_inside, wall_between
 from .for_groups import HEIGHT, WIDTH, ChosenView, Sights, measured
-from .view_candidates import CLEARANCE, CLOSE_FOV, FILLS, View, fitted_camera, side_camera
+from .view_candidates import CLEARANCE, CLOSE_FOV, View, filling_distance, fitted_camera, side_camera
 
 F64 = NDArray[np.float64]
 Side = Literal["front", "behind", "left", "right", "above", "below"]
@@ -142,7 +142,11 @@ def view_from_thing(
         camera = Camera.look_at(eye, eye + way - 0.12 * up, up, *size, PERSON_FOV)
     name = f"from:{group}"
     view = View(name, "walk-in", replace(camera, name=name))
-    return SideView(measured(sights, view, targets or [group]), "object" if front is not None else "viewer")
+    chosen = measured(sights, view, targets or [group])
+    if targets and group not in targets and _worth(chosen) < LEAST:  # one may sit with one's back to what one looks at
+        without = measured(sights, replace(view, cut=Cut(frozenset({group}))), targets)
+        chosen = without if _worth(without) > _worth(chosen) else chosen
+    return SideView(chosen, "object" if front is not None else "viewer")
 
 
 def _side_cameras(
@@ -179,13 +183,13 @@ def _at_eye_level(
 ) -> Camera | None:
     """The camera at standing height in the level direction `way` from boxes; None if there is no room or no sight."""
     up = sights.scene.frame.up_vector
-    center, radius = _sphere(boxes)
-    away = distance * _filling(radius, size)
+    corners, center, radius = _corners(boxes)
+    away = distance * filling_distance(corners - center, way, up, size)
     for share in (1.0, 0.75, 0.5):
         eye = center + share * away * way
         eye = eye + up * (sights.space.eye_height - eye @ up)
         clear = float(sights.space.clearance(eye[None])[0]) >= CLEARANCE * sights.space.step
-        if clear and sights.space.sees(eye, center, radius):
+        if clear and sights.space.sees(eye, center, radius) and not wall_between(sights.scene, eye, center):
             return Camera.look_at(eye, center, up, *size, CLOSE_FOV if share == 1.0 else PERSON_FOV)
     return None
 
@@ -195,22 +199,18 @@ def _from_outside(
 ) -> Camera:
     """The camera in the direction `way`, `tilt` degrees above the horizon, whatever is there."""
     up = sights.scene.frame.up_vector
-    center, radius = _sphere(boxes)
+    corners, center, _ = _corners(boxes)
     e = np.radians(tilt)
-    eye = center + max(distance, 1.0) * _filling(radius, size) * (np.cos(e) * way + np.sin(e) * up)
-    return Camera.look_at(eye, center, up, *size, CLOSE_FOV)
+    toward = np.cos(e) * way + np.sin(e) * up
+    away = max(distance, 1.0) * filling_distance(corners - center, toward, up, size)
+    return Camera.look_at(center + away * toward, center, up, *size, CLOSE_FOV)
 
 
-def _sphere(boxes: Sequence[Box]) -> tuple[F64, float]:
-    """Centre `[3]` and radius of a sphere around boxes, world."""
+def _corners(boxes: Sequence[Box]) -> tuple[F64, F64, float]:
+    """Corners `[P, 3]` of boxes, their middle `[3]` and the radius around it that holds them, world."""
     corners = np.concatenate([box.corners() for box in boxes])
     center: F64 = (corners.min(axis=0) + corners.max(axis=0)) / 2
-    return center, max(float(np.linalg.norm(corners - center, axis=1).max()), 1e-6)
-
-
-def _filling(radius: float, size: tuple[int, int]) -> float:
-    """Distance at which a sphere fills a close-up of `size` pixels."""
-    return FILLS * radius / (float(np.sin(np.radians(CLOSE_FOV) / 2)) * min(1.0, size[0] / size[1]))
+    return corners, center, max(float(np.linalg.norm(corners - center, axis=1).max()), 1e-6)
 
 
 def _eye_at(sights: Sights, thing: Group, way: F64) -> F64:

@@ -13,7 +13,7 @@ from ..camera import Camera
 from ..scene import Scene
 from ..world.box import Box
 from .coverage import fit_camera
-from .cutaway import NOTHING, Cut, from_above, toward_inside
+from .cutaway import NOTHING, Cut, from_above, toward_inside, wall_between
 from .free_space import FreeSpace
 
 F64 = NDArray[np.float64]
@@ -25,8 +25,8 @@ CLOSE_FOV = 50.0
 CLOSE_ELEVATIONS = (12.0, 38.0)
 CLOSE_AZIMUTHS = 8  # sides that a close-up is taken from, relative to the thing's box
 CLOSE_UPS_OF = 6  # most groups that close-ups are made of; more are shown by views of the whole
-DISTANCES = (1.0, 0.75, 0.5)  # of the distance at which the thing fills the image; nearer ones where there is no room
-FILLS = 1.25  # the thing's circumscribed sphere takes 1 / FILLS of the image's height in a close-up
+DISTANCES = (1.0, 0.7)  # of the distance at which the thing fills the image; nearer ones where there is no room
+FILLS = 0.65  # share of the image's height or width that a thing's box takes in a close-up
 CLEARANCE = 1.5  # voxels between an eye and the nearest surface
 STANDS = 8  # places in free space
 FOV_LIMITS = (30.0, 85.0)  # degrees, vertical, of views fitted to what they show
@@ -138,16 +138,29 @@ def side_camera(
     radius = max(float(np.linalg.norm(corners - center, axis=1).max()), 1e-6)
     e = np.radians(elevation)
     toward = np.cos(e) * side / max(float(np.linalg.norm(side)), 1e-12) + np.sin(e) * scene.frame.up_vector
-    narrow = min(1.0, size[0] / size[1])
-    fills = FILLS * radius / (np.sin(np.radians(CLOSE_FOV) / 2) * narrow)
+    fills = filling_distance(corners - center, toward, scene.frame.up_vector, size)
     for share in (far, *(d for d in DISTANCES if d < far)):
         eye = center + share * fills * toward
         clear = float(space.clearance(eye[None])[0])
-        if clear < CLEARANCE * space.step or not space.sees(eye, center, radius):
+        if clear < CLEARANCE * space.step or not space.sees(eye, center, radius) or wall_between(scene, eye, center):
             continue
         fov = 2 * float(np.degrees(np.arctan(np.tan(np.radians(CLOSE_FOV) / 2) / min(share, 1.0))))
         return Camera.look_at(eye, center, scene.frame.up, *size, min(fov, FOV_LIMITS[1]), "side")
     return None
+
+
+def filling_distance(corners: F64, toward: F64, up: F64, size: tuple[int, int]) -> float:
+    """How far away, in the direction `toward` `[3]`, a close-up's camera is whose image the corners fill.
+
+    Args:
+        corners: `[P, 3]` relative to the point that the camera looks at, world.
+    """
+    pose = Camera.look_at(toward, np.zeros(3), up, *size, CLOSE_FOV).world_to_camera[:3, :3]
+    across, down, depth = np.abs(corners @ pose[0]), np.abs(corners @ pose[1]), corners @ pose[2]
+    tangent = FILLS * np.tan(np.radians(CLOSE_FOV) / 2)
+    # A corner at (x, y, z) before a camera at distance d is in the image if |x| <= tangent * (d + z), y likewise.
+    needed = np.maximum(across / (tangent * size[0] / size[1]), down / tangent) - depth
+    return max(float(needed.max()), 1e-6)
 
 
 def fitted_camera(eye: F64, boxes: Sequence[Box], scene: Scene, size: tuple[int, int]) -> Camera:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..camera import Camera
+from ..camera import Camera, Render
 from ..language.field.language_field import LanguageField
 from ..render import render
 from ..scene import Scene
@@ -19,6 +19,8 @@ F64 = NDArray[np.float64]
 
 SIZE = 128  # pixels of the longer side of the images in which pixels are counted
 NEAR = 1e-3  # of the distance between eye and box: corners nearer than this to the eye's plane count as behind it
+IN_FRONT = 0.03  # of a box's nearest depth: pixels nearer than this before it show what stands before it
+DRAWN = 0.5  # alpha from which a pixel shows anything
 # Corners of each face of a box in `Box.corners` order, counter-clockwise seen from outside.
 _FACES = np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])
 
@@ -38,12 +40,13 @@ class GroupPixels:
         self._scene = scene.replace(cloud=cloud.replace(sh=cloud.sh[:, :1].contiguous()))
         self._table = label_table(scene.language, groups)
         self._count = len(groups)
+        self._boxes = [scene.language.groups[g].box for g in groups]
 
     def shares(self, camera: Camera, cut: Cut | None = None) -> F64:
         """Share of the image `[G]` that each group covers after occlusion; `cut` is left out."""
         small = shrunk(camera, SIZE)
         cloud = cut.apply(self._scene) if cut is not None else self._scene.cloud
-        labels = labels_of(render(cloud, small).group.cpu().numpy(), self._table)
+        labels = visible_labels(render(cloud, small), small, self._table, self._boxes)
         counted = np.bincount(labels[labels >= 0], minlength=self._count)
         return counted / labels.size
 
@@ -56,11 +59,24 @@ def label_table(field: LanguageField, groups: Sequence[int]) -> NDArray[np.int32
     return table
 
 
-def labels_of(leaves: NDArray[np.integer], table: NDArray[np.int32]) -> NDArray[np.int32]:
-    """A group image `[H, W]` of leaf ids as positions of a `label_table`; ids beyond the table are -1."""
-    known = np.where(leaves + 1 < len(table), leaves + 1, 0)
-    found: NDArray[np.int32] = table[known]
-    return found
+def visible_labels(drawn: Render, camera: Camera, table: NDArray[np.int32], boxes: Sequence[Box]) -> NDArray[np.int32]:
+    """Which group each pixel shows, `[H, W]`: a position of a `label_table`, -1 for others and where little is drawn.
+
+    A wall of many faint Gaussians has less weight each than the opaque thing behind it, which would count as seen.
+    Such pixels lie nearer than the thing's box and are left out.
+
+    Args:
+        boxes: of the groups, in the order of the table.
+    """
+    leaves = drawn.group.cpu().numpy()
+    labels: NDArray[np.int32] = table[np.where(leaves + 1 < len(table), leaves + 1, 0)]
+    if not boxes:
+        return labels
+    corners = np.stack([box.corners() for box in boxes]).reshape(-1, 3)
+    nearest = camera.project(corners)[1].reshape(-1, 8).min(axis=1)
+    before = drawn.depth.cpu().numpy() < (1 - IN_FRONT) * nearest[labels]
+    hidden = before | (drawn.alpha.cpu().numpy() < DRAWN)
+    return np.where(hidden, np.int32(-1), labels)
 
 
 def shrunk(camera: Camera, size: int) -> Camera:

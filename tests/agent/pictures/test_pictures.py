@@ -53,12 +53,25 @@ def test_the_spotlight_dims_all_but_the_selection(boxes: Scene) -> None:
     assert torch.equal(boxes.cloud.group.unique(), torch.tensor([0, 1, 2, 3], dtype=torch.int32))
 
 
-def test_candidates_are_numbered_where_they_are(boxes: Scene) -> None:
+def test_candidates_are_numbered_where_they_are_seen(boxes: Scene) -> None:
     camera = boxes.cameras[0].resized(480, 320)
-    one = Candidate(0, "box", "red", (-2.0, 0.0, 0.4), (0.8, 0.8, 0.8), 1.0)
-    behind = Candidate(1, "box", "red", (0.0, -50.0, 0.4), (0.8, 0.8, 0.8), 1.0)
+    candidates = [Candidate(g, "box", "red", (0.0, -50.0, 0.4), (0.8, 0.8, 0.8), 1.0) for g in (0, 1)]
+    plain = picture(boxes, camera)
+    changed = (numbered(boxes, camera, candidates) != plain).any(axis=2)
+    rows, columns = changed.nonzero()
+    # The discs lie on the left and the middle box, whatever the stored centres say; nothing is drawn on the right one.
+    for center in ((-2.0, 0.0, 0.4), (0.0, 0.3, 0.3)):
+        (x, y), _ = (v[0] for v in camera.project(np.array([center])))
+        assert (np.hypot(rows - y, columns - x) < 25).sum() > 100
+    assert columns.max() < 320
+
+
+def test_candidates_without_a_group_are_numbered_at_their_centre(boxes: Scene) -> None:
+    camera = boxes.cameras[0].resized(480, 320)
+    one = Candidate(-1, "patch", "red", (-2.0, 0.0, 0.4), (0.8, 0.8, 0.8), 1.0)
+    behind = Candidate(-1, "patch", "red", (0.0, -50.0, 0.4), (0.8, 0.8, 0.8), 1.0)
     changed = (numbered(boxes, camera, [one, behind]) != picture(boxes, camera)).any(axis=2)
     (x, y), _ = (v[0] for v in camera.project(np.array([one.center])))
     rows, columns = changed.nonzero()
-    # The mark is a disc of radius 11 around the projected centre; one pixel for the rim.
-    assert np.abs(rows - y).max() <= 12.5 and np.abs(columns - x).max() <= 12.5
+    # The mark is a disc of radius 9 around the projected centre; one pixel for the rim.
+    assert len(rows) and np.abs(rows - y).max() <= 10.5 and np.abs(columns - x).max() <= 10.5
