@@ -18,8 +18,8 @@ from ..gaussians.errors import ScenewrightError
 from .terminal.output import error_json, terminal
 
 VERBS = (
-    "demo", "info", "embed", "select", "ask", "plan", "schema", "check", "compose", "edit", "chat", "render", "find-view",
-    "convert", "mcp", "fit", "bench", "doctor",
+    "demo", "info", "embed", "select", "ask", "plan", "schema", "check", "compose", "edit", "chat", "render",
+    "find-view", "convert", "mcp", "fit", "bench", "doctor",
 )  # fmt: skip
 
 app = typer.Typer(
