@@ -1,7 +1,7 @@
 """Edits that went wrong behind the judge's back, in furnished rooms whose truth is known.
 
-A sabotage changes the scene after an edit, or what the edit was applied to; the words and the receipt claim success. The
-`hidden` sabotages damage the language field before the edit, so that whoever asks the field again gets the same wrong
+A sabotage changes the scene after an edit, or what the edit was applied to; the words and the receipt claim success.
+`HIDDEN` sabotages damage the language field before the edit, so that whoever asks the field again gets the same wrong
 answer: only what is seen and measured tells.
 """
 
@@ -15,15 +15,14 @@ import torch
 from torch import Tensor
 
 from ..gaussians.cloud import NO_GROUP
-from ..gaussians.language.query.selection import Selection, mask_of
-from ..gaussians.scene import Scene
-from ..tools.color_map import toward_color
-from ..tools.cloud_diff import Draft
-from ..tools.execute import carry_out
-from ..tools.operation import Context, EditOp
 from ..gaussians.color import rgb_to_lab, shade_of
 from ..gaussians.language.field.measure import sample
-from ..tools.registry import parse
+from ..gaussians.language.query.selection import Selection, mask_of
+from ..gaussians.scene import Scene
+from ..tools.cloud_diff import Draft
+from ..tools.color_map import toward_color
+from ..tools.execute import carry_out
+from ..tools.operation import Context, EditOp
 
 NEIGHBOURHOOD = 0.3  # metres around the target into which a colour bleeds
 
@@ -154,7 +153,7 @@ SABOTAGES: dict[str, Damage] = {
 }
 
 
-# -- the field lies too --------------------------------------------------------------------------------------------------
+# -- the field lies too -----------------------------------------------------------------------------------------------
 
 
 def hidden_target(attempt: Attempt) -> tuple[Scene, Scene] | None:

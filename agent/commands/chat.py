@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..options import Budget, Debug, Encoder, Json, Log, Picture, Planner, Scale, SceneFile, Seed, Up, View
+from ..options import Budget, Debug, Encoder, Json, Judge, Log, Picture, Planner, Scale, SceneFile, Seed, Up, View
 from ..terminal.output import terminal
 
 
@@ -11,6 +11,7 @@ def command(
     planner: Planner = "auto",
     budget: Budget = None,
     picture: Picture = False,
+    judge: Judge = None,
     encoder: Encoder = "auto",
     up: Up = None,
     metres_per_unit: Scale = None,
@@ -27,7 +28,7 @@ def command(
     session, _ = open_session(
         SessionOptions(
             scene, planner, encoder, view, log=log, seed=seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
-            picture=picture,
+            picture=picture, judge=judge,
         )
     )  # fmt: skip
     try:

@@ -17,6 +17,7 @@ from ..options import (
     Encoder,
     Force,
     Json,
+    Judge,
     Log,
     Output,
     Picture,
@@ -66,6 +67,7 @@ def command(
     planner: Planner = "auto",
     budget: Budget = None,
     picture: Picture = False,
+    judge: Judge = None,
     encoder: Encoder = "auto",
     seed: Seed = 0,
     force: Force = False,
@@ -87,8 +89,9 @@ def command(
     started = time.perf_counter()
     seconds: dict[str, float] = {}
     options = SessionOptions(
-        scene, planner, encoder, view, size, None if dry_run else log, seed, True, up, metres_per_unit, budget, picture
-    )
+        scene, planner, encoder, view, size, None if dry_run else log, seed, True, up, metres_per_unit, budget, picture,
+        judge,
+    )  # fmt: skip
     with timed(seconds, "open"):
         session, had_field = open_session(options)
     targets = _Targets(None if dry_run else output, pictures, force, had_field)

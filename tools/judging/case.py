@@ -1,8 +1,8 @@
-"""One edit to judge: the scenes before and after it, the operation, and what its words mean when they are asked again."""
+"""One edit to judge: the scenes before and after it, the operation, and what its words mean, asked again."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import torch
@@ -29,14 +29,14 @@ class Case:
         before, after: the scenes. The language field of `after` is not read.
         op: the operation.
         context: viewer, encoder and "it" as the operation had them.
-        allowed: ids that a repair added to what the words mean.
+        chosen: what a repair took the words to mean; None: they are asked again.
     """
 
     before: Scene
     after: Scene
     op: EditOp
     context: Context
-    allowed: Tensor = field(default_factory=lambda: _NO_IDS)
+    chosen: Selection | None = None
 
     @cached_property
     def changes(self) -> Changes:
@@ -50,14 +50,9 @@ class Case:
 
     @cached_property
     def meant(self) -> Selection:
-        """`asked` with the Gaussians that a repair added; empty where nothing was found."""
-        found = self.asked
-        if found is None or found.verdict != "found":
-            return Selection(Query(), "found", _NO_IDS)
-        if not len(self.allowed):
-            return found
-        ids = torch.cat([found.ids, self.allowed]).unique()
-        return Selection(found.query, "found", ids, found.groups, found.candidates, found.reason)
+        """What a repair chose, else `asked`; empty where nothing was found."""
+        found = self.chosen if self.chosen is not None else self.asked
+        return found if found is not None and found.verdict == "found" else Selection(Query(), "found", _NO_IDS)
 
     @cached_property
     def target(self) -> Tensor:

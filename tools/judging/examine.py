@@ -15,6 +15,8 @@ import torch
 from torch import Tensor
 
 from ...gaussians.errors import ScenewrightError
+from ...gaussians.language.field.measure import solid_points
+from ...gaussians.world import kinds
 from ...gaussians.world.box import Box
 from ..operation import Placement
 from ..ops.arrange import Arrange
@@ -29,7 +31,7 @@ from ..ops.recolor import Recolor
 from ..ops.replace import Replace
 from ..ops.rotate import Rotate
 from ..ops.scale import Scale
-from ..placement.bodies import bodies_of, heading
+from ..placement.bodies import bodies_of, contact_box, heading
 from ..receipt import Check, at_least, at_most, report
 from . import appearance, standing
 from .accounting import all_of_it, only_as_asked
@@ -40,7 +42,8 @@ _NO_IDS = torch.zeros(0, dtype=torch.int64)
 _RIGID = 0.01  # of its size: RMS by which a thing that moved may be out of shape
 _WAY = 0.03  # of the way, and at least 2 cm: error of a moved thing's place
 _TURN = 2.0  # degrees
-_SIZE = 0.03  # error of a size ratio
+_SIZE = 0.03  # error of a size ratio, and at most a third of the change that was asked for
+_LEVEL = 0.03  # of its height, and at least 2 cm: by how much a copy of a thing that hangs may hang higher or lower
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +152,7 @@ def _opacity(case: Case, op: Opacity) -> Found:
     return [*checks, *([changed] if changed else []), *_named(case, case.changes.faded)], _NO_IDS
 
 
-# -- things that move ---------------------------------------------------------------------------------------------------
+# -- things that move -------------------------------------------------------------------------------------------------
 
 
 def _displaced(case: Case, rows: Tensor) -> Check:
@@ -259,12 +262,12 @@ def _scale(case: Case, op: Scale) -> Found:
 
 def _resized(case: Case, op: Scale, was: Box, rows: Tensor) -> Check:
     """The measured box has the asked size, along the asked axis or in all directions."""
-    from ..placement.bodies import contact_box, solid_points
-
     now = contact_box(solid_points(case.after.cloud, rows), case.after.frame, was.axes)
     ratios = [n / max(w, 1e-9) for n, w in zip(now.size, was.size, strict=True)]
+    bound = _SIZE
     if op.length is None:
         factor = op.factor or 1.0
+        bound = min(_SIZE, max(abs(factor - 1) / 3, 1e-4))
         across = [abs(r / factor - 1) for r in ratios]
         off = max(across) if op.axis == "all" else across[2] if op.axis == "height" else min(across[:2])
     else:
@@ -272,7 +275,7 @@ def _resized(case: Case, op: Scale, was: Box, rows: Tensor) -> Check:
         asked = length.in_units(case.before.frame)
         across = [abs(s / asked - 1) for s in now.size]
         off = across[2] if side == "height" else min(across[:2])
-    return at_most("size as asked", off, _SIZE, "1", f"its size is off by {off:.1%}")
+    return at_most("size as asked", off, bound, "1", f"its size is off by {off:.1%}")
 
 
 def _arrange(case: Case, op: Arrange) -> Found:
@@ -313,7 +316,7 @@ def _exchange(case: Case, op: Exchange) -> Found:
     return checks, _NO_IDS
 
 
-# -- things that are added -----------------------------------------------------------------------------------------------
+# -- things that are added --------------------------------------------------------------------------------------------
 
 
 def _new(case: Case, kind: str, color: str | None, count: int) -> list[Check]:
@@ -366,11 +369,23 @@ def _duplicate(case: Case, op: Duplicate) -> Found:
                                f"it stands {near:.3g} units from the original"))  # fmt: skip
         if op.direction is None:
             checks += _placed(case, op.place, rows, case.bodies[0].label)
+            checks += _as_high(case, rows) if op.place is None else []
     query, encoder = op.target, appearance.embedded()
     if appearance.is_looked_for(query, encoder) and case.added:
         clouds = [case.after.cloud[rows] for rows in case.added]
         checks.append(appearance.looks_as_named("looks as named", query.text.lower(), encoder, clouds, case.after))
     return checks, _NO_IDS
+
+
+def _as_high(case: Case, rows: Tensor) -> list[Check]:
+    """A copy of a thing that hangs on a wall or from the ceiling hangs as high as the original."""
+    kind = kinds.find(case.bodies[0].label) if case.bodies[0].label else None
+    if kind is None or kind.support not in ("wall", "ceiling"):
+        return []
+    up, box = case.after.frame.up_vector, case.box_after(rows)
+    off = min(abs(float((np.array(box.center) - b.center) @ up)) for b in case.bodies)
+    bound = max(_LEVEL * box.size[2], 2 * case.cm(max(box.size)))
+    return [at_most("as high as the original", off, bound, "units", f"it hangs {off:.3g} units higher or lower")]
 
 
 _JUDGES: dict[type, Callable[[Case, Any], Found]] = {

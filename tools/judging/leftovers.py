@@ -39,7 +39,7 @@ def left_behind(case: Case) -> tuple[Check, Tensor]:
     """The check that nothing of the target is left where it stood, and the ids of what is."""
     rows = [body.rows for body in case.bodies]
     found = [_left_of(case, one) for one in rows]
-    left = torch.cat(found).unique() if found else torch.zeros(0, dtype=torch.int64)
+    left = torch.unique(torch.cat(found)) if found else torch.zeros(0, dtype=torch.int64)
     cloud = case.before.cloud
     total = float(weight_of(cloud, case.target.nonzero().squeeze(1)).sum())
     share = float(weight_of(cloud, left).sum()) / max(total, 1e-30)
@@ -86,7 +86,9 @@ def _within(box: Box, points: NDArray[np.float64], pad: float) -> Flags:
     return np.asarray((np.abs(box.local(points)) <= np.array(box.size) / 2 + pad).all(axis=1))
 
 
-def _haze(case: Case, own: NDArray[np.float64], points: NDArray[np.float64], groups: NDArray[np.int32], cm: float) -> Flags:
+def _haze(
+    case: Case, own: NDArray[np.float64], points: NDArray[np.float64], groups: NDArray[np.int32], cm: float
+) -> Flags:
     """Gaussians of no group that are near the thing and nearer to it than to anything else that stayed."""
     free = groups == NO_GROUP
     if not free.any():
