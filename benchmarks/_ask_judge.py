@@ -180,7 +180,8 @@ def _selections(scene: Scene, truth: Truth, context: Context) -> list[tuple[int,
 def _operation(step: int, query: dict[str, Any], found: Any, rng: np.random.Generator) -> EditOp:
     """The next operation; the kinds take turns."""
     color, asset = str(rng.choice(COLORS)), str(rng.choice(ASSETS))
-    other = found[int(rng.integers(len(found)))][1]
+    others = [q for _, q, _ in found if q != query] or [query]
+    other = others[int(rng.integers(len(others)))]
     away = float(rng.uniform(0.15, 0.8))
     place = {"relation": str(rng.choice(["next_to", "on", "left_of", "right_of", "in_front_of"])), "anchors": [other]}
     makers: list[dict[str, Any]] = [

@@ -14,6 +14,7 @@ from ...gaussians.color import rgb_to_lab
 from ...gaussians.language.encoders.probability import probability
 from ...gaussians.language.field.measure import box_of
 from ...gaussians.language.query.attributes import color_scores
+from ...gaussians.language.query.color_fallback import is_reliable
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.terms import ALL, ANYTHING, FLOATERS, STRUCTURE
 from ...gaussians.language.segmentation.group_renders import cameras_around, mean_vectors
@@ -49,6 +50,12 @@ def is_looked_for(query: Query, encoder: Encoder) -> bool:
     return not (fixed or part or unnamed) and encoder.knows(word)
 
 
+def is_judge_of(encoder: Encoder, scene: Scene) -> bool:
+    """Whether the encoder's word counts in a scene: it was embedded by it, and most of its things have a sure label."""
+    field = scene.language
+    return field is not None and field.encoder == encoder.fingerprint and is_reliable(field)
+
+
 def likeness(encoder: Encoder, word: str, clouds: Sequence[GaussianCloud], scene: Scene) -> NDArray[np.float64]:
     """`[len(clouds)]` probability that each cloud is a `word`, from renders of it alone and its size."""
     middle = scene.language.middle if scene.language is not None else np.zeros(3)
@@ -73,6 +80,8 @@ def looks_as_named(name: str, word: str, encoder: Encoder, clouds: Sequence[Gaus
 
 def seen_lab(cloud: GaussianCloud, scene: Scene) -> NDArray[np.float64]:
     """`[P, 3]` Lab of the pixels that show a cloud rendered alone."""
+    if not len(cloud):
+        return np.zeros((0, 3))
     if len(cloud) > _MAX_GAUSSIANS:
         step = len(cloud) / _MAX_GAUSSIANS
         kept = cloud[torch.linspace(0, len(cloud) - 1, _MAX_GAUSSIANS).long()]
@@ -96,7 +105,7 @@ def looks_colored(name: str, word: str, cloud: GaussianCloud, scene: Scene) -> C
 
     The best of three measures counts: the lit pixels, the mean pixel, and the share of the pixels of that colour.
     """
-    lab = seen_lab(cloud, scene) if len(cloud) else np.zeros((0, 3))
+    lab = seen_lab(cloud, scene)
     if len(lab) < 4:
         return report(name, float("nan"), "1", "too few of its pixels are solid to see a colour")
     scores = [float(color_scores(word, lit(lab))), float(color_scores(word, lab.mean(axis=0)))]

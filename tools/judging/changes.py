@@ -68,7 +68,7 @@ class Changes:
         a, b = old[stayed], new[self.row[stayed]]
         if bands is not None:
             a, b = a[:, :bands], b[:, :bands]
-        found[stayed] = (a != b).reshape(len(stayed), -1).any(dim=1)
+        found[stayed] = (a != b).flatten(1).any(dim=1) if a.ndim > 1 else a != b
         return found
 
 

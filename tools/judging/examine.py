@@ -6,7 +6,7 @@ Each operation has a function that lists its checks; an operation without one ge
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,6 +14,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from ...gaussians.cloud import GaussianCloud
 from ...gaussians.errors import ScenewrightError
 from ...gaussians.language.field.measure import solid_points
 from ...gaussians.world import kinds
@@ -87,16 +88,26 @@ Found = tuple[list[Check], Tensor]
 
 
 def _named(case: Case, changed: Tensor) -> list[Check]:
-    """The encoder, shown what really changed, finds it to be what the words name."""
-    query, encoder = case.op.query(), appearance.embedded()
-    if query is None or not appearance.is_looked_for(query, encoder) or not bool(changed.any()):
+    """The encoder, shown what really changed (`[N]` bool over the cloud before), finds it to be what the words name."""
+    if not bool(changed.any()):
         return []
     cloud = case.before.cloud
-    if case.bodies and bool((changed == case.target).all()):
-        clouds = [cloud[body.rows] for body in case.bodies]
-    else:
-        clouds = [cloud[changed]]
-    return [appearance.looks_as_named("looks as named", query.text.lower(), encoder, clouds, case.before)]
+    whole = case.bodies and bool((changed == case.target).all())
+    return _seen(case, [cloud[b.rows] for b in case.bodies] if whole else [cloud[changed]])
+
+
+def _seen(case: Case, clouds: Sequence[GaussianCloud]) -> list[Check]:
+    """The encoder finds these things to be what the words of the target name; empty if they name no kind of thing.
+
+    It only reports where the scene was embedded by another encoder, or looks like nothing that ours was trained on.
+    """
+    query, encoder = case.op.query(), appearance.embedded()
+    if query is None or not appearance.is_looked_for(query, encoder):
+        return []
+    seen = appearance.looks_as_named("looks as named", query.text.lower(), encoder, clouds, case.before)
+    if not appearance.is_judge_of(encoder, case.before):
+        seen = report(seen.name, seen.value, seen.unit, seen.sentence)
+    return [seen]
 
 
 def _delete(case: Case, op: Delete) -> Found:
@@ -370,11 +381,8 @@ def _duplicate(case: Case, op: Duplicate) -> Found:
         if op.direction is None:
             checks += _placed(case, op.place, rows, case.bodies[0].label)
             checks += _as_high(case, rows) if op.place is None else []
-    query, encoder = op.target, appearance.embedded()
-    if appearance.is_looked_for(query, encoder) and case.added:
-        clouds = [case.after.cloud[rows] for rows in case.added]
-        checks.append(appearance.looks_as_named("looks as named", query.text.lower(), encoder, clouds, case.after))
-    return checks, _NO_IDS
+    copies = [case.after.cloud[rows] for rows in case.added]
+    return [*checks, *(_seen(case, copies) if copies else [])], _NO_IDS
 
 
 def _as_high(case: Case, rows: Tensor) -> list[Check]:

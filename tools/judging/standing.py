@@ -17,17 +17,20 @@ from ...gaussians.world import kinds, relations
 from ...gaussians.world.box import Box
 from ...gaussians.world.relation_geometry import HOLDS, Stand, object_stand, viewer_stand
 from ..operation import Placement
-from ..placement.bodies import Array, front_of
+from ..placement.bodies import Array, contact_box, front_of
 from ..placement.occupancy import obstacle_points, points_inside
 from ..placement.place import WALL_WORDS
 from ..placement.surroundings import FLOOR_WORDS
 from ..receipt import Check, at_least, at_most, report
 from .case import Case
 
-_FEW = 8  # solid points; fewer are floaters
+_FEET = 0.05  # of its height: the lowest part of a thing, on which it stands
+_AIR = 4.0  # centimetres between a thing and what carries it: cushions are soft, and boxes miss thin feet
+_AT_WALL = 8.0  # centimetres between a thing that hangs and what it hangs on: brackets and frames
+_SURFACE = 0.02  # share of the points under a thing that must be at its underside
+_FEW = (2, 7)  # least and most number of such points that do not count: stray ones
 _RELATED = 0.5 * HOLDS  # score from which an asked relation is accepted: boxes measured twice differ a little
-_INSIDE = 0.03  # share of a thing's points that others may have within it
-_HOLDS_SAMPLES = 20_000  # solid points of the surroundings to which the distance is measured
+_INSIDE = 0.01  # share of a thing's points that others may have within it
 
 
 def stands(case: Case, rows: Tensor, label: str) -> Check:
@@ -44,15 +47,16 @@ def stands(case: Case, rows: Tensor, label: str) -> Check:
     hangs = known is not None and known.support in ("wall", "ceiling")
     gap = _nearest(points, others) if hangs else _gap_below(case, points, box, others)
     reach = max(box.size)
-    bound = max(3 * case.cm(reach), 0.04 * box.size[2]) if not hangs else 8 * case.cm(reach)
+    bound = _AT_WALL * case.cm(reach) if hangs else max(_AIR * case.cm(reach), _FEET * box.size[2])
     said = f"{gap:.3g} units lie between it and what carries it"
     return at_most("carried", gap, bound, "units", said)
 
 
 def _others(case: Case, rows: Tensor) -> NDArray[np.float32]:
-    """Solid points of everything else after the edit."""
+    """Solid points of everything that the edit left where it was."""
     own = torch.zeros(len(case.after.cloud), dtype=torch.bool, device=case.after.cloud.device)
     own[rows] = True
+    own[case.now((case.free & case.changes.any).nonzero().squeeze(1))] = True  # what stands on it went along
     return obstacle_points(case.after.cloud, own)
 
 
@@ -71,18 +75,19 @@ def _nearest(points: Array, others: NDArray[np.float32]) -> float:
 def _gap_below(case: Case, points: Array, box: Box, others: NDArray[np.float32]) -> float:
     """Distance between a thing's underside and the nearest surface under its footprint, above it or below."""
     up = case.after.frame.up_vector
-    low = float(np.quantile(points @ up, 0.002))
-    heights = others[box.covers(others)] @ up.astype(np.float32)
-    levels = [case.after.frame.floor] if case.after.frame.floor is not None else []
-    slack = 0.02 * max(box.size)
-    step = max(case.cm(max(box.size)), 1e-6)
-    below = np.sort(heights[heights < low + max(0.25 * box.size[2], slack)])
-    if len(below) >= _FEW:
-        # The highest level that has several points: a single stray point carries nothing.
-        counts, edges = np.histogram(below, bins=np.arange(below[0] - step, below[-1] + 2 * step, step))
-        full = edges[:-1][counts >= _FEW]
-        levels += [float(level) + step / 2 for level in full]
-    return min((abs(low - level) for level in levels), default=math.inf)
+    own = points @ up
+    low = float(np.quantile(own, 0.002))
+    # What carries it is under its feet, not under an arm that reaches out.
+    feet = points[own < low + max(_FEET * box.size[2], 2 * case.cm(max(box.size)))]
+    base = contact_box(feet, case.after.frame, box.axes)
+    heights = others[base.covers(others)] @ up.astype(np.float32)
+    slack = max(0.25 * box.size[2], 0.02 * max(box.size))
+    gaps = np.sort(np.abs(heights[heights < low + slack] - low))
+    # Several points make a surface: a single stray one carries nothing. A cushion is touched by a part of it only.
+    enough = int(np.clip(_SURFACE * len(gaps), *_FEW))
+    gap = float(gaps[enough]) if len(gaps) > enough else math.inf
+    floor = case.after.frame.floor
+    return gap if floor is None else min(gap, abs(low - floor))
 
 
 def free_of_others(case: Case, rows: Tensor) -> Check:
@@ -91,7 +96,7 @@ def free_of_others(case: Case, rows: Tensor) -> Check:
     box = case.box_after(rows)
     clear = min(max(0.15 * box.size[2], 1e-9), 4 * case.cm(max(box.size)))
     inside = points_inside(points, _others(case, rows), box, clear)
-    bound = max(_INSIDE * len(points), 5.0)
+    bound = max(_INSIDE * len(points), 3.0)
     return at_most("free of others", inside, bound, "Gaussians", f"{inside} points of other things are inside it")
 
 
