@@ -83,10 +83,12 @@ def test_a_clean_edit_passes_and_no_report_of_it_is_read(corner: Scene, context:
     assert corner.cloud.digest() == digests
 
 
-@pytest.mark.parametrize("data", [d for d in CLEAN if d["op"] != "select"], ids=lambda d: f"{d['op']} {sorted(d)}")
+# A selection changes nothing, and a thing may already face what it is turned to.
+CHANGING = [d for d in CLEAN if d["op"] != "select" and not (d["op"] == "rotate" and "toward" in d)]
+
+
+@pytest.mark.parametrize("data", CHANGING, ids=lambda d: f"{d['op']} {sorted(d)}")
 def test_nothing_changed_is_caught(corner: Scene, context: Context, data: Json) -> None:
-    if data["op"] == "rotate" and "toward" in data:
-        pytest.skip("a thing may face already what it is turned to")
     assert not judge(corner, corner, data, context).passed
 
 
