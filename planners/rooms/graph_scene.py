@@ -123,10 +123,11 @@ class Stage:
         field = self.scene.language
         assert field is not None
         hung = {n.id for n in self.graph.nodes if n.support == "wall"}
-        rows = tuple(replace(g, box=self._inward(g.box)) if self.ids[g.id] in hung else g for g in field.groups)
+        rows = tuple(replace(g, box=self.inward(g.box)) if self.ids[g.id] in hung else g for g in field.groups)
         return replace(self.scene, language=LanguageField(rows, field.embeddings, field.encoder))
 
-    def _inward(self, box: Box) -> Box:
+    def inward(self, box: Box) -> Box:
+        """The box of what hangs on a wall, moved to where furniture stands before that wall."""
         x, y, z = box.center
         width, depth, _ = self.graph.room.size
         gaps = {(1, 0): x + width / 2, (-1, 0): width / 2 - x, (0, 1): y + depth / 2, (0, -1): depth / 2 - y}

@@ -7,6 +7,11 @@
 {d:dimension}  Dimension: "wide", "height"   {m:more}    More: "taller", "less wide"
 {s:superlative} Superlative: "tallest", "second largest"
 {a:amount}     Amount: "more than one", "at least two", "four"
+{a:spot}       Spot: a thing, its middle or edge, or a person
+{r:relation}   name of a relation: "on top of"
+{d:side}       Side: "on my left", "at two o'clock"
+{o:way}        name of a relation of one side word: "left"
+{z:zone}       a place of the room, as said: "the far left corner"; {w:shell} walls, floor or ceiling
 {w:words}      any words
 """
 
@@ -19,7 +24,7 @@ from ....gaussians.world import relations
 from ....gaussians.world.lengths import IN_METRES, METRES, UNITS, in_metres
 from ....gaussians.world.words import singular
 from ...grammar.vocabulary import quantities
-from . import noun_phrase
+from . import noun_phrase, relation_phrases, room_phrases, side_phrases, spots
 from .colors import color
 from .measures import Unit, amount, dimension, more, superlative
 from .phrase_templates import HoleReader, Words
@@ -106,4 +111,10 @@ READERS: Mapping[str, HoleReader] = {
     "amount": amount,
     "columns": columns,
     "words": free,
+    "spot": spots.spot,
+    "relation": relation_phrases.relation,
+    "side": side_phrases.side,
+    "way": side_phrases.way,
+    "zone": room_phrases.zone,
+    "shell": room_phrases.shell,
 }

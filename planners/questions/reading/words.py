@@ -92,7 +92,8 @@ _THEM = r"(?:it|there|they|he|she|that|we|i|you)"
 _TAGS = re.compile(
     rf"(?: , {_AUX} {_THEM}(?: not)?|(?: ,)? {_AUX} not {_THEM}|(?: ,)? (?:yes|yeah|correct|true or false|yes or no)|"
     r" , (?:right|no)|"
-    r"(?<! my)(?<! the)(?<! your)(?<! or)(?<! to)(?<! its)(?<! hand)(?<! left)(?<! far)(?<! a)(?<! on) right)$"
+    r"(?<! my)(?<! the)(?<! your)(?<! or)(?<! to)(?<! its)(?<! hand)(?<! left)(?<! far)(?<! a)(?<! on)(?<! 's)"
+    r"(?<! own) right)$"
 )
 _HEDGES = re.compile(
     r"\b(?:roughly|approximately|approx|exactly|precisely|actually|currently|basically|really|just|kind of|sort of|"

@@ -1,0 +1,250 @@
+"""Where a thing is, at which wall or corner, and what is there: "where is the lamp?", "what is in the corner?"."""
+
+from __future__ import annotations
+
+import re
+
+from ..answer import Answer, Evidence
+from ..candidates import agreed, is_plural, meant, whole
+from ..kind import Asked, Kind
+from ..reading.noun_phrase import is_anything
+from ..reading.phrase_templates import templates
+from ..relating import related, supporter
+from ..room_places import AT_WALL, corner_of, gap_to, in_corner, named_in, wall_of, walls, zone
+from ..survey import Survey, Thing, listed
+from ..views import middle
+
+_ROOM = "(the room|this room|the place|here)"
+_WHERE = f"""
+    (where|whereabouts) [exactly] BE {{x}} [located|placed|standing|hanging|kept|at|to be \
+        found|found|situated|positioned|in {_ROOM}]
+    (where|whereabouts) (can|could|would|do|will|might|should) (i|we|you|one) (find|see|look for|get|spot|put my \
+        hands on) {{x}} [in {_ROOM}]
+    (where|whereabouts) (do|does|did) {{x}} (stand|sit|hang|lie|go|live|belong)
+    [what is|give me|tell me] [the] (location|position|whereabouts|place) of {{x}} [in {_ROOM}]
+    (where|whereabouts) in {_ROOM} (is|are) {{x}} [located|placed|standing]
+    (where|whereabouts) (have|did) (i|you|we|they) (put|leave|left|place|hang|keep) {{x}}
+    (in|at) (what|which) (part|area|place|spot|location|end|region) of {_ROOM} BE {{x}} [located|standing|found]
+    (what|which) (part|area|end|region) of {_ROOM} BE {{x}} [in|at|located in]
+    how (do|can|would) i find {{x}}
+    (find|locate|show me where) {{x}}
+    describe (where|the location of|the position of) {{x}} [is|are]
+    i can not find {{x}} [where is it|where are they]
+    i am looking for {{x}} [where is it|where are they]
+"""
+_WHICH_WALL = """
+    (what|which) wall BE {x} [standing|hanging|up|mounted|placed|leaning|located|attached|fixed|hung|right] \
+        [against|on|at|along|near|nearest|closest|nearest to|closest to|by|up against|next to|to|in]
+    (on|against|at|along|by|in|to) (what|which) wall (is|are|does|do) {x} [standing|hanging|mounted|placed|hang|\
+        stand|hung|located|lean|leaning|attached|fixed]
+    (what|which) wall (do|does) {x} (stand|hang|lean|sit|lie) (against|on|at|along|by|in)
+    (what|which) wall (has|have|holds|carries) {x} [on it|against it|in it]
+    (what|which) wall BE [the] (closest|nearest) [one] to {x}
+    (what|which) of the [four] walls (is|are) {x} [on|against|at|near]
+"""
+_ZONE = f"""
+    (which|what) side of {_ROOM} BE {{x}} [standing|located|placed|hanging] [on|in|at] [left or [the] right|is it \
+        left or right|the left or the right]
+    on (which|what) side of {_ROOM} BE {{x}} [standing|located|placed|hanging] [left or [the] right|the left or \
+        the right]
+    on (which|what) side of {_ROOM} (do|does) {{x}} (stand|hang|lie|sit)
+    BE {{x}} (on|in|at|to) the left or [(on|in|at|to)] [the] right [side|half|hand side] [of {_ROOM}]
+    BE {{x}} (at|in|near|toward|towards) the (front|back) or [(at|in|near)] [the] (back|front) [of {_ROOM}]
+"""
+_IN_ZONE = """
+    BE {x} [both|all|standing|located|placed|hanging|more|somewhere] (in|at|on|to|near|towards|toward|along|\
+        against|up against|by) {z:zone}
+    (do|does) {x} [both|all] (stand|sit|lie|hang|lean) (in|at|on|near|along|against|up against|by) {z:zone}
+    (is|are) there {x} [standing|hanging|lying] (in|at|on|near|along|against|by) {z:zone}
+    (do|can) (we|you|i) (have|see) {x} (in|at|on|near|along|against|by) {z:zone}
+"""
+_WHAT_ZONE = """
+    (what|which things|what things|what objects|which objects|what furniture|which thing|which object|what \
+        thing|what object) [(is|are|stands|stand|sits|hangs|lies|is there|are there|can i see|do i see|do you \
+        see)] [standing|located|placed|hanging|there|to be found] (in|at|on|near|along|against|to|by) {z:zone}
+    (what|which) {x} (is|are|stands|stand|hangs) [standing|located|placed|hanging] \
+        (in|at|on|near|along|against|to) {z:zone}
+    (list|name|describe) (everything|all things|the things|what is|all the things|all objects|the furniture|all \
+        the furniture) [that is|that are|standing] (in|at|on|near|along|against) {z:zone}
+    (which|what) {x} (is|are) in the corner
+    how many {x} (are|is|stand|hang) [there] [standing|hanging] (in|at|on|near|along|against) {z:zone}
+"""
+_NEAR = 1.2  # metres: farther things are not told as neighbours
+
+
+def _where(asked: Asked, survey: Survey) -> Answer | None:
+    query = asked.slots["x"]
+    if is_anything(query) and not query.relations:
+        return None
+    things = survey.some(query) if is_plural(query) else meant(query, survey)
+    if query.pick == "any":
+        things = survey.all_of(query) or things
+    if len(things) == 1:
+        return _located(things[0], survey)
+    told = [(t, *_place(t, survey)) for t in things]
+    text = " ".join(f"{_cap(survey.named(t))} is {place}{', ' + rest if rest else ''}." for t, place, rest in told[:8])
+    same = len({place for _, place, _ in told}) == 1
+    answer = told[0][1] if same else "; ".join(f"{survey.named(t)} {place}" for t, place, _ in told[:8])
+    return Answer(answer=answer, answer_type="text", text=text[:4000], frame="viewer", confidence=0.85,
+                  evidence=Evidence(ids=tuple(t.id for t in things)))  # fmt: skip
+
+
+def _located(thing: Thing, survey: Survey) -> Answer:
+    place, rest = _place(thing, survey)
+    on = supporter(thing, survey) if thing.node is not None else "floor"
+    ids = (thing.id,) if isinstance(on, str) else (thing.id, on.id)
+    text = f"{_cap(survey.named(thing))} is {place}{', ' + rest if rest else ''}."
+    return Answer(
+        answer=place, answer_type="text", text=text, frame="viewer", confidence=0.9, evidence=Evidence(ids=ids)
+    )
+
+
+def _place(thing: Thing, survey: Survey) -> tuple[str, str]:
+    """Where a thing is in a few words, and more of it."""
+    assert thing.node is not None
+    on = supporter(thing, survey)
+    if not isinstance(on, str):
+        inside = thing.group.box.center[2] < on.group.box.center[2] + on.group.box.size[2] / 2
+        return f"{'in' if inside else 'on'} {survey.named(on)}", _side(thing, survey)
+    if on == "wall":
+        below = [t for t in related("under", (thing,), survey) if t.node is not None and t.node.support == "floor"]
+        more = f"above {survey.named(below[0])}" if below else _beside(thing, survey)
+        return f"on the {wall_of(thing, survey)[0].name} wall", more
+    if on == "ceiling":
+        under = [t for t in related("under", (thing,), survey) if t.node is not None]
+        return "on the ceiling", f"over {survey.named(under[0])}" if under else _side(thing, survey)
+    return _on_floor(thing, survey)
+
+
+def _on_floor(thing: Thing, survey: Survey) -> tuple[str, str]:
+    beside = _beside(thing, survey)
+    if in_corner(thing, survey):
+        one, other, _ = corner_of(thing, survey)
+        return f"in the {one.name} {other.name} corner", beside
+    wall, gap = wall_of(thing, survey)
+    if gap <= AT_WALL:
+        return f"at the {wall.name} wall", beside
+    return _side(thing, survey), beside
+
+
+def _beside(thing: Thing, survey: Survey) -> str:
+    near = [t for t in related("next_to", (thing,), survey) if survey.gap(t, thing) <= _NEAR]
+    return f"next to {survey.named(near[0])}" if near else ""
+
+
+def _side(thing: Thing, survey: Survey) -> str:
+    deep, wide = zone(thing, survey)
+    if deep and wide:
+        return f"at the {deep} on the {wide} of the room"
+    if deep:
+        return f"at the {deep} of the room"
+    return f"on the {wide} side of the room" if wide else "in the middle of the room"
+
+
+def _which_wall(asked: Asked, survey: Survey) -> Answer | None:
+    things = meant(asked.slots["x"], survey)
+
+    def one(thing: Thing) -> Answer:
+        wall, gap = wall_of(thing, survey)
+        near = "at" if gap <= AT_WALL else f"{gap:.2f} m from"
+        text = f"{_cap(survey.named(thing))} is {near} the {wall.name} wall as you look into the room."
+        return Answer(answer=f"{wall.name} wall", answer_type="label", text=text, frame="viewer",
+                      confidence=0.93 if gap <= AT_WALL else 0.8, evidence=Evidence(ids=(thing.id,)))  # fmt: skip
+
+    return agreed([(survey.named(t), one(t)) for t in things])
+
+
+def _which_zone(asked: Asked, survey: Survey) -> Answer | None:
+    deep = bool(re.search(r"\b(?:front|back)\b", asked.text.lower().replace("from the front", "")))
+    lateral = bool(re.search(r"\b(?:left|right)\b", asked.text.lower()))
+    things = meant(asked.slots["x"], survey)
+    back, _, _, right = walls(survey)
+
+    def one(thing: Thing) -> Answer:
+        wide, far = float(middle(thing) @ right.out) / right.reach, float(middle(thing) @ back.out) / back.reach
+        along = far if deep and not lateral else wide
+        if not deep and not lateral and abs(far) > abs(wide):
+            along, names = far, ("back", "front")
+        else:
+            names = ("back", "front") if deep and not lateral else ("right", "left")
+        label = names[0] if along > 0 else names[1]
+        text = f"{_cap(survey.named(thing))} is on the {label} side of the room as you look into it."
+        return Answer(answer=label, answer_type="label", text=text, frame="viewer",
+                      confidence=round(0.6 + 0.37 * min(abs(along) / 0.2, 1.0), 3),
+                      evidence=Evidence(ids=(thing.id,)))  # fmt: skip
+
+    return agreed([(survey.named(t), one(t)) for t in things])
+
+
+def _in(thing: Thing, said: str, survey: Survey) -> tuple[bool, float]:
+    """Whether a thing is in a place of the room, and how sure that is."""
+    names = named_in(said)
+    if "corner" in said:
+        one, other, gap = corner_of(thing, survey)
+        mine = {one.name, other.name}
+        return gap <= 0.8 and set(names) <= mine, 0.93 if abs(gap - 0.8) > 0.3 else 0.75
+    if "wall" in said:
+        wall, gap = wall_of(thing, survey)
+        others = [w for w in walls(survey) if w.name in names] or [wall]
+        least = min(gap_to(w, thing) for w in others)
+        return least <= AT_WALL, 0.93 if abs(least - AT_WALL) > 0.15 else 0.75
+    back, _, _, right = walls(survey)
+    wide, far = float(middle(thing) @ right.out) / right.reach, float(middle(thing) @ back.out) / back.reach
+    if re.search(r"\b(?:middle|cent(?:er|re))\b", said):
+        off = max(abs(wide), abs(far))
+        return off <= 0.4, 0.9 if abs(off - 0.4) > 0.15 else 0.7
+    along = {"right": wide, "left": -wide, "back": far, "front": -far}
+    least = min((along[n] for n in names), default=-1.0)
+    return least > 0, round(0.6 + 0.33 * min(abs(least) / 0.2, 1.0), 3)
+
+
+def _in_zone(asked: Asked, survey: Survey) -> Answer | None:
+    query, said = asked.slots["x"], str(asked.slots["z"])
+    exists = query.pick == "any" or bool(re.search(r"\bthere\b|\b(?:have|see)\b", asked.text.lower()))
+    things = survey.things if is_anything(query) else survey.all_of(query) if exists else meant(query, survey)
+    if not things:
+        return None
+
+    def one(thing: Thing) -> Answer:
+        yes, sure = _in(thing, said, survey)
+        place, rest = _place(thing, survey)
+        text = f"{'Yes' if yes else 'No'}, {survey.named(thing)} is {place}{', ' + rest if rest else ''}."
+        return Answer(answer="yes" if yes else "no", answer_type="yesno", text=text, frame="viewer", confidence=sure,
+                      evidence=Evidence(ids=(thing.id,)))  # fmt: skip
+
+    cases = [(survey.named(t), one(t)) for t in things]
+    if exists or is_anything(query):
+        return whole(cases, "any")
+    return whole(cases, "all") if is_plural(query) else agreed(cases)
+
+
+def _what_in_zone(asked: Asked, survey: Survey) -> Answer | None:
+    query, text = asked.slots.get("x"), asked.text.lower()
+    said = str(asked.slots.get("z", "the corner"))
+    wanted = None if query is None or is_anything(query) else {t.row for t in survey.all_of(query)}
+    found = [t for t in survey.things if (wanted is None or t.row in wanted) and _in(t, said, survey)[0]]
+    found = [t for t in found if (t.node is not None and t.node.support != "ceiling") or "ceiling" in said]
+    if "corner" in said:
+        found.sort(key=lambda t: corner_of(t, survey)[2])
+    names = [survey.named(t) for t in found]
+    sentence = f"{_cap(listed(names))} {'is' if len(found) <= 1 else 'are'} in {said}." if "the" in said else ""
+    sentence = sentence or f"{_cap(listed(names))}."
+    evidence = Evidence(ids=tuple(t.id for t in found))
+    if re.match(r"\W*how many", text):
+        return Answer(answer=float(len(found)), answer_type="number", text=f"{len(found)}: {listed(names)}.",
+                      frame="viewer", confidence=0.85, evidence=evidence)  # fmt: skip
+    return Answer(answer=tuple(t.name for t in found), answer_type="list", text=sentence, frame="viewer",
+                  confidence=0.85, evidence=evidence)  # fmt: skip
+
+
+def _cap(said: str) -> str:
+    return said[:1].upper() + said[1:]
+
+
+KINDS = (
+    Kind("which_wall", templates(_WHICH_WALL), _which_wall),
+    Kind("room_side", templates(_ZONE), _which_zone),
+    Kind("in_place", templates(_IN_ZONE), _in_zone),
+    Kind("what_in_place", templates(_WHAT_ZONE), _what_in_zone),
+    Kind("where", templates(_WHERE), _where),
+)

@@ -1,0 +1,43 @@
+"""Reads phrases of the table of relations: "on top of", "underneath", "to the left of"."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+
+from ....gaussians.world import relations
+from .phrase_templates import Words
+
+_VERBS = re.compile(
+    r"^(?:standing|stood|sitting|sat|lying|laid|placed|put|hanging|hung|mounted|resting|leaning|located|positioned|"
+    r"situated|kept|stored|set|stacked|parked|fixed|attached|found|arranged|"
+    r"directly|right|immediately|just|straight|partly|anywhere|somewhere|over|up|down|out|perched|tucked|propped) "
+)
+_LEFT_OUT = {"next", "onto", "on to", "into", "around by", "to the top of"}
+
+
+def relation(words: Words) -> str | None:
+    """The name of the relation that all the words say, adverbs and verbs of place apart; None if they say none."""
+    said = " ".join(words)
+    for _ in range(4):
+        if said in _phrases():
+            return _phrases()[said]
+        shorter = _VERBS.sub("", said)
+        if shorter == said:
+            return None
+        said = shorter
+    return None
+
+
+@cache
+def _phrases() -> dict[str, str]:
+    """Every phrase said before one anchor, with the name of a relation that boxes decide."""
+    found: dict[str, str] = {}
+    for kind in relations.KINDS:
+        name = kind.name if kind.used("query") else kind.query_as
+        if not name or name == "between" or relations.named(name).score is None:
+            continue
+        for phrase in (*kind.phrases.in_commands(), *kind.phrases.in_descriptions()):
+            if phrase not in _LEFT_OUT:
+                found.setdefault(phrase, name)
+    return found

@@ -1,0 +1,106 @@
+"""Places of the room: its four walls and corners as the viewer sees them, and which of them a thing is at."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...gaussians.world.support import FIXED
+from .survey import Survey, Thing
+from .views import View, middle
+
+F64 = NDArray[np.float64]
+
+AT_WALL = 0.3  # metres of gap up to which a thing stands at a wall
+IN_CORNER = 0.8  # metres of gap to both walls up to which a thing is in their corner
+NAMES = ("back", "front", "left", "right")
+_THIRD = 1.0 / 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class Wall:
+    """A wall of the room.
+
+    Attributes:
+        name: as the viewer sees it: "back", "front", "left" or "right".
+        out: `[2]` unit vector from the middle of the room to it.
+        reach: metres from the middle of the room to it.
+    """
+
+    name: str
+    out: F64
+    reach: float
+
+
+def walls(survey: Survey, view: View | None = None) -> tuple[Wall, ...]:
+    """The four walls, named as a view sees them; the viewer's own if none is given."""
+    forward = survey.stand.forward[:2] if view is None else view.forward
+    right = np.array([forward[1], -forward[0]])
+    width, depth, _ = survey.graph.room.size
+    outs = [(np.array([1.0, 0.0]), width / 2), (np.array([-1.0, 0.0]), width / 2),
+            (np.array([0.0, 1.0]), depth / 2), (np.array([0.0, -1.0]), depth / 2)]  # fmt: skip
+    ways = {"back": forward, "front": -forward, "left": -right, "right": right}
+    found: list[Wall] = []
+    for name in NAMES:
+        out, reach = max(outs, key=lambda o: float(o[0] @ ways[name]))
+        outs = [o for o in outs if o[0] is not out]
+        found.append(Wall(name, out, reach))
+    return tuple(found)
+
+
+def gap_to(wall: Wall, thing: Thing) -> float:
+    """Metres between a thing and a wall; negative where it reaches into the wall."""
+    box = thing.group.box
+    return wall.reach - float(middle(thing) @ wall.out) - box.extent(np.array([*wall.out, 0.0])) / 2
+
+
+def wall_of(thing: Thing, survey: Survey, view: View | None = None) -> tuple[Wall, float]:
+    """The wall that a thing is at: of one that hangs on a wall the one along its width, of others the nearest."""
+    every = walls(survey, view)
+    gaps = [(gap_to(w, thing), i) for i, w in enumerate(every)]
+    best = min(gaps)[0]
+    close = [i for gap, i in gaps if gap <= best + FIXED]
+    if len(close) > 1 and thing.node is not None:
+        back = -np.array(thing.node.yaw_box.front)
+        close.sort(key=lambda i: -abs(float(every[i].out @ back)))
+    return every[close[0]], gaps[close[0]][0]
+
+
+def corner_of(thing: Thing, survey: Survey) -> tuple[Wall, Wall, float]:
+    """The corner that a thing is nearest to, as its two walls, back or front first, and the larger gap to them."""
+    back, front, left, right = walls(survey)
+    one = min((back, front), key=lambda w: gap_to(w, thing))
+    other = min((left, right), key=lambda w: gap_to(w, thing))
+    return one, other, max(gap_to(one, thing), gap_to(other, thing))
+
+
+def in_corner(thing: Thing, survey: Survey) -> bool:
+    """Whether a thing is in a corner of the room."""
+    return corner_of(thing, survey)[2] <= IN_CORNER
+
+
+def zone(thing: Thing, survey: Survey) -> tuple[str, str]:
+    """The part of the room: "back", "front" or "", and "left", "right" or "", "" being the middle third."""
+    back, _, _, right = walls(survey)
+    place = middle(thing)
+    deep, wide = float(place @ back.out) / back.reach, float(place @ right.out) / right.reach
+    return (
+        "back" if deep > _THIRD else "front" if deep < -_THIRD else "",
+        "right" if wide > _THIRD else "left" if wide < -_THIRD else "",
+    )
+
+
+_SAID = {
+    "back": "back far rear opposite end", "front": "front near nearest nearer closest viewer 's close",
+    "left": "left left-hand leftmost", "right": "right right-hand rightmost",
+}  # fmt: skip
+_WORDS = {word: name for name, words in _SAID.items() for word in words.split()}
+
+
+def named_in(said: str) -> tuple[str, ...]:
+    """The walls that words name, "far left" being back and left."""
+    words = re.findall(r"[a-z'-]+", said.lower())
+    return tuple(dict.fromkeys(_WORDS[w] for w in words if w in _WORDS))
