@@ -61,6 +61,7 @@ def _words(draw: random.Random) -> Iterator[Call]:
     yield from (("answer", {"answer": value}) for value in draw.sample(VALUES, 20))
     yield from (("select", {"target": text, "picture": True}) for text in TEXTS)
     yield from (("ask", {"question": value, "picture": True}) for value in VALUES)
+    yield from (("find_view", {"view": value, "marks": True}) for value in VALUES)
 
 
 def _pictures(draw: random.Random) -> Iterator[Call]:

@@ -13,7 +13,10 @@ from .limits import Arguments, Text
 from .reply import MAX_SIDE, Reply, png
 from .tool import READS, Desk, Tool, tool
 
+Side = Annotated[int, Field(ge=32, le=MAX_SIDE, strict=True)]
+
 _VIEWER = ("", "viewer")
+_EVIDENCE = (768, 512)  # pixels
 _MOST_VIOLATIONS = 100
 
 
@@ -22,10 +25,10 @@ class RenderArguments(Arguments):
 
     camera: Annotated[str, Field(max_length=200)] = "viewer"
     """"viewer" (whose left and right are meant), "auto", a camera of the scene by name or number, or eye and target in
-    world coordinates as "x,y,z:x,y,z"."""
-    width: Annotated[int, Field(ge=32, le=MAX_SIDE, strict=True)] = 768
+    world coordinates as "x,y,z:x,y,z", with ":angle" for the vertical field of view in degrees."""
+    width: Side = 768
     """Pixels."""
-    height: Annotated[int, Field(ge=32, le=MAX_SIDE, strict=True)] | None = None
+    height: Side | None = None
     """Pixels; by default as the camera's own aspect wants."""
 
 
@@ -36,13 +39,26 @@ class GraphArguments(Arguments):
     """At most so many things, the largest first."""
 
 
+class FindViewArguments(Arguments):
+    """Arguments of `find_view`."""
+
+    view: Text
+    """The view in words: "the guitar from behind", "what one sees sitting on the sofa", "the room from above"."""
+    width: Side = 768
+    """Pixels."""
+    height: Side = 512
+    """Pixels."""
+    marks: Annotated[bool, Field(strict=True)] = False
+    """Outline the things and write their names on them."""
+
+
 class AskArguments(Arguments):
     """Arguments of `ask`."""
 
     question: Text
     """A question in words: "how far is the sofa from the window?", "what is on the desk?"."""
     picture: Annotated[bool, Field(strict=True)] = False
-    """Also return a picture in which what the answer is about is highlighted."""
+    """Also return a picture of what the answer rests on: things outlined and named, distances and routes as lines."""
 
 
 class NoArguments(Arguments):
@@ -66,17 +82,41 @@ def _render(desk: Desk, said: RenderArguments) -> Reply:
     return Reply(f"the scene from {name}, {camera.width}x{camera.height} pixels", data, (drawn,))
 
 
+def _find_view(desk: Desk, said: FindViewArguments) -> Reply:
+    """Find the camera that shows what the words say, and return its picture; `view` in the result can be given to
+    `render`. A thing's front, left and right are its own where its shape shows them, else the viewer's."""
+    from ..pictures.evidence import name_marks
+    from ..pictures.marked_views import draw_view
+    from ..pictures.marks import draw_marks
+    from ..pictures.named_cameras import view_text
+    from ..session.find_view import find_view
+
+    session = desk.session
+    found = find_view(session, said.view, (said.width, said.height))
+    camera = found.view.camera
+    drawing = draw_view(session.scene, camera, found.groups, found.view.cut)
+    image = drawing.image
+    if said.marks:
+        image = draw_marks(image, drawing.labels, name_marks(session.scene, found.groups))[0]
+    shares = dict(zip(found.groups, (round(share, 4) for share in found.shares), strict=True))
+    data = {
+        "verdict": "ok", "view": view_text(camera), "width": camera.width, "height": camera.height,
+        "things": [{"group": group, "share": share} for group, share in shares.items()],
+        "left_out": sorted(found.view.cut.groups), "notes": list(found.notes),
+    }  # fmt: skip
+    return Reply("\n".join([f"{said.view}: camera {data['view']}", *found.notes]), data, (png(image),))
+
+
 def _ask(desk: Desk, said: AskArguments) -> Reply:
     """Answer a question about the scene: what is there, how many, how large, how far, where, what fits, which way. The
     scene is not changed; "it" then means what the answer is about. An answer of null says that nothing here tells."""
-    from ..pictures.scene_pictures import spotlight
+    from ..pictures.evidence import evidence_picture
 
     session = desk.session
     answer = session.ask(said.question)
-    about = session.last if answer.evidence.ids else None
     pictures: tuple[bytes, ...] = ()
-    if said.picture and about is not None:
-        pictures = (png(spotlight(session.scene, views.sized(session.viewer, views.WIDTH), about)),)
+    if said.picture and (answer.evidence.ids or answer.evidence.lines):
+        pictures = (png(evidence_picture(session.scene, answer, size=_EVIDENCE, viewer=session.viewer)),)
     return Reply(answer.text, {"verdict": "ok", **answer.to_json()}, pictures)
 
 
@@ -110,6 +150,7 @@ def looking_tools() -> list[Tool]:
     """The tools of this module."""
     return [
         tool("render", RenderArguments, READS, _render, needs_field=False),
+        tool("find_view", FindViewArguments, READS, _find_view),
         tool("ask", AskArguments, READS, _ask),
         tool("graph", GraphArguments, READS, _graph),
         tool("check", NoArguments, READS, _check),

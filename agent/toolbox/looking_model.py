@@ -27,14 +27,19 @@ from .toolbox import Toolbox
 
 LOOKS = 6  # calls of tools for one answer
 _TOLD = 1500  # characters of a result
-_ARGUMENTS = {"select": "target", "ask": "question", "render": "camera"}  # what `words` is of each tool
+_ARGUMENTS = {
+    "select": "target",
+    "ask": "question",
+    "render": "camera",
+    "find_view": "view",
+}  # what `words` is of each tool
 _NO_MORE = "\n\nYou cannot look any more: answer now."
 
 
 class Look(Arguments):
     """A call of a tool by the model."""
 
-    tool: Literal["select", "ask", "check", "render"]
+    tool: Literal["select", "ask", "check", "render", "find_view"]
     words: Annotated[str, Field(max_length=400)] = ""
 
 

@@ -173,6 +173,15 @@ def test_render_gives_a_picture_of_the_size_that_is_told(toolbox: Toolbox, camer
     assert len(image.convert("RGB").getcolors(10_000) or []) > 10
 
 
+def test_a_view_in_words_is_found_drawn_and_can_be_rendered_again(toolbox: Toolbox) -> None:
+    found = toolbox.call("find_view", {"view": "the green thing", "width": 120, "height": 80, "marks": True})
+    assert found.data["things"][0]["group"] == 1 and found.data["things"][0]["share"] > 0.02
+    assert len(found.pictures) == 1
+    assert not toolbox.call("render", {"camera": found.data["view"], "width": 120}).failed
+    assert toolbox.call("find_view", {"view": "the red thing"}).data["verdict"] == "ambiguous"
+    assert toolbox.call("find_view", {"view": "the teapot"}).failed
+
+
 def test_a_tall_camera_gives_no_larger_picture_than_allowed(toolbox: Toolbox) -> None:
     camera = toolbox.session.viewer
     toolbox.session.viewer = replace(camera, width=16, height=4096)
