@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -64,6 +63,14 @@ Budget = Annotated[
         help="Limits for models: seconds per instruction, dollars per session, views, tokens: '20s,0.05usd,8views'.",
     ),
 ]  # fmt: skip
+Vlm = Annotated[
+    str,
+    typer.Option(
+        "--vlm", metavar="NAME",
+        help="Vision model for what geometry cannot answer or find: 'openai:MODEL[@URL]', 'anthropic:MODEL', "
+        "'google:MODEL', 'transformers:FOLDER', or 'auto' (the one that SCENEWRIGHT_VLM names).",
+    ),
+]  # fmt: skip
 Picture = Annotated[
     bool, typer.Option("--picture", help="Send the viewer's picture to a language model that takes pictures.")
 ]
@@ -87,25 +94,4 @@ Up = Annotated[str | None, typer.Option("--up", metavar="X,Y,Z", help="Up direct
 Scale = Annotated[
     float | None, typer.Option("--metres-per-unit", metavar="M", help="Scale of the scene, if its file has none.")
 ]
-JUDGE = "built-in"  # what --judge alone means
-Judge = Annotated[
-    str | None,
-    typer.Option(
-        "--judge", metavar="[NAME]",
-        help="Judge each edit from the scenes before and after it, repair it if possible, else take it back.",
-    ),
-]  # fmt: skip
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Random seed; the same seed gives the same bytes.")]
-
-
-def with_values(arguments: Sequence[str]) -> list[str]:
-    """The arguments with the value of a `--judge` that stands alone; what follows it is then no value of it."""
-    from .session.judge import JUDGES
-
-    given = list(arguments)
-    for k, word in enumerate(given):
-        if word == "--":
-            break
-        if word == "--judge" and given[k + 1 : k + 2] not in ([[j] for j in (*JUDGES, "off")]):
-            given[k] = f"--judge={JUDGE}"
-    return given

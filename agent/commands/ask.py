@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import Batch, Debug, Encoder, Json, View
+from ..options import Batch, Budget, Debug, Encoder, Force, Json, View, Vlm
 from ..terminal.output import read_batch, terminal
 
 if TYPE_CHECKING:
@@ -27,20 +27,41 @@ def command(
     graph: Annotated[
         Path | None, typer.Option("--graph", metavar="ROOM.json", help="A scene graph to ask instead of a scene.")
     ] = None,
+    picture: Annotated[
+        Path | None,
+        typer.Option("--picture", metavar="OUT.png", help="Draw the evidence: things outlined, distances as lines."),
+    ] = None,
+    vlm: Vlm = "auto",
+    budget: Budget = None,
     encoder: Encoder = "auto",
     view: View = "auto",
+    force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
     """Answer a question about a scene: what is there, how many, how large, how far, where, what fits, which way.
 
-    Geometry answers what boxes, colours and relations decide. What nothing decides is said. With --json the answer is
+    Geometry answers what boxes, colours and relations decide, and a vision model, if one is named, what pictures show.
+    What nobody can tell is said. With --json the answer is
     {"answer", "answer_type", "text", "confidence", "source", "evidence", "frame", "unit"}.
     """
+    from ...gaussians.errors import UserError
+    from ..output_files import refuse_existing
+    from ..session.opening import SessionOptions, open_session
+    from ..session.plan_report import format_usage
+
     given = arguments or []
     scene, text = _scene_and_text(given, batch is not None, graph is not None)
+    if picture is not None and (graph is not None or batch is not None):
+        raise UserError("--picture draws the evidence of one question in a scene; leave out --graph and --batch")
+    if picture is not None:
+        refuse_existing([picture], force)
     rows = read_batch(str(batch)) if batch else [{"text": text}]
-    session = _session(scene, encoder, view) if scene is not None else None
+    session = (
+        open_session(SessionOptions(scene, "grammar", encoder, view, budget=budget, vlm=vlm))[0]
+        if scene is not None
+        else None
+    )
     ask = _of_session(session) if session is not None else _of_graph(graph)
     for row in rows:
         if batch is not None:
@@ -48,6 +69,10 @@ def command(
             continue
         found = ask(row["text"], None)
         terminal.result(found.text, found.to_json())
+        if found.usage is not None:
+            terminal.say(format_usage(found.usage))
+        if picture is not None and session is not None:
+            _draw(session, found, picture, force)
         if found.confidence == 0.0:
             raise typer.Exit(3)
 
@@ -64,12 +89,6 @@ def _scene_and_text(given: list[str], batch: bool, graph: bool) -> tuple[Path | 
         )
     scene = None if graph else Path(given[0])
     return scene, "" if batch else given[-1]
-
-
-def _session(path: Path, encoder: str, view: str) -> Session:
-    from ..session.opening import SessionOptions, open_session
-
-    return open_session(SessionOptions(path, planner="grammar", encoder=encoder, view=view))[0]
 
 
 def _of_session(session: Session) -> Ask:
@@ -110,3 +129,11 @@ def _one_of_batch(ask: Ask, row: dict[str, Any]) -> dict[str, Any]:
         return ask(row["text"], row.get("context")).to_json()
     except UserError as error:
         return Answer(answer=None, answer_type="text", text=str(error), confidence=0.0, source="none").to_json()
+
+
+def _draw(session: Session, answer: Answer, target: Path, force: bool) -> None:
+    """Write the picture of the evidence."""
+    from ..pictures.evidence import evidence_picture
+    from ..pictures.image_files import save_png
+
+    save_png(evidence_picture(session.scene, answer, viewer=session.viewer), target, force)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from ..options import Budget, Debug, Encoder, Json, Judge, Log, Picture, Planner, Scale, SceneFile, Seed, Up, View
+from ..options import Budget, Debug, Encoder, Json, Log, Picture, Planner, Scale, SceneFile, Seed, Up, View, Vlm
 from ..terminal.output import terminal
 
 
 def command(
     scene: SceneFile,
     planner: Planner = "auto",
+    vlm: Vlm = "auto",
     budget: Budget = None,
     picture: Picture = False,
-    judge: Judge = None,
     encoder: Encoder = "auto",
     up: Up = None,
     metres_per_unit: Scale = None,
@@ -21,14 +21,14 @@ def command(
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Edit a scene interactively: instructions in words, /help lists commands. --json: one JSON object per line."""
+    """Edit and question a scene interactively, in words; /help lists commands. --json: one JSON object per line."""
     from ..session.opening import SessionOptions, open_session
     from ..terminal.chat import Chat
 
     session, _ = open_session(
         SessionOptions(
             scene, planner, encoder, view, log=log, seed=seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
-            picture=picture, judge=judge,
+            picture=picture, vlm=vlm,
         )
     )  # fmt: skip
     try:

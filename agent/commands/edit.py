@@ -17,7 +17,6 @@ from ..options import (
     Encoder,
     Force,
     Json,
-    Judge,
     Log,
     Output,
     Picture,
@@ -28,6 +27,7 @@ from ..options import (
     Size,
     Up,
     View,
+    Vlm,
 )
 from ..terminal.output import error_json, terminal
 
@@ -65,9 +65,9 @@ def command(
     view: View = "auto",
     size: Size = None,
     planner: Planner = "auto",
+    vlm: Vlm = "auto",
     budget: Budget = None,
     picture: Picture = False,
-    judge: Judge = None,
     encoder: Encoder = "auto",
     seed: Seed = 0,
     force: Force = False,
@@ -90,7 +90,7 @@ def command(
     seconds: dict[str, float] = {}
     options = SessionOptions(
         scene, planner, encoder, view, size, None if dry_run else log, seed, True, up, metres_per_unit, budget, picture,
-        judge,
+        vlm,
     )  # fmt: skip
     with timed(seconds, "open"):
         session, had_field = open_session(options)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import Batch, Debug, Encoder, Force, Json, Planner, SceneFile, View
+from ..options import Batch, Debug, Encoder, Force, Json, Planner, SceneFile, View, Vlm
 from ..terminal.output import read_batch, terminal
 
 if TYPE_CHECKING:
@@ -44,6 +44,7 @@ def command(
     batch: Batch = None,
     encoder: Encoder = "auto",
     planner: Planner = "auto",
+    vlm: Vlm = "auto",
     view: View = "auto",
     force: Force = False,
     as_json: Json = False,
@@ -62,7 +63,7 @@ def command(
     if ids is not None and batch is not None:
         make_folder(ids)
     changes = SelectionChanges(_steps(grow, shrink, invert), explain)
-    session, _ = open_session(SessionOptions(scene, planner, encoder, view))
+    session, _ = open_session(SessionOptions(scene, planner, encoder, view, vlm=vlm))
     if batch is None:
         _one(session, str(text), changes, targets[0], force)
         return

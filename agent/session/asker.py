@@ -10,7 +10,9 @@ if TYPE_CHECKING:
     from ...gaussians.language.encoders import Encoder
     from ...gaussians.language.query.selection import Selection
     from ...gaussians.scene import Scene
+    from ...planners.questions.answer import Answer
     from ...planners.questions.survey import Survey
+    from .vision_client import VisionClient
 
 
 @dataclass
@@ -32,3 +34,25 @@ class Asker:
         if self._survey is None or not all(a is b for a, b in zip(self._of, of, strict=True)):
             self._survey, self._of = Survey.of_scene(scene, viewer, encoder), of
         return self._survey.in_scene(scene, viewer, encoder, last)
+
+
+def see_answer(
+    text: str, measured: Answer, survey: Survey, scene: Scene, viewer: Camera, vision: VisionClient
+) -> Answer:
+    """What a vision model answers from pictures where geometry has no answer.
+
+    A model that cannot be asked leaves geometry's answer, with the reason in its text.
+    """
+    from ...gaussians.errors import BackendError
+    from ...planners.vision.answering import Terms, ask_about
+    from ...planners.vision.facts import Facts
+    from .looker import SceneLooker
+
+    groups = tuple(id for id in measured.evidence.ids if isinstance(id, int))
+    wanted = measured.answer_type if measured.answer_type != "text" else None
+    try:
+        terms = Terms(wanted, groups, ledger=vision.ledger, progress=vision.progress)
+        return ask_about(text, Facts(survey.graph), SceneLooker(scene, viewer), vision.backend, terms)
+    except BackendError as error:
+        told = f"{measured.text} The vision model was no help: {error}"
+        return measured.model_copy(update={"text": told[:4000], "usage": getattr(error, "usage", None)})

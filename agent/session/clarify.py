@@ -80,6 +80,11 @@ def plan_with_answer(question: Question, answer: str, parse: Callable[[str], Que
             "'all', or a description such as 'the left one'"
         )
     _require_choice(question, chosen, answer)
+    return plan_with_query(question, chosen)
+
+
+def plan_with_query(question: Question, chosen: Query) -> EditPlan:
+    """The plan of a question with another query in place of the one that failed."""
     ops: list[EditOp] = list(question.plan.ops)
     ops[question.step] = exchange(ops[question.step], question.path, chosen)
     return question.plan.model_copy(update={"ops": tuple(ops)})

@@ -12,7 +12,7 @@ from ...gaussians.errors import UserError
 from ...gaussians.language.query.query import Query
 
 if TYPE_CHECKING:
-    from ...planners.budget import Budget, Progress
+    from ...planners.budget import Budget, Ledger, Progress
     from ...planners.plan import EditPlan, Observation, Planner, Usage
 
 _STEPS: tuple[tuple[Literal["undo", "redo"], re.Pattern[str]], ...] = (
@@ -85,6 +85,11 @@ class PlannerClient:
     def spent(self) -> Usage | None:
         """Usage of language models in this session; None if no model was asked."""
         return self._ledger.spent
+
+    @property
+    def ledger(self) -> Ledger:
+        """The budget of the session and what it has spent on models."""
+        return self._ledger
 
     @property
     def budget(self) -> Budget:

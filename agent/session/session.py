@@ -20,26 +20,29 @@ from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ...gaussians.timing import timed
 from . import log as session_log
-from .asker import Asker
-from .clarify import Question, plan_with_answer
+from .asker import Asker, see_answer
+from .clarify import Question, plan_with_answer, plan_with_query
 from .history import History, State
-from .judge import known_judge
 from .observation import graph_of, picture_of
 from .plan_runner import PlanFailed, has_queries, run_plan
 from .planner_client import PlannerClient, undo_or_redo
 from .refusal import refusal, with_message
 from .replay import Replayed, logged_edits
 from .result import Result
+from .sight import needs_sight, point_out, with_source
+from .vision_client import VisionClient
 
 if TYPE_CHECKING:
     from ...gaussians.language.encoders import Encoder
     from ...gaussians.language.query.explain import Explanation
     from ...planners.budget import Budget
+    from ...planners.model.backend import ModelBackend
     from ...planners.plan import EditPlan, Planner, Usage
     from ...planners.questions.answer import Answer
     from ...planners.questions.survey import Survey
     from ...planners.rooms.graph import SceneGraph
     from ...tools.operation import Context
+    from .naming import Named
 
 P = ParamSpec("P")
 Progress = Callable[[str, float], None]  # stage in words, share done in [0, 1]
@@ -62,17 +65,16 @@ class Session:
         budget: what language models may cost: "20s" for each instruction, "0.05usd" for the whole session, or both,
             "20s,0.05usd". When it is used up, "auto" goes on without a model, and says so.
         pictures: send the viewer's picture to models that take pictures.
-        judge: "built-in": after each operation measure from the scenes, and ask the embedded encoder, whether what was
-            asked for happened and nothing else; repair it at most twice, else take it back. None: do not judge.
+        vlm: a vision model for what geometry does not answer and words do not find: a name that `planners.model.load`
+            takes, a back end, "auto" for the one that `SCENEWRIGHT_VLM` names, or None.
 
     Attributes:
         question: the open question: an ambiguous query with its candidates, or an absent one with the nearest things;
             None if there is none.
         pixel_checks: also compare the viewer's picture before and after each operation.
-        judge: who judges edits, or None.
 
     Raises:
-        UserError: no such planner or judge, or the budget cannot be parsed.
+        UserError: no such planner, or the budget cannot be parsed.
         BackendError: a package, key or file that the planner needs is missing.
         FileError: the log cannot be opened.
     """
@@ -90,17 +92,18 @@ class Session:
         pixel_checks: bool = False,
         budget: str | Budget | None = None,
         pictures: bool = False,
-        judge: str | None = None,
+        vlm: str | ModelBackend | None = "auto",
     ) -> None:
         self._progress = progress or (lambda stage, fraction: None)
         # The planner comes first, so that an unknown name creates no log file.
         self._planner = PlannerClient(planner, self, budget, pictures, self._progress)
+        self._vision = VisionClient(vlm, self._planner.ledger, self._progress)
         self._encoder = encoder
         self._asker = Asker()
+        self._pointed: dict[str, Query] = {}
         self._viewer = viewer
         self._seed = seed
         self.pixel_checks = pixel_checks
-        self.judge = known_judge(judge)
         self.question: Question | None = None
         self._history = History(State(scene))
         self._log = session_log.SessionLog(log) if log is not None else None
@@ -212,7 +215,7 @@ class Session:
             ImpossibleError: understood, but there is no operation for it. (An InstructionError.)
             AbsentError: a thing that is named is not there. `question` holds the nearest things.
             AmbiguousError: several things match. `question` holds them; `answer` chooses among them.
-            CheckFailedError: an operation failed its own check, or the judge, and everything was rolled back.
+            CheckFailedError: an operation failed its own check and everything was rolled back.
             InstructionError: it cannot be done as said.
             BackendError: a language model that was chosen as the only planner gave no plan.
         """
@@ -277,7 +280,10 @@ class Session:
         """
         query = self._planner.query(phrase)
         self.embed()
-        found = self._context(self.last).resolve(self.scene, query)
+        found = replace(self._context(self.last).resolve(self.scene, query), query=query)
+        if self._vision and needs_sight(found):
+            seen, told = self._by_sight(found)
+            found = with_source(self._context(None).resolve(self.scene, seen) if seen is not None else found, told)
         if found.verdict == "found":
             self._history.amend(replace(self._history.present, last=found))
         return found
@@ -329,21 +335,41 @@ class Session:
     def ask(self, text: str) -> Answer:
         """The answer to a question about the scene; "it" then refers to what the answer is about.
 
-        Geometry answers what boxes, colours and relations decide. A question that it cannot answer has the answer None,
-        and the text says why. The scene does not change, but may become embedded.
+        Geometry answers what boxes, colours and relations decide; a vision model, if there is one, what pictures show.
+        A question that nobody can answer has the answer None, and the text says why. The scene does not change, but may
+        become embedded.
 
         Raises:
             UserError: the question is too long, or the scene is larger than a graph may be.
         """
-        from ...planners.questions.asking import answer
+        from ...planners.questions.asking import route
         from ...planners.questions.topic import topic
 
         survey = self.survey()
-        given = answer(text, survey)
+        reading = route(text, survey)
+        given = reading.answer
+        if self._vision and reading.sight:
+            given = see_answer(text, given, survey, self.scene, self.viewer, self._vision)
         if groups := tuple(id for id in topic(given, survey) if isinstance(id, int)):
             found = self._context(None).resolve(self.scene, Query(groups=groups[:256]))
             self._history.amend(replace(self._history.present, last=found))
         return given
+
+    def name_all(self, *, overwrite: bool = False) -> Named:
+        """Let the vision model name all things, from a few pictures; the language field keeps the names. No edit.
+
+        Args:
+            overwrite: take its name for things with a sure name too.
+
+        Raises:
+            UserError: there is no vision model.
+            BackendError: it cannot be asked, or gave no usable reply.
+        """
+        from .naming import name_all
+
+        named = name_all(self.embed(), self.viewer, self._vision, overwrite=overwrite)
+        self._history.amend(replace(self._history.present, scene=named.scene))
+        return named
 
     def is_question(self, text: str) -> bool:
         """Whether a text is a question rather than an instruction; an order in polite words is an instruction."""
@@ -451,11 +477,37 @@ class Session:
         before = self._history.present
         with timed(seconds, "edit"):
             try:
-                judged = self.judge is not None
-                state, receipts = run_plan(plan, before, self._context, dry_run=dry_run, judged=judged)
+                state, receipts = run_plan(plan, before, self._context, dry_run=dry_run)
             except PlanFailed as failure:
                 self.question = failure.question
-                raise failure.error from failure.__cause__
+                if not self._vision or failure.question is None or not needs_sight(failure.question.selection):
+                    raise failure.error from failure.__cause__
+                settled = self._settled(failure, failure.question)
+                return self._carry_out(settled, seconds, dry_run=dry_run)
         viewer, last = self.viewer, state.last
         result = Result(plan.instruction, plan, receipts, before.scene, state.scene, viewer, last, seconds, dry_run)
         return result, state
+
+    def _settled(self, failure: PlanFailed, question: Question) -> EditPlan:
+        """The failed plan with what a vision model points at in place of the query that failed.
+
+        Raises:
+            ScenewrightError: the error of the plan, if nothing is pointed at.
+        """
+        seen, told = self._by_sight(question.selection)
+        if seen is None:
+            raise with_message(failure.error, f"{failure.error}; {told}") from failure.__cause__
+        plan = plan_with_query(question, seen)
+        return plan.model_copy(update={"reason": "; ".join(filter(None, [plan.reason, told]))[:2000]})
+
+    def _by_sight(self, selection: Selection) -> tuple[Query | None, str]:
+        """The query for what a vision model points at, None if at nothing, and a sentence about it. The scene's field
+        keeps the name, and the session the phrase, so that the model is asked once."""
+        phrase = selection.query.describe()
+        if phrase in self._pointed:
+            return self._pointed[phrase], "as pointed out before"
+        seen = point_out(self.scene, selection, self.viewer, self._vision)
+        if seen.query is not None:
+            self._pointed[phrase] = seen.query
+            self._history.amend(replace(self._history.present, scene=seen.scene))
+        return seen.query, seen.told
