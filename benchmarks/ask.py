@@ -12,7 +12,7 @@ from statistics import fmean
 
 from ..gaussians.language import encoders
 from . import _ask
-from ._ask import generated, speed, written
+from ._ask import generated, routing, speed, stability, views, written
 from ._ask.question import Judged
 from ._ask.rooms import Known
 from ._select.cases import Part
@@ -27,6 +27,8 @@ class Plan:
         rooms, questions: seeds of furnished rooms and the number of questions over them.
         graphs, graph_seed, graph_questions: the same of composed graphs, with seeds from `graph_seed` on.
         detail: factor on the number of Gaussians of furnished rooms.
+        steady, steady_graphs: furnished rooms and number of graphs whose viewer, sides, masks and floaters change.
+        watched: furnished rooms of which views are chosen.
     """
 
     rooms: tuple[int, ...]
@@ -35,10 +37,15 @@ class Plan:
     graph_seed: int
     graph_questions: int
     detail: float = 1.0
+    steady: tuple[int, ...] = ()
+    steady_graphs: int = 0
+    watched: tuple[int, ...] = ()
 
 
-FULL = Plan(tuple(range(7801, 7821)), 600, 24, 7830, 300)
-QUICK = Plan((7801,), 60, 6, 7830, 60, 0.4)
+FULL = Plan(
+    tuple(range(7801, 7821)), 600, 24, 7830, 300, steady=(7821, 7822, 7823), steady_graphs=6, watched=(7824, 7825, 7826)
+)
+QUICK = Plan((7801,), 60, 6, 7830, 60, 0.4, steady_graphs=1, watched=(7824,))
 
 
 def run(quick: bool = False) -> Result:
@@ -52,6 +59,14 @@ def run(quick: bool = False) -> Result:
         Part(tuple(generated.metrics(in_rooms, "gaussians")), (_point(in_rooms, "rooms of Gaussians", known, True),)),
         Part(tuple(generated.metrics(on_graphs, "graphs")), (_point(on_graphs, "scene graphs", graphs, False),)),
         _written(),
+        Part(
+            (
+                *stability.of_graphs(plan.steady_graphs, plan.graph_seed),
+                *stability.in_rooms(plan.steady, encoder, plan.detail),
+            )
+        ),
+        routing.measure(quick),
+        views.measure(plan.watched, encoder, plan.detail, quick),
         Part(tuple(speed.measure(known[0], encoder, plan.detail, quick))),
     ]
     return Result(
@@ -60,7 +75,7 @@ def run(quick: bool = False) -> Result:
         metrics=tuple(m for part in parts for m in part.metrics),
         points=tuple(p for part in parts for p in part.points),
         notes=(*_ask.NOTES, *(n for part in parts for n in part.notes)),
-        seeds=(*plan.rooms, *range(plan.graph_seed, plan.graph_seed + plan.graphs)),
+        seeds=(*plan.rooms, *plan.steady, *plan.watched, *range(plan.graph_seed, plan.graph_seed + plan.graphs)),
     )
 
 
