@@ -1,6 +1,6 @@
 """A grid of the walkable floor, updated with each added or removed thing: which things can a person still walk up to?
 
-The cells are those of `planners.rooms.reachability`, so that this test and the checker's give the same result.
+The cells are those of `planners.rooms.floor_grid`, so that this test and the checker's give the same result.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from scipy import ndimage
 
 from ...gaussians.world.box import YawBox
 from ...gaussians.world.person import ARM, HEADROOM, SHOULDERS, STEP
-from ..rooms.reachability import CELL
+from ..rooms.floor_grid import CELL
 from .lattice import EPSILON
 
 _MAX_CELLS = 400  # cells along a side; the cells of larger halls grow

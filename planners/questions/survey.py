@@ -23,6 +23,7 @@ from ...gaussians.world.support import SHELL
 from ...gaussians.world.words import plural
 from ..rooms.graph import SceneGraph
 from ..rooms.graph_scene import Id, Stage
+from .floor.floor_map import FloorMap
 from .naming import named
 from .picking import picked
 from .reading import families
@@ -253,6 +254,11 @@ class Survey:
     @staticmethod
     def _is_shell(things: Iterable[Thing]) -> bool:
         return all(t.label in SHELL for t in things)
+
+    @cached_property
+    def floor(self) -> FloorMap:
+        """The floor of the room, with where one can walk."""
+        return FloorMap.of(self.graph)
 
     # -- geometry ---------------------------------------------------------------------------------------------------
 

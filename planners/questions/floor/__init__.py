@@ -1,1 +1,1 @@
-"""The free floor of a room: where people can walk, what fits, and what is in the way."""
+"""The free floor of a room: where people can walk, by which way, and what would still fit."""

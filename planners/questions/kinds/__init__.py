@@ -7,11 +7,15 @@ from . import (
     distance,
     existence,
     facing,
+    free_floor,
+    hazards,
     identity,
     listing,
     nearest,
     order,
     placed,
+    room,
+    routes,
     sides,
     size,
     superlative,
@@ -19,6 +23,10 @@ from . import (
 )
 
 KINDS = (
+    *room.KINDS,
+    *free_floor.KINDS,
+    *hazards.KINDS,
+    *routes.KINDS,
     *order.KINDS,
     *distance.KINDS,
     *nearest.KINDS,

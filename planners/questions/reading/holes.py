@@ -24,7 +24,7 @@ from ....gaussians.world import relations
 from ....gaussians.world.lengths import IN_METRES, METRES, UNITS, in_metres
 from ....gaussians.world.words import singular
 from ...grammar.vocabulary import quantities
-from . import noun_phrase, relation_phrases, room_phrases, side_phrases, spots
+from . import ends, item, noun_phrase, relation_phrases, room_phrases, side_phrases, spans, spots
 from .colors import color
 from .measures import Unit, amount, dimension, more, superlative
 from .phrase_templates import HoleReader, Words
@@ -117,4 +117,15 @@ READERS: Mapping[str, HoleReader] = {
     "way": side_phrases.way,
     "zone": room_phrases.zone,
     "shell": room_phrases.shell,
+    "length_unit": spans.unit,
+    "area_unit": spans.area_unit,
+    "volume_unit": spans.volume_unit,
+    "area": spans.area,
+    "span": spans.length,
+    "extent": spans.dimension,
+    "lesser_extent": spans.lesser,
+    "room": spans.room,
+    "end": ends.end,
+    "walker": ends.walker,
+    "item": item.read_item,
 }
