@@ -1,4 +1,4 @@
-"""A grid over the floor of a room, and how far each of its cells is from walls and from things that people walk around."""
+"""A grid over the floor of a room, and how far its cells are from walls and from things that people walk around."""
 
 from __future__ import annotations
 

@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 
 from ....gaussians.world.relation_geometry import Stand
-from ..answer import Answer, Line
-from ..candidates import Case, agreed, meant
+from ..answer import Answer, Evidence, Line
+from ..candidates import meant
 from ..reading.ends import Place
 from ..reading.situation import Situation
 from ..survey import NotResolved, Survey, Thing, listed
@@ -18,7 +18,6 @@ from .routes import End, Point2, Route, to_node, to_point
 
 NEAR = 0.8  # metres from a leg: things that it passes by
 _STRAIGHT, _SHARP = 25.0, 120.0  # degrees between legs: less is straight on, more is a sharp turn
-_WALL_DEPTH = 0.05
 
 
 class Spot:
@@ -90,8 +89,6 @@ def all_pairs(starts: Sequence[Spot], goals: Sequence[Spot]) -> list[tuple[str, 
 
 def absent(error: NotResolved, survey: Survey) -> Answer:
     """The "no" of a yes/no question about a thing that is not there."""
-    from ..answer import Evidence
-
     near = [survey.named(t) for t in error.found.near]
     told = f" The nearest to that: {listed(near)}." if near else ""
     said = error.query.describe().removeprefix("the ").removeprefix("every ").removeprefix("any ")
@@ -108,7 +105,7 @@ def lines(found: Route) -> tuple[Line, ...]:
 
 
 def directions(found: Route, start: Spot, goal: Spot, survey: Survey) -> str:
-    """A way in words, with the walls as the viewer names them: "walk 1.8 m toward the back wall, past the sofa; ..."."""
+    """A way in words, with the walls as the viewer names them: "walk 1.8 m toward the back wall; then ..."."""
     if found.length < 0.3:
         return f"{goal.words} is right beside {start.words}."
     told: list[str] = []
@@ -168,8 +165,3 @@ def _passed(a: Point2, b: Point2, survey: Survey, apart: set[int | str]) -> list
         if gap <= NEAR:
             found.append((gap, survey.named(thing)))
     return [name for _, name in sorted(found)[:2]]
-
-
-def agreed_or_first(cases: Sequence[Case]) -> Answer:
-    """`agreed`, which needs at least one case."""
-    return agreed(list(cases))

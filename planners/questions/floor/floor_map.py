@@ -48,6 +48,7 @@ class FloorMap:
     cell: float
     clear: F64
     _areas: dict[float, NDArray[np.int32]] = field(default_factory=dict)
+    _beside: dict[tuple[int | str, float], Cells] = field(default_factory=dict)
 
     @classmethod
     def of(cls, graph: SceneGraph) -> Self:
@@ -62,7 +63,7 @@ class FloorMap:
 
     def walkable(self, width: float = SHOULDERS) -> Flags:
         """`[X, Y]` cells on which a disc of this width touches nothing; right to half a cell in width."""
-        return self.clear >= width / 2 - self.cell / 4
+        return self.clear >= width / 2 - self.cell / 4 - 1e-6
 
     def areas(self, width: float = SHOULDERS) -> NDArray[np.int32]:
         """`[X, Y]` number of the connected walkable area of each cell, 0 where one cannot stand."""
@@ -82,19 +83,35 @@ class FloorMap:
         return {int(sizes.argmax())} if sizes.any() else set()
 
     def beside(self, node: Node, width: float = SHOULDERS, door: bool = False) -> Cells:
-        """Cells from which one is at a thing, the nearest first: within arm's reach, none if there is no such cell.
+        """Cells from which a disc is at a thing, the nearest first; none if there is no such cell.
 
-        Where one can step up to the thing, only the cells next to it count.
+        A person is within arm's reach, or next to the thing where that is possible. A wider disc covers a place where a
+        person would be.
         """
+        key = (node.id, round(width, 4))
+        if key not in self._beside:
+            self._beside[key] = self._cells_beside(node, width, door)
+        return self._beside[key]
+
+    def _cells_beside(self, node: Node, width: float, door: bool) -> Cells:
+        if width > SHOULDERS + self.cell / 2:
+            person = self.beside(node, SHOULDERS, door)
+            away = np.ones(self.clear.shape, dtype=bool)
+            away[tuple(person.T)] = False
+            if away.all():
+                return person
+            gap = ndimage.distance_transform_edt(away) * self.cell
+            cells = np.argwhere((gap <= width / 2) & self.walkable(width))
+            return np.asarray(cells[np.argsort(gap[tuple(cells.T)], kind="stable")])
         box = self.base(node).yaw_box
         arm = (SHOULDERS if door else width / 2) + ARM
         x, y = window_of(self.base(node), self.xs, self.ys, arm)
         gap = box.distance_to(self.xs[x][:, None], self.ys[y][None, :])
-        near = np.argwhere((gap <= arm) & self.walkable(width)[x, y])
+        near = np.argwhere((gap <= arm + 1e-6) & self.walkable(width)[x, y])
         if not len(near):
             return near
         gaps = gap[tuple(near.T)]
-        close = gaps <= max(width / 2 + 0.1, float(gaps.min()) + self.cell)
+        close = gaps <= max(width / 2 + 0.1, float(gaps.min()) + self.cell) + 1e-6
         order = np.argsort(gaps[close], kind="stable")
         return np.asarray(near[close][order] + (x.start, y.start))
 
@@ -149,10 +166,7 @@ class FloorMap:
         """Square metres of floor on which things stand; rugs and openings do not count."""
         width, depth, _ = self.graph.room.size
         cell = max(_FINE, max(width, depth) / _MOST_FINE)
-        xs, ys = (
-            (np.arange(n) + 0.5) * (side / n) - side / 2
-            for side, n in ((s, max(round(s / cell), 1)) for s in (width, depth))
-        )
+        xs, ys = (_middles(side, cell) for side in (width, depth))
         taken = np.zeros((len(xs), len(ys)), dtype=bool)
         for node in filter(covers_floor, self.graph.nodes):
             x, y = window_of(node, xs, ys, 0.0)
@@ -169,6 +183,12 @@ class FloorMap:
         """The middle (x, y) and the radius of the largest disc of floor without obstacles, metres."""
         i, j = np.unravel_index(int(self.clear.argmax()), self.clear.shape)
         return float(self.xs[i]), float(self.ys[j]), float(self.clear[i, j])
+
+
+def _middles(side: float, cell: float) -> F64:
+    """Middles of the cells of about this size that divide a side of the room."""
+    n = max(round(side / cell), 1)
+    return np.asarray((np.arange(n) + 0.5) * (side / n) - side / 2, dtype=np.float64)
 
 
 def covers_floor(node: Node) -> bool:

@@ -1,7 +1,7 @@
 """Shortest ways over a floor as a few straight legs, and the narrowest place between two things.
 
-Dijkstra's algorithm on the walkable cells finds the way (8 neighbours); then each leg is drawn to the farthest cell that
-is in a straight walkable line from its start (string pulling).
+Dijkstra's algorithm on the walkable cells finds the way (16 neighbours); then each leg is drawn to the farthest cell
+that is in a straight walkable line from its start (string pulling).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from .floor_map import Cells, FloorMap
 
 Point2 = tuple[float, float]
 End = Callable[[float], Cells]  # the cells where a way for a disc of some width begins or ends
-_STEPS = ((1, 0), (0, 1), (1, 1), (1, -1))
+_STEPS = ((1, 0), (0, 1), (1, 1), (1, -1), (2, 1), (1, 2), (2, -1), (1, -2))
 _DETOUR = 1.15  # a comfortably wide way is taken if it is at most this much longer than the shortest
 _CROSSING = 30.0  # cost of a metre through obstacles, so that as few as possible are crossed
 _WIDEST = 3.0  # metres: passages are not told apart beyond
@@ -66,7 +66,7 @@ def route(floor: FloorMap, start: End, goal: End, width: float = SHOULDERS) -> R
     found = _shortest(floor, start(width), goal(width), width)
     if found is None or width >= WALKWAY:
         return found
-    wide = _shortest(floor, start(WALKWAY), goal(WALKWAY), WALKWAY)
+    wide = _shortest(floor, start(width), goal(width), WALKWAY)
     return wide if wide is not None and wide.length <= _DETOUR * found.length else found
 
 
@@ -191,7 +191,7 @@ def _along(floor: FloorMap, a: tuple[int, int], b: tuple[int, int]) -> NDArray[n
 
 
 def _seen(floor: FloorMap, a: tuple[int, int], b: tuple[int, int], width: float) -> bool:
-    return bool((_along(floor, a, b) >= width / 2 - floor.cell / 4).all())
+    return bool((_along(floor, a, b) >= width / 2 - floor.cell / 4 - 1e-6).all())
 
 
 def _least(floor: FloorMap, legs: list[tuple[int, int]]) -> float:

@@ -6,19 +6,32 @@ from ..answer import Answer, Evidence, Line
 from ..candidates import agreed, meant
 from ..floor.floor_map import covers_floor
 from ..kind import Asked, Kind
-from ..reading.spans import SQUARE, answer_of, told
 from ..reading.phrase_templates import templates
+from ..reading.spans import SQUARE, answer_of, told
 from ..survey import Survey, Thing, listed
 
 CROWDED, SPACIOUS = 0.45, 0.3  # shares of covered floor from which a room is called crowded, and up to which spacious
 
 _A = "[in {a:area_unit}|measured in {a:area_unit}]"
-_FREE = "(free|empty|open|clear|unoccupied|uncovered|available|unused|vacant|bare|usable|walkable|left over|left|left free|not taken up|not covered|not occupied|still free|spare)"
+_FREE = (
+    "(free|empty|open|clear|unoccupied|uncovered|available|unused|vacant|bare|usable|walkable|left over|left|"
+    "left free|not taken up|not covered|not occupied|still free|spare)"
+)
 _TAKEN = "(covered|taken|taken up|occupied|used|used up|blocked|full|filled|in use|not free|covered up)"
-_BY = "[by (furniture|things|objects|stuff|the furniture|anything|any furniture|all the furniture|the things in it|something)|with (furniture|things|objects|stuff)]"
+_BY = (
+    "[by (furniture|things|objects|stuff|the furniture|anything|any furniture|all the furniture|the things in "
+    "it|something)|with (furniture|things|objects|stuff)]"
+)
 _ACTUALLY = "[actually|still|really|currently]"
-_THAT = "[that is|i e|ie|meaning|so|in other words|that is to say] [not (taken up|covered|occupied|taken|used) by (furniture|things|anything|objects|any furniture|the furniture|something)|without (furniture|things) on it|with nothing on it]"
-_IN = "[in the room|in here|here|in total|altogether|overall|left|left over|available|between the furniture|around the furniture]"
+_THAT = (
+    "[that is|i e|ie|meaning|so|in other words|that is to say] [not (taken up|covered|occupied|taken|used) by "
+    "(furniture|things|anything|objects|any furniture|the furniture|something)|without (furniture|things) on "
+    "it|with nothing on it]"
+)
+_IN = (
+    "[in the room|in here|here|in total|altogether|overall|left|left over|available|between the furniture|"
+    "around the furniture]"
+)
 
 _HOW_FREE = f"""
     how much {_FREE} (floor|floor space|floor area|space|ground|area|room|floor surface) (is there|is left|do we \
@@ -176,8 +189,8 @@ def _share(asked: Asked, survey: Survey, free: bool) -> Answer:
     floor = survey.floor
     value = 100 * (floor.free if free else floor.covered) / max(floor.area, 1e-9)
     text = (
-        f"{value:.0f} % of the floor {'is free' if free else 'is covered'}: {floor.free:.1f} of {floor.area:.1f} m2 are "
-        f"free. Rugs count as free floor."
+        f"{value:.0f} % of the floor {'is free' if free else 'is covered'}: {floor.free:.1f} of {floor.area:.1f} m2 "
+        f"are free. Rugs count as free floor."
     )
     return Answer(answer=round(value, 1), answer_type="number", text=text, confidence=0.9, unit="%",
                   evidence=Evidence(ids=_standing(survey)))  # fmt: skip
@@ -193,7 +206,8 @@ def _mostly(asked: Asked, survey: Survey, free: bool) -> Answer:
     share = (floor.free if free else floor.covered) / max(floor.area, 1e-9)
     bound = asked.slots["q"] / max(floor.area, 1e-9) if "q" in asked.slots else 0.5
     holds = share >= bound
-    text = f"{'Yes' if holds else 'No'}: {floor.free:.1f} m2 of {floor.area:.1f} m2 of floor are free ({100 * floor.free / max(floor.area, 1e-9):.0f} %)."
+    part = 100 * floor.free / max(floor.area, 1e-9)
+    text = f"{'Yes' if holds else 'No'}: {floor.free:.1f} of {floor.area:.1f} m2 of floor are free ({part:.0f} %)."
     return Answer(answer="yes" if holds else "no", answer_type="yesno", text=text,
                   confidence=0.95 if abs(share - bound) > 0.05 else 0.6)  # fmt: skip
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
 from ....gaussians.world.person import HEADROOM, SHOULDERS, STEP
+from ...rooms.floor_grid import is_obstacle
 from ...rooms.node import Node
 from ..answer import Answer, Evidence, Line
 from ..candidates import agreed, meant
@@ -15,8 +17,8 @@ from ..floor import ends
 from ..floor.floor_map import GROUNDED
 from ..floor.routes import in_the_way, is_open, passage, route, to_node, to_point
 from ..kind import Asked, Kind
-from ..reading.spans import METRE, answer_of, told
 from ..reading.phrase_templates import templates
+from ..reading.spans import METRE, answer_of, told
 from ..survey import NotResolved, Survey, Thing, listed
 
 LOW = 0.45  # metres: a thing on the floor that is lower is easily overlooked
@@ -26,18 +28,31 @@ _BEFORE = 0.5  # metres before a door or window that must be free
 
 _TRIP = "(trip|stumble|fall|tumble|trip up|slip)"
 _OVER = "(over|on|across|against|upon)"
-_WHO = "(i|one|you|someone|somebody|we|people|a person|a child|anyone|anybody|a toddler|a visitor|guests|a blind person|an elderly person)"
+_WHO = (
+    "(i|one|you|someone|somebody|we|people|a person|a child|anyone|anybody|a toddler|a visitor|guests|a blind "
+    "person|an elderly person)"
+)
 _COULD = (
     "(could|might|can|may|would|will|am i likely to|are you likely to|is one likely to|is someone likely to|do i risk)"
 )
-_DARK = "[easily|possibly|likely|accidentally] [in the dark|at night|when walking around|walking around|when the lights are off|without the lights on|on the floor|if i am not careful|if the lights are off]"
-_HAZARD = "(trip hazards|tripping hazards|trip hazard|tripping hazard|stumbling hazards|things to trip over|tripping dangers|obstacles on the floor|loose obstacles|stumbling blocks|trip risks)"
+_DARK = (
+    "[easily|possibly|likely|accidentally] [in the dark|at night|when walking around|walking around|when the "
+    "lights are off|without the lights on|on the floor|if i am not careful|if the lights are off]"
+)
+_HAZARD = (
+    "(trip hazards|tripping hazards|trip hazard|tripping hazard|stumbling hazards|things to trip over|tripping "
+    "dangers|obstacles on the floor|loose obstacles|stumbling blocks|trip risks)"
+)
 _ON_WAY = (
-    "(going|walking|when going|when walking|on the way|coming|if i go|if i walk|if i went|if i walked|when i go|when i walk|"
+    "(going|walking|when going|when walking|on the way|coming|if i go|if i walk|if i went|if i walked|when i "
+    "go|when i walk|"
     "if you walk|if you go|on my way|heading|if someone walks|if one walks|on the path|on the route|on a walk)"
 )
 _TO = "(from {a:end} [over|across|straight|directly] to {b:end}|between {a:end} and {b:end})"
-_DOOR_TO = "(coming|walking|going|stepping|heading) [in] through {a:end} [and] (heading|walking|going|on|over|making|crossing) [my way|over|straight] (for|to|toward|towards) {b:end}"
+_DOOR_TO = (
+    "(coming|walking|going|stepping|heading) [in] through {a:end} [and] (heading|walking|going|on|over|making|"
+    "crossing) [my way|over|straight] (for|to|toward|towards) {b:end}"
+)
 
 _WHAT = f"""
     what {_COULD} {_WHO} {_TRIP} {_OVER} {_DARK} [in the room|in here|here]
@@ -278,7 +293,7 @@ def _low_near(a: ends.Spot, b: ends.Spot, survey: Survey) -> list[Thing]:
     if way is None:
         return []
     points = [np.array(p) for p in way.points]
-    return _along(low, list(zip(points, points[1:], strict=False)))
+    return _along(low, list(pairwise(points)))
 
 
 def _middle(spot: ends.Spot) -> tuple[float, float] | None:
@@ -392,7 +407,8 @@ def _narrowest(asked: Asked, survey: Survey) -> Answer:
     width, goal = min(found, key=lambda f: f[0])
     thing = survey.thing(goal.id)
     way = route(floor, door.end, to_node(floor, goal), max(width - floor.cell / 2, 0.05))
-    lines, where = (), ""
+    lines: tuple[Line, ...] = ()
+    where = ""
     ids: tuple[int | str, ...] = (thing.id,)
     if way is not None:
         spot = _tightest(way.points, survey)
@@ -400,14 +416,15 @@ def _narrowest(asked: Asked, survey: Survey) -> Answer:
         ids = (*(n.id for _, n in near), thing.id)
         where = f", by {listed([survey.named(survey.thing(n.id)) for _, n in near])}"
         lines = (Line(start=(spot[0], spot[1], 0.02), end=(spot[0], spot[1], 0.02), label=f"{width:.2f} m"),)
-    text = f"The narrowest passage is about {told(width, unit)} wide: on the way from {door.words} to {survey.named(thing)}{where}."
+    way_words = f"on the way from {door.words} to {survey.named(thing)}{where}"
+    text = f"The narrowest passage is about {told(width, unit)} wide: {way_words}."
     return answer_of(width, unit, text, confidence=0.6, evidence=Evidence(ids=tuple(dict.fromkeys(ids)), lines=lines))
 
 
 def _tightest(points: Sequence[tuple[float, float]], survey: Survey) -> tuple[float, float]:
     """The point of a way with the least clearance."""
     floor, best = survey.floor, (math.inf, points[0])
-    for a, b in zip(points, points[1:], strict=False):
+    for a, b in pairwise(points):
         for t in np.linspace(0, 1, 30):
             x, y = a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])
             i, j = int(np.abs(floor.xs - x).argmin()), int(np.abs(floor.ys - y).argmin())
@@ -452,7 +469,8 @@ def _turns(asked: Asked, survey: Survey) -> Answer:
     width = 1.5 if asked.slots["w"].width >= 0.7 else 2 * asked.slots["w"].width
     x, y, radius = survey.floor.most_open()
     holds = 2 * radius >= width
-    text = f"{'Yes' if holds else 'No'}: the largest free circle is {2 * radius:.2f} m across, and turning takes {width:.2f} m."
+    needs = f"turning takes {width:.2f} m"
+    text = f"{'Yes' if holds else 'No'}: the largest free circle is {2 * radius:.2f} m across, and {needs}."
     lines = (Line(start=(x - radius, y, 0.02), end=(x + radius, y, 0.02), label=f"{2 * radius:.2f} m"),)
     return Answer(answer="yes" if holds else "no", answer_type="yesno", text=text, confidence=0.85,
                   evidence=Evidence(lines=lines))  # fmt: skip
@@ -491,8 +509,12 @@ def _has_loop(thing: Thing, survey: Survey) -> tuple[bool, list[Thing]]:
     island = int(islands[i, j])
     if island != islands[0, 0] and island:
         return True, []
-    near = [t for t in survey.things if t.node is not None and t.row != thing.row and t.node.top > STEP
-            and t.node.bottom < HEADROOM and t.node.support not in (thing.id, "wall") and survey.gap(t, thing) < SHOULDERS]  # fmt: skip
+    near = [
+        t
+        for t in survey.things
+        if t.node is not None and t.row != thing.row and is_obstacle(t.node)
+        and t.node.support not in (thing.id, "wall") and survey.gap(t, thing) < SHOULDERS
+    ]  # fmt: skip
     return False, near[:4]
 
 

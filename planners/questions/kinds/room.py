@@ -7,8 +7,8 @@ import math
 from ....gaussians.world.relation_geometry import Stand
 from ..answer import Answer, Evidence, Line
 from ..kind import Asked, Kind
-from ..reading.spans import CUBE, METRE, SQUARE, Unit, answer_of, told
 from ..reading.phrase_templates import templates
+from ..reading.spans import CUBE, METRE, SQUARE, Unit, answer_of, told
 from ..survey import Survey
 
 # In templates: U is a unit of length, A of area, V of volume at the end of a question; R is the room.
@@ -142,9 +142,10 @@ _LENGTHS = {
     "perimeter": f"""
     (what|how long) BE the (perimeter|circumference) [of {_R}|of the floor] {_U}
     what is {_R} 's perimeter {_U}
-    how long (are|is) (all the walls|all walls|the walls|all four walls) (together|in total|altogether|combined) {_U}
+    how long (are|is) (all the walls|all walls|the walls|all four walls) [together|in total|altogether|combined] {_U}
     what is the total length of the walls {_U}
-    how (much|many {{u:length_unit}} of|many {{u:length_unit}}) (skirting|skirting board|baseboard|trim) (would i need|do i \
+    how (much|many {{u:length_unit}} of|many {{u:length_unit}}) (skirting|skirting board|baseboard|trim) (would \
+        i need|do i \
       need|would we need|do we need|is needed|would be needed) [for {_R}|in the room] {_U}
     [the] perimeter of {_R} {_U}
 """,
@@ -287,7 +288,8 @@ def _length_of(name: str, survey: Survey) -> float:
     }[name]  # fmt: skip
 
 
-_SAID = {"width": "from left to right", "depth": "from front to back", "height": "high", "length": "along its longer side",
+_SAID = {"width": "from left to right", "depth": "from front to back", "height": "high",
+         "length": "along its longer side",
          "shorter": "along its shorter side", "diagonal": "from corner to corner", "perimeter": "around"}  # fmt: skip
 
 

@@ -11,28 +11,39 @@ from ..floor import ends
 from ..floor.routes import Route, in_the_way, is_open, passage, route
 from ..kind import Asked, Kind
 from ..reading.ends import Walker
-from ..reading.spans import METRE, answer_of, told
 from ..reading.phrase_templates import templates
+from ..reading.spans import METRE, answer_of, told
 from ..survey import NotResolved, Survey, listed
 
 PACE, STRIDE = 1.3, 0.7  # metres a second and metres a step of a walking adult
 
-_GO = "(walk|get|go|reach|make it|make my way|pass|cross|stroll|wander|travel|run|step|move|head|come|navigate|roll|drive|be pushed|be wheeled|pass through)"
+_GO = (
+    "(walk|get|go|reach|make it|make my way|pass|cross|stroll|wander|travel|run|step|move|head|come|navigate|"
+    "roll|drive|be pushed|be wheeled|pass through)"
+)
 _EASILY = "[actually|easily|still|freely|comfortably|safely|even|directly|physically|realistically|always]"
 _OVER = (
     "[straight|directly|over|across|all the way|on foot|right|safely|easily|freely|comfortably|unobstructed|unhindered]"
 )
 _END = (
-    "[on foot|without (moving|having to move|having to shift|shifting|having to step over|stepping over|having to climb over|"
-    "climbing over|bumping into|hitting|touching|tripping over|running into|knocking over|squeezing past|squeezing|moving away|"
+    "[on foot|without (moving|having to move|having to shift|shifting|having to step over|stepping over|"
+    "having to climb over|"
+    "climbing over|bumping into|hitting|touching|tripping over|running into|knocking over|squeezing past|"
+    "squeezing|moving away|"
     "having to go around|going around|any obstacles|obstacles|obstruction|difficulty|problems|any trouble|trouble) "
-    "[anything|any furniture|any of the furniture|furniture|something|things|any things|the furniture|obstacles|any obstacles]|"
-    "with (the furniture|everything|things|the chairs|all the furniture) (where it is|where they are|as it is|as they are) [now]|"
-    "as (it is|things are|it stands|things stand)|in a straight line|safely|easily|freely|comfortably|unobstructed|at all|unhindered|directly]"
+    "[anything|any furniture|any of the furniture|furniture|something|things|any things|the furniture|"
+    "obstacles|any obstacles]|"
+    "with (the furniture|everything|things|the chairs|all the furniture) (where it is|where they are|as it is|"
+    "as they are) [now]|"
+    "as (it is|things are|it stands|things stand)|in a straight line|safely|easily|freely|comfortably|"
+    "unobstructed|at all|unhindered|directly]"
 )
 _MODAL = "(can|could|would|will|may|might|should|shall)"
 _PATH = "(path|route|way|walkway|passage|corridor|aisle|passageway|walking path|walking route|line|access)"
-_CLEAR = "[clear|free|walkable|direct|unobstructed|open|accessible|clear and free|unblocked|safe|decent|easy|usable|possible|continuous|practicable|passable]"
+_CLEAR = (
+    "[clear|free|walkable|direct|unobstructed|open|accessible|clear and free|unblocked|safe|decent|easy|usable|"
+    "possible|continuous|practicable|passable]"
+)
 _FROM_TO = "(from {a:end} [over|across|all the way|right|straight|through] to {b:end}|between {a:end} and {b:end})"
 
 _CAN = f"""
@@ -116,7 +127,8 @@ _HOW = f"""
     (walk|guide|lead|take|direct|navigate) me from {{a:end}} to {{b:end}}
 """
 _LENGTH = f"""
-    how (long|far|many {{u:length_unit}}) (is|would be) the (walk|path|route|way|walking distance|walking route|shortest \
+    how (long|far|many {{u:length_unit}}) (is|would be) the (walk|path|route|way|walking distance|walking \
+        route|shortest \
       path|shortest route|shortest way|shortest walk|quickest route|walkway|walking path) {_FROM_TO} {_END} [in \
       {{u:length_unit}}]
     how (far|many {{u:length_unit}}) (do|does|would|must|will|should) {{w:walker}} (have to|need to) \

@@ -20,11 +20,13 @@ _HERE = re.compile(
 _MIDDLE = re.compile(r"^the (?:middle|center)(?: of the room)?$")
 # Widths in metres, from data sheets: of a wheelchair with hands on its wheels, of a twin pram, a rollator, a robot.
 _WIDTHS = {
-    "wheelchair": 0.8, "wheel chair": 0.8, "rollator": 0.65, "walker": 0.65, "zimmer frame": 0.65, "walking frame": 0.65,
+    "wheelchair": 0.8, "wheel chair": 0.8, "rollator": 0.65, "walker": 0.65,
+    "zimmer frame": 0.65, "walking frame": 0.65,
     "pram": 0.6, "stroller": 0.6, "buggy": 0.6, "pushchair": 0.6, "baby carriage": 0.6,
     "vacuum robot": 0.35, "robot vacuum": 0.35, "robot": 0.35, "roomba": 0.35, "cleaning robot": 0.35,
     "robot vacuum cleaner": 0.35, "person": SHOULDERS, "man": SHOULDERS, "woman": SHOULDERS, "adult": SHOULDERS,
-    "human": SHOULDERS, "visitor": SHOULDERS, "guest": SHOULDERS, "child": 0.35, "kid": 0.35, "toddler": 0.3, "dog": 0.3,
+    "human": SHOULDERS, "visitor": SHOULDERS, "guest": SHOULDERS, "child": 0.35, "kid": 0.35, "toddler": 0.3,
+    "dog": 0.3,
     "cat": 0.2,
 }  # fmt: skip
 _PEOPLE = frozenset("i we you one someone somebody anyone anybody people guests visitors they he she".split())  # noqa: SIM905

@@ -15,8 +15,8 @@ from ....gaussians.world.lengths import METRES
 from ....gaussians.world.words import singular
 from ...grammar.vocabulary import quantities
 from ...grammar.vocabulary.quantities import NUMBERS
-from .spans import length
 from .phrase_templates import Words
+from .spans import length
 
 Side = Literal["width", "depth", "height", "length", "diameter", ""]
 
@@ -27,17 +27,138 @@ _SIDES: dict[str, Side] = {
 }  # fmt: skip
 _BY = frozenset(("by", "x", "*", "×", "times"))
 _FILLERS = frozenset(
-    ["say", "of", "that", "which", "is", "are", "it", "measuring", "measures", "measure", "with", "and", "a", "an", "about", "around", "roughly", "size", "sized", "dimensions", "footprint", "being", "having", "has", "in", "the", ",", "-", "standing", "its", "some", "maybe", "approximately", ",", "would", "be", "perhaps", "only", "just", "at", "least"]
+    [
+        "say",
+        "of",
+        "that",
+        "which",
+        "is",
+        "are",
+        "it",
+        "measuring",
+        "measures",
+        "measure",
+        "with",
+        "and",
+        "a",
+        "an",
+        "about",
+        "around",
+        "roughly",
+        "size",
+        "sized",
+        "dimensions",
+        "footprint",
+        "being",
+        "having",
+        "has",
+        "in",
+        "the",
+        ",",
+        "-",
+        "standing",
+        "its",
+        "some",
+        "maybe",
+        "approximately",
+        ",",
+        "would",
+        "be",
+        "perhaps",
+        "only",
+        "just",
+        "at",
+        "least",
+    ]
 )
 _DETERMINERS = re.compile(
-    r"^(?:(?:a|an|another|one more|one extra|one|some|my|our|your|this|that|any|extra|new|additional|second|third|further|"
-    r"more|whole|proper|standard|normal|regular|typical|average|full size|small|little|big|large|huge|single) )+"
+    r"^(?:(?:a|an|another|one more|one extra|one|some|my|our|your|this|that|any|extra|new|additional|"
+    r"second|third|further|more|whole|proper|"
+    r"standard|normal|regular|typical|average|full size|small|little|big|large|huge|single) )+"
 )
 _GENERIC = frozenset(
     "something anything thing object item piece furniture one".split()  # noqa: SIM905
 ) | {"piece of furniture", "bit of furniture", "thing", "", "it"}
 _NO_NAME = frozenset(
-    ["fit", "fits", "go", "stand", "put", "place", "placed", "squeeze", "next", "under", "on", "between", "behind", "beside", "near", "against", "along", "above", "into", "through", "is", "are", "was", "be", "will", "would", "could", "can", "should", "may", "might", "do", "does", "did", "has", "have", "had", "there", "here", "what", "which", "who", "where", "how", "why", "when", "if", "whether", "and", "or", "not", "to", "for", "from", "at", "by", "with", "without", "me", "i", "we", "you", "they", "than", "then", "so", "as", "both", "either", "neither", "left", "right", "front", "back", "wall", "corner", "room"]
+    [
+        "fit",
+        "fits",
+        "go",
+        "stand",
+        "put",
+        "place",
+        "placed",
+        "squeeze",
+        "next",
+        "under",
+        "on",
+        "between",
+        "behind",
+        "beside",
+        "near",
+        "against",
+        "along",
+        "above",
+        "into",
+        "through",
+        "is",
+        "are",
+        "was",
+        "be",
+        "will",
+        "would",
+        "could",
+        "can",
+        "should",
+        "may",
+        "might",
+        "do",
+        "does",
+        "did",
+        "has",
+        "have",
+        "had",
+        "there",
+        "here",
+        "what",
+        "which",
+        "who",
+        "where",
+        "how",
+        "why",
+        "when",
+        "if",
+        "whether",
+        "and",
+        "or",
+        "not",
+        "to",
+        "for",
+        "from",
+        "at",
+        "by",
+        "with",
+        "without",
+        "me",
+        "i",
+        "we",
+        "you",
+        "they",
+        "than",
+        "then",
+        "so",
+        "as",
+        "both",
+        "either",
+        "neither",
+        "left",
+        "right",
+        "front",
+        "back",
+        "wall",
+        "corner",
+        "room",
+    ]
 )
 _MOST_WORDS = 16
 

@@ -12,8 +12,9 @@ from .phrase_templates import Words
 
 _CUBIC = re.compile(r"^(?:cubic|cu) (\w+)$|^(\w+) (?:cubed|3)$")
 _ROOM = re.compile(
-    r"^(?:(?:the|this|that|our|my|your|a|whole|entire|complete|full) )*(?:room|space|place|area|flat|apartment|studio|house|"
-    r"interior|chamber|floor plan|(?:[a-z]+ )?(?:bedroom|kitchen|office|study|lounge|bathroom|hallway|library|nursery|"
+    r"^(?:(?:the|this|that|our|my|your|a|whole|entire|complete|full) )*(?:room|space|place|area|flat|apartment|"
+    r"studio|house|interior|chamber|floor plan|(?:[a-z]+ )?(?:bedroom|kitchen|office|study|lounge|"
+    r"bathroom|hallway|library|nursery|"
     r"classroom|workshop|shop|restaurant|gym|closet)|(?:living|dining|sitting|family|kids|guest|game|music|computer|"
     r"meeting|conference|dressing|waiting|laundry|play) room)$"
 )

@@ -143,6 +143,13 @@ SPELT = {"colour": "color", "colours": "colors", "coloured": "colored", "grey": 
           "widht": "width", "lenght": "length", "tallist": "tallest", "bigest": "biggest"}  # fmt: skip
 
 
+# "how high the ceiling is" is asked as "how high is the ceiling"
+_INDIRECT = re.compile(
+    r"^((?:how|what)(?: (?:much|many|big|large|high|tall|long|wide|deep|far))?) "
+    r"((?:the|this|that|its|our|my) (?:(?! is | are ).)+?) (is|are)((?: in [a-z ]+)?)$"
+)
+
+
 def plain_words(text: str) -> tuple[str, ...]:
     """The words of a question in lower case, without politeness; marks between clauses are commas, which are words.
 
@@ -193,7 +200,7 @@ def _stripped(said: str) -> str:
             verb = next((k for k in sorted(_KEPT, key=len, reverse=True) if asked.group().endswith(k)), "")
             rest = said[asked.end() :].strip(" ,")
             said = f"{verb} {rest}" if verb and not _CLAUSE.match(rest) else _WHETHER.sub("whether ", rest)
-    return _commas(said)
+    return _INDIRECT.sub(r"\1 \3 \2\4", _commas(said))
 
 
 _CLAUSE = re.compile(r"^(?:what|which|how|where|who|whose|whether|if|when|why|there|is|are|that)\b")
