@@ -7,7 +7,7 @@ text ──reading──► Asked ──kinds──► Answer     (source "none"
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +17,8 @@ from . import kinds
 from .answer import Answer, AnswerType
 from .kind import Asked, Kind, Undecided
 from .reading.holes import READERS
-from .reading.situation import read_situation
+from .reading.phrase_templates import Words
+from .reading.situation import Situation, read_situation
 from .reading.words import plain_words
 from .survey import NotResolved, Survey, Thing
 from .telling import absent, evidence
@@ -76,25 +77,31 @@ def route(text: str, survey: Survey) -> Reading:
     """
     words = plain_words(text)
     situation, rest = read_situation(words)
+    readings = [(situation, rest)] if situation is None else [(situation, rest), (None, words)]
     failed: _Attempt | None = None
-    said = frozenset(rest)
-    for kind in kinds.KINDS:
-        for template in kind.templates:
-            if not template.may_match(said):
+    for where, said in readings:  # words that seem to say where a person is may belong to the question itself
+        for kind, asked in _filled(text, where, said):
+            try:
+                given = kind.answer(asked, survey)
+            except NotResolved as error:
+                failed = failed or _Attempt(kind, asked, error)
                 continue
-            for slots in template.match(rest, READERS):
-                asked = Asked(text, slots, situation, rest)
-                try:
-                    given = kind.answer(asked, survey)
-                except NotResolved as error:
-                    failed = failed or _Attempt(kind, asked, error)
-                    continue
-                if given is not None:
-                    return _reading(kind, given)
-    if failed is not None:
-        return _unresolved(failed, survey)
+            if given is not None:
+                return _reading(kind, given)
+        if failed is not None:
+            return _unresolved(failed, survey)
     none = Answer(answer=None, answer_type=expected_type(rest), text=NOT_READ, confidence=0.0, source="none")
     return Reading(none, sight=True)
+
+
+def _filled(text: str, situation: Situation | None, words: Words) -> Iterator[tuple[Kind, Asked]]:
+    """Every template that the words fill, in the order of the kinds."""
+    held = frozenset(words)
+    for kind in kinds.KINDS:
+        for template in kind.templates:
+            if template.may_match(held):
+                for slots in template.match(words, READERS):
+                    yield kind, Asked(text, slots, situation, words)
 
 
 def expected_type(words: Sequence[str]) -> AnswerType:
