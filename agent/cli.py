@@ -15,6 +15,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from ..gaussians.errors import ScenewrightError
+from .options import with_values
 from .terminal.output import error_json, terminal
 
 VERBS = (
@@ -65,7 +66,7 @@ def main(arguments: list[str] | None = None) -> NoReturn:
     given = sys.argv[1:] if arguments is None else arguments
     code: object = 0
     try:
-        code = app(given, standalone_mode=False)
+        code = app(with_values(given), standalone_mode=False)
     except ScenewrightError as error:
         if terminal.debug:
             raise

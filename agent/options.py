@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -94,4 +95,25 @@ Up = Annotated[str | None, typer.Option("--up", metavar="X,Y,Z", help="Up direct
 Scale = Annotated[
     float | None, typer.Option("--metres-per-unit", metavar="M", help="Scale of the scene, if its file has none.")
 ]
+JUDGE = "built-in"  # what --judge alone means
+Judge = Annotated[
+    str | None,
+    typer.Option(
+        "--judge", metavar="[NAME]",
+        help="Judge each edit from the scenes before and after it, repair it if possible, else take it back.",
+    ),
+]  # fmt: skip
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Random seed; the same seed gives the same bytes.")]
+
+
+def with_values(arguments: Sequence[str]) -> list[str]:
+    """The arguments with the value of a `--judge` that stands alone; what follows it is then no value of it."""
+    from .session.judge import JUDGES
+
+    given = list(arguments)
+    for k, word in enumerate(given):
+        if word == "--":
+            break
+        if word == "--judge" and given[k + 1 : k + 2] not in ([[j] for j in (*JUDGES, "off")]):
+            given[k] = f"--judge={JUDGE}"
+    return given

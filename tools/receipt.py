@@ -82,6 +82,43 @@ class Pixels(BaseModel):
     threshold: float
 
 
+class Repair(BaseModel):
+    """What was tried after a judge refused an edit.
+
+    Attributes:
+        failed: the checks that refused it.
+        tried: what was done instead, in words: "selected 312 more Gaussians that were left behind".
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    failed: tuple[Check, ...]
+    tried: str
+
+
+class Judgement(BaseModel):
+    """What a judge measured after an edit, from the scenes alone.
+
+    Attributes:
+        judge: "built-in", or with the vision-language model that was asked too.
+        checks: each with its value.
+        repairs: what was tried before these checks passed, in order; empty if the first edit passed.
+        seconds: that judging and repairing took.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    judge: str
+    checks: tuple[Check, ...]
+    repairs: tuple[Repair, ...] = ()
+    seconds: float = 0.0
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check passed."""
+        return all(check.passed for check in self.checks)
+
+
 class Receipt(BaseModel):
     """What one operation did; `Receipt.model_validate_json(receipt.to_json()) == receipt`.
 
@@ -98,6 +135,7 @@ class Receipt(BaseModel):
         seconds: wall time of each stage: "resolve", "apply", "check", "pixels".
         backends: what was used, by role: "resolver", "encoder", "renderer".
         dry_run: True if nothing was kept.
+        judged: what the judge measured, if there was one.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -116,6 +154,7 @@ class Receipt(BaseModel):
     seconds: dict[str, float] = Field(default_factory=dict)
     backends: dict[str, str] = Field(default_factory=dict)
     dry_run: bool = False
+    judged: Judgement | None = None
 
     @property
     def passed(self) -> bool:
@@ -131,7 +170,8 @@ class Receipt(BaseModel):
         counts = [f"{n:,} {word}" for n, word in self._counts() if n] or [self._found()]
         failed = [c.name for c in self.checks if not c.passed]
         verdict = f"failed: {', '.join(failed)}" if failed else f"{len(self.checks)} checks passed"
-        return f"{self.op.get('op', '?')} {self.selection.asked}: {', '.join(counts)}; {verdict}"
+        judged = f", {len(self.judged.checks)} more by the judge" if self.judged is not None else ""
+        return f"{self.op.get('op', '?')} {self.selection.asked}: {', '.join(counts)}; {verdict}{judged}"
 
     def _found(self) -> str:
         """What to say of an operation that changed nothing: what it selected, or "nothing changed"."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..options import Budget, Debug, Encoder, Json, Log, Picture, Planner, Scale, SceneFile, Seed, Up, View, Vlm
+from ..options import Budget, Debug, Encoder, Json, Judge, Log, Picture, Planner, Scale, SceneFile, Seed, Up, View, Vlm
 from ..terminal.output import terminal
 
 
@@ -12,6 +12,7 @@ def command(
     vlm: Vlm = "auto",
     budget: Budget = None,
     picture: Picture = False,
+    judge: Judge = None,
     encoder: Encoder = "auto",
     up: Up = None,
     metres_per_unit: Scale = None,
@@ -28,7 +29,7 @@ def command(
     session, _ = open_session(
         SessionOptions(
             scene, planner, encoder, view, log=log, seed=seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
-            picture=picture, vlm=vlm,
+            picture=picture, judge=judge, vlm=vlm,
         )
     )  # fmt: skip
     try:

@@ -17,6 +17,7 @@ from ..options import (
     Encoder,
     Force,
     Json,
+    Judge,
     Log,
     Output,
     Picture,
@@ -68,6 +69,7 @@ def command(
     vlm: Vlm = "auto",
     budget: Budget = None,
     picture: Picture = False,
+    judge: Judge = None,
     encoder: Encoder = "auto",
     seed: Seed = 0,
     force: Force = False,
@@ -90,6 +92,7 @@ def command(
     seconds: dict[str, float] = {}
     options = SessionOptions(
         scene, planner, encoder, view, size, None if dry_run else log, seed, True, up, metres_per_unit, budget, picture,
+        judge,
         vlm,
     )  # fmt: skip
     with timed(seconds, "open"):

@@ -27,6 +27,7 @@ class SessionOptions:
         pixel_checks: compare the viewer's pictures before and after each operation.
         budget: what language models may cost, or None.
         picture: send the viewer's picture to language models.
+        judge: who judges edits, or None.
         vlm: a vision model, as `Session` takes it.
         up, metres_per_unit: the scene's frame as the user gives it; a saved field made in another frame is not used.
     """
@@ -43,6 +44,7 @@ class SessionOptions:
     metres_per_unit: float | None = None
     budget: str | None = None
     picture: bool = False
+    judge: str | None = None
     vlm: str = "auto"
 
 
@@ -76,6 +78,7 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
         pixel_checks=options.pixel_checks,
         budget=options.budget,
         pictures=options.picture,
+        judge=options.judge,
         vlm=options.vlm,
     )
     if options.view != "auto" or options.size is not None:

@@ -39,25 +39,29 @@ def has_queries(plan: EditPlan) -> bool:
 
 
 def run_plan(
-    plan: EditPlan, start: State, context_of: Callable[[Selection | None], Context], *, dry_run: bool
+    plan: EditPlan, start: State, context_of: Callable[[Selection | None], Context], *, dry_run: bool, judged: bool
 ) -> tuple[State, tuple[Receipt, ...]]:
     """The state after a plan, and a receipt for each operation.
 
     Args:
         context_of: makes the context of an operation from the selection that "it" refers to.
         dry_run: mark the receipts as a dry run.
+        judged: judge each operation after it was carried out.
 
     Raises:
-        PlanFailed: an operation cannot be done, or failed its own check.
+        PlanFailed: an operation cannot be done, failed its own check, or was judged a failure.
     """
     from ...tools import execute
+    from .judge import carry_out_judged
+
+    carry_out = carry_out_judged if judged else execute.carry_out
 
     scene, last = start.scene, start.last
     receipts: list[Receipt] = []
     for step, op in enumerate(plan.ops):
         context = context_of(last)
         try:
-            scene, receipt, last = execute.carry_out(scene, op, context)
+            scene, receipt, last = carry_out(scene, op, context)
         except ScenewrightError as error:
             raise PlanFailed(_in_plan(error, plan, step), _question(plan, step, error, scene, context)) from error
         receipts.append(

@@ -23,6 +23,7 @@ from . import log as session_log
 from .asker import Asker, see_answer
 from .clarify import Question, plan_with_answer, plan_with_query
 from .history import History, State
+from .judge import known_judge
 from .observation import graph_of, picture_of
 from .plan_runner import PlanFailed, has_queries, run_plan
 from .planner_client import PlannerClient, undo_or_redo
@@ -65,6 +66,8 @@ class Session:
         budget: what language models may cost: "20s" for each instruction, "0.05usd" for the whole session, or both,
             "20s,0.05usd". When it is used up, "auto" goes on without a model, and says so.
         pictures: send the viewer's picture to models that take pictures.
+        judge: "built-in": after each operation measure from the scenes, and ask the embedded encoder, whether what was
+            asked for happened and nothing else; repair it at most twice, else take it back. None: do not judge.
         vlm: a vision model for what geometry does not answer and words do not find: a name that `planners.model.load`
             takes, a back end, "auto" for the one that `SCENEWRIGHT_VLM` names, or None.
 
@@ -72,9 +75,10 @@ class Session:
         question: the open question: an ambiguous query with its candidates, or an absent one with the nearest things;
             None if there is none.
         pixel_checks: also compare the viewer's picture before and after each operation.
+        judge: who judges edits, or None.
 
     Raises:
-        UserError: no such planner, or the budget cannot be parsed.
+        UserError: no such planner or judge, or the budget cannot be parsed.
         BackendError: a package, key or file that the planner needs is missing.
         FileError: the log cannot be opened.
     """
@@ -92,6 +96,7 @@ class Session:
         pixel_checks: bool = False,
         budget: str | Budget | None = None,
         pictures: bool = False,
+        judge: str | None = None,
         vlm: str | ModelBackend | None = "auto",
     ) -> None:
         self._progress = progress or (lambda stage, fraction: None)
@@ -104,6 +109,7 @@ class Session:
         self._viewer = viewer
         self._seed = seed
         self.pixel_checks = pixel_checks
+        self.judge = known_judge(judge)
         self.question: Question | None = None
         self._history = History(State(scene))
         self._log = session_log.SessionLog(log) if log is not None else None
@@ -215,7 +221,7 @@ class Session:
             ImpossibleError: understood, but there is no operation for it. (An InstructionError.)
             AbsentError: a thing that is named is not there. `question` holds the nearest things.
             AmbiguousError: several things match. `question` holds them; `answer` chooses among them.
-            CheckFailedError: an operation failed its own check and everything was rolled back.
+            CheckFailedError: an operation failed its own check, or the judge, and everything was rolled back.
             InstructionError: it cannot be done as said.
             BackendError: a language model that was chosen as the only planner gave no plan.
         """
@@ -477,7 +483,8 @@ class Session:
         before = self._history.present
         with timed(seconds, "edit"):
             try:
-                state, receipts = run_plan(plan, before, self._context, dry_run=dry_run)
+                judged = self.judge is not None
+                state, receipts = run_plan(plan, before, self._context, dry_run=dry_run, judged=judged)
             except PlanFailed as failure:
                 self.question = failure.question
                 if not self._vision or failure.question is None or not needs_sight(failure.question.selection):

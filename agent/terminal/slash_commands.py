@@ -147,6 +147,15 @@ def _planner(chat: Conversation, spec: str) -> None:
     chat.tell("\n".join(lines), data)
 
 
+def _judge(chat: Conversation, name: str) -> None:
+    from ..session.judge import known_judge
+
+    if name:
+        chat.session.judge = known_judge("built-in" if name == "on" else name)
+    judge = chat.session.judge or "off"
+    chat.tell(f"judge: {judge}", {"judge": judge})
+
+
 def _history(chat: Conversation, _: str) -> None:
     done = chat.session.done
     chat.tell("\n".join(f"  {i}. {t}" for i, t in enumerate(done, 1)) or "nothing was done yet", {"done": list(done)})
@@ -190,6 +199,7 @@ SLASH_COMMANDS: dict[str, SlashCommand] = {
     "/show": SlashCommand("a picture of the current view; /show 2 changes to the scene's camera 2", _show),
     "/things": SlashCommand("list the things in the scene", _things),
     "/planner": SlashCommand("[NAME]: the planner and what its models cost; with a name, change the planner", _planner),
+    "/judge": SlashCommand("[NAME|on|off]: judge each edit after it was made; alone: who judges", _judge),
     "/history": SlashCommand("list the instructions that led to this scene", _history),
     "/save": SlashCommand("FILE [--force]: write the scene", _save),
     "/quit": SlashCommand("end the chat", _quit),

@@ -68,6 +68,8 @@ class LocalModel:
         self._options = {"use_cache": True, **({"logits_to_keep": 1} if last_alone else {})}
         self._read: list[int] = []  # tokens in the KV cache
         self._seen = False  # whether the cache holds pictures
+        # Qwen's models keep the positions after the last pictures, and would apply them to a prompt without any.
+        self._offsets = [module for module in parts.model.modules() if hasattr(module, "rope_deltas")]
         self._cache: Any = None
 
     @property
@@ -140,6 +142,8 @@ class LocalModel:
     def _scores(self, given: Prompt, forced: list[int], until: float) -> Any:
         """Logits `[V]` of the token after the prompt and the tokens that the schema forces first."""
         prompt, scores = given.tokens, None
+        for module in self._offsets:
+            module.rope_deltas = None
         if given.tensors:  # pictures are read with the whole prompt at once, and never from the cache
             self._cache, self._read = None, []
             scores = self._forward(prompt, **given.tensors)

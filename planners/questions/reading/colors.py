@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache, lru_cache
 
+from ....gaussians.color import BASIC, names
 from ....gaussians.color import parse as parse_color
 from ....gaussians.errors import UserError
 from ...grammar.tagging.words import bag
@@ -20,12 +21,20 @@ MATERIALS = bag(
 _MIXED = {"multicolored", "multicolor", "colorful"}
 
 
-@lru_cache(maxsize=1024)
+@cache
+def _words() -> frozenset[str]:
+    """Last words of all colour names."""
+    return frozenset(name.split()[-1] for name in (*names(), *BASIC))
+
+
+@lru_cache(maxsize=4096)
 def color(words: Words) -> str | None:
     """A colour word, in American spelling; words for materials are none."""
     said = " ".join(words).removesuffix(" colored").removesuffix(" in color")
     last = said.split()[-1] if said.split() else ""
     if last in MATERIALS or last in _MIXED or len(words) > 4:
+        return None
+    if not ({last, last.replace("gray", "grey")} & _words() or last.endswith("ish")):
         return None
     try:
         parse_color(said)

@@ -127,11 +127,18 @@ _NO_THINGS = bag(
     "will should there here this that these those than as so if whether and or but of to from for with"
 )
 _VERBS = re.compile(
-    r"\b(?:is|are|was|were|be|been|does|do|did|has|have|had|(?<!trash )(?<!garbage )(?<!tin )(?<!watering )(?<!soda )(?<!spray )"
-    r"(?<!paint )(?<!rubbish )(?<!waste )can|could|would|will|should|whether|how|what|which|who|"
-    r"where|when|"
-    r"why|than|there|if|get|walk|fit|sit|see|look|looks|stand|stands|hang|hangs|lie|lies|belong|belongs|cost|costs|"
+    r"\b(?:is|are|was|were|be|been|does|do|did|has|have|had|can|could|would|will|should|whether|how|what|which|who|where|"
+    r"when|why|than|there|if|get|walk|fit|sit|see|look|looks|stand|stands|hang|hangs|lie|lies|belong|belongs|cost|costs|"
     r"goes|go)\b"
+)
+_NO_STARTS = bag(
+    "than and or of to from in on at by with is are was were does do did has have had be been being can could would "
+    "will should which who whom whose where when why how whether if , not as so but for under over above below behind "
+    "between near next inside into onto i we he she they"
+)
+_NO_ENDS = bag(
+    "the a an and or of to from in at by with is are was were than my your our its his her their which who between "
+    "behind near next , as if under above below beside beneath inside into onto very most more"
 )
 _LAST = frozenset({"it", "them", "this", "that", "these", "those", "this one", "that one", "this thing", "that thing"})
 
@@ -140,14 +147,14 @@ _LAST = frozenset({"it", "them", "this", "that", "these", "those", "this one", "
 def thing(words: Words) -> Query | None:
     """The query of a noun phrase, None if the words are none."""
     said = " ".join(w for w in words if w != ",")
-    if not said or len(words) > 20:
+    if not said or len(words) > 20 or words[0] in _NO_STARTS or words[-1] in _NO_ENDS:
         return None
     if found := _ID.match(said):
         return Query(text=f"{BY_ID} {found[1] or found[2]}")
     if said in _LAST:
         return Query(last=True)
     said = _plainly(said)
-    if not said or _VERBS.search(said):
+    if not said or _VERBS.search(_with_verbs().sub("it", said)):
         return None
     try:
         plan = _grammar().plan(f"select {said}")
@@ -192,6 +199,14 @@ def _of_names() -> re.Pattern[str]:
 
 
 @cache
+def _with_verbs() -> re.Pattern[str]:
+    """Names of kinds that hold a word which is a verb elsewhere: "trash can", "coat stand"."""
+    named = [n for n in kinds.phrases() if _VERBS.search(n)]
+    forms = sorted({*named, *(f"{n}s" for n in named)}, key=len, reverse=True)
+    return re.compile(rf"\b(?:{'|'.join(map(re.escape, forms))})\b")
+
+
+@cache
 def _is_color(word: str) -> bool:
     return color((word,)) is not None
 
@@ -207,7 +222,11 @@ def _checked(query: Query) -> Query | None:
         text = token
     elif text in families.SAID:
         text = families.SAID[text]
-    elif words and (words[-1] in _NO_THINGS or words[0] in _NO_THINGS or singular(words[-1]) in _NO_THINGS):
+    elif (
+        words
+        and kinds.find(text) is None
+        and (words[-1] in _NO_THINGS or words[0] in _NO_THINGS or singular(words[-1]) in _NO_THINGS)
+    ):
         return None
     changed: dict[str, object] = {"text": text}
     for name in ("also", "exclude"):

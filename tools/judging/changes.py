@@ -1,0 +1,88 @@
+"""What differs between the clouds before and after an edit, Gaussian by Gaussian, matched by id."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import torch
+from torch import Tensor
+
+from ...gaussians.cloud import GaussianCloud
+
+
+@dataclass(frozen=True, eq=False)
+class Changes:
+    """The difference of two clouds; N rows before.
+
+    Attributes:
+        before, after: the clouds.
+        row: `[N]` int64, row of each Gaussian in the cloud after, -1 where it is gone.
+        added: `[K]` int64, rows of the cloud after whose ids are new, ascending.
+    """
+
+    before: GaussianCloud
+    after: GaussianCloud
+    row: Tensor
+    added: Tensor
+
+    @cached_property
+    def gone(self) -> Tensor:
+        """`[N]` bool."""
+        return self.row < 0
+
+    @cached_property
+    def placed(self) -> Tensor:
+        """`[N]` bool: centre, orientation or extent differ."""
+        return self._differs("means") | self._differs("quats") | self._differs("scales")
+
+    @cached_property
+    def colored(self) -> Tensor:
+        """`[N]` bool: the constant band of the harmonics differs."""
+        return self._differs("sh", 1)
+
+    @cached_property
+    def shaded(self) -> Tensor:
+        """`[N]` bool: any band of the harmonics differs."""
+        return self._differs("sh")
+
+    @cached_property
+    def faded(self) -> Tensor:
+        """`[N]` bool: the opacity differs."""
+        return self._differs("opacities")
+
+    @cached_property
+    def any(self) -> Tensor:
+        """`[N]` bool: gone, or different in any way that is drawn."""
+        return self.gone | self.placed | self.shaded | self.faded
+
+    def _differs(self, name: str, bands: int | None = None) -> Tensor:
+        """`[N]` bool: rows that stayed and differ in a column, or in the first `bands` of it."""
+        old, new = getattr(self.before, name), getattr(self.after, name)
+        found = torch.zeros(len(self.before), dtype=torch.bool, device=old.device)
+        if old is new:
+            return found
+        if old.shape[1:] != new.shape[1:]:
+            return ~self.gone
+        stayed = (~self.gone).nonzero().squeeze(1)
+        a, b = old[stayed], new[self.row[stayed]]
+        if bands is not None:
+            a, b = a[:, :bands], b[:, :bands]
+        found[stayed] = (a != b).flatten(1).any(dim=1) if a.ndim > 1 else a != b
+        return found
+
+
+def changes_between(before: GaussianCloud, after: GaussianCloud) -> Changes:
+    """The difference of two clouds by id, whatever the order of their rows."""
+    if before.ids is after.ids:
+        here = torch.arange(len(before), device=before.device)
+        return Changes(before, after, here, here[:0])
+    ordered, order = after.ids.sort()
+    row = torch.full((len(before),), -1, dtype=torch.int64, device=before.device)
+    if len(after):
+        place = torch.searchsorted(ordered, before.ids).clamp(max=len(after) - 1)
+        there = ordered[place] == before.ids
+        row[there] = order[place[there]]
+    kept = torch.zeros(len(after), dtype=torch.bool, device=before.device)
+    kept[row[row >= 0]] = True
+    return Changes(before, after, row, (~kept).nonzero().squeeze(1))

@@ -1,0 +1,183 @@
+"""Checks of where things are: on something, free of collisions, in the asked relation, moved as asked."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+from torch import Tensor
+
+from ...gaussians.language.field.language_field import Group
+from ...gaussians.language.field.measure import solid_points
+from ...gaussians.world import kinds, relations
+from ...gaussians.world.box import Box
+from ...gaussians.world.relation_geometry import HOLDS, Stand, object_stand, viewer_stand
+from ..operation import Placement
+from ..placement.bodies import Array, contact_box, front_of
+from ..placement.occupancy import obstacle_points, points_inside
+from ..placement.place import WALL_WORDS
+from ..placement.surroundings import FLOOR_WORDS
+from ..receipt import Check, at_least, at_most, report
+from .case import Case
+
+_FEET = 0.05  # of its height: the lowest part of a thing, on which it stands
+_AIR = 4.0  # centimetres between a thing and what carries it: cushions are soft, and boxes miss thin feet
+_AT_WALL = 8.0  # centimetres between a thing that hangs and what it hangs on: brackets and frames
+_SURFACE = 0.02  # share of the points under a thing that must be at its underside
+_FEW = (2, 7)  # least and most number of such points that do not count: stray ones
+_RELATED = 0.5 * HOLDS  # score from which an asked relation is accepted: boxes measured twice differ a little
+_INSIDE = 0.01  # share of a thing's points that others may have within it
+
+
+def stands(case: Case, rows: Tensor, label: str) -> Check:
+    """Gap between a thing and what carries it: the surface below it, or whatever it touches if it hangs.
+
+    Args:
+        rows: of the cloud after.
+        label: its kind; things for walls and ceilings need only touch something.
+    """
+    points = solid_points(case.after.cloud, rows)
+    others = _others(case, rows)
+    box = case.box_after(rows)
+    known = kinds.find(label) if label else None
+    hangs = known is not None and known.support in ("wall", "ceiling")
+    gap = _nearest(points, others) if hangs else _gap_below(case, points, box, others)
+    reach = max(box.size)
+    bound = _AT_WALL * case.cm(reach) if hangs else max(_AIR * case.cm(reach), _FEET * box.size[2])
+    said = f"{gap:.3g} units lie between it and what carries it"
+    return at_most("carried", gap, bound, "units", said)
+
+
+def _others(case: Case, rows: Tensor) -> NDArray[np.float32]:
+    """Solid points of everything that the edit left where it was."""
+    own = torch.zeros(len(case.after.cloud), dtype=torch.bool, device=case.after.cloud.device)
+    own[rows] = True
+    own[case.now((case.free & case.changes.any).nonzero().squeeze(1))] = True  # what stands on it went along
+    return obstacle_points(case.after.cloud, own)
+
+
+def _nearest(points: Array, others: NDArray[np.float32]) -> float:
+    """Smallest distance of a thing's points to solid points near its box."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    pad = 0.5 * float((high - low).max()) + 1e-9
+    near = others[((others > low - pad) & (others < high + pad)).all(axis=1)]
+    if not len(near):
+        return math.inf
+    sample = points[:: max(1, len(points) // 2000)]
+    distance = cKDTree(near).query(sample)[0]
+    return float(np.quantile(distance, 0.01))
+
+
+def _gap_below(case: Case, points: Array, box: Box, others: NDArray[np.float32]) -> float:
+    """Distance between a thing's underside and the nearest surface under its footprint, above it or below."""
+    up = case.after.frame.up_vector
+    own = points @ up
+    low = float(np.quantile(own, 0.002))
+    # What carries it is under its feet, not under an arm that reaches out.
+    feet = points[own < low + max(_FEET * box.size[2], 2 * case.cm(max(box.size)))]
+    base = contact_box(feet, case.after.frame, box.axes)
+    heights = others[base.covers(others)] @ up.astype(np.float32)
+    slack = max(0.25 * box.size[2], 0.02 * max(box.size))
+    gaps = np.sort(np.abs(heights[heights < low + slack] - low))
+    # Several points make a surface: a single stray one carries nothing. A cushion is touched by a part of it only.
+    enough = int(np.clip(_SURFACE * len(gaps), *_FEW))
+    gap = float(gaps[enough]) if len(gaps) > enough else math.inf
+    floor = case.after.frame.floor
+    return gap if floor is None else min(gap, abs(low - floor))
+
+
+def free_of_others(case: Case, rows: Tensor) -> Check:
+    """Solid points of other things within a placed thing."""
+    points = solid_points(case.after.cloud, rows)
+    box = case.box_after(rows)
+    clear = min(max(0.15 * box.size[2], 1e-9), 4 * case.cm(max(box.size)))
+    inside = points_inside(points, _others(case, rows), box, clear)
+    bound = max(_INSIDE * len(points), 3.0)
+    return at_most("free of others", inside, bound, "Gaussians", f"{inside} points of other things are inside it")
+
+
+def in_relation(case: Case, place: Placement, rows: Tensor) -> Check | None:
+    """The asked relation holds between a thing's measured box and the things that the words name, asked anew.
+
+    None for places that boxes alone do not decide: the room's middle and corners, walls.
+    """
+    kind = relations.named(place.relation)
+    name = place.relation if kind.score is not None else (kind.query_as or "")
+    words = {a.text.lower() for a in place.anchors}
+    if not place.anchors or words & (FLOOR_WORDS | WALL_WORDS) or not name or relations.named(name).score is None:
+        return None
+    anchors = _anchors(case, place)
+    if not anchors:
+        return report("placed as asked", float("nan"), "1", "what the place is related to was not found")
+    box = case.box_after(rows)
+    field = case.before.language
+    assert field is not None
+    stand = viewer_stand(case.context.viewer, case.before.frame.up_vector, field.typical_size, field.middle)
+    score = 0.0
+    for frame in (stand, *_own_frames(case, anchors[0], stand)):
+        thing = replace(anchors[0], level="object", box=box)
+        score = max(score, float(relations.score(name, thing, anchors, frame)))
+    score = max(score, _beside(box, anchors[0].box, case) if name == "next_to" else 0.0)
+    return at_least("placed as asked", score, _RELATED, "1", f"{place.describe()} holds with a score of {score:.2f}")
+
+
+def _anchors(case: Case, place: Placement) -> list[Group]:
+    """The groups that a placement names in the scene before, with their boxes as they are after the edit."""
+    field = case.before.language
+    found: list[Group] = []
+    if field is None:
+        return found
+    for query in place.anchors:
+        selection = case.context.resolve(case.before, query)
+        found += [field.groups[g] for g in selection.groups] if selection.verdict == "found" else []
+    return found
+
+
+def _own_frames(case: Case, anchor: Group, stand: Stand) -> tuple[Stand, ...]:
+    """The anchor's own frame, if it can be told which way it faces."""
+    body = next((b for b in _bodies(case, anchor.id)), None)
+    front = None if body is None else front_of(case.before, body)
+    return () if front is None else (object_stand(anchor, front, stand),)
+
+
+def _bodies(case: Case, group: int) -> list:  # type: ignore[type-arg]
+    from ...gaussians.language.query.query import Query
+    from ..placement.bodies import bodies_of
+
+    found = case.context.resolve(case.before, Query(groups=(group,)))
+    return bodies_of(case.before, found) if found.verdict == "found" else []
+
+
+def _beside(box: Box, anchor: Box, case: Case) -> float:
+    """1 for things whose gap is at most half a metre, as beside a large table."""
+    from ...gaussians.world.box import distance
+
+    return 1.0 if distance(box, anchor) <= 50 * case.cm(max(box.size)) else 0.0
+
+
+def rigid_motion(case: Case, rows: Tensor) -> tuple[Array, Array, float] | None:
+    """Rotation `[3, 3]`, displacement `[3]` of the middle and the RMS residual of Gaussians that stayed (Kabsch 1976).
+
+    None if fewer than four of them stayed.
+    """
+    kept = rows[case.changes.row[rows] >= 0]
+    if len(kept) < 4:
+        return None
+    was = case.before.cloud.means[kept].to(torch.float64).cpu().numpy()
+    now = case.after.cloud.means[case.changes.row[kept]].to(torch.float64).cpu().numpy()
+    a, b = was - was.mean(axis=0), now - now.mean(axis=0)
+    u, _, vt = np.linalg.svd(a.T @ b)
+    sign = np.diag([1.0, 1.0, float(np.sign(np.linalg.det(vt.T @ u.T)))])
+    rotation = vt.T @ sign @ u.T
+    residual = float(np.sqrt(((a @ rotation.T - b) ** 2).sum(axis=1).mean()))
+    return rotation, now.mean(axis=0) - was.mean(axis=0), residual
+
+
+def turned_by(rotation: Array, axis: Array) -> float:
+    """Degrees counter-clockwise about a unit axis of a rotation, in (-180, 180]."""
+    sine = np.array([rotation[2, 1] - rotation[1, 2], rotation[0, 2] - rotation[2, 0], rotation[1, 0] - rotation[0, 1]])
+    return math.degrees(math.atan2(float(sine @ axis) / 2, (float(np.trace(rotation)) - 1) / 2))
