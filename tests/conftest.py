@@ -15,7 +15,8 @@ from hypothesis import settings
 settings.register_profile("scenewright", deadline=None, derandomize=True)
 settings.load_profile("scenewright")
 
-os.environ.pop("SCENEWRIGHT_MODEL", None)  # no test asks the model of whoever runs it
+for _name in ("SCENEWRIGHT_MODEL", "SCENEWRIGHT_VLM"):
+    os.environ.pop(_name, None)  # no test asks the model of whoever runs it
 os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")  # as the package does, for tests that import torch before it
 
 _DATA = Path(os.environ.get("SCENEWRIGHT_DATA", Path(__file__).resolve().parents[1] / "../shared/data")).resolve()

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from ..options import Budget, Debug, Encoder, Json, Log, Picture, Planner, Scale, SceneFile, Seed, Size, Up, View
+from ..options import Budget, Debug, Encoder, Json, Log, Picture, Planner, Scale, SceneFile, Seed, Size, Up, View, Vlm
 
 
 def command(
@@ -16,6 +16,7 @@ def command(
         typer.Option("--http", metavar="PORT", min=0, max=65535, help="Serve HTTP on 127.0.0.1 (0: any free port)."),
     ] = None,
     planner: Planner = "auto",
+    vlm: Vlm = "auto",
     budget: Budget = None,
     picture: Picture = False,
     encoder: Encoder = "auto",
@@ -49,7 +50,7 @@ def command(
     session, embedded = open_session(
         SessionOptions(
             scene, planner, encoder, view, size, log, seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
-            picture=picture,
+            picture=picture, vlm=vlm,
         ),
         progress,
     )  # fmt: skip

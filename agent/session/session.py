@@ -36,7 +36,7 @@ from .vision_client import VisionClient
 if TYPE_CHECKING:
     from ...gaussians.language.encoders import Encoder
     from ...gaussians.language.query.explain import Explanation
-    from ...planners.budget import Budget
+    from ...planners.budget import Budget, Ledger
     from ...planners.model.backend import ModelBackend
     from ...planners.plan import EditPlan, Planner, Usage
     from ...planners.questions.answer import Answer
@@ -200,6 +200,11 @@ class Session:
     def budget(self) -> Budget:
         """What language models may cost: seconds for an instruction, dollars for the session."""
         return self._planner.budget
+
+    @property
+    def ledger(self) -> Ledger:
+        """Budget and spending of models in this session, for planners that are made outside it."""
+        return self._planner.ledger
 
     @property
     def spent(self) -> Usage | None:

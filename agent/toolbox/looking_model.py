@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, ValidationError
 
 from ... import prompts
-from ...planners.budget import Ledger, Metered, Progress
+from ...planners.budget import Metered, Progress
 from ...planners.model import load
 from ...planners.model.backend import Answer, Message, ModelBackend, OnText, UnreachableError
 from ...planners.model.planner import ModelPlanner
@@ -89,7 +89,7 @@ class LookingModel:
 
     def _toolbox(self) -> Toolbox:
         session = self._session
-        return Toolbox(Session(session.embed(), "grammar", session.encoder, viewer=session.viewer))
+        return Toolbox(Session(session.embed(), "grammar", session.encoder, viewer=session.viewer, vlm=None))
 
     def _found(self, toolbox: Toolbox, look: Look | str, last: bool) -> Message:
         """What a look found, or what is wrong with it, as the next message."""
@@ -104,7 +104,7 @@ class LookingModel:
 def looking_planner(session: Session, model: str | ModelBackend, *, looks: int = LOOKS) -> Planner:
     """A planner whose language model may look at the session's scene: `session.planner = looking_planner(session, …)`.
 
-    It has the session's budget, and counts its dollars apart from other planners of the session.
+    It has the session's budget, and what it costs counts as the session's.
 
     Args:
         model: "openai:MODEL" and so on, as `planners.model.load` takes it, or a back end.
@@ -115,12 +115,12 @@ def looking_planner(session: Session, model: str | ModelBackend, *, looks: int =
         BackendError: a package, folder or key is missing.
     """
     backend = LookingModel(load(model) if isinstance(model, str) else model, session, looks)
-    budget = session.budget
+    ledger = session.ledger
 
     def make(report: Progress) -> Planner:
-        return ModelPlanner(backend, seconds=budget.seconds, progress=report)
+        return ModelPlanner(backend, seconds=ledger.budget.seconds, progress=report)
 
-    return Metered(backend.name, make, Ledger(budget))
+    return Metered(backend.name, make, ledger)
 
 
 def with_look(schema: dict[str, Any]) -> dict[str, Any]:

@@ -36,6 +36,7 @@ def test_a_model_looks_and_then_plans(session: Session, boxes: Scene) -> None:
     assert [r.op["op"] for r in result.receipts] == ["recolor"] and len(model.asked) == 3
     assert "2 things match" in model.asked[1][-1].text and "group 0" in model.asked[1][-1].text
     assert result.plan is not None and result.plan.usage is not None and result.plan.usage.requests == 3
+    assert session.spent == result.plan.usage
     assert "look" in model.asked[0][0].text and session.undo().scene.cloud is boxes.cloud
 
 
