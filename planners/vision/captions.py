@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -19,7 +19,7 @@ from .facts import Facts
 from .looker import Looker, Shown
 
 BATCH = 12  # things that one request describes; more make models skip some
-PICTURES = 3  # of one request
+PICTURES = 2  # of one request
 _NAME, _CAPTION, _SCENE = 48, 240, 400  # characters
 _FACTS_TOKENS = 800
 
@@ -84,7 +84,7 @@ def captions(
 ) -> Captions:
     """Captions of a scene and of its groups.
 
-    The first pictures show as many groups as they can; what they leave out is shown in further ones.
+    Each request shows a batch of groups in a few pictures that are chosen for them; what they hide is shown once more.
 
     Args:
         groups: ids of the groups to describe; empty: the scene, and what the looker marks.
@@ -95,28 +95,35 @@ def captions(
     """
     require_sight(backend)
     purse = purse or Purse(views=12)
-    scene, found, sent, stopped = "", dict[int, Caption](), 0, ""
-    left = list(dict.fromkeys(groups))
-    while left or not sent:
+    made = Captions("", {})
+    for batch in _batches(list(dict.fromkeys(groups)), made.groups):
         count = purse.take(PICTURES)
-        shown = looker.overview(left, count)[:count] if count else ()
-        todo = _numbers(shown, left)
-        if not shown or (sent and not todo):
-            stopped = "" if shown or count else "the budget of views is used up"
-            break
+        shown = looker.overview(batch, count)[:count] if count else ()
+        todo = _numbers(shown, batch)
+        if not count:
+            return replace(made, stopped="the budget of views is used up", usage=purse.usage)
+        if not shown or (batch and not todo):
+            continue
         try:
             reply = _asked(backend, shown, todo, facts, purse)
         except (NoReplyError, OverBudgetError) as error:
-            if not sent:
+            if not made.pictures:
                 raise
-            stopped = str(error)
-            break
-        sent += len(shown)
-        scene = scene or printable(reply.scene, _SCENE)
-        found.update(_read(reply, todo, shown))
-        asked = set(todo.values())
-        left = [group for group in left if group not in asked]
-    return Captions(scene, found, stopped, sent, purse.usage)
+            return replace(made, stopped=str(error), usage=purse.usage)
+        made.groups.update(_read(reply, todo, shown))
+        made = replace(made, scene=made.scene or printable(reply.scene, _SCENE), pictures=made.pictures + len(shown))
+    return replace(made, usage=purse.usage)
+
+
+def _batches(groups: Sequence[int], done: Mapping[int, Caption]) -> Iterator[Sequence[int]]:
+    """The groups in batches; then those that are not done, once more: fewer groups get pictures nearer to them."""
+    if not groups:
+        yield ()
+    for start in range(0, len(groups), BATCH):
+        yield groups[start : start + BATCH]
+    left = [group for group in groups if group not in done]
+    for start in range(0, len(left) if done else 0, BATCH):
+        yield left[start : start + BATCH]
 
 
 def _numbers(shown: Sequence[Shown], wanted: Sequence[int]) -> dict[int, int]:
@@ -134,7 +141,7 @@ def _asked(
 ) -> CaptionsReply:
     request = prompts.load("vision_caption_request").fill(
         pictures=described(shown),
-        facts=facts.table("", todo, _FACTS_TOKENS),
+        facts=facts.table("", todo, _FACTS_TOKENS, only_marked=True),
         numbers=", ".join(f"#{mark}" for mark in todo) or "(none: describe the scene only)",
     )
     messages = [

@@ -46,11 +46,12 @@ class Facts:
         """The graph with implausible names replaced by ""; only this one reaches a model."""
         return None if self.graph is None else sanitize(self.graph)
 
-    def table(self, question: str, marks: Mapping[int, int], budget: int) -> str:
+    def table(self, question: str, marks: Mapping[int, int], budget: int, only_marked: bool = False) -> str:
         """The things, those that matter to the question first, one line each, in at most `budget` tokens.
 
         Args:
             marks: numbers in the pictures to ids of groups. Things without a number are called "id 12".
+            only_marked: leave out things without a number.
         """
         if self.clean is None or not self.clean.nodes:
             return "\n".join([_NONE, *self._sentences()])
@@ -60,12 +61,14 @@ class Facts:
         left = budget - sum(map(tokens, lines)) - 20
         kept: dict[int, str] = {}
         for index in Relevance(self.clean, [question]).order():
+            if only_marked and self.clean.nodes[index].id not in numbers:
+                continue
             line = _line(self.clean.nodes[index], numbers)
             left -= tokens(line) + 1
             if left < 0:
                 break
             kept[index] = line
-        missing = len(self.clean.nodes) - len(kept)
+        missing = 0 if only_marked else len(self.clean.nodes) - len(kept)
         more = [f"Not shown: {missing} more things."] if missing else []
         return "\n".join([*lines, *(kept[i] for i in sorted(kept)), *more])
 

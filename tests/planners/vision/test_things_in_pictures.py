@@ -21,6 +21,7 @@ from scenewright.planners.vision.asking import NoReplyError, Purse
 from scenewright.planners.vision.captions import Captions, captions
 from scenewright.planners.vision.facts import Facts
 from scenewright.planners.vision.judging import Verdict, verdict
+from scenewright.planners.vision.looker import Shown
 from scenewright.planners.vision.pointing import Pointed, point
 
 
@@ -47,7 +48,7 @@ def test_each_group_gets_its_name_and_sentence_from_one_request() -> None:
     found, model = captioned(described)
     assert found.scene == "A room with lamps." and sorted(found.groups) == [10, 20, 30] and found.stopped == ""
     assert found.groups[20].name == "floor lamp" and found.groups[20].text == "Lamp 2."
-    assert len(model.asked) == 1 and len(model.asked[0][1].pictures) == found.pictures == 3
+    assert len(model.asked) == 1 and len(model.asked[0][1].pictures) == found.pictures == 2
 
 
 def test_many_groups_are_described_in_batches() -> None:
@@ -56,6 +57,18 @@ def test_many_groups_are_described_in_batches() -> None:
     assert sorted(found.groups) == sorted(marks.values()) and len(model.asked) == 3
     for talk in model.asked:
         assert len(re.findall(r"#\d+", talk[1].text.rpartition("numbers: ")[2])) <= captioning.BATCH
+
+
+def test_what_a_picture_hides_is_shown_once_more() -> None:
+    class Hiding(ScriptedLooker):
+        """The first picture of many groups hides all but the first two."""
+
+        def overview(self, groups: Sequence[int], count: int, marks: bool = True) -> tuple[Shown, ...]:
+            return super().overview(list(groups)[:2] if len(groups) > 3 else groups, count, marks)
+
+    looker = Hiding({i: 100 + i for i in range(1, 6)}, views=99)
+    found, model = captioned(described, groups=[101, 102, 103, 104, 105], looker=looker)
+    assert sorted(found.groups) == [101, 102, 103, 104, 105] and len(model.asked) == 2
 
 
 def test_without_groups_what_is_marked_is_described() -> None:
@@ -83,7 +96,7 @@ def test_numbers_that_were_not_asked_for_are_left_out() -> None:
 
 def test_the_budget_ends_captions_with_what_there_is() -> None:
     marks = {i: 100 + i for i in range(1, 31)}
-    found, _ = captioned(described, groups=list(marks.values()), looker=ScriptedLooker(marks, views=99), views=3)
+    found, _ = captioned(described, groups=list(marks.values()), looker=ScriptedLooker(marks, views=99), views=2)
     assert len(found.groups) == captioning.BATCH and "views" in found.stopped
     ledger = Ledger(Budget(tokens=5, views=50))
     found, _ = captioned(described, groups=list(marks.values()), looker=ScriptedLooker(marks, views=99), ledger=ledger)
