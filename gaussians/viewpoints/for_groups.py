@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..errors import UserError
 from ..scene import Scene
 from .free_space import FreeSpace
-from .view_candidates import Kind, View, candidate_views
+from .view_candidates import Kind, View, candidate_views, is_photographed
 from .visibility import GroupPixels, silhouettes
 
 F64 = NDArray[np.float64]
@@ -28,14 +28,13 @@ WHOLE = 0.5  # share of its box's silhouette that a whole, unhidden thing covers
 CONTEXT = 0.5  # weight of all other objects together: what surrounds the asked ones
 SPREAD = 0.15  # worth of seeing a group again from the opposite side, against seeing it for the first time
 ENOUGH = 0.02  # a further view must add this share of what the first gave
-MOST_RENDERED = 40  # views of one choice; candidates beyond them are those that can show least
+MOST_RENDERED = 56  # views of one choice; candidates beyond them are those that can show least
 # A capture is sharp where its photographs were taken; seen from outside, its walls are ragged.
 TRUST: Mapping[Kind, float] = {"camera": 1.0, "walk-in": 0.95, "close-up": 0.95, "overview": 0.9, "plan": 0.9}
 TRUST_IN_CAPTURES: Mapping[Kind, float] = {**TRUST, "overview": 0.5, "plan": 0.5}
 TRUST_BESIDE_PHOTOGRAPHS: Mapping[Kind, float] = {
     "camera": 1.0, "walk-in": 0.5, "close-up": 0.5, "overview": 0.3, "plan": 0.3
 }  # fmt: skip
-PHOTOGRAPHS = 8  # cameras of a scene, from which they are taken for photographs that cover it
 
 
 @dataclass(frozen=True, eq=False)
@@ -256,7 +255,7 @@ def readability(shares: F64, whole: F64) -> F64:
 
 def _trust(scene: Scene) -> Mapping[Kind, float]:
     """How far views of each kind are trusted to look like the scene, in [0, 1]."""
-    if len(scene.cameras) >= PHOTOGRAPHS:
+    if is_photographed(scene):
         return TRUST_BESIDE_PHOTOGRAPHS
     return TRUST_IN_CAPTURES if scene.frame.up_source == "estimated" else TRUST
 

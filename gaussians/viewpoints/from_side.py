@@ -20,7 +20,16 @@ from ..world.person import SEATED_EYES
 from ..world.relation_geometry import Stand, object_stand, viewer_stand
 from .cutaway import NOTHING, Cut, toward_inside, wall_between
 from .for_groups import HEIGHT, WIDTH, ChosenView, Sights, measured
-from .view_candidates import CLEARANCE, CLOSE_FOV, View, filling_distance, fitted_camera, side_camera
+from .view_candidates import (
+    CLEARANCE,
+    CLOSE_FOV,
+    STANDS,
+    View,
+    filling_distance,
+    fitted_camera,
+    photograph_eyes,
+    side_camera,
+)
 
 F64 = NDArray[np.float64]
 Side = Literal["front", "behind", "left", "right", "above", "below"]
@@ -29,6 +38,7 @@ Whose = Literal["object", "viewer"]
 AIMS = {"front": (0.0, -1.0), "behind": (0.0, 1.0), "left": (-1.0, 0.0), "right": (1.0, 0.0)}  # as `Stand.side`
 TURNS = (0.0, 15.0, -15.0, 30.0, -30.0, 45.0, -45.0)  # degrees from the side that is asked for
 ELEVATIONS = (14.0, 32.0, 50.0)  # degrees above the horizon
+MOST_TURNED = 30.0  # degrees between the side that is asked for and a photograph that is taken for it
 STEEP = (80.0, 65.0)  # degrees, for views from above
 UPWARD = (-15.0, -35.0)  # degrees, for views from below
 OTHER_SIDES = (75.0, -75.0, 110.0, -110.0, 180.0)  # turns that are tried too where no side is asked for
@@ -96,7 +106,8 @@ def view_from_side(
     stand, whose = stand_of(sights, groups, viewer)
     best: SideView | None = None
     most = 0.0
-    for camera, turned, cut in _side_cameras(sights, groups, side, stand, (distance, eye_level), size):
+    toward = stand.side(AIMS[side if side in AIMS else "front"])
+    for camera, turned, cut in _side_cameras(_Asked(sights, groups, side, toward, distance, eye_level, size)):
         name = f"{side or 'close'}:{','.join(map(str, groups))}"
         chosen = measured(sights, View(name, "close-up", replace(camera, name=name), cut), groups)
         worth = _worth(chosen) - turned / TURN_COSTS
@@ -149,61 +160,99 @@ def view_from_thing(
     return SideView(chosen, "object" if front is not None else "viewer")
 
 
-def _side_cameras(
-    sights: Sights, groups: Sequence[int], side: Side | None, stand: Stand, how: tuple[float, bool],
-    size: tuple[int, int],
-) -> Iterator[tuple[Camera, float, Cut]]:  # fmt: skip
-    """Cameras of a side with their deviation in degrees: those that fit into the scene, then cut ones from outside."""
-    scene, up = sights.scene, sights.scene.frame.up_vector
-    assert scene.language is not None
-    boxes = [scene.language.groups[g].box for g in groups]
-    distance, eye_level = how
-    toward = stand.side(AIMS[side if side in AIMS else "front"])
-    turns = TURNS if side is not None else (*TURNS, *OTHER_SIDES)
-    tilts: tuple[float, ...] = STEEP if side == "above" else UPWARD if side == "below" else ELEVATIONS
-    if eye_level and side not in ("above", "below"):
-        for turn in turns:
-            camera = _at_eye_level(sights, boxes, _turned(toward, up, turn), distance, size)
-            if camera is not None:
-                yield camera, abs(turn), NOTHING
-    tried = sorted(
-        (abs(turn) + abs(tilt - tilts[0]) / 2, i, tilt, turn) for tilt in tilts for i, turn in enumerate(turns)
-    )
-    for off, _, tilt, turn in tried:
-        camera = side_camera(scene, boxes, _turned(toward, up, turn), tilt, size, sights.space, distance)
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """What `view_from_side` is asked for; `toward` `[3]` is the level direction of the side, world."""
+
+    sights: Sights
+    groups: tuple[int, ...]
+    side: Side | None
+    toward: F64
+    distance: float
+    eye_level: bool
+    size: tuple[int, int]
+
+    @property
+    def boxes(self) -> list[Box]:
+        field = self.sights.scene.language
+        assert field is not None
+        return [field.groups[g].box for g in self.groups]
+
+    @property
+    def tilts(self) -> tuple[float, ...]:
+        """Degrees above the horizon that are tried, the best first."""
+        return STEEP if self.side == "above" else UPWARD if self.side == "below" else ELEVATIONS
+
+    @property
+    def level(self) -> bool:
+        """Whether the view is from around the things, not from above or below."""
+        return self.side not in ("above", "below")
+
+
+def _side_cameras(asked: _Asked) -> Iterator[tuple[Camera, float, Cut]]:
+    """Cameras with their deviation in degrees and what is cut away: photographs, free places, then from outside."""
+    for camera, off in (*_from_photographs(asked), *_at_eye_level(asked)):
+        yield camera, off, NOTHING
+    for camera, off in _from_free_places(asked):
+        yield camera, off, NOTHING
+    for tilt in asked.tilts[:2]:
+        camera = _from_outside(asked, tilt)
+        yield camera, abs(tilt - asked.tilts[0]) / 2, toward_inside(asked.sights.scene, camera.position, asked.groups)
+
+
+def _from_photographs(asked: _Asked) -> Iterator[tuple[Camera, float]]:
+    """Close-ups from where photographs were taken, which show a capture at its best."""
+    if len(asked.groups) > 1 or asked.distance != 1.0 or asked.eye_level or not asked.level:
+        return
+    scene, (box,) = asked.sights.scene, asked.boxes
+    toward = asked.toward if asked.side is not None else None
+    for eye, off in photograph_eyes(scene, box, toward, MOST_TURNED):
+        yield fitted_camera(eye, [box], scene, asked.size), off
+
+
+def _from_free_places(asked: _Asked) -> Iterator[tuple[Camera, float]]:
+    """Close-ups from the side that is asked for and those near to it, then from where a person can stand."""
+    scene, space, boxes = asked.sights.scene, asked.sights.space, asked.boxes
+    turns = TURNS if asked.side is not None else (*TURNS, *OTHER_SIDES)
+    first = asked.tilts[0]
+    tried = [(abs(turn) + abs(tilt - first) / 2, i, tilt, turn) for tilt in asked.tilts for i, turn in enumerate(turns)]
+    for off, _, tilt, turn in sorted(tried):
+        way = _turned(asked.toward, scene.frame.up_vector, turn)
+        camera = side_camera(scene, boxes, way, tilt, asked.size, space, asked.distance)
         if camera is not None:
-            yield camera, off, NOTHING
-    for tilt in tilts[:2]:
-        camera = _from_outside(sights, boxes, toward, tilt, distance, size)
-        yield camera, abs(tilt - tilts[0]) / 2, toward_inside(scene, camera.position, groups)
+            yield camera, off
+    if asked.side is None:
+        for eye in space.stands(STANDS, space.eye_height, _corners(boxes)[1]):
+            yield fitted_camera(eye, boxes, scene, asked.size), OTHER_SIDES[0]
 
 
-def _at_eye_level(
-    sights: Sights, boxes: Sequence[Box], way: F64, distance: float, size: tuple[int, int]
-) -> Camera | None:
-    """The camera at standing height in the level direction `way` from boxes; None if there is no room or no sight."""
-    up = sights.scene.frame.up_vector
-    corners, center, radius = _corners(boxes)
-    away = distance * filling_distance(corners - center, way, up, size)
-    for share in (1.0, 0.75, 0.5):
-        eye = center + share * away * way
-        eye = eye + up * (sights.space.eye_height - eye @ up)
-        clear = float(sights.space.clearance(eye[None])[0]) >= CLEARANCE * sights.space.step
-        if clear and sights.space.sees(eye, center, radius) and not wall_between(sights.scene, eye, center):
-            return Camera.look_at(eye, center, up, *size, CLOSE_FOV if share == 1.0 else PERSON_FOV)
-    return None
+def _at_eye_level(asked: _Asked) -> Iterator[tuple[Camera, float]]:
+    """Cameras at standing height on the side that is asked for, where there is room and a clear sight."""
+    if not asked.eye_level or not asked.level:
+        return
+    scene, space = asked.sights.scene, asked.sights.space
+    up = scene.frame.up_vector
+    corners, center, radius = _corners(asked.boxes)
+    for turn in TURNS if asked.side is not None else (*TURNS, *OTHER_SIDES):
+        way = _turned(asked.toward, up, turn)
+        away = asked.distance * filling_distance(corners - center, way, up, asked.size)
+        for share in (1.0, 0.75, 0.5):
+            eye = center + share * away * way
+            eye = eye + up * (space.eye_height - eye @ up)
+            clear = float(space.clearance(eye[None])[0]) >= CLEARANCE * space.step
+            if clear and space.sees(eye, center, radius) and not wall_between(scene, eye, center):
+                yield Camera.look_at(eye, center, up, *asked.size, CLOSE_FOV if share == 1.0 else PERSON_FOV), abs(turn)
+                break
 
 
-def _from_outside(
-    sights: Sights, boxes: Sequence[Box], way: F64, tilt: float, distance: float, size: tuple[int, int]
-) -> Camera:
-    """The camera in the direction `way`, `tilt` degrees above the horizon, whatever is there."""
-    up = sights.scene.frame.up_vector
-    corners, center, _ = _corners(boxes)
+def _from_outside(asked: _Asked, tilt: float) -> Camera:
+    """The camera on the side that is asked for, `tilt` degrees above the horizon, whatever is there."""
+    up = asked.sights.scene.frame.up_vector
+    corners, center, _ = _corners(asked.boxes)
     e = np.radians(tilt)
-    toward = np.cos(e) * way + np.sin(e) * up
-    away = max(distance, 1.0) * filling_distance(corners - center, toward, up, size)
-    return Camera.look_at(center + away * toward, center, up, *size, CLOSE_FOV)
+    toward = np.cos(e) * asked.toward + np.sin(e) * up
+    away = max(asked.distance, 1.0) * filling_distance(corners - center, toward, up, asked.size)
+    return Camera.look_at(center + away * toward, center, up, *asked.size, CLOSE_FOV)
 
 
 def _corners(boxes: Sequence[Box]) -> tuple[F64, F64, float]:

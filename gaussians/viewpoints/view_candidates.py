@@ -15,6 +15,7 @@ from ..world.box import Box
 from .coverage import fit_camera
 from .cutaway import NOTHING, Cut, from_above, toward_inside, wall_between
 from .free_space import FreeSpace
+from .visibility import silhouettes
 
 F64 = NDArray[np.float64]
 Kind = Literal["camera", "overview", "walk-in", "close-up", "plan"]
@@ -28,8 +29,10 @@ CLOSE_UPS_OF = 6  # most groups that close-ups are made of; more are shown by vi
 DISTANCES = (1.0, 0.7)  # of the distance at which the thing fills the image; nearer ones where there is no room
 FILLS = 0.65  # share of the image's height or width that a thing's box takes in a close-up
 CLEARANCE = 1.5  # voxels between an eye and the nearest surface
+PHOTOGRAPHS = 8  # cameras of a scene, from which they are taken for photographs that cover it
+PHOTOGRAPHS_TRIED = 12  # photographs from whose position a close-up is tried
 STANDS = 8  # places in free space
-FOV_LIMITS = (30.0, 85.0)  # degrees, vertical, of views fitted to what they show
+FOV_LIMITS = (20.0, 85.0)  # degrees, vertical, of views fitted to what they show
 PLAN_FOV = 12.0  # degrees: so narrow that a view from above is nearly a plan
 TALL = 0.95  # share of the image that a fitted view fills
 
@@ -105,7 +108,7 @@ def walk_ins(scene: Scene, groups: Sequence[int], size: tuple[int, int], space: 
 
 
 def close_ups(scene: Scene, group: int, size: tuple[int, int], space: FreeSpace) -> list[View]:
-    """Views of one group from its sides, from where there is room for a camera."""
+    """Views of one group from its sides, where there is room for a camera, and from where photographs were taken."""
     assert scene.language is not None
     box = scene.language.groups[group].box
     found: list[View] = []
@@ -117,7 +120,46 @@ def close_ups(scene: Scene, group: int, size: tuple[int, int], space: FreeSpace)
             if camera is not None:
                 name = f"close-up {group}.{len(found) + 1}"
                 found.append(View(name, "close-up", replace(camera, name=name)))
+    for eye, _ in photograph_eyes(scene, box):
+        name = f"close-up {group}.{len(found) + 1}"
+        found.append(View(name, "camera", replace(fitted_camera(eye, [box], scene, size), name=name)))
     return found
+
+
+def is_photographed(scene: Scene) -> bool:
+    """Whether the scene has so many cameras that they are taken for those of photographs that cover it."""
+    return len(scene.cameras) >= PHOTOGRAPHS
+
+
+def photograph_eyes(
+    scene: Scene, box: Box, toward: F64 | None = None, within: float = 180.0
+) -> list[tuple[F64, float]]:
+    """Positions `[3]` of photographs that have a box before them, and how far they are from a side, degrees.
+
+    Args:
+        toward: `[3]` level direction from the box to the side that is asked for; None takes cameras on all sides.
+        within: largest angle between that side and a camera, degrees.
+
+    Returns:
+        at most `PHOTOGRAPHS_TRIED`, those nearest to the side first; without a side those that show most of the box.
+    """
+    center, up = np.array(box.center), scene.frame.up_vector
+    found: list[tuple[float, int, F64]] = []
+    for i, camera in enumerate(scene.cameras if is_photographed(scene) else ()):
+        pixels, depth = camera.project(center[None])
+        if not camera.contains(pixels, depth)[0]:
+            continue
+        way = camera.position - center
+        level = way - up * (way @ up)
+        if toward is None:
+            found.append((-float(silhouettes(camera, [box])[1][0]), i, camera.position))
+            continue
+        cosine = float(level @ toward) / max(float(np.linalg.norm(level) * np.linalg.norm(toward)), 1e-12)
+        off = float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
+        if off <= within:
+            found.append((off, i, camera.position))
+    best = sorted(found, key=lambda f: f[:2])[:PHOTOGRAPHS_TRIED]
+    return [(eye, off if toward is not None else 0.0) for off, _, eye in best]
 
 
 def side_camera(

@@ -113,3 +113,18 @@ def test_looking_from_a_thing_toward_another(sights: Sights) -> None:
     assert camera.forward @ toward / np.linalg.norm(toward) > 0.98
     assert found.chosen.shares[BALL] > 0.005  # the chair's own back, which one turns around to, is left out
     assert found.chosen.view.cut.groups == {SEAT}
+
+
+def test_a_capture_is_shown_from_where_its_photographs_were_taken(scene: Scene) -> None:
+    spots = [(-1.7, -0.2 * k, 1.0) for k in range(-4, 4)] + [(0.1 * k, -1.7, 1.2) for k in range(3)]
+    cameras = tuple(Camera.look_at(s, [0, 0, 0.5], [0, 0, 1], 320, 240, 60) for s in spots)
+    sights = Sights.of(scene.replace(cameras=cameras))
+    for side, way in (("front", (-1.0, 0.0)), (None, None)):
+        view = view_from_side(sights, [SEAT], side, VIEWER, size=SIZE).chosen  # type: ignore[arg-type]
+        eye = view.view.camera.position
+        assert min(np.linalg.norm(eye - s) for s in np.array(spots)) < 1e-9
+        assert view.shares[SEAT] > 0.02
+        if way is not None:
+            assert np.array(way) @ eye[:2] / np.linalg.norm(eye[:2]) > np.cos(np.radians(30))
+    behind = view_from_side(sights, [SEAT], "behind", VIEWER, size=SIZE).chosen.view.camera
+    assert behind.position[0] > 0.3  # no photograph was taken there
