@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...gaussians.world.support import FIXED
+from .reading.room_phrases import named_in
 from .survey import Survey, Thing
 from .views import View, middle
 
@@ -18,6 +19,7 @@ AT_WALL = 0.3  # metres of gap up to which a thing stands at a wall
 IN_CORNER = 0.8  # metres of gap to both walls up to which a thing is in their corner
 NAMES = ("back", "front", "left", "right")
 _THIRD = 1.0 / 3.0
+_CENTRAL = 0.4  # of the way from the middle of the room to a wall
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,14 +95,22 @@ def zone(thing: Thing, survey: Survey) -> tuple[str, str]:
     )
 
 
-_SAID = {
-    "back": "back far rear opposite end", "front": "front near nearest nearer closest viewer 's close",
-    "left": "left left-hand leftmost", "right": "right right-hand rightmost",
-}  # fmt: skip
-_WORDS = {word: name for name, words in _SAID.items() for word in words.split()}
-
-
-def named_in(said: str) -> tuple[str, ...]:
-    """The walls that words name, "far left" being back and left."""
-    words = re.findall(r"[a-z'-]+", said.lower())
-    return tuple(dict.fromkeys(_WORDS[w] for w in words if w in _WORDS))
+def is_in(thing: Thing, said: str, survey: Survey) -> tuple[bool, float]:
+    """Whether a thing is in a place of the room, as said, and how sure that is."""
+    names = named_in(said)
+    if "corner" in said:
+        one, other, gap = corner_of(thing, survey)
+        return gap <= IN_CORNER and set(names) <= {one.name, other.name}, 0.93 if abs(gap - IN_CORNER) > 0.3 else 0.75
+    if "wall" in said:
+        wall, _ = wall_of(thing, survey)
+        others = [w for w in walls(survey) if w.name in names] or [wall]
+        least = min(gap_to(w, thing) for w in others)
+        return least <= AT_WALL, 0.93 if abs(least - AT_WALL) > 0.15 else 0.75
+    back, _, _, right = walls(survey)
+    wide, far = float(middle(thing) @ right.out) / right.reach, float(middle(thing) @ back.out) / back.reach
+    if re.search(r"\b(?:middle|cent(?:er|re))\b", said):
+        off = max(abs(wide), abs(far))
+        return off <= _CENTRAL, 0.9 if abs(off - _CENTRAL) > 0.15 else 0.7
+    along = {"right": wide, "left": -wide, "back": far, "front": -far}
+    least = min((along[n] for n in names), default=-1.0)
+    return least > 0, round(0.6 + 0.33 * min(abs(least) / 0.2, 1.0), 3)

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...gaussians.color import BASIC, FAMILIES, plain_color
 from ...gaussians.language.query.attributes import COLOR_HOLDS, color_scores
-from ...gaussians.language.query.query import Query
+from ...gaussians.language.query.query import Query, Relation
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.world import kinds, relations
 from ...gaussians.world.relation_geometry import HOLDS, Stand
@@ -28,6 +28,7 @@ from .naming import named
 from .picking import picked
 from .reading import families
 from .reading.noun_phrase import BY_ID
+from .reading.room_phrases import is_place
 from .things import Found, NotResolved, Thing, gap
 
 if TYPE_CHECKING:
@@ -150,6 +151,9 @@ class Survey:
         if query.text.startswith(f"{BY_ID} "):
             numbered = tuple(t for t in self.things if str(t.id) == query.text.removeprefix(f"{BY_ID} "))
             return Found("found" if numbered else "absent", numbered)
+        place = next((r for r in query.relations if is_place(r.anchors[0].text)), None)
+        if place is not None and not query.groups:
+            return self._in_place(query, place)
         if query.text in families.named() and not query.groups:
             return self._of_family(query)
         found = self.finder(query)
@@ -177,6 +181,25 @@ class Survey:
         if query.pick in ("one", "all"):
             return Found("ambiguous", members, reason=f"{query.describe()}: {len(members)} things match")
         return Found("found", members[:1]) if len(members) == 1 else self._picked(query, members)
+
+    def _in_place(self, query: Query, place: Relation) -> Found:
+        """What a query for something in a place of the room means: "the lamp in the far left corner"."""
+        from .room_places import is_in
+
+        others = tuple(r for r in query.relations if r is not place)
+        every = self.find(query.model_copy(update={"relations": others, "pick": "all", "count": None}))
+        if every.verdict != "found":
+            return every
+        things = tuple(t for t in every.things if t.node is not None and is_in(t, place.anchors[0].text, self)[0])
+        if not things:
+            return Found("absent", (), every.things[:3])
+        if query.pick == "any" or len(things) == 1:
+            return Found("found", things if query.pick == "all" else things[:1])
+        if query.pick in ("all", "rest") and query.count in (None, len(things)):
+            return Found("found", things)
+        if query.pick in ("one", "all", "rest"):
+            return Found("ambiguous", things, reason=f"{query.describe()}: {len(things)} things match")
+        return self._picked(query, things)
 
     def _picked(self, query: Query, members: Sequence[Thing]) -> Found:
         """The one of several things that a superlative picks."""

@@ -45,8 +45,8 @@ _HOW_FAR = f"""
     how far (apart|away) (do|does) {{a:spot}} (stand|sit|lie|hang) from {{b:spot}} {_END}
     how far (do|does) {{a:spot}} and {{b:spot}} (stand|sit|lie|hang) {_APART} {_END}
     how far (do|does) {{a:spot}} (stand|sit|lie|hang) [away] from {{b:spot}} {_END}
-    how (far|close|near) {_APART} BE {{both}} {_END}
-    how (far|close|near) BE {{both}} {_APART} {_END}
+    how (far|close|near) {_APART} BE {{both:spot}} {_END}
+    how (far|close|near) BE {{both:spot}} {_APART} {_END}
     [in {{u:unit}}] how (far|long) is it [straight across|across|in a straight line] (from|between) {{a:spot}} \
         (to|and|over to|across to) {{b:spot}} {_END}
     how far (from|between) {{a:spot}} (to|and|is) {{b:spot}} {_END}
@@ -56,16 +56,16 @@ _HOW_FAR = f"""
     how far (off|away|is it) (is|are|to) {{a:spot}} {_END}
     what [(is|would be|was)] [the] {_LENGTH} [there] [is|in {{u:unit}}|left] (between|from|separating|of) \
         {{a:spot}} (and|to|from) {{b:spot}} {_END}
-    what [(is|would be)] [the] {_LENGTH} [there] [is] between {{both}} {_END}
+    what [(is|would be)] [the] {_LENGTH} [there] [is] between {{both:spot}} {_END}
     [the] {_LENGTH} (between|from|of) {{a:spot}} (and|to|from) {{b:spot}} {_END}
-    [the] {_LENGTH} between {{both}} {_END}
+    [the] {_LENGTH} between {{both:spot}} {_END}
     (give me|measure|show me|estimate|compute|calculate|state|find) [the] {_LENGTH} (between|from) {{a:spot}} \
         (and|to) {{b:spot}} {_END}
     how (much|big|wide|large|long|many) [of a] [a|the|is|an|are] [the|of a] [actual|clear|free|empty] {_LENGTH} \
         [is|lies|are] [there] [is] [left|free|available] (between|from|separating) {{a:spot}} (and|to|from) \
         {{b:spot}} {_END}
     how (much|big|wide|large|long) [of a] [a|the|is] [the] {_LENGTH} [is] [there] [is] [left|free] between \
-        {{both}} {_END}
+        {{both:spot}} {_END}
     how many {{u:unit}} [(is|are)] [there|is it|is there] [are there] (between|from|separate|separates) \
         {{a:spot}} (and|to|from) {{b:spot}} {_BY}
     how many {{u:unit}} [away|apart] BE {{a:spot}} [away|apart] (from|to) {{b:spot}} {_BY}
@@ -171,7 +171,7 @@ def _which_far(asked: Asked, survey: Survey) -> Answer | None:
 
 def _is_gap(asked: Asked) -> bool:
     said = asked.text.lower()
-    parts = {asked.slots[k].part for k in ("a", "b") if k in asked.slots}
+    parts = {asked.slots[k].part for k in ("a", "b", "both") if k in asked.slots}
     if "centre" in parts or (
         _CENTRE.search(said) and not any(asked.slots[k].who for k in ("a", "b") if k in asked.slots)
     ):
@@ -182,7 +182,8 @@ def _is_gap(asked: Asked) -> bool:
 def _both(asked: Asked, survey: Survey) -> tuple[tuple[End, ...], tuple[End, ...]] | None:
     """The two ends of a question; of two things named as one ("the two chairs") each is an end."""
     if "both" in asked.slots:
-        things = meant(asked.slots["both"], survey)
+        query = asked.slots["both"].query
+        things = meant(query, survey) if query is not None else ()
         return ((end_of(things[0], survey),), (end_of(things[1], survey),)) if len(things) == 2 else None
     first = ends(asked.slots["a"], survey, asked.situation)
     if "b" in asked.slots:

@@ -13,8 +13,9 @@ from ..candidates import Case, agreed, is_plural, meant, unknown, whole
 from ..kind import Asked, Kind
 from ..reading.noun_phrase import is_anything
 from ..reading.phrase_templates import templates
+from ..reading.room_phrases import named_in
 from ..relating import overlaps, related, strength, supporter
-from ..room_places import named_in, wall_of
+from ..room_places import wall_of
 from ..survey import NotResolved, Survey, Thing, listed
 from ..telling import absent
 
@@ -51,6 +52,8 @@ _WHAT_THERE = f"""
     (what|which) {{x}} {_IS} [in] between {{a}} and {{b}}
     {_LISTS} {_ALL} [that (is|are)] [in] between {{a}} and {{b}}
     what separates {{a}} (and|from) {{b}}
+    (is|are) there {{x}} {{r:relation}} {{a}} [and] [if so] (what|what is it|what are they|which)
+    what if anything (is|stands|lies|sits) {{r:relation}} {{a}}
 """
 _HAS = f"""
     {_WHAT} (does|do) {{a}} (have|hold|carry|support|contain|store|keep) [on it|on top|on top of it|in \

@@ -113,7 +113,9 @@ _OWN_WHAT = f"""
     (what|which thing|what object|what thing) [(is|are|stands|sits|lies|is standing)] \
         [located|placed|standing|found|right] {_OF} {{a}} 's [own] {{o:way}} {_HAND}
     {_OF} {{a}} 's [own] {{o:way}} {_HAND} what (is|stands) [there]
-    {{a}} 's own {{o:way}} {_HAND} what (is|stands|is standing) [beside it|there|next to it]
+    [on|to|at] {{a}} 's [own] {{o:way}} {_HAND} [as you would sit on it|as you sit on it] what (is|stands) \
+        [standing] [just] \
+        [beside it|there|next to it]
 """
 _EITHER_OF = """
     BE {x} [standing|located|placed|more] (to the|on the|to|on|at the) (left|right) or (to the|on the|to|on|at \

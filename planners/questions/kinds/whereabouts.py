@@ -10,7 +10,7 @@ from ..kind import Asked, Kind
 from ..reading.noun_phrase import is_anything
 from ..reading.phrase_templates import templates
 from ..relating import related, supporter
-from ..room_places import AT_WALL, corner_of, gap_to, in_corner, named_in, wall_of, walls, zone
+from ..room_places import AT_WALL, corner_of, in_corner, is_in, wall_of, walls, zone
 from ..survey import Survey, Thing, listed
 from ..views import middle
 
@@ -176,28 +176,6 @@ def _which_zone(asked: Asked, survey: Survey) -> Answer | None:
     return agreed([(survey.named(t), one(t)) for t in things])
 
 
-def _in(thing: Thing, said: str, survey: Survey) -> tuple[bool, float]:
-    """Whether a thing is in a place of the room, and how sure that is."""
-    names = named_in(said)
-    if "corner" in said:
-        one, other, gap = corner_of(thing, survey)
-        mine = {one.name, other.name}
-        return gap <= 0.8 and set(names) <= mine, 0.93 if abs(gap - 0.8) > 0.3 else 0.75
-    if "wall" in said:
-        wall, gap = wall_of(thing, survey)
-        others = [w for w in walls(survey) if w.name in names] or [wall]
-        least = min(gap_to(w, thing) for w in others)
-        return least <= AT_WALL, 0.93 if abs(least - AT_WALL) > 0.15 else 0.75
-    back, _, _, right = walls(survey)
-    wide, far = float(middle(thing) @ right.out) / right.reach, float(middle(thing) @ back.out) / back.reach
-    if re.search(r"\b(?:middle|cent(?:er|re))\b", said):
-        off = max(abs(wide), abs(far))
-        return off <= 0.4, 0.9 if abs(off - 0.4) > 0.15 else 0.7
-    along = {"right": wide, "left": -wide, "back": far, "front": -far}
-    least = min((along[n] for n in names), default=-1.0)
-    return least > 0, round(0.6 + 0.33 * min(abs(least) / 0.2, 1.0), 3)
-
-
 def _in_zone(asked: Asked, survey: Survey) -> Answer | None:
     query, said = asked.slots["x"], str(asked.slots["z"])
     exists = query.pick == "any" or bool(re.search(r"\bthere\b|\b(?:have|see)\b", asked.text.lower()))
@@ -206,7 +184,10 @@ def _in_zone(asked: Asked, survey: Survey) -> Answer | None:
         return None
 
     def one(thing: Thing) -> Answer:
-        yes, sure = _in(thing, said, survey)
+        yes, sure = is_in(thing, said, survey)
+        if "z2" in asked.slots:
+            also, other = is_in(thing, str(asked.slots["z2"]), survey)
+            yes, sure = yes and also, min(sure, other)
         place, rest = _place(thing, survey)
         text = f"{'Yes' if yes else 'No'}, {survey.named(thing)} is {place}{', ' + rest if rest else ''}."
         return Answer(answer="yes" if yes else "no", answer_type="yesno", text=text, frame="viewer", confidence=sure,
@@ -222,7 +203,7 @@ def _what_in_zone(asked: Asked, survey: Survey) -> Answer | None:
     query, text = asked.slots.get("x"), asked.text.lower()
     said = str(asked.slots.get("z", "the corner"))
     wanted = None if query is None or is_anything(query) else {t.row for t in survey.all_of(query)}
-    found = [t for t in survey.things if (wanted is None or t.row in wanted) and _in(t, said, survey)[0]]
+    found = [t for t in survey.things if (wanted is None or t.row in wanted) and is_in(t, said, survey)[0]]
     found = [t for t in found if (t.node is not None and t.node.support != "ceiling") or "ceiling" in said]
     if "corner" in said:
         found.sort(key=lambda t: corner_of(t, survey)[2])

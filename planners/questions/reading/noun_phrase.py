@@ -15,7 +15,7 @@ from ....gaussians.world import kinds
 from ....gaussians.world.words import singular
 from ...grammar import GrammarPlanner
 from ...grammar.tagging.words import bag
-from . import families
+from . import families, room_phrases
 from .colors import color
 
 Words = tuple[str, ...]
@@ -103,9 +103,19 @@ _REWRITES: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (r"^(?:any|some)(?:thing)? else(?: but| than| besides| except)? (?:the )?(?=\w)", "anything except the "),
         (r"^the (?:color|colour|shade|height|width|depth|length|size|dimensions|number|amount|distance|gap|position|"
          r"location) .*$", ""),
+        (r"\b(?:that|which) (?:has|have|holds|carries|have got|has got) ((?:the|a|an|some|any|two|three) .+?)"
+         r"(?: (?:on|in) (?:it|them|top))?$",
+         r"with \1 on it"),
+        (r"(?<=\w) (?:that|which) (?:is|are) (?=(?:on|in|by|next|near|at|under|behind|beside|between|against|above|"
+         r"below|beneath|underneath|inside|closest|nearest|farthest|left|right|to the) )", " "),
     )
 )  # fmt: skip
 _COLORED = re.compile(r"^(?:something|anything|everything|stuff|all|things|objects|items|what|one|ones) (\w+)(?= |$)")
+_PLACE, _HARD_NAME = "qroom", "qname"
+# Words of names of kinds that the grammar takes for something else: "but", a measure, an action, a colour.
+_HARD = bag(
+    "bar size top adjustable height till mounted telly area art copy scale food water walk brolly length cooler"
+)
 _TOKENS = {
     "qseat": families.SEAT, "qlight": families.LIGHT, "qstore": families.STORAGE, "qpiece": families.FURNITURE,
 }  # fmt: skip
@@ -173,7 +183,9 @@ def _plainly(said: str) -> str:
         before = said
         for pattern, plain in _REWRITES:
             said = pattern.sub(plain, said).strip()
+    said = room_phrases.WITHIN.sub(_placed, said)
     said = _of_names().sub(lambda m: _of_kinds()[m[0]], said)
+    said = _hard_names().sub(lambda m: f"{_hard_tokens()[m[1]]}{m[2]}", said)
     if (colored := _COLORED.match(said)) and _is_color(colored[1]):
         rest = said[colored.end() :].strip()
         every = "all" if said.startswith(("everything", "all")) else "any"
@@ -183,6 +195,30 @@ def _plainly(said: str) -> str:
     if said.startswith("something"):
         said = "anything" + said.removeprefix("something")
     return re.sub(r" or (?:else )?(?:(?:a|an|any|some) )?", " and ", said)
+
+
+def _placed(found: re.Match[str]) -> str:
+    """A place of the room as one word that the grammar takes for a noun."""
+    return f" in the {_PLACE}{room_phrases.kind_of(found[1])}{''.join(room_phrases.named_in(found[1]))}"
+
+
+@cache
+def _hard_tokens() -> dict[str, str]:
+    """Names of kinds with words that mean something else in the grammar ("bar cart"), each with a word in its place."""
+    names = (n for kind in kinds.table().kinds.values() for n in kind.names)
+    hard = sorted(n for n in names if " of " not in n and not _HARD.isdisjoint(n.split()))
+    return {n: f"{_HARD_NAME}{chr(97 + i // 26)}{chr(97 + i % 26)}x" for i, n in enumerate(dict.fromkeys(hard))}
+
+
+@cache
+def _hard_names() -> re.Pattern[str]:
+    longest = sorted(_hard_tokens(), key=len, reverse=True)
+    return re.compile(rf"\b({'|'.join(map(re.escape, longest))})(s?)\b")
+
+
+@cache
+def _of_hard_tokens() -> dict[str, str]:
+    return {token: name for name, token in _hard_tokens().items()}
 
 
 @cache
@@ -215,6 +251,9 @@ def _checked(query: Query) -> Query | None:
     """The query with words for families in place of their tokens; None if it names something that is no thing."""
     text = query.text
     words = text.split()
+    if words and (hard := _of_hard_tokens().get(words[-1])) is not None:
+        text = " ".join([*words[:-1], hard])
+        words = text.split()
     token = _TOKENS.get(words[-1]) if words else None
     if token is not None:
         if len(words) > 1:
@@ -245,6 +284,8 @@ def _checked(query: Query) -> Query | None:
 
 def _checked_anchor(query: Query) -> Query | None:
     """An anchor; corners and the like are places, which the resolver tells apart."""
+    if query.text.startswith(_PLACE):
+        return Query(text=room_phrases.told(query.text.removeprefix(_PLACE)))
     return query if query.text in ("corner", "room", "middle", "center") else _checked(query)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, Literal
 
@@ -82,7 +82,8 @@ _SIDED2 = "[and|with|while|having|,|there (is|are)] {b2:bare} [is|are] {s2:side}
 _TAIL = (
     "[[(with|and)] [(my|their|his|her|your|the)] head (on|at|against) the (wall|wall side|headboard)] "
     "[(leaning|leant|leaned|lying) back] [[(is|that is|which is)] {s0:side}] "
-    f"[{_LOOKS} {{way:gaze}}|{_GAZES} {{g:bare}}|(and|with) my back (to|against|towards|toward) {{back:bare}}] "
+    f"[{_LOOKS} {{way:gaze}}|{_GAZES} [that|this] {{g:bare}}|(and|with) my back (to|against|towards|toward) "
+    f"{{back:bare}}] "
     f"[{_SIDED}] [{_SIDED2}]"
 )
 _CLAUSES = (
@@ -318,7 +319,9 @@ def read_situation(words: Words) -> tuple[Situation | None, Words]:
     if not _ANY.search(said) and words[:1] not in (("in",), ("on",), ("from",), ("at",)) and " from " not in said:
         return None, words
     before, rest = _leading(words)
-    behind, rest = _trailing(rest, before is not None)
+    behind, rest = _trailing(rest)
+    if before is not None and behind is not None and before.facing is None and not before.gaze:
+        before = replace(before, facing=behind.facing, gaze=behind.gaze)
     return (before or behind), rest
 
 
@@ -336,7 +339,7 @@ def _leading(words: Words) -> tuple[Situation | None, Words]:
     return None, words
 
 
-def _trailing(words: Words, has_one: bool) -> tuple[Situation | None, Words]:
+def _trailing(words: Words) -> tuple[Situation | None, Words]:
     """A situation behind the question."""
     personal = bool({"i", "me", "my", "you", "your"} & set(words))
     for at in range(2, len(words)):
@@ -360,7 +363,7 @@ def _trailing(words: Words, has_one: bool) -> tuple[Situation | None, Words]:
             "assuming",
             "once",
         )
-        if has_one or not (stated or personal or words[at - 1] == ","):
+        if not (stated or personal or words[at - 1] == ","):
             continue
         if not (_SIDE_WORDS & set(words)) and not personal:
             continue
@@ -394,6 +397,8 @@ def _made(kind: str, words: Words, slots: Mapping[str, Any]) -> Situation:
     pose = poses[kind]
     at, facing = slots.get("at"), slots.get("g")
     gaze: Gaze = "at" if facing is not None else slots.get("way", "")
+    if facing is not None and at is not None:
+        facing = _same_thing(at, facing)
     if "back" in slots:
         facing, gaze = slots["back"], "away"
     if "seat" in slots:
@@ -406,6 +411,15 @@ def _made(kind: str, words: Words, slots: Mapping[str, Any]) -> Situation:
     )
     seated = kind in ("on", "sit", "take")
     return Situation(_told(words), at, facing, pose, seated, gaze, beside)
+
+
+def _same_thing(at: Query, facing: Query) -> Query:
+    """What "it" and "that desk" mean beside a place: "in the chair at the far desk, facing that desk"."""
+    anchors = [a for r in at.relations for a in r.anchors]
+    if facing.last:
+        return anchors[0] if anchors else at
+    plain = facing == Query(text=facing.text)
+    return next((a for a in (*anchors, at) if plain and a.text == facing.text), facing)
 
 
 def _told(words: Words) -> str:

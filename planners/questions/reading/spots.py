@@ -19,7 +19,8 @@ _ROOM = re.compile(
     r"(?:the )?(?:middle|centre|center) of (?:the|this) (?:room|floor)|the room 's (?:middle|centre|center)"
 )
 _PART = re.compile(
-    r"^(?:the )?(?P<part>middle|centre|center|central point|midpoint|edge|closest edge|nearest edge|near edge|nearest "
+    r"^(?:the )?(?P<part>middle|centre|center|centers|centres|middles|edges|sides|facing sides|surfaces|ends|"
+    r"central point|midpoint|edge|closest edge|nearest edge|near edge|nearest "
     r"point|closest point|side|end|foot|surface|front edge|front) of "
 )
 
