@@ -19,10 +19,12 @@ from . import (
     sides,
     size,
     superlative,
+    undecidable,
     whereabouts,
 )
 
 KINDS = (
+    undecidable.KIND,
     *room.KINDS,
     *free_floor.KINDS,
     *hazards.KINDS,
