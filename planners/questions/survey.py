@@ -156,6 +156,9 @@ class Survey:
             return self._in_place(query, place)
         if query.text in families.named() and not query.groups:
             return self._of_family(query)
+        if (rest := _held_by_shell(query)) is not None:
+            shell = next(r for r in query.relations if r not in rest.relations).anchors[0].text
+            return self._filtered(query, rest, lambda thing: thing.node is not None and thing.node.support == shell)
         found = self.finder(query)
         rows = tuple(dict.fromkeys(c.group for c in found.candidates if c.group >= 0))
         if found.verdict != "found" and (about := self._at_fault(query)) is not None:
@@ -167,20 +170,25 @@ class Survey:
 
     def _of_family(self, query: Query) -> Found:
         """What a query for a family means: "the tallest piece of furniture"."""
-        every = self.finder(query.model_copy(update={"text": "", "pick": "all", "count": None}))
-        if every.verdict == "ambiguous":
-            about = self._at_fault(query)
-            return replace(self.find(about), about=about) if about else Found("absent", ())
-        things = [self.at(g) for g in every.groups] if every.verdict == "found" else []
-        rows = tuple(dict.fromkeys(t.row for t in things if families.holds(query.text, t.label)))
-        members = tuple(map(self.at, rows))
-        if not members or (query.pick in ("all", "rest") and query.count in (None, len(members))):
-            return Found("found" if members else "absent", members)
-        if query.pick == "any" or (len(members) == 1 and query.pick != "all"):
+        wider = query.model_copy(update={"text": ""})
+        return self._filtered(query, wider, lambda thing: families.holds(query.text, thing.label))
+
+    def _filtered(self, query: Query, wider: Query, fits: Callable[[Thing], bool]) -> Found:
+        """What a query means that is answered by another, wider one and a condition on each thing."""
+        every = self.find(wider.model_copy(update={"pick": "all", "count": None}))
+        if every.about is not None or every.verdict == "ambiguous":
+            return every
+        members = tuple(t for t in every.things if fits(t))
+        if not members:
+            return Found("absent", (), every.things[:3] if wider.text else ())
+        if query.pick in ("all", "rest"):
+            right = query.count in (None, len(members))
+            return Found("found" if right else "ambiguous" if len(members) > (query.count or 0) else "absent", members)
+        if len(members) == 1 or query.pick == "any":
             return Found("found", members[:1])
-        if query.pick in ("one", "all"):
+        if query.pick == "one":
             return Found("ambiguous", members, reason=f"{query.describe()}: {len(members)} things match")
-        return Found("found", members[:1]) if len(members) == 1 else self._picked(query, members)
+        return self._picked(query, members)
 
     def _in_place(self, query: Query, place: Relation) -> Found:
         """What a query for something in a place of the room means: "the lamp in the far left corner"."""
@@ -342,6 +350,20 @@ class Survey:
         for t in things:
             labels[t.name] = labels.get(t.name, 0) + 1
         return listed([f"{n} {plural(name)}" if n > 1 else with_article(name) for name, n in labels.items()])
+
+
+def _held_by_shell(query: Query) -> Query | None:
+    """A query without its relation "on the floor", "on a wall" or "on the ceiling"; None if it has none.
+
+    What holds a thing is in the graph; which wall is meant by "the left wall" is not.
+    """
+    for relation in query.relations:
+        (anchor, *more) = relation.anchors
+        plain = anchor.pick in ("one", "any", "all") and not (anchor.relations or anchor.colors or anchor.size or more)
+        if relation.name in ("on", "inside") and anchor.text in SHELL and plain:
+            rest = tuple(r for r in query.relations if r is not relation)
+            return query.model_copy(update={"relations": rest})
+    return None
 
 
 def _with(query: Query, anchor: Query, other: Query) -> Query:

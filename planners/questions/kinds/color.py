@@ -142,7 +142,8 @@ def _has(asked: Asked, survey: Survey) -> Answer | Undecided | None:
     if not phrase.plural and 0 < len(fit) < len(known):
         raise phrase.differ()
     holds = len(fit) == len(known)
-    told = listed([f"{survey.named(t)} is {t.color}" for t in phrase.things[:12]])
+    other = phrase.things if holds or not fit else [t for t, fits in known if not fits]
+    told = listed([f"{survey.named(t)} is {t.color}" for t in other[:6]])
     return yes_no(holds, f"{told}.", phrase.things, _sure(survey))
 
 
@@ -188,6 +189,8 @@ def _of_color(asked: Asked, survey: Survey) -> Answer | None:
     things, _ = all_of(survey, query.model_copy(update={"pick": "all", "count": None}))
     fit = [t for t in things if survey.has_color(t, color)]
     told = f"{listed([survey.named(t) for t in fit])} {'is' if len(fit) == 1 else 'are'} {color}."
+    if asked.words[0] in ("is", "are"):
+        return yes_no(bool(fit), told if fit else f"nothing here is {color}.", fit, _sure(survey))
     if not fit:
         return Answer(answer=(), answer_type="list", text=f"None of them is {color}.", confidence=_sure(survey),
                       evidence=evidence(things))  # fmt: skip

@@ -10,6 +10,7 @@ from ..resolving import all_of
 from ..survey import Survey, Thing, listed
 from ..telling import GRAPH_SURE, absent_text, bare, evidence, yes_no
 
+_NAMED = 4  # things up to which each is told apart
 _PLACE = "(the room|this room|it|this place|this scene|the scene|this|the house|there)"
 _WHO = "(we|you|i|they|one|somebody|someone|people|he|she|the owner|the owners)"
 _SEE = (
@@ -17,6 +18,7 @@ _SEE = (
     "have got|come across|count on finding)"
 )
 _PHRASES = f"""
+    {{x:some}}
     (is|are|was|were) there (no|not any|not a|not an) {{none}}
     [whether] there (is|are) (no|not any|not a|not an) {{none}}
     (is|are|does) {_PLACE} (lacking|missing|without|lack|miss|lack of) {{none}}
@@ -67,20 +69,19 @@ def _there(survey: Survey, query: Query) -> tuple[Query, tuple[Thing, ...], str]
         return query, (), f"there {verb} {survey.counted(things)}."
     if things:
         return query, things, ""
-    about = found.about or query
-    told = absent_text(survey, about, found)
-    if about != query and not about.last:
-        told = f"there is no {bare(about)} here."
+    if query.also:
+        names = " or ".join(bare(q) for q in (query.model_copy(update={"also": ()}), *query.also))
+        return query, (), f"there is no {names} here."
+    told = absent_text(survey, found.about or query, found)
     return query, (), told[0].lower() + told[1:]
 
 
 def _told(survey: Survey, query: Query, things: list[Thing]) -> str:
     verb = "is" if len(things) == 1 else "are"
     named = [survey.named(t) for t in things]
-    if query.relations or len(things) == 1:
-        where = f"{verb.capitalize() if not things else ''}"
-        return f"there {verb} {survey.counted(things)}{where}: {listed(named)}."
-    return f"there {verb} {survey.counted(things)}."
+    plain = {f"the {t.label}" for t in things}
+    where = f": {listed(named)}" if len(things) <= _NAMED and not plain.issuperset(named) else ""
+    return f"there {verb} {survey.counted(things)}{where}."
 
 
 KIND = Kind("existence", templates(_PHRASES), answer)

@@ -13,7 +13,7 @@ from ..reading.noun_phrase import is_anything
 from ..reading.noun_phrase import thing as noun_phrase
 from ..reading.phrase_templates import templates
 from ..resolving import all_of, meant
-from ..survey import NotResolved, Survey, Thing
+from ..survey import NotResolved, Survey, Thing, listed
 from ..telling import absent_text, label, told_apart, yes_no
 
 _HERE = "[here|in here|in the room|there is|around|there]"
@@ -35,7 +35,8 @@ _PHRASES = f"""
     (name|find|identify|give|show|tell) [me] the {{s:superlative}} {_THING} {_HERE}
     {{s:superlative}} {{x}} {_HERE}
     {{s:superlative}} {_THING} {_HERE}
-    {{x}} (is|are) the {{s:superlative}} (what|which)
+    {{s:superlative}} {{x}} is (what|which|which one)
+    {{s:superlative}} {_THING} is (what|which|which one)
     (what|which) {{x}} has [the] {_MOST} {{d:dimension}} {_HERE}
     (what|which) [thing|object|item|one] {_HERE} has [the] {_MOST} {{d:dimension}} {_HERE}
     (what|which) {{less}} has [the] {_LEAST} {{d:dimension}} {_HERE}
@@ -110,6 +111,10 @@ def _among(asked: Asked) -> Query | None:
 
 def _told(ranked: Sequence[Thing], most: Superlative, survey: Survey) -> Answer:
     thing = ranked[most.rank - 1]
+    if len(ranked) > 1 and _tied(ranked, most, survey):
+        values = _measure(measure(survey, thing, most.measure), most.measure)
+        text = f"{listed([survey.named(t) for t in ranked[:8]])} are the same: {values}."
+        return label(thing, _up(text), 0.7, others=ranked, said="equal")
     rest = [t for t in ranked if t is not thing]
     own = measure(survey, thing, most.measure)
     beside = [measure(survey, t, most.measure) for t in ranked[most.rank : most.rank + 1]]
@@ -122,6 +127,12 @@ def _told(ranked: Sequence[Thing], most: Superlative, survey: Survey) -> Answer:
     alike = [t for t in ranked if t.label == thing.label]
     said = told_apart(survey, thing, ranked) if len(alike) == len(ranked) else thing.name
     return label(thing, _up(f"{text}."), sure, others=rest[:3], said=said)
+
+
+def _tied(ranked: Sequence[Thing], most: Superlative, survey: Survey) -> bool:
+    """Whether all things have the same measure to the millimetre."""
+    values = [measure(survey, t, most.measure) for t in ranked]
+    return max(values) - min(values) < 1e-3 * max(*values, 1e-9)
 
 
 def _is_it(query: Query, ranked: Sequence[Thing], most: Superlative, survey: Survey) -> Answer:

@@ -20,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cache, lru_cache
 
+from ....gaussians.language.query.query import Query
 from ....gaussians.world import relations
 from ....gaussians.world.lengths import IN_METRES, METRES, UNITS, in_metres
 from ....gaussians.world.words import singular
@@ -65,11 +66,21 @@ def noun(words: Words) -> Words | None:
     return words if noun_phrase.thing(words) is not None else None
 
 
+_SOME = frozenset({"any", "anything", "some", "something", "anywhere", "somewhere"})
+
+
 @cache
 def _prepositions() -> frozenset[str]:
     """First words of the relations of queries."""
     phrases = (p for kind in relations.KINDS for p in (*kind.phrases.in_commands(), *kind.alone.in_commands()))
-    return frozenset(p.split()[0] for p in phrases) | {"closest", "nearest", "farthest", "hanging", "standing", "lying"}
+    return frozenset(p.split()[0] for p in phrases) | {
+        "closest", "nearest", "farthest", "hanging", "standing", "lying", "from", "off",
+    }  # fmt: skip
+
+
+def some(words: Words) -> Query | None:
+    """A noun phrase that begins with "any", "anything" or the like."""
+    return noun_phrase.thing(words) if words and words[0] in _SOME else None
 
 
 @lru_cache(maxsize=4096)
@@ -100,6 +111,7 @@ def columns(words: Words) -> tuple[str, ...] | None:
 READERS: Mapping[str, HoleReader] = {
     "thing": noun_phrase.thing,
     "noun": noun,
+    "some": some,
     "number": number,
     "length": length,
     "unit": unit,

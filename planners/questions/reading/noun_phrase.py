@@ -55,13 +55,16 @@ _REWRITES: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(pattern), said)
     for pattern, said in (
         (rf" {_HERE}$", ""),
-        (r"^(?:there (?:is|are)|such a thing as|things like|something like|anything like|like|any sign of|"
-         r"any kind of|any sort of|"
-         r"some kind of|some sort of|any type of|a kind of|a type of|one of the|a single|even a|even one|"
-         r"at least one|one or more|"
-         r"any one of the|any of (?:the|these|those)|some of the|(?:a )?few|several|what|which|a lot of|lots of|"
-         r"many|much|enough)"
-         r" (?=\w)", ""),
+        (
+            r"^(?:there (?:is|are)|such a thing as|things like|something like|anything like|any sign of|any kind of|"
+            r"any sort of|"
+            r"some kind of|some sort of|any type of|a kind of|a type of|one of the|a single|even a|even one|"
+            r"at least one|"
+            r"one or more|any one of the|any of (?:the|these|those)|some of the|(?:a )?few|several|a lot of|lots of|"
+            r"many|much)"
+            r" (?=\w)",
+            "",
+        ),
         (r"\bthe viewer 's (left|right)\b", r"the \1"),
         (rf"^(?:{_SOME}|seats?) {_SIT}", "qseats"),
         (rf"^{_SOME} {_STORE}", "qstores"),
@@ -86,7 +89,7 @@ _REWRITES: tuple[tuple[re.Pattern[str], str], ...] = tuple(
          r" (on|in|by|next|near|at|under|behind|beside|between|against|above|below|beneath|underneath|inside|"
          r"to)\b", r"\1 \2"),
         (r"\b(?:that|which) (?:hangs?|is hung|are hung|is hanging|are hanging|is mounted|are mounted) ", "hanging "),
-        (r"\bhanging (?:down )?(?:from|off) the (wall|ceiling)\b", r"on the \1"),
+        (r"\b(?:hanging |suspended |dangling )?(?:down )?(?:from|off) the (wall|ceiling)\b", r"on the \1"),
         (r"\bhanging up\b", "hanging"),
         (r"\b(?:hung|mounted|fixed|attached|fastened|leaning|propped)(?: up)? (on|over|above|against|by)\b",
          r"\1"),
@@ -137,8 +140,10 @@ _NO_THINGS = bag(
     "will should there here this that these those than as so if whether and or but of to from for with"
 )
 _VERBS = re.compile(
-    r"\b(?:is|are|was|were|be|been|does|do|did|has|have|had|can|could|would|will|should|whether|how|what|which|who|where|"
-    r"when|why|than|there|if|get|walk|fit|sit|see|look|looks|stand|stands|hang|hangs|lie|lies|belong|belongs|cost|costs|"
+    r"\b(?:is|are|was|were|be|been|does|do|did|has|have|had|can|could|would|will|should|whether|how|what|which|who|"
+    r"where|"
+    r"when|why|than|there|if|get|walk|fit|sit|see|look|looks|stand|stands|hang|hangs|lie|lies|belong|belongs|cost|"
+    r"costs|"
     r"goes|go)\b"
 )
 _NO_STARTS = bag(

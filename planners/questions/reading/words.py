@@ -116,6 +116,11 @@ _CONTRACTED = {
 _HAVE_IS = re.compile(
     r"\b(what|where|which|who|how|when|colou?r|that|there|one|anything|something|somebody|everything|it) 's\b"
 )
+# "Is not the sofa blue?" asks whether it is blue.
+_NEGATED = re.compile(
+    r"(?:(?<=^)|(?<=, ))(is|are|was|were|does|do|did|has|have|can|could|would|will) not "
+    r"(?=(?:there|the|this|that|these|those|it|they|we|you|i|one|any|a|an|my|our|your|some|all|both|either|most)\b)"
+)
 _ROOMS = (
     "room|bedroom|living room|livingroom|sitting room|lounge|kitchen|office|study|bathroom|dining room|studio|hall|"
     "hallway|playroom|nursery|classroom|library|attic|basement|space|place|scene|picture|photo|photograph|image|house|"
@@ -163,6 +168,7 @@ def plain_words(text: str) -> tuple[str, ...]:
     text = _THOUSANDS.sub("", text)
     said = " ".join(_plain(w.text) for w in split(clean(_DASH.sub(",", text))))
     said = _HAVE_IS.sub(r"\1 is", said).replace(" is been ", " has been ").replace(" is got ", " has got ")
+    said = _NEGATED.sub(r"\1 ", said)
     said = _THE_ROOM.sub("the room", _IN_ROOM.sub("in the room", _commas(said)))
     return tuple(_stripped(said).split())
 
