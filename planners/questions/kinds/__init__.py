@@ -24,11 +24,11 @@ from . import (
 )
 
 KINDS = (
-    undecidable.KIND,
     *room.KINDS,
     *free_floor.KINDS,
     *hazards.KINDS,
     *routes.KINDS,
+    undecidable.KIND,
     *order.KINDS,
     *distance.KINDS,
     *nearest.KINDS,
