@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from ..gaussians.language import encoders
-from . import _ask
+from . import _ask, _ask_judge
 from ._ask import generated, routing, speed, stability, views, written
 from ._ask.question import Judged
 from ._ask.rooms import Known
@@ -67,6 +67,7 @@ def run(quick: bool = False) -> Result:
         ),
         routing.measure(quick),
         views.measure(plan.watched, encoder, plan.detail, quick),
+        Part(tuple(_ask_judge.measure(quick))),
         Part(tuple(speed.measure(known[0], encoder, plan.detail, quick))),
     ]
     return Result(

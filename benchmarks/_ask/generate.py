@@ -185,15 +185,13 @@ def existence(room: Room) -> Made:
 
 
 def absences(room: Room) -> Iterator[str]:
-    """Kinds that are not there, nor anything that one may call so."""
+    """Kinds that are not there, nor anything that one may call so, nor anything with the same head noun."""
     labels = {t.label for t in room.table.things}
+    heads = {label.split()[-1] for label in labels}
     for i in room.rng.permutation(len(room.vocabulary)):
         name = room.vocabulary[int(i)]
-        if (
-            not is_many(name)
-            and covered(name).isdisjoint(labels)
-            and not any(name in covered(label) for label in labels)
-        ):
+        rivals = covered(name) & labels or any(name in covered(label) for label in labels)
+        if not (is_many(name) or rivals or name.split()[-1] in heads):
             yield name
 
 
@@ -400,10 +398,14 @@ def _order(room: Room, thing: Thing) -> tuple[Thing | None, Thing | None]:
 
 
 def nearest(room: Room) -> Made:
-    """What is nearest to a thing, and farthest from it."""
+    """What is nearest to a thing, and farthest from it.
+
+    The nearest to what carries something, or is carried, is a matter of taste.
+    """
     for thing in room.named:
         near, far = _order(room, thing)
-        if near is not None and near.label != thing.label:
+        alone = not isinstance(thing.support, int) and not room.table.carried_by(thing)
+        if near is not None and alone and near.label != thing.label:
             yield _q(room, "nearest", "label", room.word(say.NEAREST, a=thing), near.label,
                      about=(thing.id, near.id), names=(thing.id,))  # fmt: skip
         if far is not None and far.label != thing.label:
@@ -675,7 +677,11 @@ def superlative(room: Room) -> Made:
     """The tallest thing on the floor, the bulkiest and the smallest thing."""
     floor = sorted((t for t in room.table.things if room.table.on_floor(t)), key=lambda t: -t.size[2])
     if len(floor) > 2 and floor[0].size[2] > 1.08 * floor[1].size[2]:
-        yield _q(room, "superlative", "label", room.word(say.TALLEST), floor[0].label, about=(floor[0].id, floor[1].id))
+        # Some say that a door stands on the floor.
+        walls = [t for t in room.table.things if t.support == "wall" and t.size[2] > 0.9 * floor[0].size[2]]
+        if all(t.label in ("door", "window") for t in walls):
+            text = room.word(say.TALLEST_BUT if walls else say.TALLEST)
+            yield _q(room, "superlative", "label", text, floor[0].label, about=(floor[0].id, floor[1].id))
     solid = [t for t in room.table.things if t.support not in ("wall", "ceiling")]
     ranked = sorted(solid, key=lambda t: -t.volume)
     widest = max(room.table.things, key=lambda t: max(t.size))

@@ -195,6 +195,10 @@ TALLEST = (
     "Which thing on the floor is the tallest?",
     "Of everything that stands on the floor, what is tallest?",
 )
+TALLEST_BUT = (
+    "Apart from doors and windows, what is the tallest thing standing on the floor?",
+    "Not counting doors and windows, which thing on the floor is the tallest?",
+)
 BULKIEST = (
     "Which thing has the largest volume?",
     "What is the largest thing in the room?",
@@ -239,11 +243,11 @@ FITS_BETWEEN = (
 )
 TRIP = (
     "Walking straight from {a} to {b}, what could I trip over?",
-    "What lies in the way between {a} and {b}?",
+    "What lies on the straight way from {a} to {b}, so that I could stumble over it?",
     "If I go straight from {a} to {b}, what might I stumble over?",
 )
 WAY_CLEAR = (
-    "Is anything in the way between {a} and {b}?",
+    "Is anything standing on the straight line between {a} and {b}?",
     "Is something blocking the straight way from {a} to {b}?",
     "Walking straight from {a} to {b}, would I bump into anything?",
 )
