@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from ...gaussians.world.support import FIXED
 from .reading.room_phrases import named_in
-from .survey import Survey, Thing
-from .views import View, middle
+from .things import Thing
 
 F64 = NDArray[np.float64]
 
@@ -20,6 +19,25 @@ IN_CORNER = 0.8  # metres of gap to both walls up to which a thing is in their c
 NAMES = ("back", "front", "left", "right")
 _THIRD = 1.0 / 3.0
 _CENTRAL = 0.4  # of the way from the middle of the room to a wall
+
+
+@dataclass(frozen=True, eq=False)
+class Room:
+    """The room as the viewer sees it.
+
+    Attributes:
+        width, depth: metres along x and y; its middle is the origin.
+        forward: `[2]` unit vector of the viewer's line of sight in plan.
+    """
+
+    width: float
+    depth: float
+    forward: F64
+
+
+def middle(thing: Thing) -> F64:
+    """`[2]` centre of a thing in plan."""
+    return np.array(thing.group.box.center[:2])
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,13 +55,12 @@ class Wall:
     reach: float
 
 
-def walls(survey: Survey, view: View | None = None) -> tuple[Wall, ...]:
-    """The four walls, named as a view sees them; the viewer's own if none is given."""
-    forward = survey.stand.forward[:2] if view is None else view.forward
+def walls(room: Room) -> tuple[Wall, ...]:
+    """The four walls, named as the viewer sees them."""
+    forward = room.forward
     right = np.array([forward[1], -forward[0]])
-    width, depth, _ = survey.graph.room.size
-    outs = [(np.array([1.0, 0.0]), width / 2), (np.array([-1.0, 0.0]), width / 2),
-            (np.array([0.0, 1.0]), depth / 2), (np.array([0.0, -1.0]), depth / 2)]  # fmt: skip
+    outs = [(np.array([1.0, 0.0]), room.width / 2), (np.array([-1.0, 0.0]), room.width / 2),
+            (np.array([0.0, 1.0]), room.depth / 2), (np.array([0.0, -1.0]), room.depth / 2)]  # fmt: skip
     ways = {"back": forward, "front": -forward, "left": -right, "right": right}
     found: list[Wall] = []
     for name in NAMES:
@@ -59,9 +76,9 @@ def gap_to(wall: Wall, thing: Thing) -> float:
     return wall.reach - float(middle(thing) @ wall.out) - box.extent(np.array([*wall.out, 0.0])) / 2
 
 
-def wall_of(thing: Thing, survey: Survey, view: View | None = None) -> tuple[Wall, float]:
+def wall_of(thing: Thing, room: Room) -> tuple[Wall, float]:
     """The wall that a thing is at: of one that hangs on a wall the one along its width, of others the nearest."""
-    every = walls(survey, view)
+    every = walls(room)
     gaps = [(gap_to(w, thing), i) for i, w in enumerate(every)]
     best = min(gaps)[0]
     close = [i for gap, i in gaps if gap <= best + FIXED]
@@ -71,22 +88,22 @@ def wall_of(thing: Thing, survey: Survey, view: View | None = None) -> tuple[Wal
     return every[close[0]], gaps[close[0]][0]
 
 
-def corner_of(thing: Thing, survey: Survey) -> tuple[Wall, Wall, float]:
+def corner_of(thing: Thing, room: Room) -> tuple[Wall, Wall, float]:
     """The corner that a thing is nearest to, as its two walls, back or front first, and the larger gap to them."""
-    back, front, left, right = walls(survey)
+    back, front, left, right = walls(room)
     one = min((back, front), key=lambda w: gap_to(w, thing))
     other = min((left, right), key=lambda w: gap_to(w, thing))
     return one, other, max(gap_to(one, thing), gap_to(other, thing))
 
 
-def in_corner(thing: Thing, survey: Survey) -> bool:
+def in_corner(thing: Thing, room: Room) -> bool:
     """Whether a thing is in a corner of the room."""
-    return corner_of(thing, survey)[2] <= IN_CORNER
+    return corner_of(thing, room)[2] <= IN_CORNER
 
 
-def zone(thing: Thing, survey: Survey) -> tuple[str, str]:
+def zone(thing: Thing, room: Room) -> tuple[str, str]:
     """The part of the room: "back", "front" or "", and "left", "right" or "", "" being the middle third."""
-    back, _, _, right = walls(survey)
+    back, _, _, right = walls(room)
     place = middle(thing)
     deep, wide = float(place @ back.out) / back.reach, float(place @ right.out) / right.reach
     return (
@@ -95,18 +112,18 @@ def zone(thing: Thing, survey: Survey) -> tuple[str, str]:
     )
 
 
-def is_in(thing: Thing, said: str, survey: Survey) -> tuple[bool, float]:
+def is_in(thing: Thing, said: str, room: Room) -> tuple[bool, float]:
     """Whether a thing is in a place of the room, as said, and how sure that is."""
     names = named_in(said)
     if "corner" in said:
-        one, other, gap = corner_of(thing, survey)
+        one, other, gap = corner_of(thing, room)
         return gap <= IN_CORNER and set(names) <= {one.name, other.name}, 0.93 if abs(gap - IN_CORNER) > 0.3 else 0.75
     if "wall" in said:
-        wall, _ = wall_of(thing, survey)
-        others = [w for w in walls(survey) if w.name in names] or [wall]
+        wall, _ = wall_of(thing, room)
+        others = [w for w in walls(room) if w.name in names] or [wall]
         least = min(gap_to(w, thing) for w in others)
         return least <= AT_WALL, 0.93 if abs(least - AT_WALL) > 0.15 else 0.75
-    back, _, _, right = walls(survey)
+    back, _, _, right = walls(room)
     wide, far = float(middle(thing) @ right.out) / right.reach, float(middle(thing) @ back.out) / back.reach
     if re.search(r"\b(?:middle|cent(?:er|re))\b", said):
         off = max(abs(wide), abs(far))

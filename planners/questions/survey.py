@@ -29,6 +29,7 @@ from .picking import picked
 from .reading import families
 from .reading.noun_phrase import BY_ID
 from .reading.room_phrases import is_place
+from .room_places import Room, is_in
 from .things import Found, NotResolved, Thing, gap
 
 if TYPE_CHECKING:
@@ -192,13 +193,11 @@ class Survey:
 
     def _in_place(self, query: Query, place: Relation) -> Found:
         """What a query for something in a place of the room means: "the lamp in the far left corner"."""
-        from .room_places import is_in
-
         others = tuple(r for r in query.relations if r is not place)
         every = self.find(query.model_copy(update={"relations": others, "pick": "all", "count": None}))
         if every.verdict != "found":
             return every
-        things = tuple(t for t in every.things if t.node is not None and is_in(t, place.anchors[0].text, self)[0])
+        things = tuple(t for t in every.things if t.node is not None and is_in(t, place.anchors[0].text, self.room)[0])
         if not things:
             return Found("absent", (), every.things[:3])
         if query.pick == "any" or len(things) == 1:
@@ -292,6 +291,13 @@ class Survey:
         return FloorMap.of(self.graph)
 
     # -- geometry ---------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def room(self) -> Room:
+        """The walls and corners of the room as the viewer sees them."""
+        width, depth, _ = self.graph.room.size
+        forward = self.stand.forward[:2]
+        return Room(width, depth, forward / max(float(np.linalg.norm(forward)), 1e-12))
 
     @property
     def stand(self) -> Stand:

@@ -13,13 +13,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...gaussians.language.query.query import Query
 from ...gaussians.world import kinds
 from ...gaussians.world.person import HEADROOM
 from ...gaussians.world.support import SHELL, is_stepped_on
 from .candidates import meant
 from .reading.side_phrases import Side
 from .reading.situation import Situation
+from .room_places import middle
 from .survey import Survey, Thing
 
 F64 = NDArray[np.float64]
@@ -76,11 +76,6 @@ class View:
     def along(self, thing: Thing) -> float:
         """Metres by which a thing lies ahead."""
         return float((self.target(thing) - self.eye) @ self.forward)
-
-
-def middle(thing: Thing) -> F64:
-    """`[2]` centre of a thing in plan."""
-    return np.array(thing.group.box.center[:2])
 
 
 def off(bearing: float, side: Side) -> float:
@@ -288,6 +283,3 @@ def _unit(way: F64) -> F64:
 def view_of(situation: Situation | None, survey: Survey) -> tuple[View, ...]:
     """The views of a stated situation, or the viewer's own if none is stated."""
     return (viewer(survey),) if situation is None else views(situation, survey)
-
-
-DOOR = Query(text="door", pick="all")

@@ -12,9 +12,9 @@ from ..answer import Answer, AnswerType, Evidence
 from ..candidates import agreed, is_plural, meant, pairs, unknown, whole
 from ..kind import Asked, Kind
 from ..reading.phrase_templates import templates
-from ..room_places import walls
+from ..room_places import middle, walls
 from ..survey import Survey, Thing, listed
-from ..views import View, front, middle
+from ..views import View, front
 
 _FACING = (
     "(facing|turned to|turned toward|turned towards|pointing at|pointing to|pointing toward|pointing towards|"
@@ -84,7 +84,7 @@ def _faced(thing: Thing, wanted: set[int] | None, survey: Survey) -> Answer:
         return _no_front(thing, "label", survey)
     view = View(middle(thing), way, "")
     ahead = [t for t in _before(thing, view, survey) if wanted is None or t.row in wanted]
-    wall = max(walls(survey), key=lambda w: float(w.out @ way))
+    wall = max(walls(survey.room), key=lambda w: float(w.out @ way))
     if not ahead:
         text = f"{_cap(survey.named(thing))} faces the {wall.name} wall."
         return Answer(answer=f"{wall.name} wall", answer_type="label", text=text, confidence=0.8, frame="viewer",
@@ -129,7 +129,7 @@ def _way_faced(asked: Asked, survey: Survey) -> Answer | None:
         way = front(thing, survey)
         if way is None:
             return _no_front(thing, "label", survey)
-        wall = max(walls(survey), key=lambda w: float(w.out @ way))
+        wall = max(walls(survey.room), key=lambda w: float(w.out @ way))
         told = {"back": "away from you, to the back wall", "front": "toward you, to the front wall",
                 "left": "to the left wall", "right": "to the right wall"}[wall.name]  # fmt: skip
         label = {"back": "back", "front": "front"}.get(wall.name, wall.name)

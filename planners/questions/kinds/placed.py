@@ -452,7 +452,7 @@ def _hung(asked: Asked, survey: Survey) -> Answer | None:
         if t.node is None or (wanted is not None and t.row not in wanted):
             continue
         hangs = t.node.support == shell
-        wall, gap = wall_of(t, survey)
+        wall, gap = wall_of(t, survey.room)
         if stands and t.node.support == "floor" and gap <= 0.15:
             hangs = True
         if hangs and (not name or wall.name == name):

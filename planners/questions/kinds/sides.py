@@ -19,8 +19,9 @@ from ..kind import Asked, Kind
 from ..reading.noun_phrase import is_anything
 from ..reading.phrase_templates import templates
 from ..reading.side_phrases import SIDES, Side
+from ..room_places import middle
 from ..survey import Survey, Thing, listed
-from ..views import F64, View, is_inside, middle, of_object, off, side_of, view_of, viewer
+from ..views import F64, View, is_inside, of_object, off, side_of, view_of, viewer
 
 _HAND = "[hand] [hand side|side|side of the bed|end|arm]"
 _OWN = "(to|on|at|by|next to|beside) [the]"

@@ -10,9 +10,8 @@ from ..kind import Asked, Kind
 from ..reading.noun_phrase import is_anything
 from ..reading.phrase_templates import templates
 from ..relating import related, supporter
-from ..room_places import AT_WALL, corner_of, in_corner, is_in, wall_of, walls, zone
+from ..room_places import AT_WALL, corner_of, in_corner, is_in, middle, wall_of, walls, zone
 from ..survey import Survey, Thing, listed
-from ..views import middle
 
 _ROOM = "(the room|this room|the place|here)"
 _WHERE = f"""
@@ -109,7 +108,7 @@ def _place(thing: Thing, survey: Survey) -> tuple[str, str]:
     if on == "wall":
         below = [t for t in related("under", (thing,), survey) if t.node is not None and t.node.support == "floor"]
         more = f"above {survey.named(below[0])}" if below else _beside(thing, survey)
-        return f"on the {wall_of(thing, survey)[0].name} wall", more
+        return f"on the {wall_of(thing, survey.room)[0].name} wall", more
     if on == "ceiling":
         under = [t for t in related("under", (thing,), survey) if t.node is not None]
         return "on the ceiling", f"over {survey.named(under[0])}" if under else _side(thing, survey)
@@ -118,10 +117,10 @@ def _place(thing: Thing, survey: Survey) -> tuple[str, str]:
 
 def _on_floor(thing: Thing, survey: Survey) -> tuple[str, str]:
     beside = _beside(thing, survey)
-    if in_corner(thing, survey):
-        one, other, _ = corner_of(thing, survey)
+    if in_corner(thing, survey.room):
+        one, other, _ = corner_of(thing, survey.room)
         return f"in the {one.name} {other.name} corner", beside
-    wall, gap = wall_of(thing, survey)
+    wall, gap = wall_of(thing, survey.room)
     if gap <= AT_WALL:
         return f"at the {wall.name} wall", beside
     return _side(thing, survey), beside
@@ -133,7 +132,7 @@ def _beside(thing: Thing, survey: Survey) -> str:
 
 
 def _side(thing: Thing, survey: Survey) -> str:
-    deep, wide = zone(thing, survey)
+    deep, wide = zone(thing, survey.room)
     if deep and wide:
         return f"at the {deep} on the {wide} of the room"
     if deep:
@@ -145,7 +144,7 @@ def _which_wall(asked: Asked, survey: Survey) -> Answer | None:
     things = meant(asked.slots["x"], survey)
 
     def one(thing: Thing) -> Answer:
-        wall, gap = wall_of(thing, survey)
+        wall, gap = wall_of(thing, survey.room)
         near = "at" if gap <= AT_WALL else f"{gap:.2f} m from"
         text = f"{_cap(survey.named(thing))} is {near} the {wall.name} wall as you look into the room."
         return Answer(answer=f"{wall.name} wall", answer_type="label", text=text, frame="viewer",
@@ -158,7 +157,7 @@ def _which_zone(asked: Asked, survey: Survey) -> Answer | None:
     deep = bool(re.search(r"\b(?:front|back)\b", asked.text.lower().replace("from the front", "")))
     lateral = bool(re.search(r"\b(?:left|right)\b", asked.text.lower()))
     things = meant(asked.slots["x"], survey)
-    back, _, _, right = walls(survey)
+    back, _, _, right = walls(survey.room)
 
     def one(thing: Thing) -> Answer:
         wide, far = float(middle(thing) @ right.out) / right.reach, float(middle(thing) @ back.out) / back.reach
@@ -184,9 +183,9 @@ def _in_zone(asked: Asked, survey: Survey) -> Answer | None:
         return None
 
     def one(thing: Thing) -> Answer:
-        yes, sure = is_in(thing, said, survey)
+        yes, sure = is_in(thing, said, survey.room)
         if "z2" in asked.slots:
-            also, other = is_in(thing, str(asked.slots["z2"]), survey)
+            also, other = is_in(thing, str(asked.slots["z2"]), survey.room)
             yes, sure = yes and also, min(sure, other)
         place, rest = _place(thing, survey)
         text = f"{'Yes' if yes else 'No'}, {survey.named(thing)} is {place}{', ' + rest if rest else ''}."
@@ -203,10 +202,10 @@ def _what_in_zone(asked: Asked, survey: Survey) -> Answer | None:
     query, text = asked.slots.get("x"), asked.text.lower()
     said = str(asked.slots.get("z", "the corner"))
     wanted = None if query is None or is_anything(query) else {t.row for t in survey.all_of(query)}
-    found = [t for t in survey.things if (wanted is None or t.row in wanted) and is_in(t, said, survey)[0]]
+    found = [t for t in survey.things if (wanted is None or t.row in wanted) and is_in(t, said, survey.room)[0]]
     found = [t for t in found if (t.node is not None and t.node.support != "ceiling") or "ceiling" in said]
     if "corner" in said:
-        found.sort(key=lambda t: corner_of(t, survey)[2])
+        found.sort(key=lambda t: corner_of(t, survey.room)[2])
     names = [survey.named(t) for t in found]
     sentence = f"{_cap(listed(names))} {'is' if len(found) <= 1 else 'are'} in {said}." if "the" in said else ""
     sentence = sentence or f"{_cap(listed(names))}."
