@@ -100,7 +100,8 @@ Judge = Annotated[
     str | None,
     typer.Option(
         "--judge", metavar="[NAME]",
-        help="Judge each edit from the scenes before and after it, repair it if possible, else take it back.",
+        help="Judge each edit from the scenes before and after it, repair it if possible, else take it back; "
+        "'vlm' also asks the vision model.",
     ),
 ]  # fmt: skip
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Random seed; the same seed gives the same bytes.")]

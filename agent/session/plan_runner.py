@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from ...gaussians.errors import AbsentError, AmbiguousError, ScenewrightError
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from ...planners.plan import EditPlan
     from ...tools.operation import Context
     from ...tools.receipt import Receipt
+    from .judge import Judge
 
 
 class PlanFailed(Exception):
@@ -39,22 +41,27 @@ def has_queries(plan: EditPlan) -> bool:
 
 
 def run_plan(
-    plan: EditPlan, start: State, context_of: Callable[[Selection | None], Context], *, dry_run: bool, judged: bool
+    plan: EditPlan,
+    start: State,
+    context_of: Callable[[Selection | None], Context],
+    *,
+    dry_run: bool,
+    judge: Judge | None,
 ) -> tuple[State, tuple[Receipt, ...]]:
     """The state after a plan, and a receipt for each operation.
 
     Args:
         context_of: makes the context of an operation from the selection that "it" refers to.
         dry_run: mark the receipts as a dry run.
-        judged: judge each operation after it was carried out.
+        judge: judges each operation after it was carried out; None: nobody does.
 
     Raises:
         PlanFailed: an operation cannot be done, failed its own check, or was judged a failure.
     """
     from ...tools import execute
-    from .judge import carry_out_judged
 
-    carry_out = carry_out_judged if judged else execute.carry_out
+    words = plan.instruction if len(plan.ops) == 1 else ""
+    carry_out = execute.carry_out if judge is None else partial(judge.carry_out, instruction=words)
 
     scene, last = start.scene, start.last
     receipts: list[Receipt] = []
@@ -67,6 +74,11 @@ def run_plan(
         receipts.append(
             receipt.model_copy(update={"backends": {**receipt.backends, "planner": plan.planner}, "dry_run": dry_run})
         )
+    if judge is not None and len(plan.ops) > 1:
+        try:
+            receipts = judge.look_at_all(start.scene, scene, plan.instruction, receipts)
+        except ScenewrightError as error:
+            raise PlanFailed(error, None) from error
     return State(scene, last, plan.instruction, plan.instruction), tuple(receipts)
 
 

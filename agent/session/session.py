@@ -23,7 +23,7 @@ from . import log as session_log
 from .asker import Asker, see_answer
 from .clarify import Question, plan_with_answer, plan_with_query
 from .history import History, State
-from .judge import known_judge
+from .judge import Judge, known_judge
 from .observation import graph_of, picture_of
 from .plan_runner import PlanFailed, has_queries, run_plan
 from .planner_client import PlannerClient, undo_or_redo
@@ -67,7 +67,8 @@ class Session:
             "20s,0.05usd". When it is used up, "auto" goes on without a model, and says so.
         pictures: send the viewer's picture to models that take pictures.
         judge: "built-in": after each operation measure from the scenes, and ask the embedded encoder, whether what was
-            asked for happened and nothing else; repair it at most twice, else take it back. None: do not judge.
+            asked for happened and nothing else; repair it at most twice, else take it back. "vlm": also ask the vision
+            model, with pictures before and after. None: do not judge.
         vlm: a vision model for what geometry does not answer and words do not find: a name that `planners.model.load`
             takes, a back end, "auto" for the one that `SCENEWRIGHT_VLM` names, or None.
 
@@ -75,7 +76,6 @@ class Session:
         question: the open question: an ambiguous query with its candidates, or an absent one with the nearest things;
             None if there is none.
         pixel_checks: also compare the viewer's picture before and after each operation.
-        judge: who judges edits, or None.
 
     Raises:
         UserError: no such planner or judge, or the budget cannot be parsed.
@@ -109,7 +109,7 @@ class Session:
         self._viewer = viewer
         self._seed = seed
         self.pixel_checks = pixel_checks
-        self.judge = known_judge(judge)
+        self._judged_by = known_judge(judge, bool(self._vision))
         self.question: Question | None = None
         self._history = History(State(scene))
         self._log = session_log.SessionLog(log) if log is not None else None
@@ -177,6 +177,18 @@ class Session:
     def picture(self) -> bytes:
         """The viewer's view as PNG, as it is sent to planners."""
         return picture_of(self.scene, self.viewer)
+
+    @property
+    def judge(self) -> str | None:
+        """The name of who judges edits: "built-in", "vlm", or None."""
+        return self._judged_by
+
+    @judge.setter
+    def judge(self, name: str | None) -> None:
+        self._judged_by = known_judge(name, bool(self._vision))
+
+    def _judge(self) -> Judge | None:
+        return None if self.judge is None else Judge(self._vision if self.judge == "vlm" else None)
 
     def _context(self, last: Selection | None) -> Context:
         """The context of an operation, where "it" refers to `last`."""
@@ -488,8 +500,7 @@ class Session:
         before = self._history.present
         with timed(seconds, "edit"):
             try:
-                judged = self.judge is not None
-                state, receipts = run_plan(plan, before, self._context, dry_run=dry_run, judged=judged)
+                state, receipts = run_plan(plan, before, self._context, dry_run=dry_run, judge=self._judge())
             except PlanFailed as failure:
                 self.question = failure.question
                 if not self._vision or failure.question is None or not needs_sight(failure.question.selection):

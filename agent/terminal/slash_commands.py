@@ -148,10 +148,8 @@ def _planner(chat: Conversation, spec: str) -> None:
 
 
 def _judge(chat: Conversation, name: str) -> None:
-    from ..session.judge import known_judge
-
     if name:
-        chat.session.judge = known_judge("built-in" if name == "on" else name)
+        chat.session.judge = "built-in" if name == "on" else name
     judge = chat.session.judge or "off"
     chat.tell(f"judge: {judge}", {"judge": judge})
 

@@ -141,7 +141,7 @@ def test_a_dry_run_is_judged_too_and_changes_nothing(session: Session, boxes: Sc
 
 
 def test_judges_have_names(boxes: Scene, encoder: Any) -> None:
-    with pytest.raises(UserError, match="no judge 'jury'; choose built-in"):
+    with pytest.raises(UserError, match="no judge 'jury'; choose built-in, vlm"):
         Session(boxes, encoder=encoder, judge="jury")
     assert Session(boxes, encoder=encoder, judge="off").judge is None
 
