@@ -15,6 +15,7 @@ from .candidates import meant
 from .reading.measures import Unit
 from .reading.situation import Situation
 from .reading.spots import Spot
+from .room_places import walls
 from .survey import Survey, Thing
 from .views import view_of
 
@@ -66,6 +67,9 @@ def end_of(thing: Thing, survey: Survey) -> End:
         size[2 if thing.label == "ceiling" else int(np.argmin(size[:2]))] = _THIN
         box = replace(box, size=(size[0], size[1], size[2]))
     name = f"the {thing.label}" if thing.node is None else survey.named(thing)
+    if thing.node is None and thing.label == "wall":
+        way = np.array(thing.group.box.center[:2])
+        name = f"the {max(walls(survey.room), key=lambda w: float(w.out @ way)).name} wall"
     return End(name, box, thing)
 
 

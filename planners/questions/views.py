@@ -26,6 +26,7 @@ F64 = NDArray[np.float64]
 
 BEFORE = 0.4  # metres between a standing or seated person's middle and what the person is at
 SEAT_REACH = 0.5  # largest gap in metres between a seat and the table that it belongs to
+_DISTANCES = (0.4, 0.7, 1.0, 1.3, 1.6)  # metres from what a person faces or has at the back, if nothing else is said
 STEP = 0.5  # metres between the places that are tried where the place is not said
 MOST = 48  # views that one situation may leave
 
@@ -158,7 +159,7 @@ def _is_at(view: View, thing: Thing) -> bool:
 
 def _views_at(situation: Situation, place: Thing | None, target: Thing | None, survey: Survey) -> Iterator[View]:
     """The views at one place with one target of the gaze."""
-    for eye, forward in _stands(situation, place, survey):
+    for eye, forward in _stands(situation, place, target, survey):
         way = forward
         if target is not None:
             toward = View(eye, np.array([0.0, 1.0]), "").target(target) - eye
@@ -175,12 +176,14 @@ def _views_at(situation: Situation, place: Thing | None, target: Thing | None, s
             yield View(eye, way, situation.words)
 
 
-def _stands(situation: Situation, place: Thing | None, survey: Survey) -> Iterator[tuple[F64, F64 | None]]:
+def _stands(
+    situation: Situation, place: Thing | None, target: Thing | None, survey: Survey
+) -> Iterator[tuple[F64, F64 | None]]:
     """Places of the person, each with the direction of gaze unless another is said."""
     if situation.pose == "middle":
         yield np.zeros(2), viewer(survey).forward
     elif place is None:
-        yield from ((eye, None) for eye in _free_places(survey))
+        yield from ((eye, None) for eye in _places_before(situation, target, survey))
     elif situation.pose in ("on", "own") or (situation.seated and seats(place)):
         way = front(place, survey)
         if situation.pose == "own":
@@ -192,6 +195,16 @@ def _stands(situation: Situation, place: Thing | None, survey: Survey) -> Iterat
             yield middle(chair), _unit(_nearest_point(place, middle(chair)) - middle(chair))
     else:
         yield from _before(situation, place, survey)
+
+
+def _places_before(situation: Situation, target: Thing | None, survey: Survey) -> Iterator[F64]:
+    """Free places of a person of whom only the gaze is said: before the front of what is faced, or anywhere."""
+    way = front(target, survey) if target is not None else None
+    if way is None or target is None or situation.beside:
+        yield from _free_places(survey)
+        return
+    line = [middle(target) + way * (_half(target, way) + d) for d in _DISTANCES]
+    yield from [eye for eye in line if _is_free(eye, survey, 0.0)] or line[:1]
 
 
 def _before(situation: Situation, place: Thing, survey: Survey) -> Iterator[tuple[F64, F64 | None]]:

@@ -33,6 +33,7 @@ KINDS = (
     *distance.KINDS,
     *nearest.KINDS,
     *facing.KINDS,
+    placed.HUNG,
     *whereabouts.KINDS,
     *placed.KINDS,
     *sides.KINDS,

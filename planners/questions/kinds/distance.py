@@ -87,6 +87,7 @@ _WITHIN = f"""
     BE {{a:spot}} [standing|located|placed] {_LESS} {{n:length}} [away|apart] (of|from|to|away from) {{b:spot}}
     BE {{a:spot}} and {{b:spot}} {_LESS} {{n:length}} [of each other|apart|from each other|of one another|away \
         from each other]
+    BE {{both:spot}} {_LESS} {{n:length}} [of each other|apart|from each other|of one another|away from each other]
     [is|are] there {_LESS} {{n:length}} [of space|of room|of clearance] between {{a:spot}} and {{b:spot}}
     [is|are] the {_LENGTH} between {{a:spot}} and {{b:spot}} {_LESS} {{n:length}}
 """
@@ -111,6 +112,8 @@ _WHICH_NEAR = f"""
     {_WHICH} [(is|are|stands|sits|lies)] {_NEARER} {_TO} {{b:spot}} [is it|is that] {{a:spot}} or {{other:spot}}
     (is|are|does|do) {{a:spot}} or {{other:spot}} [stand|sit|lie|the one] {_NEARER} {_TO} {{b:spot}}
     (is|are|stand|stands) {{b:spot}} {_NEARER} (to|from) {{a:spot}} or [to|from] {{other:spot}}
+    (is|are|stand|stands) {{b:spot}} {_NEARER} {{a:spot}} or {{other:spot}}
+    (do|does) {{b:spot}} (stand|sit|hang|lie) {_NEARER} [to] {{a:spot}} or [to] {{other:spot}}
     {_WHICH} (is|are) {{b:spot}} {_NEARER} to [is it] {{a:spot}} or [to] {{other:spot}}
     {_WHICH} (is|are) {_NEARER} {{a:spot}} or {{other:spot}} {_TO} {{b:spot}}
     of {{a:spot}} and {{other:spot}} which [one] (is|stands) {_NEARER} {_TO} {{b:spot}}
@@ -176,7 +179,11 @@ def _is_gap(asked: Asked) -> bool:
         _CENTRE.search(said) and not any(asked.slots[k].who for k in ("a", "b") if k in asked.slots)
     ):
         return False
-    return "edge" in parts or bool(_GAP.search(re.sub(r"the (?:same )?room|living room|\w+ room", "", said)))
+    return "edge" in parts or bool(
+        _GAP.search(
+            re.sub(r"\b(?:the|this|same|living|dining|meeting) room\b|\b(?:closest|nearest) (?!point|edge)", "", said)
+        )
+    )
 
 
 def _both(asked: Asked, survey: Survey) -> tuple[tuple[End, ...], tuple[End, ...]] | None:

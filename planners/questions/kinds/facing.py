@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -153,9 +154,16 @@ def _is_facing(asked: Asked, survey: Survey) -> Answer | None:
         both = [("", _faces(a, b, False, survey)) for a in firsts for b in seconds]
         return whole([*both, *(("", _faces(b, a, False, survey)) for a in firsts for b in seconds)], "all")
     if is_plural(asked.slots["x"]):
-        return whole([(survey.named(a), pairs([a], seconds, survey, lambda p, q: _faces(p, q, away, survey)))
-                      for a in firsts], "all")  # fmt: skip
+        return whole([(survey.named(a), _any_faced(a, seconds, away, survey)) for a in firsts], "all")
+    if is_plural(asked.slots["a"] if not away else asked.slots["away"]):
+        return agreed([(survey.named(a), whole([(survey.named(b), _faces(a, b, away, survey)) for b in seconds], "all"))
+                       for a in firsts])  # fmt: skip
     return pairs(firsts, seconds, survey, lambda p, q: _faces(p, q, away, survey))
+
+
+def _any_faced(thing: Thing, targets: Sequence[Thing], away: bool, survey: Survey) -> Answer:
+    """Whether one of several things faces one of the others, as each chair its desk."""
+    return whole([(survey.named(t), _faces(thing, t, away, survey)) for t in targets if t.row != thing.row], "any")
 
 
 def _faces(thing: Thing, target: Thing, away: bool, survey: Survey) -> Answer:

@@ -37,6 +37,11 @@ _FARTHEST = """
     which {x} (is|stands|hangs) [the] farthest (to|on) the (left|right)
     which {x} (is|stands) (on|at) the (far|extreme|very) (left|right)
 """
+_PICKED = """
+    (what|which) (is|are) {x}
+    (what|which) (thing|object|item|one) is {x}
+    (name|identify) {x}
+"""
 _LIST = """
     (list|name|order|sort|arrange|show|give me|tell me|read out|enumerate) {x} [in order] from \
         (left|right|front|back|near|nearest|closest) to (left|right|front|back|far|farthest)
@@ -94,6 +99,16 @@ def _extreme(asked: Asked, survey: Survey) -> Answer | None:
     return _at(ranked, 0, f"farthest to the {found[1]}", asked, survey) if ranked else None
 
 
+def _picked(asked: Asked, survey: Survey) -> Answer | None:
+    """A thing that is named by its place in an order: "what is the leftmost piece of furniture?"."""
+    query = asked.slots["x"]
+    if query.pick not in ("leftmost", "rightmost", "nth", "middle"):
+        return None
+    thing = survey.one(query)
+    return Answer(answer=thing.name, answer_type="label", text=f"That is {survey.named(thing)}.", frame="viewer",
+                  confidence=0.9, evidence=Evidence(ids=(thing.id,)))  # fmt: skip
+
+
 def _at(ranked: list[tuple[float, Thing]], index: int, told: str, asked: Asked, survey: Survey) -> Answer:
     thing = ranked[index][1]
     near = [abs(ranked[i][0] - ranked[index][0]) for i in (index - 1, index + 1) if 0 <= i < len(ranked)]
@@ -125,4 +140,5 @@ KINDS = (
     Kind("order_list", templates(_LIST), _listed),
     Kind("order_nth", templates(_NTH), _nth),
     Kind("order_extreme", templates(_FARTHEST), _extreme),
+    Kind("order_picked", templates(_PICKED), _picked),
 )

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 
 from ....gaussians.language.query.query import Query
-from ....gaussians.world import relations
+from ....gaussians.world import kinds, relations
 from ....gaussians.world.relation_geometry import HOLDS
 from ..answer import Answer, Evidence
 from ..candidates import Case, agreed, is_plural, meant, unknown, whole
@@ -97,7 +97,7 @@ _SUPPORT = """
     what BE {x} (standing|sitting|lying|resting|placed|put|set|mounted|hanging|hung|leaning|located|stood|\
         supported|kept|attached|fixed|stored|perched) [(up|down)] (on|upon|from|in|on top of)
     what (do|does) {x} (stand|sit|lie|rest|hang|lean|stay) (on|upon|from|in|on top of)
-    what (supports|holds|carries|is supporting|is holding|is carrying|is underneath|holds up|bears) {x}
+    what (supports|holds|carries|is supporting|is holding|is carrying|holds up|bears) {x}
     (on|from|upon|in) (what|which thing|which object|which piece of furniture) [(is|are|does|do)] {x} \
         [standing|sitting|lying|resting|placed|stand|sit|lie|rest|hang|hanging|located|kept]
     (on|upon|in|from) what (is|are|does|do) {x} [standing|sitting|lying|resting|placed|stand|sit|lie|rest|hang|\
@@ -447,8 +447,11 @@ def _hung(asked: Asked, survey: Survey) -> Answer | None:
     name, text = (named_in(said) or ("",))[0] if shell == "wall" else "", asked.text.lower()
     stands = bool(re.search(r"\b(?:against|along|at|stands?|standing)\b", text)) and shell == "wall"
     wanted = _wanted(asked, survey)
+    hangs_there = bool(re.search(r"\b(?:hang|hangs|hanging|hung|mounted)\b", text))
     found = []
     for t in survey.things:
+        if hangs_there and (kind := kinds.of(t.label)) is not None and kind.opening:
+            continue
         if t.node is None or (wanted is not None and t.row not in wanted):
             continue
         hangs = t.node.support == shell
@@ -484,7 +487,6 @@ def _cap(said: str) -> str:
 
 
 KINDS = (
-    Kind("hung", templates(_HUNG), _hung),
     Kind("supported_by", templates(_SUPPORT), _support),
     Kind("related", templates(_IS_REL), _is_related),
     Kind("related_what", templates(_WHAT_THERE), _what),
@@ -492,3 +494,5 @@ KINDS = (
     Kind("has_it", templates(_HAS_IT), _has_it),
     Kind("has", templates(_HAS), _has),
 )
+
+HUNG = Kind("hung", templates(_HUNG), _hung)

@@ -38,9 +38,9 @@ _IS_SIDE = """
     have i got {x} {d:side}
 """
 _EITHER = """
-    BE {x} [standing|located|off|over|more|rather|be] {d:side} or {e:side}
-    (will|would|should) {x} be [off|over] {d:side} or {e:side}
-    (do|does) {x} (stand|sit|lie|hang) {d:side} or {e:side}
+    BE {x} [standing|located|off|over|more|rather|be] {d:side} or {e:either}
+    (will|would|should) {x} be [off|over] {d:side} or {e:either}
+    (do|does) {x} (stand|sit|lie|hang) {d:side} or {e:either}
     (which|what) side [of me|of mine] BE {x} [on] [left or right] [of me]
     on (which|what) side [of me|of mine] BE {x} [left or right]
     (which|what) side would {x} be [on]
@@ -64,6 +64,7 @@ _WHERE = """
         reach|towards|to get to|to look at|to find|to use|to open) {x}
     (where|which way) BE {x} (from me|relative to me|from my position|as seen from there|in relation to me)
     where (would|will|should) {x} be [from me|relative to me]
+    where BE {x} [then|now|located]
     where BE {x} relative to me
     (at|in) (what|which) clock (direction|position) BE {x}
     at (what|which) (angle|bearing) BE {x}
@@ -118,11 +119,25 @@ _OWN_WHAT = f"""
         [standing] [just] \
         [beside it|there|next to it]
 """
+_WHAT_OF = """
+    (what|which thing|what thing|what object|which object|what things|which things|which objects|what \
+        objects|what else) \
+        [(is|are|stands|sits|lies|hangs|do i see|can i see|can be found|do you see|is there|are there)] \
+        [located|directly|immediately|right|standing|placed|just|straight] {d:relation} {a}
+    (what|which) {x} [(is|are|stands|sits|lies|hangs)] [located|directly|immediately|right|standing|placed] \
+        {d:relation} {a}
+    (list|name|describe) (everything|all things|the things|all the things|what is|all objects|the objects) \
+        [that is|that are|standing] {d:relation} {a}
+    {d:relation} {a} (what|which thing) (is|stands) [there]
+"""
 _EITHER_OF = """
     BE {x} [standing|located|placed|more] (to the|on the|to|on|at the) (left|right) or (to the|on the|to|on|at \
         the|the) (left|right) [hand side|side] of {a}
     BE {x} (left|right) or (left|right) of {a}
     BE {x} (in front of|behind) or (in front of|behind) {a}
+    BE {x} (in front of|behind) {a} or (in front of|behind) it
+    BE {x} (to the left of|left of|on the left of|to the right of|right of) {a} or to the (left|right) of it
+    BE {x} (to the left of|left of|on the left of|to the right of|right of) {a} or to (its|the) (left|right)
     (which|what) side of {a} BE {x} [on|located on|standing on] [left or right|the left or the right]
     on (which|what) side of {a} BE {x} [located|standing] [left or right|the left or the right]
     on (which|what) side of {a} (do|does) {x} (stand|sit|lie|hang)
@@ -236,6 +251,8 @@ def _which_of(thing: Thing, pair: set[float], view: View, survey: Survey) -> Ans
 def _direction(asked: Asked, survey: Survey) -> Answer | None:
     """The side on which a thing lies, or the way to turn to it."""
     query = asked.slots["x"]
+    if asked.situation is None and asked.words[:1] == ("where",) and "me" not in asked.words:
+        return None
     things = survey.all_of(query) if query.pick == "any" else meant(query, survey)
     things = things or meant(query, survey)
     said = asked.text.lower()
@@ -309,6 +326,8 @@ def _on_side(side: Side, view: View, survey: Survey) -> list[Thing]:
         return off(view.to(t), side) <= reach
 
     things = [t for t in survey.things if t.node is not None and there(t) and not _is_out_of_the_way(t)]
+    ids = {t.id for t in things}
+    things = [t for t in things if t.node is not None and t.node.support not in ids]
     return sorted(things, key=cost)
 
 
@@ -510,6 +529,50 @@ def _own_what(asked: Asked, survey: Survey) -> Answer | None:
     return agreed([(survey.named(t), one(t)) for t in things])
 
 
+def _what_of(asked: Asked, survey: Survey) -> Answer | None:
+    """What is left of, right of, in front of or behind a thing: the nearest, with the others in the text."""
+    name = asked.slots["d"]
+    if relations.named(name).aim is None:
+        return None
+    query = asked.slots.get("x")
+    wanted = None if query is None or is_anything(query) else {t.row for t in survey.all_of(query)}
+    many = bool(re.search(r"\b(?:list|everything|things|objects|all|are)\b", asked.text.lower()))
+    anchors = meant(asked.slots["a"], survey)
+
+    def one(anchor: Thing) -> Answer:
+        view, own = _frame_of(anchor, asked, survey)
+        if view is None:
+            return unknown("label", "No place fits what is said of the person.")
+        found = [t for t in survey.things if t.row != anchor.row and (wanted is None or t.row in wanted)
+                 and not _is_out_of_the_way(t) and t.node is not None and t.node.support != anchor.id
+                 and _holds_beside(t, anchor, name, view, own, survey).answer == "yes"]  # fmt: skip
+        ids = {t.id for t in found}
+        found = [t for t in found if t.node is not None and t.node.support not in ids]
+        found.sort(key=lambda t: survey.gap(t, anchor))
+        return _told_of(found, anchor, name, view, own, many, survey)
+
+    return agreed([(survey.named(a), one(a)) for a in anchors])
+
+
+def _told_of(
+    found: Sequence[Thing], anchor: Thing, name: str, view: View, own: bool, many: bool, survey: Survey
+) -> Answer:
+    where = f"{relations.named(name).told(survey.named(anchor))}{_frame_told(view)}"
+    frame = "object" if own else view.words
+    if not found:
+        return Answer(answer=() if many else None, answer_type="list" if many else "label", frame=frame,
+                      text=f"Nothing is {where}.", confidence=0.8, evidence=_ids(anchor))  # fmt: skip
+    names = [survey.named(t) for t in found]
+    more = f"; farther that way: {listed(names[1:6])}" if len(names) > 1 else ""
+    evidence = _ids(*found, anchor)
+    if many:
+        text = f"{_cap(listed(names))} {'is' if len(names) == 1 else 'are'} {where}."
+        return Answer(answer=tuple(t.name for t in found), answer_type="list", text=text, frame=frame, confidence=0.85,
+                      evidence=evidence)  # fmt: skip
+    return Answer(answer=found[0].name, answer_type="label", text=f"{_cap(names[0])} is {where}{more}.", frame=frame,
+                  confidence=0.8, evidence=evidence)  # fmt: skip
+
+
 def _no_front(anchor: Thing, survey: Survey, kind: str) -> Answer:
     text = f"Nothing tells which side of {survey.named(anchor)} is its front, so it has no left and right of its own."
     return unknown(kind, text, (anchor,), "object")  # type: ignore[arg-type]
@@ -588,6 +651,7 @@ KINDS = (
     Kind("side_either_of", templates(_EITHER_OF), _which_side_of),
     Kind("side", templates(_IS_SIDE), _is_side),
     Kind("side_of", templates(_RELATED), _related),
+    Kind("side_of_what", templates(_WHAT_OF), _what_of),
     Kind("side_count", templates(_COUNT), _counted),
     Kind("side_direction", templates(_WHERE), _direction),
     Kind("side_what", templates(_WHAT), _what_is_there),

@@ -73,7 +73,7 @@ _NEAR = 1.2  # metres: farther things are not told as neighbours
 
 def _where(asked: Asked, survey: Survey) -> Answer | None:
     query = asked.slots["x"]
-    if is_anything(query) and not query.relations:
+    if asked.situation is not None or (is_anything(query) and not query.relations):
         return None
     things = survey.some(query) if is_plural(query) else meant(query, survey)
     if query.pick == "any":
@@ -154,6 +154,8 @@ def _which_wall(asked: Asked, survey: Survey) -> Answer | None:
 
 
 def _which_zone(asked: Asked, survey: Survey) -> Answer | None:
+    if asked.situation is not None and "room" not in asked.words:
+        return None
     deep = bool(re.search(r"\b(?:front|back)\b", asked.text.lower().replace("from the front", "")))
     lateral = bool(re.search(r"\b(?:left|right)\b", asked.text.lower()))
     things = meant(asked.slots["x"], survey)
@@ -175,8 +177,15 @@ def _which_zone(asked: Asked, survey: Survey) -> Answer | None:
     return agreed([(survey.named(t), one(t)) for t in things])
 
 
+def _is_personal(asked: Asked) -> bool:
+    """Whether a side is that of a person whose place is stated."""
+    return asked.situation is not None and not {"room", "wall", "corner"} & set(asked.words)
+
+
 def _in_zone(asked: Asked, survey: Survey) -> Answer | None:
     query, said = asked.slots["x"], str(asked.slots["z"])
+    if _is_personal(asked):
+        return None
     exists = query.pick == "any" or bool(re.search(r"\bthere\b|\b(?:have|see)\b", asked.text.lower()))
     things = survey.things if is_anything(query) else survey.all_of(query) if exists else meant(query, survey)
     if not things:
@@ -200,15 +209,21 @@ def _in_zone(asked: Asked, survey: Survey) -> Answer | None:
 
 def _what_in_zone(asked: Asked, survey: Survey) -> Answer | None:
     query, text = asked.slots.get("x"), asked.text.lower()
+    if _is_personal(asked):
+        return None
     said = str(asked.slots.get("z", "the corner"))
     wanted = None if query is None or is_anything(query) else {t.row for t in survey.all_of(query)}
     found = [t for t in survey.things if (wanted is None or t.row in wanted) and is_in(t, said, survey.room)[0]]
     found = [t for t in found if (t.node is not None and t.node.support != "ceiling") or "ceiling" in said]
+    if not found and re.search(r"\b(?:middle|center)\b", said):
+        central = [t for t in survey.things if (wanted is None or t.row in wanted) and t.node is not None
+                   and t.node.support == "floor"]  # fmt: skip
+        found = sorted(central, key=lambda t: float((middle(t) ** 2).sum()))[:1]
     if "corner" in said:
         found.sort(key=lambda t: corner_of(t, survey.room)[2])
     names = [survey.named(t) for t in found]
-    sentence = f"{_cap(listed(names))} {'is' if len(found) <= 1 else 'are'} in {said}." if "the" in said else ""
-    sentence = sentence or f"{_cap(listed(names))}."
+    where = "at" if "wall" in said else "on" if "side" in said else "in"
+    sentence = f"{_cap(listed(names))} {'is' if len(found) <= 1 else 'are'} {where} {said}."
     evidence = Evidence(ids=tuple(t.id for t in found))
     if re.match(r"\W*how many", text):
         return Answer(answer=float(len(found)), answer_type="number", text=f"{len(found)}: {listed(names)}.",

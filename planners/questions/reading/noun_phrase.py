@@ -113,6 +113,7 @@ _REWRITES: tuple[tuple[re.Pattern[str], str], ...] = tuple(
          r"below|beneath|underneath|inside|closest|nearest|farthest|left|right|to the) )", " "),
     )
 )  # fmt: skip
+_OWN_SIDE = re.compile(r"(?:my|your|our|his|her|their) (?:\w+ )?(?:left|right|front|back|rear)\b")
 _COLORED = re.compile(r"^(?:something|anything|everything|stuff|all|things|objects|items|what|one|ones) (\w+)(?= |$)")
 _PLACE, _HARD_NAME = "qroom", "qname"
 # Words of names of kinds that the grammar takes for something else: "but", a measure, an action, a colour.
@@ -166,6 +167,8 @@ def thing(words: Words) -> Query | None:
         return None
     if found := _ID.match(said):
         return Query(text=f"{BY_ID} {found[1] or found[2]}")
+    if _OWN_SIDE.match(said):
+        return None
     if said in _LAST:
         return Query(last=True)
     said = _plainly(said)

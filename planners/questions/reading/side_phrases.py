@@ -84,6 +84,14 @@ def side(words: Words) -> Side | None:
     return _between(one, other)
 
 
+def either(words: Words) -> Side | None:
+    """The second of two directions, which may be a bare word: "on my left or right"."""
+    said = " ".join(words)
+    bare = {"left": "left", "right": "right", "the left": "left", "the right": "right", "behind": "behind",
+            "in front": "in front", "front": "in front", "back": "behind"}  # fmt: skip
+    return Side(bare[said], SIDES[bare[said]]) if said in bare else side(words)
+
+
 def _between(one: Side, other: Side) -> Side | None:
     if one.at in (90.0, -90.0):
         one, other = other, one
