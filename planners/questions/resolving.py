@@ -55,7 +55,7 @@ def all_of(survey: Survey, query: Query) -> tuple[tuple[Thing, ...], Found]:
     for part in (query.model_copy(update={"also": ()}), *query.also):
         single = part.pick in ("one", "any", "all")
         found = survey.find(part.model_copy(update={"pick": "all", "count": None}) if single else part)
-        if found.verdict == "ambiguous":
+        if found.verdict == "ambiguous" or (found.about is not None and found.about.last):
             raise NotResolved(part, found)
         things |= {t.id: t for t in found.things} if found.verdict == "found" else {}
         first = first if first is not None and first.verdict == "absent" else found

@@ -161,6 +161,8 @@ class Survey:
             shell = next(r for r in query.relations if r not in rest.relations).anchors[0].text
             return self._filtered(query, rest, lambda thing: thing.node is not None and thing.node.support == shell)
         found = self.finder(query)
+        if found.verdict == "ambiguous" and (loose := self._to_any(query)) is not None:
+            return self._found(loose)
         rows = tuple(dict.fromkeys(c.group for c in found.candidates if c.group >= 0))
         if found.verdict != "found" and (about := self._at_fault(query)) is not None:
             there = self.find(about)
@@ -212,6 +214,21 @@ class Survey:
         """The one of several things that a superlative picks."""
         thing = picked(query, members, self.stand)
         return Found("found", (thing,)) if thing is not None else Found("ambiguous", tuple(members))
+
+    def _to_any(self, query: Query) -> Query | None:
+        """A query whose relations hold to any of several anchors; None if each of its anchors is one thing.
+
+        The candidates of an ambiguous anchor are none of the query: "the lamp on the table" is no table.
+        """
+        relations = tuple(
+            r.model_copy(update={"anchors": tuple(self._each_of(a) for a in r.anchors)}) if r.name in _LOOSE else r
+            for r in query.relations
+        )
+        return None if relations == query.relations else query.model_copy(update={"relations": relations})
+
+    def _each_of(self, anchor: Query) -> Query:
+        several = anchor.pick == "one" and not anchor.last and self.find(anchor).verdict == "ambiguous"
+        return anchor.model_copy(update={"pick": "all"}) if several else anchor
 
     def _at_fault(self, query: Query) -> Query | None:
         """The phrase within a query that is absent or ambiguous by itself, None if none is."""

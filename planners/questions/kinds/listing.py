@@ -9,6 +9,7 @@ from ....gaussians.language.query.query import Query
 from ..answer import Answer
 from ..kind import Asked, Kind
 from ..measuring import sides
+from ..reading.noun_phrase import is_anything
 from ..reading.phrase_templates import templates
 from ..resolving import all_of
 from ..survey import Survey, Thing, listed
@@ -64,7 +65,7 @@ _PHRASES = f"""
     what is the room (furnished|equipped|filled) with
     what all is {_HERE}
     {_ROOM} contains what
-    what are {_ALL} {{x}} {_HERE}
+    what are {_ALL} {{things}} {_HERE}
     what (are|is) in there
     (what|which) {_ALL} {{x}} there (is|are)
 """
@@ -73,7 +74,9 @@ _PHRASES = f"""
 def answer(asked: Asked, survey: Survey) -> Answer | None:
     """The things, by label, and as a table where one is asked for."""
     slots = asked.slots
-    query: Query = slots.get("x") or slots.get("table") or Query(pick="all")
+    query: Query = slots.get("x") or slots.get("table") or slots.get("things") or Query(pick="all")
+    if "things" in slots and not is_anything(query):
+        return None
     if query.last or query.pick not in ("one", "any", "all"):
         return None
     if query.pick == "one" and "table" not in slots and not {"list", "name", "all"} & set(asked.words):

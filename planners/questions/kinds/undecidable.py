@@ -187,7 +187,7 @@ _TOPICS: tuple[_Topic, ...] = (
         r"state) of\b|\bin (?:good|bad|poor|working) (?:condition|order|shape)\b",
         r"\b(?:need|needs) (?:cleaning|repair|repairing|fixing|washing|dusting|water|watering|tidying|replacing|"
         r"painting)\b",
-        r"\bwhat (?:condition|state|shape)\b", r"\bhas (?:the|this) bed been made\b", r"^(?:does|do|is|are) (?:the|"
+        r"\bwhat (?:condition|state)\b", r"\bhas (?:the|this) bed been made\b", r"^(?:does|do|is|are) (?:the|"
         r"this|that) .* (?:work|works|function|functioning)$",
         rf"^(?:which|what) (?:\w+ )+(?:is|are) (?:{_STATES})$", r"^how many (?:\w+ )+(?:is|are) (?:open|closed|shut|"
         r"turned on|switched on|lit|on|off|broken|empty|full|made)$",
@@ -223,6 +223,15 @@ _TOPICS: tuple[_Topic, ...] = (
         r"which floor|city|country|address|street|neighbou?rhood|storey)\b(?! of)",
         r"\b(?:enough|much|how much) (?:light|daylight)\b", r"^(?:is it|was it) (?:day|night|morning|evening|dark|"
         r"light|bright)\b",
+    ),
+    _topic(
+        "What to do or to use for something is no matter of geometry; somebody who sees the room may advise.", True,
+        r"^(?:should|shall) (?:i|we|you|one)\b|\bwhat should\b|\bshould (?:i|we)\b",
+        r"^how (?:do|can|would|should) (?:i|we|you|one) (?:use|turn|switch|open|operate|clean|assemble|fix|repair|cook|"
+        r"make|wash|improve|decorate|play|get rid|start|connect|cool|heat|warm|increase|reduce|lower the|raise the)\b",
+        r"\b(?:can|could) (?:i|we|you|one) use (?:to|for|in)\b|\bcan be used (?:to|for|as)\b|"
+        r"\bis there anything i can use\b",
+        r"^(?:i am|i feel|i am feeling) (?:thirsty|hungry|tired|cold|hot|bored|sleepy|ill|sick)\b",
     ),
     _topic(
         "Reasons, purposes and opinions cannot be told from geometry.", False,

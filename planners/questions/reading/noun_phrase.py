@@ -55,6 +55,8 @@ _REWRITES: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(pattern), said)
     for pattern, said in (
         (rf" {_HERE}$", ""),
+        (rf" {_HERE} (?=except )", " "),
+        (r"\b(?:that|which) (?:is|are) (?:the )?(closest|nearest|farthest)\b", r"\1"),
         (
             r"^(?:there (?:is|are)|such a thing as|things like|something like|anything like|any sign of|any kind of|"
             r"any sort of|"
@@ -128,7 +130,7 @@ _NO_THINGS = bag(
     "tune time use order way front back side middle center top bottom end edge reach view sight shape condition "
     "mood style place room space weather date day night morning evening weekend weekends year age price cost value "
     "brand make model owner company name reason purpose question idea problem thought color size height width depth "
-    "length weight area volume dimension dimensions distance gap direction position location orientation number "
+    "length weight area volume story storey function dimension dimensions distance gap direction position location orientation number "
     "amount total sum average lot bit kind sort type difference left right everyone everybody anyone anybody "
     "someone somebody nobody me you us them him her i we it they myself yourself person people man woman owner "
     "designer shade material texture pattern smell sound noise temperature heat cold warm hot comfortable comfy "
@@ -147,6 +149,7 @@ _VERBS = re.compile(
     r"costs|"
     r"goes|go)\b"
 )
+_RELATIVE = re.compile(r"\b(?:that|which|who) (?:is|are|has|have|does not have|is not|are not)\b")
 _NO_STARTS = bag(
     "than and or of to from in on at by with is are was were does do did has have had be been being can could would "
     "will should which who whom whose where when why how whether if , not as so but for under over above below behind "
@@ -172,7 +175,7 @@ def thing(words: Words) -> Query | None:
     if said in _LAST:
         return Query(last=True)
     said = _plainly(said)
-    if not said or _VERBS.search(_with_verbs().sub("it", said)):
+    if not said or _VERBS.search(_RELATIVE.sub("", _with_verbs().sub("it", said))):
         return None
     try:
         plan = _grammar().plan(f"select {said}")
@@ -288,6 +291,11 @@ def _checked(query: Query) -> Query | None:
             return None
         relations.append(relation.model_copy(update={"anchors": anchors}))
     return query.model_copy(update={**changed, "relations": tuple(relations)})
+
+
+@cache
+def _is_plural_noun(word: str) -> bool:
+    return singular(word) != word and singular(word) in kinds.heads()
 
 
 def _checked_anchor(query: Query) -> Query | None:

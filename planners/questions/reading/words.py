@@ -116,6 +116,31 @@ _CONTRACTED = {
 _HAVE_IS = re.compile(
     r"\b(what|where|which|who|how|when|colou?r|that|there|one|anything|something|somebody|everything|it) 's\b"
 )
+# Parts that only repeat or restrict what a question says.
+_REORDERED: tuple[tuple[re.Pattern[str], str], ...] = tuple(
+    (re.compile(pattern), said)
+    for pattern, said in (
+        (r" , [\w ]{1,30} i mean(?: , not \w+)?(?: ,)?(?= |$)", ""),
+        (r"^(?:counting|including|if (?:you|we) (?:count|include)|with) [\w ]+? , (?=how many )", ""),
+        (
+            r"^(?:excluding|not counting|not including|apart from|besides|except(?: for)?|other than|aside from|ignoring|"
+            r"leaving out) ([\w ]+?) , (.+)$",
+            r"\2 except \1",
+        ),
+        (
+            r" ,? ?(?:excluding|not counting|not including|apart from|besides|except for|other than|aside from|ignoring|"
+            r"leaving out|but not(?= the )) (?=[\w ]+$)",
+            " except ",
+        ),
+        (r"^(how many [\w ]+?) (?:are|is) (?:there|here|in the room) except ", r"\1 except "),
+        (r"^(?:is|are) there (?:something|anything) ([\w ]+?) ,? ?and (?:if so ,? ?)?what(?: is it)?$", r"what is \1"),
+        (
+            r" ,? ?(?:and )?if (?:so|yes|there are|there is)? ?,? ?(?:what|which|where|how many)(?: (?:is|are) (?:it|"
+            r"they|there))?$",
+            "",
+        ),
+    )
+)
 # "Is not the sofa blue?" asks whether it is blue.
 _NEGATED = re.compile(
     r"(?:(?<=^)|(?<=, ))(is|are|was|were|does|do|did|has|have|can|could|would|will) not "
@@ -170,7 +195,10 @@ def plain_words(text: str) -> tuple[str, ...]:
     said = _HAVE_IS.sub(r"\1 is", said).replace(" is been ", " has been ").replace(" is got ", " has got ")
     said = _NEGATED.sub(r"\1 ", said)
     said = _THE_ROOM.sub("the room", _IN_ROOM.sub("in the room", _commas(said)))
-    return tuple(_stripped(said).split())
+    said = _stripped(said)
+    for pattern, plain in _REORDERED:
+        said = pattern.sub(plain, said)
+    return tuple(said.split())
 
 
 def asks(text: str) -> bool:
