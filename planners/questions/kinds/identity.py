@@ -1,15 +1,15 @@
-"""What a numbered thing is: "what is object 7?", "describe number 3"."""
+"""What a thing is that is told by its number or its looks: "what is object 7?", "what is the black thing?"."""
 
 from __future__ import annotations
 
 from ..answer import Answer
 from ..kind import Asked, Kind
 from ..measuring import told_size
-from ..reading.noun_phrase import BY_ID
+from ..reading.noun_phrase import BY_ID, is_anything
 from ..reading.phrase_templates import templates
 from ..resolving import meant
 from ..survey import Survey, with_article
-from ..telling import label
+from ..telling import GRAPH_SURE, label, things_listed
 
 _PHRASES = """
     what (is|are|was|kind of thing is|sort of thing is|type of thing is|object is|thing is) {x} [called]
@@ -24,15 +24,25 @@ _PHRASES = """
 
 
 def answer(asked: Asked, survey: Survey) -> Answer | None:
-    """The label of the thing with this number."""
-    if not asked.slots["x"].text.startswith(f"{BY_ID} "):
+    """The label of the thing with this number, or of what is described without its name: "the black thing"."""
+    query = asked.slots["x"]
+    numbered = query.text.startswith(f"{BY_ID} ")
+    described = is_anything(query) and (query.colors or query.size) and not query.groups and not query.last
+    if not numbered and not described:
         return None
-    (thing,) = meant(survey, asked.slots["x"]).things
-    if not thing.label:
+    phrase = meant(survey, query)
+    things = [t for t in phrase.things if t.label]
+    if len(things) > 1 and not phrase.plural:
+        raise phrase.differ()
+    if not things:
         return None
+    if len(things) > 1:
+        return things_listed(things, f"That is {survey.counted(things)}.")
+    (thing,) = things
     color = f"{thing.color} " if thing.color else ""
-    text = f"Number {thing.id} is {with_article(color + thing.name)}, {told_size(survey, thing)}."
-    return label(thing, text, 0.85 if survey.measured else 0.98)
+    subject = f"Number {thing.id}" if numbered else "That"
+    text = f"{subject} is {with_article(color + thing.name)}, {told_size(survey, thing)}."
+    return label(thing, text, 0.85 if survey.measured else GRAPH_SURE)
 
 
 KIND = Kind("what it is", templates(_PHRASES), answer)

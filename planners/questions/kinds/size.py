@@ -87,8 +87,8 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
     if {"than", "as"} & set(asked.words) and "u" not in slots:
         return _against_person(asked, phrase, survey)
     what: Measure = slots["d"].measure
-    if what == "size" and not {"size"} <= set(asked.words) and "u" not in slots and phrase.query.text == "":
-        return None
+    if what == "size" and not phrase.query.text and not phrase.query.groups and "size" not in asked.words:
+        return None  # "how big is everything" asks for the room
     if what == "size":
         return _size(phrase, slots.get("u"), survey)
     hung = phrase.things[0].node is not None and phrase.things[0].node.support in ("wall", "ceiling")

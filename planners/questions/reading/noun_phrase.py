@@ -127,20 +127,20 @@ _TOKENS = {
 }  # fmt: skip
 # Heads of noun phrases that name no thing that could be found in a scene.
 _NO_THINGS = bag(
-    "tune time use order way front back side middle center top bottom end edge reach view sight shape condition "
-    "mood style place room space weather date day night morning evening weekend weekends year age price cost value "
-    "brand make model owner company name reason purpose question idea problem thought color size height width depth "
-    "length weight area volume story storey function dimension dimensions distance gap direction position location orientation number "
-    "amount total sum average lot bit kind sort type difference left right everyone everybody anyone anybody "
-    "someone somebody nobody me you us them him her i we it they myself yourself person people man woman owner "
-    "designer shade material texture pattern smell sound noise temperature heat cold warm hot comfortable comfy "
-    "cosy cozy nice beautiful pretty ugly clean dirty tidy messy open closed shut locked empty full broken new old "
-    "cheap expensive heavy big small large tall wide deep long short high low bigger smaller taller wider deeper "
+    "tune time use order way front back side middle center top bottom end edge reach view sight shape condition mood "
+    "style place room space weather date day night morning evening weekend weekends year age price cost value brand "
+    "make model owner company name reason purpose question idea problem thought color size height width depth length "
+    "weight area volume story storey function dimension dimensions distance gap direction position location "
+    "orientation number amount total sum average lot bit kind sort type difference left right everyone everybody "
+    "anyone anybody someone somebody nobody me you us them him her i we it they myself yourself person people man "
+    "woman owner designer shade material texture pattern smell sound noise temperature heat cold warm hot comfortable "
+    "comfy cosy cozy nice beautiful pretty ugly clean dirty tidy messy open closed shut locked empty full broken new "
+    "old cheap expensive heavy big small large tall wide deep long short high low bigger smaller taller wider deeper "
     "longer shorter higher lower larger closer nearer farther longest widest deepest narrowest highest lowest "
-    "thinnest thickest closest nearest farthest same different similar equal aligned level straight common sure "
-    "able possible likely red danger safe safety space walkway path route walk foot work living being what which "
-    "who where when why how many much not no yes is are was were be been do does did have has had can could would "
-    "will should there here this that these those than as so if whether and or but of to from for with"
+    "thinnest thickest closest nearest farthest same different similar equal aligned level straight common sure able "
+    "possible likely red danger safe safety space walkway path route walk foot work living being what which who where "
+    "when why how many much not no yes is are was were be been do does did have has had can could would will should "
+    "there here this that these those than as so if whether and or but of to from for with"
 )
 _VERBS = re.compile(
     r"\b(?:is|are|was|were|be|been|does|do|did|has|have|had|can|could|would|will|should|whether|how|what|which|who|"

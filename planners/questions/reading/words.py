@@ -123,13 +123,13 @@ _REORDERED: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (r" , [\w ]{1,30} i mean(?: , not \w+)?(?: ,)?(?= |$)", ""),
         (r"^(?:counting|including|if (?:you|we) (?:count|include)|with) [\w ]+? , (?=how many )", ""),
         (
-            r"^(?:excluding|not counting|not including|apart from|besides|except(?: for)?|other than|aside from|ignoring|"
-            r"leaving out) ([\w ]+?) , (.+)$",
+            r"^(?:excluding|not counting|not including|apart from|besides|except(?: for)?|other than|aside from|"
+            r"ignoring|leaving out) ([\w ]+?) , (.+)$",
             r"\2 except \1",
         ),
         (
-            r" ,? ?(?:excluding|not counting|not including|apart from|besides|except for|other than|aside from|ignoring|"
-            r"leaving out|but not(?= the )) (?=[\w ]+$)",
+            r" ,? ?(?:excluding|not counting|not including|apart from|besides|except for|other than|aside from|"
+            r"ignoring|leaving out|but not(?= the )) (?=[\w ]+$)",
             " except ",
         ),
         (r"^(how many [\w ]+?) (?:are|is) (?:there|here|in the room) except ", r"\1 except "),
