@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -21,15 +21,25 @@ from ..model.prompt.labels import plain
 from ..model.prompt.pruning import tokens
 from ..model.verify.json_reply import ReplyError, printable
 from ..questions.answer import Answer, AnswerType, Evidence
-from .asking import NoReplyError, Purse, ask, described, require_sight, shown_marks
+from .asking import (
+    PICTURE_TOKENS,
+    REPLY_TOKENS,
+    NoReplyError,
+    Purse,
+    ask,
+    described,
+    fitting,
+    require_sight,
+    shown_marks,
+)
 from .facts import Facts, same
 from .looker import Looker, Shown
 
 SURE = 0.75  # confidence from which an answer stands without another look; see `Terms.sure`
 MAX_CHARS = 1000  # of a question
 _ROUNDS = 6  # requests for more pictures in one sample, whatever the budget
-_PICTURE_TOKENS = 1100  # estimate of what a model counts for a picture 768 pixels wide
-_REPLY_TOKENS, _FACTS_TOKENS = 700, 3000
+_FACTS_TOKENS = 3000
+_FEW_FACTS = "#1: a thing, " * 60  # facts that have their place even where the window is small
 _LABEL, _REASON, _ANSWER = 80, 300, 400  # characters
 _MARK = re.compile(r"#(\d{1,6})\b")
 _WANTED = {
@@ -63,6 +73,14 @@ class SeenReply(BaseModel):
     things: Annotated[tuple[Number, ...], Field(max_length=24)] = ()
     need_more: Annotated[tuple[Word, ...], Field(max_length=4)] = ()
     cannot_tell: Annotated[str, Field(max_length=_REASON, strict=True)] = ""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _yes_or_no(cls, given: Any) -> Any:
+        """ "Yes." is as good as "yes"."""
+        if isinstance(given, dict) and given.get("answer_type") == "yesno" and isinstance(given.get("answer"), str):
+            return {**given, "answer": given["answer"].strip().rstrip(".").lower()}
+        return given
 
     @model_validator(mode="after")
     def _whole(self) -> Self:
@@ -211,8 +229,7 @@ class _Loop:
     @property
     def _most(self) -> int:
         """Pictures that fit the model's window beside the prompt."""
-        prompt = tokens(prompts.load("vision_ask").text) + tokens(self._question) + 300
-        return max(1, (self._backend.window - _REPLY_TOKENS - prompt) // _PICTURE_TOKENS)
+        return fitting(self._backend, prompts.load("vision_ask").text, self._question, _FEW_FACTS)
 
     def _first(self, turn: int) -> tuple[Shown, ...]:
         """The pictures that a conversation begins with; later ones begin with others, or with the same turned round."""
@@ -258,8 +275,8 @@ class _Loop:
     def _messages(self, shown: tuple[Shown, ...], missing: Sequence[str], marks: dict[int, int]) -> list[Message]:
         rules = prompts.load("vision_ask").text
         pictures = described(shown)
-        used = tokens(rules) + tokens(pictures) + tokens(self._question) + 200 + _PICTURE_TOKENS * len(shown)
-        room = min(self._backend.window - _REPLY_TOKENS - used, _FACTS_TOKENS)
+        used = tokens(rules) + tokens(pictures) + tokens(self._question) + 200 + PICTURE_TOKENS * len(shown)
+        room = min(self._backend.window - REPLY_TOKENS - used, _FACTS_TOKENS)
         before = ""
         if missing:
             told = ", ".join(printable(one, 40) for one in missing)

@@ -18,6 +18,7 @@ from ... import prompts
 from ...gaussians.errors import BackendError
 from ..budget import Ledger, OverBudgetError, Progress
 from ..model.backend import Answer, Message, ModelBackend, OnText, UnreachableError
+from ..model.prompt.pruning import tokens
 from ..model.verify.json_reply import Location, ReplyError, bare, given_object, printable, told
 from ..plan import NoPlanError, Usage
 from .looker import Shown
@@ -25,6 +26,8 @@ from .looker import Shown
 T = TypeVar("T", bound=BaseModel)
 Check = Callable[[T], str]  # what is wrong with a valid reply, "" for nothing; raises ReplyError if it is of no use
 
+PICTURE_TOKENS = 1100  # estimate of what a model counts for a picture 768 pixels wide
+REPLY_TOKENS = 700  # kept for a reply and what repairs it
 _ATTEMPTS = 2  # the reply, and one repair
 _ECHO_CHARS, _FAULT_CHARS, _TOLD_CHARS = 2000, 1000, 300
 _CUT = "the answer was cut off because it is too long; answer shorter"
@@ -118,6 +121,12 @@ def require_sight(backend: ModelBackend) -> None:
     """
     if not backend.sees:
         raise BackendError(f"{backend.name} reads no pictures; name a model that does")
+
+
+def fitting(backend: ModelBackend, *texts: str) -> int:
+    """How many pictures fit a model's window beside texts and the reply; at least one."""
+    used = sum(map(tokens, texts)) + REPLY_TOKENS
+    return max(1, (backend.window - used) // PICTURE_TOKENS)
 
 
 def described(shown: Sequence[Shown]) -> str:

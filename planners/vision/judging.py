@@ -14,7 +14,7 @@ from ..model.backend import Message, ModelBackend
 from ..model.prompt.examples import quoted
 from ..model.verify.json_reply import printable
 from ..plan import Usage
-from .asking import Purse, ask, require_sight
+from .asking import Purse, ask, fitting, require_sight
 from .looker import Shown
 
 _REASON, _EFFECT, _INSTRUCTION = 400, 120, 1000  # characters
@@ -71,7 +71,8 @@ def verdict(
 
     Args:
         instruction: what was to be done, in the user's words.
-        before, after: pictures from the same places, in the same order.
+        before, after: pictures from the same places, in the same order, the most telling first; those that do not fit
+            the model's window are left out.
         purse: the budget; one of its own if None.
 
     Raises:
@@ -83,6 +84,8 @@ def verdict(
     require_sight(backend)
     if len(instruction.strip()) == 0:
         raise BackendError("there is no instruction to judge by")
+    pairs = max(1, fitting(backend, prompts.load("vision_judge").text, instruction) // 2)
+    before, after = before[:pairs], after[:pairs]
     request = prompts.load("vision_judge_request").fill(
         pictures="\n".join(_lines(before, after)), instruction=quoted(printable(instruction, _INSTRUCTION))
     )

@@ -250,6 +250,12 @@ def test_a_bad_reply_is_repaired_once_and_then_given_up(bad: str, told: str) -> 
     assert (answer.answer, answer.source, len(model.asked)) == (None, "none", 2) and "no usable reply" in answer.text
 
 
+@pytest.mark.parametrize("word", ["Yes", "yes.", " YES "])
+def test_yes_in_other_letters_is_yes(word: str) -> None:
+    answer, model = asked(said(word, "yesno"))
+    assert answer.answer == "yes" and len(model.asked) == 1
+
+
 def test_the_type_that_the_question_asks_for_is_demanded() -> None:
     answer, model = asked(said("two", "text"), said(2, "number"), answer_type="number")
     assert answer.answer == 2 and 'asks for "number"' in model.asked[1][-1].text

@@ -253,6 +253,13 @@ def test_pictures_come_in_pairs() -> None:
         verdict("delete it", shown[:1], shown[1:2], ScriptedModel(sentence()))
 
 
+@pytest.mark.parametrize(("window", "pictures"), [(2048, 2), (8192, 6), (128_000, 8)])
+def test_pictures_that_do_not_fit_the_window_are_left_out_in_pairs(window: int, pictures: int) -> None:
+    looker, model = ScriptedLooker(), ScriptedModel(sentence(), sees=True, window=window)
+    verdict("delete the vase", looker.overview((), 4), looker.overview((), 4), model)
+    assert len(model.asked[0][1].pictures) == pictures
+
+
 def test_a_refusal_is_no_verdict() -> None:
     with pytest.raises(NoReplyError, match="declined: no"):
         judged(ModelAnswer("no", Usage(model="m", requests=1), "declined"))
