@@ -7,13 +7,14 @@ tell from these views" is an answer. What geometry measured goes along as data, 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from ... import prompts
+from ...tools.alternatives import NOT_GIVEN, either, given
 from ..budget import Ledger, OverBudgetError, Progress
 from ..model.backend import Message, ModelBackend, UnreachableError
 from ..model.prompt.examples import quoted
@@ -26,10 +27,12 @@ from .asking import (
     REPLY_TOKENS,
     NoReplyError,
     Purse,
+    Wanted,
     ask,
     described,
     fitting,
     require_sight,
+    schema,
     shown_marks,
 )
 from .facts import Facts, same
@@ -55,10 +58,37 @@ Word = Annotated[str, Field(min_length=1, max_length=_LABEL, strict=True)]
 Number = Annotated[int, Field(ge=0, le=10**6, strict=True)]
 
 
+_SILENT = {"cannot_tell": {"maxLength": 0}}
+_LENGTH = {"type": "number", "minimum": 0, "maximum": 1e5}
+# What goes together in a reply, by answer_type; "" and "more" are those of replies without an answer.
+_ALTERNATIVES: dict[str, dict[str, Any]] = {
+    "yesno": {"answer_type": given(enum=["yesno"]), "answer": given(enum=["yes", "no"]), **_SILENT},
+    "number": {"answer_type": given(enum=["number"]), "answer": given(**_LENGTH), **_SILENT},
+    "metres": {"answer_type": given(enum=["metres"]), "answer": given(**_LENGTH), **_SILENT},
+    "label": {
+        "answer_type": given(enum=["label"]),
+        "answer": given(type="string", minLength=1, maxLength=_LABEL),
+        **_SILENT,
+    },
+    "list": {
+        "answer_type": given(enum=["list"]),
+        "answer": given(type="array", items={"type": "string", "minLength": 1, "maxLength": _LABEL}, maxItems=24),
+        **_SILENT,
+    },
+    "text": {
+        "answer_type": given(enum=["text"]),
+        "answer": given(type="string", minLength=1, maxLength=_ANSWER),
+        **_SILENT,
+    },
+    "": {"answer": NOT_GIVEN, "cannot_tell": given(type="string", minLength=1, maxLength=_REASON)},
+    "more": {"answer": NOT_GIVEN, "need_more": given(minItems=1)},
+}
+
+
 class SeenReply(BaseModel):
     """What a vision model answers to a question; the prompt `vision_ask` explains the fields."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", json_schema_extra=either(*_ALTERNATIVES.values()))
 
     because: Annotated[str, Field(max_length=_REASON, strict=True)] = ""
     answer: (
@@ -94,7 +124,7 @@ class SeenReply(BaseModel):
         fits = {
             "yesno": value in ("yes", "no"),
             "number": isinstance(value, float) and value >= 0,
-            "metres": isinstance(value, float),
+            "metres": isinstance(value, float) and value >= 0,
             "label": isinstance(value, str) and len(value) <= _LABEL,
             "list": isinstance(value, tuple),
             "text": isinstance(value, str),
@@ -265,8 +295,11 @@ class _Loop:
         said = ask(
             self._backend,
             self._messages(shown, missing, marks),
-            SeenReply,
-            lambda reply: self._check(reply, len(shown), marks),
+            Wanted(
+                SeenReply,
+                lambda reply: self._check(reply, len(shown), marks),
+                _schema(self._terms.answer_type, len(shown), marks),
+            ),
             self._purse,
             stage,
         )
@@ -373,6 +406,15 @@ class _Loop:
             evidence=Evidence(views=tuple(self._rendered)),
             usage=self._purse.usage,
         )
+
+
+def _schema(answer_type: AnswerType | None, pictures: int, marks: Collection[int]) -> dict[str, Any]:
+    """The schema of a reply, narrowed to a type of answer and to the pictures and marks that there are."""
+    made = schema(SeenReply, evidence_views=range(1, pictures + 1), things=marks)
+    if answer_type is not None:
+        kept = (answer_type, "", "more")
+        made["anyOf"] = [branch for name, branch in zip(_ALTERNATIVES, made["anyOf"], strict=True) if name in kept]
+    return made
 
 
 def _nothing(why: str, terms: Terms, purse: Purse) -> Answer:

@@ -6,8 +6,9 @@ Replies are pydantic types that forbid unknown fields. What a type cannot say (w
 
 from __future__ import annotations
 
+import copy
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Generic, TypeVar
@@ -24,7 +25,6 @@ from ..plan import NoPlanError, Usage
 from .looker import Shown
 
 T = TypeVar("T", bound=BaseModel)
-Check = Callable[[T], str]  # what is wrong with a valid reply, "" for nothing; raises ReplyError if it is of no use
 
 PICTURE_TOKENS = 1100  # estimate of what a model counts for a picture 768 pixels wide
 REPLY_TOKENS = 700  # kept for a reply and what repairs it
@@ -35,6 +35,22 @@ _CUT = "the answer was cut off because it is too long; answer shorter"
 
 class NoReplyError(NoPlanError):
     """A vision model was asked and gave no usable reply; `usage` is what that cost."""
+
+
+@dataclass(frozen=True)
+class Wanted(Generic[T]):
+    """What a reply must be.
+
+    Attributes:
+        kind: its type.
+        check: what is wrong with a reply that is valid by its type, "" for nothing; such a fault is told to the model
+            once, and a reply that still has it is returned with it. Raises ReplyError where the reply is of no use.
+        schema: JSON Schema of what `kind` and `check` allow together, for back ends that hold a model to it.
+    """
+
+    kind: type[T]
+    check: Callable[[T], str]
+    schema: dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -150,9 +166,20 @@ def _schema(kind: type[BaseModel]) -> dict[str, Any]:
     return made
 
 
-def schema(kind: type[BaseModel]) -> dict[str, Any]:
-    """The JSON Schema of a reply type, without descriptions, which the prompt contains."""
-    return dict(_schema(kind))
+def schema(kind: type[BaseModel], **numbers: Collection[int]) -> dict[str, Any]:
+    """The JSON Schema of a reply type, without descriptions, which the prompt contains.
+
+    Args:
+        numbers: for lists of numbers, by field: which there are; the schema bounds them, or allows none.
+    """
+    made: dict[str, Any] = copy.deepcopy(_schema(kind))
+    for name, allowed in numbers.items():
+        field = made["properties"][name]
+        if allowed:
+            field["items"] = {"type": "integer", "minimum": min(allowed), "maximum": max(allowed)}
+        else:
+            field["maxItems"] = 0
+    return made
 
 
 def read(text: str, kind: type[T]) -> T:
@@ -170,8 +197,7 @@ def read(text: str, kind: type[T]) -> T:
 def ask(
     backend: ModelBackend,
     messages: Sequence[Message],
-    kind: type[T],
-    check: Check[T],
+    wanted: Wanted[T],
     purse: Purse,
     stage: str,
     attempts: int = _ATTEMPTS,
@@ -179,7 +205,6 @@ def ask(
     """The reply to messages; one that is invalid or fails the check is repaired once.
 
     Args:
-        check: faults of a valid reply, told to the model once; a reply that still has them is returned with them.
         stage: what is done, for the progress.
         attempts: requests, all but the first to repair.
 
@@ -190,15 +215,15 @@ def ask(
     """
     talk, fault = list(messages), ""
     for attempt in range(attempts):
-        answer = _answer(backend, talk, schema(kind), purse, stage)
+        answer = _answer(backend, talk, wanted.schema, purse, stage)
         if answer.end == "declined":
             raise NoReplyError(f"{backend.name} declined: {printable(answer.text, _TOLD_CHARS)}", purse.usage)
         doubted = None
         try:
             if answer.end == "closed":  # valid, but incomplete
                 raise ReplyError(_CUT)
-            doubted = read(answer.text, kind)
-            fault = check(doubted)
+            doubted = read(answer.text, wanted.kind)
+            fault = wanted.check(doubted)
         except ReplyError as error:
             doubted, fault = None, _CUT if answer.end == "cut" else str(error)
         if doubted is not None and (not fault or attempt + 1 == attempts):

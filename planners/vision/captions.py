@@ -14,7 +14,7 @@ from ..model.backend import Message, ModelBackend
 from ..model.prompt.labels import plain
 from ..model.verify.json_reply import printable
 from ..plan import Usage
-from .asking import NoReplyError, Purse, ask, described, require_sight
+from .asking import NoReplyError, Purse, Wanted, ask, described, require_sight, schema
 from .facts import Facts
 from .looker import Looker, Shown
 
@@ -159,7 +159,8 @@ def _asked(
         return f"captions: the name of {bad[0]} is no plain noun" if bad else ""
 
     stage = f"{backend.name} describes {len(todo)} things"
-    return ask(backend, messages, CaptionsReply, check, purse, stage).reply
+    wanted = Wanted(CaptionsReply, check, schema(CaptionsReply))
+    return ask(backend, messages, wanted, purse, stage).reply
 
 
 def _read(reply: CaptionsReply, todo: dict[int, int], shown: Sequence[Shown]) -> dict[int, Caption]:

@@ -10,11 +10,12 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from ... import prompts
 from ...gaussians.errors import BackendError
+from ...tools.alternatives import either, given
 from ..model.backend import Message, ModelBackend
 from ..model.prompt.examples import quoted
 from ..model.verify.json_reply import printable
 from ..plan import Usage
-from .asking import Purse, ask, fitting, require_sight
+from .asking import Purse, Wanted, ask, fitting, require_sight, schema
 from .looker import Shown
 
 _REASON, _EFFECT, _INSTRUCTION = 400, 120, 1000  # characters
@@ -26,7 +27,13 @@ Flag = Annotated[bool, Field(strict=True)]
 class VerdictReply(BaseModel):
     """What a vision model answers; the prompt `vision_judge` explains the fields."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(
+        frozen=True,
+        extra="forbid",
+        json_schema_extra=either(
+            {"done": given(enum=[True])}, {"done": given(enum=[False]), "right_thing": given(enum=[False])}
+        ),
+    )
 
     reason: Annotated[str, Field(min_length=1, max_length=_REASON, strict=True)]
     done: Flag
@@ -92,7 +99,8 @@ def verdict(
     pictures = tuple(one.png for pair in zip(before, after, strict=True) for one in pair)
     messages = [Message("system", prompts.load("vision_judge").text), Message("user", request, pictures)]
     purse = purse or Purse()
-    reply = ask(backend, messages, VerdictReply, _check, purse, f"{backend.name} judges the edit").reply
+    wanted = Wanted(VerdictReply, _check, schema(VerdictReply))
+    reply = ask(backend, messages, wanted, purse, f"{backend.name} judges the edit").reply
     return Verdict(
         reply.done,
         reply.right_thing and reply.done,

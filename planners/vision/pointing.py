@@ -9,12 +9,13 @@ from typing import Annotated, Self
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from ... import prompts
+from ...tools.alternatives import either, given
 from ..budget import OverBudgetError
 from ..model.backend import Message, ModelBackend, UnreachableError
 from ..model.prompt.examples import quoted
 from ..model.verify.json_reply import ReplyError, printable
 from ..plan import Usage
-from .asking import NoReplyError, Purse, ask, described, require_sight, shown_marks
+from .asking import NoReplyError, Purse, Wanted, ask, described, require_sight, schema, shown_marks
 from .looker import Looker, Shown
 
 PICTURES, REQUESTS = 3, 2  # of a query, the confirming one among them
@@ -26,7 +27,14 @@ Number = Annotated[int, Field(ge=0, le=10**6, strict=True)]
 class PointReply(BaseModel):
     """What a vision model answers; the prompt `vision_point` explains the fields."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(
+        frozen=True,
+        extra="forbid",
+        json_schema_extra=either(
+            {"none": {"enum": [False]}, "meant": given(minItems=1)},
+            {"none": given(enum=[True]), "meant": {"maxItems": 0}},
+        ),
+    )
 
     because: Annotated[str, Field(max_length=_REASON, strict=True)] = ""
     meant: Annotated[tuple[Number, ...], Field(max_length=24)] = ()
@@ -142,7 +150,8 @@ def pointed(
         return ""
 
     stage = f"{backend.name} looks for {printable(phrase, 40)}"
-    return ask(backend, messages, PointReply, check, purse, stage, attempts).reply
+    wanted = Wanted(PointReply, check, schema(PointReply, meant=marks))
+    return ask(backend, messages, wanted, purse, stage, attempts).reply
 
 
 def _second(reply: PointReply, shown: Sequence[Shown], looker: Looker, purse: Purse) -> Shown | None:
