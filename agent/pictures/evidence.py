@@ -135,6 +135,7 @@ def segment(camera: Camera, start: F64, end: F64, near: float) -> F64 | None:
     """A world segment in pixels `[2, 2]`, cut at depth `near` and at the border of the image; None if out of sight."""
     rotation, shift = camera.world_to_camera[:3, :3], camera.world_to_camera[:3, 3]
     a, b = rotation @ start + shift, rotation @ end + shift
+    near = max(near, 1e-6 * float(np.abs([a, b]).max()))
     if max(a[2], b[2]) <= near:
         return None
     if a[2] < near:

@@ -103,16 +103,18 @@ class FreeSpace:
 
     def sees(self, eye: F64, target: F64, reach: float) -> bool:
         """Whether the straight line from `eye` `[3]` meets no surface until `reach` before `target` `[3]`, world."""
-        gap = target - eye
-        length = float(np.linalg.norm(gap)) - reach
-        if length <= 0:
+        basis = self.frame.basis()
+        start, gap = basis @ eye, basis @ (target - eye)
+        length = float(np.linalg.norm(gap))
+        end = 1 - reach / length if length > reach else 0.0
+        with np.errstate(divide="ignore", invalid="ignore"):  # a ray along a face gives 0 / 0, which is no limit
+            planes = np.stack([(self.low - start) / gap, (self.high - start) / gap])
+        enter = max(0.0, float(np.nanmax(planes.min(axis=0), initial=0.0)))
+        leave = min(end, float(np.nanmin(planes.max(axis=0), initial=end)))
+        if enter >= leave:  # outside the bounds there is nothing
             return True
-        along = np.arange(self.step, length, self.step)
-        if not len(along):
-            return True
-        points = eye + along[:, None] * gap / np.linalg.norm(gap)
-        within = self.inside(points)
-        return not bool((self.clearance(points[within]) < BLOCKS * self.step).any())
+        shares = np.arange(enter, leave, self.step / length)
+        return not bool((self.clearance((start + shares[:, None] * gap) @ basis) < BLOCKS * self.step).any())
 
     def stands(self, count: int, height: float, near: F64 | None = None) -> F64:
         """Up to `count` points `[S, 3]`, world, at `height` along up, where nothing stands and far apart.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from scenewright.agent.pictures.marks import color_of
 from scenewright.agent.session.looker import SceneLooker
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.errors import UserError
-from scenewright.gaussians.scene import Scene
+from scenewright.gaussians.scene import Frame, Scene
 from scenewright.planners.vision.looker import Looker, Shown
 
 RED, BLUE = 6, 7
@@ -119,3 +120,33 @@ def test_the_same_questions_give_the_same_bytes(scene: Scene) -> None:
     first, second = (SceneLooker(scene, scene.cameras[0], SIZE) for _ in range(2))
     assert [v.png for v in first.overview([RED], 2)] == [v.png for v in second.overview([RED], 2)]
     assert first.look("plan") == second.look("plan")
+
+
+_ONE = room([Thing("box", (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), (0.5, 0.5, 0.5))])
+
+
+def _degenerate() -> dict[str, Scene]:
+    """Scenes at the border of what a scene is: emptied, without groups, one Gaussian, far too large, tilted."""
+    field = _ONE.language
+    assert field is not None
+    gone = replace(field, groups=(replace(field.groups[0], count=0),))
+    huge = Thing("huge", (-1e4, -1e4, 0.0), (1e4, 1e4, 1e3), (0.5, 0.5, 0.5), step=1e3)
+    return {
+        "one box": _ONE,
+        "emptied": _ONE.replace(cloud=_ONE.cloud[:0], language=gone),
+        "no groups": _ONE.replace(language=replace(field, groups=(), embeddings=np.zeros((0, 2), np.float32))),
+        "one Gaussian": _ONE.replace(cloud=_ONE.cloud[:1]),
+        "huge": room([huge]),
+        "tiny": room([Thing("dot", (0.0, 0.0, 0.0), (1e-6, 1e-6, 1e-6), (0.5, 0.5, 0.5))]),
+        "tilted": _ONE.replace(frame=Frame((0.3, -0.8, 0.2), None, None, "estimated", "unknown")),
+    }
+
+
+@pytest.mark.parametrize("name", list(_degenerate()))
+def test_odd_scenes_give_pictures_or_none(name: str) -> None:
+    looker = SceneLooker(_degenerate()[name], size=(64, 48))
+    views = looker.overview([], 2)
+    assert bool(views) == (name in ("one box", "huge", "tilted"))
+    for request in ("plan", "overview", "close:0", "from:0", "behind:0", "above:0"):
+        shown = looker.look(request)
+        assert shown is None or shown.size == (64, 48)
