@@ -118,17 +118,36 @@ def _annotated(drawing: Drawing, marks: Sequence[Mark], ends: F64, lines: Sequen
     image = _with_lines(image, [s for s in segments if s is not None])
     placed = list(place(drawing.labels, marks, shown))
     image = draw_placed(image, marks, placed)
-    lengths, spots = list[Mark](), list[Placed]()
-    for line, s in zip(lines, segments, strict=True):
+    labelled = _with_room(lines, segments, drawing.image.shape[0])
+    return draw_placed(image, *_placed_lengths(labelled, drawing, placed))
+
+
+def _with_room(lines: Sequence[Line], segments: Sequence[F64 | None], height: int) -> list[tuple[str, F64]]:
+    """The labels that are drawn, with their segments; on a route only those of legs that are longer than the label."""
+    found = []
+    for i, (line, s) in enumerate(zip(lines, segments, strict=True)):
         if s is None or not line.label:
             continue
-        half = half_size(line.label, drawing.image.shape[0])
+        leg = any(line.start == other.end or line.end == other.start for k, other in enumerate(lines) if k != i)
+        if not leg or float(np.linalg.norm(s[1] - s[0])) > 2 * half_size(line.label, height)[0]:
+            found.append((_plain(line.label), s))
+    return found
+
+
+def _placed_lengths(
+    labelled: Sequence[tuple[str, F64]], drawing: Drawing, names: Sequence[Placed]
+) -> tuple[list[Mark], list[Placed]]:
+    """Labels at the middles of their segments, beside those that they would cover, and clear of names."""
+    nothing = np.full_like(drawing.labels, -1)
+    marks, spots = list[Mark](), list[Placed]()
+    for text, s in labelled:
+        half = half_size(text, drawing.image.shape[0])
         middle = (float(s[:, 0].mean()), float(s[:, 1].mean()))
-        nothing = np.full_like(drawing.labels, -1)
-        at = free_place(nothing, -1, middle, max(half), half, [*placed, *spots])
-        spots.append(Placed(len(lengths), at, middle, half))
-        lengths.append(Mark(_plain(line.label), LINE))
-    return draw_placed(image, lengths, spots)
+        room = max(half) if float(np.linalg.norm(s[1] - s[0])) > 3 * half[0] else 0.0
+        at = free_place(nothing, -1, middle, room, half, [*names, *spots])
+        spots.append(Placed(len(marks), at, middle, half))
+        marks.append(Mark(text, LINE))
+    return marks, spots
 
 
 def segment(camera: Camera, start: F64, end: F64, near: float) -> F64 | None:

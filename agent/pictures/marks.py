@@ -177,7 +177,7 @@ def free_place(
         cost = _overlap((x, y), half, taken) * 20.0
         under = labels[max(0, int(y - half[1])) : int(y + half[1]) + 1, max(0, int(x - half[0])) : int(x + half[0]) + 1]
         cost += 3.0 * float(((under >= 0) & (under != own)).mean())
-        cost += 2.0 * max(0.0, float((under == own).sum()) / total - COVERS)
+        cost += 4.0 * max(0.0, float((under == own).sum()) / total - COVERS)
         if k == 0:
             cost += 0.0 if room >= 1.2 * min(half) else 2.0 * (1 - room / (1.2 * min(half)))
         else:

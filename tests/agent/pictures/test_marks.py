@@ -170,3 +170,24 @@ def test_an_answer_about_another_scene_is_refused(scene: Scene) -> None:
         answer = Answer(answer="yes", answer_type="yesno", text="yes", evidence=Evidence(ids=(wrong,)))
         with pytest.raises(UserError, match="does not have"):
             evidence_picture(scene, answer)
+
+
+def test_short_legs_of_a_route_have_no_label_and_a_label_beside_a_short_line_leaves_it_visible(
+    scene: Scene, camera: Camera
+) -> None:
+    def drawn(*lines: Line) -> np.ndarray:
+        return evidence_picture(scene, _answer((), *lines), camera).astype(int)
+
+    far, near = (-1.0, -0.5, 0.0), (-0.95, -0.5, 0.0)
+    short = {"start": far, "end": near}
+    leg = Line(start=near, end=(1.0, -0.5, 0.0))
+    assert np.array_equal(drawn(Line(**short, label="0.05 m"), leg), drawn(Line(**short), leg))
+    alone = drawn(Line(**short, label="0.05 m"))
+    frame = RoomFrame(scene)
+    (a, b), _ = camera.project(np.array([frame.world(far), frame.world(near)]))
+    bare = drawn(Line(**short))
+    x, y = (a + b) / 2
+    at = (slice(int(y) - 2, int(y) + 3), slice(int(x) - 2, int(x) + 3))
+    assert (bare[at] != evidence_picture(scene, _answer(()), camera).astype(int)[at]).any()
+    assert (alone != bare).any() and np.abs(alone[at] - bare[at]).max() < 256
+    assert (np.abs(alone[at] - [255, 214, 10]).sum(axis=2) < 30).any()  # the line's own yellow
