@@ -10,7 +10,7 @@ import numpy as np
 from ...gaussians.world import kinds, relations
 from ...gaussians.world.relation_geometry import HOLDS
 from ...gaussians.world.support import SHELL, is_stepped_on
-from .spans import end_of, span
+from .room_places import AT_WALL, wall_of
 from .survey import Survey, Thing
 
 _UPRIGHT = ("under", "below", "above")
@@ -81,7 +81,7 @@ def _on_shell(name: str, thing: Thing, anchor: Thing, survey: Survey) -> float:
     if name in ("on", "inside") or (name == "next_to" and anchor.label == "floor"):
         return 1.0 if thing.node.support == anchor.label else 0.0
     if name == "next_to" and anchor.label == "wall":
-        return 1.0 if span(end_of(thing, survey), end_of(anchor, survey)).gap <= 0.3 else 0.0
+        return 1.0 if wall_of(thing, survey.room)[1] <= AT_WALL else 0.0
     return relations.score(name, thing.group, [anchor.group], survey.stand)
 
 

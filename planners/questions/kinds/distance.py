@@ -53,6 +53,8 @@ _HOW_FAR = f"""
     how far (away|off) (from|to) {{b:spot}} (is|are) {{a:spot}} {_END}
     how far from {{b:spot}} (is|are|do|does|would) {{a:spot}} [be|stand|sit|hang|lie] {_END}
     how far away BE {{a:spot}} {_END}
+    how far [away] (am|would|do|will) i [be|stand|sit] [away] from {{a:spot}} {_END}
+    what is my distance (to|from) {{a:spot}} {_END}
     how far (off|away|is it) (is|are|to) {{a:spot}} {_END}
     what [(is|would be|was)] [the] {_LENGTH} [there] [is|in {{u:unit}}|left] (between|from|separating|of) \
         {{a:spot}} (and|to|from) {{b:spot}} {_END}
@@ -123,6 +125,7 @@ _GAP = re.compile(
     r"\b(?:gap|space|clearance|room|edges?|surfaces?|close|near|free|closest|nearest|aisle|passage|walkway|corridor|"
     r"opening|spacing|narrowest|shortest|minimum|smallest)\b"
 )
+_NO_GAP = re.compile(r"\b(?:the|this|same|living|dining|meeting) room\b|\b(?:closest|nearest) (?!point|edge)")
 _CENTRE = re.compile(r"\b(?:centre|center|middle|centres|centers|midpoints?)\b")
 _TOUCHING = 0.03  # metres of gap that still count as touching
 
@@ -179,11 +182,7 @@ def _is_gap(asked: Asked) -> bool:
         _CENTRE.search(said) and not any(asked.slots[k].who for k in ("a", "b") if k in asked.slots)
     ):
         return False
-    return "edge" in parts or bool(
-        _GAP.search(
-            re.sub(r"\b(?:the|this|same|living|dining|meeting) room\b|\b(?:closest|nearest) (?!point|edge)", "", said)
-        )
-    )
+    return "edge" in parts or bool(_GAP.search(_NO_GAP.sub("", said)))
 
 
 def _both(asked: Asked, survey: Survey) -> tuple[tuple[End, ...], tuple[End, ...]] | None:

@@ -37,15 +37,21 @@ _FARTHEST = """
     which {x} (is|stands|hangs) [the] farthest (to|on) the (left|right)
     which {x} (is|stands) (on|at) the (far|extreme|very) (left|right)
 """
+_DEEPEST = """
+    (what|which thing|which object|what thing|what object) (is|stands|lies) [the] (farthest|most) \
+        (back|forward|to the back|to the front|toward the back|toward the front) [in the room|of all]
+    which {x} (is|stands|lies) [the] (farthest|most) (back|forward|to the back|to the front) [in the room]
+"""
 _PICKED = """
     (what|which) (is|are) {x}
     (what|which) (thing|object|item|one) is {x}
     (name|identify) {x}
 """
 _LIST = """
-    (list|name|order|sort|arrange|show|give me|tell me|read out|enumerate) {x} [in order] from \
+    (list|name|order|sort|rank|arrange|show|give me|tell me|read out|enumerate) {x} [in order] from \
         (left|right|front|back|near|nearest|closest) to (left|right|front|back|far|farthest)
-    (list|name|order|sort|arrange|show|give me|tell me|read out|enumerate) {x} [in order] (left to right|right to left)
+    (list|name|order|sort|rank|arrange|show|give me|tell me|read out|enumerate) {x} [in order] (left to \
+        right|right to left)
     (what|which) is the order of {x} from (left|right|front|back) to (left|right|front|back)
     from (left|right|front|back) to (left|right|front|back) (what|which) (are|is) {x}
     from (left|right|front|back) to (left|right|front|back) (list|name|what do you see|what is there) [{x}]
@@ -99,6 +105,12 @@ def _extreme(asked: Asked, survey: Survey) -> Answer | None:
     return _at(ranked, 0, f"farthest to the {found[1]}", asked, survey) if ranked else None
 
 
+def _deepest(asked: Asked, survey: Survey) -> Answer | None:
+    way = "back" if "back" in asked.words else "front"
+    ranked = _ordered(_things(asked, survey), way, asked, survey)
+    return _at(ranked, 0, f"farthest to the {way}", asked, survey) if ranked else None
+
+
 def _picked(asked: Asked, survey: Survey) -> Answer | None:
     """A thing that is named by its place in an order: "what is the leftmost piece of furniture?"."""
     query = asked.slots["x"]
@@ -140,5 +152,6 @@ KINDS = (
     Kind("order_list", templates(_LIST), _listed),
     Kind("order_nth", templates(_NTH), _nth),
     Kind("order_extreme", templates(_FARTHEST), _extreme),
+    Kind("order_deepest", templates(_DEEPEST), _deepest),
     Kind("order_picked", templates(_PICKED), _picked),
 )

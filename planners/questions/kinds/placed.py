@@ -77,6 +77,11 @@ _HAS_IT = """
     BE {a} (covered|topped|cluttered|occupied) [(with|by) {x}]
 
 """
+_EITHER = """
+    BE {x} [standing|placed|located|hanging|lying|sitting|closer] {r:relation} {a} or [{s:relation}] {b}
+    (do|does) {x} (stand|sit|lie|hang|rest) {r:relation} {a} or [{s:relation}] {b}
+    (what|which) [one] BE {x} [standing|placed|located|hanging|lying|sitting] {r:relation} {a} or {b}
+"""
 _IS_REL = """
     BE {x} [(standing|placed|located|partly|directly|right|hanging|lying|sitting|resting|positioned|all|both|be|\
         somewhere)] {r:relation} {a}
@@ -159,6 +164,8 @@ def _what(asked: Asked, survey: Survey) -> Answer | None:
     cases: list[Case] = []
     for anchors in _anchors(asked, survey):
         found = [t for t in related(name, anchors, survey) if wanted is None or t.row in wanted]
+        if re.search(r"\bhang|\bhung\b", asked.text.lower()):
+            found = [t for t in found if (kind := kinds.of(t.label)) is None or not kind.opening]
         cases.append((" and ".join(survey.named(a) for a in anchors), _listed(name, found, anchors, asked, survey)))
     if len(cases) > 1 and _is_every(asked):
         return _together(name, [a for _, a in cases], asked, survey)
@@ -301,6 +308,29 @@ def _is_related(asked: Asked, survey: Survey) -> Answer | None:
     if len(cases) > 1 and (asked.slots["a"].pick == "any" or _many_places(asked)):
         return whole(cases, "any")
     return whole(cases, "all") if _is_every(asked) else agreed(cases)
+
+
+def _either(asked: Asked, survey: Survey) -> Answer | None:
+    """On, in or next to which of two things another one is."""
+    name, other = _relation(asked), asked.slots.get("s", asked.slots["r"])
+    if name is None or relations.named(other).aim:
+        return None
+    firsts, seconds = meant(asked.slots["a"], survey), meant(asked.slots["b"], survey)
+
+    def one(thing: Thing) -> Answer:
+        choices = [(a, name) for a in firsts] + [(b, other) for b in seconds]
+        there = [(a, r) for a, r in choices if strength(r, thing, (a,), survey) >= HOLDS]
+        labels = {(a.name, r) for a, r in there}
+        said = listed([_told(r, (a,), survey) for a, r in there])
+        text = f"{_cap(survey.named(thing))} is {said if there else 'neither'}."
+        evidence = Evidence(ids=_ids([*(a for a, _ in there), thing]))
+        if len(labels) != 1:
+            return Answer(answer=None, answer_type="label", text=text, confidence=0.8, evidence=evidence)
+        anchor, relation = there[0]
+        label = anchor.name if other == name else relations.named(relation).told(anchor.name)
+        return Answer(answer=label, answer_type="label", text=text, confidence=0.9, evidence=evidence)
+
+    return agreed([(survey.named(t), one(t)) for t in meant(asked.slots["x"], survey)])
 
 
 def _many_places(asked: Asked) -> bool:
@@ -488,6 +518,7 @@ def _cap(said: str) -> str:
 
 KINDS = (
     Kind("supported_by", templates(_SUPPORT), _support),
+    Kind("related_either", templates(_EITHER), _either),
     Kind("related", templates(_IS_REL), _is_related),
     Kind("related_what", templates(_WHAT_THERE), _what),
     Kind("beside_what", templates(_BESIDE), _next),

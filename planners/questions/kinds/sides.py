@@ -131,8 +131,8 @@ _WHAT_OF = """
     {d:relation} {a} (what|which thing) (is|stands) [there]
 """
 _EITHER_OF = """
-    BE {x} [standing|located|placed|more] (to the|on the|to|on|at the) (left|right) or (to the|on the|to|on|at \
-        the|the) (left|right) [hand side|side] of {a}
+    BE {x} [standing|located|placed|more] (to the|on the|to|on|at the) (left|right) or \
+        [(to the|on the|to|on|at the|the)] (left|right) [hand side|side] of {a}
     BE {x} (left|right) or (left|right) of {a}
     BE {x} (in front of|behind) or (in front of|behind) {a}
     BE {x} (in front of|behind) {a} or (in front of|behind) it

@@ -10,12 +10,13 @@ from ..kind import Asked, Kind
 from ..reading.noun_phrase import is_anything
 from ..reading.phrase_templates import templates
 from ..relating import related, supporter
-from ..room_places import AT_WALL, corner_of, in_corner, is_in, middle, wall_of, walls, zone
+from ..room_places import AT_WALL, IN_CORNER, corner_of, in_corner, is_in, middle, wall_of, walls, zone
 from ..survey import Survey, Thing, listed
 
 _ROOM = "(the room|this room|the place|here)"
 _WHERE = f"""
-    (where|whereabouts) [exactly] BE {{x}} [located|placed|standing|hanging|kept|at|to be \
+    (where|whereabouts) [exactly] BE {{x}} [located|placed|standing|hanging|hung|mounted|fixed|kept|stored|lying|\
+        at|to be \
         found|found|situated|positioned|in {_ROOM}]
     (where|whereabouts) (can|could|would|do|will|might|should) (i|we|you|one) (find|see|look for|get|spot|put my \
         hands on) {{x}} [in {_ROOM}]
@@ -40,6 +41,11 @@ _WHICH_WALL = """
     (what|which) wall (has|have|holds|carries) {x} [on it|against it|in it]
     (what|which) wall BE [the] (closest|nearest) [one] to {x}
     (what|which) of the [four] walls (is|are) {x} [on|against|at|near]
+"""
+_WHICH_CORNER = """
+    (what|which) corner [of the room] BE {x} [standing|located|placed|in|at|nearest to|closest to|near|by]
+    in (what|which) corner [of the room] (is|are|does|do) {x} [standing|located|placed|stand|sit|lie]
+    (what|which) corner (has|holds|contains) {x} [in it]
 """
 _ZONE = f"""
     (which|what) side of {_ROOM} BE {{x}} [standing|located|placed|hanging] [on|in|at] [left or [the] right|is it \
@@ -153,6 +159,20 @@ def _which_wall(asked: Asked, survey: Survey) -> Answer | None:
     return agreed([(survey.named(t), one(t)) for t in things])
 
 
+def _which_corner(asked: Asked, survey: Survey) -> Answer | None:
+    things = meant(asked.slots["x"], survey)
+
+    def one(thing: Thing) -> Answer:
+        deep, wide, gap = corner_of(thing, survey.room)
+        place = f"{deep.name} {wide.name} corner"
+        near = "in" if gap <= IN_CORNER else "in no corner; it is nearest to"
+        return Answer(answer=place, answer_type="label", text=f"{_cap(survey.named(thing))} is {near} the {place}.",
+                      frame="viewer", confidence=0.9 if gap <= IN_CORNER else 0.6,
+                      evidence=Evidence(ids=(thing.id,)))  # fmt: skip
+
+    return agreed([(survey.named(t), one(t)) for t in things])
+
+
 def _which_zone(asked: Asked, survey: Survey) -> Answer | None:
     if asked.situation is not None and "room" not in asked.words:
         return None
@@ -238,6 +258,7 @@ def _cap(said: str) -> str:
 
 KINDS = (
     Kind("which_wall", templates(_WHICH_WALL), _which_wall),
+    Kind("which_corner", templates(_WHICH_CORNER), _which_corner),
     Kind("room_side", templates(_ZONE), _which_zone),
     Kind("in_place", templates(_IN_ZONE), _in_zone),
     Kind("what_in_place", templates(_WHAT_ZONE), _what_in_zone),

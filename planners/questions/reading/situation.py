@@ -88,6 +88,7 @@ _TAIL = (
 )
 _CLAUSES = (
     f"on: {_INTRO} {_WHO} {_SIT} (on|in|upon|inside|on top of|onto|into) {{at:bare}} {_TAIL}",
+    f"on: {_INTRO} (i|you|we|someone|somebody) (am|are|is|was|were) (on|in) {{at:bare}} {_TAIL}",
     f"sit: {_INTRO} {_WHO} {_SIT} {_AT} {{at:bare}} [(on|in) {{seat:bare}}] {_TAIL}",
     f"sit: {_INTRO} {_WHO} {_SIT} (in front of|before) {{at:bare}} {_TAIL}",
     f"take: {_INTRO} [(i|we|you|someone)] (take|took|use|used|occupy|choose) {{at:bare}} {_TAIL}",
@@ -292,7 +293,7 @@ _SUFFIXES = frozenset(
     ]
 )
 _ANY = re.compile(
-    r"\b(?:sat|sit|sits|sitting|seated|stood|stand|stands|standing|lie|lay|lying|lies|facing|face|faces|looking|look|"
+    r"\b(?:if|suppose|imagine|assume|assuming|supposing|say|sat|sit|sits|sitting|seated|stood|stand|stands|standing|lie|lay|lying|lies|facing|face|faces|looking|look|"
     r"working|enter|entering|entered|coming|come|walk|walking|walked|step|steps|stepping|perspective|view|viewpoint|frame|"
     r"seen|viewed|back|take|took|am|were|using|opening|watching|reading|playing|perched|leaning|pov|orientation|lounging|"
     r"resting|sleeping|dining|typing|eating|writing|on entering|relaxing|curled)\b"
