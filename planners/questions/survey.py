@@ -354,7 +354,7 @@ class Survey:
         return self._names[thing.id]
 
     def has_color(self, thing: Thing, word: str) -> bool | None:
-        """Whether a thing has a colour as its main colour; None if its colour is unknown."""
+        """Whether a thing has a colour as its main colour; None if its colour, or its shade, is unknown."""
         if not thing.color:
             return None
         own, asked = plain_color(thing.color), plain_color(word)
@@ -362,6 +362,8 @@ class Survey:
             return True
         basic = asked if asked in BASIC else FAMILIES.get(asked.replace(" ", ""))
         of = own if own in BASIC else FAMILIES.get(own.replace(" ", "")) or own.split()[-1]
+        if not self.measured and own in BASIC and asked.split()[-1] == own and asked != own:
+            return None  # a blue thing may be dark blue
         if asked in BASIC and of in BASIC and not self.measured:
             return of == basic
         return float(color_scores(word, np.array(thing.group.lab))) >= COLOR_HOLDS

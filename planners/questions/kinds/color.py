@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from ....gaussians.color import plain_color
 from ....gaussians.language.query.query import Query
-from ..answer import Answer
+from ..answer import Answer, AnswerType
 from ..kind import Asked, Kind, Undecided
 from ..reading.phrase_templates import templates
 from ..resolving import Meant, all_of, meant
@@ -104,9 +104,7 @@ def _colors(phrase: Meant, survey: Survey) -> Answer | Undecided:
     """The colour of what a phrase means; several where things have different ones."""
     known = [t for t in phrase.things if t.color]
     if not known:
-        named = listed([survey.named(t) for t in phrase.things[:6]])
-        return Undecided(f"Nothing here tells the colour of {named}.", sight=True, answer_type="label",
-                         things=phrase.things)  # fmt: skip
+        return _untold(phrase, "label", survey)
     colors = list(dict.fromkeys(t.color for t in known))
     if len(colors) > 1 and not phrase.plural:
         raise phrase.differ()
@@ -135,9 +133,7 @@ def _has(asked: Asked, survey: Survey) -> Answer | Undecided | None:
     phrase = _definite(survey, query)
     known = [(t, survey.has_color(t, color)) for t in phrase.things]
     if any(fits is None for _, fits in known):
-        named = listed([survey.named(t) for t in phrase.things[:6]])
-        return Undecided(f"Nothing here tells the colour of {named}.", sight=True, answer_type="yesno",
-                         things=phrase.things)  # fmt: skip
+        return _untold(phrase, "yesno", survey)
     fit = [t for t, fits in known if fits]
     if not phrase.plural and 0 < len(fit) < len(known):
         raise phrase.differ()
@@ -145,6 +141,14 @@ def _has(asked: Asked, survey: Survey) -> Answer | Undecided | None:
     other = phrase.things if holds or not fit else [t for t, fits in known if not fits]
     told = listed([f"{survey.named(t)} is {t.color}" for t in other[:6]])
     return yes_no(holds, f"{told}.", phrase.things, _sure(survey))
+
+
+def _untold(phrase: Meant, answer_type: AnswerType, survey: Survey) -> Undecided:
+    """That the colour, or the shade, of things is not told here."""
+    named = listed(list(dict.fromkeys(survey.named(t) for t in phrase.things[:6])))
+    known = list(dict.fromkeys(t.color for t in phrase.things if t.color))
+    text = f"Nothing here tells the exact shade; {named}: {listed(known)}." if known else ""
+    return Undecided(text or f"Nothing here tells the colour of {named}.", True, answer_type, phrase.things)
 
 
 def _one_of(phrase: Meant, choices: Sequence[str], survey: Survey) -> Answer | Undecided:

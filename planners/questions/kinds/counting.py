@@ -50,6 +50,8 @@ _PHRASES = f"""
     (is|are) the number of {{same_a}} (the same as|equal to) the number of {{same_b}}
     (what|which) (is|are) there more of [here|in here|in the room] {{which_a}} or {{which_b}}
     (is|are) there more {{which_a}} or [more] {{which_b}}
+    how many [different|distinct] (kinds|types|sorts|categories) of {{kinds}} [are there|do we have|can you see|does \
+        the room have|is there] [here|in the room]
     how many more {{diff_a}} (are there than|than) {{diff_b}} [are there|do we have|does the room have|can you see]
     how many more {{diff_a}} than {{diff_b}} (are there|do we have)
     (how many|what number of) (of the|of these|of those|of all the|of all) {{x}} (are|is|look|looks) {{c:color}}
@@ -89,6 +91,10 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
         return _places_to_sit(survey)
     if "odd" in slots or "even" in slots or "parity" in slots or "by" in slots:
         return _parity(asked, survey)
+    if "kinds" in slots:
+        things, _ = all_of(survey, slots["kinds"])
+        labels = list(dict.fromkeys(t.name for t in things))
+        return number(len(labels), f"{len(labels)}: {listed(labels)}.", things, 0.85)
     if "more" in slots:
         return None
     query = _described(asked)

@@ -21,7 +21,7 @@ _PHRASES = f"""
     {{x:some}}
     (is|are|was|were) there (no|not any|not a|not an) {{none}}
     [whether] there (is|are) (no|not any|not a|not an) {{none}}
-    (is|are|does) {_PLACE} (lacking|missing|without|lack|miss|lack of) {{none}}
+    (is|are|does) {_PLACE} (lacking|missing|without|lack|miss|lack of) {{lacks}}
     (is|are) there not {{x}}
     (is|are|was|were|would|will|might|could) there [be] [also] {{x}}
     [whether] there (is|are|might be|would be) [also] {{x}}
@@ -46,19 +46,23 @@ _PHRASES = f"""
 
 
 def answer(asked: Asked, survey: Survey) -> Answer:
-    """Yes with what there is, or no with the nearest."""
-    negated = "none" in asked.slots
-    query: Query = asked.slots["none" if negated else "x"]
+    """Yes with what there is, or no with the nearest. "Is there no clock?" has "yes" where there is one, as people say.
+
+    "Does the room lack a clock?" has "yes" where there is none.
+    """
+    name = next(iter(asked.slots))
+    lacks = name == "lacks"
+    query: Query = asked.slots[name]
     together = query.also and "or" not in asked.words
     parts = (query.model_copy(update={"also": ()}), *query.also) if together else (query,)
     found = [_there(survey, part) for part in parts]
     if (lacking := next((f for f in found if not f[1]), None)) is not None:
         missing, _, told = lacking
         near = evidence(survey.find(missing).near)
-        none = yes_no(negated, told, [], GRAPH_SURE - 0.02)
+        none = yes_no(lacks, told, [], GRAPH_SURE - 0.02)
         return none.model_copy(update={"evidence": near})
     things = [t for _, each, _ in found for t in each]
-    return yes_no(not negated, _told(survey, query, things), things)
+    return yes_no(not lacks, _told(survey, query, things), things)
 
 
 def _there(survey: Survey, query: Query) -> tuple[Query, tuple[Thing, ...], str]:

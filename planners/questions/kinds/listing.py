@@ -12,7 +12,7 @@ from ..measuring import sides
 from ..reading.noun_phrase import is_anything
 from ..reading.phrase_templates import templates
 from ..resolving import all_of
-from ..survey import Survey, Thing, listed
+from ..survey import NotResolved, Survey, Thing, listed
 from ..telling import GRAPH_SURE, absent_text, evidence
 
 _ALL = (
@@ -41,7 +41,12 @@ _PHRASES = f"""
     (list|name|give|show|enumerate|tell) [me|us] {_ALL} {{x}} {_HERE} {_WITH} {_ATTRIBUTES}
     (list|name|give|show|enumerate|tell) [me|us] [the] {{cols:columns}} of {_ALL} {{x}} {_HERE}
     what are the {{several:columns}} of {_ALL} {{x}} {_HERE}
-    (list|name|enumerate|itemize|inventory|catalog|catalogue|mention|recite) [out|up|off|for me|me|us] {_ALL} {{x}} \
+    [full|complete|an|a] (inventory|list) [of {_ALL} {{x}}] {_HERE}
+    (what|which) [different|kinds of|kind of|sort of|sorts of|types of|type of|other] {{x}} (can|could) be (found|\
+        seen|spotted) {_HERE}
+    what (can|could) be (found|seen|spotted) {_HERE}
+    (list|name|enumerate|itemize|inventory|catalog|catalogue|mention|recite|show|find|tell|give|identify) [out|up|off|\
+        for me|me|us] {_ALL} {{x}} \
         {_HERE}
     (give|show|tell|write|provide|make) [me|us] (a list|an inventory|a catalog|the names|an enumeration|the list|an \
         overview) of {_ALL} {{x}} {_HERE}
@@ -83,6 +88,8 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
         query = query.model_copy(update={"pick": "all"})
     things, found = all_of(survey, query)
     things = tuple(t for t in things if t.node is not None)
+    if not things and {"cols", "several"} & slots.keys():
+        raise NotResolved(query, found)
     if not things:
         return Answer(answer=(), answer_type="list", text=absent_text(survey, found.about or query, found),
                       confidence=0.93, evidence=evidence(found.near))  # fmt: skip

@@ -14,7 +14,7 @@ from ..reading.noun_phrase import thing as noun_phrase
 from ..reading.phrase_templates import templates
 from ..resolving import all_of, meant
 from ..survey import NotResolved, Survey, Thing, listed
-from ..telling import absent_text, label, told_apart, yes_no
+from ..telling import absent_text, label, things_listed, told_apart, yes_no
 
 _HERE = "[here|in here|in the room|there is|around|there]"
 _THING = "[thing|one|object|item|of all|of them all|of them|of all things|thing of all|of everything]"
@@ -53,6 +53,12 @@ _PHRASES = f"""
     (what|which) [thing|things|object|objects|items|else] [here|in the room] (is|are) {{m:more}} than {{than}} [in \
         the room|here]
     (what|which) {{rivals:noun}} (is|are) {{m:more}} than {{than}} [in the room|here]
+    (what|which|which ones) are the {{n:number}} {{s:superlative}} {{x}} {_HERE}
+    (name|list|show|give|find|tell) [me] the {{n:number}} {{s:superlative}} {{x}} {_HERE}
+    [the] {{n:number}} {{s:superlative}} {{x}} {_HERE}
+    (sort|rank|order|list|arrange|name) [me] [all] {{x}} [in order] (by|according to) [their|the|decreasing|\
+        descending] {{by:dimension}}
+    (sort|rank|order|list|arrange|name) [me] [all] {{x}} from {{s:superlative}} to {{end:superlative}}
     how {{high:dimension}} is the {{s:superlative}} {{x}} [in {{u:unit}}]
     what is the {{high:dimension}} of the {{s:superlative}} {{x}} [in {{u:unit}}]
     what color is the {{s:superlative}} {{x}}
@@ -78,6 +84,9 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
     ranked = sorted(things, key=lambda t: -most.sign * measure(survey, t, most.measure))
     if most.rank > len(ranked):
         return None
+    if "n" in slots or "by" in slots or "end" in slots:
+        count = int(slots["n"]) if "n" in slots else len(ranked)
+        return _ranked(ranked[:count], most, survey) if 0 < count <= len(ranked) else None
     if "a" in slots:
         return _is_it(slots["a"], ranked, most, survey)
     if "high" in slots or "color" in asked.words:
@@ -90,6 +99,9 @@ def _superlative(asked: Asked) -> Superlative | None:
     if "s" in slots:
         found: Superlative = slots["s"]
         return found
+    if "by" in slots:
+        by: Measure = slots["by"].measure
+        return Superlative(by, 1, 1, f"greatest {by}")
     if "d" in slots or "low" in slots:
         sign = -1 if "less" in slots or "low" in slots else 1
         what: Measure = (slots.get("d") or slots["low"]).measure
@@ -127,6 +139,12 @@ def _told(ranked: Sequence[Thing], most: Superlative, survey: Survey) -> Answer:
     alike = [t for t in ranked if t.label == thing.label]
     said = told_apart(survey, thing, ranked) if len(alike) == len(ranked) else thing.name
     return label(thing, _up(f"{text}."), sure, others=rest[:3], said=said)
+
+
+def _ranked(ranked: Sequence[Thing], most: Superlative, survey: Survey) -> Answer:
+    """Things in the order of a measure."""
+    told = [f"{survey.named(t)} ({_measure(measure(survey, t, most.measure), most.measure)})" for t in ranked]
+    return things_listed(ranked, _up(f"{listed(told)}."), 0.9)
 
 
 def _tied(ranked: Sequence[Thing], most: Superlative, survey: Survey) -> bool:

@@ -39,9 +39,11 @@ _SIT = (
     r"to be seated|where (?:i|we|you|one) (?:can|could) sit(?: down)?)"
 )
 _STORE = (
-    r"(?:to (?:store|keep|put away|stow) (?:things|stuff|clothes|items|my things)(?: in| on| away)?|for storage|"
-    r"for storing (?:things|stuff)|"
-    r"(?:i|we|you) can (?:store|keep|put) (?:things|stuff) in|to put (?:things|stuff) in)"
+    r"(?:to (?:store|keep|put|put away|stow|hang)(?: away)? (?:my |our |your |the |some )?(?:things|stuff|clothes|"
+    r"items|books|shoes|"
+    r"belongings|dishes|plates|toys|documents|files|papers|cups)(?: in| on| away)?|for storage|"
+    r"for (?:storing|keeping) (?:\w+ )?(?:things|stuff|clothes|books|shoes|items)|"
+    r"(?:i|we|you) can (?:store|keep|put) (?:things|stuff|clothes|books|my things|items) (?:in|on|away))"
 )
 _LIGHT = (
     r"(?:(?:that|which) (?:gives?|emits?|makes?|produces?) light|giving light|to light the room|for light|"
@@ -165,7 +167,7 @@ _LAST = frozenset({"it", "them", "this", "that", "these", "those", "this one", "
 @lru_cache(maxsize=16384)
 def thing(words: Words) -> Query | None:
     """The query of a noun phrase, None if the words are none."""
-    said = " ".join(w for w in words if w != ",")
+    said = _enumerated(words)
     if not said or len(words) > 20 or words[0] in _NO_STARTS or words[-1] in _NO_ENDS:
         return None
     if found := _ID.match(said):
@@ -185,6 +187,13 @@ def thing(words: Words) -> Query | None:
         return None
     query = plan.ops[0].query()
     return _checked(query) if query is not None else None
+
+
+def _enumerated(words: Words) -> str:
+    """The words without commas; those of an enumeration become "and": "the bed, the sofa or the rug"."""
+    last = max((i for i, w in enumerate(words) if w in ("and", "or")), default=0)
+    said = [("and" if w == "," and 0 < i < last - 1 else "" if w == "," else w) for i, w in enumerate(words)]
+    return " ".join(w for w in said if w)
 
 
 def _plainly(said: str) -> str:

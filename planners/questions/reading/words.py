@@ -120,6 +120,17 @@ _HAVE_IS = re.compile(
 _REORDERED: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(pattern), said)
     for pattern, said in (
+        (
+            r"^(what|which(?: \w+)?|how \w+) (?:would|do|did) you (?:say|think|reckon|guess) (?=(?:is|are|the|has|"
+            r"takes|that)\b)",
+            r"\1 ",
+        ),
+        (
+            r"^(?:i|we) (?:can|could|do) not (?:see|find|have|spot) ((?:a|an|any) [\w ]+?) ,? ?(?:is|are) there (?:one|"
+            r"any|some)"
+            r"(?: here| anywhere)?$",
+            r"is there \1",
+        ),
         (r" , [\w ]{1,30} i mean(?: , not \w+)?(?: ,)?(?= |$)", ""),
         (r"^(?:counting|including|if (?:you|we) (?:count|include)|with) [\w ]+? , (?=how many )", ""),
         (
