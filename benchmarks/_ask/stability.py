@@ -145,7 +145,9 @@ def _answered(judged: Judged) -> bool:
 
 
 def swapped(text: str) -> str:
-    """A text with left and right exchanged."""
+    """A text that says left or right with the other side; one that says both, as a question for either, stays."""
+    if len(set(re.findall(r"\b(?:left|right)\b", text))) > 1:
+        return text
     other = {"left": "right", "right": "left"}
     return re.sub(r"\b(left|right)\b", lambda m: other[m.group()], text)
 

@@ -41,7 +41,8 @@ def test_a_mirror_exchanges_left_and_right_and_nothing_else(table: Table) -> Non
         # Corners are mirrored too, so a turned thing is turned the other way.
         assert np.sort(b.corners[:, 0]) == pytest.approx(np.sort(-a.corners[:, 0]))
     assert stability.in_mirror(stability.in_mirror(GRAPH)) == GRAPH
-    assert stability.swapped("is it left or right of it?") == "is it right or left of it?"
+    assert stability.swapped("is it on the left of it?") == "is it on the right of it?"
+    assert stability.swapped("is it left or right of it?") == "is it left or right of it?"
 
 
 def test_who_walks_half_round_a_room_sees_its_sides_exchanged(table: Table) -> None:
