@@ -83,8 +83,9 @@ def point_out(scene: Scene, selection: Selection, viewer: Camera, vision: Vision
 
 def _candidates(scene: Scene, selection: Selection) -> tuple[int, ...]:
     """The groups in question: the candidates of an ambiguous query, else all things, the largest first."""
-    if selection.verdict == "ambiguous":
-        return tuple(dict.fromkeys(c.group for c in selection.candidates if c.group >= 0))[:MOST_CANDIDATES]
+    known = tuple(dict.fromkeys(c.group for c in selection.candidates if c.group >= 0))
+    if selection.verdict == "ambiguous" and known:  # places that were found by their colour are no groups
+        return known[:MOST_CANDIDATES]
     assert scene.language is not None
     things = [g for g in scene.language.objects() if g.count]
     things.sort(key=lambda g: (-max(g.box.size), g.id))
