@@ -124,10 +124,19 @@ class SceneLooker:
         self._number([group])
         viewer = self._viewer or self._any_viewer()
         found = view_from_side(self._sights, [group], _SIDES[verb], viewer, size=self._size)
+        if verb == "close" and (better := self._larger(group, found.chosen)) is not None:
+            return self._draw(better, better.view.name)
         where = "" if _SIDES[verb] is None else f" from {_side_words(verb)}"
         whose = " by the viewer's left and right" if found.whose == "viewer" and where else ""
         said = f"A close-up of {self._told(group)}{where}{whose}."
         return self._draw(found.chosen, f"{verb}:{group}", said)
+
+    def _larger(self, group: int, close: ChosenView) -> ChosenView | None:
+        """A view of the whole in which a thing is larger than in its close-up, as where its box is not its shape."""
+        from ...gaussians.viewpoints.for_groups import choose
+
+        chosen = choose(self._sights, [group], 1, self._size)
+        return chosen[0] if chosen and chosen[0].shares[group] > close.shares[group] else None
 
     def _from(self, group: int) -> Shown:
         from ...gaussians.viewpoints.from_side import view_from_thing
