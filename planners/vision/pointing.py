@@ -75,7 +75,7 @@ class Pointed:
 def point(
     phrase: str, groups: Sequence[int], looker: Looker, backend: ModelBackend, purse: Purse | None = None
 ) -> Pointed:
-    """The groups that a phrase means: two pictures of the candidates, then a third that confirms.
+    """The groups that a phrase means: two pictures of the candidates, then a third that confirms, or finds them.
 
     Without a second look (budget, no other picture, a model that fails then, a first reply that had to be repaired) the
     first stands, unconfirmed. There are never more than `PICTURES` pictures and `REQUESTS` requests.
@@ -101,8 +101,12 @@ def point(
     repaired = purse.usage is not None and purse.usage.requests - before >= REQUESTS
     second = None if repaired else _second(reply, shown, looker, purse)
     confirmed, confidence = False, reply.confidence
-    if second is not None:
+    if second is not None and found:
         confirmed, confidence = _confirmed(phrase, reply, set(found), second, backend, purse)
+    elif second is not None and (other := _another_look(phrase, second, backend, purse)) is not None:
+        confirmed = other.none
+        confidence = min(reply.confidence, other.confidence) if other.none else other.confidence
+        reply, found = other, tuple(second.numbers[mark] for mark in dict.fromkeys(other.meant))
     because = printable(reply.because, _REASON)
     views = tuple(one.name for one in (*shown, *((second,) if second else ())))
     return Pointed(found, reply.parts, round(confidence, 4), confirmed, because, views, purse.usage)
@@ -121,6 +125,14 @@ def _confirmed(
     lower = min(reply.confidence, again.confidence)
     same = {second.numbers[mark] for mark in again.meant} == found
     return same, lower if same else lower / 2
+
+
+def _another_look(phrase: str, second: Shown, backend: ModelBackend, purse: Purse) -> PointReply | None:
+    """What another picture shows where the first ones did not show it; None if the model fails then."""
+    try:
+        return pointed(phrase, (second,), backend, purse, attempts=1)
+    except (NoReplyError, UnreachableError, OverBudgetError):
+        return None
 
 
 def pointed(
