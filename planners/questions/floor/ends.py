@@ -97,6 +97,22 @@ def absent(error: NotResolved, survey: Survey) -> Answer:
                   evidence=Evidence(ids=ids))  # fmt: skip
 
 
+def place_words(x: float, y: float, survey: Survey) -> str:
+    """Where a point of the floor is in the room, as the viewer sees it: "in the back left part of the room"."""
+    width, depth, _ = survey.graph.room.size
+    stand = survey.stand
+    right = float(stand.right[0] * x + stand.right[1] * y)
+    ahead = float(stand.forward[0] * x + stand.forward[1] * y)
+    reach_x = abs(float(stand.right[0])) * width / 2 + abs(float(stand.right[1])) * depth / 2
+    reach_y = abs(float(stand.forward[0])) * width / 2 + abs(float(stand.forward[1])) * depth / 2
+    across, along = right / max(reach_x, 1e-9), ahead / max(reach_y, 1e-9)
+    deep = "back" if along > 1 / 3 else "front" if along < -1 / 3 else ""
+    side = "right" if across > 1 / 3 else "left" if across < -1 / 3 else ""
+    if not deep and not side:
+        return "in the middle of the room"
+    return f"in the {' '.join(w for w in (deep, side) if w)} part of the room"
+
+
 def lines(found: Route) -> tuple[Line, ...]:
     """The legs of a way on the floor."""
     return tuple(

@@ -72,7 +72,8 @@ _PHRASES = f"""
     (how many|what number of) {{x}} (can|could) be (seen|found|counted|spotted) [in the room|in here|here]
     (how many|what number of) {{x}} {_ROOM} (has|have|contains|holds|includes|has got|have got|can see|see) [in total|\
         in the room|in here|here]
-    (how many|what number of) (of the things|things|objects|items|of them|of these) [here|in the room|in here] are {{x}}
+    (how many|what number of) (of the things|things|objects|items|of them|of these) [here|in the room|in here] \
+      are {{x}}
     [what is|what was] [the] [total|exact|overall] (number|amount|count|quantity) of {{x}} [in total|in the room|in \
         here|here|that you can see|present|visible]
     count [me|up|all|for me] {{x}} [in the room|in here|here]

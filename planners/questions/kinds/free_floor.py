@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..answer import Answer, Evidence, Line
 from ..candidates import agreed, meant
+from ..floor import ends
 from ..floor.floor_map import covers_floor
 from ..kind import Asked, Kind
 from ..reading.phrase_templates import templates
@@ -214,7 +215,7 @@ def _mostly(asked: Asked, survey: Survey, free: bool) -> Answer:
 
 def _where(asked: Asked, survey: Survey) -> Answer:
     x, y, radius = survey.floor.most_open()
-    place = place_words(x, y, survey)
+    place = ends.place_words(x, y, survey)
     near = survey.floor.nearest_obstacles(x, y)[:3]
     around = [survey.thing(n.id) for d, n in near if d <= radius + 0.6]
     between = f", near {listed([survey.named(t) for t in around[:2]])}" if around else ""
@@ -222,22 +223,6 @@ def _where(asked: Asked, survey: Survey) -> Answer:
     lines = (Line(start=(x - radius, y, 0.02), end=(x + radius, y, 0.02), label=f"{2 * radius:.2f} m"),)
     return Answer(answer=f"{place}{between}", answer_type="text", text=text, confidence=0.8, frame="viewer",
                   evidence=Evidence(ids=tuple(t.id for t in around), lines=lines))  # fmt: skip
-
-
-def place_words(x: float, y: float, survey: Survey) -> str:
-    """Where a point of the floor is in the room, as the viewer sees it: "in the back left part of the room"."""
-    width, depth, _ = survey.graph.room.size
-    stand = survey.stand
-    right = float(stand.right[0] * x + stand.right[1] * y)
-    ahead = float(stand.forward[0] * x + stand.forward[1] * y)
-    reach_x = abs(float(stand.right[0])) * width / 2 + abs(float(stand.right[1])) * depth / 2
-    reach_y = abs(float(stand.forward[0])) * width / 2 + abs(float(stand.forward[1])) * depth / 2
-    across, along = right / max(reach_x, 1e-9), ahead / max(reach_y, 1e-9)
-    deep = "back" if along > 1 / 3 else "front" if along < -1 / 3 else ""
-    side = "right" if across > 1 / 3 else "left" if across < -1 / 3 else ""
-    if not deep and not side:
-        return "in the middle of the room"
-    return f"in the {' '.join(w for w in (deep, side) if w)} part of the room"
 
 
 def _halves(survey: Survey) -> tuple[float, float]:

@@ -25,7 +25,7 @@ from ....gaussians.world import relations
 from ....gaussians.world.lengths import IN_METRES, METRES, UNITS, in_metres
 from ....gaussians.world.words import singular
 from ...grammar.vocabulary import quantities
-from . import ends, item, noun_phrase, relation_phrases, room_phrases, side_phrases, spans, spots
+from . import activity, ends, item, noun_phrase, relation_phrases, room_phrases, side_phrases, spans, spots, where_to
 from .colors import color
 from .measures import Unit, amount, dimension, more, superlative
 from .phrase_templates import HoleReader, Words
@@ -141,4 +141,6 @@ READERS: Mapping[str, HoleReader] = {
     "end": ends.end,
     "walker": ends.walker,
     "item": item.read_item,
+    "activity": activity.activity,
+    "where_to": where_to.where_to,
 }

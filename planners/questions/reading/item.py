@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 from ....gaussians.world import kinds
@@ -203,6 +204,7 @@ class _Measure:
     paired: bool = False
 
 
+@lru_cache(maxsize=4096)
 def read_item(words: Words) -> Item | None:
     """The thing that the words describe, None if they are none, or not all of them are understood."""
     if not words or len(words) > _MOST_WORDS:
@@ -329,8 +331,10 @@ def _name(rest: Words, measured: bool) -> tuple[str, int, bool] | None:
     said = _DETERMINERS.sub("", f"{said} ").strip().removeprefix("the ")
     if said in ("a", "an", "another", "one", "some"):
         said = ""
-    if measured and kinds.of(said) is None:
+    if measured and kinds.find(said) is None:
         said = " ".join(w for w in said.split() if w not in _FILLERS)
+    if not said and (not words or words[-1] not in _GENERIC):
+        return None
     if said in _GENERIC:
         return ("", count, definite) if measured or definite else None
     tokens = said.split()
