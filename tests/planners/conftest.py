@@ -1,34 +1,15 @@
-"""Fixtures for tests of language models: a model of random weights with its own tokenizer, built on the spot because
-none can be fetched here."""
+"""Fixtures for tests of language models: models of random weights, built on the spot."""
 
 from __future__ import annotations
 
 import importlib.util
-import json
 import shutil
 from pathlib import Path
 
 import pytest
-import torch
+import tiny_models
 
 from scenewright.gaussians.torchvision_fix import import_torchvision
-
-SENTENCES = (
-    "make the armchair teal and remove the coffee table",
-    "move the lamp 40 cm to the left of the sofa, then turn it by 90 degrees",
-    'answer with JSON: {"verdict":"ok","ops":[{"op":"delete","target":{"text":"chair","pick":"all"}}],"reason":""}',
-    '{"op":"insert","asset":"vase","place":{"relation":"on","anchors":[{"text":"coffee table","colors":["red"]}]}}',
-)
-TEMPLATE = (
-    "{% for message in messages %}<|{{ message['role'] }}|>\n{{ message['content'] }}<|end|>\n{% endfor %}"
-    "{% if add_generation_prompt %}<|assistant|>\n{% endif %}"
-)
-SEEING_TEMPLATE = (
-    "{% for message in messages %}<|{{ message['role'] }}|>\n{% for part in message['content'] %}"
-    "{% if part['type'] == 'image' %}<image>\n{% else %}{{ part['text'] }}{% endif %}{% endfor %}<|end|>\n{% endfor %}"
-    "{% if add_generation_prompt %}<|assistant|>\n{% endif %}"
-)
-WINDOW = 4096
 
 
 @pytest.fixture(scope="session")
@@ -39,56 +20,18 @@ def tiny_llama(tmp_path_factory: pytest.TempPathFactory) -> Path:
             pytest.skip(f"{package} is not installed (pip install 'scenewright[models]')")
     if importlib.util.find_spec("torchvision") is not None:
         import_torchvision()
-    from transformers import LlamaConfig, LlamaForCausalLM
-
     folder = tmp_path_factory.mktemp("llama")
-    save_tokenizer(folder)
-    torch.manual_seed(4)
-    config = LlamaConfig(
-        vocab_size=400, hidden_size=48, intermediate_size=96, num_hidden_layers=2, num_attention_heads=4,
-        num_key_value_heads=2, max_position_embeddings=WINDOW, bos_token_id=0, eos_token_id=1, initializer_range=0.3,
-    )  # fmt: skip
-    LlamaForCausalLM(config).save_pretrained(folder)
+    tiny_models.save_llama(folder)
     return folder
 
 
 @pytest.fixture(scope="session")
 def tiny_llava(tiny_llama: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A LLaVA as save_pretrained writes it: a CLIP tower for pictures of 28 x 28 pixels (four patches), that Llama's
-    tokenizer with a token for pictures, and a chat template."""
+    """A folder with a LLaVA that reads pictures of 28 x 28 pixels."""
     if importlib.util.find_spec("torchvision") is None:
         pytest.skip("torchvision is not installed (pip install 'scenewright[models]')")
-    from transformers import (
-        CLIPImageProcessor,
-        CLIPVisionConfig,
-        LlamaConfig,
-        LlavaConfig,
-        LlavaForConditionalGeneration,
-        LlavaProcessor,
-        PreTrainedTokenizerFast,
-    )
-
     folder = tmp_path_factory.mktemp("llava")
-    tokenizer = PreTrainedTokenizerFast.from_pretrained(tiny_llama)
-    tokenizer.add_special_tokens({"additional_special_tokens": ["<image>"]})
-    reader = CLIPImageProcessor(size={"shortest_edge": 28}, crop_size={"height": 28, "width": 28})
-    LlavaProcessor(
-        reader, tokenizer, patch_size=14, vision_feature_select_strategy="default", num_additional_image_tokens=1,
-        chat_template=SEEING_TEMPLATE,
-    ).save_pretrained(folder)  # fmt: skip
-    torch.manual_seed(5)
-    sight = CLIPVisionConfig(
-        hidden_size=32, intermediate_size=48, num_hidden_layers=2, num_attention_heads=2, image_size=28, patch_size=14,
-        projection_dim=32,
-    )  # fmt: skip
-    words = LlamaConfig(
-        vocab_size=len(tokenizer), hidden_size=48, intermediate_size=96, num_hidden_layers=2, num_attention_heads=4,
-        num_key_value_heads=2, max_position_embeddings=WINDOW, bos_token_id=0, eos_token_id=1, initializer_range=0.3,
-    )  # fmt: skip
-    config = LlavaConfig(
-        vision_config=sight, text_config=words, image_token_index=tokenizer.convert_tokens_to_ids("<image>")
-    )
-    LlavaForConditionalGeneration(config).save_pretrained(folder)
+    tiny_models.save_llava(folder, tiny_llama)
     return folder
 
 
@@ -96,22 +39,3 @@ def tiny_llava(tiny_llama: Path, tmp_path_factory: pytest.TempPathFactory) -> Pa
 def copied(tiny_llama: Path, tmp_path: Path) -> Path:
     """A folder of one's own to break."""
     return Path(shutil.copytree(tiny_llama, tmp_path / "model"))
-
-
-def save_tokenizer(folder: Path) -> None:
-    """Byte-level byte-pair encoding, as Llama 3 and most of today's models have it."""
-    from tokenizers import Tokenizer, decoders, models, pre_tokenizers, trainers
-    from transformers import PreTrainedTokenizerFast
-
-    coder = Tokenizer(models.BPE())
-    coder.pre_tokenizer = pre_tokenizers.ByteLevel(add_prefix_space=False)
-    coder.decoder = decoders.ByteLevel()
-    marks = ["<|begin|>", "<|end|>", "<|system|>", "<|user|>", "<|assistant|>"]
-    alphabet = pre_tokenizers.ByteLevel.alphabet()
-    coder.train_from_iterator(
-        SENTENCES, trainers.BpeTrainer(vocab_size=400, special_tokens=marks, initial_alphabet=alphabet)
-    )
-    tokenizer = PreTrainedTokenizerFast(tokenizer_object=coder, bos_token="<|begin|>", eos_token="<|end|>")
-    tokenizer.chat_template = TEMPLATE
-    tokenizer.save_pretrained(folder)
-    assert json.loads((folder / "tokenizer_config.json").read_text())
