@@ -23,7 +23,7 @@ from . import log as session_log
 from .asker import Asker, see_answer
 from .clarify import Question, plan_with_answer, plan_with_query
 from .history import History, State
-from .judge import Judge, known_judge
+from .judge import Judge, JudgedError, known_judge
 from .observation import graph_of, picture_of
 from .plan_runner import PlanFailed, has_queries, run_plan
 from .planner_client import PlannerClient, undo_or_redo
@@ -250,7 +250,28 @@ class Session:
         except ScenewrightError as error:
             self._record("failed", session_log.failed_fields, text, None, error, self._history.present)
             raise
-        return self.apply(plan, planned_in=time.perf_counter() - started)
+        try:
+            return self.apply(plan, planned_in=time.perf_counter() - started)
+        except JudgedError as error:
+            again = self._planned_again(plan, error)
+            if again is None:
+                raise
+            return self.apply(again, planned_in=again.seconds)
+
+    def _planned_again(self, plan: EditPlan, error: JudgedError) -> EditPlan | None:
+        """Another plan of a language model for an instruction whose first plan was judged a failure; None if the model
+        gives the same one again, or none. The grammar reads words in one way only and is not asked again."""
+        if plan.usage is None:
+            return None
+        try:
+            again = self.plan(plan.instruction)
+        except ScenewrightError:
+            return None
+        if not again.ok or again.ops == plan.ops:
+            return None
+        failed = ", ".join(c.name for c in error.judgement.checks if not c.passed)
+        told = f"planned again, as the judge refused the first plan ({failed})"
+        return again.model_copy(update={"reason": "; ".join(r for r in (again.reason, told) if r)[:2000]})
 
     def plan(self, text: str) -> EditPlan:
         """The plan of an instruction; nothing is edited. Planners that look at the scene embed it.

@@ -65,6 +65,6 @@ def all_of_it(case: Case, changed: Tensor, target: Tensor | None = None) -> Chec
     rows = (case.target if target is None else target).nonzero().squeeze(1)
     weight = weight_of(case.before.cloud, rows)
     total = float(weight.sum())
-    share = float(weight[changed[rows]].sum()) / total if total > 0 else float("nan")
+    share = float(weight[changed[rows]].sum()) / total if total > 0 else 0.0
     said = f"{share:.1%} of the target by area changed as asked"
     return at_least("all of it changed", share, _COMPLETE, "1", said)

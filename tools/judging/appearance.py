@@ -107,7 +107,7 @@ def looks_colored(name: str, word: str, cloud: GaussianCloud, scene: Scene) -> C
     """
     lab = seen_lab(cloud, scene)
     if len(lab) < 4:
-        return report(name, float("nan"), "1", "too few of its pixels are solid to see a colour")
+        return report(name, 0.0, "1", "too few of its pixels are solid to see a colour")
     scores = [float(color_scores(word, lit(lab))), float(color_scores(word, lab.mean(axis=0)))]
     scores.append(float((color_scores(word, lab) >= 0.5).mean()))
     best = max(scores)

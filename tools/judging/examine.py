@@ -139,7 +139,7 @@ def _adjusted(case: Case, op: Recolor, rows: Tensor) -> Check:
     was = appearance.seen_lab(case.before.cloud[rows], case.before)
     now = appearance.seen_lab(_after(case, rows), case.after)
     if len(was) < 4 or len(now) < 4:
-        return report("seen to change", float("nan"), "ΔE", "too few of its pixels are solid to see a colour")
+        return report("seen to change", 0.0, "ΔE", "too few of its pixels are solid to see a colour")
     old, new = was.mean(axis=0), now.mean(axis=0)
     step = {
         "darker": old[0] - new[0],
@@ -156,7 +156,7 @@ def _adjusted(case: Case, op: Recolor, rows: Tensor) -> Check:
 def _opacity(case: Case, op: Opacity) -> Found:
     rows = case.target.nonzero().squeeze(1)
     was, now = case.before.cloud.opacities[rows], case.after.cloud.opacities[case.now(rows)]
-    ratio = float(now.double().sum() / was.double().sum()) if len(now) == len(was) and len(was) else float("nan")
+    ratio = float(now.double().sum() / was.double().sum()) if len(now) == len(was) and len(was) else -1.0
     said = f"its opacity is {ratio:.2f} times what it was"
     checks = [at_most("as opaque as asked", abs(ratio - op.value), 0.02, "1", said)]
     changed = all_of_it(case, case.changes.faded) if op.value < 1 else None
@@ -170,7 +170,7 @@ def _displaced(case: Case, rows: Tensor) -> Check:
     """The body kept its shape on the way."""
     motion = standing.rigid_motion(case, rows)
     if motion is None:
-        return at_most("kept its shape", float("nan"), _RIGID, "1", "nothing of it is there any more")
+        return at_most("kept its shape", 1.0, _RIGID, "1", "nothing of it is there any more")
     size = max(case.box_after(case.now(rows)).size)
     off = motion[2] / max(size, 1e-9)
     return at_most("kept its shape", off, _RIGID, "1", f"it is out of shape by {off:.2%} of its size")
@@ -221,7 +221,7 @@ def _approached(case: Case, op: Move, rows: Tensor, was: Any, way: Any) -> list[
     assert op.toward is not None
     found = case.context.resolve(case.before, op.toward)
     if found.verdict != "found":
-        return [report("moved as said", float("nan"), "units", f"what it goes to was not found: {found.reason}")]
+        return [report("moved as said", 0.0, "units", f"what it goes to was not found: {found.reason}")]
     goals = [b.center for b in bodies_of(case.before, found)]
     closer = max(float(np.linalg.norm(g - was) - np.linalg.norm(g - was - way)) for g in goals)
     checks = [at_least("moved as said", closer, 1e-3 * case.cm(1.0), "units", f"it came {closer:.3g} units nearer")]
@@ -265,7 +265,7 @@ def _scale(case: Case, op: Scale) -> Found:
     for body in case.bodies[: appearance.MOST]:
         rows = case.now(body.rows)
         if len(rows) < 4:
-            checks.append(at_most("size as asked", float("nan"), _SIZE, "1", "nothing of it is there any more"))
+            checks.append(at_most("size as asked", 1.0, _SIZE, "1", "nothing of it is there any more"))
             continue
         checks.append(_resized(case, op, body.box, rows))
     return [*checks, *_named(case, case.changes.placed & case.target)], _NO_IDS

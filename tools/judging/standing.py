@@ -27,6 +27,7 @@ from .case import Case
 _FEET = 0.05  # of its height: the lowest part of a thing, on which it stands
 _AIR = 4.0  # centimetres between a thing and what carries it: cushions are soft, and boxes miss thin feet
 _AT_WALL = 8.0  # centimetres between a thing that hangs and what it hangs on: brackets and frames
+_NOTHING = 100.0  # of a thing's size: the gap that is told where nothing is near it
 _SURFACE = 0.02  # share of the points under a thing that must be at its underside
 _FEW = (2, 7)  # least and most number of such points that do not count: stray ones
 _RELATED = 0.5 * HOLDS  # score from which an asked relation is accepted: boxes measured twice differ a little
@@ -40,16 +41,20 @@ def stands(case: Case, rows: Tensor, label: str) -> Check:
         rows: of the cloud after.
         label: its kind; things for walls and ceilings need only touch something.
     """
-    points = solid_points(case.after.cloud, rows)
-    others = _others(case, rows)
+    points, others = solid_points(case.after.cloud, rows), _others(case, rows)
     box = case.box_after(rows)
-    known = kinds.find(label) if label else None
-    hangs = known is not None and known.support in ("wall", "ceiling")
-    gap = _nearest(points, others) if hangs else _gap_below(case, points, box, others)
-    reach = max(box.size)
-    bound = _AT_WALL * case.cm(reach) if hangs else max(_AIR * case.cm(reach), _FEET * box.size[2])
-    said = f"{gap:.3g} units lie between it and what carries it"
-    return at_most("carried", gap, bound, "units", said)
+    known, reach = kinds.find(label) if label else None, max(box.size)
+    hung = known.support if known is not None and known.support in ("wall", "ceiling") else ""
+    if hung == "ceiling":
+        above = others[box.covers(others)]
+        others = above[above @ case.after.frame.up_vector > box.top(case.after.frame.up_vector) - 0.1 * box.size[2]]
+        if not len(others):
+            return report("carried", 0.0, "units", "the scene shows no ceiling above it")
+    gap = _nearest(points, others) if hung else _gap_below(case, points, box, others)
+    bound = _AT_WALL * case.cm(reach) if hung else max(_AIR * case.cm(reach), _FEET * box.size[2])
+    if math.isinf(gap):
+        return at_most("carried", _NOTHING * reach, bound, "units", "nothing near it carries it")
+    return at_most("carried", gap, bound, "units", f"{gap:.3g} units lie between it and what carries it")
 
 
 def _others(case: Case, rows: Tensor) -> NDArray[np.float32]:
@@ -112,7 +117,7 @@ def in_relation(case: Case, place: Placement, rows: Tensor) -> Check | None:
         return None
     anchors = _anchors(case, place)
     if not anchors:
-        return report("placed as asked", float("nan"), "1", "what the place is related to was not found")
+        return report("placed as asked", 0.0, "1", "what the place is related to was not found")
     box = case.box_after(rows)
     field = case.before.language
     assert field is not None
@@ -122,6 +127,9 @@ def in_relation(case: Case, place: Placement, rows: Tensor) -> Check | None:
         thing = replace(anchors[0], level="object", box=box)
         score = max(score, float(relations.score(name, thing, anchors, frame)))
     score = max(score, _beside(box, anchors[0].box, case) if name == "next_to" else 0.0)
+    if name == "above":  # on the wall behind it counts, as long as it hangs higher
+        up = case.before.frame.up_vector
+        score = max(score, float(box.bottom(up) > anchors[0].box.top(up) - _FEET * box.size[2]))
     return at_least("placed as asked", score, _RELATED, "1", f"{place.describe()} holds with a score of {score:.2f}")
 
 

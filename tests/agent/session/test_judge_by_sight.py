@@ -17,6 +17,8 @@ from scenewright.agent.session.session import Session
 from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.scene import Scene
 from scenewright.planners.model.backend import UnreachableError
+from scenewright.planners.plan import EditPlan, Usage
+from scenewright.tools.registry import parse
 
 TEXT = "make the green thing blue"
 
@@ -107,6 +109,37 @@ def test_a_compound_instruction_is_seen_once_as_a_whole(boxes: Scene, encoder: A
     with pytest.raises(JudgedError, match="taken back"):
         session.do(f"{TEXT} and delete the blue thing")
     assert session.scene is boxes
+
+
+class Replanning:
+    """A planner with a model that gives the next of some plans each time it is asked."""
+
+    name = "scripted"
+
+    def __init__(self, *plans: EditPlan) -> None:
+        self.plans = list(plans)
+
+    def plan(self, text: str, **more: Any) -> EditPlan:
+        return self.plans.pop(0) if len(self.plans) > 1 else self.plans[0]
+
+
+def planned(color: str) -> EditPlan:
+    op = parse({"op": "recolor", "target": {"groups": [1]}, "color": color})
+    return EditPlan(instruction=TEXT, ops=(op,), planner="scripted", usage=Usage(model="scripted", requests=1))
+
+
+def test_a_model_plans_again_once_if_its_plan_was_judged_a_failure(boxes: Scene, encoder: Any) -> None:
+    wrong = says(done=False, right_thing=False)
+    session, _ = judged(boxes, encoder, wrong, says())
+    session.planner = Replanning(planned("teal"), planned("blue"))
+    result = session.do(TEXT)
+    assert result.plan is not None and result.plan.ops[0].color == "blue"  # type: ignore[attr-defined]
+    assert "planned again, as the judge refused the first plan (seen: done" in result.sentences()[0]
+    session, model = judged(boxes, encoder, wrong)
+    session.planner = Replanning(planned("teal"))
+    with pytest.raises(JudgedError):
+        session.do(TEXT)
+    assert session.scene is boxes and len(model.asked) == 1
 
 
 def test_a_judge_by_sight_needs_eyes(boxes: Scene, encoder: Any) -> None:
