@@ -50,6 +50,7 @@ OFF_LINE = 0.8  # from which it is not
 FIT = 0.15  # metres by which something fits, or does not, on each of its sides
 BODY = (0.2, 0.35)  # metres, radius: no way for the first, a way for the second
 LOW = 0.4  # metres: what one trips over is no higher
+ALONG = 0.9  # cosine from which a viewer looks along a wall
 HEADROOM = 2.0  # metres: what begins above it is in nobody's way
 PER_KIND = 12  # questions of a kind that are drawn from in one room
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
@@ -698,12 +699,15 @@ def superlative(room: Room) -> Made:
 
 
 def room_size(room: Room) -> Made:
-    """Width, depth, height and floor area."""
+    """Height and floor area; width and depth where the viewer looks along one of the walls."""
     width, depth, height = room.table.size
-    yield _q(room, "room_size", "metres", room.word(say.ROOM_WIDTH), width)
-    yield _q(room, "room_size", "metres", room.word(say.ROOM_DEPTH), depth)
     yield _q(room, "room_size", "metres", room.word(say.ROOM_HEIGHT), height)
     yield _q(room, "room_size", "number", room.word(say.ROOM_AREA), width * depth)
+    along_x, along_y = np.abs(room.table.forward)
+    if max(along_x, along_y) >= ALONG:
+        across, ahead = (width, depth) if along_y > along_x else (depth, width)
+        yield _q(room, "room_size", "metres", room.word(say.ROOM_WIDTH), across, side=True)
+        yield _q(room, "room_size", "metres", room.word(say.ROOM_DEPTH), ahead, side=True)
 
 
 def free_floor(room: Room) -> Made:

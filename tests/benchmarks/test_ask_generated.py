@@ -82,7 +82,9 @@ def test_counts_lists_and_colours(room: Table) -> None:
         (i,): (c,) for i, c in enumerate(("blue", "brown", "black", "white"))
     }
     assert {q.truth for q in found["superlative"] if "tallest" in q.text} == {("floor lamp",)}
-    assert found["room_size"][3].truth == (30.0,)
+    assert [q.truth for q in found["room_size"]] == [(2.5,), (30.0,), (5.0,), (6.0,)]
+    aside = pool(room.seen_by((-4.0, 0.0), (1.0, 0.0)), VOCABULARY)["room_size"]
+    assert [q.truth for q in aside] == [(2.5,), (30.0,), (6.0,), (5.0,)]  # left and right are now along y
 
 
 def test_chairs_of_two_colours_are_named_by_them(room: Table) -> None:
