@@ -37,7 +37,7 @@ def measure(survey: Survey, thing: Thing, what: Measure) -> float:
 def sides(survey: Survey, thing: Thing) -> tuple[float, float, float]:
     """Width, depth and height, metres."""
     width, depth, height = (float(s) for s in (thing.node.size if thing.node else thing.group.box.size))
-    if survey.fronts is not None and thing.id not in survey.fronts:
+    if survey.faces is not None and not survey.has_front(thing):
         width, depth = max(width, depth), min(width, depth)
     return width, depth, height
 

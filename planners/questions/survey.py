@@ -53,7 +53,7 @@ class Survey:
         stage: the boxes, colours and relations of the graph's nodes.
         finder: resolves queries to rows of the stage.
         last: ids that "it" refers to.
-        fronts: ids of the things whose front is known: on the -y side of their box; None: by their kind.
+        faces: whether the front of a thing was measured; None: its kind tells. A front is the -y side of its box.
         measured: whether boxes, colours and labels were measured in a scene, not written by somebody.
     """
 
@@ -61,9 +61,10 @@ class Survey:
     stage: Stage
     finder: Finder
     last: tuple[Id, ...] = ()
-    fronts: frozenset[Id] | None = None
+    faces: Callable[[Thing], bool] | None = None
     measured: bool = False
     _memory: dict[str, Found] = field(default_factory=dict)
+    _fronts: dict[Id, bool] = field(default_factory=dict)
     _names: dict[Id, str] = field(default_factory=dict)
 
     @classmethod
@@ -105,14 +106,22 @@ class Survey:
         from ...gaussians.language.query.resolve import Resolver
 
         assert scene.language is not None
-        structure = {g.id: g.label for g in scene.language.groups if g.level == "structure"}
+        language = scene.language
+        structure = {g.id: g.label for g in language.groups if g.level == "structure"}
         rows = {id: row for row, id in reversed(list(enumerate(self.stage.ids)))}
         resolver = Resolver(scene, viewer, encoder, last)
 
         def find(query: Query) -> Selection:
             return _on_stage(resolver.select(query), rows, structure)
 
-        return replace(self, finder=find, last=last.groups if last is not None else (), measured=True, _memory={})
+        def faces(thing: Thing) -> bool:
+            kind, group = kinds.of(thing.label), language.groups[int(thing.id)]
+            by = resolver.facing(group).by
+            # A wall tells the front of a cabinet, not that of a standing lamp beside it.
+            return by == "shape" or (by == "wall" and (kind is None or kind.front or kind.seats > 0))
+
+        last_groups = last.groups if last is not None else ()
+        return replace(self, finder=find, last=last_groups, measured=True, faces=faces, _memory={}, _fronts={})
 
     # -- things -----------------------------------------------------------------------------------------------------
 
@@ -337,8 +346,10 @@ class Survey:
 
     def has_front(self, thing: Thing) -> bool:
         """Whether it is known which side of a thing is its front."""
-        if self.fronts is not None:
-            return thing.id in self.fronts
+        if self.faces is not None:
+            if thing.id not in self._fronts:
+                self._fronts[thing.id] = self.faces(thing)
+            return self._fronts[thing.id]
         kind = kinds.of(thing.label)
         return kind is not None and (kind.front or kind.seats > 0)
 

@@ -37,6 +37,14 @@ _BY = (
 )
 _END = f"{_BY} {_IN}"
 _HOW_FAR = f"""
+    (measured|measuring|taken|counted|going) [from] (center to center|edge to edge|middle to middle|between \
+        centers) how far \
+        (apart|away) (is|are) {{a:spot}} and {{b:spot}}
+    (measured|measuring|taken|counted|going) [from] (center to center|edge to edge|middle to middle|between \
+        centers) how far \
+        [away] (is|are) {{a:spot}} from {{b:spot}}
+    [from] (center to center|edge to edge|middle to middle) how far [(apart|away)] (is|are) {{a:spot}} (and|from) \
+        {{b:spot}} [apart]
     [in {{u:unit}}] how (far|close|near|distant|far away|far off) [away|apart] BE {{a:spot}} \
         [away|located|standing] (from|to|of) {{b:spot}} {_END}
     [in {{u:unit}}] how (far|close|near) [away|apart] BE {{a:spot}} and {{b:spot}} [{_APART}] {_END}
@@ -78,11 +86,13 @@ _HOW_FAR = f"""
     how wide is the (passage|opening|aisle|walkway|corridor) between {{a:spot}} and {{b:spot}} {_END}
 """
 _LESS = (
-    "(within|less than|closer than|nearer than|under|at most|no more than|not more than|no further than|"
+    "(within|less than|smaller than|shorter than|closer than|nearer than|under|at most|no more than|not more than|"
+    "no further than|"
     "no farther than|not further than|inside of|below|in a radius of|within a radius of|within reach of)"
 )
 _MORE = (
-    "(more than|further than|farther than|over|at least|beyond|no less than|not less than|no closer than|greater than|"
+    "(more than|bigger than|larger than|longer than|wider than|further than|farther than|over|at least|beyond|no "
+    "less than|not less than|no closer than|greater than|"
     "further away than|farther away than|in excess of)"
 )
 _WITHIN = f"""
@@ -91,7 +101,9 @@ _WITHIN = f"""
         from each other]
     BE {{both:spot}} {_LESS} {{n:length}} [of each other|apart|from each other|of one another|away from each other]
     [is|are] there {_LESS} {{n:length}} [of space|of room|of clearance] between {{a:spot}} and {{b:spot}}
-    [is|are] the {_LENGTH} between {{a:spot}} and {{b:spot}} {_LESS} {{n:length}}
+    [is|are] the {_LENGTH} (between|from) {{a:spot}} (and|to) {{b:spot}} {_LESS} {{n:length}}
+    (does|do) the {_LENGTH} (between|from) {{a:spot}} (and|to) {{b:spot}} (measure|come to|amount to) {_LESS} \
+        {{n:length}}
 """
 _BEYOND = _WITHIN.replace(_LESS, _MORE)
 _TOUCH = """

@@ -37,7 +37,8 @@ _PHRASES = f"""
     (name|find|show me|give me|point out|identify) [the] N {{x}} {_TO} {{b:spot}} {_ONLY}
     (name|find|show me|give me|identify) [the] {{x}} N {_TO} {{b:spot}}
     what does {{b:spot}} (stand|sit|lie|hang) N to
-    what is {{b:spot}} N (to|from)
+    (what|which thing|what thing|which object|what object|which one) BE {{b:spot}} N (to|from)
+    (what|which) {{x}} BE {{b:spot}} N (to|from)
     who or what {_IS} N {_TO} {{b:spot}}
     (what|which) (thing|object|item|piece of furniture|furniture) {_IS} [at] [the] N (distance|away) {_TO} {{b:spot}}
 """

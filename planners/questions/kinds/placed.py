@@ -97,6 +97,10 @@ _IS_REL = """
     (is|are) there {x} [in] between {both}
     (is|are) there {x} (separating|dividing) {a} (and|from) {b}
     BE {x} part of {a}
+    BE {x} and {a} [standing|placed|located|right] {m:mutual}
+    (do|does) {x} and {a} (stand|sit|lie|hang) [right] {m:mutual}
+    BE {both} [standing|placed|located|right] {m:mutual}
+    (do|does) {both} (stand|sit|lie|hang) [right] {m:mutual}
 """
 _SUPPORT = """
     what BE {x} (standing|sitting|lying|resting|placed|put|set|mounted|hanging|hung|leaning|located|stood|\
@@ -177,6 +181,8 @@ def _what(asked: Asked, survey: Survey) -> Answer | None:
 
 def _relation(asked: Asked) -> str | None:
     """The relation of a question; sides belong to another kind."""
+    if "m" in asked.slots:
+        return "next_to"
     if "r" in asked.slots:
         name = str(asked.slots["r"])
         if name == "inside" and re.search(r"\bin (?:the )?(?:room|corner|here)\b", asked.text.lower()):
@@ -297,6 +303,8 @@ def _is_related(asked: Asked, survey: Survey) -> Answer | None:
     name = _relation(asked)
     if name is None:
         return None
+    if "x" not in asked.slots:
+        return _together_yes_no(name, asked, survey)
     query = asked.slots["x"]
     things = _subjects(query, asked, survey)
     anchors = _anchors(asked, survey)
@@ -308,6 +316,20 @@ def _is_related(asked: Asked, survey: Survey) -> Answer | None:
     if len(cases) > 1 and (asked.slots["a"].pick == "any" or _many_places(asked)):
         return whole(cases, "any")
     return whole(cases, "all") if _is_every(asked) else agreed(cases)
+
+
+def _together_yes_no(name: str, asked: Asked, survey: Survey) -> Answer | None:
+    """Whether things that are named as one are next to each other: each to one of the others."""
+    things = meant(asked.slots["both"], survey)
+    if len(things) < 2:
+        return None
+    cases: list[Case] = []
+    for t in things:
+        near = [o for o in things if o.row != t.row and strength(name, t, (o,), survey) >= HOLDS]
+        said = f"next to {survey.named(near[0])}" if near else "next to none of the others"
+        text = f"{'Yes' if near else 'No'}, {survey.named(t)} is {said}."
+        cases.append((survey.named(t), _yes_no(bool(near), text, [t, *near], 0.9)))
+    return whole(cases, "all")
 
 
 def _either(asked: Asked, survey: Survey) -> Answer | None:

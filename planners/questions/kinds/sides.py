@@ -13,7 +13,7 @@ import numpy as np
 
 from ....gaussians.world import relations
 from ....gaussians.world.support import is_stepped_on
-from ..answer import Answer, Evidence
+from ..answer import Answer, AnswerType, Evidence
 from ..candidates import Case, agreed, is_plural, meant, unknown, whole
 from ..kind import Asked, Kind
 from ..reading.noun_phrase import is_anything
@@ -100,24 +100,50 @@ _FACED = """
 """
 # Relations to a thing.
 _OF = "(to|on|at|off to|over to|over on|in|from)"
-_RELATED = """
-    BE {x} {d:relation} {a}
-    (do|does) {x} (stand|sit|lie|hang) {d:relation} {a}
-    (would|will) {x} be {d:relation} {a}
-    (is|are) there {x} {d:relation} {a} from {v:words} point of view
-"""
-_OWN_SIDE = f"""
-    BE {{x}} {_OF} {{a}} 's [own] {{o:way}} {_HAND}
-    (do|does) {{x}} (stand|sit|lie|hang) {_OF} {{a}} 's [own] {{o:way}} {_HAND}
+_STANDS = "(do|does|would|will|can|did) {x} [also] (stand|sit|lie|hang|be|appear|come|rest|go|have its place)"
+_POV = (
+    "[(from|in|by|for) (its|their|the thing 's) own (point of view|perspective|viewpoint|frame|frame of reference|"
+    "orientation|view|side)|(going|judging|judged|judge) by the (way|direction) {f} (faces|face|is facing|looks|is "
+    "turned)|"
+    "(going|judging|judged) by [(its|their)] [own] (front|orientation)|by its own front|(as|when) seen from it|"
+    "with respect to its own front|in its own frame|from its [own] (point of view|perspective)|from its front|"
+    "the way it faces|as it faces|given the way (it|{f}) faces]"
+)
+
+
+def _each_verb(notation: str) -> str:
+    """The lines with "BE {x}", and the same with a verb of place: "does the lamp stand left of the sofa"."""
+    lines = [line for line in notation.splitlines() if line.strip()]
+    return "\n".join([*lines, *(line.replace("BE {x}", _STANDS) for line in lines if "BE {x}" in line)])
+
+
+_RELATED = _each_verb(f"""
+    BE {{x}} [(standing|placed|located|directly|right|somewhere|positioned|be)] {{d:relation}} {{a}} {_POV}
+""")
+_OWN_SIDE = _each_verb(f"""
+    BE {{x}} [(standing|placed|located|directly|right|somewhere)] {_OF} {{a}} 's [own] {{o:way}} {_HAND}
     BE {{x}} at {{a}} 's [own] {{o:way}} {_HAND}
-"""
+""")
+_OWN_EITHER = _each_verb(f"""
+    BE {{x}} {_OF} {{a}} 's [own] (left|right) or [(to|on|at)] [its] [own] (left|right) {_HAND}
+    BE {{x}} on the (left|right) or [on] [the] (left|right) [(hand side|side)] of {{a}} {_POV}
+    (does|do) {{a}} have {{x}} (before|in front of|behind) (it|them) or (before|in front of|behind) (it|them) {_POV}
+    (does|do) {{a}} have {{x}} on (its|their) [own] (left|right) or [(on|to)] [its|their] [own] (left|right) \
+        {_HAND} {_POV}
+    (taking|using|going by|in terms of|by|with) {{a}} 's own (left and right|front and \
+        back|sides|frame|orientation|front) \
+        [as|for] [the] [reference] [on|to] (which|what) side of it (is|are|does|do) {{x}} [stand|lie|sit|hang|on|be]
+    on (which|what) of {{a}} 's [own] sides (is|are|does|do) {{x}} [stand|lie|sit|on]
+    (which|what) of {{a}} 's [own] sides (is|are) {{x}} on
+    on (which|what) side of {{a}} BE {{x}} (from|in) its own (point of view|perspective|frame)
+""")
 _OWN_WHAT = f"""
     (what|which thing|what object|what thing) [(is|are|stands|sits|lies|is standing)] \
         [located|placed|standing|found|right] {_OF} {{a}} 's [own] {{o:way}} {_HAND}
     {_OF} {{a}} 's [own] {{o:way}} {_HAND} what (is|stands) [there]
     [on|to|at] {{a}} 's [own] {{o:way}} {_HAND} [as you would sit on it|as you sit on it] what (is|stands) \
-        [standing] [just] \
-        [beside it|there|next to it]
+        [standing] [just] [beside it|there|next to it]
+    what is (beside|next to) {{a}} on (its|their) [own] {{o:way}} {_HAND}
 """
 _WHAT_OF = """
     (what|which thing|what thing|what object|which object|what things|which things|which objects|what \
@@ -130,22 +156,24 @@ _WHAT_OF = """
         [that is|that are|standing] {d:relation} {a}
     {d:relation} {a} (what|which thing) (is|stands) [there]
 """
-_EITHER_OF = """
-    BE {x} [standing|located|placed|more] (to the|on the|to|on|at the) (left|right) or \
-        [(to the|on the|to|on|at the|the)] (left|right) [hand side|side] of {a}
-    BE {x} (left|right) or (left|right) of {a}
-    BE {x} (in front of|behind) or (in front of|behind) {a}
-    BE {x} (in front of|behind) {a} or (in front of|behind) it
-    BE {x} (to the left of|left of|on the left of|to the right of|right of) {a} or to the (left|right) of it
-    BE {x} (to the left of|left of|on the left of|to the right of|right of) {a} or to (its|the) (left|right)
-    (which|what) side of {a} BE {x} [on|located on|standing on] [left or right|the left or the right]
-    on (which|what) side of {a} BE {x} [located|standing] [left or right|the left or the right]
-    on (which|what) side of {a} (do|does) {x} (stand|sit|lie|hang)
-    (which|what) (direction|way) BE {x} from {a}
-    in (which|what) direction from {a} BE {x}
-    in (which|what) direction BE {x} from {a}
-    to (which|what) side of {a} BE {x}
-"""
+_EITHER_OF = _each_verb(f"""
+    BE {{x}} [standing|located|placed|more] [(to the|on the|to|on|at the)] (left|right) or \
+        [(to the|on the|to|on|at the|the)] (left|right) [hand side|side] of {{a}}
+    BE {{x}} (in front of|behind) or (in front of|behind) {{a}} {_POV}
+    BE {{x}} (in front of|behind|before) {{a}} or (in front of|behind|before) (it|them) {_POV}
+    BE {{x}} (to the left of|left of|on the left of|to the right of|right of|on the right of) {{a}} or \
+        [(on|to)] [(the|its)] (left|right) [of] [it] {_POV}
+    (which|what) side of {{a}} BE {{x}} [on|located on|standing on] [left or right|the left or the right] {_POV}
+    on (which|what) side of {{a}} BE {{x}} [located|standing] [left or right|the left or the right] {_POV}
+    (which|what) (direction|way) BE {{x}} from {{a}} {_POV}
+    in (which|what) direction from {{a}} BE {{x}}
+    in (which|what) direction BE {{x}} from {{a}}
+    to (which|what) side of {{a}} BE {{x}}
+""")
+_OWN_FRAME = re.compile(
+    r"\b(?:its|their|own) own\b|'s own\b|\bown (?:left|right|front|sides|point of view|perspective|frame)|"
+    r"\bthe way [\w ']+ (?:faces?|is facing|looks|is turned)\b|\b(?:its|their) (?:front|point of view|perspective)\b"
+)
 _NARROW = 15.0  # degrees between a direction and the limit of its sector below which an answer is told as borderline
 
 
@@ -449,6 +477,8 @@ def _frame_of(anchor: Thing, asked: Asked, survey: Survey) -> tuple[View | None,
 
     A situation gives the person's own line of sight; a situation that takes the thing's frame gives that.
     """
+    if _OWN_FRAME.search(asked.text.lower()):
+        return of_object(anchor, survey), True
     if asked.situation is None:
         seen = viewer(survey)
         return View(middle(anchor), seen.forward, seen.words), False
@@ -465,7 +495,7 @@ def _frame_of(anchor: Thing, asked: Asked, survey: Survey) -> tuple[View | None,
 def _side_of_thing(x: Thing, anchor: Thing, name: str, asked: Asked, survey: Survey) -> Answer:
     view, own = _frame_of(anchor, asked, survey)
     if view is None:
-        return unknown("yesno", "No place fits what is said of the person.")
+        return _no_frame(anchor, own, survey, "yesno")
     return _holds_beside(x, anchor, name, view, own, survey)
 
 
@@ -542,7 +572,7 @@ def _what_of(asked: Asked, survey: Survey) -> Answer | None:
     def one(anchor: Thing) -> Answer:
         view, own = _frame_of(anchor, asked, survey)
         if view is None:
-            return unknown("label", "No place fits what is said of the person.")
+            return _no_frame(anchor, own, survey, "label")
         found = [t for t in survey.things if t.row != anchor.row and (wanted is None or t.row in wanted)
                  and not _is_out_of_the_way(t) and t.node is not None and t.node.support != anchor.id
                  and _holds_beside(t, anchor, name, view, own, survey).answer == "yes"]  # fmt: skip
@@ -573,37 +603,50 @@ def _told_of(
                   confidence=0.8, evidence=evidence)  # fmt: skip
 
 
-def _no_front(anchor: Thing, survey: Survey, kind: str) -> Answer:
+def _no_frame(anchor: Thing, own: bool, survey: Survey, kind: AnswerType) -> Answer:
+    """Why there is no frame of reference."""
+    if own:
+        return _no_front(anchor, survey, kind)
+    return unknown(kind, "No place fits what is said of the person.")
+
+
+def _no_front(anchor: Thing, survey: Survey, kind: AnswerType) -> Answer:
     text = f"Nothing tells which side of {survey.named(anchor)} is its front, so it has no left and right of its own."
-    return unknown(kind, text, (anchor,), "object")  # type: ignore[arg-type]
+    return unknown(kind, text, (anchor,), "object")
 
 
-def _which_side_of(asked: Asked, survey: Survey) -> Answer | None:
+def _own_either(asked: Asked, survey: Survey) -> Answer | None:
+    """On which of its own sides a thing has another one."""
+    return _which_side_of(asked, survey, own=True)
+
+
+def _which_side_of(asked: Asked, survey: Survey, own: bool = False) -> Answer | None:
     """On which side of a thing another one is."""
     said = asked.text.lower()
     firsts, seconds = meant(asked.slots["x"], survey), meant(asked.slots["a"], survey)
-    lateral = "left or" in said or "right or" in said or "or right" in said
-    depth = "behind or" in said or "or behind" in said or "front of or" in said
+    lateral = "left and right" in said or "left or" in said or "right or" in said or "or right" in said
+    depth = bool(re.search(r"\bor (?:behind|in front|before)\b|\b(?:behind|front of) or\b|front and back", said))
+    lateral = lateral and not depth
 
     def one(x: Thing, anchor: Thing) -> Answer:
-        view, own = _frame_of(anchor, asked, survey)
+        view, its_own = (of_object(anchor, survey), True) if own else _frame_of(anchor, asked, survey)
         if view is None:
-            return unknown("label", "No place fits what is said of the person.")
+            return _no_frame(anchor, its_own, survey, "label")
         bearing = view.to(x)
         if lateral:
             label, gap = ("right" if bearing > 0 else "left"), min(abs(bearing), 180 - abs(bearing))
         elif depth:
             ahead = abs(bearing) < 90.0
-            label, gap = ("in front" if ahead == own else "behind"), abs(90.0 - abs(bearing))
+            label, gap = ("in front" if ahead == its_own else "behind"), abs(90.0 - abs(bearing))
         else:
             label = {"left of": "left", "right of": "right", "in front of": "in front", "behind": "behind"}[
-                _beside_told(bearing, own)
+                _beside_told(bearing, its_own)
             ]
             rest = (bearing + 45.0) % 90.0
             gap = min(rest, 90.0 - rest)
         words = {"left": "left of", "right": "right of", "in front": "in front of", "behind": "behind"}[label]
         text = f"{_cap(survey.named(x))} is {words} {survey.named(anchor)}{_frame_told(view)}."
-        return Answer(answer=label, answer_type="label", text=text, frame="object" if own else view.words,
+        return Answer(answer=label, answer_type="label", text=text, frame="object" if its_own else view.words,
                       confidence=_sure(gap, _NARROW), evidence=_ids(x, anchor))  # fmt: skip
 
     cases = [(_pair_name(x, a, firsts, seconds, survey), one(x, a)) for x in firsts for a in seconds if x.row != a.row]
@@ -647,6 +690,7 @@ def _cap(said: str) -> str:
 KINDS = (
     Kind("own_side", templates(_OWN_SIDE), _own_side),
     Kind("own_side_what", templates(_OWN_WHAT), _own_what),
+    Kind("own_side_either", templates(_OWN_EITHER), _own_either),
     Kind("side_either", templates(_EITHER), _either_side),
     Kind("side_either_of", templates(_EITHER_OF), _which_side_of),
     Kind("side", templates(_IS_SIDE), _is_side),

@@ -126,6 +126,7 @@ READERS: Mapping[str, HoleReader] = {
     "spot": spots.spot,
     "relation": relation_phrases.relation,
     "side": side_phrases.side,
+    "mutual": relation_phrases.mutual,
     "either": side_phrases.either,
     "way": side_phrases.way,
     "zone": room_phrases.zone,

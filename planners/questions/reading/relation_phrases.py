@@ -29,6 +29,18 @@ def relation(words: Words) -> str | None:
     return None
 
 
+_MUTUAL = re.compile(
+    r"(?:(?:right |directly )?(?:next to|beside|near|near to|close to|by|adjacent to|alongside) (?:each other|one "
+    r"another)|"
+    r"side by side|close together|near each other|together|adjacent)"
+)
+
+
+def mutual(words: Words) -> str | None:
+    """That things are next to each other."""
+    return "next_to" if _MUTUAL.fullmatch(" ".join(words)) else None
+
+
 @cache
 def _phrases() -> dict[str, str]:
     """Every phrase said before one anchor, with the name of a relation that boxes decide."""

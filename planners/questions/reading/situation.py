@@ -79,10 +79,14 @@ _SIDED = (
     "being|placed|right|located] {s:side}"
 )
 _SIDED2 = "[and|with|while|having|,|there (is|are)] {b2:bare} [is|are] {s2:side}"
+_EYES = (
+    "[and|with|while|having] [with] my (eyes|gaze|face|head|nose|body) [fixed|turned|directed] (on|to|toward|"
+    "towards|at) {g:bare}"
+)
 _TAIL = (
     "[[(with|and)] [(my|their|his|her|your|the)] head (on|at|against) the (wall|wall side|headboard)] "
     "[(leaning|leant|leaned|lying) back] [[(is|that is|which is)] {s0:side}] "
-    f"[{_LOOKS} {{way:gaze}}|{_GAZES} [that|this] {{g:bare}}|(and|with) my back (to|against|towards|toward) "
+    f"[{_LOOKS} {{way:gaze}}|{_GAZES} [that|this] {{g:bare}}|{_EYES}|(and|with) my back (to|against|towards|toward) "
     f"{{back:bare}}] "
     f"[{_SIDED}] [{_SIDED2}]"
 )
@@ -299,7 +303,8 @@ _ANY = re.compile(
     r"resting|sleeping|dining|typing|eating|writing|on entering|relaxing|curled)\b"
 )
 _VIEWER = re.compile(
-    r"^(?:(?:as )?(?:seen|viewed|looking) )?from (?:the front|where i am(?: standing| sitting)?|where i stand|"
+    r"^(?:(?:as )?(?:seen|viewed|looking) )?from (?:the front|where i am(?: standing| sitting| looking| now)?|"
+    r"where i stand|"
     r"where the viewer (?:is|stands)|my (?:position|point of view|perspective|viewpoint|view)|the viewer|the viewer 's "
     r"(?:position|point of view|perspective|viewpoint|side)|(?:this|the) camera|the camera 's (?:view|perspective|"
     r"point of "
