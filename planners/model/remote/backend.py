@@ -138,6 +138,8 @@ class Remote:
                     reply = await wire.ask(model, self._address, question)
                 except Exception as error:
                     less = errors.fewer_extras(extras, error)
+                    if less is None and emit is not None:
+                        less = errors.without_stream(extras, error)
                     pause = errors.retry_delay(error, tries) if less is None else 0.0
                     if spoken or pause is None or pause >= deadline - time.monotonic():
                         raise

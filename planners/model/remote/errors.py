@@ -89,6 +89,17 @@ def fewer_extras(extras: Extras, error: BaseException) -> Extras | None:
     return less if less != extras else BARE
 
 
+def without_stream(extras: Extras, error: BaseException) -> Extras | None:
+    """Parameters that ask for the answer at once, after a stream that held none; None if the error is another.
+
+    Some servers accept `stream`, ignore it and send a whole answer.
+    """
+    from pydantic_ai import exceptions as failures
+
+    empty = isinstance(error, failures.UnexpectedModelBehavior) and extras.stream
+    return replace(extras, stream=False) if empty else None
+
+
 def _looser(form: Form) -> Form:
     return "json" if form == "schema" else "words"
 

@@ -289,6 +289,14 @@ def test_a_refusal_without_reason_is_met_with_the_barest_request() -> None:
     assert set(asked[1].body) == {"model", "messages", "stream"}
 
 
+@each_wire
+def test_a_server_that_ignores_the_wish_for_a_stream_is_asked_at_once(wire: Wire) -> None:
+    heard: list[str] = []
+    answer, asked = ask(wire, wire.answer(PLAN), on_text=heard.append)
+    assert json.loads(answer.text) == json.loads(PLAN) and json.loads("".join(heard)) == json.loads(PLAN)
+    assert len(asked) <= 2  # Google's client reads such an answer at the first request
+
+
 def test_a_server_that_cannot_stream_is_asked_at_once() -> None:
     heard: list[str] = []
     refused = wires.OpenAI.error(400, "stream_options is not supported")
