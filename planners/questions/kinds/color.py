@@ -38,7 +38,6 @@ _PHRASES = f"""
     {_WHAT} {_BE} {{x}} [painted|in|have|got|made in]
     {_WHAT} {{x}} {_BE} [there]
     {_WHAT} of {{of}} [is it|is there|are there|do we have]
-    {_WHAT} {_BE} the {{of}} [of|have]
     [in] {_WHAT} (is|are) {{x}} (painted|in|done in|finished in)
     [what (is|are|was)] [the] [main|dominant|exact] {_COLOR} of {{x}} [is|are]
     the {_COLOR} of {{x}} is (what|which)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ....gaussians.language.query.query import Query
 from ..answer import Answer
 from ..kind import Asked, Kind
 from ..measuring import certainty, in_unit, measure, same, told_length
@@ -94,11 +95,18 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
         return None
     for x, y in (("x", "y"), ("less_x", "less_y")):
         if x in slots and y in slots:
-            return _is_more(meant(survey, slots[x]), meant(survey, slots[y]), degree, survey)
+            return _is_more(*_both(slots[x], slots[y], asked, survey), degree, survey)
     a, b = ("less_a", "less_b") if "less_a" in slots else ("a", "b")
     if a not in slots:
         return None
-    return _which(meant(survey, slots[a]), meant(survey, slots[b]), degree, survey)
+    return _which(*_both(slots[a], slots[b], asked, survey), degree, survey)
+
+
+def _both(first: Query, second: Query, asked: Asked, survey: Survey) -> tuple[Meant, Meant]:
+    """What two phrases mean; "one" in the second stands for the noun of the first: "the red chair … the white one"."""
+    if not second.text and not second.groups and {"one", "ones"} & set(asked.words):
+        second = second.model_copy(update={"text": first.text})
+    return meant(survey, first), meant(survey, second)
 
 
 def _degree(asked: Asked) -> More | None:

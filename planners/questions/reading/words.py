@@ -12,6 +12,7 @@ from ....gaussians.errors import UserError
 from ...grammar.tagging.words import bag, clean, split
 
 MAX_CHARS = 1000
+MAX_WORDS = 120
 
 _MARKS = frozenset(".?!;:()[]–—")
 _DASH = re.compile(r"(?<=\s)[-–—]+(?=\s)")
@@ -131,6 +132,10 @@ _REORDERED: tuple[tuple[re.Pattern[str], str], ...] = tuple(
             r"(?: here| anywhere)?$",
             r"is there \1",
         ),
+        (
+            r"^(how many (?:places|seats|spots|chairs)) (?:are there|do we have|can i find) (to sit.*)$",
+            r"\1 \2",
+        ),
         (r" , [\w ]{1,30} i mean(?: , not \w+)?(?: ,)?(?= |$)", ""),
         (r"^(?:counting|including|if (?:you|we) (?:count|include)|with) [\w ]+? , (?=how many )", ""),
         (
@@ -197,10 +202,12 @@ def plain_words(text: str) -> tuple[str, ...]:
     British spellings of a few words become American ones ("colour", "grey", "metre", "centre", "furthest").
 
     Raises:
-        UserError: it is longer than `MAX_CHARS`.
+        UserError: it has more than `MAX_CHARS` characters or `MAX_WORDS` words.
     """
     if len(text) > MAX_CHARS:
         raise UserError(f"the question has {len(text)} characters, at most {MAX_CHARS} are read; ask it in parts")
+    if len(text.split()) > MAX_WORDS:
+        raise UserError(f"the question has {len(text.split())} words, at most {MAX_WORDS} are read; ask it in parts")
     text = _THOUSANDS.sub("", text)
     said = " ".join(_plain(w.text) for w in split(clean(_DASH.sub(",", text))))
     said = _HAVE_IS.sub(r"\1 is", said).replace(" is been ", " has been ").replace(" is got ", " has got ")
