@@ -143,7 +143,7 @@ class Terms:
         groups: ids of the groups that the question names; the first pictures show them. Empty: the whole scene.
         first: pictures of the first request.
         marks: whether numbers are drawn on things.
-        sure: confidence from which an answer stands without another look.
+        sure: confidence from which an answer stands without another look, unless something speaks against it.
         samples: most conversations, each with other pictures where there are any; their answers are voted on.
         ledger: budget and spending of the session; a budget of its own where there is none.
         progress: called while the model is waited for.
@@ -166,12 +166,17 @@ class Sample:
     Attributes:
         reply: the last one.
         shown: the pictures that it was given.
-        doubt: what was still wrong with it after a repair.
+        against: sentences that say what speaks against its answer: measured facts, or references to nothing.
     """
 
     reply: SeenReply
     shown: tuple[Shown, ...]
-    doubt: str = ""
+    against: tuple[str, ...] = ()
+
+    @property
+    def confidence(self) -> float:
+        """The model's estimate, halved if something speaks against the answer."""
+        return self.reply.confidence / 2 if self.against else self.reply.confidence
 
 
 def ask_about(text: str, facts: Facts, looker: Looker, backend: ModelBackend, terms: Terms | None = None) -> Answer:
@@ -209,7 +214,7 @@ def ask_about(text: str, facts: Facts, looker: Looker, backend: ModelBackend, te
         if sample is None:
             break
         samples.append(sample)
-        if sample.reply.confidence >= terms.sure:
+        if sample.confidence >= terms.sure:
             break
     if loop.last is not None and loop.last not in samples:
         samples.append(loop.last)
@@ -231,6 +236,8 @@ class _Loop:
         self._question, self._facts, self._looker, self._backend = question, facts, looker, backend
         self._terms, self._purse = terms, purse
         self._rendered: dict[str, Shown] = {}
+        self._met: dict[str, Shown] = {}  # by request
+        self._begun: set[tuple[str, ...]] = set()  # names of the pictures that conversations began with
         self.last: Sample | None = None
 
     def sample(self, turn: int) -> Sample | None:
@@ -251,8 +258,8 @@ class _Loop:
                 return sample
             if not wanted:
                 return sample
-            asked.update(wanted)
             more, missing = self._look(wanted)
+            asked.update(one for one in wanted if one != "overview" or one in missing)  # there may be another overview
             shown = _fitting((*shown, *(one for one in more if one not in shown)), self._most)
         return sample
 
@@ -262,30 +269,48 @@ class _Loop:
         return fitting(self._backend, prompts.load("vision_ask").text, self._question, _FEW_FACTS)
 
     def _first(self, turn: int) -> tuple[Shown, ...]:
-        """The pictures that a conversation begins with; later ones begin with others, or with the same turned round."""
+        """The pictures that a conversation begins with; later ones begin with a new one, or with the same in another
+        order; none if that has been tried."""
         if turn == 0:
             count = self._purse.take(min(self._terms.first, self._most))
             made = self._looker.overview(self._terms.groups, count, self._terms.marks) if count else ()
-            self._rendered.update({one.name: one for one in made[:count]})
-            return made[:count]
-        seen = tuple(self._rendered.values())
-        fresh, _ = self._look(["overview"])
-        fresh = tuple(one for one in fresh if one not in seen)
-        kept = tuple(reversed(seen))[: max(self._most - len(fresh), 0)]
-        return (*fresh, *kept)
+            chosen = made[:count]
+        else:
+            seen = tuple(self._rendered.values())
+            fresh = self._next_overview()
+            kept = tuple(reversed(seen)) if turn == 1 else (*seen[1:], *seen[:1])
+            chosen = (*fresh, *kept[: max(self._most - len(fresh), 0)])
+        self._rendered.update({one.name: one for one in chosen})
+        names = tuple(one.name for one in chosen)
+        if names in self._begun:
+            return ()
+        self._begun.add(names)
+        return chosen
+
+    def _next_overview(self) -> tuple[Shown, ...]:
+        """Another picture of the whole; none if there is none, or the budget is spent."""
+        made = self._looker.look("overview") if self._purse.views > 0 else None
+        if made is None or made.name in self._rendered:
+            return ()
+        self._purse.take(1)
+        return (made,)
 
     def _look(self, wanted: Sequence[str]) -> tuple[tuple[Shown, ...], tuple[str, ...]]:
         """The pictures that were asked for, and the requests that cannot be met or are over the budget."""
         shown: list[Shown] = []
         missing: list[str] = []
         for request in wanted:
-            made = self._looker.look(request) if self._purse.views > 0 else None
+            made = self._met.get(request)
+            if made is None and self._purse.views > 0:
+                made = self._looker.look(request)
             if made is None:
                 missing.append(request)
                 continue
             if made.name not in self._rendered:
                 self._purse.take(1)
                 self._rendered[made.name] = made
+            if request != "overview":  # which is another one each time
+                self._met[request] = made
             shown.append(made)
         return tuple(shown), tuple(missing)
 
@@ -303,7 +328,11 @@ class _Loop:
             self._purse,
             stage,
         )
-        return Sample(said.reply, shown, said.doubt)
+        value = _cleaned(said.reply.answer)
+        against = self._facts.contradictions(self._question, value, said.reply.answer_type)
+        if said.doubt and value is not None:
+            against.append("The model refers to pictures or numbers that it was not shown.")
+        return Sample(said.reply, shown, tuple(against))
 
     def _messages(self, shown: tuple[Shown, ...], missing: Sequence[str], marks: dict[int, int]) -> list[Message]:
         rules = prompts.load("vision_ask").text
@@ -367,26 +396,23 @@ class _Loop:
                 camps.append([sample])
         camps.sort(key=lambda camp: -_weight(camp))
         if not camps or _weight(silent) > _weight(camps[0]):
-            return self._silent(max(silent, key=lambda sample: sample.reply.confidence), stopped)
+            return self._silent(max(silent, key=lambda sample: sample.confidence), stopped)
         total = _weight(answered) + _weight(silent)
-        best = max(camps[0], key=lambda sample: sample.reply.confidence)
+        best = max(camps[0], key=lambda sample: sample.confidence)
         share = _weight(camps[0]) / total if total > 0 else 0.0
-        return self._told(best, best.reply.confidence * share, len(camps[0]), len(samples))
+        return self._told(best, best.confidence * share, len(camps[0]), len(samples))
 
     def _told(self, sample: Sample, confidence: float, votes: int, of: int) -> Answer:
         reply, marks = sample.reply, shown_marks(sample.shown)
         value = _cleaned(reply.answer)
-        against = self._facts.contradictions(self._question, value, reply.answer_type)
-        if sample.doubt:
-            against.append("The model refers to pictures or numbers that it was not shown.")
         voted = f" ({votes} of {of} looks agree.)" if of > 1 else ""
         ids = tuple(dict.fromkeys(marks[mark] for mark in reply.things if mark in marks))
         names = [sample.shown[n - 1].name for n in reply.evidence_views if 1 <= n <= len(sample.shown)]
         return Answer(
             answer=value,
             answer_type=reply.answer_type,
-            text=" ".join([_sentence(value, reply) + voted, *against]),
-            confidence=round(confidence / (2 if against else 1), 4),
+            text=" ".join([_sentence(value, reply) + voted, *sample.against]),
+            confidence=round(confidence, 4),
             source="vlm",
             evidence=Evidence(ids=ids, views=tuple(dict.fromkeys(names))),
             unit="m" if reply.answer_type == "metres" else "",
@@ -435,7 +461,7 @@ def _fitting(shown: tuple[Shown, ...], most: int) -> tuple[Shown, ...]:
 
 
 def _weight(samples: Sequence[Sample]) -> float:
-    return sum(sample.reply.confidence for sample in samples)
+    return sum(sample.confidence for sample in samples)
 
 
 def _cleaned(answer: float | str | tuple[str, ...] | None) -> float | str | tuple[str, ...] | None:

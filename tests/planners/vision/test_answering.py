@@ -75,6 +75,13 @@ def test_what_it_asks_for_is_rendered_and_shown_with_the_rest() -> None:
     assert "Picture 5" in model.asked[1][1].text and "plan" in model.asked[1][1].text
 
 
+def test_another_overview_may_be_asked_for_again() -> None:
+    looker = ScriptedLooker()
+    more = unsure(need_more=["overview"])
+    answer, model = asked(more, more, said("yes", "yesno"), looker=looker)
+    assert answer.answer == "yes" and [shown(model, turn) for turn in range(3)] == [3, 4, 5]
+
+
 def test_an_answer_that_is_sure_needs_no_more_whatever_it_asks_for() -> None:
     looker = ScriptedLooker()
     asked(said("yes", "yesno", need_more=["plan"]), looker=looker)
@@ -146,6 +153,20 @@ def test_lengths_that_are_close_are_one_vote() -> None:
     assert answer.answer in (2.0, 2.1) and answer.unit == "m"
 
 
+def test_the_same_pictures_in_the_same_order_are_not_asked_about_twice() -> None:
+    for views, requests in ((1, 1), (2, 2), (3, 3)):
+        answer, model = asked(said("yes", "yesno", 0.5), looker=ScriptedLooker(views=views), samples=9)
+        assert len(model.asked) == requests and answer.answer == "yes"
+        assert len({talk[1].pictures for talk in model.asked}) == requests
+
+
+def test_a_picture_that_was_rendered_is_shown_again_without_a_budget() -> None:
+    looker = ScriptedLooker(views=3)
+    more, no = unsure(need_more=["plan"]), said("no", "yesno", 0.4)
+    _, model = asked(more, no, more, said("no", "yesno"), looker=looker, ledger=Ledger(Budget(views=4)))
+    assert looker.made.count("plan") == 1 and shown(model) >= 4
+
+
 def test_a_sure_sample_ends_the_vote() -> None:
     _, model = asked(said("yes", "yesno", 0.4), said("yes", "yesno", SURE), said("no", "yesno", 0.4))
     assert len(model.asked) == 2
@@ -199,6 +220,13 @@ def test_a_count_that_geometry_contradicts_is_told(question: str, count: int, to
     answer, _ = asked(said(count, "number"), text=question, facts=Facts(graph))
     assert answer.answer == count and (told in answer.text if told else "measured" not in answer.text)
     assert answer.confidence == (0.45 if told else 0.9)
+
+
+def test_a_contradiction_is_looked_at_again_before_it_is_told() -> None:
+    facts = Facts(room("chair", "chair", "chair", "chair"))
+    script = [said(3, "number"), said(4, "number")]
+    answer, model = asked(*script, text="how many chairs are there?", facts=facts)
+    assert answer.answer == 4 and "measured" not in answer.text and len(model.asked) == 2
 
 
 def test_geometrys_own_answer_is_shown_and_compared() -> None:
