@@ -8,7 +8,8 @@ from dataclasses import replace
 import pytest
 
 from scenewright.benchmarks._ask import generate, truth, written
-from scenewright.benchmarks._ask.generate import Room, pool, questions
+from scenewright.benchmarks._ask.generate import pool, questions
+from scenewright.benchmarks._ask.naming import Room
 from scenewright.benchmarks._ask.question import Question, judge, overlap, plain, relative_accuracy
 from scenewright.benchmarks._ask.rooms import divided, graphs, table_of_graph
 from scenewright.benchmarks._ask.truth import Table, Thing

@@ -1,0 +1,1 @@
+"""Makers of generated questions, by what they ask about."""
