@@ -6,7 +6,23 @@ from typing import Annotated
 
 import typer
 
-from ..options import Budget, Debug, Encoder, Json, Log, Picture, Planner, Scale, SceneFile, Seed, Size, Up, View, Vlm
+from ..options import (
+    Budget,
+    Debug,
+    Encoder,
+    Json,
+    Judge,
+    Log,
+    Picture,
+    Planner,
+    Scale,
+    SceneFile,
+    Seed,
+    Size,
+    Up,
+    View,
+    Vlm,
+)
 
 
 def command(
@@ -19,6 +35,7 @@ def command(
     vlm: Vlm = "auto",
     budget: Budget = None,
     picture: Picture = False,
+    judge: Judge = None,
     encoder: Encoder = "auto",
     up: Up = None,
     metres_per_unit: Scale = None,
@@ -50,7 +67,7 @@ def command(
     session, embedded = open_session(
         SessionOptions(
             scene, planner, encoder, view, size, log, seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
-            picture=picture, vlm=vlm,
+            picture=picture, judge=judge, vlm=vlm,
         ),
         progress,
     )  # fmt: skip
