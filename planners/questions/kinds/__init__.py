@@ -4,6 +4,7 @@ from . import (
     color,
     comparison,
     counting,
+    describe,
     distance,
     existence,
     facing,
@@ -26,6 +27,7 @@ from . import (
 
 KINDS = (
     *room.KINDS,
+    *describe.KINDS[:4],
     *free_floor.KINDS,
     *hazards.KINDS,
     *routes.KINDS,
@@ -47,4 +49,5 @@ KINDS = (
     comparison.KIND,
     size.KIND,
     listing.KIND,
+    *describe.KINDS[4:],
 )

@@ -86,7 +86,7 @@ def _where(asked: Asked, survey: Survey) -> Answer | None:
         things = survey.all_of(query) or things
     if len(things) == 1:
         return _located(things[0], survey)
-    told = [(t, *_place(t, survey)) for t in things]
+    told = [(t, *place_of(t, survey)) for t in things]
     text = " ".join(f"{_cap(survey.named(t))} is {place}{', ' + rest if rest else ''}." for t, place, rest in told[:8])
     same = len({place for _, place, _ in told}) == 1
     answer = told[0][1] if same else "; ".join(f"{survey.named(t)} {place}" for t, place, _ in told[:8])
@@ -95,7 +95,7 @@ def _where(asked: Asked, survey: Survey) -> Answer | None:
 
 
 def _located(thing: Thing, survey: Survey) -> Answer:
-    place, rest = _place(thing, survey)
+    place, rest = place_of(thing, survey)
     on = supporter(thing, survey) if thing.node is not None else "floor"
     ids = (thing.id,) if isinstance(on, str) else (thing.id, on.id)
     text = f"{_cap(survey.named(thing))} is {place}{', ' + rest if rest else ''}."
@@ -104,7 +104,7 @@ def _located(thing: Thing, survey: Survey) -> Answer:
     )
 
 
-def _place(thing: Thing, survey: Survey) -> tuple[str, str]:
+def place_of(thing: Thing, survey: Survey) -> tuple[str, str]:
     """Where a thing is in a few words, and more of it."""
     assert thing.node is not None
     on = supporter(thing, survey)
@@ -216,7 +216,7 @@ def _in_zone(asked: Asked, survey: Survey) -> Answer | None:
         if "z2" in asked.slots:
             also, other = is_in(thing, str(asked.slots["z2"]), survey.room)
             yes, sure = yes and also, min(sure, other)
-        place, rest = _place(thing, survey)
+        place, rest = place_of(thing, survey)
         text = f"{'Yes' if yes else 'No'}, {survey.named(thing)} is {place}{', ' + rest if rest else ''}."
         return Answer(answer="yes" if yes else "no", answer_type="yesno", text=text, frame="viewer", confidence=sure,
                       evidence=Evidence(ids=(thing.id,)))  # fmt: skip

@@ -25,7 +25,19 @@ from ....gaussians.world import relations
 from ....gaussians.world.lengths import IN_METRES, METRES, UNITS, in_metres
 from ....gaussians.world.words import singular
 from ...grammar.vocabulary import quantities
-from . import activity, ends, item, noun_phrase, relation_phrases, room_phrases, side_phrases, spans, spots, where_to
+from . import (
+    activity,
+    ends,
+    item,
+    noun_phrase,
+    relation_phrases,
+    room_names,
+    room_phrases,
+    side_phrases,
+    spans,
+    spots,
+    where_to,
+)
 from .colors import color
 from .measures import Unit, amount, dimension, more, superlative
 from .phrase_templates import HoleReader, Words
@@ -139,6 +151,7 @@ READERS: Mapping[str, HoleReader] = {
     "extent": spans.dimension,
     "lesser_extent": spans.lesser,
     "room": spans.room,
+    "room_name": room_names.room_name,
     "end": ends.end,
     "walker": ends.walker,
     "item": item.read_item,

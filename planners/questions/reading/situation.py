@@ -297,9 +297,12 @@ _SUFFIXES = frozenset(
     ]
 )
 _ANY = re.compile(
-    r"\b(?:if|suppose|imagine|assume|assuming|supposing|say|sat|sit|sits|sitting|seated|stood|stand|stands|standing|lie|lay|lying|lies|facing|face|faces|looking|look|"
-    r"working|enter|entering|entered|coming|come|walk|walking|walked|step|steps|stepping|perspective|view|viewpoint|frame|"
-    r"seen|viewed|back|take|took|am|were|using|opening|watching|reading|playing|perched|leaning|pov|orientation|lounging|"
+    r"\b(?:if|suppose|imagine|assume|assuming|supposing|say|sat|sit|sits|sitting|seated|stood|stand|stands|"
+    r"standing|lie|lay|lying|lies|facing|face|faces|looking|look|"
+    r"working|enter|entering|entered|coming|come|walk|walking|walked|step|steps|stepping|perspective|view|"
+    r"viewpoint|frame|"
+    r"seen|viewed|back|take|took|am|were|using|opening|watching|reading|playing|perched|leaning|pov|"
+    r"orientation|lounging|"
     r"resting|sleeping|dining|typing|eating|writing|on entering|relaxing|curled)\b"
 )
 _VIEWER = re.compile(
