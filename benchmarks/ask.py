@@ -12,7 +12,7 @@ from statistics import fmean, median
 
 from ..gaussians.language import encoders
 from . import _ask, _ask_judge
-from ._ask import generated, routing, speed, stability, views, vision_loop, written
+from ._ask import generated, routing, sight, speed, stability, views, vision_loop, written
 from ._ask.question import Judged
 from ._ask.rooms import Known
 from ._select.cases import Part
@@ -68,6 +68,7 @@ def run(quick: bool = False) -> Result:
         routing.measure(quick),
         views.measure(plan.watched, encoder, plan.detail, quick),
         vision_loop.measure(quick),
+        sight.measure(quick),
         Part(tuple(_ask_judge.measure(quick))),
         Part(tuple(speed.measure(known[0], encoder, plan.detail, quick))),
     ]
