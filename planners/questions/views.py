@@ -159,7 +159,11 @@ def _is_at(view: View, thing: Thing) -> bool:
 
 def _views_at(situation: Situation, place: Thing | None, target: Thing | None, survey: Survey) -> Iterator[View]:
     """The views at one place with one target of the gaze."""
-    for eye, forward in _stands(situation, place, target, survey):
+    stands = list(_stands(situation, place, target, survey))
+    free = place is not None and situation.pose == "at" and not _at_wall(place, survey)
+    if free and place is not None and target is not None and target.row != place.row and len(stands) > 1:
+        stands = [(middle(place), None)]  # its middle stands for the places around it
+    for eye, forward in stands:
         way = forward
         if target is not None:
             toward = View(eye, np.array([0.0, 1.0]), "").target(target) - eye

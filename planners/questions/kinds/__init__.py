@@ -26,6 +26,7 @@ from . import (
 )
 
 KINDS = (
+    placed.BETWEEN,
     *room.KINDS,
     *describe.KINDS[:4],
     *free_floor.KINDS,

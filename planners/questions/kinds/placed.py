@@ -30,7 +30,8 @@ _IS = (
     "can you see|do we have|have we got|has been|have been|would i find|can i find|do you find|will i find|is "
     "there|are there|"
     "is it that is|is that|might be|could be|is being|you see|did i leave|have i got|do i have|belongs)] "
-    "[(put|placed|left|set|kept|stored|located|there|mounted|fixed|hung)]"
+    "[(put|placed|left|set|kept|stored|located|there|mounted|fixed|hung|lying or standing|standing or lying|"
+    "sitting or lying)]"
 )
 _LISTS = "(list|name|describe|show|show me|give me|tell me|count up|identify)"
 _ALL = (
@@ -90,17 +91,20 @@ _IS_REL = """
     (can|could) {x} be found {r:relation} {a}
     (did|have) (i|you|we|someone|they) (put|place|leave|hang|set|left|placed|hung) {x} {r:relation} {a}
     (have|has) (we|i|you|someone|they|anyone|somebody) (got|put|left|placed) {x} {r:relation} {a}
-    BE {x} [standing|placed|located|hanging|lying|sitting|directly|somewhere] [in] between {a} and {b}
-    BE {x} [standing|placed|located] [in] between {both}
-    (do|does) {x} (stand|sit|lie|hang) [in] between {a} and {b}
-    (is|are) there {x} [standing|lying|sitting|placed] [in] between {a} and {b}
-    (is|are) there {x} [in] between {both}
     (is|are) there {x} (separating|dividing) {a} (and|from) {b}
     BE {x} part of {a}
     BE {x} and {a} [standing|placed|located|right] {m:mutual}
     (do|does) {x} and {a} (stand|sit|lie|hang) [right] {m:mutual}
     BE {both} [standing|placed|located|right] {m:mutual}
     (do|does) {both} (stand|sit|lie|hang) [right] {m:mutual}
+"""
+_BETWEEN = """
+    BE {x} [standing|placed|located|hanging|lying|sitting|directly|somewhere|anywhere] [in] between {a} and {b}
+    BE {x} [standing|placed|located|somewhere] [in] between {both}
+    (do|does) {x} (stand|sit|lie|hang) [somewhere] [in] between {a} and {b}
+    (do|does) {x} (stand|sit|lie|hang) [in] between {both}
+    (is|are) there {x} [standing|lying|sitting|placed] [in] between {a} and {b}
+    (is|are) there {x} [in] between {both}
 """
 _SUPPORT = """
     what BE {x} (standing|sitting|lying|resting|placed|put|set|mounted|hanging|hung|leaning|located|stood|\
@@ -548,4 +552,5 @@ KINDS = (
     Kind("has", templates(_HAS), _has),
 )
 
+BETWEEN = Kind("between", templates(_BETWEEN), _is_related)
 HUNG = Kind("hung", templates(_HUNG), _hung)

@@ -25,6 +25,15 @@ from ..views import F64, View, is_inside, of_object, off, side_of, view_of, view
 
 _HAND = "[hand] [hand side|side|side of the bed|end|arm]"
 _OWN = "(to|on|at|by|next to|beside) [the]"
+_STANDS = "(do|does|would|will|can|did) {x} [also] (stand|sit|lie|hang|be|appear|come|rest|go|have its place)"
+
+
+def _each_verb(notation: str) -> str:
+    """The lines with "BE {x}", and the same with a verb of place: "does the lamp stand left of the sofa"."""
+    lines = [line for line in notation.splitlines() if line.strip()]
+    return "\n".join([*lines, *(line.replace("BE {x}", _STANDS) for line in lines if "BE {x}" in line)])
+
+
 _IS_SIDE = """
     BE {x} [standing|located|placed|off|over|somewhere|directly|be] {d:side}
     BE {x} (found|seen) {d:side}
@@ -37,10 +46,14 @@ _IS_SIDE = """
     (would|will) there be {x} {d:side}
     have i got {x} {d:side}
 """
-_EITHER = """
+_EITHER = _each_verb("""
     BE {x} [standing|located|off|over|more|rather|be] {d:side} or {e:either}
     (will|would|should) {x} be [off|over] {d:side} or {e:either}
     (do|does) {x} (stand|sit|lie|hang) {d:side} or {e:either}
+    BE {x} [standing|located|off|over|more|rather|be] [(to the|on the|to|on|at the|at|in)] (left|right) or \
+        [(to the|on the|to|on|at the|the|at|in)] (left|right) of (me|us|the viewer|you)
+    BE {x} (in front of|behind|ahead of) or (in front of|behind|ahead of) (me|us|you)
+    BE {x} (in front of|ahead of|behind) (me|us|you) or (in front of|behind|ahead of) (me|us|you)
     (which|what) side [of me|of mine] BE {x} [on] [left or right] [of me]
     on (which|what) side [of me|of mine] BE {x} [left or right]
     (which|what) side would {x} be [on]
@@ -50,7 +63,7 @@ _EITHER = """
     (which|what) hand BE (closer|nearer|closest|nearest) [to] {x} [left or right]
     on which hand BE {x}
     which [of my] (hand|arm|shoulder|side) BE (closer|nearer|closest|nearest) [to] {x} [left or right]
-"""
+""")
 _WHERE = """
     (which|what) (direction|way) BE {x} [from me|from here|in|located]
     in (which|what) direction BE {x} [from me|located|from here]
@@ -100,7 +113,6 @@ _FACED = """
 """
 # Relations to a thing.
 _OF = "(to|on|at|off to|over to|over on|in|from)"
-_STANDS = "(do|does|would|will|can|did) {x} [also] (stand|sit|lie|hang|be|appear|come|rest|go|have its place)"
 _POV = (
     "[(from|in|by|for) (its|their|the thing 's) own (point of view|perspective|viewpoint|frame|frame of reference|"
     "orientation|view|side)|(going|judging|judged|judge) by the (way|direction) {f} (faces|face|is facing|looks|is "
@@ -109,12 +121,6 @@ _POV = (
     "with respect to its own front|in its own frame|from its [own] (point of view|perspective)|from its front|"
     "the way it faces|as it faces|given the way (it|{f}) faces]"
 )
-
-
-def _each_verb(notation: str) -> str:
-    """The lines with "BE {x}", and the same with a verb of place: "does the lamp stand left of the sofa"."""
-    lines = [line for line in notation.splitlines() if line.strip()]
-    return "\n".join([*lines, *(line.replace("BE {x}", _STANDS) for line in lines if "BE {x}" in line)])
 
 
 _RELATED = _each_verb(f"""

@@ -263,6 +263,11 @@ def _with_verbs() -> re.Pattern[str]:
     return re.compile(rf"\b(?:{'|'.join(map(re.escape, forms))})\b")
 
 
+def without_verb_names(said: str) -> str:
+    """A phrase with "it" in place of names of kinds that hold a verb, as "coat stand"."""
+    return _with_verbs().sub("it", said)
+
+
 @cache
 def _is_color(word: str) -> bool:
     return color((word,)) is not None

@@ -38,7 +38,7 @@ _WAY = (
     r"toward|by|in|from) )?"
 )
 _MINE = re.compile(
-    rf"{_WAY}(?:my|our|your|the viewer 's|his|her|their) {_NEAR}(?P<side>left|right)(?: hand)?(?: side| foot| "
+    rf"{_WAY}(?:my|our|your|the viewer 's|his|her|their|its) {_NEAR}(?P<side>left|right)(?: hand)?(?: side| foot| "
     rf"shoulder)?"
 )
 _OF_ME = re.compile(
@@ -88,7 +88,8 @@ def either(words: Words) -> Side | None:
     """The second of two directions, which may be a bare word: "on my left or right"."""
     said = " ".join(words)
     bare = {"left": "left", "right": "right", "the left": "left", "the right": "right", "behind": "behind",
-            "in front": "in front", "front": "in front", "back": "behind"}  # fmt: skip
+            "its left": "left", "its right": "right", "in front": "in front", "front": "in front",
+            "back": "behind"}  # fmt: skip
     return Side(bare[said], SIDES[bare[said]]) if said in bare else side(words)
 
 

@@ -13,6 +13,7 @@ from functools import cache
 from typing import Any, Literal
 
 from ....gaussians.language.query.query import Query
+from ...grammar.tagging.words import bag
 from . import noun_phrase
 from .phrase_templates import HoleReader, Template, Words, templates
 from .side_phrases import Side, side
@@ -177,124 +178,17 @@ _WAYS = {
     ),
     "out": re.compile(r"(?:straight )?(?:out|outside|outward|outwards|out of it)"),
 }
-_STOPS = frozenset(
-    [
-        "is",
-        "are",
-        "was",
-        "were",
-        "be",
-        "am",
-        "i",
-        "me",
-        "my",
-        "facing",
-        "looking",
-        "face",
-        "faces",
-        "look",
-        "while",
-        "if",
-        "when",
-        "which",
-        "what",
-        "where",
-        "who",
-        "how",
-        "would",
-        "will",
-        "could",
-        "can",
-        "do",
-        "does",
-        "did",
-        "should",
-        "straight",
-        "sit",
-        "sitting",
-        "standing",
-        "stand",
-        "seated",
-        "lying",
-        "working",
-        "and",
-    ]
-) - {"and"}
-_STARTS = frozenset(
-    [
-        "is",
-        "are",
-        "was",
-        "were",
-        "would",
-        "will",
-        "could",
-        "can",
-        "do",
-        "does",
-        "did",
-        "should",
-        "what",
-        "whats",
-        "which",
-        "where",
-        "who",
-        "how",
-        "on",
-        "in",
-        "to",
-        "at",
-        "whether",
-        "am",
-        "must",
-        "may",
-        "has",
-        "have",
-        "name",
-        "list",
-        "tell",
-        "count",
-        "roughly",
-        "show",
-        "might",
-        "behind",
-        "whose",
-    ]
+_STOPS = bag(
+    "is are was were be am i me my facing looking face faces look while if when which what where who how would "
+    "will could can do does did should straight sit sitting standing stand seated lying working"
 )
-_SUFFIXES = frozenset(
-    [
-        "if",
-        "when",
-        "whenever",
-        "while",
-        "from",
-        "as",
-        "seen",
-        "viewed",
-        "looking",
-        "sitting",
-        "standing",
-        "seated",
-        "facing",
-        "lying",
-        "with",
-        "given",
-        "assuming",
-        "once",
-        "on",
-        "upon",
-        "after",
-        "supposing",
-        "suppose",
-        "imagine",
-        "stood",
-        "sat",
-        "entering",
-        "coming",
-        "walking",
-        "in",
-        "for",
-    ]
+_STARTS = bag(
+    "is are was were would will could can do does did should what whats which where who how on in to at "
+    "whether am must may has have name list tell count roughly show might behind whose"
+)
+_SUFFIXES = bag(
+    "if when whenever while from as seen viewed looking sitting standing seated facing lying with given "
+    "assuming once on upon after supposing suppose imagine stood sat entering coming walking in for"
 )
 _ANY = re.compile(
     r"\b(?:if|suppose|imagine|assume|assuming|supposing|say|sat|sit|sits|sitting|seated|stood|stand|stands|"
@@ -317,9 +211,7 @@ _VIEWER = re.compile(
     r"room)(?: from the front)?$|^(?:to|for) the viewer$|^in (?:the|this) (?:picture|image|view|photo)$|"
     r"^as (?:i|you|we) face (?:it|the room)$|^from the viewer$"
 )
-_SIDE_WORDS = frozenset(
-    ["left", "right", "behind", "front", "ahead", "clock", "oclock", "o'clock", "nearer", "closer", "side"]
-)
+_SIDE_WORDS = bag("left right behind front ahead clock oclock o'clock nearer closer side")
 
 
 def read_situation(words: Words) -> tuple[Situation | None, Words]:
@@ -441,7 +333,7 @@ def _bare(words: Words) -> Query | None:
     """A noun phrase without a person, a gaze or a clause in it."""
     if (
         len(words) > 12
-        or _STOPS & set(words)
+        or _STOPS & set(noun_phrase.without_verb_names(" ".join(words)).split())
         or words[-1] in ("on", "in", "at", "to", "of", "with", "and", "left", "the")
     ):
         return None
