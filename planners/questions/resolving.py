@@ -50,14 +50,14 @@ def all_of(survey: Survey, query: Query) -> tuple[tuple[Thing, ...], Found]:
     Raises:
         NotResolved: a phrase within it is ambiguous.
     """
-    things: dict[object, Thing] = {}
+    things: dict[int, Thing] = {}
     first: Found | None = None
     for part in (query.model_copy(update={"also": ()}), *query.also):
         single = part.pick in ("one", "any", "all")
         found = survey.find(part.model_copy(update={"pick": "all", "count": None}) if single else part)
         if found.verdict == "ambiguous" or (found.about is not None and found.about.last):
             raise NotResolved(part, found)
-        things |= {t.id: t for t in found.things} if found.verdict == "found" else {}
+        things |= {t.row: t for t in found.things} if found.verdict == "found" else {}
         first = first if first is not None and first.verdict == "absent" else found
     assert first is not None
     return tuple(things.values()), first

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from ....gaussians.color import plain_color
 from ....gaussians.language.query.query import Query
@@ -49,7 +49,7 @@ _PHRASES = f"""
     (describe|name|give) [me] [the] {_COLOR} of {{x}}
     (what|which) is the (most common|main|dominant|predominant|prevailing|commonest) color [of {{of}}|here|in the \
         room|among {{of}}]
-    {_WHAT} (occurs|appears) most [often] [here|in the room]
+    {_WHAT} (occurs|appears|is used|dominates|prevails|is) [the] most [often] [here|in the room]
     {_WHAT} is the most (common|frequent) [here|in the room]
     (what|which) {_COLOR} (are there|can you see|do you see|occur|appear|are used|are present|do we have) [here|in \
         the room]
@@ -60,6 +60,11 @@ _PHRASES = f"""
     (what|which) of {{which:noun}} (is|are) {{c:color}}
     (does|do|is|are) (any|one|some|either|anything|something) [of] {{any}} (have|be) [the color] {{c:color}}
     (is|are) (any|one|some|either) [of] {{any}} {{c:color}}
+    (is|are) (any|one|some|either) [of] {{other_than}} not {{c:color}}
+    (is|are) (most|the majority|more than half|at least half) of {{most}} {{c:color}}
+    (is|are) most {{most}} {{c:color}}
+    (is|are) none of {{none_of}} {{c:color}}
+    (is|are) {{none_of}} not {{c:color}}
     (is|are) (anything|something) {{c:color}} [here|in here|in the room|anywhere]
     BE {{x}} [all|both|each|mostly|mainly|painted|colored] (of the color|of color|of|in) {{c:color}}
     BE {{x}} [all|both|each|mainly|mostly|painted|colored|a|an|the color|rather|a bit|somewhat|a kind of|a shade of] \
@@ -70,6 +75,14 @@ _PHRASES = f"""
 """
 
 
+# By hole: whether a share of things of a colour is what is asked for.
+_SHARES: Mapping[str, Callable[[int, int], bool]] = {
+    "other_than": lambda fit, all: fit < all,
+    "most": lambda fit, all: 2 * fit > all,
+    "none_of": lambda fit, all: fit == 0,
+}
+
+
 def answer(asked: Asked, survey: Survey) -> Answer | Undecided | None:
     """A colour, a yes or no about one, or the things of a colour."""
     slots = asked.slots
@@ -77,7 +90,7 @@ def answer(asked: Asked, survey: Survey) -> Answer | Undecided | None:
         return _alike([meant(survey, slots["a"]), meant(survey, slots["b"])], "different" in asked.words, survey)
     if {"same", "match", "different", "differently"} & set(asked.words) and "x" in slots and "c" not in slots:
         return _alike([_each(survey, slots["x"])], bool({"different", "differently"} & set(asked.words)), survey)
-    if "which" in slots or ("c" in slots and not {"x", "any"} & slots.keys()):
+    if "which" in slots or ("c" in slots and not {"x", "any", *_SHARES} & slots.keys()):
         return _of_color(asked, survey)
     if "other" in slots:
         choices = [slots[n] for n in ("c", "third", "other") if n in slots]
@@ -121,6 +134,12 @@ def _colors(phrase: Meant, survey: Survey) -> Answer | Undecided:
 def _has(asked: Asked, survey: Survey) -> Answer | Undecided | None:
     """Whether things have a colour: each of several, or any where the question says so."""
     color = asked.slots["c"]
+    for name, fits in _SHARES.items():
+        if name in asked.slots:
+            things, _ = all_of(survey, asked.slots[name])
+            fit = [t for t in things if survey.has_color(t, color)]
+            told = f"{len(fit)} of {len(things)} {'is' if len(fit) == 1 else 'are'} {color}."
+            return yes_no(bool(things) and fits(len(fit), len(things)), told, things, _sure(survey))
     if "any" in asked.slots:
         things, _ = all_of(survey, asked.slots["any"])
         fit = [t for t in things if survey.has_color(t, color)]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from ....gaussians.language.query.query import Query
+from ....gaussians.language.query.query import Query, Relation
 from ....gaussians.world import kinds
 from ....gaussians.world.words import plural
 from ..answer import Answer
 from ..kind import Asked, Kind
 from ..reading import families
 from ..reading.measures import Amount
+from ..reading.noun_phrase import is_anything
 from ..reading.noun_phrase import thing as noun_phrase
 from ..reading.phrase_templates import templates
 from ..resolving import all_of
@@ -46,6 +47,7 @@ _PHRASES = f"""
     (is|are) there (fewer|less) {{b}} than {{a}}
     (does|do|can) {_ROOM} {_HOLD} (fewer|less) {{b}} than {{a}}
     (is|are) there as many {{same_a}} as [there are] {{same_b}}
+    (does|do|can) {_ROOM} {_HOLD} as many {{same_a}} as {{same_b}}
     (is|are) there (the same|an equal) number of {{same_a}} (and|as) [there are] {{same_b}}
     (is|are) the number of {{same_a}} (the same as|equal to) the number of {{same_b}}
     (what|which) (is|are) there more of [here|in here|in the room] {{which_a}} or {{which_b}}
@@ -78,6 +80,8 @@ _PHRASES = f"""
         here|here|that you can see|present|visible]
     count [me|up|all|for me] {{x}} [in the room|in here|here]
     count how many {{x}} (there are|are there) [in the room|in here|here]
+    (how many|what number of) {{noun:noun}} (does|do) {{holder}} (have|hold|carry|contain|seat) [around it|at it|next \
+        to it|by it]
     how many times does {{x}} (appear|occur) [here|in the room]
     {{x}} (how many|count|number) [are there|of them]
 """
@@ -98,6 +102,8 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
         return number(len(labels), f"{len(labels)}: {listed(labels)}.", things, 0.85)
     if "more" in slots:
         return None
+    if "holder" in slots:
+        return _held(asked, survey)
     query = _described(asked)
     if query is None or query.last:
         return None
@@ -111,7 +117,7 @@ def _described(asked: Asked) -> Query | None:
     slots = asked.slots
     if "noun" in slots:
         if "holder" in slots:
-            return None
+            return None  # counted apart, by what it holds
         return noun_phrase((*slots["noun"], *slots["place"]))
     query: Query = slots["of"] if "of" in slots else slots["x"]
     if "c" in slots:
@@ -123,6 +129,8 @@ def _described(asked: Asked) -> Query | None:
 
 def _count(query: Query, survey: Survey) -> Answer:
     things, found = all_of(survey, query)
+    if query.text == "corner" and not query.relations:
+        return number(4, "The room has 4 corners.", (), 0.8)
     if not things:
         return number(0, absent_text(survey, found.about or query, found), found.near, GRAPH_SURE - 0.03)
     verb = "is" if len(things) == 1 else "are"
@@ -133,6 +141,22 @@ def _count(query: Query, survey: Survey) -> Answer:
     )
     sure = 0.9 if query.text in families.named() else GRAPH_SURE
     return number(len(things), f"There {verb} {survey.counted(things)}{names}.", things, sure)
+
+
+def _held(asked: Asked, survey: Survey) -> Answer | None:
+    """How many things are on or in a thing; where there are none and the question leaves it open, next to it."""
+    noun, holder = asked.slots["noun"], asked.slots["holder"]
+    query = noun_phrase(noun)
+    if query is None or query.relations or is_anything(holder):
+        return None
+    anchors = (holder.model_copy(update={"pick": "one"}) if holder.pick == "any" else holder,)
+    counted = None
+    for name in ("on", "inside", "next_to"):
+        held = query.model_copy(update={"relations": (Relation(name=name, anchors=anchors),), "pick": "all"})
+        counted = _count(held, survey)
+        if counted.answer or (name == "inside" and {"on", "in", "inside"} & set(asked.words)):
+            return counted
+    return counted
 
 
 def _condition(amount: Amount, query: Query, survey: Survey) -> Answer | None:

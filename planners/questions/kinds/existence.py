@@ -36,6 +36,7 @@ _PHRASES = f"""
     does (anyone|anybody|somebody|someone) (see|spot|notice) {{x}}
     BE {{x}} (here|in here|in the room|present|around|anywhere|in view|visible|part of the room|among the things|there|
     to be (found|seen)|(somewhere|anywhere) to be (found|seen)|in it) [in the room|in here|here]
+    BE {{x}} [hanging|standing|lying|placed|located] in the room
     (can|could) {{x}} be (seen|found|spotted) [here|in here|in the room|anywhere]
     (does|do) {{x}} exist [here|in here|in the room]
     is the room (equipped|furnished|fitted) with {{x}}

@@ -9,7 +9,9 @@ from ....gaussians.language.query.query import Query
 from ..answer import Answer
 from ..kind import Asked, Kind
 from ..measuring import sides
+from ..reading import families
 from ..reading.noun_phrase import is_anything
+from ..reading.noun_phrase import thing as noun_phrase
 from ..reading.phrase_templates import templates
 from ..resolving import all_of
 from ..survey import NotResolved, Survey, Thing, listed
@@ -71,6 +73,13 @@ _PHRASES = f"""
     what all is {_HERE}
     {_ROOM} contains what
     what are {_ALL} {{things}} {_HERE}
+    (where|what|on what|which things) (can|could|may) {_WHO} (sit|take a seat|have a seat|be seated) [down] [on] {_HERE}
+    (where|what) (can|could) people sit [down] [on] {_HERE}
+    (what|which things) (gives|give|provides|emits|makes|produces|lights|light) [up] (light|the room|it) {_HERE}
+    where does [the] light come from {_HERE}
+    (what|where) (can|could|do|should) {_WHO} (put|store|keep) [my|our|the] (things|stuff|clothes|books|my things) \
+        [in|away|on] {_HERE}
+    (what|which) (type|kind|sort|types|kinds|sorts) of {{noun:noun}} (is|are|stands|hangs|lies) [there] {{place:place}}
     what (are|is) in there
     (what|which) {_ALL} {{x}} there (is|are)
 """
@@ -82,12 +91,19 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
     query: Query = slots.get("x") or slots.get("table") or slots.get("things") or Query(pick="all")
     if "things" in slots and not is_anything(query):
         return None
+    if not slots and (family := _family(asked)):
+        query = Query(text=family, pick="all")
+    if "noun" in slots:
+        placed = noun_phrase((*slots["noun"], *slots["place"]))
+        if placed is None:
+            return None
+        query = placed.model_copy(update={"pick": "all"})
     if query.last or query.pick not in ("one", "any", "all"):
         return None
     if query.pick == "one" and "table" not in slots and not {"list", "name", "all"} & set(asked.words):
         query = query.model_copy(update={"pick": "all"})
     things, found = all_of(survey, query)
-    things = tuple(t for t in things if t.node is not None)
+    things = tuple(t for t in things if t.node is not None)[: query.count]
     if not things and {"cols", "several"} & slots.keys():
         raise NotResolved(query, found)
     if not things:
@@ -103,6 +119,16 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
     return Answer(answer=tuple(t.name for t in things), answer_type="list", text=_up(text)[:4000],
                   confidence=0.9 if survey.measured else GRAPH_SURE, evidence=evidence(things),
                   table=tuple(_row(survey, t, columns) for t in things) if columns else ())  # fmt: skip
+
+
+def _family(asked: Asked) -> str:
+    """The family that a question without a noun asks for: "where can I sit?"."""
+    words = set(asked.words)
+    if words & {"sit", "seat", "seated"}:
+        return families.SEAT
+    if words & {"light", "lights"}:
+        return families.LIGHT
+    return families.STORAGE if words & {"store", "put", "keep"} else ""
 
 
 def _row(survey: Survey, thing: Thing, columns: Sequence[str]) -> dict[str, Any]:

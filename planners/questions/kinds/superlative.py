@@ -23,7 +23,8 @@ _LEAST = "(smallest|least|lowest|minimum|shortest)"
 _TAKES = "(takes up|take up|occupies|covers|uses|needs|fills|takes|has)"
 _SPACE = "(space|room|floor space|floor area|floor|area|of the floor|of the room)"
 _PHRASES = f"""
-    (what|which|who) (is|are|was|would be) [the] [single] {{s:superlative}} {{x}} {_HERE}
+    (what|which|who) [one] [of these|of those|of them|of the following|of these things] (is|are|was|would be) [the] \
+        [single] {{s:superlative}} {{x}} {_HERE}
     (what|which|who) (is|are|was|would be) [the] [single] {{s:superlative}} {_THING} {_HERE}
     (what|which) is the {{s:superlative}} [one] (of|among|out of|between) {{x}} {_HERE}
     (what|which) {{x}} (is|are|stands|looks|has to be) [the] [very] {{s:superlative}} [one|of them|of all|of them \

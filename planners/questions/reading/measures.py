@@ -78,6 +78,7 @@ _DEGREES: tuple[tuple[str, str, str, Measure, int], ...] = (
     ("slim", "slimmer", "slimmest", "width", -1), ("flat", "flatter", "flattest", "height", -1),
     ("huge", "huger", "hugest", "size", 1), ("compact", "", "", "size", -1), ("massive", "", "", "size", 1),
 )  # fmt: skip
+_SIDES = frozenset({"width", "depth", "height", "length"})
 _MORE: dict[str, tuple[Measure, int]] = {}
 _MOST: dict[str, tuple[Measure, int]] = {"greatest": ("size", 1), "max": ("size", 1), "min": ("size", -1)}
 for _plain, _more, _most, _measure, _sign in _DEGREES:
@@ -89,6 +90,9 @@ _RANKS = {**ORDINALS, "next": 2, "2nd": 2, "3rd": 3, "4th": 4, "5th": 5, "1st": 
 
 def dimension(words: Words) -> Dimension | None:
     """A dimension by adjective or noun."""
+    several = [w for w in words if w not in (",", "and", "the", "its", "their")]
+    if len(several) > 1 and all(w in _DIMENSIONS and _DIMENSIONS[w] in _SIDES for w in several):
+        return Dimension("size", _ADJECTIVES["size"])
     measure = _DIMENSIONS.get(" ".join(words))
     return Dimension(measure, _ADJECTIVES[measure]) if measure else None
 

@@ -22,11 +22,13 @@ Words = tuple[str, ...]
 
 _ANYTHING = bag("anything something things thing objects object items item stuff everything belongings")
 _ID = re.compile(
-    r"^(?:the )?(?:object |thing |item )?(?:object|thing|item|number|id|node|group|#) (?:# )?(\d+)$|^#(\d+)$"
+    r"^(?:the )?(?:object |thing |item )?(?:with (?:the )?)?(?:object|thing|item|number|id|node|group|"
+    r"#) (?:# )?(\d+)$|^#(\d+)$"
 )
 BY_ID = "number"  # text of a query for one thing: "number 7"
 _HERE = (
-    r"(?:here|in here|there|in the room|around here|in there|in view|visible|you can see|you see|(?:that|"
+    r"(?:here|in here|there|in the room|around here|in there|in view|visible|you can (?:see|count|find|spot|"
+    r"make out|detect)|you see|we have|i have|(?:i|we) can (?:see|count|find)|(?:that|"
     r"which) you can see|"
     r"(?:that|which) is (?:here|there|in the room)|(?:that|which) are (?:here|there|in the room)|anywhere|somewhere|"
     r"around|lying about|lying around|hanging around|at all|present|available|there is|there are|of any kind|"
@@ -107,6 +109,7 @@ _REWRITES: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         (r" ,? ?(?:not|but not|not including|not counting|excluding|except for|except|other than|apart from|besides|"
          r"ignoring|aside "
          r"from|leaving out|without counting) (?=the |a |any |\w+$)", " except "),
+        (r"\b(wall|ceiling) (?:mounted|hung|fixed) (\w+)(?= |$)", r"\2 on the \1"),
         (r"^(?:any|some)(?:thing)? else(?: but| than| besides| except)? (?:the )?(?=\w)", "anything except the "),
         (r"^the (?:color|colour|shade|height|width|depth|length|size|dimensions|number|amount|distance|gap|position|"
          r"location) .*$", ""),

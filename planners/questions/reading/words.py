@@ -66,6 +66,9 @@ _ASKING = re.compile(
     r"|^(?:is it (?:true|right|correct|the case|a fact|so)|am i (?:right|correct))(?: (?:in|to) (?:thinking|saying|"
     r"assuming|think|say|assume))?(?: that)?"
     r"|^(?:would|could) (?:you|one) say(?: that)?"
+    r"|^(?:can|could|would|will) you (?=(?:make|draw|create|build|produce|write|sort|rank|arrange|order|tabulate|"
+    r"enumerate|"
+    r"find|compare|provide|inventory|itemize)\b)"
     r"|^(?:it is|is it) my (?:impression|guess) that|^i would say(?: that)?|^let us see|^guess"
 )
 _FIRST_WORDS = bag(
@@ -122,7 +125,23 @@ _REORDERED: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(pattern), said)
     for pattern, said in (
         (
-            r"^(what|which(?: \w+)?|how \w+) (?:would|do|did) you (?:say|think|reckon|guess) (?=(?:is|are|the|has|"
+            r"^(?:i|we) (?:can )?(?:see|have|spot|notice|found) (?:some |a few |several |many )?([\w ]+?) , how many"
+            r"(?: (?:are there|of them are there|exactly))?$",
+            r"how many \1",
+        ),
+        (
+            r"^there are (?:some |a few |several |many )?([\w ]+?) , how many(?: (?:are there|"
+            r"exactly))?$",
+            r"how many \1",
+        ),
+        (
+            r"^(?:would|will) ((?:the|this|that|my|our) [\w ]+?) be (?=(?:any |much )?(?:\w+er|more \w+|"
+            r"less \w+) than )",
+            r"is \1 ",
+        ),
+        (
+            r"^(what(?: \w+)?|which(?: \w+)?|how \w+) (?:would|do|did) you (?:say|think|reckon|guess) (?=(?:is|are|"
+            r"the|has|"
             r"takes|that)\b)",
             r"\1 ",
         ),
