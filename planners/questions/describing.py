@@ -16,8 +16,8 @@ from ...gaussians.world.relation_geometry import HOLDS
 from ...gaussians.world.words import plural, singular
 from ..rooms.node import NodeId
 from .floor.ends import place_words
-from .kinds.room import sides
-from .kinds.whereabouts import place_of as measured_place
+from .placing import place_of as measured_place
+from .placing import sides
 from .relating import related, supporter
 from .room_kind import RoomGuess, room_kinds
 from .survey import Survey, Thing, listed, with_article

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from ....gaussians.world.relation_geometry import Stand
 from ..answer import Answer, Evidence, Line
 from ..kind import Asked, Kind
+from ..placing import is_turned, sides
 from ..reading.phrase_templates import templates
 from ..reading.spans import CUBE, METRE, SQUARE, Unit, answer_of, told
 from ..survey import Survey
@@ -226,23 +226,12 @@ _FORM = f"""
 """
 
 
-def sides(survey: Survey) -> tuple[float, float, float]:
-    """Width (from the viewer's left to right), depth and height of the room, metres."""
-    width, depth, height = survey.graph.room.size
-    return (depth, width, height) if _is_turned(survey.stand) else (width, depth, height)
-
-
-def _is_turned(stand: Stand) -> bool:
-    """Whether the viewer's left and right run along y."""
-    return abs(float(stand.right[1])) > abs(float(stand.right[0])) + 1e-9
-
-
 def _line(survey: Survey, name: str) -> tuple[Line, ...]:
     """The measured side as a line through the middle of the floor or along a wall."""
     width, depth, height = survey.graph.room.size
     along_x = ((-width / 2, 0.0, 0.0), (width / 2, 0.0, 0.0))
     along_y = ((0.0, -depth / 2, 0.0), (0.0, depth / 2, 0.0))
-    across, along = (along_y, along_x) if _is_turned(survey.stand) else (along_x, along_y)
+    across, along = (along_y, along_x) if is_turned(survey) else (along_x, along_y)
     longer = along_x if width >= depth else along_y
     ends = {
         "width": across, "depth": along, "length": longer, "shorter": along_y if longer is along_x else along_x,
