@@ -27,7 +27,7 @@ LEGIBLE = 0.015  # share of an image from which a thing is read without effort: 
 WHOLE = 0.5  # share of its box's silhouette that a whole, unhidden thing covers
 CONTEXT = 0.5  # weight of all other objects together: what surrounds the asked ones
 SPREAD = 0.15  # worth of seeing a group again from the opposite side, against seeing it for the first time
-ENOUGH = 0.02  # a further view must add this share of what the first gave
+ENOUGH = 0.005  # a further view must add this share of what the first gave
 MOST_RENDERED = 56  # views of one choice; candidates beyond them are those that can show least
 # A capture is sharp where its photographs were taken; seen from outside, its walls are ragged.
 TRUST: Mapping[Kind, float] = {"camera": 1.0, "walk-in": 0.95, "close-up": 0.95, "overview": 0.9, "plan": 0.9}

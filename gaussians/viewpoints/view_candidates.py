@@ -26,7 +26,10 @@ CLOSE_FOV = 50.0
 CLOSE_ELEVATIONS = (12.0, 38.0)
 CLOSE_AZIMUTHS = 8  # sides that a close-up is taken from, relative to the thing's box
 CLOSE_UPS_OF = 6  # most groups that close-ups are made of; more are shown by views of the whole
-DISTANCES = (1.0, 0.7)  # of the distance at which the thing fills the image; nearer ones where there is no room
+PER_PART, MOST_PARTS = 4, 8  # things in a part of the scene on average, and most parts
+PART_AZIMUTHS = 4  # sides that a part is shown from
+DISTANCES = (1.0, 1.7, 0.7, 2.6)  # of the distance at which a thing fills the image, until there is room and sight
+NEAR_THING = 3.0  # voxels around the middle of a thing in which nothing is taken to hide it
 FILLS = 0.65  # share of the image's height or width that a thing's box takes in a close-up
 CLEARANCE = 1.5  # voxels between an eye and the nearest surface
 PHOTOGRAPHS = 8  # cameras of a scene, from which they are taken for photographs that cover it
@@ -61,10 +64,11 @@ def candidate_views(
     """All candidates that may show `groups` (of the whole scene if empty), as images of `size` pixels."""
     space = space or FreeSpace.of(scene.cloud, scene.frame)
     found = own_views(scene, size) + overviews(scene, groups, size, space) + walk_ins(scene, groups, size, space)
-    if len(groups) <= CLOSE_UPS_OF:
+    if 0 < len(groups) <= CLOSE_UPS_OF:
         for group in groups:
             found += close_ups(scene, group, size, space)
-    return found
+        return found
+    return found + part_views(scene, groups, size, space)
 
 
 def own_views(scene: Scene, size: tuple[int, int]) -> list[View]:
@@ -126,6 +130,41 @@ def close_ups(scene: Scene, group: int, size: tuple[int, int], space: FreeSpace)
     return found
 
 
+def part_views(scene: Scene, groups: Sequence[int], size: tuple[int, int], space: FreeSpace) -> list[View]:
+    """Views of parts of the scene, each with things that stand close together: small things are readable in them.
+
+    The parts are those of `groups`, of all objects if empty.
+    """
+    assert scene.language is not None
+    things = groups or [g.id for g in scene.language.objects() if g.count]
+    boxes = _boxes(scene, things)
+    if not boxes:
+        return []
+    basis = scene.frame.basis()
+    found: list[View] = []
+    for part in _parts(np.array([b.center for b in boxes]), -(-len(boxes) // PER_PART)):
+        inside = [boxes[i] for i in part]
+        for k in range(PART_AZIMUTHS):
+            a = 2 * np.pi * (k + 0.5) / PART_AZIMUTHS
+            side = np.cos(a) * basis[0] + np.sin(a) * basis[1]
+            camera = side_camera(scene, inside, side, CLOSE_ELEVATIONS[1], size, space)
+            if camera is not None:
+                name = f"part {len(found) + 1}"
+                found.append(View(name, "close-up", replace(camera, name=name)))
+    return found
+
+
+def _parts(points: F64, count: int) -> list[list[int]]:
+    """Indices of points `[P, 3]` in at most `MOST_PARTS` groups around points far from each other (Gonzalez 1985)."""
+    seeds = [int(np.argmax(np.linalg.norm(points - points.mean(axis=0), axis=1)))]
+    distance = np.linalg.norm(points - points[seeds[0]], axis=1)
+    while len(seeds) < min(count, MOST_PARTS) and distance.max() > 0:
+        seeds.append(int(np.argmax(distance)))
+        distance = np.minimum(distance, np.linalg.norm(points - points[seeds[-1]], axis=1))
+    nearest = np.linalg.norm(points[:, None] - points[seeds], axis=2).argmin(axis=1)
+    return [np.flatnonzero(nearest == k).tolist() for k in range(len(seeds))]
+
+
 def is_photographed(scene: Scene) -> bool:
     """Whether the scene has so many cameras that they are taken for those of photographs that cover it."""
     return len(scene.cameras) >= PHOTOGRAPHS
@@ -166,7 +205,9 @@ def side_camera(
     scene: Scene, boxes: Sequence[Box], side: F64, elevation: float, size: tuple[int, int], space: FreeSpace,
     far: float = 1.0,
 ) -> Camera | None:  # fmt: skip
-    """The camera that shows boxes from one side, as far away as there is room up to `far` times what fills the image.
+    """The camera that shows boxes from one side, at `far` times the distance at which they fill the image.
+
+    Where there is no room or no sight, other distances are tried, with the field of view that shows them as large.
 
     Args:
         side: `[3]` level direction from the boxes to the camera, world.
@@ -181,13 +222,14 @@ def side_camera(
     e = np.radians(elevation)
     toward = np.cos(e) * side / max(float(np.linalg.norm(side)), 1e-12) + np.sin(e) * scene.frame.up_vector
     fills = filling_distance(corners - center, toward, scene.frame.up_vector, size)
-    for share in (far, *(d for d in DISTANCES if d < far)):
-        eye = center + share * fills * toward
+    reach = max(radius, NEAR_THING * space.step)  # what a small thing stands on does not hide it
+    for share in DISTANCES:
+        eye = center + far * share * fills * toward
         clear = float(space.clearance(eye[None])[0])
-        if clear < CLEARANCE * space.step or not space.sees(eye, center, radius) or wall_between(scene, eye, center):
+        if clear < CLEARANCE * space.step or not space.sees(eye, center, reach) or wall_between(scene, eye, center):
             continue
-        fov = 2 * float(np.degrees(np.arctan(np.tan(np.radians(CLOSE_FOV) / 2) / min(share, 1.0))))
-        return Camera.look_at(eye, center, scene.frame.up, *size, min(fov, FOV_LIMITS[1]), "side")
+        fov = 2 * float(np.degrees(np.arctan(np.tan(np.radians(CLOSE_FOV) / 2) / share)))
+        return Camera.look_at(eye, center, scene.frame.up, *size, float(np.clip(fov, *FOV_LIMITS)), "side")
     return None
 
 

@@ -189,5 +189,5 @@ def test_short_legs_of_a_route_have_no_label_and_a_label_beside_a_short_line_lea
     x, y = (a + b) / 2
     at = (slice(int(y) - 2, int(y) + 3), slice(int(x) - 2, int(x) + 3))
     assert (bare[at] != evidence_picture(scene, _answer(()), camera).astype(int)[at]).any()
-    assert (alone != bare).any() and np.abs(alone[at] - bare[at]).max() < 256
+    assert (alone != bare).any()
     assert (np.abs(alone[at] - [255, 214, 10]).sum(axis=2) < 30).any()  # the line's own yellow
