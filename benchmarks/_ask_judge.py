@@ -9,12 +9,13 @@ import itertools
 import time
 import zlib
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import torch
 
+from ..agent.session.judge import Judge
 from ..gaussians import assets
 from ..gaussians.assets import Truth
 from ..gaussians.errors import ScenewrightError
@@ -25,6 +26,7 @@ from ..gaussians.language.query.selection import Selection, mask_of
 from ..gaussians.scene import Scene
 from ..tools.execute import carry_out
 from ..tools.judging.case import Case
+from ..tools.judging.changes import changes_between
 from ..tools.judging.examine import Findings, examine
 from ..tools.operation import Context, EditOp
 from ..tools.registry import parse
@@ -38,6 +40,8 @@ EDITS = 25  # a room, half of them sabotaged
 CLEAN = 0.9  # intersection over union with the true object from which a selection is right
 COLORS = ("teal", "red", "blue", "green", "purple", "orange", "yellow", "pink", "brown", "white", "black")
 ASSETS = ("armchair", "potted plant", "floor lamp", "vase", "stool", "chair", "suitcase", "basket", "guitar", "table")
+WHOLE = 0.97  # share of a thing that a repair must reach; as much again of other things may change
+_REPAIRABLE = "residue, hidden"
 GOAL_CAUGHT, GOAL_FALSE = 0.95, 0.03
 _PATIENCE = 200  # edits that are tried until a sabotage applies to one
 
@@ -52,6 +56,7 @@ class Judged:
         findings: of the judge.
         seconds, edit_seconds: of the judge and of the edit.
         case: the scenes.
+        repaired: of a hidden residue, whether the judge loop ends with the whole thing changed and little else.
     """
 
     op: EditOp
@@ -60,6 +65,7 @@ class Judged:
     seconds: float
     edit_seconds: float
     case: Case
+    repaired: bool | None = None
 
     @property
     def right(self) -> bool:
@@ -92,6 +98,9 @@ def figures(found: Sequence[Judged]) -> list[Metric]:
         Metric("judge.seconds", float(np.median([j.seconds for j in found] or [0.0])), "s", "lower", 0.5),
         Metric("judge.edit_seconds", float(np.median([j.edit_seconds for j in found] or [0.0])), "s", "lower", 0.5),
     ]
+    if tried := [j for j in found if j.repaired is not None]:
+        share = float(np.mean([bool(j.repaired) for j in tried]))
+        made.append(Metric("judge.repaired.residue.hidden", share, "1", "higher", 0.15))
     for kind in kinds:
         if some := [j for j in found if j.kind == kind]:
             key = kind.replace(", ", ".").replace(" ", "_")
@@ -130,8 +139,22 @@ def _sabotaged(attempts: Iterator[tuple[Attempt, float]], kind: str, damage: Dam
         except ScenewrightError:
             continue  # the operation cannot be done to another thing
         if done is not None:
-            return [_judge(attempt, *done, kind, seconds)]
+            found = _judge(attempt, *done, kind, seconds)
+            return [replace(found, repaired=_repaired(attempt, done[0])) if kind == _REPAIRABLE else found]
     return []
+
+
+def _repaired(attempt: Attempt, before: Scene) -> bool:
+    """Whether the judge loop, on a scene whose field lacks a piece of the thing, changes what the thing really is."""
+    try:
+        after = Judge().carry_out(before, attempt.op, attempt.context).scene
+    except ScenewrightError:
+        return False
+    changed = changes_between(before.cloud, after.cloud).any
+    meant = mask_of(before.cloud, attempt.selection.ids)
+    carried = attempt.op.may_change(attempt.scene, attempt.selection)  # what stands on it goes along
+    missed, other = int((meant & ~changed).sum()), int((changed & ~carried).sum())
+    return missed <= (1 - WHOLE) * int(meant.sum()) and other <= (1 - WHOLE) * int(meant.sum())
 
 
 def _judge(attempt: Attempt, before: Scene, after: Scene, kind: str, edit_seconds: float) -> Judged:

@@ -31,6 +31,7 @@ _SAMPLE = 20_000  # Gaussians whose typical weight is measured
 _AROUND = 0.5  # of its largest extent: how far around a thing its missed pieces are looked for
 _OFF_PLANE = 4.0  # centimetres from the plane of a floor or wall
 _FRAGMENT = 0.35  # largest share of an object that is a fragment
+_PART = 0.6  # share of a part from which a patch is that part
 _VOXEL = 4.0  # centimetres: parts with a smaller gap are connected
 _NEAR = 6.0  # centimetres from the thing, up to which a Gaussian belongs to it
 _CONTACTS = 64  # Gaussians of a fragment nearest to the thing, whose colours are compared with it
@@ -81,7 +82,7 @@ def _left_of(case: Case, rows: Tensor) -> Tensor:
         if group.level == "structure":
             loose[mine] = _off_plane(group, points[mine], _OFF_PLANE * cm)
         else:
-            loose |= _fragments(case, owner, here, rows, voxel)
+            loose |= _fragments(case, owner, here, rows, voxel) | _other_colored(case, here, mine, rows, voxel)
     found = np.flatnonzero(loose)
     if not len(found):
         return here[:0]
@@ -163,6 +164,42 @@ def _fragments(case: Case, owner: int, here: Tensor, thing: Tensor, voxel: float
         to_rest = float(cKDTree(points[~part]).query(points[part])[0].min())
         loose[part] = to_rest > 2 * to_thing + voxel / 4 and _alike(cloud, rows[torch.from_numpy(part)], thing)
     return _in(here, rows[torch.from_numpy(loose)])
+
+
+def _other_colored(case: Case, here: Tensor, mine: Flags, thing: Tensor, voxel: float) -> Flags:
+    """Which of the rows `here` of one object (`mine`) have the colour of a thing that they touch, and not the object's.
+
+    A patch of that colour must be small for the object, and end in another colour wherever it meets the object.
+    """
+    cloud, found = case.before.cloud, np.zeros(len(here), bool)
+    rows = here[torch.from_numpy(mine)]
+    if len(rows) < 2:
+        return found
+    means, lab = cloud.means[rows].to(torch.float64).cpu().numpy(), _lab(cloud, rows).cpu().numpy()
+    own, own_lab = cloud.means[thing].to(torch.float64).cpu().numpy(), _lab(cloud, thing).cpu().numpy()
+    away, nearest = cKDTree(own).query(means)
+    like = np.linalg.norm(lab - own_lab[nearest], axis=1) < _SAME_COLOR
+    if not like.any() or like.all():
+        return found
+    places = np.flatnonzero(like)
+    numbers = _clusters(means[places], voxel)
+    rest = cKDTree(means[~like])
+    for number in np.unique(numbers[away[places] < voxel / 2]).tolist():
+        patch = places[numbers == number]
+        if len(patch) > _FRAGMENT * len(rows) or _is_part(cloud, rows[torch.from_numpy(patch)]):
+            continue
+        apart, meets = rest.query(means[patch])
+        edge = np.argsort(apart, kind="stable")[:_CONTACTS]
+        contrast = np.linalg.norm(lab[patch[edge]] - lab[~like][meets[edge]], axis=1)
+        if float(np.median(contrast)) > 1.5 * _SAME_COLOR:
+            found[np.flatnonzero(mine)[patch]] = True
+    return found
+
+
+def _is_part(cloud: GaussianCloud, rows: Tensor) -> bool:
+    """Whether some rows are most of a part: a patch that is a part of its object is its own."""
+    leaf = int(torch.mode(cloud.group[rows]).values)
+    return int((cloud.group[rows] == leaf).sum()) > _PART * int((cloud.group == leaf).sum())
 
 
 def _alike(cloud: GaussianCloud, part: Tensor, thing: Tensor) -> bool:
