@@ -14,6 +14,7 @@ from .room_places import AT_WALL, wall_of
 from .survey import Survey, Thing
 
 _UPRIGHT = ("under", "below", "above")
+_CLOSE = 0.5  # metres: of several neighbours those that are told
 _NEXT = 1.0  # metres: things farther apart than this are not next to each other, however large they are
 
 
@@ -45,6 +46,10 @@ def related(name: str, anchors: Sequence[Thing], survey: Survey) -> list[Thing]:
     if name == "next_to":
         scored = [(s, t) for s, t in scored if not _is_flat(t)]
         kept = [t for s, t in scored if s >= HOLDS]
+        ids = {t.id for t in kept}
+        kept = [t for t in kept if t.node is not None and t.node.support not in ids]
+        if any(survey.gap(t, anchors[0]) <= _CLOSE for t in kept):  # what is farther is not said to be next to it
+            kept = [t for t in kept if survey.gap(t, anchors[0]) <= _CLOSE]
         return sorted(kept, key=lambda t: (round(survey.gap(t, anchors[0]), 2), survey.between_centers(t, anchors[0])))
     kept = [t for s, t in sorted(scored, key=lambda pair: -pair[0]) if s >= HOLDS]
     if name == "between":  # what stands on one of them is told with it

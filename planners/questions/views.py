@@ -27,6 +27,7 @@ F64 = NDArray[np.float64]
 BEFORE = 0.4  # metres between a standing or seated person's middle and what the person is at
 SEAT_REACH = 0.5  # largest gap in metres between a seat and the table that it belongs to
 _DISTANCES = (0.4, 0.7, 1.0, 1.3, 1.6)  # metres from what a person faces or has at the back, if nothing else is said
+_TURNED = 60.0  # degrees between a seat's front and the table that it belongs to
 STEP = 0.5  # metres between the places that are tried where the place is not said
 MOST = 48  # views that one situation may leave
 
@@ -240,8 +241,15 @@ def seats(thing: Thing) -> bool:
 
 
 def _seats_at(table: Thing, survey: Survey) -> list[Thing]:
-    near = [t for t in survey.things if t.row != table.row and seats(t) and survey.gap(t, table) <= SEAT_REACH]
-    return [t for t in near if (k := kinds.of(t.label)) is not None and k.seats > 0]
+    """The seats that stand at a table; those that are turned to it where there are some, else the nearest."""
+    near = [t for t in survey.things if t.row != table.row and survey.gap(t, table) <= SEAT_REACH]
+    near = [t for t in near if (k := kinds.of(t.label)) is not None and k.seats > 0]
+    turned = []
+    for t in near:
+        way = front(t, survey)
+        if way is not None and abs(View(middle(t), way, "").bearing(_nearest_point(table, middle(t)))) <= _TURNED:
+            turned.append(t)
+    return turned or sorted(near, key=lambda t: survey.gap(t, table))[:1]
 
 
 def _at_wall(thing: Thing, survey: Survey) -> bool:

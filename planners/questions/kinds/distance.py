@@ -132,6 +132,11 @@ _WHICH_NEAR = f"""
     {_WHICH} (is|are) {_NEARER} {{a:spot}} or {{other:spot}} {_TO} {{b:spot}}
     of {{a:spot}} and {{other:spot}} which [one] (is|stands) {_NEARER} {_TO} {{b:spot}}
 """
+_APART_COMPARED = """
+    BE {a:spot} and {b:spot} (farther apart|closer together|closer to each other|nearer to each other|farther \
+        from each other) \
+        than {c:spot} and {d:spot} [are]
+"""
 _COMPARE_FAR, _WHICH_FAR = (t.replace(_NEARER, _FURTHER) for t in (_COMPARE_NEAR, _WHICH_NEAR))
 _GAP = re.compile(
     r"\b(?:gap|space|clearance|room|edges?|surfaces?|close|near|free|closest|nearest|aisle|passage|walkway|corridor|"
@@ -181,6 +186,20 @@ def _compare_far(asked: Asked, survey: Survey) -> Answer | None:
 
 def _which_near(asked: Asked, survey: Survey) -> Answer | None:
     return _either(asked, survey, True)
+
+
+def _apart_compared(asked: Asked, survey: Survey) -> Answer | None:
+    """Whether two things are farther apart, or closer together, than two others."""
+    one, two, three, four = (ends(asked.slots[k], survey, asked.situation) for k in ("a", "b", "c", "d"))
+    if max(map(len, (one, two, three, four))) > 1:
+        return None
+    first, second = (one[0], two[0]), (three[0], four[0])
+    near = bool(re.search(r"\b(?:closer|nearer)\b", asked.text.lower()))
+    closer, sure = _closer(span(*first), span(*second))
+    yes = closer == near
+    told_ = [f"{a.name} and {b.name} are {told(_shown(span(a, b)))} apart" for a, b in (first, second)]
+    return Answer(answer="yes" if yes else "no", answer_type="yesno", text=f"{'Yes' if yes else 'No'}: {told_[0]}, "
+                  f"{told_[1]}.", confidence=sure, evidence=joined_spans(first, second))  # fmt: skip
 
 
 def _which_far(asked: Asked, survey: Survey) -> Answer | None:
@@ -383,6 +402,7 @@ def _cap(said: str) -> str:
 
 
 KINDS = (
+    Kind("distance_compared", templates(_APART_COMPARED), _apart_compared),
     Kind("distance_compared", templates(_COMPARE_NEAR), _compare_near),
     Kind("distance_compared", templates(_COMPARE_FAR), _compare_far),
     Kind("distance_which", templates(_WHICH_NEAR), _which_near),

@@ -147,8 +147,8 @@ def _is_facing(asked: Asked, survey: Survey) -> Answer | None:
     if "a" not in asked.slots and not away:
         return whole([("", _faces(a, b, False, survey)) for a in firsts for b in firsts if a.row != b.row], "all")
     seconds = meant(asked.slots["away" if away else "a"], survey)
-    if len(seconds) > 1 and all(t.node is None for t in seconds):  # the walls: the one that it faces
-        return None
+    if all(t.node is None for t in seconds):
+        return agreed([(survey.named(t), _faces_wall(t, seconds, away, survey)) for t in firsts])
     mutual = "each other" in asked.text or "one another" in asked.text
     if mutual:
         both = [("", _faces(a, b, False, survey)) for a in firsts for b in seconds]
@@ -159,6 +159,19 @@ def _is_facing(asked: Asked, survey: Survey) -> Answer | None:
         return agreed([(survey.named(a), whole([(survey.named(b), _faces(a, b, away, survey)) for b in seconds], "all"))
                        for a in firsts])  # fmt: skip
     return pairs(firsts, seconds, survey, lambda p, q: _faces(p, q, away, survey))
+
+
+def _faces_wall(thing: Thing, targets: Sequence[Thing], away: bool, survey: Survey) -> Answer:
+    """Whether a thing faces a wall, with nothing between where no wall is named."""
+    way = front(thing, survey)
+    if way is None:
+        return _no_front(thing, "yesno", survey)
+    if len(targets) == 1:
+        return _faces(thing, targets[0], away, survey)
+    faced = _faced(thing, None, survey)
+    yes = str(faced.answer).endswith(" wall") != away
+    text = f"{'Yes' if yes else 'No'}: {faced.text[:1].lower()}{faced.text[1:]}"
+    return faced.model_copy(update={"answer": "yes" if yes else "no", "answer_type": "yesno", "text": text})
 
 
 def _any_faced(thing: Thing, targets: Sequence[Thing], away: bool, survey: Survey) -> Answer:

@@ -42,6 +42,15 @@ _DEEPEST = """
         (back|forward|to the back|to the front|toward the back|toward the front) [in the room|of all]
     which {x} (is|stands|lies) [the] (farthest|most) (back|forward|to the back|to the front) [in the room]
 """
+_FURTHER = """
+    (which|what) [(one|thing|of them|of the two)] (is|are|stands|hangs) (farther|more) [to the|toward the|on the] \
+        (left|right) {a} or {b}
+    (is|are) {a} or {b} (farther|more) [to the|toward the] (left|right)
+"""
+_IS_FURTHER = """
+    BE {a} (farther|more) [to the|toward the|on the] (left|right) than {b} [is]
+    (does|do) {a} (stand|hang|sit|lie) (farther|more) [to the|toward the] (left|right) than {b}
+"""
 _PICKED = """
     (what|which) (is|are) {x}
     (what|which) (thing|object|item|one) is {x}
@@ -105,6 +114,24 @@ def _extreme(asked: Asked, survey: Survey) -> Answer | None:
     return _at(ranked, 0, f"farthest to the {found[1]}", asked, survey) if ranked else None
 
 
+def _compared(asked: Asked, survey: Survey) -> Answer | None:
+    """Which of two things is farther to one side, or whether the first one is."""
+    way = "left" if "left" in asked.words else "right"
+    a, b = survey.one(asked.slots["a"]), survey.one(asked.slots["b"])
+    ranked = _ordered((a, b), way, asked, survey)
+    best = ranked[0][1]
+    sure = 0.93 if abs(ranked[0][0] - ranked[1][0]) > _ALIGNED else 0.65
+    text = f"{_cap(survey.named(best))} is farther to the {way}."
+    evidence = Evidence(ids=(best.id, ranked[1][1].id))
+    if "than" in asked.words:
+        yes = best.row == a.row
+        text = f"{'Yes' if yes else 'No'}, {text[:1].lower()}{text[1:]}"
+        return Answer(answer="yes" if yes else "no", answer_type="yesno", text=text, frame="viewer", confidence=sure,
+                      evidence=evidence)  # fmt: skip
+    label = best.name if a.label != b.label else survey.named(best).removeprefix("the ")
+    return Answer(answer=label, answer_type="label", text=text, frame="viewer", confidence=sure, evidence=evidence)
+
+
 def _deepest(asked: Asked, survey: Survey) -> Answer | None:
     way = "back" if "back" in asked.words else "front"
     ranked = _ordered(_things(asked, survey), way, asked, survey)
@@ -152,6 +179,8 @@ KINDS = (
     Kind("order_list", templates(_LIST), _listed),
     Kind("order_nth", templates(_NTH), _nth),
     Kind("order_extreme", templates(_FARTHEST), _extreme),
+    Kind("order_compared", templates(_FURTHER), _compared),
+    Kind("order_compared", templates(_IS_FURTHER), _compared),
     Kind("order_deepest", templates(_DEEPEST), _deepest),
     Kind("order_picked", templates(_PICKED), _picked),
 )

@@ -106,6 +106,13 @@ _COUNT = """
     how many {x} (do|can|would|will) i (have|see|find|count) {d:side}
     how many {x} (stand|sit|lie|hang|would be|are standing|will be) {d:side}
 """
+_IN_VIEW = """
+    (can|could|would|will|do|am) i [be] [able to] [still] (see|look at|watch|spot|able to see) {x} [from \
+        there|from here|from that \
+        spot|ahead|before me|at where i am standing|from my position|from my seat|directly|then]
+    BE {x} [with]in (my|the) (view|sight|field of view|line of sight) [of me]
+    BE {x} visible [to me|from there|from my position|from my seat]
+"""
 _FACED = """
     what (am|would) i [be] (facing|looking at|seeing|see|look at|face)
     what (would|do|can|will|could) i (face|see|look at) [first|ahead] [from there]
@@ -175,11 +182,14 @@ _EITHER_OF = _each_verb(f"""
     in (which|what) direction from {{a}} BE {{x}}
     in (which|what) direction BE {{x}} from {{a}}
     to (which|what) side of {{a}} BE {{x}}
+    where BE {{x}} (in relation to|relative to|with respect to|in respect to|as seen from|seen from) {{a}}
+    where (in relation to|relative to|with respect to) {{a}} BE {{x}}
 """)
 _OWN_FRAME = re.compile(
     r"\b(?:its|their|own) own\b|'s own\b|\bown (?:left|right|front|sides|point of view|perspective|frame)|"
     r"\bthe way [\w ']+ (?:faces?|is facing|looks|is turned)\b|\b(?:its|their) (?:front|point of view|perspective)\b"
 )
+_VIEW = 75.0  # degrees to either side of straight ahead that are in view
 _NARROW = 15.0  # degrees between a direction and the limit of its sector below which an answer is told as borderline
 
 
@@ -200,6 +210,19 @@ def _is_side(asked: Asked, survey: Survey) -> Answer | None:
         return agreed(cases) if plain else whole(cases, "any" if query.pick == "any" or _exists(asked) else "all")
 
     return _over_views(asked, survey, one)
+
+
+def _in_view(asked: Asked, survey: Survey) -> Answer | None:
+    """Whether a person whose place is stated has a thing in view, at whatever distance; boxes hide nothing."""
+    if asked.situation is None:
+        return None
+    things = survey.all_of(asked.slots["x"])
+    if not things:
+        return _nothing_there(asked, survey)
+    ahead = Side("in front", 0.0, _VIEW)
+    return _over_views(
+        asked, survey, lambda v: whole([(survey.named(t), _side_holds(t, ahead, v, survey)) for t in things], "any")
+    )
 
 
 def _exists(asked: Asked) -> bool:
@@ -584,7 +607,8 @@ def _what_of(asked: Asked, survey: Survey) -> Answer | None:
                  and _holds_beside(t, anchor, name, view, own, survey).answer == "yes"]  # fmt: skip
         ids = {t.id for t in found}
         found = [t for t in found if t.node is not None and t.node.support not in ids]
-        found.sort(key=lambda t: survey.gap(t, anchor))
+        hung = anchor.node is not None and anchor.node.support == "wall"
+        found.sort(key=lambda t: (t.node is not None and t.node.support == "wall" and not hung, survey.gap(t, anchor)))
         return _told_of(found, anchor, name, view, own, many, survey)
 
     return agreed([(survey.named(a), one(a)) for a in anchors])
@@ -700,6 +724,7 @@ KINDS = (
     Kind("side_either", templates(_EITHER), _either_side),
     Kind("side_either_of", templates(_EITHER_OF), _which_side_of),
     Kind("side", templates(_IS_SIDE), _is_side),
+    Kind("side_in_view", templates(_IN_VIEW), _in_view),
     Kind("side_of", templates(_RELATED), _related),
     Kind("side_of_what", templates(_WHAT_OF), _what_of),
     Kind("side_count", templates(_COUNT), _counted),

@@ -100,7 +100,7 @@ _CLAUSES = (
     f"middle: {_INTRO} {_WHO} [{_STAND}] (in|at) (the middle|the centre|the center) [of the room] {_TAIL}",
     f"front: {_INTRO} {_WHO} [{_STAND}] (in front of|before|opposite) {{at:bare}} {_TAIL}",
     f"behind: {_INTRO} {_WHO} [{_STAND}] behind {{at:bare}} {_TAIL}",
-    f"enter: {_INTRO} {_WHO} {{entering:entering}} [(through|by|via|from|at|in through|in by) {{at:bare}}] {_TAIL}",
+    f"enter: {_INTRO} {_WHO} {{entering:entering}} [[(through|by|via|from|at|in through|in by)] {{at:bare}}] {_TAIL}",
     f"at: {_INTRO} {_WHO} [{_STAND}] {_AT} {{at:bare}} {_TAIL}",
     f"at: {_INTRO} {_WHO} {_STAND} (on|in|inside|under) {{at:bare}} {_TAIL}",
     f"use: {_INTRO} {_WHO} {{using:using}} {{at:bare}} {_TAIL}",
@@ -301,7 +301,7 @@ def _made(kind: str, words: Words, slots: Mapping[str, Any]) -> Situation:
     if facing is not None and at is not None:
         facing = _same_thing(at, facing)
     if "back" in slots:
-        facing, gaze = slots["back"], "away"
+        facing, gaze = (slots["back"] if at is None else _same_thing(at, slots["back"])), "away"
     if "seat" in slots:
         facing, gaze = (facing or at), gaze or "at"
         at, pose = slots["seat"], "on"
@@ -329,11 +329,17 @@ def _told(words: Words) -> str:
     return said.replace(" ,", ",").replace(" 's", "'s")[:390]
 
 
+def _holds_clause(words: Words) -> bool:
+    return not _STOPS.isdisjoint(words) and not _STOPS.isdisjoint(
+        noun_phrase.without_verb_names(" ".join(words)).split()
+    )
+
+
 def _bare(words: Words) -> Query | None:
     """A noun phrase without a person, a gaze or a clause in it."""
     if (
         len(words) > 12
-        or _STOPS & set(noun_phrase.without_verb_names(" ".join(words)).split())
+        or _holds_clause(words)
         or words[-1] in ("on", "in", "at", "to", "of", "with", "and", "left", "the")
     ):
         return None
