@@ -12,11 +12,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...gaussians.color import BASIC, FAMILIES, plain_color
 from ...gaussians.language.query.attributes import COLOR_HOLDS, color_scores
 from ...gaussians.language.query.query import Query, Relation
 from ...gaussians.language.query.selection import Selection
+from ...gaussians.language.query.terms import color_term
 from ...gaussians.world import kinds, relations
 from ...gaussians.world.relation_geometry import HOLDS, Stand
 from ...gaussians.world.support import SHELL
@@ -41,6 +43,7 @@ _MEMORY = 4096  # queries whose results are kept
 # Relations that are read as to whichever anchor fits: "the lamp on the desk" where there are two desks.
 _LOOSE = frozenset({"on", "inside", "under", "below", "above", "next_to"})
 
+F64 = NDArray[np.float64]
 Finder = Callable[[Query], Selection]  # a query to rows of the stage
 
 
@@ -55,6 +58,7 @@ class Survey:
         last: ids that "it" refers to.
         faces: whether the front of a thing was measured; None: its kind tells. A front is the -y side of its box.
         measured: whether boxes, colours and labels were measured in a scene, not written by somebody.
+        shades: of a measured scene, the scores `[G]` of a colour word for the groups of its field.
     """
 
     graph: SceneGraph
@@ -63,6 +67,7 @@ class Survey:
     last: tuple[Id, ...] = ()
     faces: Callable[[Thing], bool] | None = None
     measured: bool = False
+    shades: Callable[[str], F64] | None = None
     _memory: dict[str, Found] = field(default_factory=dict)
     _fronts: dict[Id, bool] = field(default_factory=dict)
     _names: dict[Id, str] = field(default_factory=dict)
@@ -121,19 +126,26 @@ class Survey:
             return by == "shape" or (by == "wall" and (kind is None or kind.front or kind.seats > 0))
 
         last_groups = last.groups if last is not None else ()
-        return replace(self, finder=find, last=last_groups, measured=True, faces=faces, _memory={}, _fronts={})
+        return replace(self, finder=find, last=last_groups, measured=True, faces=faces,
+                       shades=lambda word: color_term(language, word), _memory={}, _fronts={}, _names={})  # fmt: skip
 
     # -- things -----------------------------------------------------------------------------------------------------
 
     @cached_property
     def things(self) -> tuple[Thing, ...]:
         """Everything with a node, in the order of the graph."""
-        return tuple(self.at(row) for row in range(len(self.graph.nodes)))
+        return tuple(self._thing_at(row) for row in range(len(self.graph.nodes)))
 
     def at(self, row: int) -> Thing:
         """The thing at a row of the stage."""
+        return self.things[row] if row < len(self.graph.nodes) else self._thing_at(row)
+
+    def _thing_at(self, row: int) -> Thing:
         node = self.graph.nodes[row] if row < len(self.graph.nodes) else None
         group = self.stage.group(row)
+        if node is not None and self.shades is not None:
+            shades, id = self.shades, int(node.id)
+            node = node.model_copy(update={"color": max(BASIC, key=lambda word: float(shades(word)[id]))})
         return Thing(self.stage.ids[row], row, node.label if node else group.label, node, group)
 
     def thing(self, id: Id) -> Thing:
@@ -170,6 +182,9 @@ class Survey:
             shell = next(r for r in query.relations if r not in rest.relations).anchors[0].text
             return self._filtered(query, rest, lambda thing: thing.node is not None and thing.node.support == shell)
         found = self.finder(query)
+        if self.measured and found.verdict == "absent" and query.text and not _looks(query):
+            by_label = self.stage.find(query)  # "the table" may be what is labelled a coffee table
+            found = by_label if by_label.verdict != "absent" else found
         if found.verdict == "ambiguous" and (loose := self._to_any(query)) is not None:
             return self._found(loose)
         rows = tuple(dict.fromkeys(c.group for c in found.candidates if c.group >= 0))
@@ -368,6 +383,8 @@ class Survey:
         """Whether a thing has a colour as its main colour; None if its colour, or its shade, is unknown."""
         if not thing.color:
             return None
+        if self.shades is not None:
+            return float(self.shades(word)[int(thing.id)]) >= COLOR_HOLDS
         own, asked = plain_color(thing.color), plain_color(word)
         if own == asked:
             return True
@@ -386,6 +403,13 @@ class Survey:
         for t in things:
             labels[t.name] = labels.get(t.name, 0) + 1
         return listed([f"{n} {plural(name)}" if n > 1 else with_article(name) for name, n in labels.items()])
+
+
+def _looks(query: Query) -> bool:
+    """Whether a query or an anchor of it tells a colour, or means the last answer: the stage knows neither."""
+    asked = bool(query.colors or query.not_colors or query.last)
+    within = [a for r in query.relations for a in r.anchors] + [*query.exclude, *query.also]
+    return asked or any(map(_looks, within))
 
 
 def _held_by_shell(query: Query) -> Query | None:
