@@ -32,8 +32,8 @@ from ..toolbox.tool import Tool
 from ..toolbox.toolbox import Toolbox
 
 INSTRUCTIONS = """\
-One 3D Gaussian Splatting scene is open. Look first: `graph` lists the things in it, `ask` answers questions about them,
-`render` and `find_view` return pictures.
+One 3D Gaussian Splatting scene is open. Look first: `describe` tells what is in it, `graph` lists it as data, `ask`
+answers questions about it, `render` and `find_view` return pictures.
 Edit with `do` (an instruction in words) or with one of the typed operations; each returns a receipt with measured
 checks. An edit is carried out completely or not at all. If several things match, nothing is changed and the candidates
 are returned: call `answer`. `undo` restores the scene bit for bit: `scene.digest` in every result shows it. `save`

@@ -1,4 +1,4 @@
-"""Tools that look at the scene: pictures, answers to questions, the scene graph, and the check of it."""
+"""Tools that look at the scene: pictures, answers, descriptions, the scene graph, and the check of it."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class RenderArguments(Arguments):
 
 
 class GraphArguments(Arguments):
-    """Arguments of `graph`."""
+    """Arguments of `graph` and `describe`."""
 
     most: Annotated[int, Field(ge=1, le=2000, strict=True)] = 200
     """At most so many things, the largest first."""
@@ -120,6 +120,20 @@ def _ask(desk: Desk, said: AskArguments) -> Reply:
     return Reply(answer.text, {"verdict": "ok", **answer.to_json()}, pictures)
 
 
+def _describe(desk: Desk, said: GraphArguments) -> Reply:
+    """Describe the scene from measured facts: a paragraph, and for each thing a line with its id, size and place."""
+    from ...planners.questions.describing import describe
+
+    told = describe(desk.session.survey())
+    ranked = sorted(told.things, key=lambda t: (-t.size[0] * t.size[1] * t.size[2], str(t.id)))
+    kept = {t.id for t in ranked[: said.most]}
+    data = told.to_json()
+    data["things"] = [t for t in data["things"] if t["id"] in kept]
+    data["left_out"] = len(told.things) - len(data["things"])
+    lines = [f"  {t['id']}: {t['text']}" for t in data["things"]]
+    return Reply("\n".join([told.text, *lines]), {"verdict": "ok", **data})
+
+
 def _graph(desk: Desk, said: GraphArguments) -> Reply:
     """Return the scene graph: every thing with its id, name, colour, size, position and what it stands on. Metres, z
     up, origin at the centre of the floor; ids are the `groups` of a query."""
@@ -152,6 +166,7 @@ def looking_tools() -> list[Tool]:
         tool("render", RenderArguments, READS, _render, needs_field=False),
         tool("find_view", FindViewArguments, READS, _find_view),
         tool("ask", AskArguments, READS, _ask),
+        tool("describe", GraphArguments, READS, _describe),
         tool("graph", GraphArguments, READS, _graph),
         tool("check", NoArguments, READS, _check),
     ]

@@ -150,7 +150,7 @@ def test_tools_are_listed_with_schemas_and_hints(toolbox: Toolbox) -> None:
     listed = {tool.name: tool for tool in talk(toolbox, work)}
     assert set(listed) == set(toolbox.tools)
     reading = {name for name, tool in listed.items() if tool.annotations.read_only_hint}
-    assert {"render", "find_view", "ask", "graph", "check", "select"} <= reading
+    assert {"render", "find_view", "ask", "describe", "graph", "check", "select"} <= reading
     assert not reading & {"do", "answer", "undo", "redo", "save", "move", "insert", "delete"}
     assert {n for n in ("delete", "isolate", "replace", "do", "save") if listed[n].annotations.destructive_hint} == {
         "delete", "isolate", "replace", "do", "save"

@@ -196,6 +196,13 @@ def test_graph_and_check_look_at_the_scene(toolbox: Toolbox) -> None:
     assert report.data["verdict"] == "ok" and report.data["ok"] == (not report.data["violations"])
 
 
+def test_describe_tells_every_thing(toolbox: Toolbox) -> None:
+    told = toolbox.call("describe")
+    assert {t["id"] for t in told.data["things"]} == {0, 1, 2} and told.data["left_out"] == 0
+    assert told.text.startswith(told.data["text"]) and all(t["text"] in told.text for t in told.data["things"])
+    assert toolbox.call("describe", {"most": 1}).data["left_out"] == 2
+
+
 def test_a_fault_of_ours_is_told_and_changes_nothing(toolbox: Toolbox) -> None:
     def broken(desk: object, given: object) -> Reply:
         raise RuntimeError("secret path")
