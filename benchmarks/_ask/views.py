@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from ...gaussians import assets
 from ...gaussians.language.encoders import Encoder
 from ...gaussians.render import render
 from ...gaussians.viewpoints import for_groups
@@ -22,7 +23,7 @@ from .._select import cases
 from .._select.cases import Part
 from ..harness import Metric, Point
 from .generate import questions
-from .generated import furnished, shown_kinds
+from .generated import shown_kinds
 from .question import OVERLAP, Question, overlap
 from .rooms import table_of_case
 from .truth import Table
@@ -32,6 +33,7 @@ SIZE = (320, 240)  # pixels of the group images that are read
 SEEN = 136  # pixels of them from which a thing counts as seen: one patch of 28 x 28 of a 768 x 576 picture
 SEEDS = 3  # of the random choice
 ASKED = 40  # questions a room
+CROWD = 26  # things that a room is filled up to
 OURS, EVEN = 3, 8  # ours with 3 views is to be at least as good as uniform with 8
 KINDS = ("existence", "count", "colour", "compare", "compare_is", "nearer", "viewer_side", "object_side", "seated",
          "on", "on_is", "under_is", "next_is", "between_is", "several", "superlative", "list")  # fmt: skip
@@ -58,8 +60,9 @@ class Watched:
 
     @classmethod
     def of(cls, seed: int, encoder: Encoder, detail: float) -> Watched:
-        """A furnished room with its true groups: a wrong segmentation is not a fault of the choice of views."""
-        case, size = furnished(seed, detail)
+        """A crowded room with a ceiling, with its true groups: a wrong segmentation is not a fault of the views."""
+        room = assets.furnish(seed, objects=CROWD, detail=detail, ceiling=True)
+        case, size = cases.case_of(room, seed), room.size
         known = cases.with_true_groups(case, encoder)
         return cls(table_of_case(case, size, case.scene.cameras[0]), for_groups.Sights.of(known.scene))
 
@@ -107,7 +110,8 @@ def measure(seeds: Sequence[int], encoder: Encoder, detail: float, quick: bool) 
     ]
     note = (
         f"views: a scripted stand-in for a vision model, which sees what covers {SEEN} pixels of a group image of "
-        f"{SIZE[0]} x {SIZE[1]} of one of its pictures, in furnished rooms with true groups. Seconds are those of "
+        f"{SIZE[0]} x {SIZE[1]} of one of its pictures, in crowded furnished rooms with a ceiling and true groups. "
+        "Seconds are those of "
         "choosing and rendering the views; a real model's come on top. ours: chosen for the things that the question "
         f"names; uniform: evenly over the same candidates; random: drawn from them, {SEEDS} times"
     )
