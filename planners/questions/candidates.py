@@ -69,7 +69,11 @@ def whole(cases: Sequence[Case], quantifier: str) -> Answer:
     no = [c for c in cases if c[1].answer == "no"]
     if not yes or not no:
         return agreed(cases)
-    right = bool(yes) if quantifier == "any" else not no
+    if quantifier == "any":
+        text = f"Yes: {listed([n for n, _ in yes[:MOST]])}{' and others' if len(yes) > MOST else ''}."
+        best = max((a for _, a in yes), key=lambda a: a.confidence)
+        return best.model_copy(update={"text": text, "evidence": joined(a for _, a in yes)})
+    right = not no
     told = f"that holds of {listed([n for n, _ in yes])} and not of {listed([n for n, _ in no])}"
     best = (yes if right else no)[0][1]
     text = f"{'Yes' if right else 'No, not all'}: {told}."

@@ -28,6 +28,11 @@ class Asked:
     situation: Situation | None = None
     words: tuple[str, ...] = ()
 
+    @property
+    def said(self) -> str:
+        """The words of the question without the situation, in plain form."""
+        return " ".join(self.words)
+
 
 @dataclass(frozen=True)
 class Undecided:

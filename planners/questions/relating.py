@@ -28,7 +28,7 @@ def strength(name: str, thing: Thing, anchors: Sequence[Thing], survey: Survey) 
     if thing.row in {a.row for a in anchors}:
         return 0.0
     if anchor.label in SHELL and anchor.node is None:
-        return _on_shell(name, thing, anchor, survey)
+        return max(_on_shell(name, thing, a, survey) for a in anchors)
     if name in ("on", "inside"):
         return _held(name, thing, anchor, survey)
     if name in _UPRIGHT:
@@ -83,10 +83,13 @@ def _between(thing: Thing, anchors: Sequence[Thing], survey: Survey) -> float:
 def _on_shell(name: str, thing: Thing, anchor: Thing, survey: Survey) -> float:
     if thing.node is None:
         return 0.0
+    if anchor.label == "wall" and name in ("on", "inside", "next_to"):
+        wall, gap = wall_of(thing, survey.room)
+        there = float(wall.out @ np.array(anchor.group.box.center[:2])) > wall.reach / 2
+        held = gap <= AT_WALL if name == "next_to" else thing.node.support == "wall"
+        return 1.0 if there and held else 0.0
     if name in ("on", "inside") or (name == "next_to" and anchor.label == "floor"):
         return 1.0 if thing.node.support == anchor.label else 0.0
-    if name == "next_to" and anchor.label == "wall":
-        return 1.0 if wall_of(thing, survey.room)[1] <= AT_WALL else 0.0
     return relations.score(name, thing.group, [anchor.group], survey.stand)
 
 

@@ -27,6 +27,7 @@ F64 = NDArray[np.float64]
 BEFORE = 0.4  # metres between a standing or seated person's middle and what the person is at
 SEAT_REACH = 0.5  # largest gap in metres between a seat and the table that it belongs to
 _DISTANCES = (0.4, 0.7, 1.0, 1.3, 1.6)  # metres from what a person faces or has at the back, if nothing else is said
+_BESIDE = 75.0  # degrees off a side up to which what a person says to be there may lie
 _TURNED = 60.0  # degrees between a seat's front and the table that it belongs to
 STEP = 0.5  # metres between the places that are tried where the place is not said
 MOST = 48  # views that one situation may leave
@@ -145,7 +146,14 @@ def views(situation: Situation, survey: Survey) -> tuple[View, ...]:
             found.extend(replace(v, words=situation.words, name=name if many else "") for v in made)
     for query, side in situation.beside:
         beside = meant(query, survey)
-        found = [v for v in found if any(off(v.to(t), side) <= side.reach and not _is_at(v, t) for t in beside)]
+        found = [
+            v
+            for v in found
+            if any(
+                off(v.to(t), side) <= max(side.reach, _BESIDE * (side.reach == 60.0)) and not _is_at(v, t)
+                for t in beside
+            )
+        ]
     step = max(1, math.ceil(len(found) / MOST))
     return tuple(found[::step])
 

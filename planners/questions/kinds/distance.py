@@ -130,7 +130,7 @@ _WHICH_NEAR = f"""
     (do|does) {{b:spot}} (stand|sit|hang|lie) {_NEARER} [to] {{a:spot}} or [to] {{other:spot}}
     {_WHICH} (is|are) {{b:spot}} {_NEARER} to [is it] {{a:spot}} or [to] {{other:spot}}
     {_WHICH} (is|are) {_NEARER} {{a:spot}} or {{other:spot}} {_TO} {{b:spot}}
-    of {{a:spot}} and {{other:spot}} which [one] (is|stands) {_NEARER} {_TO} {{b:spot}}
+    [out] (of|between) {{a:spot}} and {{other:spot}} (which|what) [one] (is|stands) {_NEARER} {_TO} {{b:spot}}
 """
 _APART_COMPARED = """
     BE {a:spot} and {b:spot} (farther apart|closer together|closer to each other|nearer to each other|farther \

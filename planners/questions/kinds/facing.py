@@ -149,7 +149,7 @@ def _is_facing(asked: Asked, survey: Survey) -> Answer | None:
     seconds = meant(asked.slots["away" if away else "a"], survey)
     if all(t.node is None for t in seconds):
         return agreed([(survey.named(t), _faces_wall(t, seconds, away, survey)) for t in firsts])
-    mutual = "each other" in asked.text or "one another" in asked.text
+    mutual = "each other" in asked.said or "one another" in asked.said
     if mutual:
         both = [("", _faces(a, b, False, survey)) for a in firsts for b in seconds]
         return whole([*both, *(("", _faces(b, a, False, survey)) for a in firsts for b in seconds)], "all")
@@ -206,7 +206,7 @@ def _which(asked: Asked, survey: Survey) -> Answer | None:
                  and _faces(t, target, False, survey).answer == "yes" and _free_standing(t)]  # fmt: skip
         names = [survey.named(t) for t in found]
         evidence = Evidence(ids=(*(t.id for t in found), *((target.id,) if target.node is not None else ())))
-        if asked.text.lower().strip().startswith("how many"):
+        if asked.said.startswith("how many"):
             return Answer(answer=float(len(found)), answer_type="number", text=f"{len(found)}: {listed(names)}.",
                           confidence=0.85, evidence=evidence)  # fmt: skip
         labels = tuple(

@@ -115,7 +115,7 @@ def _ranked(things: tuple[Thing, ...], to: End, survey: Survey, near: bool) -> l
 def _candidates(asked: Asked, survey: Survey) -> tuple[Thing, ...]:
     """The things that are compared: of a kind that is named, of the furniture, or everything that can be moved."""
     query: Query | None = asked.slots.get("x")
-    said = asked.text.lower()
+    said = asked.said
     if query is not None and not is_anything(query):
         things = survey.all_of(query)
         if not things:

@@ -92,7 +92,7 @@ def _things(asked: Asked, survey: Survey) -> tuple[Thing, ...]:
 
 
 def _nth(asked: Asked, survey: Survey) -> Answer | None:
-    said = asked.text.lower()
+    said = asked.said
     things = _things(asked, survey)
     number = next((n for w, n in _NUMBERS.items() if re.search(rf"\b{w}\b", said)), 1)
     ends = re.findall(r"\b(left|right|front|back)\b", said)
@@ -107,7 +107,7 @@ def _nth(asked: Asked, survey: Survey) -> Answer | None:
 
 
 def _extreme(asked: Asked, survey: Survey) -> Answer | None:
-    found = re.search(r"(left|right)(?:most)?\b", asked.text.lower())
+    found = re.search(r"(left|right)(?:most)?\b", asked.said)
     if found is None:
         return None
     ranked = _ordered(_things(asked, survey), found[1], asked, survey)
@@ -158,7 +158,7 @@ def _at(ranked: list[tuple[float, Thing]], index: int, told: str, asked: Asked, 
 
 
 def _listed(asked: Asked, survey: Survey) -> Answer | None:
-    ways = re.findall(r"\b(left|right|front|back|near|nearest|closest|far|farthest|furthest)\b", asked.text.lower())
+    ways = re.findall(r"\b(left|right|front|back|near|nearest|closest|far|farthest|furthest)\b", asked.said)
     if not ways:
         return None
     first = {"near": "front", "nearest": "front", "closest": "front", "far": "back", "farthest": "back",

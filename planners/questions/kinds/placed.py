@@ -172,7 +172,7 @@ def _what(asked: Asked, survey: Survey) -> Answer | None:
     cases: list[Case] = []
     for anchors in _anchors(asked, survey):
         found = [t for t in related(name, anchors, survey) if wanted is None or t.row in wanted]
-        if re.search(r"\bhang|\bhung\b", asked.text.lower()):
+        if re.search(r"\bhang|\bhung\b", asked.said):
             found = [t for t in found if (kind := kinds.of(t.label)) is None or not kind.opening]
         cases.append((" and ".join(survey.named(a) for a in anchors), _listed(name, found, anchors, asked, survey)))
     if len(cases) > 1 and _is_every(asked):
@@ -189,12 +189,12 @@ def _relation(asked: Asked) -> str | None:
         return "next_to"
     if "r" in asked.slots:
         name = str(asked.slots["r"])
-        if name == "inside" and re.search(r"\bin (?:the )?(?:room|corner|here)\b", asked.text.lower()):
+        if name == "inside" and re.search(r"\bin (?:the )?(?:room|corner|here)\b", asked.said):
             return None
         return None if relations.named(name).aim else name
     if "b" in asked.slots or "both" in asked.slots:
         return "between"
-    said = asked.text.lower()
+    said = asked.said
     for phrase, name in (("part of", "inside"), ("under", "under"), ("beneath", "under"), ("above", "above"),
                          ("next to", "next_to"), ("beside", "next_to")):  # fmt: skip
         if re.search(rf"\b{phrase}", said):
@@ -216,8 +216,8 @@ def _anchors(asked: Asked, survey: Survey) -> list[tuple[Thing, ...]]:
 
 def _one_shell(anchors: list[tuple[Thing, ...]]) -> list[tuple[Thing, ...]]:
     """The four walls of a room are one anchor."""
-    if len(anchors) > 1 and all(a[0].node is None for a in anchors):
-        return anchors[:1]
+    if len(anchors) == 4 and all(a[0].node is None for a in anchors):
+        return [tuple(a[0] for a in anchors)]
     return anchors
 
 
@@ -236,7 +236,7 @@ def _wanted(asked: Asked, survey: Survey) -> set[int] | None:
 
 def _listed(name: str, found: Sequence[Thing], anchors: Sequence[Thing], asked: Asked, survey: Survey) -> Answer:
     where = _told(name, anchors, survey)
-    one = bool(re.search(r"\b(?:what|which) (?:thing|object|item)\b(?!s)|\bclosest\b", asked.text.lower()))
+    one = bool(re.search(r"\b(?:what|which) (?:thing|object|item)\b(?!s)|\bclosest\b", asked.said))
     if not found:
         return Answer(answer=(), answer_type="list", text=f"Nothing is {where}.", confidence=0.9,
                       evidence=Evidence(ids=_ids(anchors)))  # fmt: skip
@@ -258,7 +258,7 @@ def _together(name: str, answers: Sequence[Answer], asked: Asked, survey: Survey
 
 
 def _told(name: str, anchors: Sequence[Thing], survey: Survey) -> str:
-    names = [f"the {a.label}" if a.node is None else survey.named(a) for a in anchors]
+    names = list(dict.fromkeys(f"the {a.label}" if a.node is None else survey.named(a) for a in anchors))
     if name == "held":
         return f"on or in {names[0]}"
     return relations.named(name).told(*names)
@@ -269,7 +269,7 @@ def _has(asked: Asked, survey: Survey) -> Answer | None:
     if name is None:
         return None
     cases: list[Case] = []
-    for (anchor,) in _anchors(asked, survey):
+    for anchor, *_ in _anchors(asked, survey):
         found = _held(anchor, survey) if name == "held" else related(name, (anchor,), survey)
         cases.append((survey.named(anchor), _listed(name, found, (anchor,), asked, survey)))
     if len(cases) > 1 and _is_every(asked):
@@ -290,9 +290,9 @@ def _has_it(asked: Asked, survey: Survey) -> Answer | None:
     if name is None:
         return None
     wanted = _wanted(asked, survey)
-    empty = bool(re.search(r"\b(?:empty|bare|clear|free)\b", asked.text.lower())) and "x" not in asked.slots
+    empty = bool(re.search(r"\b(?:empty|bare|clear|free)\b", asked.said)) and "x" not in asked.slots
     cases: list[Case] = []
-    for (anchor,) in _anchors(asked, survey):
+    for anchor, *_ in _anchors(asked, survey):
         found = _held(anchor, survey) if name == "held" else related(name, (anchor,), survey)
         found = [t for t in found if wanted is None or t.row in wanted]
         yes = bool(found) != empty
@@ -373,7 +373,7 @@ def _subjects(query: Query, asked: Asked, survey: Survey) -> tuple[Thing, ...] |
     """The things that a question asks about; None if a kind that is named is absent."""
     if is_anything(query) and not query.colors and not query.relations:
         return survey.things
-    if query.pick == "any" or re.search(r"\bthere\b", asked.text.lower()):
+    if query.pick == "any" or re.search(r"\bthere\b", asked.said):
         return survey.all_of(query) or None
     return meant(query, survey)
 
@@ -385,7 +385,7 @@ def _one_anchor(name: str, things: Sequence[Thing], anchors: tuple[Thing, ...], 
     where = _told(name, anchors, survey)
     margin = min(abs(s - HOLDS) for s in scores.values()) if scores else 0.5
     sure = round(0.6 + 0.37 * min(margin / 0.25, 1.0), 3)
-    anyone = is_anything(query) or query.pick == "any" or bool(re.search(r"\bthere\b", asked.text.lower()))
+    anyone = is_anything(query) or query.pick == "any" or bool(re.search(r"\bthere\b", asked.said))
     if anyone or len(things) == 1:
         said = listed([survey.named(t) for t in there]) if there else listed([survey.named(t) for t in things[:1]])
         if there:
@@ -398,9 +398,18 @@ def _one_anchor(name: str, things: Sequence[Thing], anchors: tuple[Thing, ...], 
                 text = f"No, nothing is {where}."
         return _yes_no(bool(there), text, [*there[:20], *anchors], sure)
     each = [
-        (survey.named(t), _yes_no(t in there, f"{survey.named(t)} is {where}", [t, *anchors], sure)) for t in things
+        (
+            survey.named(t),
+            _yes_no(
+                t in there,
+                f"{'Yes' if t in there else 'No'}, {survey.named(t)} is {'' if t in there else 'not '}{where}.",
+                [t, *anchors],
+                sure,
+            ),
+        )
+        for t in things
     ]
-    if is_plural(query) or "both" in asked.text.lower() or "all" in asked.text.lower().split():
+    if is_plural(query) or "both" in asked.said or "all" in asked.words:
         return whole(each, "all")
     return agreed(each)
 
@@ -410,7 +419,7 @@ def _strength(name: str, thing: Thing, anchors: tuple[Thing, ...], asked: Asked,
         turned = (anchors[1], anchors[0])
         return max(strength(name, thing, anchors, survey), strength(name, thing, turned, survey))
     found = strength(name, thing, anchors, survey)
-    if name in ("under", "below") and re.search(r"\bpart(?:ly|ially)?\b|\breach|\bextend", asked.text.lower()):
+    if name in ("under", "below") and re.search(r"\bpart(?:ly|ially)?\b|\breach|\bextend", asked.said):
         return (
             1.0
             if overlaps(thing, anchors[0]) > 0.02 and thing.group.box.center[2] < anchors[0].group.box.center[2]
@@ -424,7 +433,7 @@ def _strength(name: str, thing: Thing, anchors: tuple[Thing, ...], asked: Asked,
 
 
 def _loose(asked: Asked) -> bool:
-    return not re.search(r"\binside\b|\bwithin\b", asked.text.lower())
+    return not re.search(r"\binside\b|\bwithin\b", asked.said)
 
 
 # -- what a thing stands on or next to --------------------------------------------------------------------------------
@@ -482,7 +491,7 @@ def _next(asked: Asked, survey: Survey) -> Answer | None:
 
 
 def _relation_of_rest(asked: Asked) -> str:
-    said = asked.text.lower()
+    said = asked.said
     if "between" in said:
         return "between"
     if re.search(r"\b(?:under|underneath|beneath|below)\b", said):
@@ -500,7 +509,7 @@ def _relation_of_rest(asked: Asked) -> str:
 def _hung(asked: Asked, survey: Survey) -> Answer | None:
     said = str(asked.slots["w"])
     shell = "ceiling" if "ceiling" in said else "wall" if "wall" in said else "floor"
-    name, text = (named_in(said) or ("",))[0] if shell == "wall" else "", asked.text.lower()
+    name, text = (named_in(said) or ("",))[0] if shell == "wall" else "", asked.said
     stands = bool(re.search(r"\b(?:against|along|at|stands?|standing)\b", text)) and shell == "wall"
     wanted = _wanted(asked, survey)
     hangs_there = bool(re.search(r"\b(?:hang|hangs|hanging|hung|mounted)\b", text))

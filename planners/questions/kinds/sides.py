@@ -226,7 +226,7 @@ def _in_view(asked: Asked, survey: Survey) -> Answer | None:
 
 
 def _exists(asked: Asked) -> bool:
-    return bool(re.search(r"\bthere\b|\b(?:have|see|find|got)\b", asked.text.lower()))
+    return bool(re.search(r"\bthere\b|\b(?:have|see|find|got)\b", asked.said))
 
 
 def _things(asked: Asked, survey: Survey) -> tuple[Thing, ...]:
@@ -312,7 +312,7 @@ def _direction(asked: Asked, survey: Survey) -> Answer | None:
         return None
     things = survey.all_of(query) if query.pick == "any" else meant(query, survey)
     things = things or meant(query, survey)
-    said = asked.text.lower()
+    said = asked.said
     if re.search(r"\bangle|degrees|bearing|how far|how much", said):
         return _over_views(asked, survey, lambda v: agreed([(survey.named(t), _angle(t, v, survey)) for t in things]))
     clock = "clock" in said
@@ -356,7 +356,7 @@ def _what_is_there(asked: Asked, survey: Survey) -> Answer | None:
     if query is not None and is_anything(query):
         query = None
     wanted = {t.row for t in survey.all_of(query)} if query is not None else None
-    many = bool(re.search(r"\b(?:list|everything|things|objects|all|are)\b", asked.text.lower()))
+    many = bool(re.search(r"\b(?:list|everything|things|objects|all|are)\b", asked.said))
 
     def one(view: View) -> Answer:
         found = [t for t in _on_side(side, view, survey) if wanted is None or t.row in wanted]
@@ -370,9 +370,11 @@ def _on_side(side: Side, view: View, survey: Survey) -> list[Thing]:
     reach = min(side.reach, 45.0)
     outside = not view.stated and not is_inside(view, survey)
 
+    eye = np.array([*view.eye, 0.0])
+
     def cost(t: Thing) -> float:
-        distance = max(float(((view.target(t) - view.eye) ** 2).sum()) ** 0.5 - min(t.group.box.size[:2]) / 2, 0.05)
-        return distance * (1.0 + (off(view.to(t), side) / 45.0) ** 2)
+        local = np.abs(t.group.box.local(eye[None])[0, :2]) - np.array(t.group.box.size[:2]) / 2
+        return (float(np.linalg.norm(np.maximum(local, 0.0))) + 0.05) * (1.0 + (off(view.to(t), side) / 45.0) ** 2)
 
     def there(t: Thing) -> bool:
         if outside and side.at in (90.0, -90.0):
@@ -506,7 +508,7 @@ def _frame_of(anchor: Thing, asked: Asked, survey: Survey) -> tuple[View | None,
 
     A situation gives the person's own line of sight; a situation that takes the thing's frame gives that.
     """
-    if _OWN_FRAME.search(asked.text.lower()):
+    if _OWN_FRAME.search(asked.said):
         return of_object(anchor, survey), True
     if asked.situation is None:
         seen = viewer(survey)
@@ -595,7 +597,7 @@ def _what_of(asked: Asked, survey: Survey) -> Answer | None:
         return None
     query = asked.slots.get("x")
     wanted = None if query is None or is_anything(query) else {t.row for t in survey.all_of(query)}
-    many = bool(re.search(r"\b(?:list|everything|things|objects|all|are)\b", asked.text.lower()))
+    many = bool(re.search(r"\b(?:list|everything|things|objects|all|are)\b", asked.said))
     anchors = meant(asked.slots["a"], survey)
 
     def one(anchor: Thing) -> Answer:
@@ -652,7 +654,7 @@ def _own_either(asked: Asked, survey: Survey) -> Answer | None:
 
 def _which_side_of(asked: Asked, survey: Survey, own: bool = False) -> Answer | None:
     """On which side of a thing another one is."""
-    said = asked.text.lower()
+    said = asked.said
     firsts, seconds = meant(asked.slots["x"], survey), meant(asked.slots["a"], survey)
     lateral = "left and right" in said or "left or" in said or "right or" in said or "or right" in said
     depth = bool(re.search(r"\bor (?:behind|in front|before)\b|\b(?:behind|front of) or\b|front and back", said))

@@ -134,8 +134,8 @@ def _which_corner(asked: Asked, survey: Survey) -> Answer | None:
 def _which_zone(asked: Asked, survey: Survey) -> Answer | None:
     if asked.situation is not None and "room" not in asked.words:
         return None
-    deep = bool(re.search(r"\b(?:front|back)\b", asked.text.lower().replace("from the front", "")))
-    lateral = bool(re.search(r"\b(?:left|right)\b", asked.text.lower()))
+    deep = bool(re.search(r"\b(?:front|back)\b", asked.said.replace("from the front", "")))
+    lateral = bool(re.search(r"\b(?:left|right)\b", asked.said))
     things = meant(asked.slots["x"], survey)
     back, _, _, right = walls(survey.room)
 
@@ -164,13 +164,17 @@ def _in_zone(asked: Asked, survey: Survey) -> Answer | None:
     query, said = asked.slots["x"], str(asked.slots["z"])
     if _is_personal(asked):
         return None
-    exists = query.pick == "any" or bool(re.search(r"\bthere\b|\b(?:have|see)\b", asked.text.lower()))
+    exists = query.pick == "any" or bool(re.search(r"\bthere\b|\b(?:have|see)\b", asked.said))
     things = survey.things if is_anything(query) else survey.all_of(query) if exists else meant(query, survey)
     if not things:
         return None
 
+    on_wall = bool(re.search(r"\bon (?:the|a) (?:[\w-]+ ){0,2}walls?\b", asked.said))
+
     def one(thing: Thing) -> Answer:
         yes, sure = is_in(thing, said, survey.room)
+        if on_wall:
+            yes = yes and thing.node is not None and thing.node.support == "wall"
         if "z2" in asked.slots:
             also, other = is_in(thing, str(asked.slots["z2"]), survey.room)
             yes, sure = yes and also, min(sure, other)
@@ -186,7 +190,7 @@ def _in_zone(asked: Asked, survey: Survey) -> Answer | None:
 
 
 def _what_in_zone(asked: Asked, survey: Survey) -> Answer | None:
-    query, text = asked.slots.get("x"), asked.text.lower()
+    query, text = asked.slots.get("x"), asked.said
     if _is_personal(asked):
         return None
     said = str(asked.slots.get("z", "the corner"))

@@ -52,4 +52,4 @@ def _phrases() -> dict[str, str]:
         for phrase in (*kind.phrases.in_commands(), *kind.phrases.in_descriptions()):
             if phrase not in _LEFT_OUT:
                 found.setdefault(phrase, name)
-    return found
+    return found | {"around": "next_to", "all around": "next_to", "round": "next_to"}

@@ -77,9 +77,14 @@ _LOOKS = "[and|while|,] [i am|i|am] (facing|looking|look|face|gazing|turned|turn
 _ROOM = "(the room|the middle of the room|the centre of the room|the center of the room|this room)"
 _SIDED = (
     "[and|with|while|having|,] [with|there (is|are)|that|i have|having|have|has|its|the] {b:bare} [is|are|"
-    "being|placed|right|located] {s:side}"
+    "being|placed|right|located] {s:side} [(within reach|within arms reach|within arm 's reach|within my reach|"
+    "directly|close by|far away|across the room|across the table|next to me|against the wall)]"
 )
-_SIDED2 = "[and|with|while|having|,|there (is|are)] {b2:bare} [is|are] {s2:side}"
+_SIDED2 = (
+    "[and|with|while|having|,|there (is|are)] {b2:bare} [is|are] {s2:side} [(within reach|within arms reach|"
+    "within arm 's reach|within my reach|directly|close by|far away|across the room|across the table|next to "
+    "me|against the wall)]"
+)
 _EYES = (
     "[and|with|while|having] [with] my (eyes|gaze|face|head|nose|body) [fixed|turned|directed] (on|to|toward|"
     "towards|at) {g:bare}"
