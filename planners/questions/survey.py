@@ -22,7 +22,7 @@ from ...gaussians.language.query.terms import color_term
 from ...gaussians.world import kinds, relations
 from ...gaussians.world.relation_geometry import HOLDS, Stand
 from ...gaussians.world.support import SHELL
-from ...gaussians.world.words import plural
+from ...gaussians.world.words import is_plural, plural
 from ..rooms.graph import SceneGraph
 from ..rooms.graph_scene import Id, Stage
 from .floor.floor_map import FloorMap
@@ -434,7 +434,7 @@ def _with(query: Query, anchor: Query, other: Query) -> Query:
     return query.model_copy(update={"relations": relations})
 
 
-__all__ = ["Found", "NotResolved", "Survey", "Thing", "listed", "with_article"]
+__all__ = ["Found", "NotResolved", "Survey", "Thing", "be", "listed", "with_article"]
 
 
 def listed(items: Sequence[str]) -> str:
@@ -446,9 +446,14 @@ def listed(items: Sequence[str]) -> str:
 
 def with_article(noun: str) -> str:
     """A noun with "a" or "an"; plurals stay as they are."""
-    if noun.endswith("s") and plural(noun) == noun:
+    if is_plural(noun):
         return noun
     return f"{'an' if noun[:1] in 'aeiou' else 'a'} {noun}"
+
+
+def be(things: Sequence[Thing]) -> str:
+    """ "is" or "are", as several things or one in the plural ("books") need."""
+    return "is" if len(things) == 1 and not is_plural(things[0].name) else "are"
 
 
 def _on_stage(found: Selection, rows: dict[Id, int], structure: dict[int, str]) -> Selection:

@@ -35,6 +35,7 @@ _PHRASES = f"""
     (is|are) {{a}} [a] different {_COLOR} (from|than|to) {{b}}
     BE {{x}} {{c:color}} or [is it|are they|rather|more] {{other:color}} [in color]
     BE {{x}} {{c:color}} , {{third:color}} or {{other:color}} [in color]
+    BE {{x}} {{c:color}} or {{third:color}} or {{other:color}} [in color]
     {_WHAT} {_BE} {{x}} [painted|in|have|got|made in]
     {_WHAT} {{x}} {_BE} [there]
     {_WHAT} of {{of}} [is it|is there|are there|do we have]

@@ -13,7 +13,7 @@ from ..reading.noun_phrase import is_anything
 from ..reading.noun_phrase import thing as noun_phrase
 from ..reading.phrase_templates import templates
 from ..resolving import all_of
-from ..survey import Survey, Thing, listed
+from ..survey import Survey, Thing, be, listed
 from ..telling import GRAPH_SURE, absent_text, bare, label, number, yes_no
 
 _ROOM = "(the room|this room|it|this place|the scene|this scene|this|we|you|i|they|people)"
@@ -80,6 +80,8 @@ _PHRASES = f"""
         here|here|that you can see|present|visible]
     count [me|up|all|for me] {{x}} [in the room|in here|here]
     count how many {{x}} (there are|are there) [in the room|in here|here]
+    (how many|what number of) {{noun:noun}} (have|has|hold|carry|contain) {{had:noun}} [on it|on top|on them|in it|in \
+        them|on top of them]
     (how many|what number of) {{noun:noun}} (does|do) {{holder}} (have|hold|carry|contain|seat) [around it|at it|next \
         to it|by it]
     how many times does {{x}} (appear|occur) [here|in the room]
@@ -118,7 +120,8 @@ def _described(asked: Asked) -> Query | None:
     if "noun" in slots:
         if "holder" in slots:
             return None  # counted apart, by what it holds
-        return noun_phrase((*slots["noun"], *slots["place"]))
+        place = slots["place"] if "place" in slots else ("with", *slots["had"])
+        return noun_phrase((*slots["noun"], *place))
     query: Query = slots["of"] if "of" in slots else slots["x"]
     if "c" in slots:
         if query.also:
@@ -133,7 +136,7 @@ def _count(query: Query, survey: Survey) -> Answer:
         return number(4, "The room has 4 corners.", (), 0.8)
     if not things:
         return number(0, absent_text(survey, found.about or query, found), found.near, GRAPH_SURE - 0.03)
-    verb = "is" if len(things) == 1 else "are"
+    verb = be(things)
     names = (
         f": {listed([survey.named(t) for t in things])}"
         if 1 < len(things) <= 8 and query.text != things[0].label
@@ -165,7 +168,7 @@ def _condition(amount: Amount, query: Query, survey: Survey) -> Answer | None:
     things, found = all_of(survey, query)
     if not things:
         return yes_no(amount.holds(0), _lower(absent_text(survey, found.about or query, found)), found.near)
-    verb = "is" if len(things) == 1 else "are"
+    verb = be(things)
     return yes_no(amount.holds(len(things)), f"there {verb} {survey.counted(things)}.", things)
 
 
@@ -174,7 +177,7 @@ def _parity(asked: Asked, survey: Survey) -> Answer:
     name = next(n for n in ("odd", "even", "parity", "x") if n in slots)
     things, _ = all_of(survey, slots[name])
     n = len(things)
-    told = f"there {'is' if n == 1 else 'are'} {survey.counted(things) if things else 'none'}."
+    told = f"there {be(things)} {survey.counted(things) if things else 'none'}."
     if name == "parity":
         said = "odd" if n % 2 else "even"
         return Answer(answer=said, answer_type="label", text=f"{said.capitalize()}: {told}", confidence=GRAPH_SURE,

@@ -7,7 +7,7 @@ from ..answer import Answer
 from ..kind import Asked, Kind
 from ..reading.phrase_templates import templates
 from ..resolving import all_of
-from ..survey import Survey, Thing, listed
+from ..survey import Survey, Thing, be, listed
 from ..telling import GRAPH_SURE, absent_text, bare, evidence, yes_no
 
 _NAMED = 4  # things up to which each is told apart
@@ -70,7 +70,7 @@ def _there(survey: Survey, query: Query) -> tuple[Query, tuple[Thing, ...], str]
     """What a description finds, and that it finds nothing."""
     things, found = all_of(survey, query)
     if query.count is not None and things and len(things) != query.count:
-        verb = "is" if len(things) == 1 else "are"
+        verb = be(things)
         return query, (), f"there {verb} {survey.counted(things)}."
     if things:
         return query, things, ""
@@ -82,7 +82,7 @@ def _there(survey: Survey, query: Query) -> tuple[Query, tuple[Thing, ...], str]
 
 
 def _told(survey: Survey, query: Query, things: list[Thing]) -> str:
-    verb = "is" if len(things) == 1 else "are"
+    verb = be(things)
     named = [survey.named(t) for t in things]
     plain = {f"the {t.label}" for t in things}
     where = f": {listed(named)}" if len(things) <= _NAMED and not plain.issuperset(named) else ""

@@ -14,7 +14,7 @@ from ..reading.noun_phrase import is_anything
 from ..reading.noun_phrase import thing as noun_phrase
 from ..reading.phrase_templates import templates
 from ..resolving import all_of
-from ..survey import NotResolved, Survey, Thing, listed
+from ..survey import NotResolved, Survey, Thing, be, listed
 from ..telling import GRAPH_SURE, absent_text, evidence
 
 _ALL = (
@@ -112,7 +112,7 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
     columns: Sequence[str] = slots.get("cols") or slots.get("several") or ()
     if "table" in slots:
         columns = ("color", "width", "depth", "height", "x", "y", "z")
-    verb = "is" if len(things) == 1 else "are"
+    verb = be(things)
     text = f"There {verb} {survey.counted(things)}."
     if columns:
         text = listed([_row_told(survey, t, columns) for t in things[:40]]) + "."

@@ -67,6 +67,7 @@ _PHRASES = f"""
     BE {{x}} as {{d:dimension}} as (me|i am|i|a person|an adult|a man|an average person|a human)
 """
 _SURE = 0.95
+_FLAT = 0.15  # of its second longest side: thickness up to which the area of a thing is that of its face
 _OF_BOX = "as its box is measured"
 
 
@@ -87,6 +88,8 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
     if {"than", "as"} & set(asked.words) and "u" not in slots:
         return _against_person(asked, phrase, survey)
     what: Measure = slots["d"].measure
+    if what == "footprint" and not {"footprint", "floor", "base"} & set(asked.words):
+        return _face(phrase, survey)
     if what == "size" and not phrase.query.text and not phrase.query.groups and "size" not in asked.words:
         return None  # "how big is everything" asks for the room
     if what == "size":
@@ -128,6 +131,19 @@ def _area(phrase: Meant, values: list[float], what: Measure, survey: Survey) -> 
     verb = "cover" if what == "footprint" else "fill"
     text = f"{named} {verb}{'' if phrase.plural and len(values) > 1 else 's'} {total:.2f} {sign}, {_OF_BOX}."
     return number(total, _up(text), phrase.things, 0.9, unit)
+
+
+def _face(phrase: Meant, survey: Survey) -> Answer:
+    """The area of a flat thing, as of a board on a wall; of other things that of the floor under it."""
+    flat = all(measure(survey, t, "thickness") < _FLAT * sorted(sides(survey, t))[1] for t in phrase.things)
+    if not flat:
+        return _measured(phrase, "footprint", None, survey)
+    areas = [max(a * b, b * c, a * c) for a, b, c in (sides(survey, t) for t in phrase.things)]
+    if not phrase.plural and agreed(areas) is None:
+        raise phrase.differ()
+    total = sum(areas) if phrase.plural else areas[0]
+    named = listed([survey.named(t) for t in (phrase.things if phrase.plural else phrase.things[:1])])
+    return number(total, _up(f"{named}: {total:.2f} m², its face."), phrase.things, 0.9, "m2")
 
 
 def _size(phrase: Meant, unit: Unit | None, survey: Survey) -> Answer:

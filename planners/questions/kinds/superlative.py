@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from ....gaussians.language.query.query import Query
 from ..answer import Answer
 from ..kind import Asked, Kind
-from ..measuring import certainty, in_unit, measure, told_length
+from ..measuring import agreed, certainty, in_unit, measure, told_length
 from ..reading.measures import Measure, Superlative
 from ..reading.noun_phrase import is_anything
 from ..reading.noun_phrase import thing as noun_phrase
@@ -194,11 +194,12 @@ def _larger_than(asked: Asked, survey: Survey) -> Answer | None:
     query = noun_phrase(words) if words else Query(pick="all")
     if query is None or than.plural:
         return None
-    if len(than.things) > 1:
+    marks = [measure(survey, t, degree.measure) for t in than.things]
+    if agreed(marks) is None:
         raise than.differ()
     mark = measure(survey, than.things[0], degree.measure)
     things, found = all_of(survey, query)
-    rivals = [t for t in things if t.node is not None and t.id != than.things[0].id]
+    rivals = [t for t in things if t.node is not None and t.id not in {m.id for m in than.things}]
     fit = [t for t in rivals if degree.sign * (measure(survey, t, degree.measure) - mark) > 0]
     fit.sort(key=lambda t: -degree.sign * measure(survey, t, degree.measure))
     told = [f"{survey.named(t)} ({_measure(measure(survey, t, degree.measure), degree.measure)})" for t in fit[:12]]

@@ -196,6 +196,8 @@ def thing(words: Words) -> Query | None:
 def _enumerated(words: Words) -> str:
     """The words without commas; those of an enumeration become "and": "the bed, the sofa or the rug"."""
     last = max((i for i, w in enumerate(words) if w in ("and", "or")), default=0)
+    if not last and words.count(",") > 1:
+        last = len(words) + 1
     said = [("and" if w == "," and 0 < i < last - 1 else "" if w == "," else w) for i, w in enumerate(words)]
     return " ".join(w for w in said if w)
 

@@ -124,6 +124,7 @@ _HAVE_IS = re.compile(
 _REORDERED: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(pattern), said)
     for pattern, said in (
+        (r" ,? ?and how \w+ (?:is|are) (?:it|they|that)$", ""),
         (
             r"^(?:i|we) (?:can )?(?:see|have|spot|notice|found) (?:some |a few |several |many )?([\w ]+?) , how many"
             r"(?: (?:are there|of them are there|exactly))?$",
