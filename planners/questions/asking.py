@@ -7,6 +7,7 @@ text ──reading──► Asked ──kinds──► Answer     (source "none"
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -78,6 +79,8 @@ def route(text: str, survey: Survey) -> Reading:
     words = plain_words(text)
     situation, rest = read_situation(words)
     readings = [(situation, rest)] if situation is None else [(situation, rest), (None, words)]
+    if (told := _without_purpose(words)) is not None:
+        readings.append((None, told))
     failed: _Attempt | None = None
     for where, said in readings:  # words that seem to say where a person is may belong to the question itself
         for kind, asked in _filled(text, where, said):
@@ -92,6 +95,23 @@ def route(text: str, survey: Survey) -> Reading:
             return _unresolved(failed, survey)
     none = Answer(answer=None, answer_type=expected_type(rest), text=NOT_READ, confidence=0.0, source="none")
     return Reading(none, sight=True)
+
+
+_PURPOSE = re.compile(
+    r"^(?:(?:i|we) (?:am|are|was|were) )?(?:just )?(?:thinking (?:of|about)|planning (?:to|on)|considering|"
+    r"hoping to|looking to) [^,]+ , (?=(?:what|how|is|are|can|could|would|will|where|which|does|do)\b)"
+)
+
+
+def _without_purpose(words: Words) -> Words | None:
+    """The question behind a clause that only says what it is asked for: "thinking of painting the floor, ...".
+
+    None if there is no such clause, or the question refers to something in it.
+    """
+    said = " ".join(words)
+    found = _PURPOSE.match(said)
+    rest = tuple(said[found.end() :].split()) if found else ()
+    return rest if rest and not {"it", "that", "them", "there", "this"} & set(rest) else None
 
 
 def _filled(text: str, situation: Situation | None, words: Words) -> Iterator[tuple[Kind, Asked]]:

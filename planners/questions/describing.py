@@ -97,7 +97,8 @@ def place_of(thing: Thing, survey: Survey) -> tuple[str, str]:
 
 
 def describe(survey: Survey) -> Description:
-    """The scene in words."""
+    """The scene in words; names that are hardly right are not told."""
+    survey = survey.with_sure_names()
     guesses = room_kinds(survey)
     best = guesses[0] if guesses and guesses[0].probability >= MAYBE_ROOM else None
     parts = [
@@ -142,7 +143,9 @@ def _room(survey: Survey, guess: RoomGuess | None) -> str:
         what = (
             f"This is {kind if guess.probability >= SURE_ROOM else f'perhaps {kind}'}, going by what stands in it; it"
         )
-    return f"{what} is {width:.1f} m wide, {depth:.1f} m deep and {height:.1f} m high ({width * depth:.0f} m2)."
+    return f"{what} is {width:.1f} m wide, {depth:.1f} m deep and {height:.1f} m high ({width * depth:.0f} m2)." + (
+        "" if survey.scaled else " Its scale is not known: one unit of the scene is read as a metre."
+    )
 
 
 def _furniture(survey: Survey) -> Iterator[str]:

@@ -59,6 +59,8 @@ class Survey:
         faces: whether the front of a thing was measured; None: its kind tells. A front is the -y side of its box.
         measured: whether boxes, colours and labels were measured in a scene, not written by somebody.
         shades: of a measured scene, the scores `[G]` of a colour word for the groups of its field.
+        sure: ids of the things whose name is more likely right than wrong; None: all names.
+        scaled: whether the length of a metre is known; else a scene unit counts as one.
     """
 
     graph: SceneGraph
@@ -68,6 +70,8 @@ class Survey:
     faces: Callable[[Thing], bool] | None = None
     measured: bool = False
     shades: Callable[[str], F64] | None = None
+    sure: frozenset[Id] | None = None
+    scaled: bool = True
     _memory: dict[str, Found] = field(default_factory=dict)
     _fronts: dict[Id, bool] = field(default_factory=dict)
     _names: dict[Id, str] = field(default_factory=dict)
@@ -126,8 +130,17 @@ class Survey:
             return by == "shape" or (by == "wall" and (kind is None or kind.front or kind.seats > 0))
 
         last_groups = last.groups if last is not None else ()
-        return replace(self, finder=find, last=last_groups, measured=True, faces=faces,
+        named = replace(self, finder=find, last=last_groups, measured=True, faces=faces,
                        shades=lambda word: color_term(language, word), _memory={}, _fronts={}, _names={})  # fmt: skip
+        return replace(named, sure=_surely_named(scene), scaled=scene.frame.metres_per_unit is not None)
+
+    def with_sure_names(self) -> Survey:
+        """The same things, without the names that are hardly right."""
+        if self.sure is None or all(n.id in self.sure or not n.label for n in self.graph.nodes):
+            return self
+        nodes = tuple(n if n.id in self.sure else n.model_copy(update={"label": ""}) for n in self.graph.nodes)
+        graph = self.graph.model_copy(update={"nodes": nodes})
+        return replace(self, graph=graph, stage=Stage.of(graph), _memory={}, _fronts={}, _names={})
 
     # -- things -----------------------------------------------------------------------------------------------------
 
@@ -410,6 +423,19 @@ def _looks(query: Query) -> bool:
     asked = bool(query.colors or query.not_colors or query.last)
     within = [a for r in query.relations for a in r.anchors] + [*query.exclude, *query.also]
     return asked or any(map(_looks, within))
+
+
+_SURE_NAME = 0.5  # calibrated probability from which a name is more often right than wrong
+
+
+def _surely_named(scene: Scene) -> frozenset[Id]:
+    """Ids of the objects whose name is likely right: calibrated, where the encoder knows such scenes, or by sight."""
+    from ...gaussians.language.query.color_fallback import is_reliable
+
+    assert scene.language is not None
+    known = is_reliable(scene.language)
+    objects = scene.language.objects()
+    return frozenset(g.id for g in objects if g.named_by or (known and g.label_score >= _SURE_NAME))
 
 
 def _held_by_shell(query: Query) -> Query | None:

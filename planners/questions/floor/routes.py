@@ -77,13 +77,14 @@ def is_open(floor: FloorMap, start: End, goal: End, width: float = SHOULDERS) ->
 
 def passage(floor: FloorMap, start: End, goal: End) -> float:
     """Width in metres of the widest disc for which there is a way, 0 if there is none."""
-    low, high = 0.0, min(_WIDEST, 2 * float(floor.clear.max(initial=0.0)))
-    if is_open(floor, start, goal, high):
-        return high
-    while high - low > floor.cell / 4:
-        middle = (low + high) / 2
-        low, high = (middle, high) if is_open(floor, start, goal, middle) else (low, middle)
-    return low
+    step = floor.cell / 2  # the same widths are tried each time, so that their areas are found once
+    low, high = 0, int(min(_WIDEST, 2 * float(floor.clear.max(initial=0.0))) / step)
+    if is_open(floor, start, goal, high * step):
+        return high * step
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if is_open(floor, start, goal, middle * step) else (low, middle)
+    return low * step
 
 
 def in_the_way(floor: FloorMap, start: End, goal: End, width: float = SHOULDERS) -> list[Node]:

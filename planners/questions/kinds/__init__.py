@@ -26,6 +26,7 @@ from . import (
 )
 
 KINDS = (
+    routes.BLOCKED,
     placed.BETWEEN,
     *room.KINDS,
     *describe.KINDS[:4],

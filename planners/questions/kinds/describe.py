@@ -14,7 +14,8 @@ from ..survey import Survey, listed, with_article
 
 _SCENE = (
     "(the room|this room|here|the scene|the whole room|this|the entire room|the place|what you see here|"
-    "what you see in the room|what you see|what you can see|what is here|what i am looking at|everything)"
+    "what you see in the room|what you see|what you can see|what is here|what i am "
+    "looking at|everything)"
 )
 _WHAT = f"""
     (describe|summarize|summarise|sum up|outline|caption|depict|characterize) {_SCENE} [in words|briefly|in a \
@@ -32,6 +33,7 @@ _WHAT = f"""
     what (is|would be) the layout [of {_SCENE}]
     (describe|explain|what is) the (layout|arrangement|furnishing|furniture arrangement|contents|interior) [of \
       {_SCENE}]
+    (summarize|summarise|sum up) what is in the room
     what do you see [here|in the room|in front of you]
     what am i looking at
     [about] {_SCENE} [in a nutshell]
@@ -101,7 +103,7 @@ def _ids(guess: RoomGuess, survey: Survey) -> tuple[int | str, ...]:
 
 def _kind(asked: Asked, survey: Survey) -> Answer | Undecided:
     """The kind of room that fits best, if one does."""
-    guesses = room_kinds(survey)
+    guesses = room_kinds(survey.with_sure_names())
     if not guesses or guesses[0].probability < MAYBE_ROOM:
         near = [with_article(g.name) for g in guesses[:3]]
         why = f"It may be {', '.join(near)}: " if near else ""
@@ -121,7 +123,7 @@ def _are(guess: RoomGuess) -> str:
 
 def _is_kind(asked: Asked, survey: Survey) -> Answer | Undecided:
     name = asked.slots["k"]
-    guesses = {g.name: g for g in room_kinds(survey)}
+    guesses = {g.name: g for g in room_kinds(survey.with_sure_names())}
     if not guesses:
         return Undecided("Too few things have a name to tell the kind of room.", sight=True, answer_type="yesno")
     best = next(iter(guesses.values()))
@@ -138,7 +140,7 @@ def _is_kind(asked: Asked, survey: Survey) -> Answer | Undecided:
 
 
 def _which_kind(asked: Asked, survey: Survey) -> Answer | Undecided:
-    guesses = {g.name: g for g in room_kinds(survey)}
+    guesses = {g.name: g for g in room_kinds(survey.with_sure_names())}
     named = [guesses[asked.slots[n]] for n in ("k", "m") if asked.slots[n] in guesses]
     assert all(asked.slots[n] in rooms() for n in ("k", "m"))
     if not named:

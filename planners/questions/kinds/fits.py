@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from ....gaussians.language.query.query import Query
 from ....gaussians.world import kinds
 from ....gaussians.world.box import YawBox
-from ....gaussians.world.person import STEP
+from ....gaussians.world.person import SHOULDERS, STEP
 from ....gaussians.world.words import singular
 from ..answer import Answer, Evidence, Line
 from ..candidates import agreed, meant
@@ -17,6 +17,7 @@ from ..floor import ends
 from ..floor.regions import Region, Undecidable, alternatives
 from ..floor.spaces import SLACK, largest, place
 from ..kind import Asked, Kind
+from ..reading.ends import WIDTHS, Walker
 from ..reading.item import Item
 from ..reading.phrase_templates import templates
 from ..reading.spans import METRE, answer_of, told
@@ -26,6 +27,7 @@ from ..survey import NotResolved, Survey, Thing, listed
 _DOOR_ZONE = 0.5  # metres before a door that stay free
 _UNKNOWN = (0.6, 0.4, 0.75)  # width, depth and height that are assumed of a thing of no known kind
 _MOST_READINGS = 12
+_LONG = {"wheelchair": 1.2, "pram": 1.0, "stroller": 1.0, "buggy": 1.0, "pushchair": 1.0}  # metres from front to back
 
 _STILL = "[still|also|even|actually|possibly|comfortably|easily|theoretically|physically|properly|nicely|perhaps|all]"
 _MODAL = "(would|will|could|can|does|do|should|might|may|did)"
@@ -110,6 +112,35 @@ _DOES = f"""
     BE (the room|it|this room) (big|large|spacious) enough (to|for) {{t:activity}} {_END}
     BE it possible [for {_WHO}] to {{t:activity}} {{p:where_to}} {_END}
 """
+_TALL = f"""
+    BE the (ceiling|room|ceilings) (high|tall) enough (for|to fit|to have|to stand|to put up|to set up) \
+      {{i:item}} [in] {_END}
+    BE the (ceiling|room|ceilings) (high|tall) enough (for|to fit) (someone|somebody|a person|a man|a woman) \
+      [who is|of] \
+      {{l:span}} [tall|high] {_END}
+    (would|will|could|can) (someone|somebody|a person|a man) [who is|of] {{l:span}} [tall] (stand|stand \
+      up|stand upright|\
+      fit) [in here|in the room|here]
+"""
+_BETWEEN = f"""
+    {_MODAL} {{w:walker}} {_STILL} (walk|squeeze|pass|get|go|fit|squeeze through|pass through|step|slip|walk \
+      through) [in] \
+      between {{a}} and {{b}} {_END}
+    BE {_GAP} between {{a}} and {{b}} (wide|big|large) enough (to walk|to walk through|to pass|to pass \
+      through|to squeeze \
+    through|to get through|for {{w:walker}}|for {{w:walker}} to (walk|walk through|pass|pass through|get \
+      through)) {_END}
+    BE there {_ENOUGH} (to|for {{w:walker}} to) (walk|pass|squeeze|get|go|walk through|pass through) [through] \
+      between {{a}} and {{b}}
+    BE there {_ENOUGH} between {{a}} and {{b}} (to|for {{w:walker}} to) (walk|pass|squeeze|get|go) [through]
+    BE there {_ENOUGH} between {{a}} and {{b}} for {{w:walker}}
+    {_MODAL} two people {_STILL} (walk|pass|go) [side by side|next to each other|abreast] between {{a}} and {{b}}
+"""
+_GAP_OF = """
+    (is|would) there [be] (a gap|a space|space|room|a distance|a passage) of (at least|more than|over|about) {l:span} \
+      between {a} and {b}
+    (is|would) there [be] (at least|more than|over) {l:span} [of (space|room|floor)] between {a} and {b}
+"""
 _THROUGH = f"""
     {_MODAL} {{i:item}} {_STILL} (fit|go|get|pass|come|squeeze|slide|be carried|be moved|be brought|be \
       taken|make it) [in|out|right|straight] through {{x}} {_END}
@@ -126,7 +157,7 @@ _WHERE = f"""
     where (is|would|are) there [be] {_ENOUGH} {_FOR} {{i:item}} {_END}
 """
 _HOW_WIDE = f"""
-    how (wide|long) (a|of a|an|may a|can a|could a) {{k:item}} (could|would|can|will|might|may) [{_WHO}] \
+    how (wide|long|big|large) (a|of a|an|may a|can a|could a) {{k:item}} (could|would|can|will|might|may) [{_WHO}] \
       {_STILL} [{_PUT}|{_FIT}] {{p:where_to}} [in {{u:length_unit}}]
     how (wide|long) (can|could|may) {{i:item}} be to {_FIT} {{p:where_to}} [in {{u:length_unit}}]
     (what|how wide) is the (widest|longest|largest|biggest) {{k:item}} (that|which|i|we|one) \
@@ -199,6 +230,10 @@ def _of_thing(thing: Thing, survey: Survey) -> _Size:
 def _of_item(item: Item) -> _Size:
     kind = item.kind or kinds.find(item.name) if item.name else None
     name = (singular_name(item.name) if item.count > 1 else item.name) or "something"
+    if kind is None and item.width is None and item.name in WIDTHS:
+        across = WIDTHS[item.name]
+        along = _LONG.get(item.name, across)
+        return _Size(across, along, 1.2, 1.0, 1.0, f"{_a(name)} of about {across:.2f} x {along:.2f} m")
     if kind is None and item.width is None:
         raise Undecidable(f"Nothing tells how large {_a(name)} is; say how wide and deep it is.")
     ranges = kind.size if kind is not None else None
@@ -211,7 +246,12 @@ def _of_item(item: Item) -> _Size:
         width = usual[0]
     if depth is None:
         depth = usual[1] if kind is not None else min(_UNKNOWN[1], width)
-    if kind is not None and kind.round and item.width is not None and item.depth is None:
+    round_or_square = (kind is not None and kind.round) or item.name.split()[:1] in (
+        ["round"],
+        ["square"],
+        ["circular"],
+    )
+    if round_or_square and item.width is not None and item.depth is None:
         depth = width
     given = height
     height = usual[2] if height is None else height
@@ -468,6 +508,50 @@ def _through(asked: Asked, survey: Survey) -> Answer | None:
     return agreed([(survey.named(d), _passes(item, s, d, survey)) for d in doors for s in sizes])
 
 
+def _high_enough(asked: Asked, survey: Survey) -> Answer | None:
+    """Whether something as tall as said stands upright under the ceiling."""
+    item: Item | None = asked.slots.get("i")
+    tall = asked.slots.get("l") if item is None else item.height or item.width
+    if tall is None:
+        return None
+    height = survey.graph.room.size[2]
+    holds = tall <= height
+    text = f"{'Yes' if holds else 'No'}: the ceiling is {height:.2f} m high, and that is {tall:.2f} m tall."
+    return Answer(answer="yes" if holds else "no", answer_type="yesno", text=text,
+                  confidence=0.95 if abs(height - tall) > 0.03 else 0.6)  # fmt: skip
+
+
+def _gaps(asked: Asked, survey: Survey) -> list[tuple[str, Region]]:
+    """The strip between two things, for each reading of their names."""
+    where = Where("between", (asked.slots["a"], asked.slots["b"]))
+    return [(name, regions[0]) for name, regions in alternatives((where,), survey)]
+
+
+def _wide_enough(asked: Asked, survey: Survey, width: float, who: str) -> Answer:
+    def case(region: Region) -> Answer:
+        assert region.gap is not None
+        gap, line = region.gap
+        holds = gap >= width - SLACK
+        text = f"{'Yes' if holds else 'No'}: there are {gap:.2f} m {region.words}, and {who} {width:.2f} m."
+        return Answer(answer="yes" if holds else "no", answer_type="yesno", text=text,
+                      confidence=0.9 if abs(gap - width) > 0.05 else 0.65,
+                      evidence=Evidence(ids=tuple(t.id for t in region.things), lines=(line,)))  # fmt: skip
+
+    cases = [(name, case(region)) for name, region in _gaps(asked, survey)]
+    return agreed(cases) if cases else _undecided("That is between a thing and itself.")
+
+
+def _walk_between(asked: Asked, survey: Survey) -> Answer:
+    """Whether the gap between two things is wide enough for somebody."""
+    walker = asked.slots.get("w", Walker())
+    width = 2 * SHOULDERS + 0.1 if "two people" in asked.text.lower() else walker.width
+    return _wide_enough(asked, survey, width, "that takes")
+
+
+def _gap_of(asked: Asked, survey: Survey) -> Answer:
+    return _wide_enough(asked, survey, asked.slots["l"], "asked are")
+
+
 def _passes(item: Item, size: _Size, door: Thing, survey: Survey) -> Answer:
     assert door.node is not None
     wide, _, high = door.node.size
@@ -476,6 +560,10 @@ def _passes(item: Item, size: _Size, door: Thing, survey: Survey) -> Answer:
     )
     holds = min(sides) <= wide and size.height <= high
     turned = min(size.width, size.depth) <= wide and size.height <= high
+    plain = item.width is None and item.height is None  # a size as it is or as sold: it may be tilted
+    if not holds and plain:
+        least, middle, _ = sorted((size.width, size.depth, size.height))
+        holds = least <= wide and middle <= high
     name = survey.named(door)
     note = f" Turned sideways it would, being {size.depth:.2f} m deep as usually sold." if turned and not holds else ""
     opening = f"{name} is {wide:.2f} m wide and {high:.2f} m high"
@@ -550,6 +638,9 @@ def _how_wide(asked: Asked, survey: Survey) -> Answer | None:
 
 
 KINDS = (
+    Kind("ceiling is high enough", templates(_TALL), _high_enough),
+    Kind("walk between", templates(_BETWEEN), _walk_between),
+    Kind("gap of a width", templates(_GAP_OF), _gap_of),
     Kind("fits through", templates(_THROUGH), _through),
     Kind("how wide would fit", templates(_HOW_WIDE), _how_wide),
     Kind("where would it fit", templates(_WHERE), _where),

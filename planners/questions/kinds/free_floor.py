@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ....gaussians.world.box import YawBox, plan_penetration
 from ..answer import Answer, Evidence, Line
 from ..candidates import agreed, meant
 from ..floor import ends
@@ -11,6 +12,7 @@ from ..reading.phrase_templates import templates
 from ..reading.spans import SQUARE, answer_of, told
 from ..survey import Survey, Thing, listed
 
+_CORNER = 0.5  # metres along both walls that are free in a free corner
 CROWDED, SPACIOUS = 0.45, 0.3  # shares of covered floor from which a room is called crowded, and up to which spacious
 
 _A = "[in {a:area_unit}|measured in {a:area_unit}]"
@@ -30,7 +32,7 @@ _THAT = (
     "it|with nothing on it]"
 )
 _IN = (
-    "[in the room|in here|here|in total|altogether|overall|left|left over|available|between the furniture|"
+    "[on the floor|in the room|in here|here|in total|altogether|overall|left|left over|available|between the furniture|"
     "around the furniture]"
 )
 
@@ -64,6 +66,7 @@ _HOW_TAKEN = f"""
     (what|how big|how large) BE the [total] (covered|occupied) (floor area|floor|floor space|area) {_IN} {_A}
 """
 _SHARE_FREE = f"""
+    how much of the (floor|room) (can|could) (i|one|you|we|people) {_ACTUALLY} (walk on|walk|step on|use|stand on)
     (what|how big|how large) [is the] (share|percentage|fraction|proportion|percent|part|portion|amount|%) of the \
       (floor|room|floor space|floor area|space) (is|remains|would be|are) {_ACTUALLY} {_FREE} {_BY}
     how much of the (floor|room|space) (is|remains|are|would be) {_ACTUALLY} {_FREE} {_BY} {_THAT} [in percent|as \
@@ -86,6 +89,7 @@ _SHARE_TAKEN = f"""
     how (covered|full|crowded|cluttered|packed|busy) BE the (floor|room) [in percent|as a percentage]
 """
 _MORE_FREE = f"""
+    BE [at least|about] half [of] the floor {_FREE} {_BY}
     BE [there] (more than|over|at least) (half|50 %|50 percent) [of] the floor {_FREE} {_BY}
     BE most of the (floor|floor space|room) {_FREE} {_BY}
     BE the floor (mostly|mainly|largely) {_FREE} {_BY}
@@ -94,6 +98,7 @@ _MORE_FREE = f"""
     BE the majority of the floor {_FREE}
 """
 _MORE_TAKEN = f"""
+    BE [at least|about] half [of] the floor {_TAKEN} {_BY}
     BE (more than|over|at least) (half|50 %|50 percent) [of] the floor {_TAKEN} {_BY}
     BE most of the (floor|floor space|room) {_TAKEN} {_BY}
     BE the floor (mostly|mainly|largely) {_TAKEN} {_BY}
@@ -106,6 +111,10 @@ _AT_LEAST = f"""
     do we have (more than|over|at least) {{q:area}} [of] {_FREE} (floor|floor space|space)
 """
 _WHERE = f"""
+    where (is|would) [there] [be] the most (room|space) [to (move|walk|dance|play|move about|move around|walk \
+      around)] {_IN}
+    where (do|would|can) (i|you|we|one) have the most (room|space) [to (move|walk|dance|play|move about|move \
+      around)] {_IN}
     where (is|can i find|is there|would be|do i find|do we have|are|lies) [the|there] \
       (most|largest|biggest|greatest|widest|more|the most) {_FREE} (space|area|floor|floor space|spot|place|floor \
       area|patch|patch of floor|region|part|room) {_IN} [of the room|on the floor|of floor]
@@ -150,6 +159,7 @@ _CROWDED = """
     BE (the floor|the floor space) [very|rather|quite|too] (crowded|cluttered|packed)
 """
 _SPACIOUS = """
+    BE it easy to (walk|move|get) (around|about) [in here|in the room|here]
     BE (the room|it|this room|it in here) [very|rather|quite|really|pretty] \
       (spacious|roomy|empty|uncluttered|sparse|sparsely furnished|airy|uncrowded|open) [in here|here]
     BE there [a lot of|lots of|plenty of|much|enough] (free|open|empty) (space|floor|floor space) [in the room|in \
@@ -157,6 +167,18 @@ _SPACIOUS = """
     BE there (a lot of|lots of|plenty of|much|enough) (space|room|floor space) to (walk|walk around|move|move \
       around|move about|walk about) [in the room|in here|here]
     (can|could) (one|you|i|we|people) (walk|move) around (freely|easily|comfortably) [in the room|in here|here]
+"""
+_FREE_CORNERS = """
+    (which|what) (corner|corners) [of the room] (is|are) (empty|free|unoccupied|not used|unused|clear)
+    (which|what) (corner|corners) [of the room] (has|have) nothing (in it|in them|standing in it)
+    (list|name) the (empty|free) corners
+"""
+_ANY_CORNER = """
+    (is|are) (any|one|some) (corner|corners) [of the room] (empty|free|unoccupied|not used|unused|clear)
+    (is|are) there (a|an|any|some) (empty|free|unoccupied|unused|clear) (corner|corners) [in the room|here|in here]
+    (is|are) there (a|any) (corner|corners) (without anything in it|that is empty|that is free|with nothing in \
+      it) [in the room]
+    (do|does) (we|the room) have (a|an|any) (empty|free) (corner|corners)
 """
 _ONE = """
     how much (floor|floor space|floor area|space on the floor|ground|of the floor|of the floor \
@@ -260,6 +282,36 @@ def _crowded(asked: Asked, survey: Survey, crowded: bool) -> Answer:
                   evidence=Evidence(ids=_standing(survey)))  # fmt: skip
 
 
+def _free_corners(survey: Survey) -> list[str]:
+    """Names of the corners in which half a metre square of floor is free."""
+    width, depth, _ = survey.graph.room.size
+    half = min(_CORNER, width / 2, depth / 2) / 2
+    found = []
+    for x, y in ((-1, -1), (-1, 1), (1, -1), (1, 1)):
+        box = YawBox(x * (width / 2 - half), y * (depth / 2 - half), 0.0, 2 * half, 2 * half, 0.5)
+        taken = any(plan_penetration(box, n.yaw_box) > 0.02 for n in filter(covers_floor, survey.graph.nodes))
+        if not taken:
+            side = survey.stand.right[:2] @ (x * width, y * depth)
+            ahead = survey.stand.forward[:2] @ (x * width, y * depth)
+            found.append(f"{'back' if ahead > 0 else 'front'} {'right' if side > 0 else 'left'}")
+    return sorted(found)
+
+
+def _corners(asked: Asked, survey: Survey) -> Answer:
+    names = [f"{name} corner" for name in _free_corners(survey)]
+    text = f"Nothing stands in {listed([f'the {n}' for n in names])}." if names else "Something stands in every corner."
+    if len(names) == 1:
+        return Answer(answer=names[0], answer_type="label", text=text, confidence=0.85, frame="viewer")
+    return Answer(answer=tuple(names), answer_type="list", text=text, confidence=0.85, frame="viewer")
+
+
+def _any_corner(asked: Asked, survey: Survey) -> Answer:
+    given = _corners(asked, survey)
+    value = "yes" if given.answer else "no"
+    return Answer(answer=value, answer_type="yesno", text=f"{value.capitalize()}. {given.text}", confidence=0.85,
+                  frame="viewer")  # fmt: skip
+
+
 def _one(asked: Asked, survey: Survey, share: bool) -> Answer:
     """The footprint of a thing, in square metres or as a share of the floor."""
     things = meant(asked.slots["x"], survey)
@@ -301,6 +353,8 @@ KINDS = (
     Kind("fuller side", templates(_FULLER), lambda asked, survey: _side(asked, survey, fuller=True)),
     Kind("room is crowded", templates(_CROWDED), lambda asked, survey: _crowded(asked, survey, crowded=True)),
     Kind("room is spacious", templates(_SPACIOUS), lambda asked, survey: _crowded(asked, survey, crowded=False)),
+    Kind("free corners", templates(_FREE_CORNERS), _corners),
+    Kind("is a corner free", templates(_ANY_CORNER), _any_corner),
     Kind("floor under a thing", templates(_ONE), lambda asked, survey: _one(asked, survey, share=False)),
     Kind("share of floor under a thing", templates(_ONE_SHARE), lambda asked, survey: _one(asked, survey, share=True)),
 )

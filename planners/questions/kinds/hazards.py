@@ -90,6 +90,8 @@ _WHAT_WAY = f"""
     (is|are) there (anything|something) [on the floor] {_WHO} {_COULD} {_TRIP} {_OVER} {_ON_WAY} {_TO}
 """
 _ANY = f"""
+    (is|are) there (anything|something|things) [lying] [on the floor|in the room|in here|here] [that] \
+      (could|might|can|may|would) trip {_WHO} [up]
     (is|are) there (any|a|some) {_HAZARD} [in the room|in here|here|on the floor]
     (is|are) there (anything|something|things|any things) [on the floor|in the room|in here|here] [that] {_WHO} \
       {_COULD} {_TRIP} {_OVER} {_DARK}
@@ -110,11 +112,11 @@ _BLOCKED = """
     (is|are) (there anything|anything|something|any furniture|there any furniture|there something|there \
       furniture) (blocking|obstructing|barring|standing in the way of) {x}
     (does|do|would) (anything|something|any furniture|furniture) (block|obstruct|bar|stand in the way of) {x}
-    (can|could|would) {x} [still] be opened [fully|completely|freely|all the way]
-    (can|could|would|does|will) {x} open [fully|completely|freely|all the way] [without (hitting|bumping \
-      into|touching) (anything|something)]
 """
 _FREE = """
+    (can|could|would) {x} [still] be opened [fully|completely|freely|all the way]
+    (can|could|would|does|will) {x} [still] open [fully|completely|freely|all the way] [without (hitting|bumping \
+      into|touching) (anything|something)]
     BE {x} (unblocked|unobstructed|free to open|clear of furniture|clear of obstacles|free of obstacles|unhindered)
     BE the (door|doorway|entrance|way in) [kept] (clear|free)
     (can|could) (i|one|you|someone|we) open {x} [fully|completely|freely|all the way]
@@ -124,6 +126,8 @@ _WHAT_BLOCKS = """
     what (blocks|obstructs|bars) {x}
 """
 _NARROWEST = """
+    (what|how wide) is the (narrowest|tightest|smallest) (gap|passage|space) between (furniture|the furniture|things|\
+      pieces of furniture|two things|any two things) [in {u:length_unit}]
     how (wide|narrow|tight|broad) (is|are) the (narrowest|tightest|smallest|slimmest) \
       (passage|gap|walkway|path|spot|point|passageway|aisle|place|way|corridor|way through|passage between \
       things|passage between the furniture|gap between the furniture|walking path|bottleneck) [in the room|in \

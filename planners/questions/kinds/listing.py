@@ -73,7 +73,8 @@ _PHRASES = f"""
     what all is {_HERE}
     {_ROOM} contains what
     what are {_ALL} {{things}} {_HERE}
-    (where|what|on what|which things) (can|could|may) {_WHO} (sit|take a seat|have a seat|be seated) [down] [on] {_HERE}
+    (where|what|on what|which things) (can|could|may) {_WHO} (sit|take a seat|have a seat|be seated) [down] \
+      [on] {_HERE}
     (where|what) (can|could) people sit [down] [on] {_HERE}
     (what|which things) (gives|give|provides|emits|makes|produces|lights|light) [up] (light|the room|it) {_HERE}
     where does [the] light come from {_HERE}

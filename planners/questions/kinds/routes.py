@@ -47,8 +47,9 @@ _CLEAR = (
 _FROM_TO = "(from {a:end} [over|across|all the way|right|straight|through] to {b:end}|between {a:end} and {b:end})"
 
 _CAN = f"""
+    (starting|coming|going|walking|beginning) (at|from) {{a:end}} {_MODAL} {{w:walker}} {_EASILY} \
+      (get|walk|go|come|make it) {_OVER} to {{b:end}} {_END}
     {_MODAL} {{w:walker}} {_EASILY} {_GO} {_OVER} from {{a:end}} {_OVER} (to|up to|over to|into|onto) {{b:end}} {_END}
-    {_MODAL} {{w:walker}} {_EASILY} {_GO} {_OVER} between {{a:end}} and {{b:end}} {_END}
     {_MODAL} {{w:walker}} {_EASILY} (walk|get|go|make it|make my way|come|drive|roll|travel|move|step|pass) \
       {_OVER} (to|up to|over to|near) {{b:end}} (from|coming from|starting from|starting at) {{a:end}} {_END}
     {_MODAL} {{w:walker}} {_EASILY} (reach|access|get at|approach|walk to|get to|go to) {{b:end}} (from|coming \
@@ -80,6 +81,9 @@ _CAN = f"""
     (does|do) {{w:walker}} fit through [the {_PATH}|on the way] from {{a:end}} to {{b:end}}
 """
 _BLOCKED = f"""
+    (is|are) there [any|an|some] (obstacles|obstacle|obstructions|obstruction) (on the way|in the way|on the path) \
+      {_FROM_TO}
+    (is|are) there [any|an|some] (obstacles|obstacle|obstructions|obstruction) {_FROM_TO}
     (is|are) (the|my) {_PATH} {_FROM_TO} (blocked|obstructed|cluttered|barred|too narrow|closed off) [by \
       anything|by something|by furniture|for {{w:walker}}]
     (is|are) (the|my) {_PATH} to {{b:end}} [from {{a:end}}] (blocked|obstructed|barred|too narrow) [by \
@@ -107,6 +111,10 @@ _WHAT_BLOCKS = f"""
       walk|walking|going] from {{a:end}} to {{b:end}}
 """
 _HOW = f"""
+    (starting|coming|going|walking|beginning) (at|from) {{a:end}} how (do|can|could|would|should) {{w:walker}} \
+      (get|walk|go|come) {_OVER} to {{b:end}} {_END}
+    (starting|coming|going|walking|beginning) (at|from) {{a:end}} how (do|can|could|would|should) {{w:walker}} \
+      reach {{b:end}} {_END}
     how (do|can|could|would|should|shall|might|will) {{w:walker}} [best] {_GO} {_OVER} from {{a:end}} {_OVER} to \
       {{b:end}} {_END}
     how (do|can|could|would|should|shall|might|will) {{w:walker}} [best] (get|walk|go|make my \
@@ -159,6 +167,7 @@ _TIME = f"""
       {_OVER} from {{a:end}} to {{b:end}} [on foot]
 """
 _WIDTH = f"""
+    how wide is the {_PATH} {_FROM_TO} [in {{u:length_unit}}]
     how wide is the (path|route|way|walkway|passage|narrowest passage|narrowest point|narrowest part|tightest \
       spot|tightest point|corridor|walking path|narrowest spot|narrowest bit|tightest squeeze|narrowest gap) [on \
       the (path|route|way|walk)|of the (path|route|way)] from {{a:end}} to {{b:end}} [at its narrowest] [in \
@@ -329,9 +338,10 @@ def _width(asked: Asked, survey: Survey) -> Answer:
     return _cases(asked, survey, case)
 
 
+BLOCKED = Kind("way is blocked", templates(_BLOCKED), _is_blocked)
 KINDS = (
+    BLOCKED,
     Kind("way is open", templates(_CAN), _yes_no),
-    Kind("way is blocked", templates(_BLOCKED), _is_blocked),
     Kind("what blocks a way", templates(_WHAT_BLOCKS), _what_blocks),
     Kind("length of a walk", templates(_LENGTH), _length),
     Kind("directions", templates(_HOW), _directions),

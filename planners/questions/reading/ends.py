@@ -19,7 +19,7 @@ _HERE = re.compile(
 )
 _MIDDLE = re.compile(r"^the (?:middle|center)(?: of the room)?$")
 # Widths in metres, from data sheets: of a wheelchair with hands on its wheels, of a twin pram, a rollator, a robot.
-_WIDTHS = {
+WIDTHS = {
     "wheelchair": 0.8, "wheel chair": 0.8, "rollator": 0.65, "walker": 0.65,
     "zimmer frame": 0.65, "walking frame": 0.65,
     "pram": 0.6, "stroller": 0.6, "buggy": 0.6, "pushchair": 0.6, "baby carriage": 0.6,
@@ -82,9 +82,9 @@ def walker(words: Words) -> Walker | None:
         said = user[1]
     found = _WITH_WIDTH.match(said)
     name = found[1] if found else said
-    if name in _WIDTHS:
-        return Walker(_WIDTHS[name], "" if _WIDTHS[name] == SHOULDERS else name)
+    if name in WIDTHS:
+        return Walker(WIDTHS[name], "" if WIDTHS[name] == SHOULDERS else name)
     item = read_item(tuple(said.split()))
-    if item is not None and item.stated and item.width is not None:
+    if item is not None and item.stated and item.width is not None and item.kind is None:
         return Walker(min(item.width, item.depth or item.width), item.name)
     return None

@@ -40,6 +40,8 @@ METRE, SQUARE, CUBE = Unit("m", 1.0, 1), Unit("m2", 1.0, 2), Unit("m3", 1.0, 3)
 
 def unit(words: Words) -> Unit | None:
     """A unit of length: "feet"."""
+    if words == ("feet", "and", "inches"):
+        words = ("feet",)
     said = words[0] if len(words) == 1 else ""
     if said == "in" or (said not in UNITS and said not in IN_METRES):
         return None
