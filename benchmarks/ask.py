@@ -53,11 +53,13 @@ def run(quick: bool = False) -> Result:
     plan, encoder = QUICK if quick else FULL, encoders.load("auto")
     graphs = generated.graph_rooms(plan.graphs, plan.graph_seed)
     on_graphs = generated.asked(graphs, generated.every_kind(), plan.graph_questions)
+    reworded = generated.asked(graphs, generated.every_kind(), plan.graph_questions, held=True)
     known = generated.gaussian_rooms(plan.rooms, encoder, plan.detail)
     in_rooms = generated.asked(known, generated.shown_kinds(encoder), plan.questions)
     parts = [
         Part(tuple(generated.metrics(in_rooms, "gaussians")), (_point(in_rooms, "rooms of Gaussians", known, True),)),
         Part(tuple(generated.metrics(on_graphs, "graphs")), (_point(on_graphs, "scene graphs", graphs, False),)),
+        Part(tuple(generated.metrics(reworded, "graphs_held_wordings", by_kind=False))),
         _written(),
         Part(
             (

@@ -4,6 +4,8 @@ NOTES = (
     "gaussians, graphs: questions generated from true tables (boxes, colours, labels) by geometry of the benchmark's "
     "own; in rooms of Gaussians the product sees only the embedded scene. A length or an area is right within 10 %, a "
     "list from F1 0.8, a count if it is equal; mra is the mean relative accuracy of VSI-Bench over all numbers.",
+    "graphs_held_wordings: the same kinds of questions in wordings that were held back while the reader was developed "
+    "(`sentences_held.py`); the wordings of the other sets were seen, in other rooms.",
     "margins: only questions whose answer is clear are asked. Taller: by 15 % and 15 cm; bigger: 1.6 times the "
     "volume; nearest: by 30 cm or 30 %, by gap and by centre; a side: 50 cm, and 1.5 times the offset along the other "
     "axis; next to: a gap up to 15 cm, not: from 1.6 m; under: 75 % of the smaller footprint; between: within 12 % of "

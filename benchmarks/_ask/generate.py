@@ -57,9 +57,9 @@ MAKERS: tuple[Callable[[Room], Made], ...] = (
 WEIGHTS = {"absent": 4, "undecidable": 4, "distance": 2, "count": 2, "viewer_side": 2, "colour": 2}  # others 1
 
 
-def pool(table: Table, vocabulary: Sequence[str]) -> dict[str, list[Question]]:
+def pool(table: Table, vocabulary: Sequence[str], held: bool = False) -> dict[str, list[Question]]:
     """Questions of every kind that the room has, at most `PER_KIND` of each; the same table gives the same ones."""
-    room = Room(table, sorted(vocabulary), np.random.default_rng([zlib.crc32(b"ask"), table.seed]))
+    room = Room(table, sorted(vocabulary), np.random.default_rng([zlib.crc32(b"ask"), table.seed]), held)
     found: dict[str, list[Question]] = {}
     for make in MAKERS:
         seen = set[str]()
@@ -70,12 +70,12 @@ def pool(table: Table, vocabulary: Sequence[str]) -> dict[str, list[Question]]:
     return {kind: own for kind, own in found.items() if own}
 
 
-def questions(tables: Sequence[Table], vocabulary: Iterable[str], count: int) -> list[Question]:
+def questions(tables: Sequence[Table], vocabulary: Iterable[str], count: int, held: bool = False) -> list[Question]:
     """At most `count` questions over rooms: of each kind as many as its weight says, spread over the rooms evenly.
 
-    A room gets at most `count` over the number of rooms, rounded up.
+    A room gets at most `count` over the number of rooms, rounded up. With `held`, the wordings are those held back.
     """
-    pools = [pool(t, tuple(vocabulary)) for t in tables]
+    pools = [pool(t, tuple(vocabulary), held) for t in tables]
     kinds_left = sorted({kind for p in pools for kind in p})
     taken = [list[Question]() for _ in tables]
     share = -(-count // len(tables))

@@ -36,10 +36,10 @@ def ask(known: Known, question: Question) -> Judged:
     return judge(question, given.answer, given.text, seconds, given.evidence.ids)
 
 
-def asked(known: Sequence[Known], vocabulary: Sequence[str], count: int) -> list[Judged]:
-    """`count` questions over the rooms, asked."""
+def asked(known: Sequence[Known], vocabulary: Sequence[str], count: int, held: bool = False) -> list[Judged]:
+    """`count` questions over the rooms, asked; with `held` in the wordings that were held back."""
     at = {k.table.name: k for k in known}
-    return [ask(at[q.room], q) for q in questions([k.table for k in known], vocabulary, count)]
+    return [ask(at[q.room], q) for q in questions([k.table for k in known], vocabulary, count, held)]
 
 
 def graph_rooms(count: int, seed: int) -> list[Known]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from ...gaussians.world import kinds
 from ...gaussians.world.words import is_plural, plural
+from . import sentences, sentences_held
 from .question import Question
 from .truth import FLAT, Table, Thing
 
@@ -25,11 +26,13 @@ class Room:
         table: the truth.
         vocabulary: names of kinds from which absent ones are drawn.
         rng: the only source of chance.
+        held: whether the wordings are those that were held back.
     """
 
     table: Table
     vocabulary: Sequence[str]
     rng: np.random.Generator
+    held: bool = False
     names: dict[int, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -78,8 +81,13 @@ class Room:
             a, b, c = (things[int(i)] for i in self.rng.choice(len(things), 3, replace=False))
             yield a, b, c
 
+    def wordings(self, seen: Sequence[str]) -> Sequence[str]:
+        """The wordings in use for a kind of question: those of `sentences`, or their counterparts in the held ones."""
+        return _held().get(tuple(seen), seen) if self.held else seen
+
     def word(self, wordings: Sequence[str], **values: object) -> str:
         """One of the wordings, filled: things as "the sofa", `A` at the start of a sentence, `a_one` as "a sofa"."""
+        wordings = self.wordings(wordings)
         text = wordings[int(self.rng.integers(len(wordings)))]
         filled: dict[str, object] = {}
         for key, value in values.items():
@@ -89,6 +97,13 @@ class Room:
             else:
                 filled[key] = value
         return text.format(**filled)
+
+
+@cache
+def _held() -> Mapping[tuple[str, ...], tuple[str, ...]]:
+    """Held wordings by the wordings that they stand beside."""
+    names = [n for n in vars(sentences_held) if n.isupper()]
+    return {getattr(sentences, n): getattr(sentences_held, n) for n in names}
 
 
 @cache

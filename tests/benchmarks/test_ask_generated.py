@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from string import Formatter
 
 import pytest
 
-from scenewright.benchmarks._ask import generate, truth, written
+from scenewright.benchmarks._ask import generate, sentences, sentences_held, truth, written
 from scenewright.benchmarks._ask.generate import pool, questions
 from scenewright.benchmarks._ask.naming import Room
 from scenewright.benchmarks._ask.question import Question, judge, overlap, plain, relative_accuracy
@@ -121,6 +122,17 @@ def test_the_same_seed_asks_the_same(room: Table) -> None:
     assert first == again
     assert len({q.text for q in first if q.room == "by hand"}) == 30
     assert {q.text for q in first if q.room == "again"} != {q.text for q in first if q.room == "by hand"}
+
+
+def test_wordings_that_are_held_back_are_others_with_the_same_holes(room: Table) -> None:
+    for name in (n for n in vars(sentences_held) if n.isupper()):
+        seen, held = getattr(sentences, name), getattr(sentences_held, name)
+        assert not set(seen) & set(held), name
+        holes = [{hole.split("_")[0].lower() for text in texts for _, hole, _, _ in Formatter().parse(text) if hole}
+                 for texts in (seen, held)]  # fmt: skip
+        assert holes[1] <= holes[0] | {"b"}, name
+    texts = [{q.text for q in questions([room], VOCABULARY, 60, held)} for held in (False, True)]
+    assert texts[0].isdisjoint(texts[1])
 
 
 WANTED = {"lists": "list", "hazards": "hazard", "routes": "route"}

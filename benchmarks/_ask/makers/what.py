@@ -50,9 +50,10 @@ def absent(room: Room) -> Made:
 def undecidable(room: Room) -> Made:
     """Questions that nothing in the scene answers."""
     things = room.named
-    order = room.rng.permutation(len(say.UNDECIDABLE))
+    wordings = room.wordings(say.UNDECIDABLE)
+    order = room.rng.permutation(len(wordings))
     for i, thing in zip(order, itertools.cycle(things), strict=False):
-        yield asked(room, "undecidable", "none", room.word((say.UNDECIDABLE[int(i)],), a=thing), expect="undecidable")
+        yield asked(room, "undecidable", "none", room.word((wordings[int(i)],), a=thing), expect="undecidable")
 
 
 def several(room: Room) -> Made:
@@ -65,10 +66,11 @@ def several(room: Room) -> Made:
         others = [t for t in room.named if t.label not in covered(label)]
         if count < 2 or is_many(label) or not others:
             continue
-        wordings = [say.SEVERAL[0]] if len(shades) > 1 and "" not in shades else []
+        known = room.wordings(say.SEVERAL)
+        wordings = [known[0]] if len(shades) > 1 and "" not in shades else []
         ways = [centers_apart(t, others[0]) for t in alike]
-        wordings += [say.SEVERAL[1]] if max(ways) - min(ways) > 4 * CLEAR_OF else []
-        wordings += [say.SEVERAL[2]] if max(heights) > (1 + 2 * TALLER) * min(heights) else []
+        wordings += [known[1]] if max(ways) - min(ways) > 4 * CLEAR_OF else []
+        wordings += [known[2]] if max(heights) > (1 + 2 * TALLER) * min(heights) else []
         if not wordings:
             continue
         text = room.word(wordings, bare=label, a=others[0])
@@ -108,7 +110,8 @@ def count_is(room: Room) -> Made:
         if have + 2 >= len(NUMBERS) or (have < 2 and room.rng.random() < 0.6):
             continue
         said = max(2, have + int(room.rng.choice([-1, 0, 0, 1, 2])))
-        wording = say.COUNT_IS[int(room.rng.integers(len(say.COUNT_IS)))]
+        wordings = room.wordings(say.COUNT_IS)
+        wording = wordings[int(room.rng.integers(len(wordings)))]
         less = max(1, have + int(room.rng.choice([-1, 0, 1])))
         yes = have > less if "{less}" in wording else have == said
         if "exactly" not in wording and "{less}" not in wording and have > said:
