@@ -97,7 +97,7 @@ _TAGS = re.compile(
     rf"(?: , {_AUX} {_THEM}(?: not)?|(?: ,)? {_AUX} not {_THEM}|(?: ,)? (?:yes|yeah|correct|true or false|yes or no)|"
     r" , (?:right|no)|"
     r"(?<! my)(?<! the)(?<! your)(?<! or)(?<! to)(?<! its)(?<! hand)(?<! left)(?<! far)(?<! a)(?<! on)(?<! 's)"
-    r"(?<! own) right)$"
+    r"(?<! own)(?<! front)(?<! back)(?<! rear)(?<! ahead)(?<! behind) right)$"
 )
 _HEDGES = re.compile(
     r"\b(?:roughly|approximately|approx|exactly|precisely|actually|currently|basically|really|just|kind of|sort of|"

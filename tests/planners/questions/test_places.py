@@ -112,6 +112,12 @@ def test_distances_compared(survey: Survey, question: str, expected: str) -> Non
         ("is the television to the left or to the right of the sofa?", "right"),
         ("which side of the room is the sofa on, left or right?", "left"),
         ("what does the television face?", "sofa"),
+        ("what is to the left of the coffee table?", "sofa"),
+        ("is the floor lamp on the sofa's own left or right side?", "right"),
+        ("does the sofa have the coffee table before it or behind it, from its own point of view?", "in front"),
+        ("which is further left, the door or the bookshelf?", "bookshelf"),
+        ("sitting on the sofa, can I see the television?", "yes"),
+        ("You are sitting on the sofa. The door is on your right. What is in front of you?", "coffee table"),
         ("does the sofa face the television?", "yes"),
         ("is the sofa facing the bookshelf?", "yes"),  # 31 degrees off its front
         ("is the sofa facing the floor lamp?", "no"),
@@ -138,6 +144,11 @@ def test_sides(survey: Survey, question: str, expected: str) -> None:
         ("what is between the sofa and the television?", ("coffee table",)),
         ("is the coffee table between the sofa and the television?", "yes"),
         ("where is the vase?", "on the coffee table"),
+        ("is the vase on the sofa or on the coffee table?", "coffee table"),
+        ("which corner is the floor lamp in?", "front left corner"),
+        ("what is in the front left corner?", ("floor lamp",)),
+        ("is anything on the left wall?", "no"),
+        ("are the sofa and the television next to each other?", "no"),
         ("what is the leftmost thing?", "floor lamp"),
     ],
 )  # fmt: skip
@@ -181,6 +192,16 @@ def test_distance_is_symmetric_and_does_not_change_when_everything_moves(survey:
     assert isinstance(there.answer, float)
     assert back.answer == pytest.approx(there.answer)
     assert away.answer == pytest.approx(there.answer)
+
+
+def test_a_place_in_a_noun_phrase_picks_the_thing_there() -> None:
+    chair = {"label": "chair", "size": [0.5, 0.5, 0.9]}
+    left, right = {**chair, "id": 20, "position": [-2.2, 1.7, 0.45]}, {**chair, "id": 21, "position": [2.2, 1.7, 0.45]}
+    two = room([*NODES, left, right])
+    for corner, expected in (("left", 20), ("right", 21)):
+        found = answer(f"how far is the chair in the back {corner} corner from the sofa?", two)
+        assert expected in found.evidence.ids
+        assert isinstance(found.answer, float)
 
 
 def test_a_thing_without_a_front_has_no_left(survey: Survey) -> None:
