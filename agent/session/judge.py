@@ -55,11 +55,13 @@ class _Try:
         context: of the operation.
         selection: what its words are taken to mean; None: they are resolved as before.
         told: what is different, in words.
+        scene: the scene to carry it out on, where what was left behind is filed under its thing; None: as it was.
     """
 
     context: Context
     selection: Selection | None
     told: str
+    scene: Scene | None = None
 
 
 def known_judge(name: str | None, vision: bool) -> str | None:
@@ -118,7 +120,7 @@ class Judge:
                 break
             repairs.append(Repair(failed=found.failed, tried=again.told))
             try:
-                done = execute.carry_out(scene, op, again.context, again.selection)
+                done = execute.carry_out(again.scene or scene, op, again.context, again.selection)
             except ScenewrightError as error:
                 repairs[-1] = repairs[-1].model_copy(update={"tried": f"{again.told}, which failed: {error}"})
                 continue
@@ -152,7 +154,7 @@ class Judge:
         from ...tools.judging.case import Case
         from ...tools.judging.examine import examine
 
-        found = examine(Case(scene, after, op, how.context, how.selection))
+        found = examine(Case(how.scene or scene, after, op, how.context, how.selection))
         if not found.passed or not instruction or self.vision is None or after is scene:
             return found
         return replace(found, checks=(*found.checks, *self._seen(scene, after, instruction)))
@@ -202,12 +204,16 @@ def _grown(scene: Scene, op: EditOp, context: Context, residue: Tensor) -> _Try:
     """The operation on its target together with what was left behind."""
     import torch
 
+    from ...tools.judging.refile import refiled
+
     query = op.query()
     assert query is not None
     meant = context.resolve(scene, query).require()
+    told = f"selected {len(residue):,} more Gaussians that were left behind"
+    if (filed := refiled(scene, meant, residue)) is not None:
+        return _Try(context, None, told, filed)
     selection = replace(meant, ids=torch.unique(torch.cat([meant.ids, residue])))
-    more = len(selection) - len(meant)
-    return _Try(context, selection, f"selected {more:,} more Gaussians that were left behind")
+    return _Try(context, selection, told)
 
 
 def _other_candidate(scene: Scene, op: EditOp, context: Context) -> Selection | None:

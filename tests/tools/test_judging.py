@@ -18,6 +18,7 @@ from scenewright.tools.execute import carry_out
 from scenewright.tools.judging.case import Case
 from scenewright.tools.judging.changes import changes_between
 from scenewright.tools.judging.examine import Findings, examine
+from scenewright.tools.judging.refile import refiled
 from scenewright.tools.operation import Context
 from scenewright.tools.registry import OPS, parse
 
@@ -159,6 +160,20 @@ def test_a_piece_that_the_field_missed_is_found_to_the_last_gaussian(
     doubtful = scene.replace(language=unsure)
     found = judge(doubtful, edited(doubtful, data, context), data, context)
     assert found.passed and not len(found.residue)
+
+
+def test_what_was_left_is_filed_under_its_thing(corner: Scene) -> None:
+    """Only groups change; counts and boxes are those of the chair as it really is."""
+    scene = reliable(corner)
+    piece = (scene.cloud.group == CHAIR) & (scene.cloud.means[:, 2] > 0.4)
+    group = torch.where(piece, torch.full_like(scene.cloud.group, FLOOR), scene.cloud.group)
+    torn = scene.replace(cloud=scene.cloud.replace(group=group))
+    ids = torn.cloud.ids[torn.cloud.group == CHAIR]
+    filed = refiled(torn, Selection(Query(text="chair"), "found", ids, (CHAIR,)), torn.cloud.ids[piece])
+    assert filed is not None and filed.language is not None and scene.language is not None
+    assert torch.equal(filed.cloud.group, scene.cloud.group) and filed.cloud.means is torn.cloud.means
+    assert filed.language.groups == scene.language.groups
+    assert refiled(torn, Selection(Query(text="chair"), "found", ids), torn.cloud.ids[piece]) is None
 
 
 @pytest.mark.parametrize("lift", [0.08, 0.5, -0.15])
