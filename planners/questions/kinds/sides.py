@@ -47,6 +47,9 @@ _IS_SIDE = """
     have i got {x} {d:side}
 """
 _EITHER = _each_verb("""
+    (do|would|will|can|did|could|should) i (have|see|find|get|notice) {x} [standing|located] {d:side} or {e:either}
+    (do|would|will) (my|the) (left|right) [hand|side] or [my] (left|right) [hand|side] (point|face) \
+        [to|toward|towards] {x}
     BE {x} [standing|located|off|over|more|rather|be] {d:side} or {e:either}
     (will|would|should) {x} be [off|over] {d:side} or {e:either}
     (do|does) {x} (stand|sit|lie|hang) {d:side} or {e:either}
@@ -55,6 +58,7 @@ _EITHER = _each_verb("""
     BE {x} (in front of|behind|ahead of) or (in front of|behind|ahead of) (me|us|you)
     BE {x} (in front of|ahead of|behind) (me|us|you) or (in front of|behind|ahead of) (me|us|you)
     (which|what) side [of me|of mine] BE {x} [on] [left or right] [of me]
+    is it [to|on] (my|the) (left|right) or [to|on] [my|the] (left|right) [side] that (i have|i see|i find) {x}
     on (which|what) side [of me|of mine] BE {x} [left or right]
     (which|what) side would {x} be [on]
     on (which|what) side would {x} be
