@@ -6,6 +6,7 @@ phrase, with at most three pictures.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from .vision_client import VisionClient
 
 MOST_CANDIDATES = 60  # groups that get a number; more could not be told apart in three pictures
+MOST_PIECES = 40
 SURE = 0.5  # confidence from which what the model points at is taken
 
 
@@ -67,7 +69,8 @@ def point_out(scene: Scene, selection: Selection, viewer: Camera, vision: Vision
         return Sighted(scene, None, "there is no group to point at")
     try:
         backend = vision.backend
-        seen = point(_phrase(query), groups, SceneLooker(scene, viewer), backend, vision.purse(PICTURES))
+        looker, purse = SceneLooker(scene, viewer), vision.purse(PICTURES)
+        seen = point(_phrase(query), groups, looker, backend, purse, lambda found: _pieces(scene, found))
     except BackendError as error:
         return Sighted(scene, None, f"the vision model was no help: {error}")
     pictures = f"{len(seen.views)} picture{'s' if len(seen.views) != 1 else ''}"
@@ -90,6 +93,14 @@ def _candidates(scene: Scene, selection: Selection) -> tuple[int, ...]:
     things = [g for g in scene.language.objects() if g.count]
     things.sort(key=lambda g: (-max(g.box.size), g.id))
     return tuple(g.id for g in things[:MOST_CANDIDATES])
+
+
+def _pieces(scene: Scene, groups: Sequence[int]) -> tuple[int, ...]:
+    """The parts of groups, the largest first; none of groups that are in one piece."""
+    assert scene.language is not None
+    table = scene.language.groups
+    pieces = [table[i] for g in groups for i in scene.language.leaves(g) if table[i].level == "part" and table[i].count]
+    return tuple(g.id for g in sorted(pieces, key=lambda g: (-g.count, g.id))[:MOST_PIECES])
 
 
 def _phrase(query: Query) -> str:

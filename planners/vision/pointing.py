@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Self
 
@@ -72,17 +72,27 @@ class Pointed:
     usage: Usage | None = None
 
 
+Inner = Callable[[Sequence[int]], Sequence[int]]  # groups to the pieces that they consist of
+
+
 def point(
-    phrase: str, groups: Sequence[int], looker: Looker, backend: ModelBackend, purse: Purse | None = None
+    phrase: str,
+    groups: Sequence[int],
+    looker: Looker,
+    backend: ModelBackend,
+    purse: Purse | None = None,
+    inner: Inner | None = None,
 ) -> Pointed:
     """The groups that a phrase means: two pictures of the candidates, then a third that confirms, or finds them.
 
+    If only a part of something is meant, the third picture numbers its pieces, and those that are meant are the result.
     Without a second look (budget, no other picture, a model that fails then, a first reply that had to be repaired) the
     first stands, unconfirmed. There are never more than `PICTURES` pictures and `REQUESTS` requests.
 
     Args:
         groups: ids of the candidates; empty: what the looker marks in the whole scene.
         purse: the budget; one of its own if None, with 3 views.
+        inner: the pieces of groups; None: groups have none.
 
     Raises:
         BackendError: the model reads no pictures, cannot be reached, gave no usable reply, or its budget is used up.
@@ -99,12 +109,13 @@ def point(
     reply = pointed(phrase, shown, backend, purse)
     found = tuple(marks[mark] for mark in dict.fromkeys(reply.meant))
     repaired = purse.usage is not None and purse.usage.requests - before >= REQUESTS
-    second = None if repaired else _second(reply, shown, looker, purse)
+    pieces = inner(found) if inner is not None and reply.parts else ()
+    second = None if repaired else _second(reply, shown, pieces, looker, purse)
     confirmed, confidence = False, reply.confidence
-    if second is not None and found:
+    if second is not None and found and not pieces:
         confirmed, confidence = _confirmed(phrase, reply, set(found), second, backend, purse)
     elif second is not None and (other := _another_look(phrase, second, backend, purse)) is not None:
-        confirmed = other.none
+        confirmed = other.none and not found
         confidence = min(reply.confidence, other.confidence) if other.none else other.confidence
         reply, found = other, tuple(second.numbers[mark] for mark in dict.fromkeys(other.meant))
     because = printable(reply.because, _REASON)
@@ -166,10 +177,14 @@ def pointed(
     return ask(backend, messages, wanted, purse, stage, attempts).reply
 
 
-def _second(reply: PointReply, shown: Sequence[Shown], looker: Looker, purse: Purse) -> Shown | None:
-    """Another picture that shows what is meant: near a single thing, else of the whole; None if there is none."""
+def _second(
+    reply: PointReply, shown: Sequence[Shown], pieces: Sequence[int], looker: Looker, purse: Purse
+) -> Shown | None:
+    """Another picture: of the pieces, else near a single thing, else of the whole; None if there is none."""
     if not purse.take(1):
         return None
+    if pieces:
+        return next((one for one in looker.overview(pieces, 1) if one.numbers), None)
     wanted = [f"close:#{reply.meant[0]}"] if len(set(reply.meant)) == 1 else []
     seen = {one.name for one in shown}
     for request in (*wanted, "overview"):

@@ -32,8 +32,8 @@ def with_names(scene: Scene, names: Mapping[int, str], by: NamedBy) -> Scene:
 def joined(scene: Scene, groups: Sequence[int], name: str, by: NamedBy) -> tuple[Scene, int]:
     """The scene in which some objects are one object with this name, and the id of that object.
 
-    The objects become its parts, as do their own parts; the column of groups of the Gaussians stays as it is. One group
-    alone keeps its row.
+    The objects become its parts, as do their own parts; the column of groups of the Gaussians stays as it is. One
+    object alone keeps its row. Parts are taken out of the objects that they belonged to.
 
     Raises:
         UserError: the scene has no language field, no group is given, or one is not in the scene.
@@ -41,7 +41,7 @@ def joined(scene: Scene, groups: Sequence[int], name: str, by: NamedBy) -> tuple
     field = _field(scene)
     pieces = tuple(dict.fromkeys(groups))
     _require(field, pieces)
-    if len(pieces) == 1:
+    if len(pieces) == 1 and field.groups[pieces[0]].level == "object":
         return with_names(scene, {pieces[0]: name}, by), pieces[0]
     whole = len(field.groups)
     inner = {i for piece in pieces for i in field.leaves(piece)}
@@ -53,9 +53,21 @@ def joined(scene: Scene, groups: Sequence[int], name: str, by: NamedBy) -> tuple
     views = max(g.views for g in own)
     box = box_of(cloud, scene.frame)
     rows.append(Group(whole, "object", -1, name, 1.0, box, lab_of_cloud(cloud), len(cloud), views, sure, by))
+    for owner in sorted({g.parent for g in own if g.level == "part" and g.parent not in pieces}):
+        rows[owner] = _without_pieces(scene, field, owner, inner)
     mean = field.embeddings[list(pieces)].mean(axis=0, keepdims=True)
     vectors = np.concatenate([field.embeddings, mean / max(float(np.linalg.norm(mean)), 1e-8)]).astype(np.float32)
     return replace(scene, language=LanguageField(tuple(rows), vectors, field.encoder, field.notes)), whole
+
+
+def _without_pieces(scene: Scene, field: LanguageField, owner: int, gone: set[int]) -> Group:
+    """An object measured without some of its parts."""
+    left = index_groups(scene.cloud).rows(sorted(set(field.leaves(owner)) - gone))
+    group = replace(field.groups[owner], count=len(left))
+    if not len(left):
+        return group
+    cloud = scene.cloud[torch.from_numpy(left)]
+    return replace(group, box=box_of(cloud, scene.frame), lab=lab_of_cloud(cloud))
 
 
 def _field(scene: Scene) -> LanguageField:

@@ -591,6 +591,14 @@ def test_pieces_that_are_joined_are_one_thing_with_all_its_parts() -> None:
     assert torch.equal(scene.cloud.group, SCENE.cloud.group)
 
 
+def test_a_part_becomes_a_thing_of_its_own() -> None:
+    scene, shade = joined(SCENE, [SHADE], "lampshade", "sight")
+    assert ask(named("lampshade"), scene).ids.tolist() == ids_of(SCENE, SHADE)
+    assert ask(named("lamp"), scene).ids.tolist() == ids_of(SCENE, FOOT)
+    assert scene.language is not None and scene.language.groups[LAMP].count == EACH
+    assert scene.language.groups[shade].count == EACH
+
+
 def test_one_piece_alone_keeps_its_row() -> None:
     scene, whole = joined(SCENE, [VASE], "kettle", "sight")
     assert whole == VASE and found(named("kettle"), VASE, scene=scene)
