@@ -40,7 +40,7 @@ class Drawing:
 def draw_view(scene: Scene, camera: Camera, groups: Sequence[int], cut: Cut = NOTHING) -> Drawing:
     """Render a view once: its colours, and which of `groups` each pixel shows.
 
-    A Gaussian whose part and object are both among the groups counts for the one that comes first.
+    A Gaussian whose part and object are both among the groups counts for the part.
     """
     assert scene.language is not None
     drawn = render(cut.apply(scene), camera, BACKGROUND if cut else (0.0, 0.0, 0.0))

@@ -52,9 +52,12 @@ class GroupPixels:
 
 
 def label_table(field: LanguageField, groups: Sequence[int]) -> NDArray[np.int32]:
-    """`[L + 1]` position in `groups` of each leaf id plus one, -1 for the others (and for -1, no group)."""
+    """`[L + 1]` position in `groups` of each leaf id plus one, -1 for the others (and for -1, no group).
+
+    A leaf whose object is among the groups too counts for itself; of two equal ones the first counts.
+    """
     table = np.full(len(field.groups) + 1, -1, np.int32)
-    for i in reversed(range(len(groups))):
+    for i in sorted(reversed(range(len(groups))), key=lambda i: field.groups[groups[i]].level == "part"):
         table[np.array(field.leaves(groups[i])) + 1] = i
     return table
 
