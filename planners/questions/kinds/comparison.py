@@ -26,7 +26,8 @@ _TAKES = (
 )
 _MEASURE = "(height|width|depth|length|size|footprint|volume|area|thickness)"
 _PHRASES = f"""
-    (which|what|who) {_ONE} {_IS} [the] {{m:more}} [one|thing|of the two|object|item] {{a}} or {{b}}
+    (which|what|who) {_ONE} {_IS} [the] {{m:more}} [one|thing|of the two|object|item|off its base|in height|in width|\
+        overall] {{a}} or {{b}}
     (which|what) {_ONE} {_IS} [the] {{m:more}} [one|of the two] [of|between|out of|from|among] {{a}} (and|or) {{b}}
     (which|what) [one] (of|between|out of) {{a}} (and|or) {{b}} {_IS} [the] {{m:more}} [one]
     (between|of|out of|comparing|from|among) {{a}} (and|or) {{b}} , (which|what) {_ONE} {_IS} [the] {{m:more}} [one]
@@ -55,7 +56,8 @@ _PHRASES = f"""
     what is the {{d:dimension}} difference between {{by_a}} and {{by_b}} [in {{u:unit}}]
     what is the difference in {{d:dimension}} between {{by_a}} and {{by_b}} [in {{u:unit}}]
     how much (taller|higher) than {{by_b}} is {{by_a}}
-    BE {{x}} [all|both|each] {{m:more}} (than|compared to|compared with|then) {{y}} [is|are]
+    BE {{x}} [all|both|each] {{m:more}} (than|compared to|compared with|then) {{y}} [is|are] [tall|high|wide|deep|\
+        long|big|large]
     BE {{x}} [both|each] {{first:more}} and {{m:more}} than {{y}} [is|are]
     BE {{x}} the {{m:more}} of the two [things] [{{pair_b}}]
     (does|do) {{x}} {_TAKES} [up] more {_SPACE} than {{y}} [does|do]

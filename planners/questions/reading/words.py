@@ -124,6 +124,19 @@ _HAVE_IS = re.compile(
 _REORDERED: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(pattern), said)
     for pattern, said in (
+        (r"^(?:would|might|will|could) there (?:happen to )?be ", "is there "),
+        (
+            r"^how (?:high|tall) (is|are) (?!the room|this room)(.+?) from (?:its |the |their )?(?:bottom|base|top) to "
+            r"(?:its |the |their )?(?:top|bottom)$",
+            r"how tall \1 \2",
+        ),
+        (r"^(how (?:tall|high) is (?:this|the) room) from (?:the )?floor to (?:the )?ceiling$", r"\1"),
+        (
+            r"^(?:excluding|not counting|not including|apart from|besides|except(?: for)?|other than|aside from|"
+            r"ignoring|"
+            r"leaving out) ([\w ]+?) , (which|what) (\w[\w ]*?) (is|are) (.+)$",
+            r"\2 \3 except \1 \4 \5",
+        ),
         (r" ,? ?and how \w+ (?:is|are) (?:it|they|that)$", ""),
         (
             r"^(?:i|we) (?:can )?(?:see|have|spot|notice|found) (?:some |a few |several |many )?([\w ]+?) , how many"
@@ -156,6 +169,7 @@ _REORDERED: tuple[tuple[re.Pattern[str], str], ...] = tuple(
             r"^(how many (?:places|seats|spots|chairs)) (?:are there|do we have|can i find) (to sit.*)$",
             r"\1 \2",
         ),
+        (r"^that (?=(?:the|this|there|a|an|these|those|all|both)\b)", "whether "),
         (r" , [\w ]{1,30} i mean(?: , not \w+)?(?: ,)?(?= |$)", ""),
         (r"^(?:counting|including|if (?:you|we) (?:count|include)|with) [\w ]+? , (?=how many )", ""),
         (
@@ -168,6 +182,7 @@ _REORDERED: tuple[tuple[re.Pattern[str], str], ...] = tuple(
             r"ignoring|leaving out|but not(?= the )) (?=[\w ]+$)",
             " except ",
         ),
+        (r"^(which|what) (\w[\w ]*?) (is|are) (the \w+est) except (.+)$", r"\1 \2 except \5 \3 \4"),
         (r"^(how many [\w ]+?) (?:are|is) (?:there|here|in the room) except ", r"\1 except "),
         (r"^(?:is|are) there (?:something|anything) ([\w ]+?) ,? ?and (?:if so ,? ?)?what(?: is it)?$", r"what is \1"),
         (
