@@ -12,7 +12,7 @@ from statistics import fmean, median
 
 from ..gaussians.language import encoders
 from . import _ask, _ask_judge
-from ._ask import generated, routing, sight, speed, stability, views, vision_loop, written
+from ._ask import generated, rooms, routing, sight, speed, stability, views, vision_loop, written
 from ._ask.question import Judged
 from ._ask.rooms import Known
 from ._select.cases import Part
@@ -56,8 +56,10 @@ def run(quick: bool = False) -> Result:
     reworded = generated.asked(graphs, generated.every_kind(), plan.graph_questions, held=True)
     known = generated.gaussian_rooms(plan.rooms, encoder, plan.detail)
     in_rooms = generated.asked(known, generated.shown_kinds(encoder), plan.questions)
+    bound = generated.asked([rooms.without_faults(k) for k in known], generated.shown_kinds(encoder), plan.questions)
     parts = [
         Part(tuple(generated.metrics(in_rooms, "gaussians")), (_point(in_rooms, "rooms of Gaussians", known, True),)),
+        Part(tuple(generated.metrics(bound, "gaussians_true_table", by_kind=False))),
         Part(tuple(generated.metrics(on_graphs, "graphs")), (_point(on_graphs, "scene graphs", graphs, False),)),
         Part(tuple(generated.metrics(reworded, "graphs_held_wordings", by_kind=False))),
         _written(),

@@ -14,11 +14,12 @@ from ...gaussians.camera import Camera
 from ...gaussians.color import BASIC, name_of, plain_color, rgb_to_lab
 from ...gaussians.language.encoders import Encoder
 from ...gaussians.world import kinds
+from ...gaussians.world.person import EYE_HEIGHT
 from ...planners.compose.api import compose
 from ...planners.compose.knowledge import rooms as room_kinds
 from ...planners.questions.survey import Survey
 from ...planners.rooms.graph import SceneGraph
-from ...planners.rooms.node import Node
+from ...planners.rooms.node import Node, RoomShape, Viewpoint
 from .._select.cases import Case
 from .truth import Table, Thing
 
@@ -83,6 +84,25 @@ def table_of_case(case: Case, size: tuple[float, float, float], camera: Camera) 
     return Table(
         f"furnished {case.seed}", case.seed, size, things, (float(eye[0]), float(eye[1])), tuple(ahead.tolist())
     )
+
+
+def graph_of_table(table: Table) -> SceneGraph:
+    """A true table as a graph before its viewer: what an embedding without a fault would find."""
+    nodes = tuple(
+        Node(
+            id=t.id, label=t.label, color=t.color or min(t.shades, default=""), size=t.size, position=t.center,
+            yaw=t.yaw, support=t.support,
+        )
+        for t in table.things
+    )  # fmt: skip
+    eye, ahead = np.array([*table.eye, EYE_HEIGHT]), np.array([*table.forward, 0.0])
+    viewer = Viewpoint(position=tuple(eye.tolist()), target=tuple((eye + ahead).tolist()))
+    return SceneGraph(room=RoomShape(size=table.size), nodes=nodes, viewer=viewer)
+
+
+def without_faults(known: Known) -> Known:
+    """The same room, known by its true table."""
+    return Known(known.table, Survey.of_graph(graph_of_table(known.table)))
 
 
 def _labs(case: Case) -> NDArray[np.float64]:

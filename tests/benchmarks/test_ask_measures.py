@@ -53,6 +53,13 @@ def test_who_walks_half_round_a_room_sees_its_sides_exchanged(table: Table) -> N
     assert (right, ahead) == pytest.approx((-1.0, 3.0))
 
 
+def test_a_true_table_and_its_graph_say_the_same(table: Table) -> None:
+    again = rooms.table_of_graph(rooms.graph_of_table(table), "by hand", 1)
+    assert again.things == table.things and again.size == table.size
+    viewer = rooms.graph_of_table(table).viewer
+    assert viewer is not None and viewer.target[1] - viewer.position[1] == pytest.approx(1.0)
+
+
 def test_answers_agree_as_lengths_and_lists_do() -> None:
     length = Question("", "size", "", "metres", (2.0,))
     assert stability.agrees(2.0, judge(length, 2.1, "")) and not stability.agrees(2.0, judge(length, 2.5, ""))
