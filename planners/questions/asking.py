@@ -90,7 +90,7 @@ def route(text: str, survey: Survey) -> Reading:
                 failed = failed or _Attempt(kind, asked, error)
                 continue
             if given is not None:
-                return _reading(kind, given)
+                return _reading(kind, given if survey.scaled else _in_units(given))
         if failed is not None:
             return _unresolved(failed, survey)
     none = Answer(answer=None, answer_type=expected_type(rest), text=NOT_READ, confidence=0.0, source="none")
@@ -130,6 +130,17 @@ def expected_type(words: Sequence[str]) -> AnswerType:
     if first in _YES_NO or (first and first not in _OPEN and {"is", "are"} & set(words)):
         return "text" if "or" in words and "whether" not in words else "yesno"
     return "number" if words[:2] == ("how", "many") or first == "count" else "text"
+
+
+_UNSCALED = 0.4  # probability that a length is right where one unit of the scene is taken for a metre
+
+
+def _in_units(given: Answer | Undecided) -> Answer | Undecided:
+    """An answer about a scene of unknown scale: lengths are told as uncertain."""
+    if not isinstance(given, Answer) or given.answer is None or given.unit in ("", "%", "deg"):
+        return given
+    text = f"{given.text} The scale of the scene is not known: one unit of it is read as a metre."
+    return given.model_copy(update={"confidence": min(given.confidence, _UNSCALED), "text": text[:4000]})
 
 
 def _reading(kind: Kind, given: Answer | Undecided) -> Reading:

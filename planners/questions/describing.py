@@ -329,7 +329,14 @@ def _unnamed(survey: Survey) -> Iterator[str]:
     assert largest.node is not None
     width, depth, height = largest.node.size
     color = f"{largest.color}, " if largest.color else ""
-    several = f"{_number(len(unnamed))} of the {len(survey.things)} things have no sure name; the largest of them is"
+    total = len(survey.things)
+    which = (
+        f"{_number(len(unnamed))} of the {total} things have"
+        if len(unnamed) < total
+        else f"none of the {total} things has"
+    )
+    sure = "no sure name" if len(unnamed) < total else "a sure name"
+    several = f"{which} {sure}; the largest of them is"
     single = "one thing has no sure name; it is"
     yield _sentence(
         f"{several if len(unnamed) > 1 else single} {color}{width:.1f} m wide, {depth:.1f} m deep and "

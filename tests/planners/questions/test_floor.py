@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -10,8 +11,10 @@ import pytest
 from small_room import BED, BIN, DEPTH, DESK, DOOR, HEIGHT, RUG, THINGS, WIDTH, WINDOW, graph, node, said, turned
 
 from scenewright.gaussians.world.person import SHOULDERS
+from scenewright.planners.questions.asking import answer
 from scenewright.planners.questions.floor import routes
 from scenewright.planners.questions.floor.floor_map import FloorMap
+from scenewright.planners.questions.survey import Survey
 from scenewright.planners.rooms.graph import SceneGraph
 
 
@@ -146,6 +149,12 @@ def test_measures_of_the_room(question: str, answer_type: str, value: float, uni
         ("Can you walk all the way around the bin?", "yes"),
         ("Could a wheelchair turn around in here?", "yes"),
         ("Can I reach the piano?", "no"),
+        ("Can the door be opened fully?", "yes"),
+        ("Are there any obstacles between the door and the bed?", "no"),
+        ("Is any corner free?", "yes"),
+        ("Can two people walk side by side between the desk and the bed?", "yes"),
+        ("Is there a gap of at least 3 m between the desk and the bed?", "no"),
+        ("Is the ceiling high enough for a 2.6 m Christmas tree?", "no"),
     ],
 )
 def test_yes_and_no(question: str, value: str) -> None:
@@ -175,6 +184,13 @@ def test_directions_name_the_turns_and_add_up() -> None:
     told = said("How far do I have to walk from the door to the bed?")
     assert told.answer == pytest.approx(sum(legs), abs=1e-3)
     assert "the bed" in found.text and "walk" in found.text
+
+
+def test_lengths_in_a_scene_of_unknown_scale_are_told_as_uncertain() -> None:
+    survey = replace(Survey.of_graph(graph()), scaled=False)
+    found = answer("How wide is the room?", survey)
+    assert found.answer == WIDTH and found.confidence <= 0.4 and "scale" in found.text
+    assert answer("What share of the floor is covered?", survey).confidence > 0.4
 
 
 def test_the_most_open_place_is_free() -> None:
