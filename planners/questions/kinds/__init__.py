@@ -28,6 +28,7 @@ from . import (
 KINDS = (
     routes.BLOCKED,
     placed.BETWEEN,
+    whereabouts.IN_PLACE,
     *room.KINDS,
     *describe.KINDS[:4],
     *free_floor.KINDS,

@@ -504,15 +504,15 @@ def _pair_name(x: Thing, a: Thing, firsts: Sequence[Thing], seconds: Sequence[Th
     return " and ".join([survey.named(x)] * (len(firsts) > 1) + [survey.named(a)] * (len(seconds) > 1))
 
 
-_OFFSETS = {"left_of": -90.0, "right_of": 90.0, "in_front_of": 0.0, "behind": 180.0}
+_OFFSETS = {"opposite": 0.0, "left_of": -90.0, "right_of": 90.0, "in_front_of": 0.0, "behind": 180.0}
 
 
-def _frame_of(anchor: Thing, asked: Asked, survey: Survey) -> tuple[View | None, bool]:
+def _frame_of(anchor: Thing, asked: Asked, survey: Survey, name: str = "") -> tuple[View | None, bool]:
     """The frame in which a side of a thing is told, centred at the thing, and whether "in front" is ahead of it.
 
     A situation gives the person's own line of sight; a situation that takes the thing's frame gives that.
     """
-    if _OWN_FRAME.search(asked.said):
+    if _OWN_FRAME.search(asked.said) or (name and relations.named(name).own_frame):
         return of_object(anchor, survey), True
     if asked.situation is None:
         seen = viewer(survey)
@@ -528,7 +528,7 @@ def _frame_of(anchor: Thing, asked: Asked, survey: Survey) -> tuple[View | None,
 
 
 def _side_of_thing(x: Thing, anchor: Thing, name: str, asked: Asked, survey: Survey) -> Answer:
-    view, own = _frame_of(anchor, asked, survey)
+    view, own = _frame_of(anchor, asked, survey, name)
     if view is None:
         return _no_frame(anchor, own, survey, "yesno")
     return _holds_beside(x, anchor, name, view, own, survey)
@@ -605,7 +605,7 @@ def _what_of(asked: Asked, survey: Survey) -> Answer | None:
     anchors = meant(asked.slots["a"], survey)
 
     def one(anchor: Thing) -> Answer:
-        view, own = _frame_of(anchor, asked, survey)
+        view, own = _frame_of(anchor, asked, survey, name)
         if view is None:
             return _no_frame(anchor, own, survey, "label")
         found = [t for t in survey.things if t.row != anchor.row and (wanted is None or t.row in wanted)

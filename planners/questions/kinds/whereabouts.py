@@ -222,7 +222,8 @@ KINDS = (
     Kind("which_wall", templates(_WHICH_WALL), _which_wall),
     Kind("which_corner", templates(_WHICH_CORNER), _which_corner),
     Kind("room_side", templates(_ZONE), _which_zone),
-    Kind("in_place", templates(_IN_ZONE), _in_zone),
     Kind("what_in_place", templates(_WHAT_ZONE), _what_in_zone),
     Kind("where", templates(_WHERE), _where),
 )
+
+IN_PLACE = Kind("in_place", templates(_IN_ZONE), _in_zone)

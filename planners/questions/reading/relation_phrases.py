@@ -46,8 +46,8 @@ def _phrases() -> dict[str, str]:
     """Every phrase said before one anchor, with the name of a relation that boxes decide."""
     found: dict[str, str] = {}
     for kind in relations.KINDS:
-        name = kind.name if kind.used("query") else kind.query_as
-        if not name or name == "between" or relations.named(name).score is None:
+        name = kind.name if kind.used("query") or kind.own_frame else kind.query_as
+        if not name or name == "between" or (relations.named(name).score is None and not kind.own_frame):
             continue
         for phrase in (*kind.phrases.in_commands(), *kind.phrases.in_descriptions()):
             if phrase not in _LEFT_OUT:

@@ -91,7 +91,8 @@ _EYES = (
 )
 _TAIL = (
     "[[(with|and)] [(my|their|his|her|your|the)] head (on|at|against) the (wall|wall side|headboard)] "
-    "[(leaning|leant|leaned|lying) back] [[(is|that is|which is)] {s0:side}] "
+    "[and (stop|stopped|pause|stay|wait|stand still|stand there)] [(leaning|leant|leaned|lying) back] [[(is|that "
+    "is|which is)] {s0:side}] "
     f"[{_LOOKS} {{way:gaze}}|{_GAZES} [that|this] {{g:bare}}|{_EYES}|(and|with) my back (to|against|towards|toward) "
     f"{{back:bare}}] "
     f"[{_SIDED}] [{_SIDED2}]"
