@@ -85,6 +85,6 @@ def walker(words: Words) -> Walker | None:
     if name in WIDTHS:
         return Walker(WIDTHS[name], "" if WIDTHS[name] == SHOULDERS else name)
     item = read_item(tuple(said.split()))
-    if item is not None and item.stated and item.width is not None and item.kind is None:
+    if item is not None and item.stated and item.width is not None:
         return Walker(min(item.width, item.depth or item.width), item.name)
     return None
