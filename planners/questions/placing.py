@@ -21,7 +21,8 @@ def place_of(thing: Thing, survey: Survey) -> tuple[str, str]:
         more = f"above {survey.named(below[0])}" if below else _beside(thing, survey)
         return f"on the {wall_of(thing, survey.room)[0].name} wall", more
     if on == "ceiling":
-        under = [t for t in related("under", (thing,), survey) if t.node is not None]
+        under = [t for t in related("under", (thing,), survey) if t.node is not None and t.node.support == "floor"]
+        under.sort(key=lambda t: t.group.box.size[2], reverse=True)  # the table, not the rug under it
         return "on the ceiling", f"over {survey.named(under[0])}" if under else _side(thing, survey)
     return _on_floor(thing, survey)
 
