@@ -19,8 +19,8 @@ from .options import with_values
 from .terminal.output import error_json, terminal
 
 VERBS = (
-    "demo", "info", "embed", "name-all", "select", "ask", "plan", "schema", "check", "compose", "edit", "chat",
-    "render", "find-view", "convert", "mcp", "fit", "bench", "doctor",
+    "demo", "info", "embed", "name-all", "select", "ask", "describe", "plan", "schema", "check", "compose", "edit",
+    "chat", "render", "find-view", "convert", "mcp", "fit", "bench", "doctor",
 )  # fmt: skip
 
 app = typer.Typer(

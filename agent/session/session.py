@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from ...planners.model.backend import ModelBackend
     from ...planners.plan import EditPlan, Planner, Usage
     from ...planners.questions.answer import Answer
+    from ...planners.questions.describing import Description
     from ...planners.questions.survey import Survey
     from ...planners.rooms.graph import SceneGraph
     from ...tools.operation import Context
@@ -398,6 +399,16 @@ class Session:
             found = self._context(None).resolve(self.scene, Query(groups=groups[:256]))
             self._history.amend(replace(self._history.present, last=found))
         return given
+
+    def describe(self) -> Description:
+        """A paragraph about the scene and a line for each thing, from what is measured. Embeds the scene if need be.
+
+        Raises:
+            UserError: the scene is larger than a graph may be.
+        """
+        from ...planners.questions.describing import describe
+
+        return describe(self.survey())
 
     def name_all(self, *, overwrite: bool = False) -> Named:
         """Let the vision model name all things, from a few pictures; the language field keeps the names. No edit.
