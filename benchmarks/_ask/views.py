@@ -103,7 +103,14 @@ def measure(seeds: Sequence[int], encoder: Encoder, detail: float, quick: bool) 
     metrics.append(Metric(f"views.ours_{OURS}_minus_uniform_{EVEN}", ours - even, "share", "higher", 0.0, 0.0))
     metrics.append(Metric("views.questions", len(right["ours", OURS]), "count"))
     points = [
-        Point(f"stand-in for a vision model, views {how}", f"{n} views", fmean(seconds[name, n]), fmean(v), 0)
+        Point(
+            f"stand-in for a vision model, views {how}",
+            "1 view" if n == 1 else f"{n} views",
+            fmean(seconds[name, n]),
+            fmean(v),
+            0,
+            name == "ours" and n == OURS,
+        )
         for name, how in (("ours", "for the question"), ("uniform", "evenly"), ("random", "at random"))
         for (other, n), v in right.items()
         if other == name
