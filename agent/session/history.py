@@ -6,10 +6,12 @@ A state is frozen and shares its unchanged columns with its neighbours, so undo 
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
 from ...gaussians.errors import UserError
+from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 
@@ -25,12 +27,14 @@ class State:
         last: the selection that "it" refers to; None at first.
         text: the instruction that led here, "" for the first state.
         context: the previous instruction, for "a bit more" and "the red one".
+        pointed: what a vision model pointed at in this scene, by phrase.
     """
 
     scene: Scene
     last: Selection | None = None
     text: str = ""
     context: str = ""
+    pointed: Mapping[str, Query] = field(default_factory=dict)
 
     @cached_property
     def digest(self) -> str:

@@ -79,7 +79,8 @@ def run_plan(
             receipts = judge.look_at_all(start.scene, scene, plan.instruction, receipts)
         except ScenewrightError as error:
             raise PlanFailed(error, None) from error
-    return State(scene, last, plan.instruction, plan.instruction), tuple(receipts)
+    pointed = start.pointed if scene.cloud is start.scene.cloud else {}  # group ids and places may differ after an edit
+    return State(scene, last, plan.instruction, plan.instruction, pointed), tuple(receipts)
 
 
 def _question(plan: EditPlan, step: int, error: ScenewrightError, scene: Scene, context: Context) -> Question | None:

@@ -106,7 +106,6 @@ class Session:
         self._vision = VisionClient(vlm, self._planner.ledger, self._progress)
         self._encoder = encoder
         self._asker = Asker()
-        self._pointed: dict[str, Query] = {}
         self._viewer = viewer
         self._seed = seed
         self.pixel_checks = pixel_checks
@@ -557,12 +556,12 @@ class Session:
 
     def _by_sight(self, selection: Selection) -> tuple[Query | None, str]:
         """The query for what a vision model points at, None if at nothing, and a sentence about it. The scene's field
-        keeps the name, and the session the phrase, so that the model is asked once."""
-        phrase = selection.query.describe()
-        if phrase in self._pointed:
-            return self._pointed[phrase], "as pointed out before"
+        keeps the name, and the state the phrase, so that the model is asked once until an edit changes the scene."""
+        phrase, known = selection.query.describe(), self._history.present.pointed
+        if phrase in known:
+            return known[phrase], "as pointed out before"
         seen = point_out(self.scene, selection, self.viewer, self._vision)
         if seen.query is not None:
-            self._pointed[phrase] = seen.query
-            self._history.amend(replace(self._history.present, scene=seen.scene))
+            pointed = {**known, phrase: seen.query}
+            self._history.amend(replace(self._history.present, scene=seen.scene, pointed=pointed))
         return seen.query, seen.told

@@ -85,11 +85,14 @@ def point_out(scene: Scene, selection: Selection, viewer: Camera, vision: Vision
 
 
 def _candidates(scene: Scene, selection: Selection) -> tuple[int, ...]:
-    """The groups in question: the candidates of an ambiguous query, else all things, the largest first."""
+    """The groups in question: the candidates of an ambiguous query, else all things, the largest first; none where a
+    candidate is not in the scene, as what an earlier step of the same plan inserts."""
+    assert scene.language is not None
+    table = scene.language.groups
     known = tuple(dict.fromkeys(c.group for c in selection.candidates if c.group >= 0))
     if selection.verdict == "ambiguous" and known:  # places that were found by their colour are no groups
-        return known[:MOST_CANDIDATES]
-    assert scene.language is not None
+        there = all(group < len(table) and table[group].count for group in known)
+        return known[:MOST_CANDIDATES] if there else ()
     things = [g for g in scene.language.objects() if g.count]
     things.sort(key=lambda g: (-max(g.box.size), g.id))
     return tuple(g.id for g in things[:MOST_CANDIDATES])

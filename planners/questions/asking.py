@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ...gaussians.language.query.nested import with_queries
 from ...gaussians.language.query.query import Query
 from ..grammar.tagging.words import bag
 from . import kinds
@@ -173,7 +174,11 @@ def _unresolved(failed: _Attempt, survey: Survey) -> Reading:
 def _for_one(failed: _Attempt, thing: Thing, survey: Survey) -> Answer | None:
     """The answer if an ambiguous phrase means this thing; None if there is none."""
     meant = Query(groups=(thing.row,))
-    slots = {name: _replaced(value, failed.error.query, meant) for name, value in failed.asked.slots.items()}
+    phrase = failed.error.query
+    slots = {
+        name: with_queries(value, lambda query: meant if query == phrase else query)
+        for name, value in failed.asked.slots.items()
+    }
     if slots == dict(failed.asked.slots):
         return None
     asked = Asked(failed.asked.text, slots, failed.asked.situation, failed.asked.words)
@@ -182,23 +187,6 @@ def _for_one(failed: _Attempt, thing: Thing, survey: Survey) -> Answer | None:
     except NotResolved:
         return None
     return given if isinstance(given, Answer) else None
-
-
-def _replaced(value: Any, phrase: Query, meant: Query) -> Any:
-    """A value of a slot with one phrase in it replaced, however deep it is."""
-    if not isinstance(value, Query):
-        return value
-    if value == phrase:
-        return meant
-    changes: dict[str, Any] = {
-        "relations": tuple(
-            r.model_copy(update={"anchors": tuple(_replaced(a, phrase, meant) for a in r.anchors)})
-            for r in value.relations
-        ),
-        "also": tuple(_replaced(q, phrase, meant) for q in value.also),
-        "exclude": tuple(_replaced(q, phrase, meant) for q in value.exclude),
-    }
-    return value.model_copy(update=changes)
 
 
 def _same(answers: Sequence[Answer]) -> Answer | None:

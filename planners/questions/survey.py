@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ...gaussians.color import BASIC, FAMILIES, plain_color
 from ...gaussians.language.query.attributes import COLOR_HOLDS, color_scores
+from ...gaussians.language.query.nested import with_queries
 from ...gaussians.language.query.query import Query, Relation
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.language.query.terms import color_term
@@ -54,7 +55,7 @@ class Survey:
     Attributes:
         graph: the scene graph, with the viewer if there is one.
         stage: the boxes, colours and relations of the graph's nodes.
-        finder: resolves queries to rows of the stage.
+        finder: resolves queries to rows of the stage; the groups that a query names are rows of the stage too.
         last: ids that "it" refers to.
         faces: whether the front of a thing was measured; None: its kind tells. A front is the -y side of its box.
         measured: whether boxes, colours and labels were measured in a scene, not written by somebody.
@@ -118,10 +119,11 @@ class Survey:
         language = scene.language
         structure = {g.id: g.label for g in language.groups if g.level == "structure"}
         rows = {id: row for row, id in reversed(list(enumerate(self.stage.ids)))}
+        groups = _groups_of(self.stage.ids, structure, none=len(language.groups))
         resolver = Resolver(scene, viewer, encoder, last)
 
         def find(query: Query) -> Selection:
-            return _on_stage(resolver.select(query), rows, structure)
+            return _on_stage(resolver.select(_in_scene(query, groups)), rows, structure)
 
         def faces(thing: Thing) -> bool:
             kind, group = kinds.of(thing.label), language.groups[int(thing.id)]
@@ -480,6 +482,27 @@ def with_article(noun: str) -> str:
 def be(things: Sequence[Thing]) -> str:
     """ "is" or "are", as several things or one in the plural ("books") need."""
     return "is" if len(things) == 1 and not is_plural(things[0].name) else "are"
+
+
+def _groups_of(ids: Sequence[Id], structure: dict[int, str], none: int) -> list[tuple[int, ...]]:
+    """The group ids of a scene that each row of the stage means; of "wall" those of all walls.
+
+    Args:
+        none: an id that no group has, for rows without a group.
+    """
+    shell = {name: tuple(group for group, label in structure.items() if label == name) for name in SHELL}
+    return [(id,) if isinstance(id, int) else shell.get(id) or (none,) for id in ids]
+
+
+def _in_scene(query: Query, groups: Sequence[tuple[int, ...]]) -> Query:
+    """A query with group ids of the scene in place of rows of the stage; `groups` holds those of each row."""
+
+    def meant(part: Query) -> Query:
+        ids = tuple(dict.fromkeys(group for row in part.groups for group in groups[row]))
+        return part.model_copy(update={"groups": ids}) if part.groups else part
+
+    changed: Query = with_queries(query, meant)
+    return changed
 
 
 def _on_stage(found: Selection, rows: dict[Id, int], structure: dict[int, str]) -> Selection:

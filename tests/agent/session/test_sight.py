@@ -122,3 +122,24 @@ def test_all_things_are_named_and_sure_names_stay(boxes: Scene, encoder: Any) ->
     assert set(named.names.values()) == {"crate"}
     assert session.scene.language is not None
     assert {g.named_by for g in session.scene.language.objects()} == {"caption"}
+
+
+def test_what_was_pointed_at_is_forgotten_when_the_scene_changes(boxes: Scene, encoder: Any) -> None:
+    session, model = seeing(boxes, encoder, [RIGHT], LEFT, RIGHT)
+    session.select("the red thing")
+    asked = len(model.asked)
+    session.do("delete the green thing")
+    assert session.scene.language is not None and session.scene.language.groups[GREEN].count == 0
+    session.select("the red thing")
+    assert len(model.asked) > asked
+    asked = len(model.asked)
+    session.undo()
+    assert session.select("the red thing").groups == (RIGHT,)
+    assert len(model.asked) == asked  # of the scene before the edit it is still known
+
+
+def test_what_an_earlier_step_inserts_is_not_looked_for_in_the_scene_before(boxes: Scene, encoder: Any) -> None:
+    session, model = seeing(boxes, encoder, [LEFT], LEFT, RIGHT)
+    with pytest.raises(AmbiguousError, match="no group to point at"):
+        session.do("add a red ball next to the green thing, then delete the red thing")
+    assert not model.asked

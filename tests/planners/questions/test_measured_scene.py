@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from scenewright.agent.session.session import Session
@@ -44,3 +46,41 @@ def test_a_scene_is_answered_as_its_graph_is(survey: Survey, text: str, value: o
 
 def test_colours_are_the_plain_words_that_selection_uses(survey: Survey) -> None:
     assert {t.label + t.color for t in survey.things} == {"sofablue", "coffee tablebrown", "chairred", "chairwhite"}
+
+
+CHAIRS = SceneGraph.model_validate(
+    {
+        "room": {"size": [5.0, 4.0, 2.5]},
+        "nodes": [  # ids that are no rows of the graph
+            {"id": 10, "label": "door", "size": [0.9, 0.06, 2], "position": [0, -1.97, 1], "support": "wall"},
+            {"id": 11, "label": "chair", "color": "red", "size": [0.5, 0.5, 0.9], "position": [-2, 1, 0.45]},
+            {"id": 12, "label": "piano", "color": "black", "size": [1.4, 0.6, 1.2], "position": [0, 1.6, 0.6]},
+            {"id": 13, "label": "chair", "color": "red", "size": [0.5, 0.5, 0.7], "position": [2, 0, 0.35]},
+        ],
+    }
+)
+
+
+@pytest.mark.parametrize("measured", [True, False])
+def test_each_candidate_of_an_ambiguous_phrase_has_its_own_answer(measured: bool) -> None:
+    rooms = Session(CHAIRS.build(detail=0.1)).survey() if measured else Survey.of_graph(CHAIRS)
+    tall = answer("how tall is the chair?", rooms)
+    assert tall.answer is None and set(tall.evidence.ids) == {11, 13}
+    heights = [float(value) for value in re.findall(r"\(([\d.]+) m\)", tall.text)]
+    assert sorted(heights) == [pytest.approx(0.7, abs=0.02), pytest.approx(0.9, abs=0.02)]
+    far = answer("how far is the chair from the door?", rooms)
+    assert far.answer is None and set(far.evidence.ids) == {10, 11, 13}
+    lengths = [float(value) for value in re.findall(r"([\d.]+) m\b", far.text)]
+    # Between the middles of the boxes: (2, 1.97, 0.65) and (2, 2.97, 0.55) m.
+    assert sorted(lengths) == [pytest.approx(2.882, abs=0.03), pytest.approx(3.623, abs=0.03)]
+
+
+def test_it_means_what_the_answer_was_about_until_the_scene_changes() -> None:
+    session = Session(CHAIRS.build(detail=0.1), planner="grammar")
+    assert session.ask("how tall is the piano?").answer == pytest.approx(1.2, abs=0.02)
+    assert session.ask("what colour is it?").answer == "black"
+    session.do("delete it")
+    assert session.ask("is there a piano?").answer == "no"
+    session.undo()
+    assert session.ask("is there a piano?").answer == "yes"
+    assert session.ask("how wide is it?").answer == pytest.approx(1.4, abs=0.02)
