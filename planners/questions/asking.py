@@ -82,6 +82,8 @@ def route(text: str, survey: Survey) -> Reading:
     readings = [(situation, rest)] if situation is None else [(situation, rest), (None, words)]
     if (told := _without_purpose(words)) is not None:
         readings.append((None, told))
+    if _ASIDE.search(text):
+        readings.append((None, plain_words(_ASIDE.sub(" ", text))))
     failed: _Attempt | None = None
     for where, said in readings:  # words that seem to say where a person is may belong to the question itself
         for kind, asked in _filled(text, where, said):
@@ -98,6 +100,7 @@ def route(text: str, survey: Survey) -> Reading:
     return Reading(none, sight=True)
 
 
+_ASIDE = re.compile(r"\([^()]*\)")  # "how many seats are there (sofa plus chairs)?"
 _PURPOSE = re.compile(
     r"^(?:(?:i|we) (?:am|are|was|were) )?(?:just )?(?:thinking (?:of|about)|planning (?:to|on)|considering|"
     r"hoping to|looking to) [^,]+ , (?=(?:what|how|is|are|can|could|would|will|where|which|does|do)\b)"

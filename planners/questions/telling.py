@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ...gaussians.language.query.query import Query
+from ..rooms.label_encoder import NOT, agreement
 from .answer import Answer, AnswerType, Evidence, Line
 from .survey import Found, Survey, Thing, listed, with_article
 
@@ -62,14 +63,23 @@ def absent_text(survey: Survey, query: Query, found: Found) -> str:
     if query.last:
         return "It is not clear what “it” refers to; name the thing."
     near = [survey.named(t) for t in found.near]
+    if _may_be_there(query, found):
+        verb = "is" if len(near) == 1 else "are"
+        return f"Nothing here is surely a {bare(query)}; what comes nearest {verb} {listed(near)}."
     told = f" The nearest to that: {listed(near)}." if near else ""
     return f"There is no {bare(query)} here.{told}"
+
+
+def _may_be_there(query: Query, found: Found) -> bool:
+    """Whether all things nearest to a plain name carry that name: it was not found because it is not sure."""
+    plain = query.model_copy(update={"text": "", "pick": "one", "count": None}) == Query()
+    return plain and bool(found.near) and all(agreement(query.text, [t.label])[0] > NOT for t in found.near)
 
 
 def absent(survey: Survey, query: Query, found: Found, answer_type: AnswerType) -> Answer:
     """The answer about something that is not there: "no" to a yes-or-no question, 0 to "how many", else none."""
     text, ids = absent_text(survey, query, found), evidence(found.near)
-    if answer_type == "yesno" and not query.last:
+    if answer_type == "yesno" and not query.last and not _may_be_there(query, found):
         return Answer(answer="no", answer_type="yesno", text=f"No. {text}", confidence=0.9, evidence=ids)
     return Answer(answer=None, answer_type=answer_type, text=text, confidence=0.9, source="none", evidence=ids)
 

@@ -168,7 +168,17 @@ def _agrees(asked: Phrase, label: Phrase) -> float:
     plain = _plainer(asked)
     # A "round table" may be a plain "table", but not a "square table".
     same = plain != asked and asked not in _own_names() and set(label) - set(_plainer(label)) <= set(asked)
-    return _names(plain, label) if same else NOT
+    return _names(plain, label) if same and _may_be(asked, plain, label) else NOT
+
+
+def _may_be(asked: Phrase, plain: Phrase, label: Phrase) -> bool:
+    """Whether a phrase without its modifiers may still mean a label.
+
+    A phrase that names a kind ("wine rack", "dining table") means another kind only by its plain name: a "dining table"
+    may be labelled "table", but it is no "coffee table", and a "wine rack" is neither a "coat rack" nor a "shelf".
+    """
+    own, other = kinds.find(" ".join(asked)), kinds.find(" ".join(label))
+    return own is None or other is None or own == other or label == plain
 
 
 def _names(asked: Phrase, label: Phrase) -> float:

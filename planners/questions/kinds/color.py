@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from ....gaussians.color import plain_color
 from ....gaussians.language.query.query import Query
+from ....gaussians.world.words import plural
 from ..answer import Answer, AnswerType
 from ..kind import Asked, Kind, Undecided
 from ..reading.phrase_templates import templates
@@ -122,14 +123,21 @@ def _colors(phrase: Meant, survey: Survey) -> Answer | Undecided:
     if len(colors) > 1 and not phrase.plural:
         raise phrase.differ()
     if len(colors) == 1:
-        many = len(known) > 1 and phrase.plural
-        named = f"All {len(known)}" if many else survey.named(known[0]).capitalize()
+        many = len(known) > 1
+        named = _every(known) if many else survey.named(known[0])
         text = f"{named} {'are' if many else 'is'} {colors[0]}."
         return Answer(answer=colors[0], answer_type="label", text=_up(text), confidence=_sure(survey),
                       evidence=evidence(known))  # fmt: skip
     told = listed([f"{survey.named(t)} is {t.color}" for t in known])
     return Answer(answer=tuple(colors), answer_type="list", text=_up(f"{told}."), confidence=_sure(survey),
                   evidence=evidence(known))  # fmt: skip
+
+
+def _every(things: Sequence[Thing]) -> str:
+    """Several things that are told together: "both chairs", "all 4 lamps", "all 3"."""
+    labels = {t.label for t in things}
+    noun = f" {plural(things[0].label)}" if len(labels) == 1 and things[0].label else ""
+    return f"{'both' if len(things) == 2 else f'all {len(things)}'}{noun}"
 
 
 def _has(asked: Asked, survey: Survey) -> Answer | Undecided | None:

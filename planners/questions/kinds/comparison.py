@@ -65,6 +65,7 @@ _PHRASES = f"""
     (does|do|has|have) {{x}} [have] [a] (greater|larger|bigger|higher|more) {{d:dimension}} than {{y}} [does|has]
     is the {{d:dimension}} of {{x}} (greater|larger|bigger|higher|more) than [that of|the {_MEASURE} of] {{y}}
     is the {{d:dimension}} of {{less_x}} (less|smaller|lower|shorter) than [that of|the {_MEASURE} of] {{less_y}}
+    BE {{self}} {{m:more}} than (it is|they are|it|they) {{self_d:dimension}}
     BE {{eq_x}} [just|at least|about|nearly|almost|equally] as {{d:dimension}} as {{eq_y}} [is|are]
     BE {{eq_x}} [about|roughly|exactly|nearly] [of] the same {{d:dimension}} as {{eq_y}} [is|are]
     (does|do|has|have) {{eq_x}} [have] the same {{d:dimension}} as {{eq_y}} [has|have|does|do]
@@ -89,6 +90,8 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
         return None
     if "first" in slots and slots["first"].measure != degree.measure:
         return None
+    if "self" in slots:
+        return _of_itself(meant(survey, slots["self"]), degree, slots["self_d"].measure, survey)
     if "by_a" in slots:
         return _difference(asked, degree, survey)
     if "pair" in slots:
@@ -149,6 +152,19 @@ def _which(a: Meant, b: Meant, degree: More, survey: Survey) -> Answer:
     )
     things = [*winner.things[1:], *loser.things]
     return label(thing, _up(text), _sure(own, other, degree, thing, second), others=things, said=said)
+
+
+def _of_itself(phrase: Meant, degree: More, other: Measure, survey: Survey) -> Answer | None:
+    """Whether one side of a thing is longer than another side of it: "is the desk wider than it is deep?"."""
+    if degree.measure == other or not {degree.measure, other} <= {"width", "depth", "height", "length", "thickness"}:
+        return None
+    pairs = [(measure(survey, t, degree.measure), measure(survey, t, other)) for t in phrase.things]
+    holds = [(own - second) * degree.sign > 0 for own, second in pairs]
+    if len(set(holds)) > 1 and not phrase.plural:
+        raise phrase.differ()
+    told = listed([f"{survey.named(t)}: {degree.measure} {told_length(own)}, {other} {told_length(second)}"
+                   for t, (own, second) in list(zip(phrase.things, pairs, strict=True))[:6]])  # fmt: skip
+    return yes_no(all(holds), f"{told}.", phrase.things, min(certainty(own, second) for own, second in pairs))
 
 
 def _is_more(a: Meant, b: Meant, degree: More, survey: Survey) -> Answer:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ....gaussians.language.query.query import Query, Relation
 from ....gaussians.world import kinds
 from ....gaussians.world.words import plural
@@ -12,9 +14,10 @@ from ..reading.measures import Amount
 from ..reading.noun_phrase import is_anything
 from ..reading.noun_phrase import thing as noun_phrase
 from ..reading.phrase_templates import templates
-from ..resolving import all_of
+from ..relating import related
+from ..resolving import Meant, all_of, meant
 from ..survey import Survey, Thing, be, listed
-from ..telling import GRAPH_SURE, absent_text, bare, label, number, yes_no
+from ..telling import GRAPH_SURE, absent_text, bare, evidence, label, number, yes_no
 
 _ROOM = "(the room|this room|it|this place|the scene|this scene|this|we|you|i|they|people)"
 _HOLD = "(have|contain|hold|include|see|find|spot|count|got|own|make out|get|possess|feature|notice|identify|detect)"
@@ -25,6 +28,11 @@ _PHRASES = f"""
         [here|in here|in the room|at the same time]
     how many (people|persons|guests) (does|do|can|could) (the room|this room|it|we|i|you) (seat|accommodate|sit) [at \
         once|at the same time]
+    how many (people|persons|guests|of us|friends) (can|could|may|would) [comfortably] (sit|be seated|sit down|find a \
+        seat|fit|have a seat|eat|have dinner) [down] (at|around|on|in) {{at}}
+    how many (people|persons|guests) (does|do|can|could|would) {{at}} (seat|hold|take|accommodate|have room for)
+    how many {{first}} and how many {{second}} [(are|is) there|do we have|can you see|does the room have|do you see] \
+        [here|in here|in the room]
     (is|are) there {{n:amount}} {{x}}
     [whether] there (is|are) {{n:amount}} {{x}}
     (does|do|did|has|have|can|could) {_ROOM} {_HOLD} {{n:amount}} {{x}}
@@ -58,6 +66,7 @@ _PHRASES = f"""
     how many more {{diff_a}} than {{diff_b}} (are there|do we have)
     (how many|what number of) (of the|of these|of those|of all the|of all) {{x}} (are|is|look|looks) {{c:color}}
     (how many|what number of) {{x}} (are|is|look|looks) [there that are|colored] {{c:color}}
+    (how many|what number of) {{x}} (are|is) [there that are] not {{not_c:color}}
     (how many|what number of) {{noun:noun}} (is|are|stand|stands|lie|lies|sit|sits|hang|hangs|rest|rests|can be found|\
         can be seen|can i find|can you find|do we have|do you see|can you see|can i see|are there|is there|there are|\
         do i have) [there|standing|sitting|lying|placed|located|positioned|hanging|resting|found|stored|kept|mounted|\
@@ -96,6 +105,10 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
         return _compared(asked, survey)
     if not slots:
         return _places_to_sit(survey)
+    if "at" in slots:
+        return _seated_at(meant(survey, slots["at"]), survey)
+    if "first" in slots:
+        return _counted_apart([slots["first"], slots["second"]], survey)
     if "odd" in slots or "even" in slots or "parity" in slots or "by" in slots:
         return _parity(asked, survey)
     if "kinds" in slots:
@@ -123,6 +136,8 @@ def _described(asked: Asked) -> Query | None:
         place = slots["place"] if "place" in slots else ("with", *slots["had"])
         return noun_phrase((*slots["noun"], *place))
     query: Query = slots["of"] if "of" in slots else slots["x"]
+    if "not_c" in slots:
+        return None if query.also else query.model_copy(update={"not_colors": (*query.not_colors, slots["not_c"])})
     if "c" in slots:
         if query.also:
             return None
@@ -211,14 +226,44 @@ def _compared(asked: Asked, survey: Survey) -> Answer | None:
     return yes_no(n > m, f"there are {told}.", things)
 
 
+def _counted_apart(queries: Sequence[Query], survey: Survey) -> Answer | None:
+    """The numbers of several kinds of things, each told apart: "how many beds and how many lamps?"."""
+    if any(q.also or q.last or q.count is not None for q in queries):
+        return None
+    each = [all_of(survey, q)[0] for q in queries]
+    said = tuple(_number(len(things), q) for q, things in zip(queries, each, strict=True))
+    every = [t for things in each for t in things]
+    return Answer(answer=said, answer_type="list", text=f"There are {listed(list(said))}.", confidence=GRAPH_SURE,
+                  evidence=evidence(every))  # fmt: skip
+
+
+def _seated_at(phrase: Meant, survey: Survey) -> Answer | None:
+    """How many people find a seat on a thing, or next to it where it is none: "at the dining table"."""
+    if all(families.holds(families.SEAT, t.label) for t in phrase.things):
+        return _places(list(phrase.things), "", survey)
+    counts = []
+    for thing in phrase.things:
+        near = [t for t in related("next_to", (thing,), survey) if families.holds(families.SEAT, t.label)]
+        counts.append(_places(near, f" at {survey.named(thing)}", survey))
+    if len({a.answer for a in counts}) > 1:
+        raise phrase.differ()
+    return counts[0]
+
+
 def _places_to_sit(survey: Survey) -> Answer:
     """How many people find a seat, by the seats that things of each kind have."""
-    seats: list[Thing] = [t for t in survey.things if families.holds(families.SEAT, t.label)]
+    return _places([t for t in survey.things if families.holds(families.SEAT, t.label)], "", survey)
+
+
+def _places(seats: Sequence[Thing], where: str, survey: Survey) -> Answer:
     places = {t.id: kind.seats if (kind := kinds.of(t.label)) else 1 for t in seats}
     told = listed([f"{survey.named(t)} ({places[t.id]})" for t in seats])
     total = sum(places.values())
     return number(
-        total, f"There are seats for about {total}: {told}." if seats else "There is nothing to sit on.", seats, 0.75
+        total,
+        f"There are seats for about {total}{where}: {told}." if seats else f"There is nothing to sit on{where}.",
+        seats,
+        0.75,
     )
 
 

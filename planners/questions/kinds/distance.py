@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from ..answer import Answer, Evidence
 from ..candidates import Case, agreed, joined, meant, unknown
@@ -222,12 +223,29 @@ def _both(asked: Asked, survey: Survey) -> tuple[tuple[End, ...], tuple[End, ...
         query = asked.slots["both"].query
         things = meant(query, survey) if query is not None else ()
         return ((end_of(things[0], survey),), (end_of(things[1], survey),)) if len(things) == 2 else None
-    first = ends(asked.slots["a"], survey, asked.situation)
-    if "b" in asked.slots:
-        second = ends(asked.slots["b"], survey, asked.situation)
-    else:
-        second = ends(Spot(who="me"), survey, asked.situation)
-    return first, second
+    one: Spot = asked.slots["a"]
+    other: Spot = asked.slots.get("b", Spot(who="me"))
+    first = ends(_any_of(one), survey, asked.situation)
+    second = ends(_any_of(other), survey, asked.situation)
+    return _picked(first, one, second), _picked(second, other, first)
+
+
+def _any_of(place: Spot) -> Spot:
+    """A place that is picked by its distance to the other end ("the nearest desk") as everything that it may be."""
+    query = place.query
+    if query is None or query.pick not in ("nearest", "farthest"):
+        return place
+    return replace(place, query=query.model_copy(update={"pick": "all", "count": None}))
+
+
+def _picked(found: tuple[End, ...], place: Spot, other: Sequence[End]) -> tuple[End, ...]:
+    """The ends that "nearest" or "farthest" picks, measured from the other end and without the end itself."""
+    if place.query is None or place.query.pick not in ("nearest", "farthest"):
+        return found
+    rows = {e.thing.row for e in other if e.thing is not None}
+    rest = [e for e in found if e.thing is None or e.thing.row not in rows] or list(found)
+    pick = min if place.query.pick == "nearest" else max
+    return (pick(rest, key=lambda e: min(span(e, o).gap for o in other)),)
 
 
 def _over_pairs(asked: Asked, survey: Survey, fn: Callable[[End, End], Answer]) -> Answer | None:

@@ -93,8 +93,9 @@ _ANY = f"""
     (is|are) there (anything|something|things) [lying] [on the floor|in the room|in here|here] [that] \
       (could|might|can|may|would) trip {_WHO} [up]
     (is|are) there (any|a|some) {_HAZARD} [in the room|in here|here|on the floor]
-    (is|are) there (anything|something|things|any things) [on the floor|in the room|in here|here] [that] {_WHO} \
+    [(is|are) there] (anything|something|things|any things) [on the floor|in the room|in here|here] [that] {_WHO} \
       {_COULD} {_TRIP} {_OVER} {_DARK}
+    [(is|are) there] (anything|something|any things) [on the floor] to {_TRIP} {_OVER} [in here|here]
     (is|are) there (anything|something|things) [on the floor|in the room|in here|here] to {_TRIP} {_OVER} [in the \
       room|in here|here]
     (could|might|can|would|will) {_WHO} {_TRIP} {_OVER} (anything|something) {_DARK} [in the room|in here|here]

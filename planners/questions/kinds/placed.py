@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 
 from ....gaussians.language.query.query import Query
 from ....gaussians.world import kinds, relations
 from ....gaussians.world.relation_geometry import HOLDS
+from ....gaussians.world.support import SHELL
 from ..answer import Answer, Evidence
 from ..candidates import Case, agreed, is_plural, meant, unknown, whole
 from ..kind import Asked, Kind
@@ -53,6 +55,8 @@ _WHAT_THERE = f"""
     (what|which) {{x}} {_IS} [in] between {{a}} and {{b}}
     {_LISTS} {_ALL} [that (is|are)] [in] between {{a}} and {{b}}
     what separates {{a}} (and|from) {{b}}
+    what (is|are) the (thing|things|object|objects|item|items|stuff|furniture) \
+        [(standing|sitting|lying|placed|hanging|that is|that are)] {{r:relation}} {{a}}
     (is|are) there {{x}} {{r:relation}} {{a}} [and] [if so] (what|what is it|what are they|which)
     what if anything (is|stands|lies|sits) {{r:relation}} {{a}}
 """
@@ -124,7 +128,7 @@ _SUPPORT = """
     on (what|which) {y} (is|are|does|do) {x} [standing|sitting|lying|resting|placed|stand|sit|lie|rest|hang|\
         hanging|located|kept]
     (what|which) {y} (supports|holds|carries|is supporting|is holding|is carrying) {x}
-    (what|which) {y} (has|have) {x} (on|in|on top of|inside) (it|them)
+    (what|which) {y} (has|have|has got|have got|holds) {x} [(on|in|on top of|inside) (it|them)]
 """
 _BESIDE = """
     what BE {x} [standing|sitting|lying|placed|located|hanging|right] (next to|beside|by|near|close \
@@ -165,13 +169,16 @@ _HUNG = """
 
 
 def _what(asked: Asked, survey: Survey) -> Answer | None:
+    asked, shell = _without_shell(asked)
     name = _relation(asked)
     if name is None:
         return None
     wanted = _wanted(asked, survey)
+    asked, left_out = _without_exceptions(asked, survey)
     cases: list[Case] = []
     for anchors in _anchors(asked, survey):
         found = [t for t in related(name, anchors, survey) if wanted is None or t.row in wanted]
+        found = [t for t in found if t.row not in left_out and _rests_on(t, shell)]
         if re.search(r"\bhang|\bhung\b", asked.said):
             found = [t for t in found if (kind := kinds.of(t.label)) is None or not kind.opening]
         cases.append((" and ".join(survey.named(a) for a in anchors), _listed(name, found, anchors, asked, survey)))
@@ -232,6 +239,40 @@ def _wanted(asked: Asked, survey: Survey) -> set[int] | None:
     if query is None or is_anything(query):
         return None
     return {t.row for t in survey.all_of(query)}
+
+
+def _without_exceptions(asked: Asked, survey: Survey) -> tuple[Asked, frozenset[int]]:
+    """A question without "besides the laptop", and the rows of what it leaves out.
+
+    The grammar reads an exception as one from the phrase before it. "What is on the desk besides the laptop?" excepts
+    nothing from the desks, so the exception is one from what is on the desk.
+    """
+    query = asked.slots.get("a")
+    if not isinstance(query, Query) or not query.exclude:
+        return asked, frozenset()
+    whole_query = query.model_copy(update={"exclude": ()})
+    rows = frozenset(t.row for q in query.exclude for t in survey.all_of(q))
+    if rows & {t.row for t in survey.all_of(whole_query)}:
+        return asked, frozenset()
+    return replace(asked, slots={**asked.slots, "a": whole_query}), rows
+
+
+def _without_shell(asked: Asked) -> tuple[Asked, str]:
+    """A question without the floor, wall or ceiling that only says more exactly where: "on the floor under the desk".
+
+    The second value is what things must then rest on, "" if the question names none.
+    """
+    query = asked.slots.get("a")
+    if not isinstance(query, Query) or query.text not in SHELL or len(query.relations) != 1 or "r" not in asked.slots:
+        return asked, ""
+    (relation,) = query.relations
+    if asked.slots["r"] != "on" or len(relation.anchors) != 1:
+        return asked, ""
+    return replace(asked, slots={**asked.slots, "r": relation.name, "a": relation.anchors[0]}), query.text
+
+
+def _rests_on(thing: Thing, shell: str) -> bool:
+    return not shell or (thing.node is not None and thing.node.support == shell)
 
 
 def _listed(name: str, found: Sequence[Thing], anchors: Sequence[Thing], asked: Asked, survey: Survey) -> Answer:
@@ -304,6 +345,7 @@ def _has_it(asked: Asked, survey: Survey) -> Answer | None:
 
 
 def _is_related(asked: Asked, survey: Survey) -> Answer | None:
+    asked, shell = _without_shell(asked)
     name = _relation(asked)
     if name is None:
         return None
@@ -314,6 +356,8 @@ def _is_related(asked: Asked, survey: Survey) -> Answer | None:
     anchors = _anchors(asked, survey)
     if things is None:
         return absent(survey, query, survey.find(query), "yesno")
+    if shell:
+        things = tuple(t for t in things if _rests_on(t, shell)) or things
     cases: list[Case] = []
     for choice in anchors:
         cases.append((" and ".join(survey.named(a) for a in choice), _one_anchor(name, things, choice, asked, survey)))
@@ -444,12 +488,17 @@ def _support(asked: Asked, survey: Survey) -> Answer | None:
     if things is None:
         raise NotResolved(asked.slots["x"], survey.find(asked.slots["x"]))
 
+    asked_of = asked.slots.get("y")
+    wanted = None if asked_of is None or is_anything(asked_of) else {t.row for t in survey.all_of(asked_of)}
+
     def one(thing: Thing) -> Answer:
         found = supporter(thing, survey)
         name = found if isinstance(found, str) else found.name
         told = f"the {found}" if isinstance(found, str) else survey.named(found)
         verb = {"wall": "hangs on", "ceiling": "hangs from"}.get(name, "stands on")
         ids = [thing] if isinstance(found, str) else [found, thing]
+        if wanted is not None and (name in SHELL if isinstance(found, str) else found.row not in wanted):
+            return unknown("label", f"None of those: {survey.named(thing)} {verb} {told}.", ids)
         if "y" in asked.slots and not isinstance(found, str) and sum(t.label == found.label for t in survey.things) > 1:
             name = survey.named(found).removeprefix("the ")
         return Answer(answer=name, answer_type="label", text=f"{_cap(survey.named(thing))} {verb} {told}.",

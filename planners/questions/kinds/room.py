@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 
 from ..answer import Answer, Evidence, Line
+from ..candidates import each, meant
 from ..kind import Asked, Kind
 from ..placing import is_turned, sides
 from ..reading.phrase_templates import templates
 from ..reading.spans import CUBE, METRE, SQUARE, Unit, answer_of, told
-from ..survey import Survey
+from ..room_places import wall_of
+from ..survey import Survey, Thing
 
 # In templates: U is a unit of length, A of area, V of volume at the end of a question; R is the room.
 _U = "[in {u:length_unit}|measured in {u:length_unit}|expressed in {u:length_unit}]"
@@ -219,6 +221,11 @@ _WIDER = f"""
 _HIGHER = f"""
     BE {_R} (taller|higher) than (it is wide|wide|it is long|it is deep)
 """
+_WALL_WITH = f"""
+    how (long|wide) BE the wall (with|that has|having|that holds|behind|holding|where) {{x}} [(on|in) it|is|are|hangs] \
+      {_U}
+    (what|how much) is the (length|width) of the wall (with|that has|having|that holds|behind) {{x}} {_U}
+"""
 _FORM = f"""
     what shape (is|has|does) {_R} [have]
     what BE the shape of {_R}
@@ -328,6 +335,19 @@ def _order(first: str, second: str, survey: Survey) -> Answer:
                   evidence=Evidence(lines=_line(survey, first) + _line(survey, second)))  # fmt: skip
 
 
+def _wall_with(asked: Asked, survey: Survey) -> Answer:
+    """The length of the wall at which a thing is: "how long is the wall with the door?"."""
+    unit = asked.slots.get("u", METRE)
+
+    def one(thing: Thing) -> Answer:
+        wall, _ = wall_of(thing, survey.room)
+        length = survey.room.depth if abs(float(wall.out[0])) > 0.5 else survey.room.width
+        text = f"The {wall.name} wall, with {survey.named(thing)}, is {told(length, unit)} long."
+        return answer_of(length, unit, text, confidence=0.9, evidence=Evidence(ids=(thing.id,)), frame="viewer")
+
+    return each(meant(asked.slots["x"], survey), survey, one)
+
+
 def _form(asked: Asked, survey: Survey) -> Answer:
     width, depth, _ = sides(survey)
     square = max(width, depth) <= 1.05 * min(width, depth)
@@ -351,5 +371,6 @@ KINDS = (
     Kind("room is longer", templates(_LONGER), lambda asked, survey: _order("depth", "width", survey)),
     Kind("room is wider", templates(_WIDER), lambda asked, survey: _order("width", "depth", survey)),
     Kind("room is higher", templates(_HIGHER), lambda asked, survey: _order("height", "width", survey)),
+    Kind("wall of a thing", templates(_WALL_WITH), _wall_with),
     Kind("room shape", templates(_FORM), _form),
 )

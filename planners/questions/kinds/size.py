@@ -18,13 +18,13 @@ _HOLDS = "(is|are|be|was|would be|measures|stands|does|do|has|have)"
 _OVER = "(more than|over|greater than|above|upwards of|longer than|larger than|bigger than)"
 _UNDER = "(less than|under|below|shorter than|smaller than)"
 _PHRASES = f"""
-    how {{d:dimension}} BE {{x}} {_UNIT}
+    how {{d:dimension}} BE {{x}} [together|altogether|in total|combined] {_UNIT}
     how {{d:dimension}} in {{u:unit}} BE {{x}}
     how {{d:dimension}} {{x}} {_UNIT}
     how (much|many) {{d:dimension}} (does|do|has) {{x}} (have|measure) {_UNIT}
     (what|which) {{d:dimension}} {_HOLDS} {{x}} [have|of|measure] {_UNIT}
-    [what (is|are|was|would be)] [the] [approximate|overall|exact|total|rough|actual|full|physical] {{d:dimension}} \
-        of {{x}} {_UNIT}
+    [what (is|are|was|would be)] [the] [approximate|overall|exact|total|combined|summed|rough|actual|full|\
+        physical] {{d:dimension}} of {{x}} {_UNIT}
     the {{d:dimension}} of {{x}} (is|are) (what|how much) {_UNIT}
     [what (is|are)] {{x}} 's [overall|exact|total|approximate] {{d:dimension}} {_UNIT}
     [what is] the {{x}} {{d:dimension}} {_UNIT}
@@ -67,6 +67,8 @@ _PHRASES = f"""
     BE {{x}} as {{d:dimension}} as (me|i am|i|a person|an adult|a man|an average person|a human)
 """
 _SURE = 0.95
+_SUMMED = frozenset({"total", "combined", "summed", "together", "altogether"})
+_SUMS: tuple[Measure, ...] = ("width", "depth", "height", "length", "thickness")
 _FLAT = 0.15  # of its second longest side: thickness up to which the area of a thing is that of its face
 _OF_BOX = "as its box is measured"
 
@@ -88,6 +90,8 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
     if {"than", "as"} & set(asked.words) and "u" not in slots:
         return _against_person(asked, phrase, survey)
     what: Measure = slots["d"].measure
+    if phrase.plural and len(phrase.things) > 1 and _SUMMED & set(asked.words) and what in _SUMS:
+        return _summed(phrase, what, slots.get("u"), survey)
     if what == "footprint" and not {"footprint", "floor", "base"} & set(asked.words):
         return _face(phrase, survey)
     if what == "size" and not phrase.query.text and not phrase.query.groups and "size" not in asked.words:
@@ -121,6 +125,15 @@ def _measured(phrase: Meant, what: Measure, unit: Unit | None, survey: Survey) -
     adjective = {"width": "wide", "depth": "deep", "height": "high", "length": "long", "thickness": "thick"}[what]
     return Answer(answer=value, answer_type=answer_type, text=_up(f"{subject} is {told} {adjective}."),
                   confidence=_SURE, unit=name, evidence=evidence(phrase.things))  # fmt: skip
+
+
+def _summed(phrase: Meant, what: Measure, unit: Unit | None, survey: Survey) -> Answer:
+    """The sum of one measure of several things: "the total width of both counters"."""
+    values = [measure(survey, t, what) for t in phrase.things]
+    value, answer_type, name, told = in_unit(sum(values), unit)
+    each = told_each(survey, phrase.things[:8], [in_unit(v, unit)[3] for v in values[:8]])
+    return Answer(answer=value, answer_type=answer_type, text=_up(f"{told} together: {each}."), confidence=0.9,
+                  unit=name, evidence=evidence(phrase.things))  # fmt: skip
 
 
 def _area(phrase: Meant, values: list[float], what: Measure, survey: Survey) -> Answer:

@@ -58,7 +58,8 @@ _PHRASES = f"""
     (name|list|show|give|find|tell) [me] the {{n:number}} {{s:superlative}} {{x}} {_HERE}
     [the] {{n:number}} {{s:superlative}} {{x}} {_HERE}
     (sort|rank|order|list|arrange|name) [me] [all] {{x}} [in order] (by|according to) [their|the|decreasing|\
-        descending] {{by:dimension}}
+        descending] {{by:dimension}} [, {{s:superlative}} first] [please]
+    (sort|rank|order|list|arrange|name) [me] [all] {{x}} [in order] {{s:superlative}} first [by {{by:dimension}}]
     (sort|rank|order|list|arrange|name) [me] [all] {{x}} from {{s:superlative}} to {{end:superlative}}
     how {{high:dimension}} is the {{s:superlative}} {{x}} [in {{u:unit}}]
     what is the {{high:dimension}} of the {{s:superlative}} {{x}} [in {{u:unit}}]
@@ -97,11 +98,13 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
 
 def _superlative(asked: Asked) -> Superlative | None:
     slots = asked.slots
-    if "s" in slots:
+    if "s" in slots and "by" not in slots:
         found: Superlative = slots["s"]
         return found
     if "by" in slots:
         by: Measure = slots["by"].measure
+        if "s" in slots and slots["s"].sign < 0:
+            return Superlative(by, -1, 1, f"smallest {by}")
         return Superlative(by, 1, 1, f"greatest {by}")
     if "d" in slots or "low" in slots:
         sign = -1 if "less" in slots or "low" in slots else 1

@@ -18,7 +18,8 @@ _MARKS = frozenset(".?!;:()[]–—")
 _DASH = re.compile(r"(?<=\s)[-–—]+(?=\s)")
 _THOUSANDS = re.compile(r"(?<=\d),(?=\d{3}\b)")
 _OPENERS = re.compile(
-    r"^(?:(?:hi|hey|hello|hiya|ok|okay|alright|so|well|um+|uh+|er+m*|hmm+|please|quick question|question|"
+    r"^(?:(?:hi|hey|hello|hiya|yo(?= (?:,|is|are|how|what|where|which|do|does|can))|hey there|dear assistant|"
+    r"ok|okay|alright|so|well|um+|uh+|er+m*|hmm+|please|quick question|question|"
     r"(?:i am )?just (?:curious|wondering|checking|asking)|there (?=, )|everyone|all(?= ,)|good (?:morning|evening|"
     r"day)|"
     r"out of curiosity|one more thing|by the way|btw|fyi|and|but|also|then|now|oh|ah|right(?= ,)|sorry|excuse me|"
@@ -84,7 +85,7 @@ _CLOSERS = re.compile(
     r"(?:can|could) you (?:tell(?: me)?|say|check)|if you (?:had|have) to guess|in your opinion|more or less|ish|"
     r"give or take|"
     r"if you (?:do not|would not) mind|if you (?:can|could|may)(?: tell)?|if (?:i|one) may ask|if possible|in total|"
-    r"all in all|all together|"
+    r"all in all|all together|(?:of )?all (?:kinds|sorts|types)(?: included| counted)?|of any (?:kind|sort|type)|"
     r"altogether|in all|overall|if any|any (?:idea|clue|thoughts)|as far as you (?:know|can (?:see|tell))|actually|"
     r"exactly speaking|in particular|to be (?:exact|precise)|off the top of your head|you think|you reckon|"
     r"you (?:can )?(?:tell me|know)|i am (?:curious|asking)|just (?:curious|asking|wondering)|out of curiosity|"
