@@ -26,9 +26,7 @@ def command(
         str,
         typer.Argument(metavar="TEXT", help="The view, e.g. 'the guitar from behind' or 'the view from the sofa'."),
     ],
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE", help="A .png to draw it into.")
-    ] = None,
+    output: Drawn = None,
     marks: Marks = False,
     size: Size = None,
     view: View = "auto",

@@ -15,6 +15,7 @@ from ...gaussians.errors import UserError
 from ...gaussians.scene import Scene
 from ...gaussians.viewpoints.for_groups import Sights, choose
 from ...gaussians.viewpoints.view_candidates import View, plan
+from ...gaussians.world.support import SHELL
 from ...planners.questions.answer import Answer, Line
 from ...planners.rooms.read_scene import RoomFrame
 from ..terminal.thing_names import NAME_THRESHOLD
@@ -72,13 +73,17 @@ def evidence_picture(
 
 
 def _groups(scene: Scene, answer: Answer) -> tuple[int, ...]:
-    """The groups that an answer is about; raises UserError if it is about another scene."""
+    """The groups that an answer is about, without floor, walls and ceiling; raises UserError if it is about another
+    scene."""
     assert scene.language is not None
-    table = scene.language.groups
+    table, found = scene.language.groups, list[int]()
     for i in answer.evidence.ids:
+        if i in SHELL:
+            continue
         if not isinstance(i, int) or i >= len(table) or not table[i].count:
             raise UserError(f"the answer is about thing {i!r}, which this scene does not have; ask again on this scene")
-    return tuple(dict.fromkeys(int(i) for i in answer.evidence.ids))
+        found.append(i)
+    return tuple(dict.fromkeys(found))
 
 
 def _view(sights: Sights, groups: Sequence[int], camera: Camera | None, size: tuple[int, int]) -> View:

@@ -1,7 +1,8 @@
-"""Writes PNG files and composes a contact sheet: pictures of steps with their instruction and outcome."""
+"""Encodes and writes PNG files, and composes a contact sheet: pictures of steps with their instruction and outcome."""
 
 from __future__ import annotations
 
+import io
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -34,6 +35,13 @@ class Tile:
     outcome: str
     pictures: tuple[Picture, ...]
     good: bool = True
+
+
+def encoded_png(picture: NDArray[np.uint8]) -> bytes:
+    """A picture `[H, W, 3]` as the bytes of a PNG file."""
+    written = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(picture)).save(written, format="PNG")
+    return written.getvalue()
 
 
 def save_png(picture: NDArray[np.uint8 | np.uint16], path: str | Path, force: bool = False) -> None:

@@ -1,4 +1,4 @@
-"""Renders a view of a scene with numbered marks; the numbers stay with their groups over all views."""
+"""Renders a view of a scene together with which group each of its pixels shows, for marks and outlines."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ...gaussians.render import render
 from ...gaussians.scene import Scene
 from ...gaussians.viewpoints.cutaway import NOTHING, Cut
 from ...gaussians.viewpoints.visibility import label_table, visible_labels
-from .marks import Labels, Mark, Picture, Placed, draw_marks
+from .marks import Labels, Picture
 
 BACKGROUND = (0.93, 0.93, 0.92)  # display space, where a cut or a capture's border leaves nothing
 
@@ -47,12 +47,3 @@ def draw_view(scene: Scene, camera: Camera, groups: Sequence[int], cut: Cut = NO
     boxes = [scene.language.groups[g].box for g in groups]
     labels = visible_labels(drawn, camera, label_table(scene.language, groups), boxes)
     return Drawing(drawn.to_uint8(), labels, camera)
-
-
-def mark_view(
-    scene: Scene, camera: Camera, groups: Sequence[int], marks: Sequence[Mark], cut: Cut = NOTHING, *,
-    outlines: bool = True,
-) -> tuple[Picture, tuple[Placed, ...]]:  # fmt: skip
-    """A view with a mark on each group that it shows; `marks[i]` belongs to `groups[i]`."""
-    drawing = draw_view(scene, camera, groups, cut)
-    return draw_marks(drawing.image, drawing.labels, marks, outlines=outlines)

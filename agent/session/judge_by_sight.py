@@ -98,16 +98,11 @@ def _owners(scene: Scene, cloud: GaussianCloud, rows: Tensor) -> Sequence[int]:
 
 
 def _drawn(scene: Scene, view: View) -> Shown:
-    import io
-
-    import numpy as np
-    from PIL import Image
-
     from ...gaussians.render import render
     from ...planners.vision.looker import Shown
+    from ..pictures.image_files import encoded_png
     from ..pictures.marked_views import BACKGROUND
 
     drawn = render(view.cut.apply(scene), view.camera, BACKGROUND if view.cut else (0.0, 0.0, 0.0)).to_uint8()
-    written = io.BytesIO()
-    Image.fromarray(np.ascontiguousarray(drawn)).save(written, format="PNG")
-    return Shown(view.name, written.getvalue(), (view.camera.width, view.camera.height), {}, f"A view, {view.name}.")
+    size = (view.camera.width, view.camera.height)
+    return Shown(view.name, encoded_png(drawn), size, {}, f"A view, {view.name}.")

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import io
 import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from ...gaussians.errors import InstructionError, UserError
 from ...planners.vision.looker import Shown
@@ -17,7 +14,7 @@ if TYPE_CHECKING:
     from ...gaussians.scene import Scene
     from ...gaussians.viewpoints.for_groups import ChosenView
     from ...gaussians.viewpoints.from_side import Side
-    from ..pictures.marks import Mark, Picture
+    from ..pictures.marks import Mark
 
 WIDTH, HEIGHT = 768, 576  # pixels, by default; vision models scale down much larger pictures
 MOST_MARKS = 40  # marks in one picture where no groups are named; more could not be read
@@ -156,6 +153,7 @@ class SceneLooker:
         return self._draw(measured(self._sights, view, self._groups), view.name)
 
     def _plan(self) -> Shown:
+        from ..pictures.image_files import encoded_png
         from ..pictures.plan_view import draw_plan
 
         self._number(self._sights.asked(self._groups) if self._groups else ())
@@ -167,9 +165,10 @@ class SceneLooker:
         if self._viewer is not None:
             said += " The blue dot with an arrow is the viewer and the way they look."
         shares = dict(zip(groups, plan.shares, strict=True))
-        return Shown("plan", _png(plan.image), self._size, numbers, said, shares)
+        return Shown("plan", encoded_png(plan.image), self._size, numbers, said, shares)
 
     def _draw(self, chosen: ChosenView, name: str, said: str = "") -> Shown:
+        from ..pictures.image_files import encoded_png
         from ..pictures.marked_views import draw_view
         from ..pictures.marks import draw_marks
 
@@ -181,7 +180,7 @@ class SceneLooker:
             numbers = {self._numbers[groups[p.index]]: groups[p.index] for p in placed}
         caption = said or _KINDS[chosen.view.kind]
         shares = dict(zip(groups, drawing.shares(len(groups)), strict=True))
-        return Shown(name, _png(image), self._size, dict(sorted(numbers.items())), caption, shares)
+        return Shown(name, encoded_png(image), self._size, dict(sorted(numbers.items())), caption, shares)
 
     def _drawn_marks(self, groups: Sequence[int]) -> tuple[Mark, ...]:
         from ..pictures.marks import Mark, color_of
@@ -214,11 +213,3 @@ class SceneLooker:
 
 def _side_words(verb: str) -> str:
     return {"front": "the front", "left": "its left", "right": "its right"}.get(verb, verb)
-
-
-def _png(image: Picture) -> bytes:
-    from PIL import Image
-
-    written = io.BytesIO()
-    Image.fromarray(np.ascontiguousarray(image)).save(written, format="PNG")
-    return written.getvalue()

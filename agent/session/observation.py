@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from typing import TYPE_CHECKING
 
 from ...gaussians.errors import UserError
@@ -37,17 +36,13 @@ def graph_of(scene: Scene, viewer: Camera) -> SceneGraph:
 
 def picture_of(scene: Scene, camera: Camera) -> bytes:
     """A camera's view as PNG, at most `WIDTH` pixels wide."""
-    import numpy as np
-    from PIL import Image
-
     from ...gaussians.viewpoints.coverage import fit_camera
+    from ..pictures.image_files import encoded_png
     from ..pictures.scene_pictures import picture
 
     if camera.width > WIDTH:
         camera = fit_camera(camera, WIDTH, max(round(camera.height * WIDTH / camera.width), 1))
-    drawn = io.BytesIO()
-    Image.fromarray(np.ascontiguousarray(picture(scene, camera))).save(drawn, format="PNG")
-    return drawn.getvalue()
+    return encoded_png(picture(scene, camera))
 
 
 class GraphObservation:

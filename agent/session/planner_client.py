@@ -119,10 +119,10 @@ class PlannerClient:
 
     def reads_as_question(self, text: str) -> bool | None:
         """Whether the grammar takes a text for a question: no if it plans an edit, None if it cannot tell."""
-        from ...planners.cascade import without_model
+        from ...planners.grammar import GrammarPlanner
         from ...planners.grammar.tagging.non_edits import QUESTION
 
-        plan = without_model(self._planner).plan(text, observation=self._observation)
+        plan = GrammarPlanner().plan(text)
         if plan.ok or plan.verdict == "unsafe":
             return False
         return True if plan.verdict == "not_an_edit" and QUESTION in plan.reason else None

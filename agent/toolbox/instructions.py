@@ -12,7 +12,7 @@ from ..session.history import DEPTH
 from ..session.plan_report import selection_json
 from . import views
 from .limits import Arguments, Text
-from .reply import Reply, edited, numbered_candidates, png
+from .reply import Reply, edited, numbered_candidates
 from .tool import READS, Desk, Hints, Tool, tool
 
 Picture = Annotated[bool, Field(strict=True, description="Also return a picture of the scene afterwards.")]
@@ -71,6 +71,7 @@ def _answer(desk: Desk, said: AnswerArguments) -> Reply:
 def _select(desk: Desk, said: SelectArguments) -> Reply:
     """Find things and return what matches, with groups, boxes and scores. The scene is not changed; "it" and
     `{"last": true}` then mean what was found."""
+    from ..pictures.image_files import encoded_png
     from ..pictures.scene_pictures import numbered, spotlight
 
     session = desk.session
@@ -83,7 +84,7 @@ def _select(desk: Desk, said: SelectArguments) -> Reply:
         camera = views.sized(session.viewer, views.WIDTH)
         marked = found.verdict == "found"
         drawn = spotlight(session.scene, camera, found) if marked else numbered(session.scene, camera, found.candidates)
-        pictures = (png(drawn),)
+        pictures = (encoded_png(drawn),)
     return Reply(text, {**selection_json(found), "candidates": listed}, pictures)
 
 

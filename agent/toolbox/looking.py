@@ -10,7 +10,7 @@ from pydantic import Field
 from ...planners.model.prompt.labels import sanitize
 from . import views
 from .limits import Arguments, Text
-from .reply import MAX_SIDE, Reply, png
+from .reply import MAX_SIDE, Reply
 from .tool import READS, Desk, Tool, tool
 
 Side = Annotated[int, Field(ge=32, le=MAX_SIDE, strict=True)]
@@ -86,6 +86,7 @@ def _find_view(desk: Desk, said: FindViewArguments) -> Reply:
     """Find the camera that shows what the words say, and return its picture; `view` in the result can be given to
     `render`. A thing's front, left and right are its own where its shape shows them, else the viewer's."""
     from ..pictures.evidence import name_marks
+    from ..pictures.image_files import encoded_png
     from ..pictures.marked_views import draw_view
     from ..pictures.marks import draw_marks
     from ..pictures.named_cameras import view_text
@@ -104,19 +105,20 @@ def _find_view(desk: Desk, said: FindViewArguments) -> Reply:
         "things": [{"group": group, "share": share} for group, share in shares.items()],
         "left_out": sorted(found.view.cut.groups), "notes": list(found.notes),
     }  # fmt: skip
-    return Reply("\n".join([f"{said.view}: camera {data['view']}", *found.notes]), data, (png(image),))
+    return Reply("\n".join([f"{said.view}: camera {data['view']}", *found.notes]), data, (encoded_png(image),))
 
 
 def _ask(desk: Desk, said: AskArguments) -> Reply:
     """Answer a question about the scene: what is there, how many, how large, how far, where, what fits, which way. The
     scene is not changed; "it" then means what the answer is about. An answer of null says that nothing here tells."""
     from ..pictures.evidence import evidence_picture
+    from ..pictures.image_files import encoded_png
 
     session = desk.session
     answer = session.ask(said.question)
     pictures: tuple[bytes, ...] = ()
     if said.picture and (answer.evidence.ids or answer.evidence.lines):
-        pictures = (png(evidence_picture(session.scene, answer, size=_EVIDENCE, viewer=session.viewer)),)
+        pictures = (encoded_png(evidence_picture(session.scene, answer, size=_EVIDENCE, viewer=session.viewer)),)
     return Reply(answer.text, {"verdict": "ok", **answer.to_json()}, pictures)
 
 

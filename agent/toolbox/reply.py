@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -47,15 +46,6 @@ class Reply:
     def plus(self, **data: Any) -> Reply:
         """This reply with more data."""
         return replace(self, data={**self.data, **data})
-
-
-def png(picture: np.ndarray[Any, np.dtype[np.uint8]]) -> bytes:
-    """A picture `[H, W, 3]` as a PNG file."""
-    from PIL import Image
-
-    drawn = io.BytesIO()
-    Image.fromarray(np.ascontiguousarray(picture)).save(drawn, format="PNG")
-    return drawn.getvalue()
 
 
 def edited(result: Result, pictures: tuple[bytes, ...] = ()) -> Reply:

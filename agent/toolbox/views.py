@@ -9,7 +9,7 @@ from ...gaussians.viewpoints.coverage import fit_camera
 from ..session.clarify import Question
 from ..session.result import Result
 from ..session.session import Session
-from .reply import MAX_SIDE, png
+from .reply import MAX_SIDE
 
 WIDTH = 640  # pixels, of pictures beside a receipt
 
@@ -24,21 +24,24 @@ def sized(camera: Camera, width: int, height: int | None = None) -> Camera:
 
 def after_edit(result: Result) -> bytes:
     """The scene after an instruction, from the viewer; a bare selection is highlighted."""
+    from ..pictures.image_files import encoded_png
     from ..pictures.scene_pictures import after
 
-    return png(after(result, sized(result.viewer, WIDTH)))
+    return encoded_png(after(result, sized(result.viewer, WIDTH)))
 
 
 def of_question(session: Session, question: Question) -> bytes:
     """The scene from the viewer with a number at each candidate."""
+    from ..pictures.image_files import encoded_png
     from ..pictures.scene_pictures import numbered
 
-    return png(numbered(session.scene, sized(session.viewer, WIDTH), question.candidates))
+    return encoded_png(numbered(session.scene, sized(session.viewer, WIDTH), question.candidates))
 
 
 def of_camera(session: Session, camera: Camera, width: int, height: int | None) -> tuple[bytes, Camera]:
     """The scene from a camera, and the camera at the size that was drawn."""
+    from ..pictures.image_files import encoded_png
     from ..pictures.scene_pictures import picture
 
     camera = replace(sized(camera, width, height))
-    return png(picture(session.scene, camera)), camera
+    return encoded_png(picture(session.scene, camera)), camera

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ...gaussians.camera import Camera
 from ...gaussians.color import BASIC, name_of, plain_color, rgb_to_lab
+from ...gaussians.harmonics import dc_to_color
 from ...gaussians.language.encoders import Encoder
 from ...gaussians.world import kinds
 from ...gaussians.world.person import EYE_HEIGHT
@@ -27,7 +28,6 @@ FAIR = 0.15  # share of a surface from which a colour term may be said of a thin
 MOSTLY = 0.5  # share from which it is its colour
 SAMPLED = 400  # Gaussians of a thing whose colours are named
 DIVIDER = (0.06, 1.8)  # depth and height of a screen across a room, metres
-_SH = 0.28209479177387814  # of the constant harmonic
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +107,7 @@ def without_faults(known: Known) -> Known:
 
 def _labs(case: Case) -> NDArray[np.float64]:
     """`[N, 3]` the colour of each Gaussian without its harmonics, CIE Lab."""
-    rgb = (_SH * case.scene.cloud.sh[:, 0] + 0.5).clamp(0, 1)
+    rgb = dc_to_color(case.scene.cloud.sh[:, 0]).clamp(0, 1)
     return np.asarray(rgb_to_lab(rgb.double()).numpy())
 
 

@@ -169,7 +169,6 @@ CARRIER = ("What is {a} standing on?", "On what does {a} stand?", "What is under
 ANY_ON = ("Is there anything on {a}?", "Is anything standing on {a}?", "Is {a} empty on top?")
 UNDER_IS = ("Is there {a_one} under {b}?", "Is {a} underneath {b}?", "Does {b} have {a_one} below it?")
 NEXT_IS = ("Is {a} next to {b}?", "Is {a} right beside {b}?", "Are {a} and {b} next to each other?")
-NEXT = ("What is next to {a}?", "Which things stand right beside {a}?", "What's beside {a}?")
 BETWEEN_IS = (
     "Is {a} between {b} and {c}?",
     "Does {a} stand between {b} and {c}?",

@@ -31,7 +31,9 @@ def is_plural(query: Query) -> bool:
 
 
 def agreed(cases: Sequence[Case]) -> Answer:
-    """The answer that all cases share; otherwise none, with the answer in each case."""
+    """The answer that all cases share; otherwise none, with the answer in each case. Without cases there is none."""
+    if not cases:
+        return unknown("text", "The question compares a thing with itself, or names nothing that it can be asked of.")
     first = cases[0][1]
     if all(_same(first, a) for _, a in cases[1:]):
         worst = min((a for _, a in cases), key=lambda a: a.confidence)

@@ -9,15 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
-from weakref import WeakKeyDictionary
 
 from ...gaussians.world import kinds, relations
 from ...gaussians.world.relation_geometry import HOLDS
 from ...gaussians.world.words import plural, singular
 from ..rooms.node import NodeId
 from .floor.ends import place_words
-from .placing import place_of as measured_place
-from .placing import sides
+from .placing import place_of, sides
 from .relating import related, supporter
 from .room_kind import RoomGuess, room_kinds
 from .survey import Survey, Thing, listed, with_article
@@ -83,17 +81,6 @@ class Description:
                 for t in self.things
             ],
         }
-
-
-_places: WeakKeyDictionary[Survey, dict[int, tuple[str, str]]] = WeakKeyDictionary()  # measured once for each survey
-
-
-def place_of(thing: Thing, survey: Survey) -> tuple[str, str]:
-    """Where a thing is in a few words, and more of it."""
-    places = _places.setdefault(survey, {})
-    if thing.row not in places:
-        places[thing.row] = measured_place(thing, survey)
-    return places[thing.row]
 
 
 def describe(survey: Survey) -> Description:

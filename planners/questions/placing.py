@@ -10,8 +10,15 @@ _NEAR = 1.2  # metres: farther things are not told as neighbours
 
 
 def place_of(thing: Thing, survey: Survey) -> tuple[str, str]:
-    """Where a thing is in a few words, and more of it."""
-    assert thing.node is not None
+    """Where a thing is in a few words, and more of it; measured once for each thing of a survey."""
+    if thing.row not in survey.places:
+        survey.places[thing.row] = _place_of(thing, survey)
+    return survey.places[thing.row]
+
+
+def _place_of(thing: Thing, survey: Survey) -> tuple[str, str]:
+    if thing.node is None:
+        return "part of the room", ""
     on = supporter(thing, survey)
     if not isinstance(on, str):
         inside = thing.group.box.center[2] < on.group.box.center[2] + on.group.box.size[2] / 2

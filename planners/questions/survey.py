@@ -62,6 +62,7 @@ class Survey:
         shades: of a measured scene, the scores `[G]` of a colour word for the groups of its field.
         sure: ids of the things whose name is more likely right than wrong; None: all names.
         scaled: whether the length of a metre is known; else a scene unit counts as one.
+        places: where things are in words, by row, as far as they were asked for; `placing.place_of` fills it.
     """
 
     graph: SceneGraph
@@ -73,6 +74,7 @@ class Survey:
     shades: Callable[[str], F64] | None = None
     sure: frozenset[Id] | None = None
     scaled: bool = True
+    places: dict[int, tuple[str, str]] = field(default_factory=dict)
     _memory: dict[str, Found] = field(default_factory=dict)
     _fronts: dict[Id, bool] = field(default_factory=dict)
     _names: dict[Id, str] = field(default_factory=dict)
@@ -132,9 +134,10 @@ class Survey:
             return by == "shape" or (by == "wall" and (kind is None or kind.front or kind.seats > 0))
 
         last_groups = last.groups if last is not None else ()
-        named = replace(self, finder=find, last=last_groups, measured=True, faces=faces,
-                       shades=lambda word: color_term(language, word), _memory={}, _fronts={}, _names={})  # fmt: skip
-        return replace(named, sure=_surely_named(scene), scaled=scene.frame.metres_per_unit is not None)
+        asked = replace(self, finder=find, last=last_groups, measured=True, faces=faces,
+                        shades=lambda word: color_term(language, word), places={}, _memory={}, _fronts={},
+                        _names={})  # fmt: skip
+        return replace(asked, sure=_surely_named(scene), scaled=scene.frame.metres_per_unit is not None)
 
     def with_sure_names(self) -> Survey:
         """The same things, without the names that are hardly right."""
@@ -142,7 +145,7 @@ class Survey:
             return self
         nodes = tuple(n if n.id in self.sure else n.model_copy(update={"label": ""}) for n in self.graph.nodes)
         graph = self.graph.model_copy(update={"nodes": nodes})
-        return replace(self, graph=graph, stage=Stage.of(graph), _memory={}, _fronts={}, _names={})
+        return replace(self, graph=graph, stage=Stage.of(graph), places={}, _memory={}, _fronts={}, _names={})
 
     # -- things -----------------------------------------------------------------------------------------------------
 
@@ -193,8 +196,8 @@ class Survey:
             return self._in_place(query, place)
         if query.text in families.named() and not query.groups:
             return self._of_family(query)
-        if (rest := _held_by_shell(query)) is not None:
-            shell = next(r for r in query.relations if r not in rest.relations).anchors[0].text
+        if (held := _held_by_shell(query)) is not None:
+            rest, shell = held
             return self._filtered(query, rest, lambda thing: thing.node is not None and thing.node.support == shell)
         found = self.finder(query)
         if self.measured and found.verdict == "absent" and query.text and not _looks(query):
@@ -375,7 +378,9 @@ class Survey:
         return float(np.linalg.norm(np.array(a.group.box.center) - np.array(b.group.box.center)))
 
     def has_front(self, thing: Thing) -> bool:
-        """Whether it is known which side of a thing is its front."""
+        """Whether it is known which side of a thing is its front; the floor, walls and ceiling have none."""
+        if thing.node is None:
+            return False
         if self.faces is not None:
             if thing.id not in self._fronts:
                 self._fronts[thing.id] = self.faces(thing)
@@ -440,8 +445,9 @@ def _surely_named(scene: Scene) -> frozenset[Id]:
     return frozenset(g.id for g in objects if g.named_by or (known and g.label_score >= _SURE_NAME))
 
 
-def _held_by_shell(query: Query) -> Query | None:
-    """A query without its relation "on the floor", "on a wall" or "on the ceiling"; None if it has none.
+def _held_by_shell(query: Query) -> tuple[Query, str] | None:
+    """A query without its relation "on the floor", "on a wall" or "on the ceiling", and which of these; None if it has
+    none.
 
     What holds a thing is in the graph; which wall is meant by "the left wall" is not.
     """
@@ -450,7 +456,7 @@ def _held_by_shell(query: Query) -> Query | None:
         plain = anchor.pick in ("one", "any", "all") and not (anchor.relations or anchor.colors or anchor.size or more)
         if relation.name in ("on", "inside") and anchor.text in SHELL and plain:
             rest = tuple(r for r in query.relations if r is not relation)
-            return query.model_copy(update={"relations": rest})
+            return query.model_copy(update={"relations": rest}), anchor.text
     return None
 
 

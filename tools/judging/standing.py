@@ -13,11 +13,12 @@ from torch import Tensor
 
 from ...gaussians.language.field.language_field import Group
 from ...gaussians.language.field.measure import solid_points
+from ...gaussians.language.query.query import Query
 from ...gaussians.world import kinds, relations
-from ...gaussians.world.box import Box
+from ...gaussians.world.box import Box, distance
 from ...gaussians.world.relation_geometry import HOLDS, Stand, object_stand, viewer_stand
 from ..operation import Placement
-from ..placement.bodies import Array, contact_box, front_of
+from ..placement.bodies import Array, bodies_of, contact_box, front_of
 from ..placement.occupancy import obstacle_points, points_inside
 from ..placement.place import WALL_WORDS
 from ..placement.surroundings import FLOOR_WORDS
@@ -147,23 +148,14 @@ def _anchors(case: Case, place: Placement) -> list[Group]:
 
 def _own_frames(case: Case, anchor: Group, stand: Stand) -> tuple[Stand, ...]:
     """The anchor's own frame, if it can be told which way it faces."""
-    body = next((b for b in _bodies(case, anchor.id)), None)
+    found = case.context.resolve(case.before, Query(groups=(anchor.id,)))
+    body = next(iter(bodies_of(case.before, found)), None) if found.verdict == "found" else None
     front = None if body is None else front_of(case.before, body)
     return () if front is None else (object_stand(anchor, front, stand),)
 
 
-def _bodies(case: Case, group: int) -> list:  # type: ignore[type-arg]
-    from ...gaussians.language.query.query import Query
-    from ..placement.bodies import bodies_of
-
-    found = case.context.resolve(case.before, Query(groups=(group,)))
-    return bodies_of(case.before, found) if found.verdict == "found" else []
-
-
 def _beside(box: Box, anchor: Box, case: Case) -> float:
     """1 for things whose gap is at most half a metre, as beside a large table."""
-    from ...gaussians.world.box import distance
-
     return 1.0 if distance(box, anchor) <= 50 * case.cm(max(box.size)) else 0.0
 
 

@@ -361,7 +361,8 @@ def _is_related(asked: Asked, survey: Survey) -> Answer | None:
     cases: list[Case] = []
     for choice in anchors:
         cases.append((" and ".join(survey.named(a) for a in choice), _one_anchor(name, things, choice, asked, survey)))
-    if len(cases) > 1 and (asked.slots["a"].pick == "any" or _many_places(asked)):
+    said = asked.slots.get("a", asked.slots.get("both"))
+    if len(cases) > 1 and ((isinstance(said, Query) and said.pick == "any") or _many_places(asked)):
         return whole(cases, "any")
     return whole(cases, "all") if _is_every(asked) else agreed(cases)
 
@@ -485,7 +486,7 @@ def _loose(asked: Asked) -> bool:
 
 def _support(asked: Asked, survey: Survey) -> Answer | None:
     things = _subjects(asked.slots["x"], asked, survey)
-    if things is None:
+    if not things:
         raise NotResolved(asked.slots["x"], survey.find(asked.slots["x"]))
 
     asked_of = asked.slots.get("y")
@@ -504,7 +505,10 @@ def _support(asked: Asked, survey: Survey) -> Answer | None:
         return Answer(answer=name, answer_type="label", text=f"{_cap(survey.named(thing))} {verb} {told}.",
                       confidence=0.95, evidence=Evidence(ids=_ids(ids)))  # fmt: skip
 
-    return agreed([(survey.named(t), one(t)) for t in things if t.node is not None])
+    cases = [(survey.named(t), one(t)) for t in things if t.node is not None]
+    if not cases:
+        return unknown("label", f"{_cap(survey.named(things[0]))} is part of the room and stands on nothing.")
+    return agreed(cases)
 
 
 def _next(asked: Asked, survey: Survey) -> Answer | None:

@@ -166,6 +166,7 @@ def _in_zone(asked: Asked, survey: Survey) -> Answer | None:
         return None
     exists = query.pick == "any" or bool(re.search(r"\bthere\b|\b(?:have|see)\b", asked.said))
     things = survey.things if is_anything(query) else survey.all_of(query) if exists else meant(query, survey)
+    things = tuple(t for t in things if t.node is not None)  # floor, walls and ceiling are not in a place of the room
     if not things:
         return None
 

@@ -172,6 +172,12 @@ def test_an_answer_about_another_scene_is_refused(scene: Scene) -> None:
             evidence_picture(scene, answer)
 
 
+def test_an_answer_about_the_floor_has_a_picture(scene: Scene) -> None:
+    answer = Answer(answer=None, answer_type="label", text="Nothing tells its colour.", source="none",
+                    evidence=Evidence(ids=("floor", RED)))  # fmt: skip
+    assert evidence_picture(scene, answer, size=(400, 300)).shape == (300, 400, 3)
+
+
 def test_short_legs_of_a_route_have_no_label_and_a_label_beside_a_short_line_leaves_it_visible(
     scene: Scene, camera: Camera
 ) -> None:

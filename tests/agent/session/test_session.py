@@ -256,3 +256,16 @@ def test_save_refuses_to_overwrite(session: Session, tmp_path: Path) -> None:
 def test_an_unknown_planner_is_refused_by_name(boxes: Scene) -> None:
     with pytest.raises(ScenewrightError, match="grammar"):
         Session(boxes, planner="oracle")
+
+
+def test_whether_a_text_is_a_question_is_told_without_asking_a_model(boxes: Scene, encoder: Any) -> None:
+    class Costly:
+        name = "costly"
+
+        def plan(self, text: str, **rest: Any) -> Any:
+            raise AssertionError("the model was asked")
+
+    session = Session(boxes, planner=Costly(), encoder=encoder)
+    assert session.is_question("how far is the red box from the green one?")
+    assert not session.is_question("delete the red box")
+    assert not session.is_question("can you delete the red box?")

@@ -61,9 +61,12 @@ CHAIRS = SceneGraph.model_validate(
 )
 
 
-@pytest.mark.parametrize("measured", [True, False])
-def test_each_candidate_of_an_ambiguous_phrase_has_its_own_answer(measured: bool) -> None:
-    rooms = Session(CHAIRS.build(detail=0.1)).survey() if measured else Survey.of_graph(CHAIRS)
+@pytest.fixture(scope="module", params=["measured", "written"])
+def rooms(request: pytest.FixtureRequest) -> Survey:
+    return Session(CHAIRS.build(detail=0.1)).survey() if request.param == "measured" else Survey.of_graph(CHAIRS)
+
+
+def test_each_candidate_of_an_ambiguous_phrase_has_its_own_answer(rooms: Survey) -> None:
     tall = answer("how tall is the chair?", rooms)
     assert tall.answer is None and set(tall.evidence.ids) == {11, 13}
     heights = [float(value) for value in re.findall(r"\(([\d.]+) m\)", tall.text)]
@@ -84,3 +87,16 @@ def test_it_means_what_the_answer_was_about_until_the_scene_changes() -> None:
     session.undo()
     assert session.ask("is there a piano?").answer == "yes"
     assert session.ask("how wide is it?").answer == pytest.approx(1.4, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "is the piano taller than the ceiling?", "which is wider, the wall or the piano?",
+        "what is the left wall standing on?", "what carries the floor?", "is the ceiling on the wall?",
+        "is the floor in the left corner?", "how wide is the floor?", "where is the ceiling?",
+        "what colour is the wall?",
+    ],
+)  # fmt: skip
+def test_floor_walls_and_ceiling_may_be_asked_about(rooms: Survey, text: str) -> None:
+    assert answer(text, rooms).text
