@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ...gaussians.language.query.nested import with_queries
@@ -20,6 +20,7 @@ from .answer import Answer, AnswerType
 from .kind import Asked, Kind, Undecided
 from .reading.holes import READERS
 from .reading.phrase_templates import Words
+from .reading.restating import restated
 from .reading.situation import Situation, read_situation
 from .reading.words import plain_words
 from .survey import NotResolved, Survey, Thing
@@ -43,11 +44,13 @@ class Reading:
         kind: name of the kind of question, "" if it was not read.
         sight: whether somebody who sees pictures of the scene may answer it instead; false of what was answered, and
             of what no picture shows ("who owns it?").
+        restated: the plainer question that was answered instead, "" if the question was read as it stands.
     """
 
     answer: Answer
     kind: str = ""
     sight: bool = False
+    restated: str = ""
 
 
 @dataclass(frozen=True)
@@ -95,12 +98,40 @@ def route(text: str, survey: Survey) -> Reading:
             if given is not None:
                 return _reading(kind, given if survey.scaled else _in_units(given))
         if failed is not None:
-            return _unresolved(failed, survey)
+            break
+    if failed is not None:  # a name that is absent may hold words that are none of it: "that wooden looking bench"
+        plainer = _restated(text, words, survey) if failed.error.found.verdict == "absent" else None
+        return plainer if plainer is not None and plainer.answer.answer is not None else _unresolved(failed, survey)
+    if (reading := _restated(text, words, survey)) is not None:
+        return reading
     none = Answer(answer=None, answer_type=expected_type(rest), text=NOT_READ, confidence=0.0, source="none")
     return Reading(none, sight=True)
 
 
 _ASIDE = re.compile(r"\([^()]*\)")  # "how many seats are there (sofa plus chairs)?"
+_RESTATED = 0.85  # probability that a question means what it was restated as
+
+
+def _restated(text: str, words: Words, survey: Survey) -> Reading | None:
+    """The answer to the likeliest plainer question that the words may mean; None if there is none."""
+    for plainer in restated(words, tuple(t.label for t in survey.things if t.label)):
+        situation, said = read_situation(tuple(plainer.split()))
+        for kind, asked in _filled(text, situation, said):
+            try:
+                given = kind.answer(asked, survey)
+            except NotResolved as error:
+                return _unresolved(_Attempt(kind, asked, error), survey)
+            if isinstance(given, Answer):
+                said_so = f"{given.text} (Read as: {plainer}?)"[:4000]
+                sure = round(given.confidence * _RESTATED, 4)
+                told = given.model_copy(update={"confidence": sure, "text": said_so})
+                reading = _reading(kind, told if survey.scaled else _in_units(told))
+                return replace(reading, restated=plainer)
+            if given is not None:
+                return _reading(kind, given)
+    return None
+
+
 _PURPOSE = re.compile(
     r"^(?:(?:i|we) (?:am|are|was|were) )?(?:just )?(?:thinking (?:of|about)|planning (?:to|on)|considering|"
     r"hoping to|looking to) [^,]+ , (?=(?:what|how|is|are|can|could|would|will|where|which|does|do)\b)"

@@ -43,7 +43,7 @@ _FIT = (
 _PUT = (
     "(fit|fit in|put|place|squeeze|squeeze in|get|get in|add|park|set|set up|stand|slot|slot in|slide|"
     "install|roll out|lay|"
-    "lay out|lay down|position|have|wedge|wedge in|shove|hang|store|accommodate|stick|tuck|move|unroll|"
+    "lay out|lay down|position|wedge|wedge in|shove|hang|store|accommodate|stick|tuck|move|unroll|"
     "insert|keep|push|"
     "make room for|find room for|find space for|find a place for|find a spot for|find a space for|fit "
     "another|use|arrange)"
@@ -74,6 +74,7 @@ _FITS = f"""
     {_MODAL} {{i:item}} {_STILL} {_FIT} {{p:where_to}} {_END}
     {_MODAL} {_WHO} {_STILL} {_PUT} {{i:item}} {_END}
     {_MODAL} {_WHO} {_STILL} {_PUT} {{i:item}} {{p:where_to}} {_END}
+    (would|will|could|can|should|might|may) {_WHO} {_STILL} have {{i:item}} [{{p:where_to}}] {_END}
     {_MODAL} {{p:where_to}} {_STILL} (fit|hold|take|accommodate|have room for) {{i:item}} {_END}
     (is|are|was|would|will) there [be] {_ENOUGH} {_FOR} {{i:item}} {_END}
     (is|are|was|would|will) there [be] {_ENOUGH} {_FOR} {{i:item}} {{p:where_to}} {_END}

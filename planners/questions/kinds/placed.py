@@ -278,6 +278,9 @@ def _rests_on(thing: Thing, shell: str) -> bool:
 def _listed(name: str, found: Sequence[Thing], anchors: Sequence[Thing], asked: Asked, survey: Survey) -> Answer:
     where = _told(name, anchors, survey)
     one = bool(re.search(r"\b(?:what|which) (?:thing|object|item)\b(?!s)|\bclosest\b", asked.said))
+    if not found and name == "inside" and all((kind := kinds.of(a.label)) and kind.stores for a in anchors):
+        text = f"What is {where} cannot be told: only the outside of it is known."
+        return Answer(answer=None, answer_type="list", text=text, source="none", evidence=Evidence(ids=_ids(anchors)))
     if not found:
         return Answer(answer=(), answer_type="list", text=f"Nothing is {where}.", confidence=0.9,
                       evidence=Evidence(ids=_ids(anchors)))  # fmt: skip

@@ -194,6 +194,7 @@ _OWN_FRAME = re.compile(
     r"\bthe way [\w ']+ (?:faces?|is facing|looks|is turned)\b|\b(?:its|their) (?:front|point of view|perspective)\b"
 )
 _VIEW = 75.0  # degrees to either side of straight ahead that are in view
+_ASIDE = 75.0  # degrees off a person's left or right that still count as that side where it is asked by yes or no
 _NARROW = 15.0  # degrees between a direction and the limit of its sector below which an answer is told as borderline
 
 
@@ -255,7 +256,7 @@ def _side_holds(thing: Thing, side: Side, view: View, survey: Survey) -> Answer:
     if not view.stated and not is_inside(view, survey):
         return _screen_side(thing, side, view, survey)
     bearing = view.to(thing)
-    margin = side.reach - off(bearing, side)
+    margin = (_ASIDE if abs(side.at) == 90.0 else side.reach) - off(bearing, side)
     yes = margin >= 0
     text = f"{'Yes' if yes else 'No'}, {survey.named(thing)} is {_bearing_told(bearing)}{_borderline(margin)}."
     return Answer(answer="yes" if yes else "no", answer_type="yesno", text=text, frame=view.words,

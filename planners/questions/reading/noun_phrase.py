@@ -153,7 +153,7 @@ _VERBS = re.compile(
     r"where|"
     r"when|why|than|there|if|get|walk|fit|sit|see|look|looks|stand|stands|hang|hangs|lie|lies|belong|belongs|cost|"
     r"costs|"
-    r"goes|go)\b"
+    r"goes|go|i|we|he|she|they|might|may|must)\b"
 )
 _RELATIVE = re.compile(r"\b(?:that|which|who) (?:is|are|has|have|does not have|is not|are not)\b")
 _NO_STARTS = bag(
@@ -190,7 +190,13 @@ def thing(words: Words) -> Query | None:
     if len(plan.ops) != 1 or plan.ops[0].op != "select":
         return None
     query = plan.ops[0].query()
-    return _checked(query) if query is not None else None
+    return _checked(query) if query is not None and not _ends_in_verb(query.text) else None
+
+
+def _ends_in_verb(text: str) -> bool:
+    """Whether a noun phrase ends in a participle, as "kettle boiled": then it is a clause."""
+    last = text.rpartition(" ")[2]
+    return last.endswith(("ed", "ing")) and " " in text and kinds.of(text) is None
 
 
 def _enumerated(words: Words) -> str:
@@ -212,7 +218,7 @@ def _plainly(said: str) -> str:
     said = room_phrases.WITHIN.sub(_placed, said)
     said = _of_names().sub(lambda m: _of_kinds()[m[0]], said)
     said = _hard_names().sub(lambda m: f"{_hard_tokens()[m[1]]}{m[2]}", said)
-    if (colored := _COLORED.match(said)) and _is_color(colored[1]):
+    if (colored := _COLORED.match(said)) and is_color_word(colored[1]):
         rest = said[colored.end() :].strip()
         every = "all" if said.startswith(("everything", "all")) else "any"
         said = f"{every} {colored[1]} thing{'s' if every == 'all' else ''} {rest}".strip()
@@ -274,7 +280,8 @@ def without_verb_names(said: str) -> str:
 
 
 @cache
-def _is_color(word: str) -> bool:
+def is_color_word(word: str) -> bool:
+    """Whether a word names a colour."""
     return color((word,)) is not None
 
 

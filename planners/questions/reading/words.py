@@ -109,6 +109,7 @@ _WHETHER = re.compile(r"^(?:, )*(?:whether or not|whether|if)\b ?")
 _CONTRACTED = {
     "whats": "what is", "wheres": "where is", "hows": "how is", "whos": "who is", "theres": "there is",
     "isnt": "is not", "arent": "are not", "doesnt": "does not", "thats": "that is", "whichs": "which is",
+    "nite": "night", "what've": "what have",
     "im": "i am", "ive": "i have", "cant": "can not", "wasnt": "was not", "dunno": "do not know", "hasnt": "has not",
     "hasn't": "has not", "haven't": "have not", "havent": "have not", "weren't": "were not", "youre": "you are",
     "theyre": "they are", "wat": "what", "wot": "what", "wich": "which", "hw": "how", "r": "are", "ur": "your",
@@ -125,6 +126,7 @@ _HAVE_IS = re.compile(
 _REORDERED: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(pattern), said)
     for pattern, said in (
+        (r"\bwhich hand\b", "which side"),
         (r"^(?:would|might|will|could) there (?:happen to )?be ", "is there "),
         (
             r"^how (?:high|tall) (is|are) (?!the room|this room)(.+?) from (?:its |the |their )?(?:bottom|base|top) to "
