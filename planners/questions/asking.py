@@ -115,7 +115,7 @@ _RESTATED = 0.85  # probability that a question means what it was restated as
 def _restated(text: str, words: Words, survey: Survey) -> Reading | None:
     """The answer to the likeliest plainer question that the words may mean; None if there is none."""
     for plainer in restated(words, tuple(t.label for t in survey.things if t.label)):
-        situation, said = read_situation(tuple(plainer.split()))
+        situation, said = read_situation(plain_words(plainer))
         for kind, asked in _filled(text, situation, said):
             try:
                 given = kind.answer(asked, survey)

@@ -135,6 +135,7 @@ class _Clause:
         return " ".join(self.words[a.end : b.start])
 
 
+_ELSEWHERE = re.compile(r"\b(?:next door|neighbou?rs?|upstairs|downstairs|outside|yesterday|last (?:week|year|time))\b")
 # What says no more than the question does: a way is clear if one can walk it, and sides are the viewer's.
 _TAIL = re.compile(
     r",? if you (?:would|will|could) be so kind|,? if you please|"
@@ -153,6 +154,8 @@ def restated(words: Words, labels: Collection[str]) -> Iterator[str]:
         labels: of the things in the scene, whose names count as known beside those of all kinds.
     """
     known = frozenset(name for label in labels for name in _names_of(label))
+    if _ELSEWHERE.search(" ".join(words)):
+        return
     words = tuple(_TAIL.sub("", " ".join(words)).split())
     plain = tuple(w for w in words if w != ",")
     made = dict.fromkeys((*_fitting(words), *_seated(plain, tuple(_named(plain, known)))))
