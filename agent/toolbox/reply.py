@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -46,6 +47,21 @@ class Reply:
     def plus(self, **data: Any) -> Reply:
         """This reply with more data."""
         return replace(self, data={**self.data, **data})
+
+    def without(self, labels: Collection[str]) -> Reply:
+        """This reply with "thing" in place of labels, in its sentences and in the strings of its data."""
+        if not labels:
+            return self
+        said = re.compile("|".join(map(re.escape, sorted(labels, key=lambda w: (-len(w), w)))), re.IGNORECASE)
+
+        def cleaned(value: Any) -> Any:
+            if isinstance(value, str):
+                return said.sub("thing", value)
+            if isinstance(value, dict):
+                return {key: cleaned(item) for key, item in value.items()}
+            return [cleaned(item) for item in value] if isinstance(value, list | tuple) else value
+
+        return replace(self, text=cleaned(self.text), data=cleaned(self.data), form=cleaned(self.form))
 
 
 def edited(result: Result, pictures: tuple[bytes, ...] = ()) -> Reply:

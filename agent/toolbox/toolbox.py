@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 import threading
 import weakref
 from contextlib import suppress
@@ -14,6 +15,7 @@ import torch
 
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.errors import ScenewrightError, UserError
+from ...planners.model.prompt.labels import plain
 from ..session.clarify import Question
 from ..session.history import DEPTH
 from ..session.session import Session
@@ -28,6 +30,7 @@ from .reply import Reply, asked_back, refused
 from .saving import saving_tools
 from .tool import Desk, Tool
 
+_WORD = re.compile(r"[^\W_]+")
 _logger = logging.getLogger(__name__)
 
 
@@ -36,7 +39,8 @@ class Toolbox:
 
     Calls may come from any thread; they are carried out one after the other. Every reply holds `scene`: the number of
     Gaussians, how many instructions can be undone, and a digest that is equal only for scenes whose Gaussians are equal
-    bit for bit.
+    bit for bit. Labels of the scene's file that are no plausible names of things are left out of replies, as they may
+    be meant as instructions to the model that reads them.
 
         toolbox = Toolbox(session, folder="scenes")
         functions = toolbox.definitions()  # into the request to a language model
@@ -88,8 +92,9 @@ class Toolbox:
         with self._lock:
             self._progress.listen(report)
             try:
+                suspect = self._suspect_labels()
                 reply = self._run(name, {} if arguments is None else arguments)
-                return reply.plus(scene=self.state())
+                return reply.without(suspect | self._suspect_labels()).plus(scene=self.state())
             finally:
                 self._progress.listen(None)
 
@@ -99,6 +104,13 @@ class Toolbox:
             cloud = self.session.scene.cloud
             undo = min(len(self.session.done), DEPTH)
             return {"digest": self._digest(cloud), "gaussians": len(cloud), "undo": undo}
+
+    def _suspect_labels(self) -> frozenset[str]:
+        """Labels of the present scene that are no plausible names of things. A single English word instructs nobody."""
+        field = self.session.scene.language
+        labels = {g.label for g in field.groups} if field is not None else set()
+        long = (label for label in labels if not label.isascii() or len(_WORD.findall(label)) > 1)
+        return frozenset(label for label in long if plain(label) is None)
 
     def _run(self, name: str, arguments: Any) -> Reply:
         asked_before = self.session.question

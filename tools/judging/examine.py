@@ -130,7 +130,8 @@ def _recolor(case: Case, op: Recolor) -> Found:
     return [*checks, *_named(case, case.changes.shaded)], _NO_IDS
 
 
-def _after(case: Case, rows: Tensor) -> Any:
+def _after(case: Case, rows: Tensor) -> GaussianCloud:
+    """The Gaussians of some rows of the cloud before, as they are after the edit."""
     return case.after.cloud[case.now(rows)]
 
 
