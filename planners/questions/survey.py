@@ -422,7 +422,7 @@ class Survey:
         labels: dict[str, int] = {}
         for t in things:
             labels[t.name] = labels.get(t.name, 0) + 1
-        return listed([f"{n} {plural(name)}" if n > 1 else with_article(name) for name, n in labels.items()])
+        return listed([f"{n} {as_plural(name)}" if n > 1 else with_article(name) for name, n in labels.items()])
 
 
 def _looks(query: Query) -> bool:
@@ -483,6 +483,11 @@ def with_article(noun: str) -> str:
     if is_plural(noun):
         return noun
     return f"{'an' if noun[:1] in 'aeiou' else 'a'} {noun}"
+
+
+def as_plural(name: str) -> str:
+    """A label for several things; one that is in the plural already ("books") stays as it is."""
+    return name if is_plural(name) else plural(name)
 
 
 def be(things: Sequence[Thing]) -> str:

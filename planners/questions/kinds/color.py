@@ -7,12 +7,11 @@ from collections.abc import Callable, Mapping, Sequence
 
 from ....gaussians.color import plain_color
 from ....gaussians.language.query.query import Query
-from ....gaussians.world.words import plural
 from ..answer import Answer, AnswerType
 from ..kind import Asked, Kind, Undecided
 from ..reading.phrase_templates import templates
 from ..resolving import Meant, all_of, meant
-from ..survey import Survey, Thing, listed
+from ..survey import Survey, Thing, as_plural, listed
 from ..telling import GRAPH_SURE, evidence, label, things_listed, yes_no
 
 _COLOR = "(color|colors|shade|hue|colouring|tone|tint)"
@@ -136,7 +135,7 @@ def _colors(phrase: Meant, survey: Survey) -> Answer | Undecided:
 def _every(things: Sequence[Thing]) -> str:
     """Several things that are told together: "both chairs", "all 4 lamps", "all 3"."""
     labels = {t.label for t in things}
-    noun = f" {plural(things[0].label)}" if len(labels) == 1 and things[0].label else ""
+    noun = f" {as_plural(things[0].label)}" if len(labels) == 1 and things[0].label else ""
     return f"{'both' if len(things) == 2 else f'all {len(things)}'}{noun}"
 
 

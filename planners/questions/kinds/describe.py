@@ -7,7 +7,7 @@ from ..answer import Answer, Evidence
 from ..candidates import meant
 from ..describing import MAYBE_ROOM, SURE_ROOM, caption, describe
 from ..kind import Asked, Kind, Undecided
-from ..reading.noun_phrase import is_anything
+from ..reading.noun_phrase import is_unnamed
 from ..reading.phrase_templates import templates
 from ..room_kind import RoomGuess, room_kinds
 from ..survey import Survey, listed, with_article
@@ -85,7 +85,7 @@ def _describe(asked: Asked, survey: Survey) -> Answer:
 
 def _thing(asked: Asked, survey: Survey) -> Answer | None:
     query = asked.slots["x"]
-    if is_anything(query) and not query.relations and not query.last:
+    if is_unnamed(query) and not query.relations and not query.last:
         return None
     things = [t for t in meant(query, survey) if t.node is not None]
     if not things:

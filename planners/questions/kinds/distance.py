@@ -25,7 +25,7 @@ _APART = (
 )
 _IN = "[(in|as) {u:unit}]"
 _LENGTH = (
-    "(distance|gap|space|clearance|room|separation|free space|empty space|floor space|open space|length|interval|"
+    "(distance|gap|space|wall space|free wall|empty wall|clearance|room|separation|free space|empty space|floor space|open space|length|interval|"
     "stretch|spacing|straight line distance|straight line|shortest distance|minimum distance|smallest distance|"
     "smallest gap|narrowest gap|centre to centre distance|center to center distance|distance in a straight line)"
 )
@@ -102,6 +102,7 @@ _WITHIN = f"""
         from each other]
     BE {{both:spot}} {_LESS} {{n:length}} [of each other|apart|from each other|of one another|away from each other]
     [is|are] there {_LESS} {{n:length}} [of space|of room|of clearance] between {{a:spot}} and {{b:spot}}
+    [is|are] there {_LESS} {{n:length}} [of space|of room|of clearance] between {{both:spot}}
     [is|are] the {_LENGTH} (between|from) {{a:spot}} (and|to) {{b:spot}} {_LESS} {{n:length}}
     (does|do) the {_LENGTH} (between|from) {{a:spot}} (and|to) {{b:spot}} (measure|come to|amount to) {_LESS} \
         {{n:length}}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..answer import Answer
 from ..kind import Asked, Kind
 from ..measuring import told_size
-from ..reading.noun_phrase import BY_ID, is_anything
+from ..reading.noun_phrase import BY_ID, is_unnamed
 from ..reading.phrase_templates import templates
 from ..resolving import meant
 from ..survey import Survey, with_article
@@ -27,7 +27,7 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
     """The label of the thing with this number, or of what is described without its name: "the black thing"."""
     query = asked.slots["x"]
     numbered = query.text.startswith(f"{BY_ID} ")
-    described = is_anything(query) and (query.colors or query.size) and not query.groups and not query.last
+    described = is_unnamed(query) and (query.colors or query.size) and not query.groups and not query.last
     if not numbered and not described:
         return None
     phrase = meant(survey, query)

@@ -10,7 +10,7 @@ from ....gaussians.world.support import is_stepped_on
 from ..answer import Answer
 from ..candidates import Case, agreed, unknown
 from ..kind import Asked, Kind
-from ..reading.noun_phrase import is_anything
+from ..reading.noun_phrase import is_anything, is_unnamed
 from ..reading.phrase_templates import templates
 from ..spans import End, end_of, ends, evidence, span, told
 from ..survey import NotResolved, Survey, Thing
@@ -91,7 +91,7 @@ def _of_one(things: tuple[Thing, ...], to: End, asked: Asked, survey: Survey, ne
         text += f"; then {ranked[1].name}, {told(other.gap)}"
     label = best.thing.label
     x = asked.slots.get("x")
-    if x is not None and not is_anything(x) and sum(t.label == label for t in things) > 1:
+    if x is not None and not is_unnamed(x) and sum(t.label == label for t in things) > 1:
         label = best.name.removeprefix("the ")
     return Answer(answer=label or best.thing.name, answer_type="label", text=f"{text[:1].upper()}{text[1:]}.",
                   confidence=sure, evidence=evidence(best, to, True, told(s.gap)))  # fmt: skip

@@ -13,7 +13,7 @@ from ....gaussians.world.support import SHELL
 from ..answer import Answer, Evidence
 from ..candidates import Case, agreed, is_plural, meant, unknown, whole
 from ..kind import Asked, Kind
-from ..reading.noun_phrase import is_anything
+from ..reading.noun_phrase import is_anything, is_unnamed
 from ..reading.phrase_templates import templates
 from ..reading.room_phrases import named_in
 from ..relating import overlaps, related, strength, supporter
@@ -419,7 +419,7 @@ def name_of(asked: Asked) -> str:
 
 def _subjects(query: Query, asked: Asked, survey: Survey) -> tuple[Thing, ...] | None:
     """The things that a question asks about; None if a kind that is named is absent."""
-    if is_anything(query) and not query.colors and not query.relations:
+    if is_anything(query) and not query.relations:
         return survey.things
     if query.pick == "any" or re.search(r"\bthere\b", asked.said):
         return survey.all_of(query) or None
@@ -433,7 +433,7 @@ def _one_anchor(name: str, things: Sequence[Thing], anchors: tuple[Thing, ...], 
     where = _told(name, anchors, survey)
     margin = min(abs(s - HOLDS) for s in scores.values()) if scores else 0.5
     sure = round(0.6 + 0.37 * min(margin / 0.25, 1.0), 3)
-    anyone = is_anything(query) or query.pick == "any" or bool(re.search(r"\bthere\b", asked.said))
+    anyone = is_unnamed(query) or query.pick == "any" or bool(re.search(r"\bthere\b", asked.said))
     if anyone or len(things) == 1:
         said = listed([survey.named(t) for t in there]) if there else listed([survey.named(t) for t in things[:1]])
         if there:

@@ -29,6 +29,7 @@ _WHERE = f"""
     (what|which) (part|area|end|region) of {_ROOM} BE {{x}} [in|at|located in]
     how (do|can|would) i find {{x}}
     (find|locate|show me where) {{x}}
+    (list|name|show|find|tell me) [me] {{x}} and (where|whereabouts) (they|it) (are|is|stand|hang) [in {_ROOM}]
     describe (where|the location of|the position of) {{x}} [is|are]
     i can not find {{x}} [where is it|where are they]
     i am looking for {{x}} [where is it|where are they]
@@ -164,7 +165,7 @@ def _in_zone(asked: Asked, survey: Survey) -> Answer | None:
     query, said = asked.slots["x"], str(asked.slots["z"])
     if _is_personal(asked):
         return None
-    exists = query.pick == "any" or bool(re.search(r"\bthere\b|\b(?:have|see)\b", asked.said))
+    exists = query.pick == "any" or bool(re.search(r"\b(?:there|have|see|anything|something)\b", asked.said))
     things = survey.things if is_anything(query) else survey.all_of(query) if exists else meant(query, survey)
     things = tuple(t for t in things if t.node is not None)  # floor, walls and ceiling are not in a place of the room
     if not things:

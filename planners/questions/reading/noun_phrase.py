@@ -136,6 +136,7 @@ _NO_THINGS = bag(
     "reach view sight shape condition mood style place room space weather date day night morning evening weekend "
     "weekends year age price cost value brand make model owner company name reason purpose question idea problem "
     "thought color size height width depth length weight area volume story storey function dimension dimensions "
+    "meter centimeter millimeter inch yard cm mm ft "
     "distance gap direction position location orientation number amount total sum average lot bit kind sort type "
     "difference left right everyone everybody anyone anybody someone somebody nobody me you us them him her i we it "
     "they myself yourself person people man woman owner designer shade material texture pattern smell sound noise "
@@ -333,7 +334,12 @@ def _checked_anchor(query: Query) -> Query | None:
 
 
 def is_anything(query: Query) -> bool:
-    """Whether a query names no kind of thing."""
+    """Whether a query names neither a kind of thing nor a colour: "anything", and not "anything green"."""
+    return is_unnamed(query) and not query.colors and not query.not_colors
+
+
+def is_unnamed(query: Query) -> bool:
+    """Whether a query names no kind of thing; it may tell a colour or a place."""
     return not query.text or query.text in _ANYTHING
 
 

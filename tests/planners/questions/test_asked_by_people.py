@@ -128,3 +128,35 @@ def test_what_carries_the_name_is_not_told_as_absent(survey: Survey) -> None:
     assert unsure.answer is None and "no chair" not in unsure.text and "surely" in unsure.text
     red = absent(survey, Query(text="chair", colors=("red",)), Found("absent", (), chairs), "yesno")
     assert red.answer == "no" and "There is no red chair here" in red.text
+
+
+@pytest.mark.parametrize(
+    ("asked", "value"),
+    [
+        ("is anything blue on the left desk?", "yes"),
+        ("does anything red stand in the corner?", "no"),
+        ("is anything white in the corner", "no"),
+        ("does anything white hang on the wall?", "yes"),
+        ("what blue things are on the desk?", ["mug"]),
+        ("what white things are next to the left desk", ["chair"]),
+        ("what is the nearest white thing to the guitar?", "door"),
+    ],
+)
+def test_a_colour_narrows_anything(survey: Survey, asked: str, value: Any) -> None:
+    given = answer(asked, survey)
+    assert _value(given) == value, given.text
+
+
+def test_a_length_between_things_is_no_thing(survey: Survey) -> None:
+    assert answer("is there more than a metre between the two desks?", survey).answer == "yes"
+    assert answer("is there more than four metres between the two desks?", survey).answer == "no"
+    assert answer("how much wall space is there between the left desk and the bookshelf?", survey).answer == (
+        pytest.approx(1.0, abs=0.02)
+    )
+
+
+def test_labels_in_the_plural_stay_as_they_are() -> None:
+    books = [_node(i, "books", "blue", (0.2, 0.2, 0.1), (float(i), 0.0, 0.05)) for i in (1, 2)]
+    shelf = Survey.of_graph(SceneGraph.model_validate({"room": {"size": [6.0, 4.0, 2.5]}, "nodes": books}))
+    assert answer("what colour are the books?", shelf).text == "Both books are blue."
+    assert "2 books:" in answer("are there any books?", shelf).text
