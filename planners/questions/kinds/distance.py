@@ -25,7 +25,8 @@ _APART = (
 )
 _IN = "[(in|as) {u:unit}]"
 _LENGTH = (
-    "(distance|gap|space|wall space|free wall|empty wall|clearance|room|separation|free space|empty space|floor space|open space|length|interval|"
+    "(distance|gap|space|wall space|free wall|empty wall|"
+    "clearance|room|separation|free space|empty space|floor space|open space|length|interval|"
     "stretch|spacing|straight line distance|straight line|shortest distance|minimum distance|smallest distance|"
     "smallest gap|narrowest gap|centre to centre distance|center to center distance|distance in a straight line)"
 )
