@@ -2,7 +2,8 @@
 
 Sets in folders of their own, each with its rooms. The reader was developed with `dev` and `wider`. `held` was written
 before the reader; its failures were read at the end. Of `later`, by a writer who saw no code, only totals were read. A
-line of `questions.jsonl` holds room, question, answer_type, answer (null: it cannot be answered), accept (other right answers), tolerance (relative, of numbers), kind and a note.
+line of `questions.jsonl` holds room, question, answer_type, answer (null: it cannot be answered), accept (other right
+answers), tolerance (relative, of numbers), kind and a note.
 """
 
 from __future__ import annotations
