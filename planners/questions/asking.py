@@ -120,6 +120,8 @@ def _restated(text: str, words: Words, survey: Survey) -> Reading | None:
             try:
                 given = kind.answer(asked, survey)
             except NotResolved as error:
+                if plainer.startswith("is there anything"):
+                    continue  # "his slipper" is no thing of the scene, and the question is about something else
                 return _unresolved(_Attempt(kind, asked, error), survey)
             if isinstance(given, Answer):
                 said_so = f"{given.text} (Read as: {plainer}?)"[:4000]

@@ -278,7 +278,11 @@ def _rests_on(thing: Thing, shell: str) -> bool:
 def _listed(name: str, found: Sequence[Thing], anchors: Sequence[Thing], asked: Asked, survey: Survey) -> Answer:
     where = _told(name, anchors, survey)
     one = bool(re.search(r"\b(?:what|which) (?:thing|object|item)\b(?!s)|\bclosest\b", asked.said))
-    if not found and name == "inside" and all((kind := kinds.of(a.label)) and kind.stores for a in anchors):
+    if re.search(r"\bstand(?:s|ing)?\b|\bstood\b", asked.said) and name == "next_to":
+        found = [t for t in found if t.node is None or t.node.support not in ("wall", "ceiling")]
+    if one and name == "next_to":
+        found = sorted(found, key=lambda t: survey.gap(t, anchors[0]))[:1]
+    if not found and name == "inside":
         text = f"What is {where} cannot be told: only the outside of it is known."
         return Answer(answer=None, answer_type="list", text=text, source="none", evidence=Evidence(ids=_ids(anchors)))
     if not found:

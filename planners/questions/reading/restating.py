@@ -267,8 +267,10 @@ def _counts(c: _Clause) -> Iterator[str]:
 
 
 def _colored(c: _Clause) -> Iterator[str]:
-    """Lists of things of a colour."""
+    """Lists of things of a colour, and which of some colours a thing has."""
     hues = [w for w in c.words if noun_phrase.is_color_word(w)]
+    if len(hues) > 1 and len(c.named) == 1 and "or" in c.words and not c.asks_yes_no:
+        yield f"what colour {_be(c.named[0])} {c.named[0].definite}"
     if (
         len(hues) == 1
         and not c.named
@@ -298,6 +300,13 @@ _LENGTHS = ("metres", "meters", "feet", "centimetres", "inches", "cm", "m", "ft"
 
 
 def _distances(c: _Clause) -> Iterator[str]:
+    if (
+        len(c.named) == 1
+        and c.named[0].plural
+        and c.has("two", "both", "pair")
+        and c.has("far", "apart", "distance", "separates")
+    ):
+        yield f"how far apart are {c.named[0].definite}"
     if len(c.named) != 2 or c.asks_yes_no:
         return
     a, b = c.named[0].definite, c.named[1].definite
@@ -349,7 +358,7 @@ def _areas(c: _Clause) -> Iterator[str]:
 
 def _comparisons(c: _Clause) -> Iterator[str]:
     cues = [w for w in c.words if _COMPARED.match(w)]
-    if len(cues) != 1 or len(c.named) != 2:
+    if len(cues) != 1 or len(c.named) != 2 or re.search(r"\b(?:higher up|lower down|further up)\b", c.said):
         return
     a, b = c.named[0].definite, c.named[1].definite
     if "or" in c.between(c.named[0], c.named[1]).split() or c.has("which", "what") or not c.asks_yes_no:
@@ -421,23 +430,32 @@ def _places(c: _Clause) -> Iterator[str]:
         yield f"where {_be(c.named[0])} {c.named[0].definite}"
 
 
-_OFFERS = ("boast", "sport", "offer", "feature")
+_OFFERS = ("come", "comes", "boast", "sport", "offer", "feature")
 
 
 def _existence(c: _Clause) -> Iterator[str]:
     cue = c.has(
         "there", "any", "got", "see", "spot", "exist", "include", "contain", "has", "have", "anywhere", "find", *_OFFERS
     )
+    also = len(c.named) == 2 and re.search(r"as well as|or only|or just|and also|besides", c.between(*c.named))
+    here = c.asks_yes_no and re.search(r"\bin (?:this|the|that) room\b|\bin here\b|\banywhere\b", c.said)
+    if c.named and c.named[0].said.startswith("the ") and c.words[0] in ("has", "have", "had", "did", "does", "do"):
+        return
+    if (also and c.asks_yes_no) or (here and len(c.named) == 1):
+        yield f"is there a {c.named[0].bare}"
     if len(c.named) == 1 and cue and (c.asks_yes_no or "any" in c.words or c.words[0] in ("got", "no")):
         thing = c.named[0]
         yield f"are there any {thing.bare}" if thing.plural else f"is there a {thing.bare}"
 
 
 _UNIT = r"(?:cm|mm|m|in|inches|ft|feet|metres?|meters?)"
-_FITS = re.compile(
-    r"\b(?:fit|fits|squeeze|squeezed|slot|slide|go|goes|stand|standing|sit|tuck|tucked|ok|put|park) "
-    r"(?:in (?=between|under|behind|next|beside)|it |lengthwise )*"
-    r"(?P<place>(?:between|next to|beside|under|underneath|beneath|against|along|by|in front of|behind|in|on|at) .+)$"
+_FIT = re.compile(r"\b(?:fit|fits|squeeze|squeezed|slots?|slide|go|goes|stand|standing|sit|tuck|tucked|ok|put|park)\b")
+_BETWEEN = re.compile(
+    r"\bbetween (?:\w+ ){1,6}and (?:the |a |my )?(?:\w+ ?){1,3}?(?= along| without| thank| please| at the|$)"
+)
+_PLACE = re.compile(
+    r"\b(?:next to|beside|under|underneath|beneath|against|along|in front of|behind) (?:\w+ ?){1,5}?"
+    r"(?= without| thank| please|$)"
 )
 _SIZED = re.compile(
     rf"\b\d+(?:\.\d+)? ?{_UNIT}?(?: (?:wide|long|deep|across))?"
@@ -448,13 +466,12 @@ _SIZED = re.compile(
 def _fitting(words: Words) -> Iterator[str]:
     """Whether something of a stated size fits somewhere, with the size in one clause and the place in another."""
     said = " ".join(w for w in words if w != ",")
-    found, sized = _FITS.search(said), _SIZED.search(said)
-    if found is None or sized is None or sized.start() > found.start() or {"no", "not"} & set(words):
+    sized = _SIZED.search(said)
+    if sized is None or _FIT.search(said) is None or {"no", "not"} & set(words):
         return
-    if (at := found["place"].find("between ")) > 0:
-        yield f"would a {sized[0].replace(' and ', ' by ').strip()} thing fit {found['place'][at:]}"
-    place = re.sub(r" (?:thank you|without .*|long side .*|please)$", "", found["place"])
-    yield f"would a {sized[0].replace(' and ', ' by ').strip()} thing fit {place}"
+    place = _BETWEEN.search(said, sized.end()) or _PLACE.search(said, sized.end())
+    if place is not None:
+        yield f"would a {sized[0].replace(' and ', ' by ').strip()} thing fit {place[0]}"
 
 
 _GAZE = re.compile(

@@ -127,6 +127,14 @@ _REORDERED: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(pattern), said)
     for pattern, said in (
         (r"\bwhich hand\b", "which side"),
+        (
+            r"^(?:seen |viewed |looking )?from (?:my (?:viewpoint|point of view|side|position|spot)|(?:the spot )?"
+            r"where (?:i|the viewer|the visitor) (?:look|looks|stand|stands)(?: in)?)(?: outside)? , ",
+            "",
+        ),
+        (r",? (?:as|when) (?:i|you|we) (?:look in|see it|come in|walk in)$", ""),
+        (r"\bnot (?:taken up|covered|occupied) by (?:the |any )?(?:furniture|things|stuff)\b", "free"),
+        (r",? (?:ignoring|not counting|leaving out|leave) the rugs?(?: out of it| as furniture)?$", ""),
         (r"^(?:would|might|will|could) there (?:happen to )?be ", "is there "),
         (
             r"^how (?:high|tall) (is|are) (?!the room|this room)(.+?) from (?:its |the |their )?(?:bottom|base|top) to "
