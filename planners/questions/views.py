@@ -127,6 +127,9 @@ def of_object(thing: Thing, survey: Survey) -> View | None:
     return None if way is None else View(middle(thing), way, f"{survey.named(thing)}'s own")
 
 
+_NEARER = 0.6  # share of the distance to the next thing up to which somebody faces the nearer one
+
+
 def views(situation: Situation, survey: Survey) -> tuple[View, ...]:
     """Every view that fits a situation; none if no place fits what is said to lie beside the person.
 
@@ -137,7 +140,7 @@ def views(situation: Situation, survey: Survey) -> tuple[View, ...]:
     targets = meant(situation.facing, survey) if situation.facing is not None else ()
     found: list[View] = []
     for place in _thinned(places) or (None,):
-        for target in targets or (None,):
+        for target in _faced(place, targets) or (None,):
             if place is not None and target is not None and place.row == target.row and situation.pose == "on":
                 target = None
             name = ", ".join([survey.named(t) for t in (place, target) if t is not None])
@@ -160,6 +163,15 @@ def views(situation: Situation, survey: Survey) -> tuple[View, ...]:
 
 def _thinned(places: Sequence[Thing]) -> Sequence[Thing]:
     return places[:8]
+
+
+def _faced(place: Thing | None, targets: Sequence[Thing]) -> Sequence[Thing]:
+    """What somebody at a place may face: of several things the one that is clearly nearer than the others."""
+    if place is None or len(targets) < 2:
+        return targets
+    ranked = sorted(targets, key=lambda t: float(np.linalg.norm(middle(t) - middle(place))))
+    near, next_one = (float(np.linalg.norm(middle(t) - middle(place))) for t in ranked[:2])
+    return ranked[:1] if near < _NEARER * next_one else targets
 
 
 def _is_at(view: View, thing: Thing) -> bool:

@@ -24,7 +24,8 @@ _BLOCKS = bag(
     "not no except without excluding besides only never neither nor unless other others another else own owns owner "
     "bought cost costs price worth brand made material old age heavy weigh weighs comfortable comfy why who whose when "
     "clean dirty dusty open closed shut locked working broken than if further more less same different both each every "
-    "second third fourth"
+    "second third fourth hard harder difficult tricky awkward impossible unable dangerous unsafe risky avoid detour "
+    "shine shines shining illuminate reflect reflects reflected"
 )
 _SITUATED = bag(
     "sat sit sitting seated stood standing stand lying lie lay facing face faces back after before once until"
@@ -135,7 +136,10 @@ class _Clause:
         return " ".join(self.words[a.end : b.start])
 
 
-_ELSEWHERE = re.compile(r"\b(?:next door|neighbou?rs?|upstairs|downstairs|outside|yesterday|last (?:week|year|time))\b")
+_ELSEWHERE = re.compile(
+    r"\b(?:next door|neighbou?rs?|upstairs|downstairs|outside|yesterday|last (?:week|year|time)|"
+    r"(?:have|need|must|forced) (?:to )?(?:walk|go|step|climb|squeeze|move|get) (?:around|round|over|past|between))\b"
+)
 # What says no more than the question does: a way is clear if one can walk it, and sides are the viewer's.
 _TAIL = re.compile(
     r",? if you (?:would|will|could) be so kind|,? if you please|"

@@ -160,3 +160,16 @@ def test_labels_in_the_plural_stay_as_they_are() -> None:
     shelf = Survey.of_graph(SceneGraph.model_validate({"room": {"size": [6.0, 4.0, 2.5]}, "nodes": books}))
     assert answer("what colour are the books?", shelf).text == "Both books are blue."
     assert "2 books:" in answer("are there any books?", shelf).text
+
+
+def test_who_sits_before_one_of_several_things_faces_that_one(survey: Survey) -> None:
+    given = answer("If I sit on the left chair facing the desk, is the guitar on my left or my right?", survey)
+    assert given.answer == "left", given.text
+
+
+@pytest.mark.parametrize(
+    "asked", ["do I have to walk around anything to get from the door to the desk?",
+              "is it hard to get from the door to the printer?", "does the laptop shine on the desk?"]
+)  # fmt: skip
+def test_a_question_is_not_restated_as_its_opposite(survey: Survey, asked: str) -> None:
+    assert answer(asked, survey).source == "none"
