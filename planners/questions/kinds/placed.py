@@ -18,7 +18,7 @@ from ..reading.phrase_templates import templates
 from ..reading.room_phrases import named_in
 from ..relating import overlaps, related, strength, supporter
 from ..room_places import wall_of
-from ..survey import NotResolved, Survey, Thing, listed
+from ..survey import NotResolved, Survey, Thing, be, listed
 from ..telling import absent
 
 _WHAT = (
@@ -288,7 +288,7 @@ def _listed(name: str, found: Sequence[Thing], anchors: Sequence[Thing], asked: 
     if not found:
         return Answer(answer=(), answer_type="list", text=f"Nothing is {where}.", confidence=0.9,
                       evidence=Evidence(ids=_ids(anchors)))  # fmt: skip
-    verb = "is" if len(found) == 1 else "are"
+    verb = be(found)
     text = f"{_cap(listed([survey.named(t) for t in found]))} {verb} {where}."
     evidence = Evidence(ids=_ids([*found, *anchors]))
     if one and len(found) == 1:
@@ -345,7 +345,7 @@ def _has_it(asked: Asked, survey: Survey) -> Answer | None:
         found = [t for t in found if wanted is None or t.row in wanted]
         yes = bool(found) != empty
         what = listed([survey.named(t) for t in found])
-        verb = "is" if len(found) <= 1 else "are"
+        verb = be(found) if found else "is"
         text = f"{'Yes' if yes else 'No'}, {what} {verb} {_told(name, (anchor,), survey)}."
         cases.append((survey.named(anchor), _yes_no(yes, text, [*found, anchor], 0.93)))
     return whole(cases, "all" if _is_every(asked) else "any") if _is_every(asked) else agreed(cases)

@@ -173,3 +173,10 @@ def test_who_sits_before_one_of_several_things_faces_that_one(survey: Survey) ->
 )  # fmt: skip
 def test_a_question_is_not_restated_as_its_opposite(survey: Survey, asked: str) -> None:
     assert answer(asked, survey).source == "none"
+
+
+def test_the_verb_agrees_with_a_label_in_the_plural() -> None:
+    nodes = [_node(1, "desk", "brown", (1.4, 0.7, 0.75), (0.0, 0.0, 0.375)),
+             _node(2, "books", "blue", (0.2, 0.2, 0.1), (0.0, 0.0, 0.8), 1)]  # fmt: skip
+    desk = Survey.of_graph(SceneGraph.model_validate({"room": {"size": [6.0, 4.0, 2.5]}, "nodes": nodes}))
+    assert answer("what is on the desk?", desk).text == "The books are on the desk."
