@@ -200,14 +200,17 @@ def _sizes(item: Item, survey: Survey) -> list[_Size]:
     """The size of an item: stated, of the thing itself, or of its kind as sold; one for each thing that may be meant.
 
     Raises:
-        Undecidable: nothing tells its size.
+        Undecidable: nothing tells its size, or it is a part of the room.
         NotResolved: "it" refers to nothing.
     """
     if item.definite and not item.stated:
         query = Query(text=item.name) if item.name else Query(last=True)
         found = survey.find(query)
         if found.verdict != "absent" and found.things:
-            return [_of_thing(t, survey) for t in found.things if t.node is not None]
+            sizes = [_of_thing(t, survey) for t in found.things if t.node is not None]
+            if not sizes:
+                raise Undecidable("The floor, the walls and the ceiling are not put anywhere.")
+            return sizes
         if not item.name:
             raise NotResolved(query, found)
     return [_of_item(item)]
@@ -433,7 +436,7 @@ def _under_standing(item: Item, wheres: Sequence[Where], survey: Survey) -> Answ
         return _undecided(str(error))
     if any(t.node is None or t.node.support in ("wall", "ceiling") for t in things):
         return None
-    return agreed([(survey.named(t), _outside(s, t, "under", survey)) for t in things for s in sizes])
+    return _compared(sizes, things, "under", survey)
 
 
 def _inside(item: Item, wheres: Sequence[Where], survey: Survey) -> Answer | None:
@@ -449,7 +452,14 @@ def _inside(item: Item, wheres: Sequence[Where], survey: Survey) -> Answer | Non
         return ends.absent(error, survey)
     except Undecidable as error:
         return _undecided(str(error))
-    return agreed([(survey.named(t), _outside(s, t, "inside", survey)) for t in things for s in sizes])
+    if any(t.node is None for t in things):
+        return _undecided("Nothing fits inside the floor, a wall or the ceiling.")
+    return _compared(sizes, things, "inside", survey)
+
+
+def _compared(sizes: Sequence[_Size], things: Sequence[Thing], relation: str, survey: Survey) -> Answer:
+    """The answer for each thing whose outside is compared, and each size."""
+    return agreed([(survey.named(t), _outside(s, t, relation, survey)) for t in things for s in sizes])
 
 
 def _outside(size: _Size, thing: Thing, relation: str, survey: Survey) -> Answer:

@@ -154,6 +154,8 @@ def _is_extreme(asked: Asked, survey: Survey, near: bool) -> Answer | None:
     given = _extreme(asked, survey, near)
     if given is None or given.answer is None:
         return given and given.model_copy(update={"answer_type": "yesno"})
+    if not given.evidence.ids:
+        return None  # the nearest is a wall, the floor or the ceiling
     best = survey.thing(given.evidence.ids[0])
     yes = best.row in claimed
     text = f"{'Yes' if yes else 'No'}: {given.text[:1].lower()}{given.text[1:]}"

@@ -89,6 +89,8 @@ def answer(asked: Asked, survey: Survey) -> Answer | None:
         return _against(asked, phrase, survey)
     if {"than", "as"} & set(asked.words) and "u" not in slots:
         return _against_person(asked, phrase, survey)
+    if "d" not in slots:
+        return _size(phrase, slots.get("u"), survey)
     what: Measure = slots["d"].measure
     if phrase.plural and len(phrase.things) > 1 and _SUMMED & set(asked.words) and what in _SUMS:
         return _summed(phrase, what, slots.get("u"), survey)

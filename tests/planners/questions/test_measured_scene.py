@@ -95,7 +95,9 @@ def test_it_means_what_the_answer_was_about_until_the_scene_changes() -> None:
         "is the piano taller than the ceiling?", "which is wider, the wall or the piano?",
         "what is the left wall standing on?", "what carries the floor?", "is the ceiling on the wall?",
         "is the floor in the left corner?", "how wide is the floor?", "where is the ceiling?",
-        "what colour is the wall?",
+        "what colour is the wall?", "where does the ceiling go?",
+        "would the chair fit inside the wall?",
+        "is the ceiling the wall farthest away from the floor?", "how many feet does the door measure?",
     ],
 )  # fmt: skip
 def test_floor_walls_and_ceiling_may_be_asked_about(rooms: Survey, text: str) -> None:
