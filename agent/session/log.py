@@ -181,9 +181,10 @@ def embed_fields(before: State, after: State) -> dict[str, Any]:
 
 
 def do_fields(result: Result, before: State, after: State) -> dict[str, Any]:
-    """Fields of `do`. The plan holds its planner, prompt hash and model usage."""
+    """Fields of `do`. The plan holds its planner, prompt hash and model usage; `it` what "it" referred to."""
     return {
         "text": result.text,
+        "it": list(before.last.groups) if before.last is not None else [],
         "plan": result.plan.model_dump(mode="json") if result.plan is not None else None,
         "receipts": [r.model_dump(mode="json") for r in result.receipts],
         "before": before.digest,

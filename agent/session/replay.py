@@ -29,11 +29,13 @@ class Replayed:
 
 @dataclass(frozen=True)
 class LoggedEdit:
-    """An edit of a logged session: its words, its plan, and the digest of the cloud before it."""
+    """An edit of a logged session: its words, its plan, the digest of the cloud before it, and the groups that "it"
+    referred to, which a question or a selection between edits may have set."""
 
     text: str
     plan: EditPlan
     before: str | None
+    it: tuple[int, ...] = ()
 
     def plan_for(self, digest: str) -> EditPlan:
         """The plan for the cloud with this digest; on another cloud than the logged one, without group ids."""
@@ -55,7 +57,10 @@ def logged_edits(log: str | Path, session: int) -> list[LoggedEdit]:
         raise UserError(f"{log} holds no session; give a log written with --log")
     if not -len(sessions) <= session < len(sessions):
         raise UserError(f"{log} holds {len(sessions)} sessions; there is no session {session}")
-    return [LoggedEdit(str(r["text"]), read_plan(r, log), r.get("before")) for r in not_undone(sessions[session])]
+    return [
+        LoggedEdit(str(r["text"]), read_plan(r, log), r.get("before"), tuple(r.get("it") or ()))
+        for r in not_undone(sessions[session])
+    ]
 
 
 def not_undone(records: list[Record]) -> list[Record]:

@@ -458,6 +458,10 @@ class Session:
         outcome: list[Replayed] = []
         for edit in logged_edits(log, session):
             try:
+                other = edit.it and (self.last is None or self.last.groups != edit.it)
+                if other and self.embed() and edit.before == self._history.present.digest:
+                    last = self._context(None).resolve(self.scene, Query(groups=edit.it[:256]))
+                    self._history.amend(replace(self._history.present, last=last))
                 result = self.apply(edit.plan_for(self._history.present.digest))
                 outcome.append(Replayed(edit.text, result, None))
             except ScenewrightError as error:

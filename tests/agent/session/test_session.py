@@ -269,3 +269,13 @@ def test_whether_a_text_is_a_question_is_told_without_asking_a_model(boxes: Scen
     assert session.is_question("how far is the red box from the green one?")
     assert not session.is_question("delete the red box")
     assert not session.is_question("can you delete the red box?")
+
+
+def test_a_replay_knows_what_it_meant_after_a_selection(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
+    with_log = Session(boxes, planner="grammar", encoder=encoder, log=tmp_path / "s.jsonl")
+    assert with_log.select("the green thing").groups == (1,)
+    with_log.do("delete it")
+    with_log.close()
+    again = Session(boxes, planner="grammar", encoder=encoder)
+    again.replay(tmp_path / "s.jsonl")
+    assert again.scene.cloud.digest() == with_log.scene.cloud.digest()
