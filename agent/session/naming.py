@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from ...gaussians.language.field.naming import with_names
 from ...gaussians.scene import Scene
+from ..terminal.thing_names import NAME_THRESHOLD
 
 if TYPE_CHECKING:
     from ...gaussians.camera import Camera
     from ...planners.vision.captions import Captions
     from .vision_client import VisionClient
-
-SURE = 0.5  # calibrated probability from which a name is kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +64,7 @@ def name_all(scene: Scene, viewer: Camera, vision: VisionClient, *, overwrite: b
     kept: dict[int, tuple[str, str]] = {}
     for group, caption in said.groups.items():
         own = things[group]
-        sure = own.label and own.label_score >= SURE
+        sure = own.label and own.label_score >= NAME_THRESHOLD
         if caption.name and (overwrite or not sure):
             names[group] = caption.name
         elif caption.name and caption.name != own.label:

@@ -124,9 +124,7 @@ def _ask(desk: Desk, said: AskArguments) -> Reply:
 
 def _describe(desk: Desk, said: GraphArguments) -> Reply:
     """Describe the scene from measured facts: a paragraph, and for each thing a line with its id, size and place."""
-    from ...planners.questions.describing import describe
-
-    told = describe(desk.session.survey())
+    told = desk.session.describe()
     ranked = sorted(told.things, key=lambda t: (-t.size[0] * t.size[1] * t.size[2], str(t.id)))
     kept = {t.id for t in ranked[: said.most]}
     data = told.to_json()

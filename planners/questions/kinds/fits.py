@@ -427,13 +427,10 @@ def _under_standing(item: Item, wheres: Sequence[Where], survey: Survey) -> Answ
     anchor = next(w.anchors[0] for w in wheres if w.relation == "under")
     if not isinstance(anchor, Query):
         return None
-    try:
-        things = meant(anchor, survey)
-        sizes = _sizes(item, survey)
-    except NotResolved as error:
-        return ends.absent(error, survey)
-    except Undecidable as error:
-        return _undecided(str(error))
+    found = _sizes_and_things(item, anchor, survey)
+    if isinstance(found, Answer):
+        return found
+    sizes, things = found
     if any(t.node is None or t.node.support in ("wall", "ceiling") for t in things):
         return None
     return _compared(sizes, things, "under", survey)
@@ -445,16 +442,24 @@ def _inside(item: Item, wheres: Sequence[Where], survey: Survey) -> Answer | Non
     anchor = where.anchors[0]
     if where.relation == "above" or not isinstance(anchor, Query) or len(wheres) > 1:
         return None
+    found = _sizes_and_things(item, anchor, survey)
+    if isinstance(found, Answer):
+        return found
+    sizes, things = found
+    if any(t.node is None for t in things):
+        return _undecided("Nothing fits inside the floor, a wall or the ceiling.")
+    return _compared(sizes, things, "inside", survey)
+
+
+def _sizes_and_things(item: Item, anchor: Query, survey: Survey) -> tuple[Sequence[_Size], tuple[Thing, ...]] | Answer:
+    """The sizes that an item may have and the things that its place may mean, or the answer that one is unknown."""
     try:
         things = meant(anchor, survey)
-        sizes = _sizes(item, survey)
+        return _sizes(item, survey), things
     except NotResolved as error:
         return ends.absent(error, survey)
     except Undecidable as error:
         return _undecided(str(error))
-    if any(t.node is None for t in things):
-        return _undecided("Nothing fits inside the floor, a wall or the ceiling.")
-    return _compared(sizes, things, "inside", survey)
 
 
 def _compared(sizes: Sequence[_Size], things: Sequence[Thing], relation: str, survey: Survey) -> Answer:

@@ -92,6 +92,8 @@ _MOST = re.compile(
     r"loftiest|teeniest|hugest)$"
 )
 _PLAIN_MOST = {"loftiest": "tallest", "teeniest": "smallest", "tiniest": "smallest", "hugest": "biggest"}
+_ROOM_SIZES = {"high": "high", "height": "high", "tall": "high", "wide": "wide", "width": "wide", "long": "long",
+               "length": "long"}  # fmt: skip
 _MEASURED_ROOM = bag("room ceiling space place bedroom kitchen lounge office bathroom studio")
 
 
@@ -165,10 +167,9 @@ def restated(words: Words, labels: Collection[str]) -> Iterator[str]:
     made = dict.fromkeys((*_fitting(words), *_seated(plain, tuple(_named(plain, known)))))
     for clause in _clauses(words, known):
         named = tuple(_named(clause, known))
+        asks_yes_no = any(part[0] in _AUXILIARIES for part in _parts(words) if set(part) <= set(clause))
         for things in (named, *_joined(clause, named)):
-            held = _Clause(
-                clause, things, any(part[0] in _AUXILIARIES for part in _parts(words) if set(part) <= set(clause))
-            )
+            held = _Clause(clause, things, asks_yes_no)
             for rule in _RULES:
                 for question in rule(held):
                     if _leaves_little(held, question, 3 if rule in (_areas, _ways) else _MOST_LEFT):
@@ -189,7 +190,7 @@ def _clauses(words: Words, known: frozenset[str]) -> Iterator[Words]:
             continue
         before = [n for clause in said[:i] for n in _named(clause, known)]
         pronoun = next((said[i].index(p) for p in _PRONOUNS if p in said[i]), None)
-        if pronoun is not None and before and not any(True for _ in _named(said[i], known)):
+        if pronoun is not None and before and not [*_named(said[i], known)]:
             end = pronoun + 1 + (said[i][pronoun + 1 : pronoun + 2] in (("one",), ("thing",)))
             yield (*said[i][:pronoun], *before[-1].definite.split(), *said[i][end:])
         else:
@@ -338,12 +339,7 @@ def _sizes(c: _Clause) -> Iterator[str]:
     elif not c.named and c.has("ceiling", "ceilings"):
         yield "how high is the ceiling"
     elif not c.named and c.has(*_MEASURED_ROOM):
-        yield {"h": "how high is the room", "w": "how wide is the room", "l": "how long is the room"}.get(
-            {"high": "h", "height": "h", "tall": "h", "wide": "w", "width": "w", "long": "l", "length": "l"}.get(
-                cues[0], ""
-            ),
-            "how big is the room",
-        )
+        yield f"how {_ROOM_SIZES.get(cues[0], 'big')} is the room"
 
 
 _FREE = ("free", "empty", "unused", "available", "uncovered", "bare", "spare", "unoccupied", "remaining", "leftover")
@@ -548,8 +544,8 @@ _CUES = bag(
 
 def _relation(said: str) -> str | None:
     """The relation that words between two things state, None if none, or several."""
-    found = [(said.find(phrase), phrase) for phrase in _RELATIONS if re.search(rf"\b{phrase}\b", said)]
-    names = {_RELATIONS[p] for _, p in found if not any(p != q and p in q for _, q in found)}
+    found = [phrase for phrase in _RELATIONS if re.search(rf"\b{phrase}\b", said)]
+    names = {_RELATIONS[p] for p in found if not any(p != q and p in q for q in found)}
     return next(iter(names)) if len(names) == 1 else None
 
 
