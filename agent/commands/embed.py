@@ -21,14 +21,15 @@ def command(
 ) -> None:
     """Make the language field of a scene and save it beside the file, so that later commands need not embed again.
 
-    A saved field is used as long as the scene file has not changed. --force embeds again, and so do --masks and
-    --capture, and --up and --metres-per-unit, which are saved with the field.
+    A saved field is used as long as the scene file has not changed; another --encoder names its groups anew. --force
+    embeds again, and so do --masks and --capture, and --up and --metres-per-unit, which are saved with the field.
     """
     from ...gaussians.files import load
     from ...gaussians.files.captures.capture import read_capture
     from ...gaussians.language import encoders
     from ...gaussians.language import masks as maskers
     from ...gaussians.language.field.embed import embed
+    from ...gaussians.language.field.group_table import renamed
     from ...gaussians.language.field.store import load_field, mismatch, save_field
     from ..pictures.named_cameras import with_frame
     from ..terminal.thing_names import describe_things
@@ -43,13 +44,18 @@ def command(
     elif taken is not None and masks is None:
         terminal.say(f"note: {scene} has cameras of its own; --capture is used with --masks only")
     source = maskers.load(masks, capture) if masks is not None else None
-    known = None if again else load_field(loaded, scene, chosen.fingerprint)
-    if known is None and not again and (why := mismatch(scene, chosen.fingerprint)) is not None:
+    known = None if again else load_field(loaded, scene)
+    if known is None and not again and (why := mismatch(scene)) is not None:
         terminal.say(f"note: the language field beside {scene} {why}: embedding again")
     embedded = known or embed(loaded, chosen, progress=terminal.progress, masks=source)
-    path = None if known else save_field(embedded, scene)
     language = embedded.language
     assert language is not None
+    other = language.encoder != chosen.fingerprint
+    if other:
+        embedded = renamed(embedded, chosen)
+        language = embedded.language
+        assert language is not None
+    path = None if known and not other else save_field(embedded, scene)
     things = [
         {"group": g.id, "label": g.label, "sure": round(g.label_score, 3), "gaussians": g.count}
         for g in language.objects()
@@ -62,6 +68,11 @@ def command(
         "notes": list(language.notes),
         "seconds": seconds,
         "was_there": known is not None,
+        "renamed": other,
     }
-    done = "was embedded already (--force does it again)" if known else f"embedded in {seconds} s, saved as {path}"
+    done = f"embedded in {seconds} s, saved as {path}"
+    if other:
+        done = f"the same groups, named by another encoder in {seconds} s, saved as {path}"
+    elif known:
+        done = "was embedded already (--force does it again)"
     terminal.result("\n".join([f"{scene}: {done}", describe_things(language.objects()), *language.notes]), data)

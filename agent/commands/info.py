@@ -20,6 +20,8 @@ def command(
     debug: Debug = False,
 ) -> None:
     """Print the contents of a scene file: format, Gaussians, frame, cameras, repairs, and things if it is embedded."""
+    from dataclasses import asdict
+
     from ...gaussians.files import load_with_report
     from ...gaussians.language.field.store import load_field
     from ..terminal.thing_names import describe_things
@@ -52,8 +54,13 @@ def command(
     if language is not None:
         shown = [g for g in language.objects() if g.count]
         things = [{"group": g.id, "label": g.label, "sure": round(g.label_score, 3), "count": g.count} for g in shown]
-        data["language"] = {"encoder": language.encoder, "things": things, "notes": list(language.notes)}
-        things_text = f"  {describe_things(shown)}\n  embedded with {language.encoder}"
+        making = language.making
+        data["language"] = {
+            "encoder": language.encoder, "things": things, "notes": list(language.notes),
+            "making": None if making is None else asdict(making),
+        }  # fmt: skip
+        made = [f"embedded with {language.encoder}"] if making is None else making.lines()
+        things_text = "\n".join(f"  {line}" for line in (describe_things(shown), *made))
     terminal.result("\n".join([*_lines(data), things_text]), data)
 
 

@@ -87,9 +87,10 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
 
 
 def _with_saved_field(loaded: Scene, scene: Scene, options: SessionOptions) -> tuple[Scene, str | Encoder]:
-    """The scene with its saved field if that was made with this encoder; and the encoder, loaded only if needed.
-    `scene` is `loaded` in the frame that the user gave; a field that was made in another frame is not used."""
+    """The scene with its saved field, named anew if that was made with another encoder; and the encoder, loaded only if
+    needed. `scene` is `loaded` in the frame that the user gave; a field that was made in another frame is not used."""
     from ...gaussians.language import encoders
+    from ...gaussians.language.field.group_table import renamed
     from ...gaussians.language.field.store import load_field, mismatch
 
     embedded = load_field(loaded, options.path)
@@ -103,9 +104,12 @@ def _with_saved_field(loaded: Scene, scene: Scene, options: SessionOptions) -> t
         return scene, encoder
     if embedded.language.encoder == encoder.fingerprint:
         return embedded, encoder
-    made_by = embedded.language.encoder
-    terminal.say(f"note: the saved language field was made by {made_by}; embedding again (--encoder chooses that one)")
-    return scene, encoder
+    made_by = embedded.language.encoder if embedded.language.making is None else embedded.language.making.encoder
+    terminal.say(
+        f"note: the saved language field is of the encoder {made_by}; its groups are named anew "
+        "(--encoder chooses that one, `scenewright embed` saves the new names)"
+    )
+    return renamed(embedded, encoder), encoder
 
 
 def _agrees(said: Frame, saved: Frame) -> bool:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import BackendError
+from ..specs import remember
 from . import backends
 from .vocabulary import Vocabulary
 
@@ -90,13 +91,17 @@ def load(spec: str = "auto") -> Encoder:
     name, _, argument = spec.partition(":")
     name = {"auto": "embedded", "": "embedded"}.get(name, name)
     if name == "embedded" and not argument:
-        return _shared_embedded()
+        encoder = _shared_embedded()
+        remember(encoder, "embedded")
+        return encoder
     if name not in names():
         raise BackendError(
             f"unknown encoder {spec!r}; "
             "use auto, embedded:DIR, open_clip:MODEL/PRETRAINED, open_clip:DIR, onnx:FOLDER or vectors:PATH"
         )
-    return _loaded(name, argument)
+    encoder = _loaded(name, argument)
+    remember(encoder, spec)
+    return encoder
 
 
 @functools.cache

@@ -82,17 +82,27 @@ def distribution(encoder: Encoder, vectors: NDArray[np.floating], sizes: NDArray
     return np.where(seen[:, None], _softmax(encoder.calibration.scale * (units @ anchors.T) + evidence), 0.0)
 
 
-def labels(
-    encoder: Encoder, vectors: NDArray[np.floating], sizes: NDArray[np.floating] | None = None
-) -> list[tuple[str, float]]:
-    """The most probable kind of each group and its probability among all kinds and non-objects, G pairs.
+def names(
+    encoder: Encoder, vectors: NDArray[np.floating], sizes: NDArray[np.floating] | None = None, most: int = 1
+) -> list[tuple[tuple[str, float], ...]]:
+    """The most probable kinds of each group with their probabilities among all kinds and non-objects, highest first.
 
-    Groups that were not rendered get `("", 0.0)`.
+    Groups that were not rendered get none.
     """
     kinds = encoder.vocabulary.names
     share = distribution(encoder, vectors, sizes)
-    best = share[:, : len(kinds)].argmax(axis=1)
-    return [(kinds[k], float(row[k])) if row.any() else ("", 0.0) for k, row in zip(best, share, strict=True)]
+    order = np.argsort(-share[:, : len(kinds)], axis=1, kind="stable")[:, :most]
+    return [
+        tuple((kinds[k], float(row[k])) for k in best) if row.any() else ()
+        for best, row in zip(order.tolist(), share, strict=True)
+    ]
+
+
+def labels(
+    encoder: Encoder, vectors: NDArray[np.floating], sizes: NDArray[np.floating] | None = None
+) -> list[tuple[str, float]]:
+    """The most probable kind of each group and its probability, G pairs; `("", 0.0)` for groups not rendered."""
+    return [found[0] if found else ("", 0.0) for found in names(encoder, vectors, sizes)]
 
 
 def wholeness(encoder: Encoder, vectors: NDArray[np.floating]) -> Array:

@@ -23,11 +23,13 @@ from ..masks import Masker
 from ..masks.association import Track, Tracks, associate
 from ..masks.lifting import lift
 from ..masks.mask_assignment import UNSEEN, apply_tracks, track_by_votes
+from ..masks.tally import Tally
 from ..segmentation.group_renders import one_thread
 from ..segmentation.orient import estimate_frame
 from ..segmentation.segment import VIEWS_PER_CANDIDATE, Progress, Segment, segment
 from ..segmentation.surface import MIN_OPACITY, Surface, surface_of
-from .group_table import with_table
+from .group_table import vector_of_votes, with_table
+from .making import MaskSource
 
 MAX_DISTANCE = 6.0  # spacings within which a Gaussian off the surface joins the group of the nearest surface point
 MAX_DISTANCE_OPAQUE = 2.0  # likewise for an opaque one, which is a floater: otherwise it would be a surface point
@@ -61,7 +63,10 @@ def embed(
     scene = scene.replace(frame=frame)
     progress("views", 0.0)
     seen = choose_views(scene)
-    tracks = None if masks is None else associate(lift(scene.cloud, masks.masks(scene, progress)))
+    tally = None if masks is None else Tally(masks)
+    tracks = None
+    if masks is not None and tally is not None:
+        tracks = associate(lift(scene.cloud, tally.counting(masks.masks(scene, progress))))
     progress("segments", 0.0)
     with one_thread():
         # Ours is trained on renders of both whole objects and fragments, and so can tell one from the other. An encoder
@@ -80,12 +85,16 @@ def embed(
         on_surface = np.zeros(len(scene.cloud), bool)
         on_surface[surface.rows] = True
         embedded = with_table(scene, segments, column, on_surface, seen, encoder)
-    return embedded if tracks is None else _with_mask_note(embedded, tracks)
+    return embedded if tracks is None or tally is None else _with_mask_note(embedded, tracks, tally.source())
 
 
 def _vector(track: Track, encoder: Encoder) -> NDArray[np.float32] | None:
-    """The vector of a track: that of its masks, else the weighted mean of its labels' text vectors if it has a label.
-    Raises UserError if the vectors of the masks have another width than the encoder's."""
+    """The vector of a track: that of its masks; for an encoder without an image tower else the weighted mean of its
+    labels' text vectors, if it has a label.
+
+    Raises:
+        UserError: the vectors of the masks have another width than the encoder's.
+    """
     if track.vector is not None:
         if len(track.vector) != encoder.dim:
             raise UserError(
@@ -93,12 +102,7 @@ def _vector(track: Track, encoder: Encoder) -> NDArray[np.float32] | None:
                 "name the encoder that made them with --encoder"
             )
         return track.vector
-    known = [(name, weight) for name, weight in track.votes if encoder.knows(name)] if track.label else []
-    if not known:
-        return None
-    total = np.array([w for _, w in known]) @ encoder.encode_text([name for name, _ in known]).astype(np.float64)
-    norm = float(np.linalg.norm(total))
-    return (total / norm).astype(np.float32) if norm > 1e-8 else None
+    return vector_of_votes(encoder, track.votes) if track.label and not encoder.image_size else None
 
 
 def _with_voted_tracks(
@@ -124,12 +128,13 @@ def _with_voted_tracks(
     return column
 
 
-def _with_mask_note(scene: Scene, tracks: Tracks) -> Scene:
-    """The scene with a note of how many tracks of masks were used and discarded."""
-    assert scene.language is not None
+def _with_mask_note(scene: Scene, tracks: Tracks, source: MaskSource) -> Scene:
+    """The scene with the source of its masks, and a note of how many tracks of them were used and discarded."""
+    assert scene.language is not None and scene.language.making is not None
+    making = replace(scene.language.making, masks=(source,))
     note = f"{len(tracks.tracks)} things were found by masks"
     note += f", {tracks.discarded} that too few views confirm were discarded" if tracks.discarded else ""
-    return scene.replace(language=replace(scene.language, notes=(*scene.language.notes, note)))
+    return scene.replace(language=replace(scene.language, notes=(*scene.language.notes, note), making=making))
 
 
 def _segment_of_superpoint(segments: Sequence[Segment], count: int) -> NDArray[np.int32]:

@@ -1,4 +1,4 @@
-"""Fill the table of a language field: measure, render and label every group."""
+"""Fill the table of a language field: measure, render and name every group; name the same groups by another encoder."""
 
 from __future__ import annotations
 
@@ -9,15 +9,18 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from ...cloud import NO_GROUP
-from ...scene import Scene
+from ...cloud import NO_GROUP, GaussianCloud
+from ...errors import UserError
+from ...scene import Frame, Scene
 from ...viewpoints.coverage import Views
 from ..encoders import Encoder
-from ..encoders.probability import labels as name_things
-from ..segmentation.group_renders import mean_vectors
+from ..encoders.probability import names as names_of
+from ..segmentation.group_renders import mean_vectors, one_thread
 from ..segmentation.segment import Segment
+from ..specs import spec_of
 from .group_index import index_groups
-from .language_field import Group, LanguageField
+from .language_field import MAX_NAMES, Group, LanguageField, Names
+from .making import Making, package_version, rules_digest
 from .measure import box_of, lab_of_cloud
 
 
@@ -29,31 +32,94 @@ def with_table(
     seen: Views,
     encoder: Encoder,
 ) -> Scene:
-    """The scene with its language field: every group measured, embedded from its renders, and labelled."""
+    """The scene with its language field: every group measured, embedded from its renders, and named."""
     cloud = scene.cloud.replace(group=torch.from_numpy(column))
     members = index_groups(cloud)
     whole = [members.rows([i, *(j for j, t in enumerate(segments) if t.parent == i)]) for i in range(len(segments))]
     clouds = [cloud[torch.from_numpy(rows)] for rows in whole]
     boxes = [box_of(c, scene.frame) for c in clouds]
-    middle = cloud.means[:: max(1, len(cloud) // 50_000)].median(dim=0).values.double().numpy()
     pictured = [c if t.level == "object" and t.vector is None else c[:0] for c, t in zip(clouds, segments, strict=True)]
-    vectors = mean_vectors(encoder, pictured, scene.frame, middle, around=scene.cloud)
+    vectors = _vectors(encoder, pictured, scene.frame, cloud)
     for row, segment in zip(vectors, segments, strict=True):
         if segment.vector is not None:
             row[:] = segment.vector
-    metres = scene.frame.metres_per_unit
-    sizes = np.array([b.size for b in boxes]).reshape(-1, 3) * (metres if metres is not None else np.nan)
-    named = name_things(encoder, vectors, sizes) if segments else []
     rows = tuple(
         Group(
-            id=i, level=t.level, parent=t.parent, label=t.label or name, label_score=1.0 if t.label else float(sure),
+            id=i, level=t.level, parent=t.parent, label=t.label, label_score=1.0 if t.label else 0.0,
             box=box, lab=lab_of_cloud(c), count=len(c), views=seen.count_of(own),
-            confidence=float(on_surface[own].mean()) if len(own) else 0.0,
+            confidence=float(on_surface[own].mean()) if len(own) else 0.0, votes=t.votes,
         )
-        for i, (t, c, box, own, (name, sure)) in enumerate(zip(segments, clouds, boxes, whole, named, strict=True))
+        for i, (t, c, box, own) in enumerate(zip(segments, clouds, boxes, whole, strict=True))
     )  # fmt: skip
-    field = LanguageField(rows, vectors, encoder.fingerprint, _notes(scene, column, seen))
-    return replace(scene, cloud=cloud, language=field)
+    made = Making(spec_of(encoder), (), len(seen.cameras), 0, package_version(), rules_digest())
+    field = LanguageField(rows, vectors, encoder.fingerprint, _notes(scene, column, seen), made)
+    return replace(scene, cloud=cloud, language=named(field, encoder, scene.frame))
+
+
+def renamed(scene: Scene, encoder: Encoder) -> Scene:
+    """The scene with the same groups, embedded and named by another encoder.
+
+    Votes of detectors stay, and so do names that were given by sight or caption. Vectors that masks brought along are
+    of the other encoder's space; renders of the groups replace them, or for an encoder without an image tower the text
+    vectors of the votes.
+
+    Raises:
+        UserError: the scene has no language field.
+    """
+    field = scene.language
+    if field is None:
+        raise UserError("the scene has no language field yet; run `scenewright embed` on it first")
+    members = index_groups(scene.cloud)
+    objects = [g.level == "object" and g.count > 0 for g in field.groups]
+    clouds = [
+        scene.cloud[torch.from_numpy(members.rows(field.leaves(g.id) if wanted else []))]
+        for g, wanted in zip(field.groups, objects, strict=True)
+    ]
+    with one_thread():
+        vectors = _vectors(encoder, clouds, scene.frame, scene.cloud)
+    for row, group in zip(vectors, field.groups, strict=True):
+        if not encoder.image_size and (vector := vector_of_votes(encoder, group.votes)) is not None:
+            row[:] = vector
+    making = None if field.making is None else replace(field.making, encoder=spec_of(encoder))
+    made = replace(field, embeddings=vectors, encoder=encoder.fingerprint, making=making)
+    return replace(scene, language=named(made, encoder, scene.frame))
+
+
+def named(field: LanguageField, encoder: Encoder, frame: Frame) -> LanguageField:
+    """The field with the names of its objects by the encoder; structure and names given by others stay."""
+    if not field.groups:
+        return field
+    metres = frame.metres_per_unit
+    sizes = field.boxes.sizes * (metres if metres is not None else np.nan)
+    found = names_of(encoder, field.embeddings, sizes, MAX_NAMES)
+    return replace(field, groups=tuple(_with_names(g, own) for g, own in zip(field.groups, found, strict=True)))
+
+
+def _with_names(group: Group, names: Names) -> Group:
+    if group.level == "structure" or group.named_by:
+        return group
+    label, score = names[0] if names else ("", 0.0)
+    return replace(group, label=label, label_score=score, names=names)
+
+
+def vector_of_votes(encoder: Encoder, votes: Names) -> NDArray[np.float32] | None:
+    """The unit mean `[D]` of the text vectors of some labels, weighted by their votes; None if the encoder knows
+    none."""
+    known = [(name, weight) for name, weight in votes if name and weight > 0 and encoder.knows(name)]
+    if not known:
+        return None
+    total = np.array([w for _, w in known]) @ encoder.encode_text([name for name, _ in known]).astype(np.float64)
+    norm = float(np.linalg.norm(total))
+    return (total / norm).astype(np.float32) if norm > 1e-8 else None
+
+
+def _vectors(
+    encoder: Encoder, clouds: Sequence[GaussianCloud], frame: Frame, whole: GaussianCloud
+) -> NDArray[np.float32]:
+    """Mean image vector `[G, D]` of each cloud, seen from the middle of the whole one; zero for an empty one."""
+    middle = whole.means[:: max(1, len(whole) // 50_000)].median(dim=0).values.double().numpy()
+    vectors: NDArray[np.float32] = mean_vectors(encoder, clouds, frame, middle, around=whole)
+    return vectors
 
 
 def _notes(scene: Scene, column: NDArray[np.int32], seen: Views) -> tuple[str, ...]:

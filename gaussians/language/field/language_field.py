@@ -16,9 +16,14 @@ from numpy.typing import NDArray
 from ...camera import Vec3
 from ...errors import BackendError
 from ...world.box import Box, Boxes
+from .making import Making
 
 Level = Literal["object", "part", "structure"]
 NamedBy = Literal["", "sight", "caption"]
+Rest = Literal["", "floor", "surface", "wall", "ceiling"]
+Names = tuple[tuple[str, float], ...]
+
+MAX_NAMES = 5  # names that a group keeps
 
 
 @dataclass(frozen=True)
@@ -29,8 +34,8 @@ class Group:
         id: index into the field's embeddings; leaves appear in `GaussianCloud.group`.
         level: "object", "part" or "structure".
         parent: id of the object a part belongs to, or -1.
-        label: the most probable name by the encoder or the masks, "" if there is none.
-        label_score: calibrated probability of the label, in [0, 1].
+        label: the most probable name from all sources, "" if there is none.
+        label_score: its calibrated probability, in [0, 1].
         box: robust extent of its Gaussians.
         lab: colour of its lit faces in CIE Lab, see `measure.lit_lab`.
         count: number of its Gaussians.
@@ -38,6 +43,11 @@ class Group:
         confidence: share of its Gaussians that are surface points, in [0, 1]; the others joined it by distance.
         named_by: who gave it its name later: "sight" (a vision model that was asked which thing a phrase means) or
             "caption" (one that named all things); "" for names by the encoder or the masks.
+        names: the most probable names with their probabilities, highest first; the first is the label and its score.
+            Left out, or where the label is replaced alone, they are just the label.
+        votes: what detectors called it, highest first: each label with the number of views that gave it, weighted by
+            their scores. The label "" counts the views that saw it and gave it no name.
+        rests: what it rests on or hangs from, "" where that is not known.
     """
 
     id: int
@@ -51,6 +61,14 @@ class Group:
     views: int
     confidence: float
     named_by: NamedBy = ""
+    names: Names = ()
+    votes: Names = ()
+    rests: Rest = ""
+
+    def __post_init__(self) -> None:
+        first = (self.label, self.label_score)
+        if self.names[:1] != (first,):
+            object.__setattr__(self, "names", (first,) if self.label else ())
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,12 +80,14 @@ class LanguageField:
         embeddings: `[G, D]` float32, unit rows; zero rows for groups that were not encoded.
         encoder: fingerprint of the encoder of the embeddings; a query with another encoder raises.
         notes: remarks on the result of `embed` ("3 % of the Gaussians are seen from no view").
+        making: what the field was made with; None for tables that `embed` did not make.
     """
 
     groups: tuple[Group, ...]
     embeddings: NDArray[np.float32]
     encoder: str
     notes: tuple[str, ...] = field(default=())
+    making: Making | None = None
 
     def __post_init__(self) -> None:
         if [g.id for g in self.groups] != list(range(len(self.groups))) or len(self.embeddings) != len(self.groups):

@@ -26,7 +26,7 @@ def with_names(scene: Scene, names: Mapping[int, str], by: NamedBy) -> Scene:
     for group, name in names.items():
         _require(field, [group])
         rows[group] = replace(rows[group], label=name, label_score=1.0, named_by=by)
-    return replace(scene, language=LanguageField(tuple(rows), field.embeddings, field.encoder, field.notes))
+    return replace(scene, language=replace(field, groups=tuple(rows)))
 
 
 def joined(scene: Scene, groups: Sequence[int], name: str, by: NamedBy) -> tuple[Scene, int]:
@@ -57,7 +57,7 @@ def joined(scene: Scene, groups: Sequence[int], name: str, by: NamedBy) -> tuple
         rows[owner] = _without_pieces(scene, field, owner, inner)
     mean = field.embeddings[list(pieces)].mean(axis=0, keepdims=True)
     vectors = np.concatenate([field.embeddings, mean / max(float(np.linalg.norm(mean)), 1e-8)]).astype(np.float32)
-    return replace(scene, language=LanguageField(tuple(rows), vectors, field.encoder, field.notes)), whole
+    return replace(scene, language=replace(field, groups=tuple(rows), embeddings=vectors)), whole
 
 
 def _without_pieces(scene: Scene, field: LanguageField, owner: int, gone: set[int]) -> Group:

@@ -21,12 +21,14 @@ from ...errors import FileError, ScenewrightError, UserError
 from ...files.atomic import writing
 from ...scene import Frame, Scene
 from .language_field import Group, LanguageField
+from .making import Making
 
 SUFFIX = ".field.safetensors"
-VERSION = "5"
+VERSION = "6"
 _ENTRY = "scenewright.field"
 _GROUPS = TypeAdapter(tuple[Group, ...])
 _NOTES = TypeAdapter(tuple[str, ...])
+_MAKING = TypeAdapter(Making | None)
 _FRAME = TypeAdapter(Frame)
 
 
@@ -71,6 +73,7 @@ def save_field(scene: Scene, scene_path: Path) -> Path:
         "encoder": scene.language.encoder,
         "groups": [asdict(g) for g in scene.language.groups],
         "notes": scene.language.notes,
+        "making": None if scene.language.making is None else asdict(scene.language.making),
         "frame": asdict(scene.frame),
     }
     tensors = {
@@ -161,9 +164,10 @@ def _attach(scene: Scene, tensors: dict[str, torch.Tensor], header: dict[str, An
     try:
         groups = _GROUPS.validate_python(header["groups"])
         notes = _NOTES.validate_python(header["notes"])
+        making = _MAKING.validate_python(header["making"])
         frame = _FRAME.validate_python(header["frame"])
         column, embeddings = tensors["group"], tensors["embeddings"]
-        table = LanguageField(groups, embeddings.numpy(), str(header["encoder"]), notes)
+        table = LanguageField(groups, embeddings.numpy(), str(header["encoder"]), notes, making)
         fits = (
             (column.shape, column.dtype) == ((len(scene.cloud),), torch.int32)
             and (embeddings.ndim, embeddings.dtype) == (2, torch.float32)

@@ -12,6 +12,7 @@ from typing import Protocol, runtime_checkable
 
 from ...errors import BackendError
 from ...scene import Scene
+from ..specs import remember
 from .view import NONE, ViewMasks, pack_layers
 
 __all__ = ["NONE", "Masker", "ViewMasks", "load", "pack_layers", "sources"]
@@ -57,4 +58,5 @@ def load(spec: str, capture: Path | None = None) -> Masker:
         raise BackendError(f"unknown source of masks {spec!r}; use embedded, folder:PATH or sam:PATH-or-NAME")
     module = importlib.import_module(_MODULES[name], __name__)
     masker: Masker = module.load(argument, capture)
+    remember(masker, spec)
     return masker

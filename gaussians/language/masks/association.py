@@ -55,6 +55,12 @@ class Track:
     vector: F32 | None
     parent: int = -1
 
+    @property
+    def heard(self) -> tuple[tuple[str, float], ...]:
+        """Its votes as `Group.votes`: with the number of views that see it and gave it no name; () without labels."""
+        silent = self.visible_in - sum(weight for _, weight in self.votes)
+        return (*self.votes, ("", max(silent, 0.0))) if self.votes else ()
+
 
 @dataclass(frozen=True, eq=False)
 class Tracks:

@@ -123,7 +123,7 @@ def apply_tracks(
     for own, k in sorted(objects, key=lambda o: (-int(size[o[0]].sum()), o[1])):
         if size[own].sum() >= MIN_OBJECT:
             pieces = _object(own, vectors[k], parts, len(made), near, lab, size)
-            made += [replace(pieces[0], votes=tracks.tracks[k].votes), *pieces[1:]]
+            made += [replace(pieces[0], votes=tracks.tracks[k].heard), *pieces[1:]]
     for whole in _whole_objects(segments):
         left = np.array(_unassigned(whole, old, of), dtype=np.int64)
         if size[left].sum() >= MIN_OBJECT:

@@ -45,7 +45,7 @@ class Segment:
         parent: index of the object that a part belongs to, -1 for none.
         label: its name, "" if the encoder is to name it.
         vector: `[D]` its embedding where masks give one; None to take that of its renders.
-        votes: each label that masks give it with the sum of their scores, highest first; () if none does.
+        votes: what detectors called it, see `Group.votes`.
     """
 
     members: tuple[int, ...]

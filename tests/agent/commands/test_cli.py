@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -253,21 +254,25 @@ def test_edit_replays_a_log(call: Any, room: Path, tmp_path: Path) -> None:
     assert (tmp_path / "a.ply").read_bytes() == (tmp_path / "b.ply").read_bytes()
 
 
-def test_a_field_of_another_encoder_is_not_used(
+def test_the_groups_of_a_field_of_another_encoder_are_named_anew(
     call: Any, room: Path, encoder: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(encoder, "fingerprint", "other:1", raising=False)
-    from scenewright.gaussians.language.field import embed as module
+    from scenewright.gaussians.language.field import group_table as module
 
     asked = []
 
-    def embed(scene: Scene, encoder: Any, progress: Any = None, masks: Any = None) -> Scene:
-        asked.append(encoder.fingerprint)
-        raise KeyboardInterrupt
+    def renamed(scene: Scene, encoder: Any) -> Scene:
+        assert scene.language is not None
+        asked.append(scene.language.encoder)
+        return scene.replace(language=replace(scene.language, encoder=encoder.fingerprint))
 
-    monkeypatch.setattr(module, "embed", embed)
+    monkeypatch.setattr(module, "renamed", renamed)
     answer = call("select", room, "the green thing")
-    assert answer.code == 130 and asked == ["other:1"] and "embedding again" in answer.err
+    assert answer.code == 0 and asked == ["test:1"] and "named anew" in answer.err
+    answer = call("embed", room)
+    assert answer.code == 0 and "the same groups, named by another encoder" in answer.out
+    assert call("embed", room).code == 0 and asked == ["test:1"] * 2  # it was saved with the new names
 
 
 def test_a_given_frame_is_used_and_a_field_for_another_is_not(

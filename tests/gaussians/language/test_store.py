@@ -22,6 +22,7 @@ from scenewright.gaussians.errors import FileError
 from scenewright.gaussians.files import atomic
 from scenewright.gaussians.language.field import store
 from scenewright.gaussians.language.field.language_field import Group, LanguageField
+from scenewright.gaussians.language.field.making import Making, MaskSource
 from scenewright.gaussians.language.field.store import (
     cached_field_path,
     field_path,
@@ -36,6 +37,12 @@ from scenewright.gaussians.world.box import Box
 numbers = st.floats(-1e6, 1e6)
 vectors = st.tuples(numbers, numbers, numbers)
 words = st.text(max_size=12)
+shares = st.floats(0, 1)
+votes = st.lists(st.tuples(words, shares), max_size=3).map(tuple)
+makings = st.builds(
+    Making, words, st.lists(st.builds(MaskSource, words, agreement=st.none() | shares), max_size=2).map(tuple),
+    st.integers(0, 99), st.integers(0, 99), words, words,
+)  # fmt: skip
 
 
 @st.composite
@@ -46,12 +53,14 @@ def fields(draw: st.DrawFn) -> LanguageField:
             i, draw(st.sampled_from(["object", "part", "structure"])), draw(st.integers(-1, count - 1)), draw(words),
             draw(st.floats(0, 1)), Box(draw(vectors), (draw(vectors), draw(vectors), draw(vectors)), draw(vectors)),
             draw(vectors), draw(st.integers(0, 10**9)), draw(st.integers(0, 24)), draw(st.floats(0, 1)),
+            names=draw(votes), votes=draw(votes), rests=draw(st.sampled_from(["", "floor", "wall"])),
         )
         for i in range(count)
     )  # fmt: skip
     embeddings = draw(st.lists(st.floats(-1, 1, width=32), min_size=count * dim, max_size=count * dim))
     table = np.array(embeddings, np.float32).reshape(count, dim)
-    return LanguageField(groups, table, draw(words), tuple(draw(st.lists(words, max_size=2))))
+    notes = tuple(draw(st.lists(words, max_size=2)))
+    return LanguageField(groups, table, draw(words), notes, draw(st.none() | makings))
 
 
 frames = st.builds(
@@ -98,7 +107,7 @@ def same(one: Scene, other: Scene) -> bool:
         and a.groups == b.groups
         and a.embeddings.dtype == b.embeddings.dtype
         and np.array_equal(a.embeddings, b.embeddings)
-        and (a.encoder, a.notes) == (b.encoder, b.notes)
+        and (a.encoder, a.notes, a.making) == (b.encoder, b.notes, b.making)
     )
 
 
@@ -265,7 +274,8 @@ def test_the_undamaged_field_of_the_next_test_loads(path: Path) -> None:
 @pytest.mark.parametrize(
     "how",
     [
-        {"drop": "groups"}, {"drop": "notes"}, {"drop": "frame"}, {"drop": "encoder"}, {"drop": "group"},
+        {"drop": "groups"}, {"drop": "notes"}, {"drop": "making"}, {"making": {"encoder": 3}},
+        {"drop": "frame"}, {"drop": "encoder"}, {"drop": "group"},
         {"drop": "embeddings"}, {"groups": [{}]}, {"groups": []}, {"groups": "no"}, {"groups": None},
         {"groups": groups_with(id=0)},
         {"groups": groups_with(parent=7)}, {"groups": groups_with(level="thing")}, {"notes": 3},

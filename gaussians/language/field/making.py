@@ -1,0 +1,78 @@
+"""`Making`: what a language field was made with: encoder, sources of masks, views, and versions."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+
+from ... import language
+
+RULES = ("affinity.json", "borders.json", "coplanar.json")  # the learnt rules of the segmentation
+
+
+@dataclass(frozen=True)
+class MaskSource:
+    """A source of masks and what it gave.
+
+    Attributes:
+        spec: as `masks.load` takes it ("folder:PATH"), or the name of its class.
+        views: number of images that it gave masks of.
+        masks: number of masks.
+        agreement: share of the labels of one thing that agree across views, in [0, 1]; None if it gives no labels.
+    """
+
+    spec: str
+    views: int = 0
+    masks: int = 0
+    agreement: float | None = None
+
+    def describe(self) -> str:
+        """ "folder:masks: 512 masks of 146 images; its labels agree in 81 %"."""
+        told = f"{self.spec}: {self.masks} masks of {self.views} images"
+        return told if self.agreement is None else f"{told}; its labels agree in {self.agreement:.0%}"
+
+
+@dataclass(frozen=True)
+class Making:
+    """What a language field was made with.
+
+    Attributes:
+        encoder: the encoder of vectors and names, as `encoders.load` takes it, or the name of its class.
+        masks: the sources of masks; empty for a field from geometry alone.
+        views: number of rendered views that coverage was judged by.
+        photographs: number of photographs that pictures of groups were taken from, 0 for renders.
+        package: version of scenewright.
+        rules: digest of the learnt rules of the segmentation.
+    """
+
+    encoder: str
+    masks: tuple[MaskSource, ...] = ()
+    views: int = 0
+    photographs: int = 0
+    package: str = ""
+    rules: str = ""
+
+    def lines(self) -> list[str]:
+        """The making as lines for a person."""
+        found = [f"named by the encoder {self.encoder}; scenewright {self.package}, rules {self.rules}"]
+        found += [f"masks from {source.describe()}" for source in self.masks]
+        return found + ([f"pictures of things from {self.photographs} photographs"] if self.photographs else [])
+
+
+@cache
+def rules_digest() -> str:
+    """First 12 hex digits of the SHA-256 of the learnt rules, which tells versions of them apart."""
+    folder = files(language) / "segmentation"
+    digest = hashlib.sha256()
+    for name in RULES:
+        digest.update((folder / name).read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def package_version() -> str:
+    """The version of this package."""
+    from .... import __version__
+
+    return __version__
