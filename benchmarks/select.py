@@ -13,9 +13,10 @@ from functools import cache
 
 from ..gaussians.language import encoders
 from ..gaussians.language.encoders import Encoder
-from . import _bonsai, _clip, _data
-from ._select import cases, costs, curves, lifted, meshes, names, pairs, relations, stability
+from . import _clip, _data
+from ._select import cases, composed, costs, curves, lifted, meshes, names, pairs, relations, stability
 from ._select.cases import Case, Part
+from ._select.real import captures
 from .harness import Metric, Result
 
 
@@ -70,7 +71,8 @@ def run(quick: bool) -> Result:
         relations.measure(spatial, encoder, grouped, lambda case: cases.with_true_groups(case, encoder)),
         _strangers(plan, encoder, grouped, quick),
         _real_vectors(quick),
-        _real_room(quick),
+        _composed(encoder, quick),
+        _captures(quick),
         costs.measure(rooms[plan.names[0]], encoder, grouped, quick),
         stability.thresholds(known, encoder),
         stability.floaters(steady, encoder, grouped, stability.FLOATERS[-1:] if quick else stability.FLOATERS),
@@ -107,17 +109,21 @@ def _real_vectors(quick: bool) -> Part:
     ))  # fmt: skip
 
 
-def _real_room(quick: bool) -> Part:
-    """The measure on a captured room with a detector's masks, if the data are there."""
-    if quick:
-        return Part(notes=("bonsai: quick runs leave out the real room",))
-    wanted = ("captures/bonsai_room", "scenes", "clip_vectors")
-    found = [_data.folder(name) for name in wanted]
-    if found[0] is None or None in found:
-        return Part(notes=(_data.missing(" and ".join(wanted)),))
-    note = (
-        "bonsai: a trained scene of a real room with the capture's cameras, coarse masks of a small detector and "
-        "real CLIP vectors of their labels. The silhouette of the selection is compared with hand-drawn masks of 4 "
-        "photographs at 800 x 533"
+def _composed(encoder: Encoder, quick: bool) -> Part:
+    """The measure on rooms composed from sentences; quick runs take one room."""
+    return composed.measure(
+        lambda case: cases.embedded(case, encoder),
+        encoder,
+        composed.room_names()[:1] if quick else composed.room_names(),
     )
-    return Part(tuple(_bonsai.figures(found[0].parents[1])), notes=(note,))
+
+
+def _captures(quick: bool) -> Part:
+    """The measure on real and rendered captures, if the data are there."""
+    if quick:
+        return Part(notes=("captures: quick runs leave out the captures",))
+    wanted = ("captures", "scenes", "clip_vectors")
+    if None in (found := [_data.folder(name) for name in wanted]):
+        return Part(notes=(_data.missing(" and ".join(wanted)),))
+    assert found[0] is not None
+    return captures.measure(found[0])

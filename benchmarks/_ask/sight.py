@@ -26,8 +26,9 @@ from ...gaussians.render import render
 from ...gaussians.scene import Scene
 from ...planners.model.backend import Answer, Message, OnText
 from ...planners.plan import Usage
-from .. import _bonsai, _data
+from .. import _data
 from .._select.cases import Part
+from .._select.real.drawings import Drawing, agreement, painted, silhouette
 from ..harness import Metric
 from .written import FOLDER
 
@@ -72,7 +73,7 @@ def measure(quick: bool) -> Part:
         return Part()
     capture = data / "bonsai_room"
     scene = embedded(capture, data.parent / "scenes" / "bonsai_room.ply")
-    drawn = _bonsai.drawings(capture)
+    drawn = painted(capture, "ground_truth")
     numbered = [render(scene.cloud, d.camera).group.numpy() for d in drawn]
     ours, best, most = list[float](), list[float](), [0, 0]
     for phrase, entry in json.loads(REPLIES.read_text(encoding="utf-8")).items():
@@ -99,9 +100,7 @@ def embedded(capture: Path, scene: Path) -> Scene:
     return embed(bare, encoders.load("auto"), masks=source)
 
 
-def best_union(
-    scene: Scene, numbered: Sequence[NDArray[np.int32]], drawn: Sequence[_bonsai.Drawing], label: int
-) -> set[int]:
+def best_union(scene: Scene, numbered: Sequence[NDArray[np.int32]], drawn: Sequence[Drawing], label: int) -> set[int]:
     """The objects whose union agrees best with a label, added greedily; compared in the pictures of groups."""
     owner = _owners(scene)
     shown = [np.where(image >= 0, owner[np.maximum(image, 0)], -1) for image in numbered]
@@ -113,7 +112,7 @@ def best_union(
     }
 
     def score(groups: Iterable[int]) -> float:
-        each = [_bonsai.agreement(np.isin(i, list(groups)), d, (label,)) for i, d in zip(shown, drawn, strict=True)]
+        each = [agreement(np.isin(i, list(groups)), d, (label,)) for i, d in zip(shown, drawn, strict=True)]
         return fmean(value for value in each if value is not None)
 
     chosen, reached = set[int](), 0.0
@@ -137,6 +136,6 @@ def _members(scene: Scene, groups: Iterable[int]) -> NDArray[np.bool_]:
     return (column >= 0) & np.isin(_owners(scene)[np.maximum(column, 0)], list(groups))
 
 
-def _agreement(scene: Scene, shown: NDArray[np.bool_], drawn: Sequence[_bonsai.Drawing], label: int) -> float:
-    each = [_bonsai.agreement(_bonsai.silhouette(scene, shown, d.camera), d, (label,)) for d in drawn]
+def _agreement(scene: Scene, shown: NDArray[np.bool_], drawn: Sequence[Drawing], label: int) -> float:
+    each = [agreement(silhouette(scene, shown, d.camera), d, (label,)) for d in drawn]
     return fmean(value for value in each if value is not None)
