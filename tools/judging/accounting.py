@@ -24,6 +24,8 @@ _WAYS: dict[str, frozenset[str]] = {
     "insert": frozenset(),
     "duplicate": frozenset(),
     "select": frozenset(),
+    "merge": frozenset(),
+    "split": frozenset(),
 }
 _ADDS = frozenset({"insert", "duplicate", "replace"})
 _COMPLETE = 0.99  # share of the target's visual weight that must change: a few Gaussians may already be as asked

@@ -19,7 +19,7 @@ from ...world.box import Box, Boxes
 from .making import Making
 
 Level = Literal["object", "part", "structure"]
-NamedBy = Literal["", "sight", "caption"]
+NamedBy = Literal["", "sight", "caption", "user"]
 Rest = Literal["", "floor", "surface", "wall", "ceiling"]
 Names = tuple[tuple[str, float], ...]
 
@@ -42,7 +42,7 @@ class Group:
         views: number of the views that see it.
         confidence: share of its Gaussians that are surface points, in [0, 1]; the others joined it by distance.
         named_by: who gave it its name later: "sight" (a vision model that was asked which thing a phrase means) or
-            "caption" (one that named all things); "" for names by the encoder or the masks.
+            "caption" (one that named all things), or "user"; "" for names by the encoder or the masks.
         names: the most probable names with their probabilities, highest first; the first is the label and its score.
             Left out, or where the label is replaced alone, they are just the label.
         votes: what detectors called it, highest first: each label with the number of views that gave it, weighted by

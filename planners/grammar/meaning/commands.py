@@ -74,6 +74,44 @@ def _again(phrases: Phrases, target: Query) -> list[Fields]:
     return [{**op, "target": Query(last=True) if c else target} for op, c in zip(phrases.before, chained, strict=True)]
 
 
+# ---- one thing or several -----------------------------------------------------------------------------------------
+
+
+def merge(phrases: Phrases, node: Node) -> list[Fields]:
+    """Several things are one: "merge the pot and the plant", "the pot is part of the plant"."""
+    found = _all_things(phrases, node)
+    into_last = tokens(node, "PARTOF", "TAKE") and found[-1].query.text
+    return [{"op": "merge", "target": union(found), **({"name": into_last} if into_last else {})}]
+
+
+def split(phrases: Phrases, node: Node) -> list[Fields]:
+    """One thing is several: "split the lamp in two", "that is two things"."""
+    many = [t.value for t in tokens(node, "INTOMANY", "BEMANY")]
+    found = _all_things(phrases, node)
+    if len(found) == 1 and (wholes := [p.anchors for p in found[0].modifiers if p.kind == "off"]):
+        names = [n.query.text for n in (*found, *wholes[0]) if n.query.text]  # "the pot from the plant"
+        return [{"op": "split", "target": existing(wholes[0]), "into": 2, "names": names}]
+    if len(found) > 1:
+        raise Refusal("say which one thing to split: one is split at a time", found[0].said)
+    target = existing(found) if found else Query(last=True)
+    return [{"op": "split", "target": target, **({"into": many[0]} if many else {})}]
+
+
+def split_into(phrases: Phrases, node: Node) -> list[Fields]:
+    """One thing is several that are named: "split the plant into the pot and the crown"."""
+    whole, pieces = (phrases.targets(tree) for tree in trees(node, "targets"))
+    names = [piece.query.text for piece in pieces]
+    if len(whole) != 1 or len(names) < 2 or not all(names):
+        raise Refusal("say one thing to split, and the names of two or more that it is to become", whole[0].said)
+    return [{"op": "split", "target": existing(whole), "into": len(names), "names": names}]
+
+
+def _all_things(phrases: Phrases, node: Node) -> list[NounPhrase]:
+    """Every noun phrase of a clause, in the order of the words."""
+    inner = [found for tree in trees(node, "targets") for found in phrases.targets(tree)]
+    return [*inner, *(phrases.noun(tree) for tree in trees(node, "np"))]
+
+
 # ---- selecting, hiding and removing -------------------------------------------------------------------------------
 
 
@@ -265,6 +303,6 @@ def _except(target: Query | None, out: Query) -> Query:
 
 
 _RULES = (
-    same, bare, delete, clear, drop, take, keep, select, isolate, hide, fade, switch, paint, give_color, change_from,
-    tint, tint_more, give_shade, coat_on, adjust, change_opacity, make, it_becomes, put,
+    same, bare, merge, split, split_into, delete, clear, drop, take, keep, select, isolate, hide, fade, switch, paint,
+    give_color, change_from, tint, tint_more, give_shade, coat_on, adjust, change_opacity, make, it_becomes, put,
 )  # fmt: skip

@@ -65,6 +65,10 @@ def tag_by_context(state: TaggerState, i: int, length: int) -> int | None:
         return i + 1
     if text in ("'s", "its", "their") and after:
         return _tag_possessive(state, i)
+    if text == "with" and verb in ("MERGE", "TAKE") and state.ahead.object_follows(i + 1):
+        return state.emit("WITH", None, i, 1)
+    if text == "into" and verb == "SPLIT" and length == 1:
+        return state.emit("INTO", None, i, 1)
     if text == "by" and verb in ("REPLACE", "SUBSTITUTE"):
         return state.emit("WITH", None, i, 1)
     if text == "by" and after and (quantities.read(rest) or after in ("a", "half")) and length == 1:

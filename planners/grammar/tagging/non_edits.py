@@ -18,6 +18,8 @@ FORBIDDEN = "it says what not to do, and asks for no change"
 STATEMENT = "this is a statement, not an edit"
 _JUDGING = bag("looks look seems seem feels sounds works good great nice fine better perfect lovely")
 _BEING = bag("is are was were should")
+# Statements that ask for an edit: "the pot and the plant are one thing".
+_SAYING = ("SHOULD", "BEONE", "BEMANY", "PARTOF")
 _EDIT_TYPES = ("DIR", "HUE", "LIGHT", "GROWN", "ONE", "OTHER", "OTHERS", "LENGTH", "DEGREE")
 
 
@@ -47,7 +49,7 @@ def refuse_non_edit(clause: Clause, sentence: Sequence[Word], mark: str) -> None
     asks_for_edit = any(t.type in _EDIT_TYPES for t in clause.tags)
     if not asks_for_edit and all(t in polite for t in texts) and any(t in lexicon.CHAT for t in texts):
         raise Refusal(CHAT, verdict="not_an_edit")
-    if texts[:3] == ["do", "the", "same"] or any(t.type == "SHOULD" for t in clause.tags):
+    if texts[:3] == ["do", "the", "same"] or any(t.type in _SAYING for t in clause.tags):
         return
     if first in lexicon.QUESTION or first in lexicon.ASKING or mark == "?":
         raise Refusal(QUESTION, first, verdict="not_an_edit")

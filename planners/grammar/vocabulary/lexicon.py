@@ -66,7 +66,42 @@ def _said(kind: str, name: str, alone: bool = False) -> dict[str, Entry]:
     return dict.fromkeys((known.alone if alone else known.phrases).in_commands(), (kind, name))
 
 
+_COUNTS = ((2, "two"), (3, "three"), (4, "four"), (5, "five"), (6, "six"), (7, "seven"), (8, "eight"))
+_KINDS_OF_THING = ("things", "objects", "items", "pieces", "parts", "different things", "separate things",
+                   "different objects", "separate objects", "individual things")  # fmt: skip
+
+
+def _one_thing() -> dict[str, Entry]:
+    """What says that things are one ("as one thing", "are one object", "belong together", "is part of")."""
+    ones = [f"{one}{thing}" for one in ("one", "a single", "one single") for thing in (" thing", " object", " item")]
+    ones += ["one", "the same thing", "the same object"]
+    together = {f"{into} {one}": ("ASONE", None) for into in ("as", "into", "to be") for one in ones}
+    being = {f"{are} {one}": ("BEONE", None) for are in ("are", "is", "form", "make up", "should be") for one in ones}
+    being |= same(("BEONE", None), "belong together, go together, belong to each other")
+    being |= same(("PARTOF", None), "belongs to, belong to, is part of, is a part of, are part of, are a part of, "
+                  "belongs with, goes with")  # fmt: skip
+    return {**together, "together": ("ASONE", None), **being}
+
+
+def _several_things() -> dict[str, Entry]:
+    """What says that one thing is several ("is two things", "into three parts", "in two")."""
+    found: dict[str, Entry] = {}
+    for number, word in _COUNTS:
+        for said in (word, str(number)):
+            found |= {f"{into} {said}": ("INTOMANY", number) for into in ("in", "into")}
+            for thing in _KINDS_OF_THING:
+                found |= {f"{into} {said} {thing}": ("INTOMANY", number) for into in ("in", "into")}
+                found |= {
+                    f"{be}{really} {said} {thing}": ("BEMANY", number)
+                    for be in ("is", "are", "should be", "that is", "that are")
+                    for really in ("", " actually", " really", " in fact")
+                }
+    return found
+
+
 CLOSED: dict[str, Entry] = {
+    **_one_thing(),
+    **_several_things(),
     **{phrase: ("PREP", name) for phrase, name in RELATIONS.items()},
     **{f"over {p}": ("PREP", n) for p, n in RELATIONS.items()},
     **{f"directly {p}": ("PREP", n) for p, n in RELATIONS.items() if n not in ("inside",)},

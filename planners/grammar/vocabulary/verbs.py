@@ -27,6 +27,8 @@ VERBS: dict[str, Entry] = {
         "toss away, chuck in the bin, throw in the trash, be rid of, remove away, rid us of, hoover up",
     ),
     **same(("CLEAR", None), "clear, clear off, clear out"),
+    **same(("MERGE", None), "merge, combine, unite, join, join up, fuse, group, group together, treat, regard, count"),
+    **same(("SPLIT", None), "split, split up, divide, separate, break up, ungroup"),
     **same(("DROP", None), "drop"),
     **same(("TAKE", None), "take, throw, get, pick up, grab"),
     **same(
@@ -134,6 +136,6 @@ UNSUPPORTED: dict[str, str] = {
     **same("what was hidden comes back with undo", "unhide, reveal, restore, bring back"),
     **same("say what to select instead", "clear the selection, invert the selection, clear selection, "
             "invert selection, deselect, unselect, select none, select nothing, reset the selection"),
-    **same("objects cannot be renamed or grouped", "rename, group, ungroup, merge, split, label"),
+    **same("objects cannot be renamed", "rename, label"),
     **same(TO_ALIGN, "align, line up"),
 }  # fmt: skip
