@@ -15,16 +15,15 @@ from ...cloud import GaussianCloud
 from ...errors import InstructionError, UserError
 from ...scene import Frame, Scene
 from ..encoders import Encoder
-from ..encoders.probability import labels as name_things
 from ..encoders.probability import probability
 from ..segmentation.affinity import merge_tree
-from ..segmentation.group_renders import mean_vectors
 from ..segmentation.regions import Node
 from ..segmentation.segment import graph_of
 from ..segmentation.superpoints import links_of, superpoints
 from ..segmentation.surface import surface_of
 from .group_index import index_groups
-from .language_field import Group, LanguageField
+from .group_table import named, vectors_of
+from .language_field import LanguageField
 from .measure import box_of, lab_of_cloud
 
 I32 = NDArray[np.int32]
@@ -146,27 +145,26 @@ def _with_pieces(
     """The table with the pieces as new objects; the old group and its parts hold nothing."""
     old = field.groups[group]
     seeing = encoder is not None and encoder.fingerprint == field.encoder and encoder.image_size > 0
-    boxes = [box_of(c, scene.frame) for c in clouds]
+    vectors = np.repeat(field.embeddings[[group]], len(clouds), axis=0)
     if seeing:
         assert encoder is not None
-        middle = scene.cloud.means[:: max(1, len(scene.cloud) // 50_000)].median(dim=0).values.double().numpy()
-        vectors = mean_vectors(encoder, clouds, scene.frame, middle, around=scene.cloud)
-        metres = scene.frame.metres_per_unit
-        sizes = np.array([b.size for b in boxes]) * (metres if metres is not None else np.nan)
-        told = name_things(encoder, vectors, sizes)
-    else:
-        vectors = np.repeat(field.embeddings[[group]], len(clouds), axis=0)
-        told = [(old.label, old.label_score)] * len(clouds)
+        vectors = vectors_of(encoder, clouds, scene.frame, scene.cloud)
     first = len(field.groups)
-    made = [
-        Group(first + k, "object", -1, name, sure, box, lab_of_cloud(c), len(c), old.views, old.confidence)
-        for k, (c, box, (name, sure)) in enumerate(zip(clouds, boxes, told, strict=True))
-    ]
+    made = tuple(
+        replace(
+            old, id=first + k, level="object", parent=-1, box=box_of(c, scene.frame), lab=lab_of_cloud(c), count=len(c),
+            named_by="", votes=(),
+        )
+        for k, c in enumerate(clouds)
+    )  # fmt: skip
     gone = set(field.leaves(group))
-    rows = [replace(g, count=0) if g.id in gone else g for g in field.groups]
-    return replace(
-        field, groups=(*rows, *made), embeddings=np.concatenate([field.embeddings, vectors]).astype(np.float32)
-    )
+    rows = tuple(replace(g, count=0) if g.id in gone else g for g in field.groups)
+    embeddings = np.concatenate([field.embeddings, vectors]).astype(np.float32)
+    table = replace(field, groups=(*rows, *made), embeddings=embeddings)
+    if not seeing:
+        return table
+    assert encoder is not None
+    return replace(table, groups=(*rows, *named(table, encoder, scene.frame).groups[first:]))
 
 
 def _named(table: LanguageField, pieces: list[int], names: Sequence[str], encoder: Encoder | None) -> LanguageField:

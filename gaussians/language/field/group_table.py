@@ -39,7 +39,7 @@ def with_table(
     clouds = [cloud[torch.from_numpy(rows)] for rows in whole]
     boxes = [box_of(c, scene.frame) for c in clouds]
     pictured = [c if t.level == "object" and t.vector is None else c[:0] for c, t in zip(clouds, segments, strict=True)]
-    vectors = _vectors(encoder, pictured, scene.frame, cloud)
+    vectors = vectors_of(encoder, pictured, scene.frame, cloud)
     for row, segment in zip(vectors, segments, strict=True):
         if segment.vector is not None:
             row[:] = segment.vector
@@ -76,7 +76,7 @@ def renamed(scene: Scene, encoder: Encoder) -> Scene:
         for g, wanted in zip(field.groups, objects, strict=True)
     ]
     with one_thread():
-        vectors = _vectors(encoder, clouds, scene.frame, scene.cloud)
+        vectors = vectors_of(encoder, clouds, scene.frame, scene.cloud)
     for row, group in zip(vectors, field.groups, strict=True):
         if not encoder.image_size and (vector := vector_of_votes(encoder, group.votes)) is not None:
             row[:] = vector
@@ -113,7 +113,7 @@ def vector_of_votes(encoder: Encoder, votes: Names) -> NDArray[np.float32] | Non
     return (total / norm).astype(np.float32) if norm > 1e-8 else None
 
 
-def _vectors(
+def vectors_of(
     encoder: Encoder, clouds: Sequence[GaussianCloud], frame: Frame, whole: GaussianCloud
 ) -> NDArray[np.float32]:
     """Mean image vector `[G, D]` of each cloud, seen from the middle of the whole one; zero for an empty one."""
