@@ -15,9 +15,9 @@ from ...camera import Camera
 from ...errors import FileError, UserError
 from ...files.captures import colmap
 from ...files.captures.capture import Capture, is_file, read_capture, unposed_photos
+from ...files.captures.image_file import MIN_SIDE, read_photo
 from ...lens import Lens, undistort
 from ..train import Shot
-from .image_file import MIN_SIDE, read_photo
 from .pose_check import check_colors, check_views
 
 TEST_EVERY = 8  # every eighth photograph by name is held out, the convention of the field (Barron et al. 2022)

@@ -26,8 +26,8 @@ from ...errors import BackendError, FileError, UserError
 from ...files import writing
 from ...files.captures import colmap
 from ...files.captures.capture import TRANSFORMS, to_transforms
+from ...files.captures.image_file import read_photo
 from ...files.foreign import read_json
-from .image_file import read_photo
 
 MAX_SIDE = 1600  # px of the longer side of the images that features are extracted from
 MIN_PHOTOS = 4

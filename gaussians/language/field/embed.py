@@ -19,7 +19,7 @@ from ...scene import Scene
 from ...viewpoints.coverage import choose_views
 from .. import encoders
 from ..encoders import Encoder
-from ..masks import Masker
+from ..masks import Masker, joined
 from ..masks.association import Track, Tracks, associate
 from ..masks.lifting import lift
 from ..masks.mask_assignment import UNSEEN, apply_tracks, track_by_votes
@@ -40,7 +40,7 @@ def embed(
     encoder: Encoder,
     progress: Progress = lambda stage, share: None,
     views_per_candidate: int = VIEWS_PER_CANDIDATE,
-    masks: Masker | None = None,
+    masks: Masker | Sequence[Masker] | None = None,
 ) -> Scene:
     """The scene with `cloud.group` filled and a language field; nothing else of the cloud changes.
 
@@ -49,7 +49,7 @@ def embed(
         encoder: makes the image vectors that labels and queries are compared with.
         progress: called with the name of a stage and its completed share.
         views_per_candidate: renders of each candidate object, 1 to 4; see `scenewright bench select`.
-        masks: a source of masks of some views (`masks.load`); its objects and labels take precedence.
+        masks: a source of masks of some views (`masks.load`), or several; their objects and labels take precedence.
 
     Raises:
         UserError: the scene has no Gaussians, or the vectors of the masks have another width than the encoder's.
@@ -63,10 +63,10 @@ def embed(
     scene = scene.replace(frame=frame)
     progress("views", 0.0)
     seen = choose_views(scene)
-    tally = None if masks is None else Tally(masks)
-    tracks = None
-    if masks is not None and tally is not None:
-        tracks = associate(lift(scene.cloud, tally.counting(masks.masks(scene, progress))))
+    given = () if masks is None else tuple(masks) if isinstance(masks, Sequence) else (masks,)
+    tallies = [Tally(one) for one in given]
+    views = joined([tally.counting(one.masks(scene, progress)) for tally, one in zip(tallies, given, strict=True)])
+    tracks = associate(lift(scene.cloud, views)) if given else None
     progress("segments", 0.0)
     with one_thread():
         # Ours is trained on renders of both whole objects and fragments, and so can tell one from the other. An encoder
@@ -85,7 +85,7 @@ def embed(
         on_surface = np.zeros(len(scene.cloud), bool)
         on_surface[surface.rows] = True
         embedded = with_table(scene, segments, column, on_surface, seen, encoder)
-    return embedded if tracks is None or tally is None else _with_mask_note(embedded, tracks, tally.source())
+    return embedded if tracks is None else _with_mask_note(embedded, tracks, [tally.source() for tally in tallies])
 
 
 def _vector(track: Track, encoder: Encoder) -> NDArray[np.float32] | None:
@@ -128,10 +128,10 @@ def _with_voted_tracks(
     return column
 
 
-def _with_mask_note(scene: Scene, tracks: Tracks, source: MaskSource) -> Scene:
-    """The scene with the source of its masks, and a note of how many tracks of them were used and discarded."""
+def _with_mask_note(scene: Scene, tracks: Tracks, sources: Sequence[MaskSource]) -> Scene:
+    """The scene with the sources of its masks, and a note of how many tracks of them were used and discarded."""
     assert scene.language is not None and scene.language.making is not None
-    making = replace(scene.language.making, masks=(source,))
+    making = replace(scene.language.making, masks=tuple(sources))
     note = f"{len(tracks.tracks)} things were found by masks"
     note += f", {tracks.discarded} that too few views confirm were discarded" if tracks.discarded else ""
     return scene.replace(language=replace(scene.language, notes=(*scene.language.notes, note), making=making))

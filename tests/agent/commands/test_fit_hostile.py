@@ -28,8 +28,8 @@ from scenewright.agent import cli
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import FileError
+from scenewright.gaussians.files.captures.image_file import read_photo
 from scenewright.gaussians.fit import checkpoint, load_photos
-from scenewright.gaussians.fit.photographs.image_file import read_photo
 from scenewright.gaussians.harmonics import color_to_dc
 from scenewright.gaussians.render import render
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....camera import Camera, Render
 from ....color import rgb_to_lab
@@ -20,9 +19,8 @@ from ....render import render
 from ....scene import Scene
 from ....viewpoints.coverage import choose_views, fit_camera
 from ...segmentation.superpoints import COLOR_UNIT, LIGHTNESS, NORMAL_UNIT, merge_regions
+from ..contours.channels import normals_of
 from ..view import NONE, ViewMasks
-
-F32 = NDArray[np.float32]
 
 SIDE = 256  # pixels of the rendered views
 DEPTH_UNIT = 0.02  # of the depth: a step between two pixels that counts as one edge unit
@@ -63,7 +61,7 @@ def of_view(seen: Render, camera: Camera) -> ViewMasks:
     depth = seen.depth.cpu().numpy().astype(np.float64)
     filled = seen.alpha.cpu().numpy() >= MIN_ALPHA
     lab = rgb_to_lab(seen.rgb.cpu().clamp(0, 1)).numpy()
-    normals = _normals(depth, camera)
+    normals = normals_of(depth, camera)
     height, width = depth.shape
     index = np.arange(height * width).reshape(height, width)
     pairs, weights = [], []
@@ -82,16 +80,3 @@ def of_view(seen: Render, camera: Camera) -> ViewMasks:
     place = np.where(good, np.cumsum(good) - 1, NONE).astype(np.int32)
     count = int(good.sum())
     return ViewMasks(camera, place[ids].reshape(height, width), ("",) * count, np.full(count, SCORE, np.float32))
-
-
-def _normals(depth: NDArray[np.float64], camera: Camera) -> F32:
-    """Unit normals `[H, W, 3]` from depth, in camera axes; zero at the border of the image."""
-    y, x = np.mgrid[: camera.height, : camera.width] + 0.5
-    points = np.stack([(x - camera.cx) / camera.fx * depth, (y - camera.cy) / camera.fy * depth, depth], axis=-1)
-    normals = np.zeros_like(points)
-    if min(depth.shape) > 2:
-        along, down = points[1:-1, 2:] - points[1:-1, :-2], points[2:, 1:-1] - points[:-2, 1:-1]
-        normals[1:-1, 1:-1] = np.cross(along, down)
-    length = np.linalg.norm(normals, axis=-1, keepdims=True)
-    result: F32 = (normals / np.where(length > 0, length, 1)).astype(np.float32)
-    return result

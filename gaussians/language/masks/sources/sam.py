@@ -17,13 +17,11 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from ....camera import Camera
-from ....errors import BackendError, FileError, UserError
+from ....errors import BackendError, UserError
 from ....files.captures.capture import Capture, read_capture
-from ....render import render
 from ....scene import Scene
 from ....torchvision_fix import import_torchvision
-from ....viewpoints.coverage import choose_views, fit_camera
+from ....viewpoints.pictures import Picture, read_photographs, render_views
 from ..view import ViewMasks, pack_layers
 
 SIDE = 640  # pixels: the longer side of renders and photographs
@@ -88,10 +86,10 @@ class Sam:
         self, scene: Scene, progress: Callable[[str, float], None] = lambda stage, share: None
     ) -> Iterator[ViewMasks]:
         """See `Masker`."""
-        pictures = self._photos() if self.capture is not None else self._rendered(scene)
-        for i, (camera, picture, count) in enumerate(pictures):
-            masks, scores = self.segment(picture)
-            yield ViewMasks(camera, pack_layers(masks), ("",) * len(masks), scores)
+        count, pictures = self._pictures(scene)
+        for i, picture in enumerate(pictures):
+            masks, scores = self.segment(picture.rgb)
+            yield ViewMasks(picture.camera, pack_layers(masks), ("",) * len(masks), scores)
             progress("masks", (i + 1) / count)
 
     def segment(self, picture: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
@@ -135,29 +133,10 @@ class Sam:
             scores.append(ious[good].numpy().astype(np.float32))
         return np.concatenate(masks), np.concatenate(scores)
 
-    def _photos(self) -> Iterator[tuple[Camera, NDArray[np.uint8], int]]:
-        from PIL import Image
-
-        assert self.capture is not None
+    def _pictures(self, scene: Scene) -> tuple[int, Iterator[Picture]]:
+        """The number of pictures, or what it is at most, and the pictures."""
+        if self.capture is None:
+            return MAX_PHOTOS, render_views(scene, SIDE, MAX_PHOTOS)
         total = len(self.capture.cameras)
         chosen = np.unique(np.linspace(0, total - 1, min(MAX_PHOTOS, total)).round().astype(int))
-        for i in chosen:
-            camera = _shrunk(self.capture.cameras[i])
-            try:
-                with Image.open(self.capture.photos[i]) as photo:
-                    small = photo.convert("RGB").resize((camera.width, camera.height), Image.Resampling.LANCZOS)
-            except OSError as error:
-                raise FileError(f"cannot read the photograph {self.capture.photos[i]}: {error}") from error
-            yield camera, np.asarray(small), len(chosen)
-
-    def _rendered(self, scene: Scene) -> Iterator[tuple[Camera, NDArray[np.uint8], int]]:
-        cameras = choose_views(scene).cameras
-        for camera in cameras:
-            gain = SIDE / max(camera.width, camera.height)
-            large = fit_camera(camera, round(camera.width * gain), round(camera.height * gain))
-            yield large, render(scene.cloud, large).to_uint8(), len(cameras)
-
-
-def _shrunk(camera: Camera) -> Camera:
-    gain = min(1.0, SIDE / max(camera.width, camera.height))
-    return camera.resized(max(1, round(camera.width * gain)), max(1, round(camera.height * gain)))
+        return len(chosen), read_photographs(self.capture, tuple(chosen.tolist()), SIDE)

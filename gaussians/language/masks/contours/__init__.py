@@ -1,0 +1,1 @@
+"""Contours of a picture, and the hierarchy of regions that they bound."""
