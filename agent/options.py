@@ -42,13 +42,17 @@ Masks = Annotated[
     str | None,
     typer.Option(
         "--masks", metavar="SOURCE",
-        help="Masks of views: 'folder:PATH' (made by another program), 'sam:PATH-or-NAME', or 'embedded'.",
+        help="Masks of views: 'folder:PATH' (made by another program), 'sam:PATH-or-NAME', 'pictures' (our own, of "
+        "photographs or renders), 'embedded', or 'none'. With --capture, 'pictures' is added unless this is 'none'.",
     ),
 ]  # fmt: skip
 Capture = Annotated[
     Path | None,
-    typer.Option("--capture", metavar="FILE", help="Camera poses of photographs: a transforms.json or its folder."),
-]
+    typer.Option(
+        "--capture", metavar="FILE",
+        help="Photographs with camera poses: a transforms.json, or the folder of one or of a COLMAP model.",
+    ),
+]  # fmt: skip
 Planner = Annotated[
     str,
     typer.Option(

@@ -23,6 +23,8 @@ def command(
 
     A saved field is used as long as the scene file has not changed; another --encoder names its groups anew. --force
     embeds again, and so do --masks and --capture, and --up and --metres-per-unit, which are saved with the field.
+
+    --capture names the photographs that the scene was fitted from: what belongs together is then also read from them.
     """
     from ...gaussians.files import load
     from ...gaussians.files.captures.capture import read_capture
@@ -41,13 +43,13 @@ def command(
     taken = None if capture is None else read_capture(capture)
     if taken is not None and not loaded.cameras:
         loaded = loaded.replace(cameras=taken.cameras)
-    elif taken is not None and masks is None:
-        terminal.say(f"note: {scene} has cameras of its own; --capture is used with --masks only")
-    source = maskers.load(masks, capture) if masks is not None else None
+    sources, notes = maskers.load_all(masks, capture)
+    for note in notes:
+        terminal.say(f"note: {note}")
     known = None if again else load_field(loaded, scene)
     if known is None and not again and (why := mismatch(scene)) is not None:
         terminal.say(f"note: the language field beside {scene} {why}: embedding again")
-    embedded = known or embed(loaded, chosen, progress=terminal.progress, masks=source)
+    embedded = known or embed(loaded, chosen, progress=terminal.progress, masks=sources)
     language = embedded.language
     assert language is not None
     other = language.encoder != chosen.fingerprint

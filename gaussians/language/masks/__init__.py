@@ -6,8 +6,8 @@ The module of a source, and the libraries it needs, are imported when that sourc
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
@@ -18,14 +18,15 @@ from ...scene import Scene
 from ..specs import remember
 from .view import NONE, ViewMasks, pack_layers
 
-__all__ = ["NONE", "Joined", "Masker", "ViewMasks", "load", "pack_layers", "sources"]
+__all__ = ["NONE", "Masker", "ViewMasks", "joined", "load", "load_all", "pack_layers"]
 
 Progress = Callable[[str, float], None]
+PICTURES = "pictures"
 _MODULES = {
     "embedded": ".sources.embedded",
     "folder": ".sources.folder",
     "sam": ".sources.sam",
-    "pictures": ".sources.pictures",
+    PICTURES: ".sources.pictures",
 }
 
 
@@ -43,22 +44,15 @@ class Masker(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class Joined:
-    """Several sources of masks as one: the masks of one after those of another.
-
-    Where only some sources give vectors, the masks of the others have zero vectors.
-    """
-
-    sources: tuple[Masker, ...]
-
-    def masks(self, scene: Scene, progress: Progress = lambda stage, share: None) -> Iterator[ViewMasks]:
-        """See `Masker`."""
-        views = [view for source in self.sources for view in source.masks(scene, progress)]
-        width = next((view.vectors.shape[1] for view in views if view.vectors is not None), None)
-        for view in views:
-            missing = width is not None and view.vectors is None
-            yield replace(view, vectors=np.zeros((len(view), width or 0), np.float32)) if missing else view
+def joined(sources: Iterable[Iterable[ViewMasks]]) -> list[ViewMasks]:
+    """The views of several sources, one source after another. Where only some sources give vectors, the masks of the
+    others get zero vectors, which say nothing."""
+    views = [view for source in sources for view in source]
+    width = next((view.vectors.shape[1] for view in views if view.vectors is not None), None)
+    if width is None:
+        return views
+    none = [np.zeros((len(view), width), np.float32) for view in views]
+    return [replace(v, vectors=n) if v.vectors is None else v for v, n in zip(views, none, strict=True)]
 
 
 def names() -> tuple[str, ...]:
@@ -88,3 +82,29 @@ def load(spec: str, capture: Path | None = None) -> Masker:
     masker: Masker = module.load(argument, capture)
     remember(masker, spec)
     return masker
+
+
+def load_all(spec: str | None, capture: Path | None = None) -> tuple[tuple[Masker, ...], tuple[str, ...]]:
+    """Load the sources of masks that a user means: the one named, and the photographs of a capture.
+
+    Args:
+        spec: as `load` takes it; None for the photographs alone, "none" for no masks at all.
+        capture: as `load` takes it. Its photographs are a source too ("pictures"); where they are all missing, they
+            are one only if no other is named, and views are rendered instead.
+
+    Returns:
+        The sources, and sentences that a user should read before they are used.
+
+    Raises:
+        BackendError, FileError: as `load` raises them.
+    """
+    from .sources.pictures import Pictures
+
+    named = () if spec in (None, "none") else (load(str(spec), capture),)
+    if capture is not None and spec != "none" and not any(isinstance(one, Pictures) for one in named):
+        own = load(PICTURES, capture)
+        assert isinstance(own, Pictures)
+        if named and not own.has_photographs:
+            return named, (f"the photographs of {capture} are missing: only the masks of {spec} are used",)
+        named = (*named, own)
+    return named, tuple(note for one in named if isinstance(one, Pictures) for note in one.notes)

@@ -80,10 +80,10 @@ def test_a_source_that_is_none_is_named(
     assert found == code and said in err
 
 
-def test_a_capture_is_read_even_where_it_is_of_no_use(tmp_path: Path, boxes: Scene, files: Path, call: Any) -> None:
+def test_missing_photographs_are_said(tmp_path: Path, boxes: Scene, files: Path, call: Any) -> None:
     own = tmp_path / "own.ply"
     save(boxes.replace(cameras=read_capture(files).cameras), own)
     code, _, err = call("embed", own, "--capture", tmp_path / "nowhere.json")
     assert code == 4 and "nowhere.json" in err
-    code, _, err = call("embed", own, "--capture", files)
-    assert code == 0 and "has cameras of its own" in err
+    code, _, err = call("embed", own, "--capture", files, "--masks", f"folder:{files / 'masks'}")
+    assert code == 0 and "are missing: only the masks of folder:" in err

@@ -34,5 +34,5 @@ def layers(regions: Regions, hierarchy: Hierarchy, sure: F64, camera: Camera) ->
     used, place = np.unique(nodes, return_inverse=True)
     ids = place.reshape(nodes.shape).astype(np.int32)[:, regions.labels]
     above = hierarchy.parent[used].astype(np.int64) - count
-    scores = np.where(above >= 0, np.append(sure, 0.0)[above], 0.0)
+    scores = np.where(above >= 0, np.append(sure, 0.0)[np.maximum(above, -1)], 0.0)
     return ViewMasks(camera, ids, ("",) * len(used), scores.astype(np.float32))

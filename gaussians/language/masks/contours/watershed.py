@@ -63,7 +63,7 @@ def regions_of(contour: F32, max_regions: int = MAX_REGIONS) -> Regions:
 
 
 def borders(labels: I32, contour: F32) -> Regions:
-    """The contours between the regions `[H, W]` of a picture; between two pixels counts the stronger of theirs."""
+    """The contours between the regions `[H, W]` of a picture. Of two adjacent pixels the stronger contour counts."""
     ends, strength = [], []
     for a, b in ((np.s_[:, :-1], np.s_[:, 1:]), (np.s_[:-1], np.s_[1:])):
         differ = labels[a] != labels[b]

@@ -53,6 +53,11 @@ class Pictures:
     count: int = COUNT
 
     @property
+    def has_photographs(self) -> bool:
+        """Whether there is a photograph to use."""
+        return self.capture is not None and bool(present(self.capture))
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """What a user should know: photographs that are missing."""
         if self.capture is None:
@@ -81,7 +86,7 @@ class Pictures:
 
     def _pictures(self, scene: Scene) -> tuple[int, Iterator[Picture]]:
         """The number of pictures, or what it is at most, and the pictures."""
-        if self.capture is None or not present(self.capture):
+        if self.capture is None or not self.has_photographs:
             return self.count, render_views(scene, self.side, self.count)
         chosen = choose_photographs(scene, self.capture, self.count)
         return len(chosen), read_photographs(self.capture, chosen, self.side)
