@@ -57,18 +57,31 @@ def probability(
     units, seen = _units(encoder, vectors)
     if why_unknown(encoder, text) is not None:
         return np.zeros(len(units))
-    names, anchors = _anchors(encoder)  # type: ignore[arg-type]  # identity is what it is cached by
+    names, _ = _anchors(encoder)  # type: ignore[arg-type]  # identity is what it is cached by
     covered = encoder.vocabulary.covered(text)
-    asked = _phrase(encoder, text)  # type: ignore[arg-type]  # likewise
     rivals = np.array([name not in covered for name in names])
-    scale = encoder.calibration.scale
     evidence = _size_evidence(encoder, names, sizes, len(units))
     own_size = evidence[:, ~rivals].max(axis=1) if covered else evidence.max(axis=1)
-    own = scale * (units @ asked) + own_size
-    against = (scale * (units @ anchors.T) + evidence)[:, rivals]
+    logits = phrase_logits(encoder, text, vectors, rivals)
+    logits[:, 0] += own_size
+    logits[:, 1:] += evidence[:, rivals]
+    return np.where(seen, softmax(logits)[:, 0], 0.0)
+
+
+def phrase_logits(encoder: Encoder, text: str, vectors: NDArray[np.floating], rivals: NDArray[np.bool_]) -> Array:
+    """Logits `[G, 1 + R]` of a known phrase and of its rivals for each group, by the pictures alone.
+
+    Args:
+        rivals: `[K + negatives]`, which of the canonical names and non-objects compete with the phrase.
+    """
+    units, _ = _units(encoder, vectors)
+    _, anchors = _anchors(encoder)  # type: ignore[arg-type]  # identity is what it is cached by
+    asked = _phrase(encoder, text)  # type: ignore[arg-type]  # likewise
+    scale = encoder.calibration.scale
+    against = scale * (units @ anchors[rivals].T)
     if encoder.calibration.rivals is not None and rivals.any():
         against = against + np.log(encoder.calibration.rivals / rivals.sum())
-    return np.where(seen, _softmax(np.concatenate([own[:, None], against], axis=1))[:, 0], 0.0)
+    return np.concatenate([scale * (units @ asked)[:, None], against], axis=1)
 
 
 def distribution(encoder: Encoder, vectors: NDArray[np.floating], sizes: NDArray[np.floating] | None = None) -> Array:
@@ -79,7 +92,7 @@ def distribution(encoder: Encoder, vectors: NDArray[np.floating], sizes: NDArray
     units, seen = _units(encoder, vectors)
     names, anchors = _anchors(encoder)  # type: ignore[arg-type]  # identity is what it is cached by
     evidence = _size_evidence(encoder, names, sizes, len(units))
-    return np.where(seen[:, None], _softmax(encoder.calibration.scale * (units @ anchors.T) + evidence), 0.0)
+    return np.where(seen[:, None], softmax(encoder.calibration.scale * (units @ anchors.T) + evidence), 0.0)
 
 
 def names(
@@ -125,6 +138,12 @@ def _phrase(encoder: Encoder, text: str) -> Array:
     return encoder.encode_text([text]).astype(np.float64)[0]
 
 
+def size_evidence(encoder: Encoder, sizes: NDArray[np.floating]) -> Array:
+    """Log-likelihood `[G, K + negatives]` of measured sizes `[G, 3]` in metres under each name; see `probability`."""
+    names, _ = _anchors(encoder)  # type: ignore[arg-type]  # identity is what it is cached by
+    return _size_evidence(encoder, names, sizes, len(sizes))
+
+
 def _size_evidence(encoder: Encoder, names: tuple[str, ...], sizes: NDArray[np.floating] | None, count: int) -> Array:
     """Log-likelihood `[G, K + negatives]` of the measured size under each name, nats; zero where it is unknown."""
     rule = encoder.calibration
@@ -164,8 +183,8 @@ def _units(encoder: Encoder, vectors: NDArray[np.floating]) -> tuple[Array, NDAr
     return rows / np.where(seen, norms, 1.0)[:, None], seen
 
 
-def _softmax(logits: Array) -> Array:
-    """Softmax over the last axis."""
+def softmax(logits: Array) -> Array:
+    """The softmax over the last axis."""
     shifted = np.exp(logits - logits.max(axis=-1, keepdims=True))
     result: Array = shifted / shifted.sum(axis=-1, keepdims=True)
     return result

@@ -14,14 +14,14 @@ from ...errors import UserError
 from ...scene import Frame, Scene
 from ...viewpoints.coverage import Views
 from ..encoders import Encoder
-from ..encoders.probability import names as names_of
 from ..segmentation.group_renders import mean_vectors, one_thread
 from ..segmentation.segment import Segment
 from ..specs import spec_of
 from .group_index import index_groups
-from .language_field import MAX_NAMES, Group, LanguageField, Names
+from .language_field import Group, LanguageField, Names
 from .making import Making, package_version, rules_digest
 from .measure import box_of, lab_of_cloud
+from .posterior import Belief
 
 
 def with_table(
@@ -86,13 +86,16 @@ def renamed(scene: Scene, encoder: Encoder) -> Scene:
 
 
 def named(field: LanguageField, encoder: Encoder, frame: Frame) -> LanguageField:
-    """The field with the names of its objects by the encoder; structure and names given by others stay."""
+    """The field with the names of its objects from all sources; structure and names given by others stay."""
     if not field.groups:
         return field
-    metres = frame.metres_per_unit
-    sizes = field.boxes.sizes * (metres if metres is not None else np.nan)
-    found = names_of(encoder, field.embeddings, sizes, MAX_NAMES)
-    return replace(field, groups=tuple(_with_names(g, own) for g, own in zip(field.groups, found, strict=True)))
+    if field.making is not None:
+        field = replace(field, making=replace(field.making, trust=None))
+    belief = Belief(field, encoder, frame.metres_per_unit)
+    found = belief.named()
+    groups = tuple(_with_names(g, own) for g, own in zip(field.groups, found, strict=True))
+    making = None if field.making is None else replace(field.making, trust=round(belief.trust, 4))
+    return replace(field, groups=groups, making=making)
 
 
 def _with_names(group: Group, names: Names) -> Group:

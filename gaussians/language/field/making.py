@@ -45,6 +45,7 @@ class Making:
         photographs: number of photographs that pictures of groups were taken from, 0 for renders.
         package: version of scenewright.
         rules: digest of the learnt rules of the segmentation.
+        trust: how far pictures of this scene are trusted to give names, in [0, 1], see `posterior`; None if not known.
     """
 
     encoder: str
@@ -53,10 +54,13 @@ class Making:
     photographs: int = 0
     package: str = ""
     rules: str = ""
+    trust: float | None = None
 
     def lines(self) -> list[str]:
         """The making as lines for a person."""
         found = [f"named by the encoder {self.encoder}; scenewright {self.package}, rules {self.rules}"]
+        if self.trust is not None:
+            found.append(f"its pictures are trusted with {self.trust:.0%}")
         found += [f"masks from {source.describe()}" for source in self.masks]
         return found + ([f"pictures of things from {self.photographs} photographs"] if self.photographs else [])
 

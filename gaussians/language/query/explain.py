@@ -14,7 +14,7 @@ from .picking import rivals
 from .query import Query
 from .resolve import Resolver, Unresolved
 from .selection import Candidate, Verdict
-from .terms import ALL, FLOATERS
+from .terms import ALL, FLOATERS, name_shares
 
 
 @dataclass(frozen=True)
@@ -24,11 +24,13 @@ class Term:
     Attributes:
         score: in [0, 1]; None if it was not computed, because another term already fails.
         threshold: the score from which the term holds.
+        sources: of a name: the probability that each source of names alone gives it.
     """
 
     name: str
     score: float | None
     threshold: float
+    sources: tuple[tuple[str, float], ...] = ()
 
     @property
     def holds(self) -> bool:
@@ -76,6 +78,7 @@ class Explanation:
                         {
                             "name": t.name, "score": None if t.score is None else round(t.score, 4),
                             "threshold": round(t.threshold, 4), "holds": t.holds,
+                            **({"sources": {k: round(v, 4) for k, v in t.sources}} if t.sources else {}),
                         }
                         for t in e.terms
                     ],
@@ -128,9 +131,17 @@ def _candidates(resolver: Resolver, query: Query, selected: set[int]) -> tuple[E
             return "selected"
         return "rival" if i in close else "matches" if rank.holds[i] else "fails"
 
+    shares = {}
+    if "text" in rank.terms:
+        shares = name_shares(resolver.field, resolver.encoder, query.text, resolver.scene.frame.metres_per_unit)
+
     def terms(i: int) -> tuple[Term, ...]:
+        own = tuple((source, float(values[rank.groups[i].id])) for source, values in shares.items())
         scores = ((name, float(values[i])) for name, values in rank.terms.items())
-        return tuple(Term(name, None if math.isnan(s) else s, rank.limits[name]) for name, s in scores)
+        return tuple(
+            Term(name, None if math.isnan(s) else s, rank.limits[name], own if name == "text" else ())
+            for name, s in scores
+        )
 
     order = dict.fromkeys([*matches, *rank.nearest()])
     return tuple(Explained(rank.candidate(i), terms(i), outcome(i)) for i in order)
@@ -140,4 +151,5 @@ def _term_text(term: Term) -> str:
     if term.score is None:
         return f"{term.name} not asked"
     sign = ">=" if term.holds else "<"
-    return f"{term.name} {term.score:.2f} {sign} {term.threshold:.2f}"
+    said = f"{term.name} {term.score:.2f} {sign} {term.threshold:.2f}"
+    return said + (f" ({', '.join(f'{name} {value:.2f}' for name, value in term.sources)})" if term.sources else "")

@@ -1,9 +1,9 @@
 """The terms of a query (name, colours, size, relations), each scored separately for every candidate.
 
-The threshold of a name is that of its encoder, fitted on other rooms and kinds (`Calibration.measured` has its error
-rates). With all 81 names queried in each of 12 embedded rooms, 0.21 found 96.3 % of what was present and refused 96.4 %
-of what was absent; from 0.1 to 0.6 neither falls below 95 %. The best threshold for eleven rooms gains at most 0.3
-points on the twelfth, so it need not be tuned to a scene.
+The threshold of a name is that of its encoder where its pictures are trusted (`field/posterior.py`), fitted on other
+rooms and kinds (`Calibration.measured` has its error rates). With all 81 names queried in each of 12 embedded rooms,
+0.21 found 96.3 % of what was present and refused 96.4 % of what was absent; from 0.1 to 0.6 neither falls below 95 %.
+The best threshold for eleven rooms gains at most 0.3 points on the twelfth, so it need not be tuned to a scene.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from ...world import kinds, relations
 from ...world.box import Boxes
 from ...world.relation_geometry import HOLDS, Stand
 from ...world.words import normalise
-from ..encoders.probability import probability
 from ..field.language_field import Group, LanguageField
+from ..field.posterior import belief_of
 from . import attributes
 from .color_fallback import PARTS
 from .query import Query, Relation
@@ -175,10 +175,9 @@ def name_scores(field: LanguageField, encoder: Encoder | None, text: str, metres
     field.require_encoder(encoder.fingerprint)
     key = (encoder.fingerprint, text, str(metres_per_unit))
     if key not in field.answers:
-        sizes = field.boxes.sizes * metres_per_unit if metres_per_unit is not None else None
-        sure = probability(encoder, text, field.embeddings, sizes)
+        sure = belief_of(field, encoder, metres_per_unit).shares(text).total
         meant = kinds_meant(encoder, text)
-        unseen = ~field.embeddings.any(axis=1)
+        unseen = ~field.embeddings.any(axis=1) & np.array([not g.votes for g in field.groups], dtype=bool)
         named = [
             g.label_score >= OWN_COLOR and (g.label in meant or label_matches(g.label, text)) for g in field.groups
         ]
@@ -189,6 +188,15 @@ def name_scores(field: LanguageField, encoder: Encoder | None, text: str, metres
         by_name = unseen | (given & known) | other
         field.answers[key] = np.where(by_name, known.astype(np.float64), sure)
     return field.answers[key]
+
+
+def name_shares(
+    field: LanguageField, encoder: Encoder | None, text: str, metres_per_unit: float | None
+) -> dict[str, F64]:
+    """The probability `[G]` that each source of names alone gives a `text`; empty where no encoder is asked."""
+    if encoder is None or not is_name(text):
+        return {}
+    return dict(belief_of(field, encoder, metres_per_unit).shares(text).sources)
 
 
 def _another_kind(label: str, text: str) -> bool:
@@ -258,7 +266,7 @@ def scored(
         terms["text"], limits["text"] = np.ones(len(groups)), 0.5
     elif is_name(query.text) and groups:
         terms["text"] = name_scores(field, encoder, query.text, metres_per_unit)[rows]
-        limits["text"] = encoder.calibration.threshold if encoder is not None else 0.5
+        limits["text"] = belief_of(field, encoder, metres_per_unit).confirms if encoder is not None else 0.5
         meant = kinds_meant(encoder, query.text)
         own &= np.array([g.label in meant for g in groups], dtype=bool) if meant else True
     for word in query.colors:

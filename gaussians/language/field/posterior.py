@@ -1,0 +1,243 @@
+"""The probability that a group is what a phrase names, from all sources: pictures, detectors, size and support.
+
+Each source gives every name a likelihood; their product, normalised over the names, is the posterior. Pictures and
+detectors may be wrong as a whole, so their likelihoods are mixed with a constant by the trust in them: however sure one
+of them is, it cannot outweigh another beyond its trust.
+
+The trust in pictures is that of the scene, not of the group. An encoder names things surely where they are like those
+it was trained with, and gives its names little probability elsewhere: over our own rooms, the mean probability of the
+best name is 0.8 to 0.9, over captures 0.1 to 0.4. Where detectors named groups as well, agreement with them counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...world import kinds
+from ...world.words import normalise
+from ..encoders import Encoder
+from ..encoders.calibration import SIZE_CAP
+from ..encoders.probability import distribution, phrase_logits, size_evidence, softmax, why_unknown
+from . import detectors
+from .language_field import MAX_NAMES, Group, LanguageField, Names
+
+F64 = NDArray[np.float64]
+
+MOST_TRUST = 0.97  # in pictures: the embedded encoder names that share of whole things right that it was not trained on
+AGREEMENT_PRIOR = 4.0  # groups named by detectors that the trust by confidence is worth
+SURE_DETECTOR = 0.5  # probability by detectors alone from which a group tells whether pictures agree
+SURE = 0.5  # posterior from which a name is confirmed in a scene whose pictures are not trusted
+TRUSTED = (0.5, 0.9)  # trust in pictures at which the encoder's own threshold begins to confirm, and fully does
+
+
+@dataclass(frozen=True, eq=False)
+class Shares:
+    """What each source says of one phrase.
+
+    Attributes:
+        total: `[G]` posterior.
+        sources: `[G]` the probability by each source alone, in [0, 1]; sources that say nothing are left out.
+    """
+
+    total: F64
+    sources: Mapping[str, F64]
+
+
+@dataclass(frozen=True, eq=False)
+class Belief:
+    """The evidence about the names of all groups of a field. See `belief_of`.
+
+    Attributes:
+        field, encoder: the field, and the encoder of its vectors.
+        metres: metres per unit that sizes are read with, None if unknown.
+    """
+
+    field: LanguageField
+    encoder: Encoder
+    metres: float | None
+
+    @cached_property
+    def detector(self) -> detectors.Detector | None:
+        return detectors.detector_of(self.field.groups)
+
+    @cached_property
+    def pictured(self) -> tuple[str, ...]:
+        """The names that pictures are compared with: kinds of the encoder, then its non-objects."""
+        return (*self.encoder.vocabulary.names, *self.encoder.vocabulary.negatives)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Every name in question: those of `pictured`, then kinds that only detectors know."""
+        heard = () if self.detector is None else self.detector.heard
+        beyond = (detectors.canonical(label) for label in heard if not self.encoder.vocabulary.covered(label))
+        return (*self.pictured, *dict.fromkeys(name for name in beyond if name not in self.pictured))
+
+    @cached_property
+    def is_kind(self) -> NDArray[np.bool_]:
+        """Whether each name `[H]` is a kind and not a non-object."""
+        return np.array([name not in self.encoder.vocabulary.negatives for name in self.names])
+
+    @cached_property
+    def seen(self) -> NDArray[np.bool_]:
+        """Whether each group `[G]` has a vector."""
+        return np.asarray(self.field.embeddings.any(axis=1))
+
+    @cached_property
+    def heard(self) -> F64:
+        """Log-likelihood `[G, H]` of the votes of detectors, not yet tempered."""
+        if self.detector is None:
+            return np.zeros((len(self.field.groups), len(self.names)))
+        return detectors.log_likelihoods(self.field.groups, self.names, self.encoder.vocabulary, self.detector)
+
+    @cached_property
+    def sized(self) -> F64:
+        """Log-likelihood `[G, H]` of the sizes."""
+        if self.metres is None:
+            return np.zeros((len(self.field.groups), len(self.names)))
+        known = size_evidence(self.encoder, self.field.boxes.sizes * self.metres)
+        beyond = len(self.names) - len(self.pictured)
+        neutral = np.full((len(known), beyond), -self.encoder.calibration.size_weight * SIZE_CAP / 3)
+        return np.concatenate([known, neutral], axis=1)
+
+    @cached_property
+    def trust(self) -> float:
+        """Trust in pictures, from the confidence of the encoder and its agreement with detectors."""
+        making = self.field.making
+        if making is not None and making.trust is not None:
+            return making.trust
+        there = np.array([g.level == "object" and g.count > 0 for g in self.field.groups], dtype=bool) & self.seen
+        if not there.any():
+            return MOST_TRUST
+        share = distribution(self.encoder, self.field.embeddings[there])
+        by_confidence = MOST_TRUST
+        if self.encoder.calibration.rivals is None:  # an open vocabulary is trained on photographs of everything
+            weight = np.sqrt([g.count for g, ok in zip(self.field.groups, there, strict=True) if ok])
+            best = share[:, : len(self.encoder.vocabulary.names)].max(axis=1)
+            by_confidence = _sharpened(float(np.average(best, weights=weight)))
+        agreed = self._agreement(there, share)
+        mean = (AGREEMENT_PRIOR * by_confidence + float(agreed.sum())) / (AGREEMENT_PRIOR + len(agreed))
+        return min(mean, MOST_TRUST)
+
+    def _agreement(self, there: NDArray[np.bool_], share: F64) -> F64:
+        """The probability that pictures give the name by detectors, for groups that detectors name surely."""
+        if self.detector is None or not self.encoder.image_size:
+            return np.zeros(0)
+        by_detector = softmax(self.heard[there][:, : len(self.pictured)])
+        best = by_detector.argmax(axis=1)
+        sure = by_detector.max(axis=1) >= SURE_DETECTOR
+        result: F64 = share[np.flatnonzero(sure), best[sure]]
+        return result
+
+    # -- phrases ----------------------------------------------------------------------------------------------------
+
+    def shares(self, text: str) -> Shares:
+        """The posterior of a phrase against every name that it does not cover, and each source's own judgement.
+
+        All are 0 for a phrase that neither the encoder nor a detector knows.
+        """
+        meant = self.meant(text)
+        known = why_unknown(self.encoder, text) is None
+        if not known and not meant.any():
+            nothing = np.zeros(len(self.field.groups))
+            return Shares(nothing, {})
+        logs = {"picture": self._pictures(text, known, meant)}
+        if self.detector is not None:
+            logs["detector"] = _tempered(softmax(_own_first(self.heard, meant)), self.detector.trust)
+        if self.metres is not None:
+            logs["size"] = _own_first(self.sized, meant)
+        total = softmax(np.sum(list(logs.values()), axis=0))[:, 0]
+        told = self.seen | np.array([bool(g.votes) for g in self.field.groups], dtype=bool)
+        return Shares(np.where(told, total, 0.0), {name: softmax(value)[:, 0] for name, value in logs.items()})
+
+    def meant(self, text: str) -> NDArray[np.bool_]:
+        """Which names `[H]` a phrase covers."""
+        covered = self.encoder.vocabulary.covered(text)
+        own, kind = detectors.canonical(text), kinds.of(text)
+        family = kinds.table().families.get(" ".join(normalise(text)), ())
+        inner = {own, *family, *([kind.name] if kind is not None else [])}
+        beyond = self.names[len(self.pictured) :]
+        return np.array([*(n in covered for n in self.pictured), *(n in inner for n in beyond)], dtype=bool)
+
+    def _pictures(self, text: str, known: bool, meant: NDArray[np.bool_]) -> F64:
+        """Tempered log-likelihood `[G, 1 + R]` by pictures of the phrase and of the names that it does not cover."""
+        count = len(self.pictured)
+        rivals = ~meant[:count]
+        beyond = int((~meant[count:]).sum())
+        if known:
+            share = softmax(phrase_logits(self.encoder, text, self.field.embeddings, rivals))
+        else:  # a kind that only detectors know: neither for nor against it
+            among = softmax(phrase_logits(self.encoder, self.pictured[0], self.field.embeddings, rivals)[:, 1:])
+            share = np.concatenate([np.full((len(among), 1), 1 / count), among], axis=1)
+        share = np.concatenate([share, np.full((len(share), beyond), 1 / count)], axis=1)
+        constant = np.full(share.shape, 1 / count)
+        constant[:, 0] = max(int(meant.sum()), 1) / count
+        mixed = self.trust * share + (1 - self.trust) * constant
+        return np.log(np.where(self.seen[:, None], mixed, constant))
+
+    # -- names ------------------------------------------------------------------------------------------------------
+
+    def named(self) -> list[Names]:
+        """The most probable kinds of each group with their posteriors, highest first; none for structure and parts."""
+        share = distribution(self.encoder, self.field.embeddings)
+        share = np.where(self.seen[:, None], share, 1 / share.shape[1])
+        beyond = len(self.names) - len(self.pictured)
+        share = np.concatenate([share, np.full((len(share), beyond), 1 / len(self.pictured))], axis=1)
+        logs = _tempered(share, self.trust, len(self.pictured)) + self.sized
+        if self.detector is not None:
+            logs = logs + _tempered(softmax(self.heard), self.detector.trust)
+        total = np.where(self.is_kind, softmax(logs), 0.0)
+        order = np.argsort(-total, axis=1, kind="stable")[:, :MAX_NAMES]
+        return [
+            tuple((self.names[k], float(row[k])) for k in best if row[k] > 0) if self._nameable(g, seen) else ()
+            for g, seen, best, row in zip(self.field.groups, self.seen, order.tolist(), total, strict=True)
+        ]
+
+    def _nameable(self, group: Group, seen: bool) -> bool:
+        return group.level == "object" and bool(seen or group.votes)
+
+    @property
+    def confirms(self) -> float:
+        """The posterior from which a name is confirmed, and not only likely.
+
+        Where pictures are trusted it is the encoder's threshold, which allows for near-synonyms.
+        """
+        low, high = TRUSTED
+        sure = min(max((self.trust - low) / (high - low), 0.0), 1.0)
+        threshold = self.encoder.calibration.threshold
+        return threshold + (max(SURE, threshold) - threshold) * (1 - sure)
+
+
+_beliefs: WeakKeyDictionary[LanguageField, dict[tuple[str, float | None], Belief]] = WeakKeyDictionary()
+
+
+def belief_of(field: LanguageField, encoder: Encoder, metres: float | None) -> Belief:
+    """The evidence about the names of a field, computed once for each field, encoder and scale."""
+    known = _beliefs.setdefault(field, {})
+    key = (encoder.fingerprint, metres)
+    if key not in known:
+        known[key] = Belief(field, encoder, metres)
+    return known[key]
+
+
+def _sharpened(confidence: float) -> float:
+    """Twice the log-odds of a confidence: an encoder is overconfident the more, the less it is right."""
+    right, wrong = confidence**2, (1 - confidence) ** 2
+    return right / max(right + wrong, 1e-12)
+
+
+def _own_first(logs: F64, meant: NDArray[np.bool_]) -> F64:
+    """Logs `[G, 1 + R]` of the best of the meant names, or of a neutral one if none is, followed by the others."""
+    own = logs[:, meant].max(axis=1) if meant.any() else np.log(np.exp(logs).mean(axis=1))
+    return np.concatenate([own[:, None], logs[:, ~meant]], axis=1)
+
+
+def _tempered(share: F64, trust: float, count: int | None = None) -> F64:
+    """Log of probabilities `[G, K]` mixed with a constant by the distrust in them."""
+    result: F64 = np.log(trust * share + (1 - trust) / (count or share.shape[1]))
+    return result

@@ -1,0 +1,205 @@
+"""Names from all sources: what pictures, detectors and sizes say is multiplied, each within the trust in it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from scenewright.gaussians.language.encoders import Encoder
+from scenewright.gaussians.language.encoders.calibration import Calibration, SizePrior
+from scenewright.gaussians.language.encoders.probability import probability
+from scenewright.gaussians.language.encoders.vocabulary import Vocabulary
+from scenewright.gaussians.language.field.detectors import detector_of
+from scenewright.gaussians.language.field.language_field import Group, LanguageField, Names
+from scenewright.gaussians.language.field.making import Making
+from scenewright.gaussians.language.field.posterior import MOST_TRUST, Belief
+from scenewright.gaussians.world.box import Box
+
+KINDS = ("chair", "armchair", "sofa", "bicycle", "potted plant", "vase", "mug", "rug", "lamp", "books")
+AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+LARGE, SMALL = (0.5, 0.5, 0.9), (0.09, 0.09, 0.1)
+
+
+def prior(*size: float) -> SizePrior:
+    return SizePrior(tuple(np.log(size)), (0.3, 0.3, 0.3))  # type: ignore[arg-type]
+
+
+class Axes:
+    """One axis for each kind and one for what is no object."""
+
+    fingerprint = "axes:1"
+    dim = len(KINDS) + 1
+    image_size = 8
+    vocabulary = Vocabulary({k: () for k in KINDS}, {"chair": ("chair", "armchair")}, ("part of something",))
+    calibration = Calibration(8.0, 0.21, 1.0, {"chair": prior(*LARGE), "mug": prior(*SMALL)})
+
+    def encode_text(self, texts: list[str]) -> NDArray[np.float32]:
+        rows = np.zeros((len(texts), self.dim), np.float32)
+        for row, text in zip(rows, texts, strict=True):
+            kinds = self.vocabulary.covered(text)
+            row[[KINDS.index(k) for k in kinds] or [-1]] = 1 / np.sqrt(max(len(kinds), 1))
+        return rows
+
+    def encode_images(self, images: NDArray[np.uint8]) -> NDArray[np.float32]:
+        return np.eye(self.dim, dtype=np.float32)[[-1] * len(images)]
+
+    def unknown_words(self, text: str) -> tuple[str, ...]:
+        return tuple(w for w in text.split() if not self.vocabulary.covered(text))
+
+    def knows(self, text: str) -> bool:
+        return bool(text) and not self.unknown_words(text)
+
+
+ENCODER: Encoder = Axes()
+
+
+def picture(kind: str, sure: float = 1.0) -> list[float]:
+    """A vector between a kind and no object at all."""
+    row = np.zeros(Axes.dim)
+    row[KINDS.index(kind)], row[-1] = sure, 1 - sure
+    return list(row / np.linalg.norm(row))
+
+
+def field(
+    pictures: list[list[float]], votes: list[Names] | None = None,
+    sizes: list[tuple[float, float, float]] | None = None, trust: float | None = None,
+) -> LanguageField:  # fmt: skip
+    """Objects with these pictures, votes and sizes."""
+    groups = tuple(
+        Group(
+            i, "object", -1, "", 0.0, Box((0, 0, 0), AXES, (sizes or [LARGE] * len(pictures))[i]), (50, 0, 0), 100, 3,
+            1.0, votes=(votes or [()] * len(pictures))[i],
+        )
+        for i in range(len(pictures))
+    )  # fmt: skip
+    making = None if trust is None else Making("axes", trust=trust)
+    return LanguageField(groups, np.array(pictures, np.float32), ENCODER.fingerprint, (), making)
+
+
+def believed(table: LanguageField, metres: float | None = None) -> Belief:
+    return Belief(table, ENCODER, metres)
+
+
+def test_pictures_that_are_trusted_say_what_the_encoder_says() -> None:
+    table = field([picture("chair"), picture("mug", 0.6), picture("vase", 0.5)])
+    belief = believed(table)
+    assert belief.trust == pytest.approx(MOST_TRUST, abs=0.15)
+    for kind in KINDS:
+        alone = probability(ENCODER, kind, table.embeddings)
+        assert np.allclose(belief.shares(kind).total, alone, atol=0.12)
+        assert (belief.shares(kind).total.argsort() == alone.argsort()).all()
+
+
+def test_posteriors_of_disjoint_kinds_sum_to_at_most_one() -> None:
+    votes: list[Names] = [(("bicycle", 5.0), ("vase", 2.0), ("", 9.0)), ()]
+    belief = believed(field([picture("chair", 0.7), picture("bicycle")], votes), 1.0)
+    total = sum(belief.shares(kind).total for kind in KINDS if kind not in ("chair", "armchair"))
+    assert (np.asarray(total) <= 1.001).all()
+    for names in belief.named():
+        assert sum(p for _, p in names) <= 1.001 and [p for _, p in names] == sorted(
+            (p for _, p in names), reverse=True
+        )
+
+
+def test_a_detector_beats_look_alikes_where_pictures_are_not_trusted() -> None:
+    """All five pictures look like bicycles to an encoder that is lost; one is a bicycle by the detector."""
+    pictures = [picture("bicycle", 0.55)] * 4 + [picture("lamp", 0.55)]
+    votes: list[Names] = [(), (), (("chair", 9.0),), (("vase", 6.0), ("", 3.0)), (("bicycle", 20.0), ("chair", 1.0))]
+    belief = believed(field(pictures, votes, trust=0.2))
+    found = belief.shares("bicycle").total
+    assert found.argmax() == 4 and found[4] > belief.confirms > found[:4].max()
+    assert [names[0][0] for names in belief.named()][2:] == ["chair", "vase", "bicycle"]
+
+
+def test_no_picture_confirms_a_name_in_a_scene_that_the_encoder_does_not_know() -> None:
+    belief = believed(field([picture("sofa")] + [picture("mug", 0.1)] * 9))
+    assert belief.trust < 0.3
+    assert belief.shares("sofa").total[0] < belief.confirms
+    sure = believed(field([picture("sofa")] + [picture("mug")] * 9))
+    assert sure.shares("sofa").total[0] > sure.confirms
+
+
+def test_agreement_with_detectors_raises_the_trust_in_pictures_and_contradiction_lowers_it() -> None:
+    pictures = [picture(k, 0.5) for k in ("mug", "vase", "rug", "books")]
+    right: list[Names] = [((k, 9.0),) for k in ("mug", "vase", "rug", "books")]
+    wrong: list[Names] = [((k, 9.0),) for k in ("vase", "rug", "books", "mug")]
+    alone, agreeing, contradicted = (believed(field(pictures, v)).trust for v in (None, right, wrong))
+    assert contradicted < alone < agreeing
+
+
+def test_one_view_in_thirty_names_nothing() -> None:
+    belief = believed(field([picture("mug", 0.0)], [(("sofa", 1.0), ("", 29.0))], trust=0.2))
+    assert belief.shares("sofa").total[0] < 0.2
+
+
+def test_what_a_detector_calls_differently_in_every_view_has_no_sure_name() -> None:
+    votes: list[Names] = [(("sofa", 3.0), ("chair", 3.0), ("vase", 3.0), ("books", 3.0))]
+    belief = believed(field([picture("mug", 0.0)], votes, trust=0.2))
+    assert all(belief.shares(kind).total[0] < belief.confirms for kind in KINDS)
+
+
+@pytest.mark.parametrize("wrong", [0.0, 0.2, 0.35])
+def test_labels_that_are_wrong_now_and_then_still_name_things(wrong: float) -> None:
+    """24 views of each of ten things; a wrong label is any of 30 others."""
+    rng = np.random.default_rng(3)
+    votes: list[Names] = []
+    for kind in KINDS:
+        said = [kind if rng.random() >= wrong else f"noise {rng.integers(30)}" for _ in range(24)]
+        count = {name: float(said.count(name)) for name in dict.fromkeys(said)}
+        votes.append(tuple(sorted(count.items(), key=lambda v: -v[1])))
+    belief = believed(field([picture("mug", 0.0)] * 10, votes, trust=0.1))
+    assert [names[0][0] for names in belief.named()] == list(KINDS)
+    assert belief.detector is not None and abs(belief.detector.right - (1 - wrong)) < 0.1
+
+
+def test_the_size_decides_between_kinds_that_look_alike() -> None:
+    between = (np.array(picture("chair")) + np.array(picture("mug"))).tolist()
+    table = field([between, between], sizes=[LARGE, SMALL])
+    assert [n[0][0] for n in believed(table, 1.0).named()] == ["chair", "mug"]
+    shares = believed(table, 1.0).shares("mug")
+    assert shares.sources["size"][1] > shares.sources["size"][0]
+    assert "size" not in believed(table).shares("mug").sources  # the scale is not known
+
+
+def test_a_kind_that_only_the_detector_knows_is_found_by_its_votes() -> None:
+    votes: list[Names] = [(("cat", 12.0), ("", 4.0)), (("mug", 12.0),)]
+    belief = believed(field([picture("rug", 0.3), picture("mug", 0.8)], votes, trust=0.3))
+    found = belief.shares("cat")
+    assert found.total[0] > belief.confirms > found.total[1]
+    assert belief.named()[0][0][0] == "cat"
+    assert not belief.shares("giraffe").total.any()  # nobody knows it
+
+
+def test_a_label_covers_narrower_kinds() -> None:
+    """A detector that knows chairs alone calls armchairs so; the picture says which it is."""
+    votes: list[Names] = [(("chair", 12.0),), (("chair", 12.0),)]
+    table = field([picture("armchair", 0.8), picture("sofa", 0.3)], votes, trust=0.8)
+    names = believed(table).named()
+    assert names[0][0][0] == "armchair" and names[1][0][0] == "chair"
+
+
+@given(st.lists(st.floats(0, 40), min_size=3, max_size=3), st.floats(0.05, 0.97))
+@settings(max_examples=60, deadline=None)
+def test_another_vote_for_the_leading_name_never_lowers_it(weights: list[float], trust: float) -> None:
+    """While nothing else changes; the reliability of the detector is held by a second group."""
+    weights.sort(reverse=True)
+    steady: Names = (("vase", 10.0),)
+    base: Names = (("mug", weights[0]), ("vase", weights[1]), ("", weights[2]))
+    more: Names = (("mug", weights[0] + 1), ("vase", weights[1]), ("", weights[2]))
+    pictures = [picture("mug", 0.5), picture("vase", 0.5)]
+    before = believed(field(pictures, [base, steady], trust=trust))
+    after = believed(field(pictures, [more, steady], trust=trust))
+    detector = detector_of(before.field.groups)
+    for belief in (before, after):
+        belief.__dict__["detector"] = detector
+    if detector is not None and "mug" in detector.heard:
+        assert after.shares("mug").total[0] >= before.shares("mug").total[0] - 1e-9
+
+
+def test_the_same_evidence_gives_the_same_names() -> None:
+    votes: list[Names] = [(("mug", 1.0),), ()]
+    pictures = [picture("mug", 0.4), picture("vase", 0.4)]
+    assert believed(field(pictures, votes)).named() == believed(field(pictures, votes)).named()
