@@ -18,7 +18,6 @@ import numpy as np
 from ....agent.session.session import Session
 from ....gaussians.camera import Camera
 from ....gaussians.errors import ScenewrightError
-from ....gaussians.language import masks
 from ....gaussians.language.encoders import Encoder
 from ....gaussians.language.query.query import Query
 from ....gaussians.language.query.resolve import resolve
@@ -255,8 +254,6 @@ def measure(captures: Path, names: Sequence[str] = tuple(SETTINGS)) -> Part:
         "groups, what any choice of groups could reach; best_group: of single objects; gaussian_limit: of single "
         "Gaussians"
     ]
-    if "pictures" not in masks.names():
-        notes.append("captures: this version reads no masks from photographs; photos measures the cameras alone")
     for name in names:
         if not (captures / name).is_dir():
             notes.append(f"captures: {name} is not here")

@@ -138,12 +138,9 @@ def encoder_of(captures: Path, setting: Setting) -> Encoder:
 
 
 def sources(capture: Path, setting: Setting) -> list[Masker]:
-    """The sources of masks of a setting; photographs count where the package can read masks from them."""
-    found: list[Masker] = []
-    if setting.photographs and "pictures" in masks.names():
-        found.append(masks.load("pictures", capture))
-    if setting.masks == "folder":
-        found.append(masks.load(f"folder:{capture / 'masks'}", capture / "transforms.json"))
+    """The sources of masks of a setting, as `embed` takes them from a user."""
+    named = f"folder:{capture / 'masks'}" if setting.masks == "folder" else None
+    found = list(masks.load_all(named, capture)[0]) if setting.photographs else []
     if setting.masks == "true":
         found.append(Given(tuple(_true_masks(capture))))
     return found
@@ -166,5 +163,5 @@ def embedded(captures: Path, name: str, setting: Setting, encoder: Encoder) -> t
     """The embedded scene, and the seconds that it took."""
     scene, given = bare_scene(captures, name, setting), sources(captures / name, setting)
     start = time.perf_counter()
-    made = embed(scene, encoder, masks=given[-1] if given else None)
+    made = embed(scene, encoder, masks=given or None)
     return made, time.perf_counter() - start
