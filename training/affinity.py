@@ -22,6 +22,7 @@ from ..gaussians.language.segmentation.learned_rule import Rule, rule_of
 from ..gaussians.language.segmentation.regions import Graph
 from ..gaussians.language.segmentation.segment import graph_of, superpoints_and_structure
 from ..gaussians.language.segmentation.superpoints import links_of
+from ..gaussians.language.segmentation.settle import settled
 from ..gaussians.language.segmentation.surface import surface_of
 from ..gaussians.scene import Scene
 from .rules import Examples, Rooms, command, fit, joined, training_count, with_held_out
@@ -48,7 +49,7 @@ def labelled_graph(scene: Scene, truth: NDArray[np.int32]) -> LabelledGraph:
     Args:
         truth: `[N]` object of each Gaussian, -1 for structure.
     """
-    surface = surface_of(scene.cloud)
+    surface = settled(surface_of(scene.cloud), scene.cloud, scene.frame)
     links = links_of(surface)
     labels, kind_of = superpoints_and_structure(surface, links, scene.frame)
     graph = graph_of(surface, links, labels, kind_of, scene.frame)

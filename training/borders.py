@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ..gaussians.language.segmentation import borders, structure
 from ..gaussians.language.segmentation.segment import superpoints_and_structure
 from ..gaussians.language.segmentation.superpoints import links_of, touching
+from ..gaussians.language.segmentation.settle import settled
 from ..gaussians.language.segmentation.surface import surface_of
 from ..gaussians.scene import Scene
 from .rules import Examples, Rooms, command, fit_and_evaluate, joined
@@ -25,7 +26,7 @@ ABSORBED = 0.5  # share of the unrecognised pieces of floor that are assigned to
 
 def point_examples(scene: Scene, truth: NDArray[np.int32], rng: np.random.Generator) -> Examples:
     """Points at borders paired with each object near them, and whether they belong to it, over two passes."""
-    surface = surface_of(scene.cloud)
+    surface = settled(surface_of(scene.cloud), scene.cloud, scene.frame)
     links = links_of(surface)
     labels, codes = superpoints_and_structure(surface, links, scene.frame)
     kinds = structure.kind_of(codes)

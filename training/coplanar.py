@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ..gaussians.assets import furnish
 from ..gaussians.language.segmentation import coplanar, planes, structure
 from ..gaussians.language.segmentation.superpoints import links_of, superpoints
+from ..gaussians.language.segmentation.settle import settled
 from ..gaussians.language.segmentation.surface import surface_of
 from ..gaussians.scene import Scene
 from .rules import Examples, Rooms, command, fit_and_evaluate, joined
@@ -28,7 +29,7 @@ def piece_examples(scene: Scene, truth: NDArray[np.int32]) -> Examples:
     Args:
         truth: `[N]` object of each Gaussian, -1 for structure.
     """
-    surface = surface_of(scene.cloud)
+    surface = settled(surface_of(scene.cloud), scene.cloud, scene.frame)
     labels = superpoints(surface, links_of(surface))
     flat = planes.level(surface, scene.frame)
     free = (truth[surface.rows] < 0).astype(np.float64)

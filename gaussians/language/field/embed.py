@@ -27,6 +27,7 @@ from ..masks.tally import Tally
 from ..segmentation.group_renders import one_thread
 from ..segmentation.orient import estimate_frame
 from ..segmentation.segment import VIEWS_PER_CANDIDATE, Progress, Segment, segment
+from ..segmentation.settle import settled
 from ..segmentation.surface import MIN_OPACITY, Surface, surface_of
 from .group_table import vector_of_votes, with_table
 from .making import MaskSource
@@ -60,6 +61,7 @@ def embed(
     progress("surface", 0.0)
     surface = surface_of(scene.cloud)
     frame = estimate_frame(surface, scene.cameras, scene.frame)
+    surface = settled(surface, scene.cloud, frame)
     scene = scene.replace(frame=frame)
     progress("views", 0.0)
     seen = choose_views(scene)

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from ...scene import Frame
 from .coplanar import PlaneSuperpoints, plane_superpoints
-from .planes import Level, Plane, ceiling_of, ground_of, level, walls_of
+from .ground import Ground, ground_of
+from .planes import Level, Plane, ceiling_of, level, walls_of
 from .superpoints import LIGHTNESS
 from .surface import Surface
 
@@ -54,8 +55,8 @@ def planes_of(surface: Surface, flat: Level) -> tuple[NDArray[np.bool_], list[tu
     ground = ground_of(surface, flat)
     planes: list[tuple[int, Plane]] = []
     terrain = np.zeros(len(surface), bool)
-    if isinstance(ground, Plane):
-        planes.append((FLOOR, ground))
+    if isinstance(ground, Ground):
+        planes += [(FLOOR, plane) for plane in ground.planes(flat)]
     elif ground is not None:
         terrain = ground
     planes += [(WALL, p) for p in walls_of(surface, flat, ~terrain)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -66,7 +66,7 @@ def surface_of(cloud: GaussianCloud, most: int = MAX_POINTS) -> Surface:
 
     At most `most` points, taken at even steps over the rows.
     """
-    rows = _solid_rows(cloud)
+    rows = solid_rows(cloud)
     if len(rows) > most:
         rows = rows[np.linspace(0, len(rows) - 1, most).astype(np.int64)]
     points = cloud.means[rows].numpy()
@@ -79,16 +79,41 @@ def surface_of(cloud: GaussianCloud, most: int = MAX_POINTS) -> Surface:
             break
         rows, points = rows[kept], points[kept]  # drop floaters and search the neighbours again
         gaps, neighbours = _nearest(points, k)
-    part = cloud[torch.from_numpy(rows)]
+    return _measured(cloud[torch.from_numpy(rows)], rows, neighbours, gaps, spacing)
+
+
+def surface_at(cloud: GaussianCloud, rows: NDArray[np.int64], points: F32, normal: F32, trust: F32) -> Surface:
+    """The surface of some rows whose points are known to lie elsewhere than their Gaussians.
+
+    Args:
+        rows: `[M]` of the cloud.
+        points: `[M, 3]` world.
+        normal: `[3]` unit; a known normal.
+        trust: `[M]` in [0, 1], share of the known normal in the result; the rest is measured.
+    """
+    k = min(NEIGHBOURS, max(len(rows) - 1, 1))
+    gaps, neighbours = _nearest(points, k)
+    part = cloud[torch.from_numpy(rows)].replace(means=torch.from_numpy(points))
+    found = _measured(part, rows, neighbours, gaps, float(np.median(gaps[:, : max(1, k // 2)])))
+    same = np.where((found.normals @ normal)[:, None] < 0, -normal, normal)
+    mixed = (1 - trust[:, None]) * found.normals + trust[:, None] * same
+    mixed /= np.maximum(np.linalg.norm(mixed, axis=1, keepdims=True), 1e-9)
+    return replace(found, normals=mixed.astype(np.float32), flatness=np.maximum(found.flatness, trust))
+
+
+def _measured(
+    part: GaussianCloud, rows: NDArray[np.int64], neighbours: NDArray[np.int32], gaps: F32, spacing: float
+) -> Surface:
     raw_lab = base_lab(part).numpy()
     normals, flatness = _smoothed_normals(part, neighbours)
     return Surface(
-        rows, points, normals, flatness, _smoothed_lab(raw_lab, neighbours), raw_lab, _footprint(part),
+        rows, part.means.numpy(), normals, flatness, _smoothed_lab(raw_lab, neighbours), raw_lab, _footprint(part),
         neighbours, gaps, spacing,
     )  # fmt: skip
 
 
-def _solid_rows(cloud: GaussianCloud) -> NDArray[np.int64]:
+def solid_rows(cloud: GaussianCloud) -> NDArray[np.int64]:
+    """Rows `[K]` of the Gaussians that are opaque enough and not oversized."""
     largest = cloud.scales.amax(dim=1)
     if len(cloud) == 0:
         return np.zeros(0, np.int64)

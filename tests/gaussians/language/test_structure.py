@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.language.segmentation.structure import CEILING, FLOOR, NONE, WALL, kind_of, structures
 from scenewright.gaussians.language.segmentation.superpoints import links_of, superpoints
+from scenewright.gaussians.language.segmentation.settle import settled
 from scenewright.gaussians.language.segmentation.surface import surface_of
 from scenewright.gaussians.scene import Frame
 
@@ -25,7 +26,8 @@ FEW = 0.05
 def kinds_of(made: Any, turn: NDArray[np.float64] | None = None) -> dict[str, dict[int, float]]:
     """For each piece the share of its surface points that is called each kind of structure."""
     frame = Frame() if turn is None else Frame(tuple(float(v) for v in turn @ [0, 0, 1]))  # type: ignore[arg-type]
-    surface = surface_of(made.cloud(turn))
+    cloud = made.cloud(turn)
+    surface = settled(surface_of(cloud), cloud, frame)
     names = sorted(made.rows)
     piece = made.labels(names)[surface.rows]
     found = kind_of(structures(surface, superpoints(surface, links_of(surface)), frame))
