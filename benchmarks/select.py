@@ -14,7 +14,9 @@ from functools import cache
 from ..gaussians.language import encoders
 from ..gaussians.language.encoders import Encoder
 from . import _clip, _data
-from ._select import cases, composed, costs, curves, lifted, meshes, names, pairs, relations, stability
+from ._select import (
+    cases, composed, costs, curves, floor_noise, lifted, meshes, names, pairs, relations, stability,
+)  # fmt: skip
 from ._select.cases import Case, Part
 from ._select.real import captures
 from .harness import Metric, Result
@@ -77,6 +79,7 @@ def run(quick: bool) -> Result:
         stability.thresholds(known, encoder),
         stability.floaters(steady, encoder, grouped, stability.FLOATERS[-1:] if quick else stability.FLOATERS),
         *([] if quick else [lifted.fewer_views(steady, encoder)]),
+        *([] if quick else [floor_noise.measure(plan.stability, grouped)]),
         *curves.measure([rooms[s] for s in plan.chart], encoder, grouped, quick),
     ]
     return Result(

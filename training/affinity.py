@@ -21,8 +21,8 @@ from ..gaussians.language.segmentation import affinity
 from ..gaussians.language.segmentation.learned_rule import Rule, rule_of
 from ..gaussians.language.segmentation.regions import Graph
 from ..gaussians.language.segmentation.segment import graph_of, superpoints_and_structure
-from ..gaussians.language.segmentation.superpoints import links_of
 from ..gaussians.language.segmentation.settle import settled
+from ..gaussians.language.segmentation.superpoints import links_of
 from ..gaussians.language.segmentation.surface import surface_of
 from ..gaussians.scene import Scene
 from .rules import Examples, Rooms, command, fit, joined, training_count, with_held_out

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from ..gaussians.language.segmentation import borders, structure
 from ..gaussians.language.segmentation.segment import superpoints_and_structure
-from ..gaussians.language.segmentation.superpoints import links_of, touching
 from ..gaussians.language.segmentation.settle import settled
+from ..gaussians.language.segmentation.superpoints import links_of, touching
 from ..gaussians.language.segmentation.surface import surface_of
 from ..gaussians.scene import Scene
 from .rules import Examples, Rooms, command, fit_and_evaluate, joined

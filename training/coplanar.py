@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from ..gaussians.assets import furnish
 from ..gaussians.language.segmentation import coplanar, planes, structure
-from ..gaussians.language.segmentation.superpoints import links_of, superpoints
 from ..gaussians.language.segmentation.settle import settled
+from ..gaussians.language.segmentation.superpoints import links_of, superpoints
 from ..gaussians.language.segmentation.surface import surface_of
 from ..gaussians.scene import Scene
 from .rules import Examples, Rooms, command, fit_and_evaluate, joined

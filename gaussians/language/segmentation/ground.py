@@ -152,7 +152,7 @@ def _tilt(plan: _Map, tolerance: float) -> F64:
     Laid through random triples of cells (RANSAC: Fischler & Bolles 1981) and fitted to the cells near it.
     """
     full = np.flatnonzero(np.isfinite(plan.lowest))
-    level = np.zeros(3)
+    level: F64 = np.zeros(3)
     if len(full) < 30:
         return level
     design = np.column_stack([np.ones(len(full)), plan.centre[full]])
@@ -160,11 +160,12 @@ def _tilt(plan: _Map, tolerance: float) -> F64:
     order = np.sort(heights)
     flat = int((np.searchsorted(order, order + 2 * tolerance) - np.arange(len(order))).max())
     triples = np.random.default_rng(0).integers(len(full), size=(TRIALS, 3))
-    best, most = level, TILT_GAIN * flat
+    best = level
+    most = TILT_GAIN * flat
     for triple in triples:
         if abs(np.linalg.det(design[triple])) < 1e-9:
             continue
-        slope = np.linalg.solve(design[triple], heights[triple])
+        slope: F64 = np.linalg.solve(design[triple], heights[triple])
         if not TILTS[0] < np.degrees(np.arctan(np.linalg.norm(slope[1:]))) < TILTS[1]:
             continue
         gap = heights - design @ slope
@@ -174,7 +175,7 @@ def _tilt(plan: _Map, tolerance: float) -> F64:
             best, most = slope, inside
     for _ in range(5 * bool(best.any())):
         near = np.abs(heights - design @ best) < tolerance
-        best = np.linalg.lstsq(design[near], heights[near], rcond=None)[0]
+        best = np.asarray(np.linalg.lstsq(design[near], heights[near], rcond=None)[0], np.float64)
     return best
 
 
@@ -200,9 +201,9 @@ def layer(off: F64, area: NDArray[np.floating], height: float, broad: float) -> 
         height: first guess.
         broad: size of the scene.
     """
-    noise = 0.0
-    for _ in range(8):
-        below = height - off[(off < height) & (off > height - 3 * MAX_NOISE * broad)]
+    noise = 0.004 * broad
+    for _ in range(10):  # the window grows with the noise, so that the underside of a slab stays out of it
+        below = height - off[(off < height) & (off > height - 6 * noise)]
         if not len(below):
             return height, 0.0
         noise = min(float(np.median(below)) / MEDIAN_OF_HALF_NORMAL, MAX_NOISE * broad)

@@ -17,16 +17,17 @@ from ...scene import Frame
 from .ground import Ground, ground_of, layer
 from .planes import level
 from .superpoints import LIGHTNESS
-from .surface import F32, MAX_POINTS, Surface, base_lab, solid_rows, surface_at
+from .surface import F32, MAX_POINTS, Known, Surface, base_lab, solid_rows, surface_at
 
 F64 = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 MIN_SURFACE = 200  # points; smaller surfaces have no floor
-ROUNDS = 3  # the layer tells which points are its own, and these tell its noise
+ROUNDS = 5  # the layer tells which points are its own, and these tell its noise
 CALM = 0.02  # of the spacing: noise that changes nothing
+DEEP = 2.5  # standard deviations beneath the plane: nothing but the floor is this deep
 LAYER = 2.0  # standard deviations of the noise within which a point surely lies in the layer
-DEPTH = 0.03  # of the scene's width: points this far beneath the floor are its own, as are those of its underside
+DEPTH = 0.05  # of the scene's width: points this far beneath the floor are its own, as are those of its underside
 SURE = 4000  # points of the floor that show its colours
 NEAREST = 12  # of them that a point's colour is compared with
 LEAST_COLOR = 4.0  # Lab, standard deviation of one colour
@@ -55,10 +56,15 @@ def settled(surface: Surface, cloud: GaussianCloud, frame: Frame) -> Surface:
     for at in ground.levels:
         off, noise, kept = ground.off(places) - at, ground.noise, on_surface
         for _ in range(ROUNDS):
-            own = _in_layer(places, lab, off, kept, max(noise, CALM * surface.spacing), DEPTH * width)
-            kept = on_surface | (own > 0.5)
+            least = max(noise, CALM * surface.spacing)
+            depth = DEPTH * width if at == min(ground.levels) else DEEP * least
+            own = _in_layer(places, lab, off, kept, least, depth)
+            kept = (own > 0.5) & (off > -4 * least)
+            if kept.sum() < MIN_SURFACE:
+                break
             height, noise = layer(off[kept], np.ones(int(kept.sum())), 0.0, width)
             off = off - height
+            kept |= on_surface
         shift = np.where(own > share, off, shift)
         share = np.maximum(own, share)
     if not ((np.abs(shift) > CALM * surface.spacing) & (share > 0.5)).any():
@@ -66,7 +72,8 @@ def settled(surface: Surface, cloud: GaussianCloud, frame: Frame) -> Surface:
     kept = on_surface | (share > 0.5)
     up = (ground.normal @ frame.basis()).astype(np.float32)
     points = points - ((share * shift)[:, None] * up).astype(np.float32)
-    return surface_at(cloud, rows[kept], points[kept], up, share[kept].astype(np.float32))
+    sunk = (share > 0.5) & (shift < -CALM * surface.spacing)
+    return surface_at(cloud, Known(rows[kept], points[kept], up, share[kept].astype(np.float32), sunk[kept]))
 
 
 def _in_layer(places: F64, lab: F32, off: F64, kept: Mask, noise: float, depth: float) -> F64:
@@ -80,18 +87,18 @@ def _in_layer(places: F64, lab: F32, off: F64, kept: Mask, noise: float, depth: 
         noise: standard deviation of the layer.
         depth: distance beneath the plane down to which all points are the floor's.
     """
-    share = ((off < 0) & (off > -depth)).astype(np.float64)
-    beneath = np.flatnonzero((share > 0) & (off > -4 * noise) & kept)
+    share = ((off < -DEEP * noise) & (off > -depth)).astype(np.float64)
+    beneath = np.flatnonzero((off < -noise) & (off > -4 * noise) & kept)
     if len(beneath) < NEAREST + 1:
         return share
     sure = beneath[np.linspace(0, len(beneath) - 1, min(SURE, len(beneath))).astype(np.int64)]
     tree = cKDTree(places[sure, :2])
     own = _nearest_color(tree, places[sure, :2], lab[sure], lab[sure], 1)
     deviation = max(LEAST_COLOR, 1.5 * float(np.median(own)))
-    above = np.flatnonzero((off >= 0) & (off < (LAYER + 2) * noise))
-    gap = _nearest_color(tree, places[above, :2], lab[above], lab[sure], 0)
-    beyond = np.maximum(off[above] / noise - LAYER, 0.0)
-    share[above] = np.exp(-0.5 * ((gap / deviation) ** 2 + (beyond / 0.5) ** 2))
+    within = np.flatnonzero((off >= -DEEP * noise) & (off < (LAYER + 2) * noise))
+    gap = _nearest_color(tree, places[within, :2], lab[within], lab[sure], 0)
+    beyond = np.maximum(off[within] / noise - LAYER, 0.0)
+    share[within] = np.exp(-0.5 * ((gap / deviation) ** 2 + (beyond / 0.5) ** 2))
     return share
 
 

@@ -39,7 +39,7 @@ def structures(surface: Surface, labels: NDArray[np.int32], frame: Frame) -> NDA
     if len(surface) < MIN_SURFACE:
         return found
     terrain, planes = planes_of(surface, flat)
-    found[terrain] = FLOOR
+    found[terrain | surface.sunk] = FLOOR
     for number, (kind, plane) in enumerate(planes):
         found[_points_of_plane(surface, labels, flat, plane, found == NONE)] = kind + KINDS * number * (kind == WALL)
     return found

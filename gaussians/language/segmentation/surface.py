@@ -39,6 +39,7 @@ class Surface:
         neighbours: `[M, K]` int32, nearest points; a point with fewer repeats itself.
         gaps: `[M, K]` distances to them, scene units.
         spacing: median distance to the nearest neighbours, scene units.
+        sunk: `[M]` whether the point's Gaussian lies beneath the floor and so is part of it; see `settle.py`.
     """
 
     rows: NDArray[np.int64]
@@ -51,9 +52,29 @@ class Surface:
     neighbours: NDArray[np.int32]
     gaps: F32
     spacing: float
+    sunk: NDArray[np.bool_]
 
     def __len__(self) -> int:
         return len(self.rows)
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known about M surface points before they are measured.
+
+    Attributes:
+        rows: `[M]` of the cloud.
+        points: `[M, 3]` world, scene units.
+        normal: `[3]` unit, of the plane that some of them lie in.
+        trust: `[M]` in [0, 1], share of that normal in the result; the rest is measured.
+        sunk: `[M]` see `Surface`.
+    """
+
+    rows: NDArray[np.int64]
+    points: F32
+    normal: F32
+    trust: F32
+    sunk: NDArray[np.bool_]
 
 
 def base_lab(cloud: GaussianCloud) -> torch.Tensor:
@@ -82,23 +103,18 @@ def surface_of(cloud: GaussianCloud, most: int = MAX_POINTS) -> Surface:
     return _measured(cloud[torch.from_numpy(rows)], rows, neighbours, gaps, spacing)
 
 
-def surface_at(cloud: GaussianCloud, rows: NDArray[np.int64], points: F32, normal: F32, trust: F32) -> Surface:
-    """The surface of some rows whose points are known to lie elsewhere than their Gaussians.
-
-    Args:
-        rows: `[M]` of the cloud.
-        points: `[M, 3]` world.
-        normal: `[3]` unit; a known normal.
-        trust: `[M]` in [0, 1], share of the known normal in the result; the rest is measured.
-    """
-    k = min(NEIGHBOURS, max(len(rows) - 1, 1))
-    gaps, neighbours = _nearest(points, k)
-    part = cloud[torch.from_numpy(rows)].replace(means=torch.from_numpy(points))
-    found = _measured(part, rows, neighbours, gaps, float(np.median(gaps[:, : max(1, k // 2)])))
-    same = np.where((found.normals @ normal)[:, None] < 0, -normal, normal)
-    mixed = (1 - trust[:, None]) * found.normals + trust[:, None] * same
+def surface_at(cloud: GaussianCloud, known: Known) -> Surface:
+    """The surface of Gaussians whose points are known to lie elsewhere than they do."""
+    k = min(NEIGHBOURS, max(len(known.rows) - 1, 1))
+    gaps, neighbours = _nearest(known.points, k)
+    part = cloud[torch.from_numpy(known.rows)].replace(means=torch.from_numpy(known.points))
+    found = _measured(part, known.rows, neighbours, gaps, float(np.median(gaps[:, : max(1, k // 2)])))
+    same = np.where((found.normals @ known.normal)[:, None] < 0, -known.normal, known.normal)
+    trust = known.trust[:, None]
+    mixed = (1 - trust) * found.normals + trust * same
     mixed /= np.maximum(np.linalg.norm(mixed, axis=1, keepdims=True), 1e-9)
-    return replace(found, normals=mixed.astype(np.float32), flatness=np.maximum(found.flatness, trust))
+    flatness = np.maximum(found.flatness, known.trust)
+    return replace(found, normals=mixed.astype(np.float32), flatness=flatness, sunk=known.sunk)
 
 
 def _measured(
@@ -108,7 +124,7 @@ def _measured(
     normals, flatness = _smoothed_normals(part, neighbours)
     return Surface(
         rows, part.means.numpy(), normals, flatness, _smoothed_lab(raw_lab, neighbours), raw_lab, _footprint(part),
-        neighbours, gaps, spacing,
+        neighbours, gaps, spacing, np.zeros(len(rows), bool),
     )  # fmt: skip
 
 

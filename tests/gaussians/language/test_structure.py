@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -10,9 +11,9 @@ import torch
 from numpy.typing import NDArray
 
 from scenewright.gaussians.cloud import GaussianCloud
+from scenewright.gaussians.language.segmentation.settle import settled
 from scenewright.gaussians.language.segmentation.structure import CEILING, FLOOR, NONE, WALL, kind_of, structures
 from scenewright.gaussians.language.segmentation.superpoints import links_of, superpoints
-from scenewright.gaussians.language.segmentation.settle import settled
 from scenewright.gaussians.language.segmentation.surface import surface_of
 from scenewright.gaussians.scene import Frame
 
@@ -148,3 +149,87 @@ def test_a_tall_thing_alone_stands_on_nothing() -> None:
     )
     surface = surface_of(cloud)
     assert not structures(surface, superpoints(surface, links_of(surface)), Frame(up_source="given")).any()
+
+
+# --- floors that are not a clean level plane -------------------------------------------------------------------------
+
+NOISES = (0.0, 0.01, 0.02, 0.03, 0.05)  # metres
+STEP = 0.05  # largest fall of an IoU from one noise to the next
+
+
+def ious(made: Any, frame: Frame, noise: float) -> dict[str, float]:
+    """IoU of the floor, and of what of a rug and a crate is not called floor, among surface points."""
+    cloud, rng = made.cloud(), np.random.default_rng(5)
+    own = np.sort(made.rows["floor"])
+    means = cloud.means.clone()
+    means[torch.from_numpy(own), 2] += torch.from_numpy(rng.normal(0, max(noise, 1e-9), len(own))).float()
+    cloud = cloud.replace(means=means)
+    surface = settled(surface_of(cloud), cloud, frame)
+    names = sorted(made.rows)
+    piece = made.labels(names)[surface.rows]
+    kinds = kind_of(structures(surface, superpoints(surface, links_of(surface)), frame))
+    is_floor, floor = kinds == FLOOR, piece == names.index("floor")
+    found = {"floor": float((is_floor & floor).sum() / (is_floor | floor).sum())}
+    return found | {n: float((kinds[piece == names.index(n)] == NONE).mean()) for n in ("rug", "crate")}
+
+
+def test_no_amount_of_noise_turns_a_floor_into_something_else(world: type[Any]) -> None:
+    made = room(world).sheet("rug", (-0.9, -1.3, 0.012), (1.8, 0, 0), (0, 0.8, 0), GREEN, 0.03)
+    curve = [ious(made, Frame(), noise) for noise in NOISES]
+    for name in ("floor", "rug", "crate"):
+        values = [point[name] for point in curve]
+        assert min(values) > MOST, (name, values)
+        assert max(a - b for a, b in pairwise(values)) < STEP, (name, values)
+
+
+def test_a_tilted_floor_is_a_floor(world: type[Any]) -> None:
+    rise = np.tan(np.radians(5))
+    made = world().sheet("floor", (-2, -1.5, 0), (4, 0, 4 * rise), (0, 3, 0), BROWN, 0.05)
+    made.sheet("wall", (-2, 1.5, 0), (4, 0, 4 * rise), (0, 0, 2.4), WHITE, 0.06)
+    made.box("crate", (0.2, -0.4, 2.3 * rise), (0.9, 0.3, 0.8), RED)
+    made.sheet("rug", (-1.6, -1.3, 0.4 * rise + 0.012), (1.4, 0, 1.4 * rise), (0, 0.9, 0), GREEN, 0.03)
+    share = kinds_of(made)
+    assert share["floor"][FLOOR] > MOST and share["wall"][WALL] > MOST
+    assert share["crate"][NONE] > 0.8 and share["rug"][NONE] > MOST  # the crate's foot is in the floor
+
+
+def test_both_levels_of_a_stepped_floor_are_floor_and_a_bed_is_not(world: type[Any]) -> None:
+    made = world().sheet("floor", (-2, -1.5, 0), (2.5, 0, 0), (0, 3, 0), BROWN, 0.05)
+    made.sheet("platform", (0.5, -1.5, 0.3), (1.5, 0, 0), (0, 3, 0), BROWN, 0.05)
+    made.sheet("riser", (0.5, -1.5, 0), (0, 3, 0), (0, 0, 0.3), BROWN, 0.05)
+    made.sheet("wall", (-2, 1.5, 0), (4, 0, 0), (0, 0, 2.4), WHITE, 0.06)
+    made.box("bed", (-1.9, -0.5, 0.02), (-0.1, 1.4, 0.4), BLUE)
+    made.box("crate", (0.9, -0.4, 0.32), (1.5, 0.3, 0.9), RED)
+    share = kinds_of(made)
+    assert share["floor"][FLOOR] > 0.8 and share["platform"][FLOOR] > MOST
+    assert share["bed"][NONE] > MOST and share["crate"][NONE] > MOST
+
+
+def test_a_thick_floor_is_one_floor(world: type[Any]) -> None:
+    made = room(world).sheet("underside", (-2, -1.5, -0.12), (4, 0, 0), (0, 3, 0), WHITE, 0.05)
+    share = kinds_of(made)
+    assert share["floor"][FLOOR] > MOST and share["underside"][FLOOR] > 0.8
+    assert share["crate"][NONE] > MOST
+
+
+def test_splats_spread_beneath_a_floor_are_floor(world: type[Any]) -> None:
+    """A floor without texture leaves the depth of its splats open: some lie beneath it, none above."""
+    rng = np.random.default_rng(3)
+
+    def sunk(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
+        return -np.abs(rng.normal(0, 0.03, len(x)))
+
+    made = world().sheet("floor", (-2, -1.5, 0), (4, 0, 0), (0, 3, 0), BROWN, 0.05, sunk)
+    made.sheet("wall", (-2, 1.5, 0), (4, 0, 0), (0, 0, 2.4), WHITE, 0.06)
+    made.sheet("rug", (-0.9, -1.3, 0.012), (1.8, 0, 0), (0, 0.8, 0), GREEN, 0.03)
+    share = kinds_of(made)
+    assert share["floor"][FLOOR] > MOST and share["rug"][NONE] > MOST
+
+
+def test_half_a_wall_is_a_wall_and_a_missing_one_is_not_missed(world: type[Any]) -> None:
+    made = world().sheet("floor", (-2, -1.5, 0), (4, 0, 0), (0, 3, 0), BROWN, 0.05)
+    made.sheet("wall", (-2, 1.5, 0), (1.9, 0, 0), (0, 0, 2.4), WHITE, 0.06)
+    made.box("crate", (0.2, -0.4, 0.02), (0.9, 0.3, 0.6), RED)
+    share = kinds_of(made)
+    assert share["wall"][WALL] > MOST and share["floor"][FLOOR] > MOST
+    assert share["crate"][NONE] > MOST
