@@ -15,7 +15,17 @@ from ..gaussians.language import encoders
 from ..gaussians.language.encoders import Encoder
 from . import _clip, _data
 from ._select import (
-    cases, composed, costs, curves, floor_noise, lifted, meshes, names, pairs, relations, stability,
+    cases,
+    composed,
+    costs,
+    curves,
+    floor_noise,
+    lifted,
+    meshes,
+    names,
+    pairs,
+    relations,
+    stability,
 )  # fmt: skip
 from ._select.cases import Case, Part
 from ._select.real import captures
