@@ -54,7 +54,23 @@ def write_json(path: Path, content: dict[str, Any]) -> None:
 
 
 def _export(module: nn.Module, example: torch.Tensor, name: str, path: Path) -> None:
-    """Export one graph with a dynamic batch size and its larger weights in half precision."""
+    """Export one tower with a dynamic batch size."""
+    write_graph(module, example, (name, "vectors"), {0: "batch"}, path)
+
+
+def write_graph(
+    module: nn.Module, example: torch.Tensor, names: tuple[str, str], free: dict[int, str], path: Path
+) -> None:
+    """Export one graph with its larger weights in half precision.
+
+    Args:
+        example: an input of the right shape.
+        names: of the input and the output.
+        free: axes of both whose length may vary, with their names.
+
+    Raises:
+        BackendError: onnx is not installed.
+    """
     try:
         import onnx
     except ImportError as error:
@@ -62,8 +78,8 @@ def _export(module: nn.Module, example: torch.Tensor, name: str, path: Path) -> 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the exporter announces its successor, which needs one more package
         torch.onnx.export(
-            module, (example,), str(path), input_names=[name], output_names=["vectors"],
-            dynamic_axes={name: {0: "batch"}, "vectors": {0: "batch"}}, opset_version=_OPSET, dynamo=False,
+            module, (example,), str(path), input_names=[names[0]], output_names=[names[1]],
+            dynamic_axes=dict.fromkeys(names, free), opset_version=_OPSET, dynamo=False,
         )  # fmt: skip
     model = onnx.load(str(path))
     _halve(model)

@@ -1,0 +1,99 @@
+"""`python -m scenewright.training.contours --out FILE`: render pictures, train the contour network, export, measure.
+
+Beside `FILE` goes a card of the same name with the ending .json: settings, figures, objects used and their licences.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from .. import export as common
+from ..renders import cache_folder
+from . import dataset, export, fit, measure
+from .model import Contours
+
+HELD_OUT_SHARDS = 6
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Make the pictures, train, export and measure, with progress on stderr."""
+    options = _options(argv)
+    torch.set_num_threads(options.threads)
+    begun = time.monotonic()
+
+    def report(line: str) -> None:
+        print(f"{time.monotonic() - begun:7.1f} s  {line}", file=sys.stderr, flush=True)
+
+    base = options.cache or cache_folder().parent / "contours"
+    sets = [
+        dataset.cached(count, options.data_seed, options.meshes, where, options.workers, report)
+        for count, where in (
+            (options.shards, dataset.folder(base, options.data_seed, held_out=False)),
+            (HELD_OUT_SHARDS, dataset.folder(base, options.data_seed, held_out=True)),
+        )
+    ]
+    data, judged = (dataset.read(paths) for paths in sets)
+    report(f"{len(data)} pictures to learn from, {len(judged)} held out")
+    start = _weights(options.start) if options.start is not None else None
+    effort = fit.Effort(options.minutes, options.steps, options.seed, half=options.bf16)
+    trained = fit.train(data, effort, report, start)
+    export.write(options.out, trained.net)
+    if options.keep is not None:
+        torch.save(trained.net.state_dict(), options.keep)
+    card = {
+        "seed": effort.seed, "data_seed": options.data_seed, "steps": trained.steps, "batch": effort.batch,
+        "crop": effort.side, "bf16": effort.half, "loss": round(trained.loss, 4), "pictures": len(data),
+        "continued": options.start is not None, "parameters": sum(p.numel() for p in trained.net.parameters()),
+        "bytes": options.out.stat().st_size, "figures": measure.report(options.out, judged, options.captures),
+        "objects": _sources(options.meshes),
+    }  # fmt: skip
+    common.write_json(options.out.with_suffix(".json"), card)
+    report(measure.shown(card["figures"]))
+    return 0
+
+
+def _weights(path: Path) -> Contours:
+    """The network of a file that `--keep` wrote; only numbers are read from it."""
+    net = Contours()
+    net.load_state_dict(torch.load(path, weights_only=True))
+    return net
+
+
+def _sources(meshes: Path | None) -> dict[str, Any]:
+    """What the pictures were made of: our own furniture, and packs of other artists with their licences."""
+    packs: dict[str, dict[str, Any]] = {}
+    if meshes is not None:
+        for entry in json.loads((meshes / "index.json").read_text(encoding="utf-8")):
+            pack = {"artist": entry["artist"], "licence": entry["licence"], "objects": 0}
+            packs.setdefault(entry["pack"], pack)["objects"] += 1
+    return {"own": "the procedural furniture of this project", "packs": dict(sorted(packs.items()))}
+
+
+def _options(argv: list[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m scenewright.training.contours", description=__doc__)
+    parser.add_argument("--out", type=Path, required=True, help="file to write the network to, ending in .onnx")
+    parser.add_argument("--minutes", type=float, default=30.0, help="wall time of the training alone")
+    parser.add_argument("--steps", type=int, help="exact number of steps, instead of a time")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--shards", type=int, default=50, help=f"sets of {dataset.SHARD} pictures to learn from")
+    parser.add_argument("--data-seed", type=int, default=0, help="seed of the pictures")
+    parser.add_argument("--meshes", type=Path, help="folder of foreign objects (.glb) with an index.json")
+    parser.add_argument("--captures", type=Path, help="folder of captures with true masks to measure on")
+    parser.add_argument("--start", type=Path, help="weights to go on from, as --keep writes them")
+    parser.add_argument("--keep", type=Path, help="file to keep the trained weights in, for --start")
+    parser.add_argument("--bf16", action="store_true", help="convolutions in bfloat16: faster on recent processors")
+    parser.add_argument("--workers", type=int, default=2, help="processes that make pictures")
+    parser.add_argument("--threads", type=int, default=1, help="CPU threads of the training")
+    parser.add_argument("--cache", type=Path, help="where pictures are kept")
+    return parser.parse_args(argv)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
