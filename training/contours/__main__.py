@@ -16,10 +16,11 @@ import torch
 
 from .. import export as common
 from ..renders import cache_folder
-from . import dataset, export, fit, measure
+from . import calibrate, dataset, export, fit, measure
 from .model import Contours
 
 HELD_OUT_SHARDS = 6
+CALIBRATION_SHARDS = 2  # of them; the others measure
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -39,24 +40,41 @@ def main(argv: list[str] | None = None) -> int:
             (HELD_OUT_SHARDS, dataset.folder(base, options.data_seed, held_out=True)),
         )
     ]
-    data, judged = (dataset.read(paths) for paths in sets)
+    data, fitting, judged = (
+        dataset.read(paths) for paths in (sets[0], sets[1][:CALIBRATION_SHARDS], sets[1][CALIBRATION_SHARDS:])
+    )
     report(f"{len(data)} pictures to learn from, {len(judged)} held out")
     start = _weights(options.start) if options.start is not None else None
     effort = fit.Effort(options.minutes, options.steps, options.seed, half=options.bf16)
     trained = fit.train(data, effort, report, start)
-    export.write(options.out, trained.net)
     if options.keep is not None:
         torch.save(trained.net.state_dict(), options.keep)
-    card = {
-        "seed": effort.seed, "data_seed": options.data_seed, "steps": trained.steps, "batch": effort.batch,
-        "crop": effort.side, "bf16": effort.half, "loss": round(trained.loss, 4), "pictures": len(data),
-        "continued": options.start is not None, "parameters": sum(p.numel() for p in trained.net.parameters()),
-        "bytes": options.out.stat().st_size, "figures": measure.report(options.out, judged, options.captures),
-        "objects": _sources(options.meshes),
+    settings = {
+        "seed": effort.seed, "data_seed": options.data_seed, "batch": effort.batch, "crop": effort.side,
+        "bf16": effort.half, "pictures": len(data), "continued": options.start is not None,
+    }  # fmt: skip
+    report(measure.shown(finish(options, trained, settings, fitting, judged)["figures"]))
+    return 0
+
+
+def finish(
+    options: argparse.Namespace,
+    trained: fit.Trained,
+    settings: dict[str, Any],
+    fitting: dataset.Pictures,
+    judged: dataset.Pictures,
+) -> dict[str, Any]:
+    """Calibrate on the pictures `fitting`, export, measure on `judged`, and write the card; returns it."""
+    net = calibrate.calibrated(trained.net, fitting, settings["seed"])
+    export.write(options.out, net)
+    card = settings | {
+        "steps": trained.steps, "loss": round(trained.loss, 4),
+        "parameters": sum(p.numel() for p in net.parameters()), "bytes": options.out.stat().st_size,
+        "figures": measure.report(options.out, judged, options.captures),
+        "reliability": calibrate.reliability(net, judged, settings["seed"]), "objects": _sources(options.meshes),
     }  # fmt: skip
     common.write_json(options.out.with_suffix(".json"), card)
-    report(measure.shown(card["figures"]))
-    return 0
+    return card
 
 
 def _weights(path: Path) -> Contours:
