@@ -59,6 +59,8 @@ def sample(data: Pictures, rng: np.random.Generator, side: int) -> Sample:
         rgb, things, inverse = _paste((rgb, things, inverse), _crop(data, int(rng.integers(len(data))), rng, side), rng)
     if rng.random() < 0.5:
         rgb = _recoloured(rgb, things, rng, _crop(data, int(rng.integers(len(data))), rng, side)[0])
+    if rng.random() < 0.6:
+        rgb = _patterned(rgb, things, rng)
     border = borders(things)
     geometry = _geometry(inverse, float(data.focal[index]), rng)
     channels = np.concatenate([photographed(rgb, rng).transpose(2, 0, 1), geometry])
@@ -130,6 +132,41 @@ def _recoloured(rgb: F32, things: NDArray[np.int32], rng: np.random.Generator, p
     for number in rng.permutation(numbers)[: int(rng.integers(0, 3))]:
         mask = things == number
         result[mask] *= grain[mask] ** np.float32(rng.uniform(0.1, 0.9))
+    return np.clip(result, 0, 1)
+
+
+def _patterned(rgb: F32, things: NDArray[np.int32], rng: np.random.Generator) -> F32:
+    """Stripes, grids, checks, weaves or grain over one to three of the larger things, at any angle and scale."""
+    numbers, counts = np.unique(things, return_counts=True)
+    chosen = rng.permutation(numbers[counts > 0.02 * things.size])[: int(rng.integers(1, 4))]
+    side = len(things)
+    y, x = np.meshgrid(np.arange(side, dtype=np.float32), np.arange(side, dtype=np.float32), indexing="ij")
+    result = rgb.copy()
+    for number in chosen:
+        mask = things == number
+        a, lean = rng.uniform(0, np.pi), rng.uniform(-0.6, 0.6)
+        f = np.exp(rng.uniform(np.log(0.015), np.log(0.3), 2))
+        if rng.random() < 0.5:
+            f[1] = f[0]
+        far = 1 + rng.uniform(0, 0.006) * y[mask]  # perspective
+        u = f[0] * (np.cos(a) * x[mask] + np.sin(a) * y[mask]) * far
+        v = f[1] * (-np.sin(a + lean) * x[mask] + np.cos(a + lean) * y[mask]) * far
+        kind = int(rng.integers(5))
+        if kind == 0:
+            wave = np.where(u % 1 < rng.uniform(0.1, 0.9), 1.0, 0.0)
+        elif kind == 1:
+            line = rng.uniform(0.03, 0.15)
+            wave = np.where((u % 1 < line) | (v % 1 < line), 1.0, 0.0)
+        elif kind == 2:
+            wave = (np.floor(u) + np.floor(v)) % 2
+        elif kind == 3:
+            wave = 0.5 + 0.5 * np.sin(2 * np.pi * u) * np.sin(2 * np.pi * v)
+        else:
+            grain = gaussian_filter(rng.normal(size=things.shape), float(rng.uniform(0.6, 4)))
+            wave = 0.5 + 0.5 * (grain / max(1e-6, float(grain.std())))[mask]
+        amount = rng.uniform(0.05, 0.6) * rng.choice([-1.0, 1.0])
+        tint = np.clip(1 + rng.normal(size=3) * 0.3, 0.3, 1.7)
+        result[mask] *= np.clip(1 + amount * wave[:, None] * tint, 0.05, 3).astype(np.float32)
     return np.clip(result, 0, 1)
 
 
