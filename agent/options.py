@@ -31,6 +31,9 @@ Debug = Annotated[
     bool, typer.Option("--debug", callback=_debug, is_eager=True, help="Show errors with their traceback.")
 ]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite files that exist.")]
+Yes = Annotated[
+    bool, typer.Option("--yes", "-y", help="Go on with what was chosen although its name is not confirmed; do not ask.")
+]
 Encoder = Annotated[
     str,
     typer.Option(

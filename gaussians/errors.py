@@ -5,6 +5,7 @@
     ├── InstructionError      3      understood, but cannot be carried out as stated; nothing was changed
     │   ├── AbsentError              the named object is not in the scene
     │   ├── AmbiguousError           several objects match
+    │   ├── UnconfirmedError         something was chosen, but not by its name; the user must confirm it
     │   └── CheckFailedError         the edit was made, failed its own check and was rolled back
     ├── FileError             4      a file is missing, broken, unwritable or of an unknown format
     └── BackendError          4      a back end (encoder, planner, renderer) is missing or failed
@@ -39,6 +40,10 @@ class AbsentError(InstructionError):
 
 class AmbiguousError(InstructionError):
     """Several objects match and the instruction asks for one."""
+
+
+class UnconfirmedError(InstructionError):
+    """Something was chosen whose name is not confirmed; the user must confirm it before it is edited."""
 
 
 class CheckFailedError(InstructionError):

@@ -45,7 +45,8 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
         selection: what to apply it to, instead of resolving the operation's own query.
 
     Raises:
-        AbsentError, AmbiguousError: the target (or an anchor) is not in the scene or not unique.
+        AbsentError, AmbiguousError, UnconfirmedError: the target (or an anchor) is not in the scene, not unique, or not
+            confirmed.
         InstructionError: the operation cannot be done as said.
         CheckFailedError: the result fails a post-condition; the message names it and what was measured.
         UserError: a name in the operation (colour, asset) is unknown.

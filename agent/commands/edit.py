@@ -29,10 +29,12 @@ from ..options import (
     Up,
     View,
     Vlm,
+    Yes,
 )
 from ..terminal.output import error_json, terminal
 
 if TYPE_CHECKING:
+    from ...gaussians.errors import UnconfirmedError
     from ..session.result import Result
     from ..session.session import Session
 
@@ -72,11 +74,14 @@ def command(
     judge: Judge = None,
     encoder: Encoder = "auto",
     seed: Seed = 0,
+    yes: Yes = False,
     force: Force = False,
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
     """Edit a scene in words. An instruction is carried out completely or not at all, and checked.
+
+    What is chosen by its colour, as its name could not be confirmed, is edited only if you say so, or with --yes.
 
     A language field saved beside SCENE (see `embed`) is used, and then saved beside the edited scene too.
     """
@@ -94,6 +99,7 @@ def command(
         scene, planner, encoder, view, size, None if dry_run else log, seed, True, up, metres_per_unit, budget, picture,
         judge,
         vlm,
+        yes,
     )  # fmt: skip
     with timed(seconds, "open"):
         session, had_field = open_session(options)
@@ -133,11 +139,14 @@ def _check_targets(output: Path | None, pictures: Path | None, force: bool) -> N
 
 def _instruct(session: Session, text: str, dry_run: bool) -> Result:
     """Carry out the instruction; if it is refused, report the reason, the candidates and the model usage, and exit."""
-    from ...gaussians.errors import ScenewrightError
+    from ...gaussians.errors import ScenewrightError, UnconfirmedError
     from ..session.plan_report import candidate_json, refusal_json, usage_lines
 
     try:
-        return session.preview(text) if dry_run else session.do(text)
+        try:
+            return session.preview(text) if dry_run else session.do(text)
+        except UnconfirmedError as error:
+            return _confirmed(session, error, dry_run)
     except ScenewrightError as error:
         for line in usage_lines(session.planned):
             terminal.say(line)
@@ -148,11 +157,35 @@ def _instruct(session: Session, text: str, dry_run: bool) -> Result:
         terminal.refuse(error, {**error_json(error), **data}, [c.describe() for c in candidates])
 
 
+def _confirmed(session: Session, error: UnconfirmedError, dry_run: bool) -> Result:
+    """The result of the instruction after the user confirmed what was chosen, each query of it in turn.
+
+    Raises:
+        UnconfirmedError: nobody can be asked, or the answer is no.
+        ScenewrightError: as `Session.do`.
+    """
+    from ...gaussians.errors import UnconfirmedError
+
+    while session.question is not None and (said := terminal.confirms(f"{error}. Go on with it?")) is not None:
+        if not said:
+            raise UnconfirmedError("nothing was changed; say in other words what is meant")
+        plan = session.answered("yes")
+        try:
+            return session.preview(plan) if dry_run else session.apply(plan)
+        except UnconfirmedError as another:
+            error = another
+    raise UnconfirmedError(f"{error}; nothing was changed. --yes goes on with it")
+
+
 def _replay(session: Session, log: Path) -> list[Result]:
     """The edits of the last session in a log, carried out on this session; in a dry run nothing is written."""
-    from ...gaussians.errors import UserError
+    from ...gaussians.errors import UnconfirmedError, UserError
 
-    results = [r.result for r in session.replay(log) if r.result is not None]
+    try:
+        replayed = session.replay(log)
+    except UnconfirmedError as error:
+        raise UnconfirmedError(f"{error}. --yes goes on with it") from error
+    results = [r.result for r in replayed if r.result is not None]
     if not results:
         raise UserError(f"the last session in {log} did nothing that could be replayed")
     return results

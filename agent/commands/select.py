@@ -50,7 +50,8 @@ def command(
     as_json: Json = False,
     debug: Debug = False,
 ) -> None:
-    """Select what a phrase describes: found, ambiguous (with the candidates) or absent (with the nearest)."""
+    """Select what a phrase describes: found, unconfirmed (chosen, but not by a confirmed name), ambiguous (with the
+    candidates) or absent (with the nearest)."""
     from ...gaussians.errors import UserError
     from ..output_files import make_folder
     from ..session.opening import SessionOptions, open_session
@@ -126,7 +127,7 @@ def _check_targets(targets: list[Path], force: bool) -> None:
 
 def _one(session: Session, text: str, changes: SelectionChanges, target: Path | None, force: bool) -> None:
     selection, data = _answer(session, text, changes)
-    if selection is None or selection.verdict != "found":
+    if selection is None or not selection.chosen:
         terminal.result(data["reason"], data)
         for number, c in enumerate(selection.candidates if selection is not None else (), start=1):
             terminal.say(f"  {number}. {c.describe()}, score {c.score:.2f}")
@@ -135,7 +136,8 @@ def _one(session: Session, text: str, changes: SelectionChanges, target: Path | 
         _write_rows(selection, target, force)
     things = ", ".join(c.describe() for c in selection.candidates) or data["asked"]
     note = f" ({selection.reason})" if selection.reason else ""
-    terminal.result(f"{len(selection):,} Gaussians: {things}{note}", data)
+    doubt = "unconfirmed, " if selection.verdict == "unconfirmed" else ""
+    terminal.result(f"{doubt}{len(selection):,} Gaussians: {things}{note}", data)
 
 
 def _answer(session: Session, text: str, changes: SelectionChanges) -> tuple[Selection | None, dict[str, Any]]:
@@ -148,7 +150,7 @@ def _answer(session: Session, text: str, changes: SelectionChanges) -> tuple[Sel
         explained = session.explain(text) if changes.explain else None
         selection = session.select(text)
         words = selection.query.describe()
-        for step in changes.steps if selection.verdict == "found" else ():
+        for step in changes.steps if selection.chosen else ():
             selection, words = session.select(step), step.describe().replace("it", words, 1)
     except UserError as error:
         refused = {"verdict": "not_understood", "gaussians": 0, "groups": [], "candidates": [], "reason": str(error)}

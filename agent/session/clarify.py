@@ -1,6 +1,7 @@
-"""Clarification: finds the query of a plan that is ambiguous or absent, and puts the user's answer into the plan.
+"""Clarification: finds the query of a plan that is ambiguous, absent or unconfirmed, and puts the user's answer into
+the plan.
 
-It never picks a candidate for the user.
+It never picks or confirms a candidate for the user.
 """
 
 from __future__ import annotations
@@ -20,6 +21,10 @@ if TYPE_CHECKING:
     from ...tools.operation import EditOp
 
 _NUMBER = re.compile(r"(?:the\s+|number\s+|no\.?\s*|#)*(\d+)(?:st|nd|rd|th)?(?:\s+one)?", re.IGNORECASE)
+_YES = re.compile(
+    r"(yes|y|yeah|yep|ok|okay|sure|right|correct|confirm(ed)?|go ahead|do it|that is it|that's it|that one|it is)"
+    r"(,? please)?"
+)
 _ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 _SIDES = {"left": "leftmost", "right": "rightmost", "near": "nearest", "closest": "nearest", "close": "nearest",
           "far": "farthest", "big": "largest", "bigger": "largest", "biggest": "largest", "larger": "largest",
@@ -31,13 +36,13 @@ _SIDES = {"left": "leftmost", "right": "rightmost", "near": "nearest", "closest"
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """A query of a plan that did not resolve to one thing.
+    """A query of a plan that did not resolve to one thing, or to one whose name is not confirmed.
 
     Attributes:
         plan: the plan that failed.
         step: index of the failed operation in the plan.
         path: where in the operation the query is.
-        selection: its verdict ("ambiguous" or "absent"), reason and candidates.
+        selection: its verdict ("ambiguous", "absent" or "unconfirmed"), reason and candidates.
         resolve: resolves another query in the same state of the scene.
     """
 
@@ -64,7 +69,8 @@ def find_question(plan: EditPlan, step: int, verdict: str, resolve: Callable[[Qu
 
 
 def plan_with_answer(question: Question, answer: str, parse: Callable[[str], Query | None]) -> EditPlan:
-    """The plan with the user's answer in it: a number of the list, "all", or words ("the left one", "the red one").
+    """The plan with the user's answer in it: a number of the list, "all", or words ("the left one", "the red one");
+    "yes" to what is not confirmed.
 
     Args:
         parse: reads a noun phrase as a query; returns None if it cannot.
@@ -72,8 +78,12 @@ def plan_with_answer(question: Question, answer: str, parse: Callable[[str], Que
     Raises:
         UserError: the answer does not choose a candidate; the message shows valid answers.
     """
-    query = question.selection.query
-    chosen = _choice(question.candidates, query, answer.strip().rstrip(".!").lower(), parse)
+    query, said = question.selection.query, answer.strip().rstrip(".!").lower()
+    if question.selection.verdict == "unconfirmed":
+        if not _YES.fullmatch(said):
+            raise UserError(f"{answer!r} does not say whether that is meant; say 'yes' or 'no', or another instruction")
+        return plan_with_query(question, query.model_copy(update={"confirmed": True}))
+    chosen = _choice(question.candidates, query, said, parse)
     if chosen is None:
         raise UserError(
             f"{answer!r} does not say which; answer with a number from 1 to {len(question.candidates)}, "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ...gaussians.errors import InstructionError
@@ -39,14 +39,23 @@ def find_view(session: Session, phrase: str, size: tuple[int, int]) -> FoundView
 
     Raises:
         UserError: the phrase is empty, too long, or names things in words that are not understood.
-        AbsentError, AmbiguousError: a thing that it names is not there, or several match.
+        AbsentError, AmbiguousError: a thing that it names is not there, or several match. One that is chosen without
+            confirmation is shown, and a note says so.
         InstructionError: the things cannot be seen from there.
     """
+    asked = read_view(phrase)
+    doubts: list[str] = []
+    groups = _groups(session, asked.things, doubts)
+    stand = _groups(session, asked.stand, doubts)
+    found = _found(session, asked, groups, stand, size)
+    return replace(found, notes=(*doubts, *found.notes))
+
+
+def _found(
+    session: Session, asked: ViewRequest, groups: tuple[int, ...], stand: tuple[int, ...], size: tuple[int, int]
+) -> FoundView:
     from ...gaussians.viewpoints.for_groups import Sights
 
-    asked = read_view(phrase)
-    groups = _groups(session, asked.things)
-    stand = _groups(session, asked.stand)
     sights = Sights.of(session.embed())
     if stand:
         return _from_thing(sights, stand, groups, asked, size)
@@ -55,11 +64,15 @@ def find_view(session: Session, phrase: str, size: tuple[int, int]) -> FoundView
     return _of_all(sights, asked, size)
 
 
-def _groups(session: Session, words: str) -> tuple[int, ...]:
-    """The groups that a noun phrase means; raises as `find_view`."""
+def _groups(session: Session, words: str, doubts: list[str]) -> tuple[int, ...]:
+    """The groups that a noun phrase means; raises as `find_view`. What is not confirmed is added to `doubts`."""
     if not words:
         return ()
-    found = session.select(words).require()
+    found = session.select(words)
+    if found.verdict == "unconfirmed":
+        doubts.append(found.reason)
+    else:
+        found.require()
     if not found.groups:
         raise InstructionError(f"{words!r} is no thing of its own here; name the whole thing")
     return tuple(dict.fromkeys(found.groups))

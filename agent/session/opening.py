@@ -29,6 +29,7 @@ class SessionOptions:
         picture: send the viewer's picture to language models.
         judge: who judges edits, or None.
         vlm: a vision model, as `Session` takes it.
+        accept_unconfirmed: edit without asking what was chosen although its name is not confirmed.
         up, metres_per_unit: the scene's frame as the user gives it; a saved field made in another frame is not used.
     """
 
@@ -46,6 +47,7 @@ class SessionOptions:
     picture: bool = False
     judge: str | None = None
     vlm: str = "auto"
+    accept_unconfirmed: bool = False
 
 
 def open_session(options: SessionOptions, progress: Progress | None = None) -> tuple[Session, bool]:
@@ -80,6 +82,7 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
         pictures=options.picture,
         judge=options.judge,
         vlm=options.vlm,
+        accept_unconfirmed=options.accept_unconfirmed,
     )
     if options.view != "auto" or options.size is not None:
         session.viewer = choose_view(session.scene, options.view, options.size)

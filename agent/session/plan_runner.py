@@ -6,13 +6,13 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
-from ...gaussians.errors import AbsentError, AmbiguousError, ScenewrightError
+from ...gaussians.errors import ScenewrightError
 from ...gaussians.language.query.nested import queries
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from .clarify import Question, find_question
 from .history import State
-from .refusal import with_message
+from .refusal import open_verdict, with_message
 
 if TYPE_CHECKING:
     from ...planners.plan import EditPlan
@@ -84,9 +84,9 @@ def run_plan(
 
 
 def _question(plan: EditPlan, step: int, error: ScenewrightError, scene: Scene, context: Context) -> Question | None:
-    if not isinstance(error, AmbiguousError | AbsentError):
+    verdict = open_verdict(error)
+    if verdict is None:
         return None
-    verdict = "ambiguous" if isinstance(error, AmbiguousError) else "absent"
     return find_question(plan, step, verdict, lambda query: context.resolve(scene, query))
 
 

@@ -9,6 +9,7 @@ import re
 from typing import TYPE_CHECKING, Literal
 
 from ...gaussians.errors import UserError
+from ...gaussians.language.query.nested import without_confirmation
 from ...gaussians.language.query.query import Query
 
 if TYPE_CHECKING:
@@ -114,7 +115,8 @@ class PlannerClient:
         if not text.isprintable() and any("\ud800" <= c <= "\udfff" for c in text):
             raise UserError("the text is not UTF-8; type it again, or set the terminal to UTF-8")
         self.last = None
-        self.last = self._planner.plan(text, previous=previous, observation=self._observation)
+        plan = self._planner.plan(text, previous=previous, observation=self._observation)
+        self.last = plan.model_copy(update={"ops": without_confirmation(plan.ops)})
         return self.last
 
     def reads_as_question(self, text: str) -> bool | None:

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
-from ...gaussians.errors import AbsentError, AmbiguousError, InstructionError, ScenewrightError, UserError
+from ...gaussians.errors import (
+    AbsentError,
+    AmbiguousError,
+    InstructionError,
+    ScenewrightError,
+    UnconfirmedError,
+    UserError,
+)
 
 if TYPE_CHECKING:
     from ...planners.plan import EditPlan
@@ -45,11 +52,21 @@ def refusal(plan: EditPlan) -> ScenewrightError:
     return NotUnderstoodError(reason, plan.verdict)
 
 
+def open_verdict(error: ScenewrightError) -> Literal["absent", "ambiguous", "unconfirmed"] | None:
+    """The verdict of the selection that an instruction failed on, which the user may settle; None for other errors."""
+    if isinstance(error, AbsentError):
+        return "absent"
+    if isinstance(error, AmbiguousError):
+        return "ambiguous"
+    return "unconfirmed" if isinstance(error, UnconfirmedError) else None
+
+
 def verdict_of(error: ScenewrightError) -> str:
     """The verdict that says why an instruction was not carried out; "failed" for files and back ends."""
     if isinstance(error, NotUnderstoodError | ImpossibleError):
         return error.verdict
-    for kind, verdict in ((AbsentError, "absent"), (AmbiguousError, "ambiguous"), (InstructionError, "impossible")):
-        if isinstance(error, kind):
-            return verdict
+    if (asked := open_verdict(error)) is not None:
+        return asked
+    if isinstance(error, InstructionError):
+        return "impossible"
     return "not_understood" if isinstance(error, UserError) else "failed"

@@ -95,11 +95,11 @@ def read_plan(record: Record, source: str | Path) -> EditPlan:
 
 
 def portable(plan: EditPlan) -> EditPlan:
-    """The plan without group ids, which are valid in one scene only; its words are resolved again."""
+    """The plan without group ids and confirmations, which are valid in one scene only; its words are resolved again."""
     ops = []
     for op in plan.ops:
         for path, query in list(queries(op)):
-            if query.groups:
-                op = exchange(op, path, query.model_copy(update={"groups": ()}))
+            if query.groups or query.confirmed:
+                op = exchange(op, path, query.model_copy(update={"groups": (), "confirmed": False}))
         ops.append(op)
     return plan.model_copy(update={"ops": tuple(ops)})

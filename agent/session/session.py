@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec
 
 from ...gaussians.camera import Camera
-from ...gaussians.errors import ScenewrightError, UserError
+from ...gaussians.errors import ScenewrightError, UnconfirmedError, UserError
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
@@ -26,7 +26,7 @@ from .history import History, State
 from .judge import Judge, JudgedError, known_judge
 from .observation import graph_of, picture_of
 from .plan_runner import PlanFailed, has_queries, run_plan
-from .planner_client import PlannerClient, undo_or_redo
+from .planner_client import PlannerClient, is_dismissal, undo_or_redo
 from .refusal import refusal, with_message
 from .replay import Replayed, logged_edits
 from .result import Result
@@ -70,12 +70,14 @@ class Session:
         judge: "built-in": after each operation measure from the scenes, and ask the embedded encoder, whether what was
             asked for happened and nothing else; repair it at most twice, else take it back. "vlm": also ask the vision
             model, with pictures before and after. None: do not judge.
+        accept_unconfirmed: edit what was chosen although its name is not confirmed, without asking; for scripts.
         vlm: a vision model for what geometry does not answer and words do not find: a name that `planners.model.load`
             takes, a back end, "auto" for the one that `SCENEWRIGHT_VLM` names, or None.
 
     Attributes:
-        question: the open question: an ambiguous query with its candidates, or an absent one with the nearest things;
-            None if there is none.
+        question: the open question: an ambiguous query with its candidates, an absent one with the nearest things, or
+            an unconfirmed one with what was chosen; None if there is none.
+        accept_unconfirmed: edit what was chosen although its name is not confirmed, without asking.
         pixel_checks: also compare the viewer's picture before and after each operation.
 
     Raises:
@@ -99,6 +101,7 @@ class Session:
         pictures: bool = False,
         judge: str | None = None,
         vlm: str | ModelBackend | None = "auto",
+        accept_unconfirmed: bool = False,
     ) -> None:
         self._progress = progress or (lambda stage, fraction: None)
         # The planner comes first, so that an unknown name creates no log file.
@@ -109,6 +112,7 @@ class Session:
         self._viewer = viewer
         self._seed = seed
         self.pixel_checks = pixel_checks
+        self.accept_unconfirmed = accept_unconfirmed
         self._judged_by = known_judge(judge, bool(self._vision))
         self.question: Question | None = None
         self._history = History(State(scene))
@@ -238,6 +242,8 @@ class Session:
             ImpossibleError: understood, but there is no operation for it. (An InstructionError.)
             AbsentError: a thing that is named is not there. `question` holds the nearest things.
             AmbiguousError: several things match. `question` holds them; `answer` chooses among them.
+            UnconfirmedError: something was chosen whose name is not confirmed. `question` holds it; `answer("yes")`
+                goes on with it, and so does `accept_unconfirmed`.
             CheckFailedError: an operation failed its own check, or the judge, and everything was rolled back.
             InstructionError: it cannot be done as said.
             BackendError: a language model that was chosen as the only planner gave no plan.
@@ -303,10 +309,12 @@ class Session:
         return result
 
     def answer(self, text: str) -> Result:
-        """Choose among the candidates of `question`: by a number, "all", "the left one", "the red one".
+        """Choose among the candidates of `question`: by a number, "all", "the left one", "the red one"; or confirm what
+        was chosen, by "yes".
 
         Raises:
             UserError: there is no open question, or the answer does not choose. The question then stays open.
+            UnconfirmedError: the answer is "no" to what was chosen; the question is closed.
         """
         return self.apply(self.answered(text))
 
@@ -314,6 +322,9 @@ class Session:
         """The plan of `question` with the answer in it; raises as `answer`."""
         if self.question is None or not self.question.candidates:
             raise UserError("there is no open question; give an instruction")
+        if self.question.selection.verdict == "unconfirmed" and is_dismissal(text):
+            asked, self.question = self.question.selection.query.describe(), None
+            raise UnconfirmedError(f"nothing was changed; say in other words what is meant by {asked}")
         return plan_with_answer(self.question, text, self._planner.noun_phrase)
 
     def select(self, phrase: str | Query) -> Selection:
@@ -328,7 +339,7 @@ class Session:
         if self._vision and needs_sight(found):
             seen, told = self._by_sight(found)
             found = with_source(self._context(None).resolve(self.scene, seen) if seen is not None else found, told)
-        if found.verdict == "found":
+        if found.chosen:
             self._history.amend(replace(self._history.present, last=found))
         return found
 
@@ -371,7 +382,7 @@ class Session:
         if text and (about := self._planner.subject(text)) is not None:
             scene = self.embed()
             found = self._context(None).resolve(scene, about)
-            last = found if found.verdict == "found" else None
+            last = found if found.chosen else None
         self._history.amend(replace(self._history.present, last=last, context=text or ""))
 
     # -- questions --------------------------------------------------------------------------------------------------
@@ -538,23 +549,30 @@ class Session:
                 state, receipts = run_plan(plan, before, self._context, dry_run=dry_run, judge=self._judge())
             except PlanFailed as failure:
                 self.question = failure.question
-                if not self._vision or failure.question is None or not needs_sight(failure.question.selection):
-                    raise failure.error from failure.__cause__
-                settled = self._settled(failure, failure.question)
-                return self._carry_out(settled, seconds, dry_run=dry_run)
+                return self._carry_out(self._settled(failure), seconds, dry_run=dry_run)
         viewer, last = self.viewer, state.last
         result = Result(plan.instruction, plan, receipts, before.scene, state.scene, viewer, last, seconds, dry_run)
         return result, state
 
-    def _settled(self, failure: PlanFailed, question: Question) -> EditPlan:
-        """The failed plan with what a vision model points at in place of the query that failed.
+    def _settled(self, failure: PlanFailed) -> EditPlan:
+        """The failed plan with what a vision model points at in place of the query that failed, or with that query
+        confirmed, if the session accepts what is not confirmed.
 
         Raises:
-            ScenewrightError: the error of the plan, if nothing is pointed at.
+            ScenewrightError: the error of the plan, if neither settles it.
         """
-        seen, told = self._by_sight(question.selection)
+        question = failure.question
+        if question is None:
+            raise failure.error from failure.__cause__
+        seen, told = None, ""
+        if self._vision and needs_sight(question.selection):
+            seen, told = self._by_sight(question.selection)
+        if seen is None and question.selection.verdict == "unconfirmed" and self.accept_unconfirmed:
+            return plan_with_answer(question, "yes", self._planner.noun_phrase)
         if seen is None:
-            raise with_message(failure.error, f"{failure.error}; {told}") from failure.__cause__
+            raise (with_message(failure.error, f"{failure.error}; {told}") if told else failure.error) from (
+                failure.__cause__
+            )
         plan = plan_with_query(question, seen)
         return plan.model_copy(update={"reason": "; ".join(filter(None, [plan.reason, told]))[:2000]})
 

@@ -1,6 +1,6 @@
 """Selection by sight: a vision model says which numbered groups a phrase means, and the field keeps the name.
 
-It is asked only where the field's verdict is ambiguous, absent, or rests on colour alone, and at most twice for a
+It is asked only where the field's verdict is ambiguous, absent or unconfirmed, and at most twice for a
 phrase, with at most three pictures.
 """
 
@@ -42,7 +42,7 @@ class Sighted:
 
 
 def needs_sight(selection: Selection) -> bool:
-    """Whether the field leaves open what a query means: ambiguous, absent, or found by its colour alone."""
+    """Whether the field leaves open what a query means: ambiguous, absent, or not confirmed."""
     query = selection.query
     if (
         query.last
@@ -52,7 +52,7 @@ def needs_sight(selection: Selection) -> bool:
         or not (query.text or query.relations or query.colors)
     ):
         return False
-    return selection.verdict != "found" or (not selection.groups and is_name(query.text))
+    return selection.verdict != "found" and not query.confirmed
 
 
 def point_out(scene: Scene, selection: Selection, viewer: Camera, vision: VisionClient) -> Sighted:

@@ -97,7 +97,7 @@ class Chat:
 
     def _instruction(self, text: str) -> None:
         question = self.session.question
-        if question is not None and question.selection.verdict == "ambiguous" and undo_or_redo(text) is None:
+        if question is not None and question.selection.verdict != "absent" and undo_or_redo(text) is None:
             if is_dismissal(text):
                 self.session.question = None
                 self.tell("nothing was changed", {"verdict": "cancelled"})
@@ -147,8 +147,11 @@ class Chat:
         if isinstance(error, AbsentError) and candidates:
             lines.append("The nearest things that are there:")
         lines += [f"  {i}. {c.describe()}" for i, c in enumerate(candidates, start=1)]
-        if question is not None and question.selection.verdict == "ambiguous":
+        verdict = question.selection.verdict if question is not None else ""
+        if verdict == "ambiguous":
             lines.append("Which one? A number, 'all', or for example 'the left one'.")
+        if verdict == "unconfirmed":
+            lines.append("Is that meant? 'yes' or 'no'.")
         data = {
             "verdict": verdict_of(error),
             "reason": str(error),

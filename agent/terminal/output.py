@@ -59,6 +59,13 @@ class Terminal:
         """Print a message on stderr, without control characters, which names in a scene file might contain."""
         self._write(self.err, "".join(c for c in text if c in "\n\t" or unicodedata.category(c) != "Cc"))
 
+    def confirms(self, question: str) -> bool | None:
+        """The user's answer to a yes-or-no question; None if nobody can be asked: no terminal, or JSON output."""
+        if self.as_json or not sys.stdin.isatty() or not self.err.isatty():
+            return None
+        self.clear()
+        return bool(typer.confirm(question, default=False, err=True))
+
     def picture(self, drawn: str) -> None:
         """Print a picture drawn as text; nothing if the output is JSON."""
         if not self.as_json:

@@ -82,9 +82,10 @@ def _select(chat: Conversation, text: str) -> None:
     if not text:
         raise UserError("say what to select: /select the red chair")
     found = chat.session.select(text)
-    if found.verdict == "found":
+    if found.chosen:
         things = ", ".join(c.describe() for c in found.candidates) or found.query.describe()
-        chat.tell(f"{len(found):,} Gaussians: {things}", selection_json(found))
+        doubt = f"\nunconfirmed: {found.reason}" if found.verdict == "unconfirmed" else ""
+        chat.tell(f"{len(found):,} Gaussians: {things}{doubt}", selection_json(found))
         return
     lines = [found.reason, *(f"  {i}. {c.describe()}" for i, c in enumerate(found.candidates, start=1))]
     chat.tell("\n".join(lines), selection_json(found))

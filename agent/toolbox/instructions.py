@@ -7,6 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from ...gaussians.errors import UserError
+from ...gaussians.language.query.nested import without_confirmation
 from ...gaussians.language.query.query import Query
 from ..session.history import DEPTH
 from ..session.plan_report import selection_json
@@ -32,7 +33,7 @@ class AnswerArguments(Arguments):
     """Arguments of `answer`."""
 
     answer: Text
-    """A number of the list, "all", or words that choose: "the left one", "the red one"."""
+    """A number of the list, "all", or words that choose: "the left one", "the red one", or "yes"."""
     question: Annotated[str, Field(max_length=40)] = ""
     """The id of the question, as it was told; by default the open one."""
     picture: Picture = False
@@ -56,33 +57,37 @@ class StepArguments(Arguments):
 
 def _do(desk: Desk, said: DoArguments) -> Reply:
     """Carry out an instruction in words, completely or not at all, and return a receipt with every measured check.
-    Several steps may be given at once ("make the sofa red and remove the lamp"). If several things match, nothing is
-    changed and the candidates are returned: call `answer`."""
+    Several steps may be given at once ("make the sofa red and remove the lamp"). If several things match, or
+    the name of what was chosen is not confirmed, nothing is changed and it is asked back: call `answer`."""
     result = desk.session.preview(said.instruction) if said.dry_run else desk.session.do(said.instruction)
     return edited(result, (views.after_edit(result),) if said.picture else ())
 
 
 def _answer(desk: Desk, said: AnswerArguments) -> Reply:
-    """Answer the open question of an ambiguous call by choosing among its candidates; the call is then carried out."""
+    """Answer the open question of a call by choosing among its candidates, or by "yes" to what was chosen without
+    confirmation; the call is then carried out."""
     result = desk.session.answer(said.answer)
     return edited(result, (views.after_edit(result),) if said.picture else ())
 
 
 def _select(desk: Desk, said: SelectArguments) -> Reply:
-    """Find things and return what matches, with groups, boxes and scores. The scene is not changed; "it" and
+    """Find things and return what matches, with groups, boxes and scores. The verdict "unconfirmed" says that what is
+    returned was not recognised by its name. The scene is not changed; "it" and
     `{"last": true}` then mean what was found."""
     from ..pictures.image_files import encoded_png
     from ..pictures.scene_pictures import numbered, spotlight
 
     session = desk.session
-    found = session.select(said.target)
+    found = session.select(without_confirmation(said.target))
     listed = numbered_candidates(found.candidates, session.viewer)
     what = f"found: {found.query.describe()}" if found.verdict == "found" else found.reason or found.verdict
+    if found.verdict == "unconfirmed":
+        what = f"unconfirmed: {what}"
     text = "\n".join([what, *(f"  {c['number']}. {c['said']}" for c in listed)])
     pictures: tuple[bytes, ...] = ()
     if said.picture:
         camera = views.sized(session.viewer, views.WIDTH)
-        marked = found.verdict == "found"
+        marked = found.chosen
         drawn = spotlight(session.scene, camera, found) if marked else numbered(session.scene, camera, found.candidates)
         pictures = (encoded_png(drawn),)
     return Reply(text, {**selection_json(found), "candidates": listed}, pictures)

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ...gaussians.errors import UserError
+from ...gaussians.language.query.nested import without_confirmation
 from ...planners.plan import EditPlan
 from ...tools import registry
 from ...tools.operation import EditOp
@@ -56,7 +57,7 @@ def _parsed(name: str, given: dict[str, Any]) -> tuple[EditOp, bool]:
     if fields.pop("op", name) != name:
         raise ArgumentError(f"not valid arguments of {name} (op: this tool does nothing but {name})")
     try:
-        return registry.parse({"op": name, **fields}), picture
+        return without_confirmation(registry.parse({"op": name, **fields})), picture
     except UserError as error:
         raise ArgumentError(str(error)) from error
 

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 MAX_SIDE = 1280  # pixels of a picture, width and height; larger ones are scaled down by vision models
 HOW_TO_ANSWER = "Nothing was changed. Call `answer` with a number, 'all', or words such as 'the left one'."
+HOW_TO_CONFIRM = "Nothing was changed. Call `answer` with 'yes' to go on with it, or with 'no'."
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,7 @@ class Reply:
         data: the result as JSON data; `verdict` is "ok", or says why nothing was done.
         pictures: PNG files.
         failed: whether nothing was done.
-        asks: id of the question that was left open by an ambiguity, "" if there is none.
+        asks: id of the question that was left open by what is ambiguous or not confirmed, "" if there is none.
         form: that question for a person who can answer it at once.
     """
 
@@ -92,9 +93,11 @@ def asked_back(reply: Reply, question: Question, viewer: Camera, id: str) -> Rep
     """A refusal with the candidates of the question that it leaves open, and how to answer it."""
     numbered = numbered_candidates(question.candidates, viewer)
     form = "\n".join([reply.text, *(f"  {c['number']}. {c['said']}" for c in numbered)])
-    data = {**reply.data, "candidates": numbered, "question": id, "how_to_answer": HOW_TO_ANSWER}
-    asks = id if question.selection.verdict == "ambiguous" else ""
-    return replace(reply, text=f"{form}\n{HOW_TO_ANSWER}", data=data, asks=asks, form=form)
+    verdict = question.selection.verdict
+    how = HOW_TO_CONFIRM if verdict == "unconfirmed" else HOW_TO_ANSWER
+    data = {**reply.data, "candidates": numbered, "question": id, "how_to_answer": how}
+    asks = id if verdict in ("ambiguous", "unconfirmed") else ""
+    return replace(reply, text=f"{form}\n{how}", data=data, asks=asks, form=form)
 
 
 def numbered_candidates(candidates: Sequence[Candidate], viewer: Camera) -> list[dict[str, Any]]:
@@ -107,12 +110,7 @@ def numbered_candidates(candidates: Sequence[Candidate], viewer: Camera) -> list
 
 def _said(candidate: Candidate, viewer: Camera) -> str:
     """A candidate in words: "red box (group 0), left in the view, 8.2 away"."""
-    ((x, y),), (depth,) = viewer.project(np.array([candidate.center], dtype=np.float64))
-    if depth <= 0 or not (0 <= x < viewer.width and 0 <= y < viewer.height):
-        where = "outside the view"
-    else:
-        side = ("left", "in the middle", "right")[min(int(3 * x / viewer.width), 2)]
-        where = f"{side} of the view" if side == "in the middle" else f"on the {side} of the view"
     away = float(np.linalg.norm(np.asarray(candidate.center) - viewer.position))
     group = f" (group {candidate.group})" if candidate.group >= 0 else ""
-    return f"{candidate.color} {plain(candidate.label) or 'thing'}{group}, {where}, {away:.1f} away from the viewer"
+    what = f"{candidate.color} {plain(candidate.label) or 'thing'}{group}"
+    return f"{what}, {candidate.seen_from(viewer)}, {away:.1f} away from the viewer"

@@ -200,6 +200,8 @@ class Survey:
             rest, shell = held
             return self._filtered(query, rest, lambda thing: thing.node is not None and thing.node.support == shell)
         found = self.finder(query)
+        if found.verdict == "unconfirmed":  # what may be it is told as what comes nearest
+            found = replace(found, verdict="absent", candidates=found.candidates[:3])
         if self.measured and found.verdict == "absent" and query.text and not _looks(query):
             by_label = self.stage.find(query)  # "the table" may be what is labelled a coffee table
             found = by_label if by_label.verdict != "absent" else found
@@ -437,7 +439,7 @@ _SURE_NAME = 0.5  # calibrated probability from which a name is more often right
 
 def _surely_named(scene: Scene) -> frozenset[Id]:
     """Ids of the objects whose name is likely right: calibrated, where the encoder knows such scenes, or by sight."""
-    from ...gaussians.language.query.color_fallback import is_reliable
+    from ...gaussians.language.query.color.fallback import is_reliable
 
     assert scene.language is not None
     known = is_reliable(scene.language)
@@ -524,5 +526,5 @@ def _on_stage(found: Selection, rows: dict[Id, int], structure: dict[int, str]) 
 
     groups = tuple(dict.fromkeys(r for g in found.groups if (r := row(g)) >= 0))
     candidates = tuple(replace(c, group=row(c.group)) for c in found.candidates)
-    verdict = "absent" if found.verdict == "found" and not groups else found.verdict
+    verdict = "absent" if found.chosen and not groups else found.verdict
     return replace(found, verdict=verdict, groups=groups, candidates=candidates)

@@ -93,7 +93,7 @@ class Room:
         except UserError as error:
             raise WishError(str(error)) from error
         if meant.verdict != "found" or (not several and len(meant.groups) > 1):
-            verdict = "ambiguous" if meant.verdict != "absent" else "absent"
+            verdict = "ambiguous" if meant.verdict in ("found", "ambiguous") else "absent"
             raise WishError(self.stage.told(meant.reason) or f"{query.describe()} is not here", verdict)  # type: ignore[arg-type]
         return [self.nodes[i] for i in self.stage.names(meant.groups) if i in self.nodes]
 

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         FileError,
         InstructionError,
         ScenewrightError,
+        UnconfirmedError,
         UserError,
     )
     from .gaussians.files import load, save
@@ -78,6 +79,7 @@ _HOME = {
     "InstructionError": ".gaussians.errors",
     "AbsentError": ".gaussians.errors",
     "AmbiguousError": ".gaussians.errors",
+    "UnconfirmedError": ".gaussians.errors",
     "CheckFailedError": ".gaussians.errors",
     "FileError": ".gaussians.errors",
     "BackendError": ".gaussians.errors",
@@ -109,6 +111,7 @@ __all__ = [
     "Selection",
     "Session",
     "Toolbox",
+    "UnconfirmedError",
     "UserError",
     "compose",
     "embed",

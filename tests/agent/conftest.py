@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -39,6 +41,17 @@ class NamesOnly:
 
     def encode_text(self, texts: list[str]) -> NDArray[np.float32]:
         return np.tile(np.float32([1, 0]), (len(texts), 1))
+
+
+class KnowsNoGizmo(NamesOnly):
+    """An encoder that does not know the word "gizmo", so that a gizmo can only be chosen by its colour."""
+
+    dim = 2
+    vocabulary = SimpleNamespace(names=("lamp",), negatives=(), covered=lambda text, loose=False: frozenset())
+    calibration = SimpleNamespace(threshold=0.5)
+
+    def unknown_words(self, text: str) -> tuple[str, ...]:
+        return tuple(word for word in text.split() if word == "gizmo")
 
 
 def _points(center: tuple[float, float, float], side: float, level: bool) -> torch.Tensor:
@@ -90,6 +103,28 @@ def torchvision_examined(findings: tuple[doctor.Finding, ...], monkeypatch: pyte
 @pytest.fixture
 def encoder() -> NamesOnly:
     return NamesOnly()
+
+
+@pytest.fixture
+def unsure(boxes: Scene) -> Scene:
+    """The boxes with names of which nobody is sure, so that one of them may be a gizmo."""
+    assert boxes.language is not None
+    groups = tuple(replace(g, label_score=0.3 if g.level == "object" else 1.0) for g in boxes.language.groups)
+    return boxes.replace(language=replace(boxes.language, groups=groups))
+
+
+@pytest.fixture
+def gizmo_encoder() -> KnowsNoGizmo:
+    return KnowsNoGizmo()
+
+
+@pytest.fixture
+def gizmo_room(unsure: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The unsure boxes in a file with a saved field, and an encoder that fits it."""
+    monkeypatch.setattr(encoders, "load", lambda spec="auto": KnowsNoGizmo())
+    save(unsure, tmp_path / "gizmos.ply")
+    save_field(unsure, tmp_path / "gizmos.ply")
+    return tmp_path / "gizmos.ply"
 
 
 @pytest.fixture

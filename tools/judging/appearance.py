@@ -14,7 +14,7 @@ from ...gaussians.color import rgb_to_lab
 from ...gaussians.language.encoders.probability import probability
 from ...gaussians.language.field.measure import box_of
 from ...gaussians.language.query.attributes import color_scores
-from ...gaussians.language.query.color_fallback import is_reliable
+from ...gaussians.language.query.color.fallback import is_reliable
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.terms import ALL, ANYTHING, FLOATERS, STRUCTURE
 from ...gaussians.language.segmentation.group_renders import cameras_around, mean_vectors

@@ -52,7 +52,7 @@ class Case:
     def meant(self) -> Selection:
         """What a repair chose, else `asked`; empty where nothing was found."""
         found = self.chosen if self.chosen is not None else self.asked
-        return found if found is not None and found.verdict == "found" else Selection(Query(), "found", _NO_IDS)
+        return found if found is not None and found.chosen else Selection(Query(), "found", _NO_IDS)
 
     @cached_property
     def target(self) -> Tensor:

@@ -19,7 +19,7 @@ from ...gaussians.color import rgb_to_lab
 from ...gaussians.harmonics import dc_to_color
 from ...gaussians.language.field.language_field import Group
 from ...gaussians.language.field.measure import solid_points
-from ...gaussians.language.query.color_fallback import is_reliable
+from ...gaussians.language.query.color.fallback import is_reliable
 from ...gaussians.world.box import Box
 from ..placement.bodies import contact_box
 from ..receipt import Check, at_most, report

@@ -142,14 +142,14 @@ def _anchors(case: Case, place: Placement) -> list[Group]:
         return found
     for query in place.anchors:
         selection = case.context.resolve(case.before, query)
-        found += [field.groups[g] for g in selection.groups] if selection.verdict == "found" else []
+        found += [field.groups[g] for g in selection.groups] if selection.chosen else []
     return found
 
 
 def _own_frames(case: Case, anchor: Group, stand: Stand) -> tuple[Stand, ...]:
     """The anchor's own frame, if it can be told which way it faces."""
     found = case.context.resolve(case.before, Query(groups=(anchor.id,)))
-    body = next(iter(bodies_of(case.before, found)), None) if found.verdict == "found" else None
+    body = next(iter(bodies_of(case.before, found)), None) if found.chosen else None
     front = None if body is None else front_of(case.before, body)
     return () if front is None else (object_stand(anchor, front, stand),)
 

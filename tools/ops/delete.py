@@ -41,5 +41,5 @@ class Delete(TargetedOp):
             found = context.resolve(after, every)
         except ScenewrightError as error:
             return report("asked again", 0, "things", f"asking again gave: {error}")
-        things = len(found.groups) if found.verdict == "found" else 0
+        things = len(found.groups) if found.chosen else 0
         return report("asked again", things, "things", f"{every.describe()}: {things} left")

@@ -47,3 +47,8 @@ def with_queries(node: Any, change: Callable[[Query], Query]) -> Any:
     new = {name: made for name, value in old.items() if (made := with_queries(value, change)) != value}
     node = node.model_copy(update=new) if new else node
     return change(node) if isinstance(node, Query) else node
+
+
+def without_confirmation(node: Any) -> Any:
+    """`node` with no query confirmed: only a user confirms, see `Query.confirmed`."""
+    return with_queries(node, lambda q: q.model_copy(update={"confirmed": False}) if q.confirmed else q)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
+from pydantic.json_schema import SkipJsonSchema
 
 from ...world.relations import QueryName, named
 
@@ -79,6 +80,9 @@ class Query(BaseModel):
     grow: Annotated[float, Field(ge=-100, le=100, allow_inf_nan=False)] | None = None
     invert: bool = False
     groups: Annotated[tuple[Annotated[int, Field(ge=0, le=10**9)], ...], Field(max_length=256)] = ()
+    # The user confirmed what is chosen, so that a selection that would be unconfirmed is found. Only the answer to that
+    # question sets it, no planner (`nested.without_confirmation`): so it is in no schema, nor in the text above.
+    confirmed: SkipJsonSchema[bool] = False
 
     def describe(self) -> str:
         """The query in words, for messages: "the red chair left of the sofa"."""

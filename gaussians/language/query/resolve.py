@@ -1,7 +1,8 @@
 """Resolve a query to a selection in a scene, with one verdict.
 
 The steps are set algebra, anchors, terms (`terms.py`) and choice (`picking.py`). Several matches are "ambiguous", none
-is "absent"; every candidate carries the score of each of its terms.
+is "absent", and a choice whose name, or the name of an anchor of it, is not confirmed is "unconfirmed". Every candidate
+carries the score of each of its terms.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from ..field.group_index import GroupIndex, difference, index_groups, union
 from ..field.language_field import Group, LanguageField
 from ..field.measure import box_of
 from .attributes import COLOR_HOLDS, color_scores
-from .color_fallback import PARTS, by_color, by_hue, is_reliable
+from .color.fallback import PARTS, by_color, by_hue, is_reliable
 from .part_query import Piece, pieces_of
 from .picking import by_distance, pick
 from .query import Query, Relation
@@ -100,34 +101,45 @@ class Resolver:
     def members(self) -> GroupIndex:
         return index_groups(self.scene.cloud)
 
+    @cached_property
+    def _anchors(self) -> dict[Relation, list[Anchor]]:
+        """The anchors that were resolved before: a query needs those of a relation several times."""
+        return {}
+
+    @cached_property
+    def _anchored(self) -> dict[Query, Selection]:
+        return {}
+
     # -- from query to selection -----------------------------------------------------------------------------------
 
     def select(self, query: Query) -> Selection:
         """The selection of a query, with set algebra, growing and inversion."""
         found = self._combined(query)
-        if found.verdict != "found" or not (query.grow or query.invert):
-            return found
-        return reshaped(self.scene, self.members, found, query)
+        if found.chosen and (query.grow or query.invert):
+            found = reshaped(self.scene, self.members, found, query)
+        if found.verdict == "unconfirmed" and query.confirmed:
+            return replace(found, verdict="found", reason=f"{found.reason}; confirmed")
+        return found
 
     def _combined(self, query: Query) -> Selection:
         """The selection of a query with its set algebra, without growing and inversion."""
         outs = []
         for other in query.exclude:
             out = self.select(other.model_copy(update={"pick": "all"}) if other.pick == "one" else other)
-            if out.verdict != "found":
+            if not out.chosen:
                 return replace(out, query=query, reason=f"cannot leave out what is not there: {out.reason}")
             outs.append(out)
         unmeant = frozenset(g for out in outs for g in out.groups) if query.pick == "one" and not query.also else None
         own = self._own(query, unmeant or frozenset())
-        if own.verdict != "found":
+        if not own.chosen:
             return own
         for other in query.also:
             more = self.select(other)
-            if more.verdict != "found":
+            if not more.chosen:
                 return replace(more, query=query)
-            own = _joined(own, more)
+            own = _doubted(_joined(own, more), more)
         for out in outs:
-            own = _without(own, out)
+            own = _doubted(_without(own, out), out)
         if not len(own):
             return nothing(query, f"nothing is left of {query.describe()}", own.candidates)
         return own
@@ -147,6 +159,9 @@ class Resolver:
         try:
             found = self.described(query, out)
             fronts = self._frames_told(query) if query.relations else ""
+            for relation in query.relations if found.chosen else ():
+                for anchor in self._anchor_selections(relation):
+                    found = _doubted(found, anchor)
         except Unresolved as anchor:
             return replace(anchor.selection, query=query)
         return replace(found, reason="; ".join(r for r in (found.reason, fronts) if r)) if fronts else found
@@ -165,7 +180,7 @@ class Resolver:
 
             found = by_hue(self.scene, self.field, query, stands, rank.named)
             if found is None and self._goes_by_color(query):
-                found = by_color(self.scene, self.field, query, stands)
+                found = by_color(self.scene, self.field, query, self.viewer, stands)
             if found is not None:
                 return found
         if not matches:
@@ -188,7 +203,7 @@ class Resolver:
         there = self.members.present(self.last.ids) if self.last is not None else torch.zeros(0)
         if self.last is None or not len(there):
             return nothing(query, "there is nothing that 'it' could mean (any more); name the object")
-        return replace(self.last, query=query, verdict="found", ids=there)
+        return replace(self.last, query=query, ids=there)
 
     def _floaters(self, query: Query) -> Selection:
         """The Gaussians without a group: haze and floaters."""
@@ -217,17 +232,32 @@ class Resolver:
         Raises:
             Unresolved: one of them is absent or ambiguous.
         """
+        if relation not in self._anchors:
+            self._anchors[relation] = self._found_anchors(relation)
+        return self._anchors[relation]
+
+    def _found_anchors(self, relation: Relation) -> list[Anchor]:
         groups: list[Group] = []
-        for query in relation.anchors:  # "on the wall" means on any wall
-            found = self.select(query.model_copy(update={"pick": "all"}) if query.text in STRUCTURE else query)
-            if found.verdict != "found":
-                raise Unresolved(found)
-            # A selection by colour alone has no group.
+        for found in self._anchor_selections(relation):
+            # A selection by colour alone may have no group.
             own = [self.field.groups[i] for i in found.groups]
             groups.extend(own or [self._stand_in(found.mask(self.scene.cloud))])
         if relations.named(relation.name).anchors == 2 and len(groups) < 2:
             raise Unresolved(nothing(relation.anchors[0], f"'{relation.name}' needs two things"))
         return [Anchor(g, self._stand_at(g, relation)) for g in groups]
+
+    def _anchor_selections(self, relation: Relation) -> list[Selection]:
+        """What the queries of a relation's anchors select; raises as `anchors`."""
+        chosen = []
+        for query in relation.anchors:  # "on the wall" means on any wall
+            if query not in self._anchored:
+                self._anchored[query] = self.select(
+                    query.model_copy(update={"pick": "all"}) if query.text in STRUCTURE else query
+                )
+            if not self._anchored[query].chosen:
+                raise Unresolved(self._anchored[query])
+            chosen.append(self._anchored[query])
+        return chosen
 
     def _stand_at(self, group: Group, relation: Relation) -> Stand:
         """The frame of the viewer, or of the anchor if the relation is in its own frame and its front is known."""
@@ -344,6 +374,14 @@ class Resolver:
         groups = tuple(dict.fromkeys(c.group for c in chosen))
         ids = self.members.ids_of(leaf for g in groups for leaf in self.field.leaves(g))
         return Selection(query, "found", ids, groups, tuple(chosen))
+
+
+def _doubted(found: Selection, of: Selection) -> Selection:
+    """`found`, unconfirmed if `of`, which it rests on, is unconfirmed."""
+    if of.verdict != "unconfirmed":
+        return found
+    reasons = dict.fromkeys(r for r in (of.reason, found.reason) if r)
+    return replace(found, verdict="unconfirmed", reason="; ".join(reasons))
 
 
 def _joined(a: Selection, b: Selection) -> Selection:

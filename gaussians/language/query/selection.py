@@ -1,19 +1,24 @@
-"""`Selection`, the result of a query: ids of Gaussians, their groups, the score of every term, and a verdict."""
+"""`Selection`, the result of a query: ids of Gaussians, their groups, the score of every term, and a verdict.
+
+"found" and "unconfirmed" select Gaussians. "unconfirmed" says that the name was not confirmed: the selection was chosen
+by its colour, or its name is only likely. It must be confirmed before it is edited, see `Query.confirmed`.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import Literal
 
+import numpy as np
 import torch
 from torch import Tensor
 
-from ...camera import Vec3
+from ...camera import Camera, Vec3
 from ...cloud import GaussianCloud
-from ...errors import AbsentError, AmbiguousError
+from ...errors import AbsentError, AmbiguousError, UnconfirmedError
 from .query import Query
 
-Verdict = Literal["found", "ambiguous", "absent"]
+Verdict = Literal["found", "unconfirmed", "ambiguous", "absent"]
 _DENSE = 8  # ids in a range of at most this many times the rows are looked up in a table
 
 
@@ -39,6 +44,14 @@ class Candidate:
     score: float
     terms: dict[str, float] = field(default_factory=dict)
 
+    def seen_from(self, viewer: Camera) -> str:
+        """Where a viewer sees it: "on the left of the view", "outside the view"."""
+        ((x, y),), (depth,) = viewer.project(np.array([self.center], dtype=np.float64))
+        if depth <= 0 or not (0 <= x < viewer.width and 0 <= y < viewer.height):
+            return "outside the view"
+        side = ("on the left", "in the middle", "on the right")[min(int(3 * x / viewer.width), 2)]
+        return f"{side} of the view"
+
     def describe(self) -> str:
         name = f"{self.color} {self.label}"
         return name if self.group < 0 else f"{name} (group {self.group})"
@@ -50,8 +63,9 @@ class Selection:
 
     Attributes:
         query: the resolved query.
-        verdict: "found", "ambiguous" (see `candidates`) or "absent" (`candidates` holds the nearest).
-        ids: `[M]` int64 sorted stable ids of the selected Gaussians; empty unless found.
+        verdict: "found"; "unconfirmed": chosen, but not by a confirmed name; "ambiguous" (see `candidates`); or
+            "absent" (`candidates` holds the nearest).
+        ids: `[M]` int64 sorted stable ids of the selected Gaussians; empty if ambiguous or absent.
         groups: ids of the selected groups.
         candidates: best first; those selected, those that are ambiguous, or the nearest ones.
         reason: one sentence for the user.
@@ -67,6 +81,11 @@ class Selection:
     def __len__(self) -> int:
         return int(self.ids.shape[0])
 
+    @property
+    def chosen(self) -> bool:
+        """Whether it selects Gaussians: it is found, or chosen without confirmation."""
+        return self.verdict in ("found", "unconfirmed")
+
     def mask(self, cloud: GaussianCloud) -> Tensor:
         """Whether each row `[N]` of `cloud` is selected; ids that it no longer contains are ignored."""
         return mask_of(cloud, self.ids)
@@ -77,11 +96,14 @@ class Selection:
         Raises:
             AbsentError: nothing matches; the message names the nearest candidates.
             AmbiguousError: several match; the message lists them.
+            UnconfirmedError: something was chosen, but not by a confirmed name; the message says what.
         """
         if self.verdict == "absent":
             raise AbsentError(self.reason or f"{self.query.describe()} is not in this scene")
         if self.verdict == "ambiguous":
             raise AmbiguousError(self.reason or f"{self.query.describe()}: several things match")
+        if self.verdict == "unconfirmed":
+            raise UnconfirmedError(self.reason or f"{self.query.describe()}: its name is not confirmed")
         return self
 
 

@@ -26,7 +26,7 @@ from ...world.words import normalise
 from ..field.language_field import Group, LanguageField
 from ..field.posterior import belief_of
 from . import attributes
-from .color_fallback import PARTS
+from .color.fallback import PARTS
 from .query import Query, Relation
 from .selection import Candidate
 

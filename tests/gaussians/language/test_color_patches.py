@@ -11,13 +11,13 @@ import torch
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.color import BASIC, parse
 from scenewright.gaussians.errors import UserError
-from scenewright.gaussians.language.query.color_patches import Patch, patches
+from scenewright.gaussians.language.query.color.patches import Patch, fragments_of, patches
 
 PAINT = {name: parse(value) for name, value in BASIC.items()}
 
 
 def places(cloud: GaussianCloud, *words: str) -> list[Patch]:
-    return patches(cloud, words, np.ones(len(cloud), bool))
+    return patches(cloud, words)
 
 
 def yard(world: type[Any]) -> Any:
@@ -57,11 +57,13 @@ def test_a_colour_that_is_nowhere_has_no_place(world: type[Any]) -> None:
 
 def test_only_rows_that_may_be_taken_are_taken(world: type[Any]) -> None:
     made = yard(world)
-    among = np.ones(len(made), bool)
-    among[made.rows["big"]] = False
-    (place,) = patches(made.cloud(), ("red",), among)
+    group = torch.full((len(made),), -1, dtype=torch.int32)
+    group[made.rows["big"]] = 3
+    cloud = made.cloud().replace(group=group)
+    index = fragments_of(cloud)
+    (place,) = patches(cloud, ("red",), ~index.in_groups([3]))
     assert set(place.rows.tolist()) <= set(made.rows["little"].tolist())
-    assert patches(made.cloud(), ("red",), np.zeros(len(made), bool)) == []
+    assert patches(cloud, ("red",), np.zeros(len(index), bool)) == []
 
 
 def test_a_place_grows_into_its_own_shade(world: type[Any]) -> None:

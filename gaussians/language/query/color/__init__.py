@@ -1,0 +1,1 @@
+"""Selection by measured colour where a name cannot be resolved."""
