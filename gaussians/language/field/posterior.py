@@ -112,7 +112,7 @@ class Belief:
         if making is not None and making.trust is not None:
             return making.trust
         there = np.array([g.level == "object" and g.count > 0 for g in self.field.groups], dtype=bool) & self.seen
-        if not there.any():
+        if not there.any() or not self.encoder.vocabulary.names:  # a graph whose things all have no name
             return MOST_TRUST
         share = distribution(self.encoder, self.field.embeddings[there])
         by_confidence = MOST_TRUST
