@@ -81,6 +81,19 @@ class Case:
         group, field = self.scene.cloud.group.numpy(), self.scene.language
         return [np.isin(group, field.leaves(g.id)) for g in field.objects()]
 
+    def best_union(self, truth: Mask) -> float:
+        """IoU with a true object of the best union of leaf groups: what any choice of rows of the table could reach.
+
+        In order of the share of a group inside the object, the best union is a prefix.
+        """
+        group = self.scene.cloud.group.numpy()
+        own = group >= 0
+        count = np.bincount(group[own], minlength=1)
+        inside = np.bincount(group[own & truth], minlength=len(count))
+        order = np.argsort(-inside / np.maximum(count, 1), kind="stable")
+        within, outside = np.cumsum(inside[order]), np.cumsum((count - inside)[order])
+        return float((within / np.maximum(truth.sum() + outside, 1)).max())
+
     @property
     def field_bytes(self) -> int:
         """What the field holds: one number a Gaussian, and the table's vectors."""

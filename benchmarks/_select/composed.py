@@ -42,6 +42,7 @@ class Confusion:
         meant: true name.
         named: label of the group that agrees best with it.
         iou: of that group.
+        union: IoU of the best union of groups.
         found: IoU of what its name selects; None where the room holds several and the name was not asked.
         verdict: of that query, "" if not asked.
     """
@@ -50,6 +51,7 @@ class Confusion:
     meant: str
     named: str
     iou: float
+    union: float
     found: float | None
     verdict: str
 
@@ -107,10 +109,10 @@ def ask_room(name: str, true: Case, blind: Case, encoder: Encoder) -> Asked:
         each = [iou(mask, truth) for mask in masks]
         best = int(np.argmax(each))
         answer = ask(blind, thing.kind, encoder) if blind.present[thing.kind] == 1 else None
-        objects.append(Confusion(
-            name, thing.kind, groups[best].label, each[best], None if answer is None else iou(answer.mask, truth),
-            "" if answer is None else answer.verdict,
-        ))  # fmt: skip
+        found = None if answer is None else iou(answer.mask, truth)
+        verdict = "" if answer is None else answer.verdict
+        label, union = groups[best].label, blind.best_union(truth)
+        objects.append(Confusion(name, thing.kind, label, each[best], union, found, verdict))
     absent = _absent(blind)
     accepted = tuple(kind for kind in absent if ask(blind, kind, encoder).verdict == "found")
     known = relations.generate(blind, (0,))
@@ -164,6 +166,7 @@ def measure(grouped: Callable[[Case], Case], encoder: Encoder, names: Sequence[s
                0.03),
         Metric("composed.groups.right", fmean(c.iou >= RIGHT for c in every), "share", "higher", 0.03),
         Metric("composed.oracle.miou", fmean(c.iou for c in every), "IoU", "higher", 0.03),
+        Metric("composed.best_union", fmean(c.union for c in every), "IoU", "higher", 0.03, 0.95),
         Metric("composed.absent.refused", 1 - len(accepted) / len(absent), "share", "higher", 0.03, 0.95),
         *([Metric("composed.relations.right", fmean(blind), "share", "higher", 0.05),
            Metric("composed.relations.true_groups", fmean(true_groups), "share", "higher", 0.05)] if blind else []),

@@ -40,6 +40,7 @@ class Asked:
         drawn: as `border`, of the silhouettes of truth and answer, each drawn alone; None where no camera shows it.
         verdicts: of the same.
         oracle, oracle_border: of the best group for each object.
+        union: IoU of the best union of groups for each object.
         several: verdicts for kinds that are there more than once.
         absent, strange: verdicts for names of our kinds that are not there, and of what is no kind of ours.
     """
@@ -52,6 +53,7 @@ class Asked:
     verdicts: list[Verdict]
     oracle: list[float]
     oracle_border: list[float | None]
+    union: list[float]
     several: list[Verdict]
     absent: list[Verdict]
     strange: list[Verdict]
@@ -73,6 +75,7 @@ def ask_names(case: Case, encoder: Encoder) -> Asked:
         verdicts=[a.verdict for _, a in answers],
         oracle=[iou(m, case.truth(o)) for m, o in zip(best, case.objects, strict=True)],
         oracle_border=[border_iou(case.truth(o), m, case.points) for m, o in zip(best, case.objects, strict=True)],
+        union=[case.best_union(case.truth(o)) for o in case.objects],
         several=[ask(case, kind, encoder).verdict for kind, n in sorted(case.present.items()) if n > 1],
         absent=[ask(case, str(kind), encoder).verdict for kind in chosen],
         strange=[ask(case, name, encoder).verdict for name in STRANGE],
@@ -125,6 +128,7 @@ def measure(rooms: Sequence[Asked], seconds: Sequence[float]) -> Part:
         Metric("name.refused", verdicts.count("absent") / len(verdicts), "share", "lower", 0.5, 0.05),
         Metric("name.ambiguous", verdicts.count("ambiguous") / len(verdicts), "share", "lower", 0.5),
         Metric("name.asked", len(found), "count"),
+        Metric("oracle.union.miou", fmean(v for r in rooms for v in r.union), "IoU", "higher", 0.03, 0.95),
         Metric("oracle.miou", fmean(oracle), "IoU", "higher", 0.03, 0.95),
         Metric("oracle.right", fmean(v >= RIGHT for v in oracle), "share", "higher", 0.03),
         Metric("oracle.boundary_iou_3cm", fmean(best), "IoU", "higher", 0.03),

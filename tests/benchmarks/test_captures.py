@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 import torch
 
+from scenewright.benchmarks._iou import iou
 from scenewright.benchmarks._select import composed
+from scenewright.benchmarks._select.cases import Case
 from scenewright.benchmarks._select.real import captures, drawings, settings
 from scenewright.benchmarks._select.real.drawings import Drawing, Weights, agreement, silhouettes
 from scenewright.gaussians import assets
@@ -102,6 +104,18 @@ def test_true_groups_reach_the_silhouettes_they_were_drawn_from(chair: tuple[ass
         if drawing.shows((k + 1,)):
             np.testing.assert_array_equal(weights.best_union(ids, [drawing], (k + 1,)), ids == k)
             np.testing.assert_array_equal(weights.best_group(ids, [drawing], (k + 1,)), ids == k)
+
+
+def test_the_best_union_of_rows_is_found_as_by_trying_all() -> None:
+    rng = np.random.default_rng(3)
+    room = assets.furnish(7001, detail=0.05)
+    scene, truth = room.scene, room.truth.ids.numpy() == 0
+    groups = torch.from_numpy(rng.integers(-1, 6, len(scene.cloud)).astype(np.int32))
+    groups[torch.from_numpy(truth)] = torch.from_numpy(rng.integers(0, 3, int(truth.sum())).astype(np.int32))
+    case = Case(0, scene.replace(cloud=scene.cloud.replace(group=groups)), room.truth.ids.numpy(), room.truth.objects)
+    column = groups.numpy()
+    every = [iou(np.isin(column, some), truth) for n in range(7) for some in combinations(range(6), n)]
+    assert case.best_union(truth) == pytest.approx(max(every))
 
 
 def test_a_composed_room_loses_its_table_and_nothing_else() -> None:
