@@ -11,16 +11,17 @@ from ....scene import Scene
 from ....viewpoints.pictures import Picture
 
 F32 = NDArray[np.float32]
-F64 = NDArray[np.float64]
 
 CHANNELS = 8
+NEAREST = 8.0  # largest relative inverse depth
 MIN_ALPHA = 0.9  # of the render from which its depth counts
 
 
 def channels(picture: Picture, scene: Scene | None) -> F32:
     """A picture `[8, H, W]` float32.
 
-    RGB in [0, 1]; inverse depth divided by its median in the picture; unit normal in camera axes; 1 where depth and
+    RGB in [0, 1]; inverse depth divided by its median in the picture; unit normal in camera axes, towards the camera; 1
+    where depth and
     normal are known. Depth and normals are 0 where they are not known.
 
     Args:
@@ -40,7 +41,7 @@ def add_geometry(stack: F32, seen: Render, camera: Camera) -> None:
     if not known.any():
         return
     inverse = np.where(known, 1 / np.where(known, depth, 1), 0)
-    stack[3] = inverse / np.median(inverse[known])
+    stack[3] = np.minimum(inverse / np.median(inverse[known]), NEAREST)
     normals = normals_of(depth, camera)
     known &= (normals != 0).any(axis=-1)
     stack[3] *= known
@@ -48,14 +49,15 @@ def add_geometry(stack: F32, seen: Render, camera: Camera) -> None:
     stack[7] = known
 
 
-def normals_of(depth: F64, camera: Camera) -> F32:
-    """Unit normals `[H, W, 3]` from depth, in camera axes; zero at the border of the image."""
-    y, x = np.mgrid[: camera.height, : camera.width] + 0.5
-    points = np.stack([(x - camera.cx) / camera.fx * depth, (y - camera.cy) / camera.fy * depth, depth], axis=-1)
-    normals = np.zeros_like(points)
-    if min(depth.shape) > 2:
-        along, down = points[1:-1, 2:] - points[1:-1, :-2], points[2:, 1:-1] - points[:-2, 1:-1]
-        normals[1:-1, 1:-1] = np.cross(along, down)
+def normals_of(depth: NDArray[np.floating], camera: Camera) -> F32:
+    """Unit normals `[H, W, 3]` from depth, in camera axes, towards the camera; zero where there is no direction."""
+    y, x = np.mgrid[: camera.height, : camera.width].astype(np.float32) + np.float32(0.5)
+    z = depth.astype(np.float32)
+    points = np.stack([(x - camera.cx) / camera.fx * z, (y - camera.cy) / camera.fy * z, z], axis=-1).astype(np.float32)
+    if min(z.shape) < 2:
+        return np.zeros_like(points)
+    normals = np.cross(np.gradient(points, axis=0), np.gradient(points, axis=1))
     length = np.linalg.norm(normals, axis=-1, keepdims=True)
-    result: F32 = (normals / np.where(length > 0, length, 1)).astype(np.float32)
+    away = (normals * points).sum(axis=-1, keepdims=True) > 0
+    result: F32 = (np.where(away, -normals, normals) / np.where(length > 0, length, 1)).astype(np.float32)
     return result

@@ -59,5 +59,10 @@ def load(name: str) -> Detector:
     if name == "classical":
         from .classical import contours
 
-        return Detector(contours, 1.0, 0.0)
+        return Detector(contours, 1.06, -0.47)
+    if name == "network":
+        from . import network
+
+        network.session()
+        return Detector(network.contours, 1.0, 0.0)
     raise BackendError(f"unknown detector of contours {name!r}; use {' or '.join(NAMES)}")
