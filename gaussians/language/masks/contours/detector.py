@@ -56,6 +56,7 @@ def load(name: str) -> Detector:
     Raises:
         BackendError: there is none of this name, or its weights cannot be loaded.
     """
+    # The logistic functions are fitted to pictures of `scenewright.training.contours` that no network was trained on.
     if name == "classical":
         from .classical import contours
 
@@ -64,5 +65,5 @@ def load(name: str) -> Detector:
         from . import network
 
         network.session()
-        return Detector(network.contours, 1.0, 0.0)
+        return Detector(network.contours, 0.80, -0.38)
     raise BackendError(f"unknown detector of contours {name!r}; use {' or '.join(NAMES)}")

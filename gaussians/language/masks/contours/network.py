@@ -23,13 +23,13 @@ ADVICE = "reinstall with: pip install --force-reinstall scenewright"
 
 
 @cache
-def session(path: Path = WEIGHTS) -> Any:
+def session() -> Any:
     """The network, loaded once, on one thread: pictures are small.
 
     Raises:
         BackendError: the weights are missing or broken.
     """
-    return open_session(path, ADVICE, threads=1)
+    return open_session(WEIGHTS, ADVICE, threads=1)
 
 
 def contours(picture: F32) -> F32:

@@ -33,7 +33,7 @@ def load(argument: str = "", capture: Path | None = None) -> Pictures:
     """
     if argument and argument not in NAMES:
         raise UserError(f"pictures:{argument} names no detector of contours; use pictures or pictures:classical")
-    detector = load_detector(argument or NAMES[1])
+    detector = load_detector(argument or NAMES[0])
     return Pictures(detector, None if capture is None else read_capture(capture))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from scipy import ndimage
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.errors import BackendError
 from scenewright.gaussians.language.masks import ViewMasks
-from scenewright.gaussians.language.masks.contours import detector, hierarchy, watershed
+from scenewright.gaussians.language.masks.contours import detector, hierarchy, network, watershed
 from scenewright.gaussians.language.masks.contours.classical import contours
 from scenewright.gaussians.language.masks.contours.layers import MAX_MASKS
 from scenewright.gaussians.language.masks.contours.watershed import Regions
@@ -136,8 +137,8 @@ def test_equal_strengths_merge_the_first_regions_first() -> None:
 # -- masks
 
 
-def masks_of(picture: Any) -> ViewMasks:
-    return detector.load("classical").masks(picture, eye(picture.shape[2], picture.shape[1]))
+def masks_of(picture: Any, name: str = "network") -> ViewMasks:
+    return detector.load(name).masks(picture, eye(picture.shape[2], picture.shape[1]))
 
 
 def colored(seed: int = 0, height: int = 60, width: int = 80) -> Any:
@@ -170,8 +171,9 @@ def test_scores_are_probabilities_and_grow_towards_whole_things() -> None:
     assert view.scores[np.unique(view.layers[0])].mean() < (top.mean() if len(top) > 1 else 1)
 
 
-def test_the_disc_is_one_mask() -> None:
-    view = masks_of(colored())
+@pytest.mark.parametrize("name", detector.NAMES)
+def test_the_disc_is_one_mask(name: str) -> None:
+    view = masks_of(colored(), name)
     y, x = np.mgrid[:60, :80]
     disc = (x - 25) ** 2 + (y - 30) ** 2 < 15**2
     best = max(
@@ -187,8 +189,8 @@ def test_masks_are_the_same_every_time() -> None:
     assert one.ids.tobytes() == again.ids.tobytes() and one.scores.tobytes() == again.scores.tobytes()
 
 
-def test_a_plain_picture_is_one_region() -> None:
-    view = masks_of(np.zeros((8, 40, 50), np.float32))
+def test_a_plain_picture_is_one_region_by_the_classical_method() -> None:
+    view = masks_of(np.zeros((8, 40, 50), np.float32), "classical")
     assert view.ids.shape == (1, 40, 50) and (view.ids == 0).all() and view.scores.tolist() == [0.0]
 
 
@@ -201,9 +203,28 @@ def test_contours_follow_depth_where_it_is_known() -> None:
     assert contours(picture).max() < 0.01
 
 
-def test_probabilities_rise_with_strength() -> None:
-    found = detector.load("classical").probability(np.linspace(0, 1, 50))
+@pytest.mark.parametrize("name", detector.NAMES)
+def test_probabilities_rise_with_strength(name: str) -> None:
+    found = detector.load(name).probability(np.linspace(0, 1, 50))
     assert (np.diff(found) >= 0).all() and found[0] < 0.01 and found[-1] > 0.9
+
+
+@pytest.mark.parametrize(("height", "width"), [(32, 48), (33, 47), (5, 9), (100, 30)])
+def test_the_network_takes_pictures_of_any_size(height: int, width: int) -> None:
+    picture = np.random.default_rng(0).random((8, height, width)).astype(np.float32)
+    found = network.contours(picture)
+    assert found.shape == (height, width) and found.dtype == np.float32 and 0 <= found.min() <= found.max() <= 1
+    assert found.tobytes() == network.contours(picture).tobytes()
+    whole = network.padded(picture)
+    assert all(side % network.STRIDE == 0 for side in whole.shape[1:]) and (whole[:, :height, :width] == picture).all()
+
+
+def test_broken_weights_are_a_back_end_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(network, "WEIGHTS", tmp_path / "contours.onnx")
+    network.session.cache_clear()
+    with pytest.raises(BackendError, match="reinstall"):
+        detector.load("network")
+    network.session.cache_clear()
 
 
 def test_an_unknown_detector_is_a_back_end_error() -> None:
