@@ -123,7 +123,7 @@ def ask_room(name: str, true: Case, blind: Case, encoder: Encoder) -> Asked:
 
 
 def _absent(case: Case) -> tuple[str, ...]:
-    missing = [k for k in assets.kinds(shown=True) if k not in case.present]
+    missing = [k for k in assets.kinds(shown=True) if not any(there.endswith(k) for there in case.present)]
     return tuple(str(k) for k in np.random.default_rng(case.seed).choice(missing, ABSENT, replace=False))
 
 

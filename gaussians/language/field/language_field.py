@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -140,6 +140,11 @@ class LanguageField:
     @cached_property
     def answers(self) -> dict[tuple[str, ...], NDArray[np.float64]]:
         """A cache of query scores `[G]` that do not depend on the viewer; each new field starts with an empty one."""
+        return {}
+
+    @cached_property
+    def readings(self) -> dict[tuple[str, ...], tuple[Any, ...]]:
+        """A cache of the readings of nouns, see `query/terms.py`; each new field starts with an empty one."""
         return {}
 
     def require_encoder(self, fingerprint: str) -> Self:

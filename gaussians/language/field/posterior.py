@@ -25,7 +25,7 @@ from ..encoders import Encoder
 from ..encoders.calibration import SIZE_CAP
 from ..encoders.probability import distribution, phrase_logits, size_evidence, softmax, why_unknown
 from . import detectors
-from .language_field import MAX_NAMES, Group, LanguageField, Names
+from .language_field import MAX_NAMES, LanguageField, Names
 
 F64 = NDArray[np.float64]
 
@@ -89,6 +89,11 @@ class Belief:
         return np.asarray(self.field.embeddings.any(axis=1))
 
     @cached_property
+    def told(self) -> NDArray[np.bool_]:
+        """Whether any source tells something of each group `[G]`: a picture, or a detector."""
+        return self.seen | np.array([bool(g.votes) for g in self.field.groups], dtype=bool)
+
+    @cached_property
     def heard(self) -> F64:
         """Log-likelihood `[G, H]` of the votes of detectors, not yet tempered."""
         if self.detector is None:
@@ -136,24 +141,27 @@ class Belief:
 
     # -- phrases ----------------------------------------------------------------------------------------------------
 
-    def shares(self, text: str) -> Shares:
+    def shares(self, text: str, trusting: bool = False) -> Shares:
         """The posterior of a phrase against every name that it does not cover, and each source's own judgement.
 
         All are 0 for a phrase that neither the encoder nor a detector knows.
+
+        Args:
+            trusting: whether pictures are trusted as in a scene that the encoder knows.
         """
         meant = self.meant(text)
         known = why_unknown(self.encoder, text) is None
         if not known and not meant.any():
             nothing = np.zeros(len(self.field.groups))
             return Shares(nothing, {})
-        logs = {"picture": self._pictures(text, known, meant)}
+        trust = max(self.trust, MOST_TRUST) if trusting else self.trust
+        logs = {"picture": self._pictures(text, known, meant, trust)}
         if self.detector is not None:
             logs["detector"] = _tempered(softmax(_own_first(self.heard, meant)), self.detector.trust)
         if self.metres is not None:
             logs["size"] = _own_first(self.sized, meant)
         total = softmax(np.sum(list(logs.values()), axis=0))[:, 0]
-        told = self.seen | np.array([bool(g.votes) for g in self.field.groups], dtype=bool)
-        return Shares(np.where(told, total, 0.0), {name: softmax(value)[:, 0] for name, value in logs.items()})
+        return Shares(np.where(self.told, total, 0.0), {name: softmax(value)[:, 0] for name, value in logs.items()})
 
     def meant(self, text: str) -> NDArray[np.bool_]:
         """Which names `[H]` a phrase covers."""
@@ -164,7 +172,7 @@ class Belief:
         beyond = self.names[len(self.pictured) :]
         return np.array([*(n in covered for n in self.pictured), *(n in inner for n in beyond)], dtype=bool)
 
-    def _pictures(self, text: str, known: bool, meant: NDArray[np.bool_]) -> F64:
+    def _pictures(self, text: str, known: bool, meant: NDArray[np.bool_], trust: float) -> F64:
         """Tempered log-likelihood `[G, 1 + R]` by pictures of the phrase and of the names that it does not cover."""
         count = len(self.pictured)
         rivals = ~meant[:count]
@@ -177,29 +185,45 @@ class Belief:
         share = np.concatenate([share, np.full((len(share), beyond), 1 / count)], axis=1)
         constant = np.full(share.shape, 1 / count)
         constant[:, 0] = max(int(meant.sum()), 1) / count
-        mixed = self.trust * share + (1 - self.trust) * constant
+        mixed = trust * share + (1 - trust) * constant
         return np.log(np.where(self.seen[:, None], mixed, constant))
 
     # -- names ------------------------------------------------------------------------------------------------------
 
-    def named(self) -> list[Names]:
-        """The most probable kinds of each group with their posteriors, highest first; none for structure and parts."""
+    @cached_property
+    def joint(self) -> F64:
+        """Posterior `[G, H]` of every name for each group; rows sum to one."""
+        return self._joint(self.trust)
+
+    @cached_property
+    def joint_trusting(self) -> F64:
+        """`joint` as if pictures were trusted as in a scene that the encoder knows."""
+        return self._joint(MOST_TRUST)
+
+    def _joint(self, trust: float) -> F64:
         share = distribution(self.encoder, self.field.embeddings)
         share = np.where(self.seen[:, None], share, 1 / share.shape[1])
         beyond = len(self.names) - len(self.pictured)
         share = np.concatenate([share, np.full((len(share), beyond), 1 / len(self.pictured))], axis=1)
-        logs = _tempered(share, self.trust, len(self.pictured)) + self.sized
+        logs = _tempered(share, trust, len(self.pictured)) + self.sized
         if self.detector is not None:
             logs = logs + _tempered(softmax(self.heard), self.detector.trust)
-        total = np.where(self.is_kind, softmax(logs), 0.0)
+        return softmax(logs)
+
+    def of_kinds(self, kinds: frozenset[str], trusting: bool = False) -> F64:
+        """Posterior `[G]` that each group is of any of some kinds; 0 for groups that no source has seen."""
+        wanted = np.array([name in kinds for name in self.names], dtype=bool) & self.is_kind
+        total = (self.joint_trusting if trusting else self.joint)[:, wanted].sum(axis=1)
+        return np.where(self.told, total, 0.0)
+
+    def named(self) -> list[Names]:
+        """The most probable kinds of each group with their posteriors, highest first; none for structure and parts."""
+        total = np.where(self.is_kind, self.joint, 0.0)
         order = np.argsort(-total, axis=1, kind="stable")[:, :MAX_NAMES]
         return [
-            tuple((self.names[k], float(row[k])) for k in best if row[k] > 0) if self._nameable(g, seen) else ()
-            for g, seen, best, row in zip(self.field.groups, self.seen, order.tolist(), total, strict=True)
+            tuple((self.names[k], float(row[k])) for k in best if row[k] > 0) if g.level == "object" and told else ()
+            for g, told, best, row in zip(self.field.groups, self.told, order.tolist(), total, strict=True)
         ]
-
-    def _nameable(self, group: Group, seen: bool) -> bool:
-        return group.level == "object" and bool(seen or group.votes)
 
     @property
     def confirms(self) -> float:

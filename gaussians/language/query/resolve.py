@@ -171,18 +171,15 @@ class Resolver:
         owner = next((r for r in query.relations if r.name == "part_of"), None)
         if owner is not None and is_name(query.text):
             return self._part(query, owner)
-        rank = self.scored(query).without(out)
+        ranks = [rank.without(out) for rank in self.readings(query)]
+        rank = _first_matching(ranks)
         matches = rank.matches()
-        if query.colors and query.text not in STRUCTURE and (query.text in PARTS or not matches):
-
-            def stands(rows: torch.Tensor) -> bool:
-                return not query.relations or self.stands(query, self._stand_in(rows))
-
-            found = by_hue(self.scene, self.field, query, stands, rank.named)
-            if found is None and self._goes_by_color(query):
-                found = by_color(self.scene, self.field, query, self.viewer, stands)
-            if found is not None:
-                return found
+        if (
+            query.colors
+            and query.text not in STRUCTURE
+            and (found := self._by_its_color(query, ranks, rank)) is not None
+        ):
+            return found
         if not matches:
             near = tuple(rank.candidate(i) for i in rank.nearest()[:3])
             return nothing(query, self._why_absent(query, near), near)
@@ -195,8 +192,8 @@ class Resolver:
         if choice.refusal is not None:
             return choice.refusal
         if query.pick == "rest":
-            return self._rest(query, rank, choice.chosen)
-        return self._take(query, tuple(rank.candidate(i) for i in choice.chosen))
+            return _as_read(self._rest(query, rank, choice.chosen), rank, choice.chosen)
+        return _as_read(self._take(query, tuple(rank.candidate(i) for i in choice.chosen)), rank, choice.chosen)
 
     def _last_selection(self, query: Query) -> Selection:
         """The Gaussians of the last selection that still exist, for "it"."""
@@ -222,9 +219,13 @@ class Resolver:
     # -- terms ------------------------------------------------------------------------------------------------------
 
     def scored(self, query: Query) -> Scored:
-        """The candidates of a query with their terms, without its set algebra."""
+        """The candidates of a query with their terms, without its set algebra, under the first reading that matches."""
+        return _first_matching(self.readings(query))
+
+    def readings(self, query: Query) -> list[Scored]:
+        """The candidates of a query with their terms under each reading of its noun, the closest first."""
         placed = [(r, self.anchors(r)) for r in query.relations if r.name not in ORDERING]
-        return scored(query, self.field, self.encoder, self.scene.frame.metres_per_unit, placed)
+        return list(scored(query, self.field, self.encoder, self.scene.frame.metres_per_unit, placed))
 
     def anchors(self, relation: Relation) -> list[Anchor]:
         """The anchors of a relation, each with its frame of reference.
@@ -327,6 +328,26 @@ class Resolver:
         found = self.described(query.model_copy(update={"relations": on}))
         return replace(found, query=query) if found.verdict != "absent" else None
 
+    def _by_its_color(self, query: Query, ranks: Sequence[Scored], rank: Scored) -> Selection | None:
+        """The selection by colours where no confirmed name has them: by the hue of named things, then by colour alone,
+        which a likely name with the colour precedes. None if colour does not resolve the query.
+
+        Args:
+            ranks: the readings of the query.
+            rank: the first of them that matches, else the plain one.
+        """
+
+        def stands(rows: torch.Tensor) -> bool:
+            return not query.relations or self.stands(query, self._stand_in(rows))
+
+        parts, matched = query.text in PARTS, bool(rank.holds.any())
+        if not parts and matched and rank.confirmed:
+            return None
+        found = by_hue(self.scene, self.field, query, stands, ranks[0].named)
+        if found is None and (parts or not matched) and self._goes_by_color(query):
+            found = by_color(self.scene, self.field, query, self.viewer, stands)
+        return found
+
     # -- colour fallback -------------------------------------------------------------------------------------------
 
     def _goes_by_color(self, query: Query) -> bool:
@@ -382,6 +403,21 @@ def _doubted(found: Selection, of: Selection) -> Selection:
         return found
     reasons = dict.fromkeys(r for r in (of.reason, found.reason) if r)
     return replace(found, verdict="unconfirmed", reason="; ".join(reasons))
+
+
+def _first_matching(ranks: Sequence[Scored]) -> Scored:
+    """The first of some readings under which something matches, else the plain one."""
+    return next((rank for rank in ranks if rank.holds.any()), ranks[0])
+
+
+def _as_read(found: Selection, rank: Scored, chosen: Sequence[int]) -> Selection:
+    """A selection that says how its noun was read, unconfirmed if the name is only likely."""
+    if rank.reading is None or not rank.reading.note:
+        return found
+    labels = " and ".join(dict.fromkeys(rank.groups[i].label for i in chosen))
+    note = rank.reading.note.format(label=labels)
+    reason = "; ".join(r for r in (note, found.reason) if r)
+    return replace(found, verdict="found" if rank.reading.confirmed else "unconfirmed", reason=reason)
 
 
 def _joined(a: Selection, b: Selection) -> Selection:

@@ -8,7 +8,7 @@ The best threshold for eleven rooms gains at most 0.3 points on the twelfth, so 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
@@ -18,16 +18,15 @@ from numpy.typing import NDArray
 
 from ...camera import Vec3
 from ...color import name_of
-from ...errors import BackendError
-from ...world import kinds, relations
+from ...world import relations
 from ...world.box import Boxes
 from ...world.relation_geometry import HOLDS, Stand
-from ...world.words import normalise
 from ..field.language_field import Group, LanguageField
 from ..field.posterior import belief_of
 from . import attributes
 from .color.fallback import PARTS
 from .query import Query, Relation
+from .readings import Reading, readings
 from .selection import Candidate
 
 if TYPE_CHECKING:
@@ -66,12 +65,19 @@ class Scored:
         terms: `[C]` scores in [0, 1] of each term; NaN where one was not computed because another already fails.
         limits: threshold of each term.
         own: `[C]`, whether the candidate's own label and colour are exactly those of the query.
+        reading: how its noun was read; None without a name.
     """
 
     groups: tuple[Group, ...]
     terms: dict[str, F64]
     limits: dict[str, float]
     own: Flags
+    reading: Reading | None = None
+
+    @property
+    def confirmed(self) -> bool:
+        """Whether a match is confirmed to be what the noun names, and not only likely."""
+        return self.reading is None or self.reading.confirmed
 
     @cached_property
     def score(self) -> F64:
@@ -103,7 +109,9 @@ class Scored:
             return self
         keep = np.array([g.id not in ids for g in self.groups], dtype=bool)
         groups = tuple(g for g in self.groups if g.id not in ids)
-        return Scored(groups, {name: v[keep] for name, v in self.terms.items()}, self.limits, self.own[keep])
+        return Scored(
+            groups, {name: v[keep] for name, v in self.terms.items()}, self.limits, self.own[keep], self.reading
+        )
 
     def matches(self) -> list[int]:
         """Positions of the candidates for which every term holds, best first."""
@@ -161,33 +169,22 @@ def is_name(text: str) -> bool:
     return text not in ANYTHING and text not in PARTS and text not in STRUCTURE
 
 
-def name_scores(field: LanguageField, encoder: Encoder | None, text: str, metres_per_unit: float | None) -> F64:
-    """Probability `[G]` that each group is a `text`, cached per phrase and field.
-
-    A group with a label but without an embedding (inserted under another encoder) scores 1 or 0 by its label. One that
-    was given its name scores 1 by that name, and 0 by the name of another kind.
+def name_readings(
+    field: LanguageField, encoder: Encoder | None, text: str, metres_per_unit: float | None
+) -> tuple[Reading, ...]:
+    """The readings of a noun, the closest first, cached per phrase and field.
 
     Raises:
         BackendError: there is no encoder, or it is not that of the field.
     """
-    if encoder is None:
-        raise BackendError(f"finding {text!r} needs a text encoder; pass encoder='auto'")
-    field.require_encoder(encoder.fingerprint)
-    key = (encoder.fingerprint, text, str(metres_per_unit))
-    if key not in field.answers:
-        sure = belief_of(field, encoder, metres_per_unit).shares(text).total
-        meant = kinds_meant(encoder, text)
-        unseen = ~field.embeddings.any(axis=1) & np.array([not g.votes for g in field.groups], dtype=bool)
-        named = [
-            g.label_score >= OWN_COLOR and (g.label in meant or label_matches(g.label, text)) for g in field.groups
-        ]
-        known = np.array(named, dtype=bool)
-        given = np.array([bool(g.named_by) for g in field.groups], dtype=bool)
-        other = np.array([bool(g.named_by) and _another_kind(g.label, text) for g in field.groups], dtype=bool)
-        _limit_cache(field)
-        by_name = unseen | (given & known) | other
-        field.answers[key] = np.where(by_name, known.astype(np.float64), sure)
-    return field.answers[key]
+    key = (encoder.fingerprint if encoder is not None else "", text, str(metres_per_unit))
+    if key not in field.readings:
+        made = tuple(readings(field, encoder, text, metres_per_unit))
+        if len(field.readings) >= MAX_CACHED:
+            field.readings.clear()
+        field.readings[key] = made
+    found: tuple[Reading, ...] = field.readings[key]
+    return found
 
 
 def name_shares(
@@ -197,18 +194,6 @@ def name_shares(
     if encoder is None or not is_name(text):
         return {}
     return dict(belief_of(field, encoder, metres_per_unit).shares(text).sources)
-
-
-def _another_kind(label: str, text: str) -> bool:
-    """Whether a label and a phrase name two different kinds of things."""
-    named, asked = kinds.of(label), kinds.of(text)
-    return named is not None and asked is not None and named is not asked
-
-
-def label_matches(label: str, text: str) -> bool:
-    """Whether a label ends in the words of `text`: "pastry display case" is a display case, and a case."""
-    asked, name = normalise(text), normalise(label)
-    return bool(asked) and name[-len(asked) :] == asked
 
 
 def color_term(field: LanguageField, word: str) -> F64:
@@ -230,24 +215,14 @@ def _limit_cache(field: LanguageField) -> None:
         field.answers.clear()
 
 
-def kinds_meant(encoder: Encoder | None, text: str) -> frozenset[str]:
-    """The labels of the encoder's vocabulary that a phrase covers; empty for a phrase outside the vocabulary."""
-    return _covered(encoder, text) if encoder is not None and is_name(text) else frozenset()  # type: ignore[arg-type]
-
-
-@lru_cache(maxsize=1024)
-def _covered(encoder: Encoder, text: str) -> frozenset[str]:
-    return encoder.vocabulary.covered(text, loose=True)
-
-
 def scored(
     query: Query,
     field: LanguageField,
     encoder: Encoder | None,
     metres_per_unit: float | None,
     placed: Sequence[tuple[Relation, Sequence[Anchor]]],
-) -> Scored:
-    """The candidates of a query with their terms.
+) -> Iterator[Scored]:
+    """The candidates of a query with their terms, under each reading of its noun, the closest first; at least one.
 
     Args:
         metres_per_unit: of the scene, None if unknown.
@@ -257,6 +232,17 @@ def scored(
         BackendError: the name needs an encoder and there is none.
         UserError: a colour word is unknown.
     """
+    if is_name(query.text) and candidate_groups(field, query.text):
+        for reading in name_readings(field, encoder, query.text, metres_per_unit):
+            yield _scored(query, field, placed, reading)
+    else:
+        yield _scored(query, field, placed, None)
+
+
+def _scored(
+    query: Query, field: LanguageField, placed: Sequence[tuple[Relation, Sequence[Anchor]]], reading: Reading | None
+) -> Scored:
+    """The candidates of a query with their terms under one reading of its noun."""
     groups = candidate_groups(field, query.text)
     rows = np.array([g.id for g in groups], dtype=np.intp)
     terms: dict[str, F64] = {}
@@ -264,11 +250,9 @@ def scored(
     own = np.ones(len(groups), bool)
     if query.text in STRUCTURE:
         terms["text"], limits["text"] = np.ones(len(groups)), 0.5
-    elif is_name(query.text) and groups:
-        terms["text"] = name_scores(field, encoder, query.text, metres_per_unit)[rows]
-        limits["text"] = belief_of(field, encoder, metres_per_unit).confirms if encoder is not None else 0.5
-        meant = kinds_meant(encoder, query.text)
-        own &= np.array([g.label in meant for g in groups], dtype=bool) if meant else True
+    elif reading is not None:
+        terms["text"], limits["text"] = reading.scores[rows], reading.limit
+        own &= np.array([g.label in reading.kinds for g in groups], dtype=bool) if reading.kinds else True
     for word in query.colors:
         terms[f"color {word}"] = color_term(field, word)[rows]
         limits[f"color {word}"] = attributes.COLOR_HOLDS
@@ -285,7 +269,7 @@ def scored(
         sized = np.full(len(groups), np.nan)
         sized[fit] = attributes.size_scores([groups[i] for i in fit], query.size)
         terms[query.size], limits[query.size] = sized, 0.5
-    return Scored(groups, terms, limits, own)
+    return Scored(groups, terms, limits, own, reading)
 
 
 def related(relation: Relation, groups: Sequence[Group], field: LanguageField, anchors: Sequence[Anchor]) -> F64:

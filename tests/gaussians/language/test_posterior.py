@@ -16,6 +16,7 @@ from scenewright.gaussians.language.field.detectors import detector_of
 from scenewright.gaussians.language.field.language_field import Group, LanguageField, Names
 from scenewright.gaussians.language.field.making import Making
 from scenewright.gaussians.language.field.posterior import MOST_TRUST, Belief
+from scenewright.gaussians.language.query.readings import Reading, readings
 from scenewright.gaussians.world.box import Box
 
 KINDS = ("chair", "armchair", "sofa", "bicycle", "potted plant", "vase", "mug", "rug", "lamp", "books")
@@ -203,3 +204,53 @@ def test_the_same_evidence_gives_the_same_names() -> None:
     votes: list[Names] = [(("mug", 1.0),), ()]
     pictures = [picture("mug", 0.4), picture("vase", 0.4)]
     assert believed(field(pictures, votes)).named() == believed(field(pictures, votes)).named()
+
+
+# -- readings of a noun ------------------------------------------------------------------------------------------------
+
+
+def first(table: LanguageField, text: str, metres: float | None = None) -> tuple[Reading, set[int]]:
+    """The first reading under which something matches, else the plain one, and what matches."""
+    every = list(readings(table, ENCODER, text, metres))
+    chosen = next((r for r in every if (r.scores >= r.limit).any()), every[0])
+    return chosen, set(np.flatnonzero(chosen.scores >= chosen.limit).tolist())
+
+
+def test_a_word_means_its_own_kind_first_and_what_it_covers_only_where_none_stands() -> None:
+    both = field([picture("chair"), picture("armchair"), picture("sofa")])
+    reading, found = first(both, "chair")
+    assert found == {0} and reading.confirmed and not reading.note
+    reading, found = first(field([picture("sofa"), picture("armchair")]), "chair")
+    assert found == {1} and reading.confirmed and "no plain chair" in reading.note
+    reading, found = first(field([picture("sofa"), picture("armchair")]), "armchair")
+    assert found == {1} and not reading.note
+
+
+def test_a_name_in_a_scene_that_the_encoder_does_not_know_is_only_likely() -> None:
+    table = field([picture("sofa", 0.7), picture("mug", 0.2), picture("mug", 0.0)], trust=0.15)
+    reading, found = first(table, "sofa")
+    assert found == {0} and not reading.confirmed and "likely" in reading.note
+    assert first(table, "bicycle")[1] == set()  # nothing looks like one
+
+
+def test_a_sort_of_a_kind_is_read_as_the_kind_and_said() -> None:
+    reading, found = first(field([picture("chair"), picture("sofa")]), "barstool highchair")
+    assert found == {0} and not reading.confirmed and "is read as chair" in reading.note
+    assert first(field([picture("chair")]), "zyzzyva")[1] == set()
+
+
+def test_another_kind_of_a_known_name_must_have_its_size() -> None:
+    """The encoder knows "loveseat" as a word for sofas; one of six metres is a sofa and no loveseat."""
+    sofas = Vocabulary({**Axes.vocabulary.kinds, "sofa": ("loveseat",)}, {}, ("part of something",))
+
+    class Short(Axes):
+        fingerprint = "axes:2"
+        vocabulary = sofas
+
+    sizes = [(1.5, 0.85, 0.8), (6.0, 0.85, 0.8)]
+    groups = field([picture("sofa")] * 2, sizes=sizes).groups
+    table = LanguageField(groups, np.array([picture("sofa")] * 2, np.float32), "axes:2")
+    plain, *_ = readings(table, Short(), "loveseat", 1.0)
+    assert plain.scores[0] > plain.limit > plain.scores[1] and plain.confirmed
+    plain, *_ = readings(table, Short(), "loveseat", None)
+    assert plain.scores[1] > plain.limit and not plain.confirmed  # without a scale nothing tells them apart
