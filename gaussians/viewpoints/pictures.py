@@ -13,7 +13,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from ..camera import Camera
+from ..camera import Camera, Render
 from ..errors import FileError, UserError
 from ..files.captures.capture import Capture, is_file
 from ..files.captures.image_file import read_photo
@@ -35,12 +35,12 @@ class Picture:
     Attributes:
         camera: of the picture's size, without distortion.
         rgb: `[H, W, 3]` uint8, display space.
-        taken: whether it is a photograph.
+        seen: what was rendered; None for a photograph.
     """
 
     camera: Camera
     rgb: NDArray[np.uint8]
-    taken: bool
+    seen: Render | None = None
 
 
 def present(capture: Capture) -> tuple[int, ...]:
@@ -69,13 +69,14 @@ def read_photographs(capture: Capture, chosen: tuple[int, ...], side: int) -> It
         if gain < 1:
             photo = np.asarray(Image.fromarray(photo).resize((width, height), Image.Resampling.BOX))
         camera = full.resized(width, height)
-        yield Picture(camera, undistort(photo, camera, capture.lenses[i]), True)
+        yield Picture(camera, undistort(photo, camera, capture.lenses[i]))
 
 
 def render_views(scene: Scene, side: int, count: int) -> Iterator[Picture]:
     """Render views that cover the scene, the longer side `side` pixels, the best first."""
     for camera in rendered_cameras(scene, side, count):
-        yield Picture(camera, render(scene.cloud, camera).to_uint8(), False)
+        seen = render(scene.cloud, camera)
+        yield Picture(camera, seen.to_uint8(), seen)
 
 
 def rendered_cameras(scene: Scene, side: int, count: int) -> tuple[Camera, ...]:

@@ -48,7 +48,7 @@ def test_photographs_are_read_small_and_fit_their_cameras(tmp_path: Path, scene:
     pictures = list(read_photographs(capture, (1, 4), SIDE))
     assert [p.camera.name for p in pictures] == ["view1", "view4"]
     for picture in pictures:
-        assert picture.taken and picture.rgb.shape == (48, SIDE, 3) and picture.rgb.dtype == np.uint8
+        assert picture.seen is None and picture.rgb.shape == (48, SIDE, 3) and picture.rgb.dtype == np.uint8
         assert (picture.camera.width, picture.camera.height) == (SIDE, 48)
         drawn = render(scene.cloud, picture.camera).to_uint8().astype(int)
         assert np.abs(drawn - picture.rgb).mean() < 6  # of 255: JPEG and another resampling
@@ -109,7 +109,7 @@ def test_a_truncated_photograph_says_what_to_do(tmp_path: Path, scene: Scene) ->
 
 def test_renders_cover_the_scene_at_the_size_asked_for(scene: Scene) -> None:
     pictures = list(render_views(scene, SIDE, 4))
-    assert 1 <= len(pictures) <= 4 and all(max(p.rgb.shape) == SIDE and not p.taken for p in pictures)
+    assert 1 <= len(pictures) <= 4 and all(max(p.rgb.shape) == SIDE and p.seen is not None for p in pictures)
 
 
 # -- the source of masks

@@ -1,4 +1,4 @@
-"""The channels of a picture that contours are found in: colour, and depth and normals where the scene is good there."""
+"""The channels of a picture that contours are found in: colour, and of a render depth and normals."""
 
 from __future__ import annotations
 
@@ -6,8 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....camera import Camera, Render
-from ....render import render
-from ....scene import Scene
 from ....viewpoints.pictures import Picture
 
 F32 = NDArray[np.float32]
@@ -17,20 +15,17 @@ NEAREST = 8.0  # largest relative inverse depth
 MIN_ALPHA = 0.9  # of the render from which its depth counts
 
 
-def channels(picture: Picture, scene: Scene | None) -> F32:
+def channels(picture: Picture) -> F32:
     """A picture `[8, H, W]` float32.
 
     RGB in [0, 1]; inverse depth divided by its median in the picture; unit normal in camera axes, towards the camera; 1
-    where depth and
-    normal are known. Depth and normals are 0 where they are not known.
-
-    Args:
-        scene: the scene that the picture shows; None to leave depth and normals unknown.
+    where depth and normal are known. Depth and normals are 0 where they are not known, as in a photograph: geometry has
+    its own say in the segmentation, and photographs show borders that it lacks, such as of a stand on a cloth.
     """
     stack = np.zeros((CHANNELS, *picture.rgb.shape[:2]), np.float32)
     stack[:3] = picture.rgb.transpose(2, 0, 1) / np.float32(255)
-    if scene is not None and len(scene.cloud):
-        add_geometry(stack, render(scene.cloud, picture.camera), picture.camera)
+    if picture.seen is not None:
+        add_geometry(stack, picture.seen, picture.camera)
     return stack
 
 

@@ -81,7 +81,7 @@ class Pictures:
         """
         total, pictures = self._pictures(scene)
         for i, picture in enumerate(pictures):
-            yield self.detector.masks(channels(picture, scene), picture.camera)
+            yield self.detector.masks(channels(picture), picture.camera)
             progress("masks", (i + 1) / total)
 
     def _pictures(self, scene: Scene) -> tuple[int, Iterator[Picture]]:
