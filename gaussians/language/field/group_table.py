@@ -22,6 +22,8 @@ from .language_field import Group, LanguageField, Names
 from .making import Making, package_version, rules_digest
 from .measure import box_of, lab_of_cloud
 from .posterior import Belief
+from .resting import with_rests
+from .scale import NOTE, estimate_scale
 
 
 def with_table(
@@ -89,11 +91,22 @@ def named(field: LanguageField, encoder: Encoder, frame: Frame) -> LanguageField
     """The field with the names of its objects from all sources; structure and names given by others stay."""
     if not field.groups:
         return field
+    field = replace(field, groups=with_rests(field, frame.up_vector, frame.floor))
     if field.making is not None:
-        field = replace(field, making=replace(field.making, trust=None))
-    belief = Belief(field, encoder, frame.metres_per_unit)
-    found = belief.named()
-    groups = tuple(_with_names(g, own) for g, own in zip(field.groups, found, strict=True))
+        field = replace(field, making=replace(field.making, trust=None, scale=None))
+    first = _named(field, encoder, frame.metres_per_unit)
+    scale = estimate_scale(first.groups) if frame.metres_per_unit is None and first.making is not None else None
+    notes = tuple(note for note in first.notes if not note.startswith(NOTE))
+    if scale is None or first.making is None:
+        return replace(first, notes=notes)
+    making = replace(first.making, scale=scale.metres)
+    return _named(replace(first, notes=(*notes, scale.note()), making=making), encoder, None)
+
+
+def _named(field: LanguageField, encoder: Encoder, metres: float | None) -> LanguageField:
+    """The field with the names by its evidence, and with the trust in pictures that they were given by."""
+    belief = Belief(field, encoder, metres)
+    groups = tuple(_with_names(g, own) for g, own in zip(field.groups, belief.named(), strict=True))
     making = None if field.making is None else replace(field.making, trust=round(belief.trust, 4))
     return replace(field, groups=groups, making=making)
 

@@ -45,6 +45,8 @@ class Making:
         photographs: number of photographs that pictures of groups were taken from, 0 for renders.
         package: version of scenewright.
         rules: digest of the learnt rules of the segmentation.
+        scale: metres per unit estimated from things that are named surely, for judging sizes; None if the scale of the
+            scene is known or nothing tells it.
         trust: how far pictures of this scene are trusted to give names, in [0, 1], see `posterior`; None if not known.
     """
 
@@ -55,6 +57,7 @@ class Making:
     package: str = ""
     rules: str = ""
     trust: float | None = None
+    scale: float | None = None
 
     def lines(self) -> list[str]:
         """The making as lines for a person."""

@@ -24,7 +24,7 @@ from ...world.words import normalise
 from ..encoders import Encoder
 from ..encoders.calibration import SIZE_CAP
 from ..encoders.probability import distribution, phrase_logits, size_evidence, softmax, why_unknown
-from . import detectors
+from . import detectors, resting
 from .language_field import MAX_NAMES, LanguageField, Names
 
 F64 = NDArray[np.float64]
@@ -32,6 +32,7 @@ F64 = NDArray[np.float64]
 MOST_TRUST = 0.97  # in pictures: the embedded encoder names that share of whole things right that it was not trained on
 AGREEMENT_PRIOR = 4.0  # groups named by detectors that the trust by confidence is worth
 SURE_DETECTOR = 0.5  # probability by detectors alone from which a group tells whether pictures agree
+ESTIMATED = 0.5  # weight of sizes by an estimated scale
 SURE = 0.5  # posterior from which a name is confirmed in a scene whose pictures are not trusted
 TRUSTED = (0.5, 0.9)  # trust in pictures at which the encoder's own threshold begins to confirm, and fully does
 
@@ -55,7 +56,7 @@ class Belief:
 
     Attributes:
         field, encoder: the field, and the encoder of its vectors.
-        metres: metres per unit that sizes are read with, None if unknown.
+        metres: metres per unit as the scene says, None if unknown.
     """
 
     field: LanguageField
@@ -103,12 +104,23 @@ class Belief:
     @cached_property
     def sized(self) -> F64:
         """Log-likelihood `[G, H]` of the sizes."""
-        if self.metres is None:
+        if self.scale is None:
             return np.zeros((len(self.field.groups), len(self.names)))
-        known = size_evidence(self.encoder, self.field.boxes.sizes * self.metres)
+        known = size_evidence(self.encoder, self.field.boxes.sizes * self.scale)
         beyond = len(self.names) - len(self.pictured)
         neutral = np.full((len(known), beyond), -self.encoder.calibration.size_weight * SIZE_CAP / 3)
-        return np.concatenate([known, neutral], axis=1)
+        return (1.0 if self.metres is not None else ESTIMATED) * np.concatenate([known, neutral], axis=1)
+
+    @property
+    def scale(self) -> float | None:
+        """Metres per unit that sizes are read with: as given, else as estimated."""
+        making = self.field.making
+        return self.metres if self.metres is not None or making is None else making.scale
+
+    @cached_property
+    def rested(self) -> F64:
+        """Log-likelihood `[G, H]` of what the groups rest on."""
+        return resting.log_likelihoods(self.field.groups, self.names)
 
     @cached_property
     def trust(self) -> float:
@@ -158,8 +170,10 @@ class Belief:
         logs = {"picture": self._pictures(text, known, meant, trust)}
         if self.detector is not None:
             logs["detector"] = _tempered(softmax(_own_first(self.heard, meant)), self.detector.trust)
-        if self.metres is not None:
+        if self.scale is not None:
             logs["size"] = _own_first(self.sized, meant)
+        if any(g.rests for g in self.field.groups):
+            logs["support"] = _own_first(self.rested, meant)
         total = softmax(np.sum(list(logs.values()), axis=0))[:, 0]
         return Shares(np.where(self.told, total, 0.0), {name: softmax(value)[:, 0] for name, value in logs.items()})
 
@@ -205,7 +219,7 @@ class Belief:
         share = np.where(self.seen[:, None], share, 1 / share.shape[1])
         beyond = len(self.names) - len(self.pictured)
         share = np.concatenate([share, np.full((len(share), beyond), 1 / len(self.pictured))], axis=1)
-        logs = _tempered(share, trust, len(self.pictured)) + self.sized
+        logs = _tempered(share, trust, len(self.pictured)) + self.sized + self.rested
         if self.detector is not None:
             logs = logs + _tempered(softmax(self.heard), self.detector.trust)
         return softmax(logs)

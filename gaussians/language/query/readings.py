@@ -63,7 +63,7 @@ def readings(field: LanguageField, encoder: Encoder | None, text: str, metres: f
     belief = belief_of(field, encoder, metres)
     exact = encoder.vocabulary.covered(text, loose=True)
     fit = _fits_size(belief, text)
-    sized = fit is None or metres is not None
+    sized = fit is None or belief.scale is not None
     alone = np.ones(len(field.groups)) if fit is None else fit.astype(np.float64)
     threshold = encoder.calibration.threshold
     scores = _by_given_names(field, text, exact, belief.shares(text).total * alone)
@@ -123,10 +123,10 @@ def _fits_size(belief: Belief, text: str) -> Flags | None:
     if kind.name in belief.names:  # a detector knows it
         return None
     count = len(belief.field.groups)
-    if belief.metres is None:
+    if belief.scale is None:
         return np.ones(count, dtype=bool)
     (w0, w1), (d0, d1), (h0, h1) = kinds.extent(kind.name)
-    sizes = belief.field.boxes.sizes.reshape(count, 3) * belief.metres
+    sizes = belief.field.boxes.sizes.reshape(count, 3) * belief.scale
     long = sizes[:, :2].max(axis=1)
     fits: Flags = (long >= max(w0, d0)) & (long <= max(w1, d1)) & (sizes[:, 2] >= h0) & (sizes[:, 2] <= h1)
     return fits

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -16,6 +18,8 @@ from scenewright.gaussians.language.field.detectors import detector_of
 from scenewright.gaussians.language.field.language_field import Group, LanguageField, Names
 from scenewright.gaussians.language.field.making import Making
 from scenewright.gaussians.language.field.posterior import MOST_TRUST, Belief
+from scenewright.gaussians.language.field.resting import with_rests
+from scenewright.gaussians.language.field.scale import estimate_scale
 from scenewright.gaussians.language.query.readings import Reading, readings
 from scenewright.gaussians.world.box import Box
 
@@ -254,3 +258,50 @@ def test_another_kind_of_a_known_name_must_have_its_size() -> None:
     assert plain.scores[0] > plain.limit > plain.scores[1] and plain.confirmed
     plain, *_ = readings(table, Short(), "loveseat", None)
     assert plain.scores[1] > plain.limit and not plain.confirmed  # without a scale nothing tells them apart
+
+
+# -- what things rest on -----------------------------------------------------------------------------------------------
+
+
+def standing(kind_sizes: list[tuple[tuple[float, float, float], tuple[float, float, float]]]) -> list[str]:
+    """Where objects with these centres and sizes rest in a room of 4 x 4 x 2.5 metres."""
+    boxes = [Box(center, AXES, size) for center, size in kind_sizes]
+    shell = [("floor", (0, 0, -0.01), (4, 4, 0.02)), ("wall", (0, 2, 1.25), (4, 0.1, 2.5))]
+    rows = [Group(i, "object", -1, "", 0.0, box, (50, 0, 0), 100, 3, 1.0) for i, box in enumerate(boxes)]
+    for name, center, size in shell:
+        box = Box(tuple(map(float, center)), AXES, tuple(map(float, size)))  # type: ignore[arg-type]
+        rows.append(Group(len(rows), "structure", -1, name, 1.0, box, (50, 0, 0), 100, 3, 1.0))
+    table = LanguageField(tuple(rows), np.zeros((len(rows), Axes.dim), np.float32), ENCODER.fingerprint)
+    return [g.rests for g in with_rests(table, np.array([0.0, 0.0, 1.0]), 0.0)[: len(boxes)]]
+
+
+def test_where_things_rest() -> None:
+    desk, mug = ((0.0, 0.0, 0.37), (1.2, 0.6, 0.74)), ((0.3, 0.1, 0.79), (0.1, 0.1, 0.1))
+    picture_, lamp = ((0.0, 1.93, 1.5), (0.6, 0.03, 0.4)), ((0.0, 0.0, 2.3), (0.3, 0.3, 0.4))
+    floating = ((-1.0, -1.0, 1.2), (0.2, 0.2, 0.2))
+    assert standing([desk, mug, picture_, lamp, floating]) == ["floor", "surface", "wall", "ceiling", ""]
+
+
+def test_what_a_thing_rests_on_decides_between_look_alikes_and_outweighs_no_clear_picture() -> None:
+    between = (np.array(picture("rug")) + np.array(picture("mug"))).tolist()
+    table = field([between, between, picture("mug")])
+    where = ("floor", "surface", "floor")
+    rows = tuple(replace(g, rests=r) for g, r in zip(table.groups, where, strict=True))
+    belief = believed(replace(table, groups=rows))
+    assert [n[0][0] for n in belief.named()] == ["rug", "mug", "mug"]
+    assert belief.shares("mug").sources["support"][1] > belief.shares("mug").sources["support"][0]
+
+
+def test_the_scale_is_that_on_which_most_named_things_agree() -> None:
+    """A unit is a tenth of a metre; one thing is not what it is called."""
+    sizes = {"chair": (0.46, 0.5, 0.88), "sofa": (1.95, 0.87, 0.82), "bicycle": (1.7, 0.5, 1.0), "mug": (2.0, 2.0, 2.0)}
+    rows = tuple(
+        Group(i, "object", -1, kind, 0.8, Box((0, 0, 0), AXES, tuple(10 * v for v in size)), (50, 0, 0), 100, 3, 1.0)  # type: ignore[arg-type]
+        for i, (kind, size) in enumerate(sizes.items())
+    )
+    found = estimate_scale(rows)
+    assert (
+        found is not None and found.metres == pytest.approx(0.1, rel=0.1) and found.by == ("bicycle", "chair", "sofa")
+    )
+    assert estimate_scale(rows[:1]) is None and estimate_scale((rows[0], rows[3])) is None  # one, or two that disagree
+    assert estimate_scale([replace(g, label_score=0.3) for g in rows]) is None
