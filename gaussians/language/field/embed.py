@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 
 from ...cloud import NO_GROUP, GaussianCloud
 from ...errors import UserError
+from ...rotations import to_matrix
 from ...scene import Scene
 from ...viewpoints.coverage import choose_views
 from .. import encoders
@@ -28,12 +29,14 @@ from ..segmentation.group_renders import one_thread
 from ..segmentation.orient import estimate_frame
 from ..segmentation.segment import VIEWS_PER_CANDIDATE, Progress, Segment, segment
 from ..segmentation.settle import settled
-from ..segmentation.surface import MIN_OPACITY, Surface, surface_of
+from ..segmentation.surface import MIN_OPACITY, Surface, least_opacity, surface_of
 from .group_table import vector_of_votes, with_table
 from .making import MaskSource
 
 MAX_DISTANCE = 6.0  # spacings within which a Gaussian off the surface joins the group of the nearest surface point
 MAX_DISTANCE_OPAQUE = 2.0  # likewise for an opaque one, which is a floater: otherwise it would be a surface point
+COVERS = 1.0  # own standard deviations within which a Gaussian off the surface joins the nearest surface point
+COVERS_HAZY = 4.0  # likewise where surfaces consist of faint Gaussians, most of which are not surface points
 
 
 def embed(
@@ -147,17 +150,30 @@ def _segment_of_superpoint(segments: Sequence[Segment], count: int) -> NDArray[n
 
 
 def _assign(cloud: GaussianCloud, surface: Surface, group: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Group of every Gaussian `[N]`: its own, or off the surface that of the nearest surface point if it is close."""
+    """Group of every Gaussian `[N]`: its own, or off the surface that of the nearest surface point if it is close to
+    that or covers it."""
     column = np.full(len(cloud), NO_GROUP, np.int32)
     column[surface.rows] = group
     rest = np.ones(len(cloud), bool)
     rest[surface.rows] = False
     rows = np.flatnonzero(rest)
     if len(rows) and len(surface):
-        distance, nearest = cKDTree(surface.points).query(cloud.means[rows].numpy(), workers=-1)
-        spread = cloud.scales[rows].amax(dim=1).numpy()
+        part = cloud[torch.from_numpy(rows)]
+        distance, nearest = cKDTree(surface.points).query(part.means.numpy(), workers=-1)
+        spread = part.scales.amax(dim=1).numpy()
         local = surface.gaps.mean(axis=1)[nearest]
-        reach = np.where((cloud.opacities[rows] > MIN_OPACITY).numpy(), MAX_DISTANCE_OPAQUE, MAX_DISTANCE)
+        least = least_opacity(cloud)
+        reach = np.where((part.opacities > least).numpy(), MAX_DISTANCE_OPAQUE, MAX_DISTANCE)
         near = distance < reach * np.maximum(local, surface.spacing) + 0.5 * np.minimum(spread, 4 * surface.spacing)
+        near |= _deviations(part, surface.points[nearest]) < (COVERS_HAZY if least < MIN_OPACITY else COVERS)
         column[rows[near]] = group[nearest[near]]
     return column
+
+
+def _deviations(cloud: GaussianCloud, points: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Distance of each Gaussian `[N]` from a point of its own `[N, 3]`, in its standard deviations that way."""
+    offset = torch.from_numpy(points) - cloud.means
+    along = torch.einsum("nij,ni->nj", to_matrix(cloud.quats), offset)
+    thick = torch.maximum(cloud.scales, 0.2 * cloud.scales.amax(dim=1, keepdim=True))
+    deviations: NDArray[np.float32] = torch.linalg.vector_norm(along / thick, dim=1).numpy()
+    return deviations

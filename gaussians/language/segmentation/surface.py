@@ -17,7 +17,9 @@ from ...rotations import to_matrix
 F32 = NDArray[np.float32]
 
 NEIGHBOURS = 10
-MIN_OPACITY = 0.08  # Gaussians below this are not surface points
+MIN_OPACITY = 0.08  # Gaussians below this are not surface points,
+HAZY = 0.15  # or below this share of the scene's typical opacity: short fits make surfaces of many faint Gaussians
+GRAIN = 0.5  # of the typical extent of a Gaussian: least spacing, where Gaussians overlap far more than they must
 DENSE = 4.0  # spacings within which three neighbours must lie for a point of any size to be kept
 OVERLAP = 2.0  # own standard deviations within which they must lie otherwise
 PRUNINGS = 3  # passes: floaters may be near each other, so removing some isolates more
@@ -94,13 +96,31 @@ def surface_of(cloud: GaussianCloud, most: int = MAX_POINTS) -> Surface:
     k = min(NEIGHBOURS, max(len(rows) - 1, 1))
     gaps, neighbours = _nearest(points, k)
     spacing = float(np.median(gaps[:, : max(1, k // 2)])) if len(rows) else 0.0
-    for _ in range(PRUNINGS):
+    passes = PRUNINGS if least_opacity(cloud) == MIN_OPACITY else 0  # faint Gaussians are alike, floaters or not
+    for _ in range(passes):
         kept = _not_isolated(gaps, cloud.scales[rows].amax(dim=1).numpy(), spacing)
         if kept.all():
             break
         rows, points = rows[kept], points[kept]  # drop floaters and search the neighbours again
         gaps, neighbours = _nearest(points, k)
+    if len(rows):
+        spacing = max(spacing, GRAIN * float(cloud.scales[rows].amax(dim=1).median()))
     return _measured(cloud[torch.from_numpy(rows)], rows, neighbours, gaps, spacing)
+
+
+def least_opacity(cloud: GaussianCloud) -> float:
+    """Opacity from which a Gaussian may be a surface point.
+
+    MIN_OPACITY, or less in a scene whose surfaces consist of many faint Gaussians, as after a short fit.
+    """
+    if not len(cloud):
+        return MIN_OPACITY
+    step = max(1, len(cloud) // 50_000)
+    opacity = cloud.opacities[::step].numpy().astype(np.float64)
+    order = np.argsort(opacity)
+    total = np.cumsum(opacity[order])
+    typical = float(opacity[order][np.searchsorted(total, 0.5 * total[-1])])
+    return min(MIN_OPACITY, HAZY * typical)
 
 
 def surface_at(cloud: GaussianCloud, known: Known) -> Surface:
@@ -108,7 +128,8 @@ def surface_at(cloud: GaussianCloud, known: Known) -> Surface:
     k = min(NEIGHBOURS, max(len(known.rows) - 1, 1))
     gaps, neighbours = _nearest(known.points, k)
     part = cloud[torch.from_numpy(known.rows)].replace(means=torch.from_numpy(known.points))
-    found = _measured(part, known.rows, neighbours, gaps, float(np.median(gaps[:, : max(1, k // 2)])))
+    spacing = max(float(np.median(gaps[:, : max(1, k // 2)])), GRAIN * float(part.scales.amax(dim=1).median()))
+    found = _measured(part, known.rows, neighbours, gaps, spacing)
     same = np.where((found.normals @ known.normal)[:, None] < 0, -known.normal, known.normal)
     trust = known.trust[:, None]
     mixed = (1 - trust) * found.normals + trust * same
@@ -135,7 +156,7 @@ def solid_rows(cloud: GaussianCloud) -> NDArray[np.int64]:
         return np.zeros(0, np.int64)
     sample = largest[:: max(1, len(cloud) // 50_000)]
     bound = 12 * float(torch.quantile(sample, 0.8))
-    return ((cloud.opacities > MIN_OPACITY) & (largest < bound)).nonzero().squeeze(1).numpy()
+    return ((cloud.opacities > least_opacity(cloud)) & (largest < bound)).nonzero().squeeze(1).numpy()
 
 
 def _not_isolated(gaps: F32, reach: F32, spacing: float) -> NDArray[np.bool_]:
