@@ -19,6 +19,7 @@ F32 = NDArray[np.float32]
 NEIGHBOURS = 10
 MIN_OPACITY = 0.08  # Gaussians below this are not surface points,
 HAZY = 0.15  # or below this share of the scene's typical opacity: short fits make surfaces of many faint Gaussians
+COVERED = 0.05  # of the area of the scene's box: what faint Gaussians cover together where they are surfaces
 GRAIN = 0.5  # of the typical extent of a Gaussian: least spacing, where Gaussians overlap far more than they must
 DENSE = 4.0  # spacings within which three neighbours must lie for a point of any size to be kept
 OVERLAP = 2.0  # own standard deviations within which they must lie otherwise
@@ -111,12 +112,20 @@ def surface_of(cloud: GaussianCloud, most: int = MAX_POINTS) -> Surface:
 def least_opacity(cloud: GaussianCloud) -> float:
     """Opacity from which a Gaussian may be a surface point.
 
-    MIN_OPACITY, or less in a scene whose surfaces consist of many faint Gaussians, as after a short fit.
+    MIN_OPACITY, or less in a scene whose surfaces consist of many faint Gaussians, as after a short fit. There they
+    overlap so much that together they cover the scene's box; haze alone does not.
     """
-    if not len(cloud):
-        return MIN_OPACITY
     step = max(1, len(cloud) // 50_000)
-    opacity = cloud.opacities[::step].numpy().astype(np.float64)
+    part = cloud[torch.arange(0, len(cloud), step)]
+    if not len(part):
+        return MIN_OPACITY
+    opacity = part.opacities.numpy().astype(np.float64)
+    low, high = np.quantile(part.means.numpy(), [0.05, 0.95], axis=0)
+    w, d, h = high - low
+    footprint = _footprint(part)
+    footprint = np.minimum(footprint, np.quantile(footprint, 0.95))
+    if step * float(footprint.sum()) < COVERED * 2 * float(w * d + d * h + w * h):
+        return MIN_OPACITY
     order = np.argsort(opacity)
     total = np.cumsum(opacity[order])
     typical = float(opacity[order][np.searchsorted(total, 0.5 * total[-1])])

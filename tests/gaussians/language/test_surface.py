@@ -142,6 +142,15 @@ def test_degenerate_clouds_have_a_skin_without_nan(count: int, together: bool) -
     assert (structures(surface, labels, Frame()) == 0).all()  # too little to be a floor
 
 
+def test_faint_gaussians_are_the_surface_where_all_are_faint(world: type[Any]) -> None:
+    """A short fit makes its surfaces of many Gaussians of a few hundredths of opacity."""
+    cloud = (
+        world().sheet("floor", (0, 0, 0), (1, 0, 0), (0, 1, 0), GRAY).box("crate", (0, 0, 0), (1, 1, 1), RED).cloud()
+    )
+    faint = surface_of(cloud.replace(opacities=0.04 * cloud.opacities, scales=4 * cloud.scales))
+    assert np.array_equal(faint.rows, surface_of(cloud).rows)
+
+
 def test_a_cloud_of_haze_alone_has_no_skin() -> None:
     surface = surface_of(points_at(torch.rand(50, 3, generator=torch.Generator().manual_seed(1)), opacity=0.01))
     assert len(surface) == 0
