@@ -23,6 +23,7 @@ from ...cloud import GaussianCloud
 _DENSE = 8  # ids in a range of at most this many times their number are combined in a table of flags
 _TABLE = 1 << 22  # flags; a table up to this size takes less time than sorting many ids
 _SCAN_SHARE = 1 / 32  # of the rows, from which a scan of all rows is faster than sorting the slices
+_IDS_KEPT = 2_000_000  # ids of selections that are kept, 8 bytes each
 _KEPT = 4  # clouds whose index is cached: the present one, those of undo, and some for comparison
 
 
@@ -65,8 +66,20 @@ class GroupIndex:
         return np.sort(np.concatenate(slices)).astype(np.int64)
 
     def ids_of(self, groups: Iterable[int]) -> Tensor:
-        """Ids `[M]` int64 of the Gaussians of some groups, ascending."""
-        return self.ids_at(self.rows(groups))
+        """Ids `[M]` int64 of the Gaussians of some groups, ascending; those of the groups asked last are kept."""
+        key = tuple(sorted(set(groups)))
+        if key in self._asked:
+            self._asked.move_to_end(key)
+            return self._asked[key]
+        found = self.ids_at(self.rows(key))
+        self._asked[key] = found
+        while len(self._asked) > 1 and sum(map(len, self._asked.values())) > _IDS_KEPT:
+            self._asked.popitem(last=False)
+        return found
+
+    @cached_property
+    def _asked(self) -> OrderedDict[tuple[int, ...], Tensor]:
+        return OrderedDict()
 
     def ids_but(self, groups: Iterable[int]) -> Tensor:
         """Ids `[M]` int64 of all Gaussians except those of some groups, ascending."""
@@ -84,9 +97,13 @@ class GroupIndex:
 
     def present(self, ids: Tensor) -> Tensor:
         """The subset of some ascending ids that the cloud contains."""
-        every, asked = self.every_id.cpu().numpy(), ids.cpu().numpy()
-        if not len(every):
+        if not len(self.ids) or not len(ids):
             return ids[:0]
+        if self._consecutive:
+            first, last = int(self.ids[0]), int(self.ids[-1])
+            if int(ids[0]) >= first and int(ids[-1]) <= last:
+                return ids
+        every, asked = self.every_id.cpu().numpy(), ids.cpu().numpy()
         place = np.minimum(np.searchsorted(every, asked), len(every) - 1)
         return ids[torch.from_numpy(every[place] == asked).to(ids.device)]
 

@@ -85,6 +85,7 @@ class Resolver:
     viewer: Camera
     encoder: Encoder | None = None
     last: Selection | None = None
+    bare: bool = False  # whether only groups are wanted: named selections then hold no ids
 
     @cached_property
     def field(self) -> LanguageField:
@@ -140,7 +141,7 @@ class Resolver:
             own = _doubted(_joined(own, more), more)
         for out in outs:
             own = _doubted(_without(own, out), out)
-        if not len(own):
+        if not len(own) and not (self.bare and own.groups):
             return nothing(query, f"nothing is left of {query.describe()}", own.candidates)
         return own
 
@@ -252,13 +253,23 @@ class Resolver:
         chosen = []
         for query in relation.anchors:  # "on the wall" means on any wall
             if query not in self._anchored:
-                self._anchored[query] = self.select(
-                    query.model_copy(update={"pick": "all"}) if query.text in STRUCTURE else query
-                )
+                self._anchored[query] = self._anchor_selection(query)
             if not self._anchored[query].chosen:
                 raise Unresolved(self._anchored[query])
             chosen.append(self._anchored[query])
         return chosen
+
+    def _anchor_selection(self, query: Query) -> Selection:
+        if query.text in STRUCTURE:
+            query = query.model_copy(update={"pick": "all"})
+        if query.last or query.exclude or query.also or query.grow or query.invert or query.pick == "rest":
+            return self.select(query)  # what depends on the Gaussians
+        return self._for_groups.select(query)
+
+    @cached_property
+    def _for_groups(self) -> Resolver:
+        """This resolver for anchors, of which only the groups count: a large one takes milliseconds to list."""
+        return self if self.bare else replace(self, bare=True)
 
     def _stand_at(self, group: Group, relation: Relation) -> Stand:
         """The frame of the viewer, or of the anchor if the relation is in its own frame and its front is known."""
@@ -393,7 +404,9 @@ class Resolver:
 
     def _take(self, query: Query, chosen: Sequence[Candidate]) -> Selection:
         groups = tuple(dict.fromkeys(c.group for c in chosen))
-        ids = self.members.ids_of(leaf for g in groups for leaf in self.field.leaves(g))
+        ids = torch.zeros(0, dtype=torch.int64)
+        if not self.bare:
+            ids = self.members.ids_of(leaf for g in groups for leaf in self.field.leaves(g))
         return Selection(query, "found", ids, groups, tuple(chosen))
 
 

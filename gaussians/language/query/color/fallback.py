@@ -26,7 +26,7 @@ from ...field.language_field import Group, LanguageField
 from .. import attributes
 from ..query import Query
 from ..selection import Candidate, Selection, nothing
-from .patches import DARK, Fragments, Patch, fragments_of, patches, vec
+from .patches import DARK, Fragments, Patch, everywhere, fragments_of, patches, vec
 from .remnants import Shell, shell_of
 
 PARTS = frozenset({"part", "piece", "bit", "area", "region", "patch", "spot"})
@@ -92,10 +92,10 @@ def by_color(scene: Scene, field: LanguageField, query: Query, viewer: Camera, s
         return replace(nothing(query, reason, told), verdict="ambiguous")
     chosen = places if query.pick == "all" else places[:1]
     told = tuple(p.candidate(query.colors[0], search.label(p)) for p in chosen[:6])
-    rows = np.unique(np.concatenate([p.rows for p in chosen]))
+    rows = chosen[0].rows if len(chosen) == 1 else np.unique(np.concatenate([p.rows for p in chosen]))
     groups = tuple(dict.fromkeys(p.group for p in chosen if p.group >= 0 and search.is_whole(p)))
     seen = f"{doubtful}; chosen by its colour: {_told(scene, chosen, query, viewer)}" if doubtful else ""
-    ids = scene.cloud.ids[torch.from_numpy(rows)].sort().values
+    ids = index_groups(scene.cloud).ids_at(rows)
     return Selection(query, "found" if search.generic else "unconfirmed", ids, groups, told, seen)
 
 
@@ -169,6 +169,8 @@ class _Search:
 
     def places(self) -> list[Place]:
         """What may be meant, the most probable first: objects, and where none is plausible, loose patches."""
+        if self.generic and self.query.pick == "all" and not self.query.relations:
+            return self._everywhere()
         return ([] if self.generic else self._objects()) or self._loose()
 
     def label(self, place: Place) -> str:
@@ -218,6 +220,17 @@ class _Search:
         center = np.median(self.scene.cloud.means.numpy()[rows[:: max(1, len(rows) // MOST_POINTS)]], axis=0)
         return Place(rows, group.id, weight, score, vec(center), group.box.size)
 
+    def _everywhere(self) -> list[Place]:
+        """All patches of the colours as one place."""
+        free = ~self.index.in_groups(self.barred)
+        rows, fragments = everywhere(self.scene.cloud, self.query.colors, free)
+        if not len(rows):
+            return []
+        points = self.scene.cloud.means.numpy()[rows[:: max(1, len(rows) // MOST_POINTS)]]
+        score = float(self.index.bin_scores(self.query.colors)[self.index.bins[fragments]].mean())
+        whole = self._completed(rows, fragments, free)
+        return [Place(whole, -1, score, score, vec(np.median(points, axis=0)), vec(np.ptp(points, axis=0)))]
+
     def _loose(self) -> list[Place]:
         """The patches of the colours in what is left, completed by parts and shadows."""
         free = ~self.index.in_groups(self.barred)
@@ -226,7 +239,7 @@ class _Search:
             fits = 1.0 if self.generic else self._fits(patch.size, patch.fragments)
             if fits <= 0 or (not self.generic and self._is_remnant(patch)):
                 continue
-            rows = self._completed(patch, free)
+            rows = self._completed(patch.rows, patch.fragments, free)
             found.append(Place(rows, -1, patch.weight * fits, patch.score, patch.center, patch.size))
         return sorted(found, key=lambda p: (-p.weight, int(p.rows[0])))
 
@@ -257,23 +270,22 @@ class _Search:
         high = np.array([*sorted(r[1] for r in known[:2]), known[2][1]])
         return float(bool((sides >= low).all() and (sides <= high).all()))
 
-    def _completed(self, patch: Patch, free: NDArray[np.bool_]) -> NDArray[np.int64]:
-        """The rows of a patch; with each part of the colours of which it contains at least `PART_TAKEN`, and with
-        its shadows. Single threads of a cloth may be too dark for its colour; the parts hold them."""
-        field, column = self.field, self.scene.cloud.group.numpy()
-        homes, held = np.unique(column[patch.rows], return_counts=True)
-        parts = [
-            int(g)
-            for g, count in zip(homes, held, strict=True)
-            if 0 <= g < len(field.groups)
-            and g not in self.barred
-            and count >= PART_TAKEN * max(field.groups[g].count, 1)
-            and min(float(attributes.color_scores(w, field.labs[g])) for w in self.query.colors)
-            >= attributes.COLOR_HOLDS
-        ]
-        rows = np.union1d(patch.rows, index_groups(self.scene.cloud).rows(parts))
-        dark = np.setdiff1d(self.index.with_shadows(patch.fragments, free), patch.fragments)
-        return np.union1d(rows, self.index.rows(dark))
+    def _completed(
+        self, rows: NDArray[np.int64], fragments: NDArray[np.int64], free: NDArray[np.bool_]
+    ) -> NDArray[np.int64]:
+        """Rows of fragments, with each part of the colours of which they contain at least `PART_TAKEN`, and with their
+        shadows. Single threads of a cloth may be too dark for its colour; the parts hold them."""
+        field, column = self.field, index_groups(self.scene.cloud).column
+        held = np.bincount(column[rows], minlength=len(field.groups) + 1)[1 : len(field.groups) + 1]
+        counts = np.array([g.count for g in field.groups])
+        fits = np.min([attributes.color_scores(w, field.labs) for w in self.query.colors], axis=0)
+        parts = np.flatnonzero((held >= PART_TAKEN * np.maximum(counts, 1)) & (fits >= attributes.COLOR_HOLDS))
+        dark = np.setdiff1d(self.index.with_shadows(fragments, free), fragments, assume_unique=True)
+        flags = np.zeros(len(column), bool)
+        flags[rows] = True
+        flags[index_groups(self.scene.cloud).rows(set(parts.tolist()) - self.barred)] = True
+        flags[self.index.rows(dark)] = True
+        return np.flatnonzero(flags)
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,6 +27,7 @@ from ..attributes import color_scores
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
+I32 = NDArray[np.int32]
 Flags = NDArray[np.bool_]
 
 CELLS = 260  # voxels along the robust diagonal of the scene, in which colour is averaged
@@ -38,6 +39,9 @@ MIN_SCORE = 0.03  # of a Gaussian: below it the Gaussian only shares the voxel
 DARK = 28.0  # Lab lightness below which a fragment among coloured ones counts as shadow
 SHADOW_SHARE = 0.45  # share of the links of a dark fragment that must lead to what is selected
 _SPAN = 1 << 13  # voxels along a side of the grid; the scene without outliers takes at most 260
+MOST_POINTS = 2000  # rows by which centre and size of a patch are measured
+LEAST = 0.05  # share of the largest patch's weight below which a patch is left out
+_SCAN_SHARE = 1 / 8
 _KEPT = 2  # clouds whose fragments are cached
 _LINKED = np.array([(x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if (x, y, z) >= (0, 0, 0)])
 
@@ -74,7 +78,7 @@ class Fragments:
         bins: `[F]` bin of each fragment.
         labs: `[B, 3]` mean CIE Lab of each bin.
         groups: `[F]` leaf in `GaussianCloud.group`.
-        links: `[L, 2]` pairs of fragments in the same or adjacent blocks.
+        links: two arrays `[L]` int32, pairs of fragments in the same block or blocks that share a face.
         footprint: `[N]` float32 footprint of each row, scene units squared, times opacity, capped; 0 if not solid.
         cells: `[F]` voxels of each fragment.
         side: side of a voxel, scene units.
@@ -87,7 +91,7 @@ class Fragments:
     bins: I64
     labs: F64
     groups: I64
-    links: I64
+    links: tuple[I32, I32]
     footprint: NDArray[np.float32]
     cells: I64
     side: float
@@ -101,16 +105,27 @@ class Fragments:
         return float(self.footprint.sum(dtype=np.float64)) + 1e-20
 
     @cached_property
+    def counts(self) -> I64:
+        """Rows `[F]` of each fragment."""
+        return np.diff(self.starts)
+
+    @cached_property
     def share(self) -> F64:
         """Footprint `[F]` of each fragment."""
         solid = self.of_row >= 0
         total = np.bincount(self.of_row[solid], weights=self.footprint[solid], minlength=len(self))
         return total.astype(np.float64)
 
-    def rows(self, fragments: Iterable[int] | I64) -> I64:
+    def rows(self, fragments: I64) -> I64:
         """Rows `[M]` int64 of some fragments, ascending."""
-        found = [self.order[self.starts[f] : self.starts[f + 1]] for f in fragments]
-        return np.sort(np.concatenate(found)).astype(np.int64) if found else np.zeros(0, np.int64)
+        counts = self.starts[fragments + 1] - self.starts[fragments]
+        total = int(counts.sum())
+        if total >= _SCAN_SHARE * len(self.of_row):  # then a scan of all rows is faster than sorting
+            flags = np.zeros(len(self) + 1, bool)
+            flags[fragments] = True
+            return np.flatnonzero(flags[self.of_row])
+        first = np.repeat(self.starts[fragments] - np.cumsum(counts) + counts, counts)
+        return np.sort(self.order[first + np.arange(total)]).astype(np.int64)
 
     def in_groups(self, groups: Iterable[int]) -> Flags:
         """`[F]`, whether each fragment belongs to one of some leaves."""
@@ -131,25 +146,27 @@ class Fragments:
         flags = np.zeros(len(self), bool)
         flags[chosen] = True
         dark = (self.labs[self.bins, 0] < DARK) & free
-        a, b = self.links.T
+        a, b = self.links
+        met = dark[a] | dark[b]
+        a, b = a[met], b[met]
         for _ in range(2):  # the second pass reaches those behind the first
-            open_ = dark & ~flags
             held = np.bincount(a[flags[b]], minlength=len(self)) + np.bincount(b[flags[a]], minlength=len(self))
-            flags |= open_ & (held > SHADOW_SHARE * np.maximum(self._degree, 1))
+            flags |= dark & (held > SHADOW_SHARE * np.maximum(self._degree, 1))
         return np.flatnonzero(flags)
 
     @cached_property
     def _degree(self) -> I64:
         """Links `[F]` of each fragment."""
-        return np.bincount(self.links.ravel(), minlength=len(self))
+        return sum((np.bincount(end, minlength=len(self)) for end in self.links), np.zeros(len(self), np.int64))
 
 
 def patches(cloud: GaussianCloud, words: tuple[str, ...], free: Flags | None = None, most: int = 12) -> list[Patch]:
-    """The patches that match all colour words, largest weight first, at most `most`.
+    """The patches that match all colour words, largest weight first.
 
     Args:
         words: colour words; the minimum of their scores counts.
         free: `[F]` bool, fragments that may be selected (see `fragments_of`); None: all.
+        most: how many are returned; those of less than `LEAST` of the largest are left out.
 
     Raises:
         UserError: a colour word is unknown.
@@ -161,14 +178,24 @@ def patches(cloud: GaussianCloud, words: tuple[str, ...], free: Flags | None = N
     known = np.flatnonzero(place >= 0)
     if not len(known):
         return []
-    count = np.bincount(place[known], weights=np.diff(index.starts)[known])
+    count = np.bincount(place[known], weights=index.counts[known])
     wide = np.bincount(place[known], weights=index.share[known])
     rough = np.sqrt(wide / index.total * count / len(cloud)) * (
         np.bincount(place[known], weights=index.share[known] * score[known]) / (wide + 1e-20)
     )
     first = np.argsort(-rough, kind="stable")[:most]
-    made = [_patch(index, cloud, np.flatnonzero(place == p), by_bin) for p in first.tolist()]
+    kept = first[rough[first] >= LEAST * rough[first[0]]]
+    made = [_patch(index, cloud, known[place[known] == p], by_bin) for p in kept.tolist()]
     return sorted((p for p in made if p is not None), key=lambda p: (-p.weight, int(p.rows[0])))
+
+
+def everywhere(cloud: GaussianCloud, words: tuple[str, ...], free: Flags) -> tuple[I64, I64]:
+    """The rows of all patches that match all colour words, and their fragments, both ascending; as `patches`."""
+    index = fragments_of(cloud)
+    by_bin = index.bin_scores(words)
+    fragments = np.flatnonzero(_places(index, np.where(free, by_bin[index.bins], 0.0)) >= 0)
+    rows = index.rows(fragments)
+    return rows[(by_bin >= MIN_SCORE)[index.bin_of_row[rows]]], fragments
 
 
 def _patch(index: Fragments, cloud: GaussianCloud, fragments: I64, by_bin: F64) -> Patch | None:
@@ -181,9 +208,9 @@ def _patch(index: Fragments, cloud: GaussianCloud, fragments: I64, by_bin: F64) 
     footprint = index.footprint[rows].astype(np.float64)
     mean = float(np.average(own, weights=footprint + 1e-20))
     share = float(np.sqrt(footprint.sum() / index.total * len(rows) / len(cloud)))
-    points = cloud.means.numpy()[rows[:: max(1, len(rows) // 5000)]].astype(np.float64)
-    spread = np.ptp(np.quantile(points, [0.02, 0.98], axis=0), axis=0)
-    return Patch(rows, fragments, share * mean, mean, vec(np.median(points, axis=0)), vec(spread))
+    points = np.sort(cloud.means.numpy()[rows[:: max(1, len(rows) // MOST_POINTS)]], axis=0)
+    low, middle, high = (points[round(q * (len(points) - 1))] for q in (0.02, 0.5, 0.98))
+    return Patch(rows, fragments, share * mean, mean, vec(middle), vec(high - low))
 
 
 def vec(values: F64) -> Vec3:
@@ -197,23 +224,26 @@ def _places(index: Fragments, score: F64) -> I64:
     seeds = np.flatnonzero(score >= SEED_SCORE)
     if not len(seeds):
         return place
-    number = np.full(len(index), -1, dtype=np.int64)
+    a, b = index.links
+    strong = score >= SEED_SCORE
+    both = strong[a] & strong[b]
+    number = np.zeros(len(index), dtype=np.int32)
     number[seeds] = np.arange(len(seeds))
-    ends = number[index.links]
-    ends = ends[(ends >= 0).all(axis=1)]
-    graph = coo_matrix((np.ones(len(ends), np.int8), (ends[:, 0], ends[:, 1])), shape=(len(seeds), len(seeds)))
+    graph = coo_matrix((np.ones(int(both.sum()), np.int8), (number[a[both]], number[b[both]])), shape=(len(seeds),) * 2)
     place[seeds] = connected_components(graph, directed=False)[1]
-    weak = index.links[(score[index.links] >= GROW_SCORE).all(axis=1)]
-    while len(weak):
-        known = place[weak] >= 0
-        border = weak[known[:, 0] != known[:, 1]]
-        if not len(border):
+    weak = (score >= GROW_SCORE) & ~strong
+    met = (weak[a] & (place[b] >= 0)) | (weak[b] & (place[a] >= 0)) | (weak[a] & weak[b])
+    a, b = a[met], b[met]
+    while len(a):
+        forth, back = (place[a] >= 0) & (place[b] < 0), (place[b] >= 0) & (place[a] < 0)
+        inner = np.concatenate([a[forth], b[back]])
+        outer = np.concatenate([b[forth], a[back]])
+        if not len(outer):
             break
-        reached = place[border] >= 0
-        outer, inner = border[~reached], border[reached]
-        best = np.lexsort((place[inner], -score[inner]))[::-1]  # the best seed is written last
+        best = np.lexsort((-place[inner], score[inner]))  # the best neighbour is written last
         place[outer[best]] = place[inner[best]]
-        weak = weak[~known.all(axis=1)]
+        left = (place[a] < 0) | (place[b] < 0)
+        a, b = a[left], b[left]
     return place
 
 
@@ -250,7 +280,7 @@ def _fragments(cloud: GaussianCloud) -> Fragments:
         none, wide = np.zeros(0, np.int64), np.zeros(len(cloud), np.float32)
         nowhere, unbinned = np.full(len(cloud), -1, np.int32), np.zeros(len(cloud), np.int32)
         return Fragments(nowhere, unbinned, none.astype(np.int32), np.zeros(1, np.int64), none, np.zeros((0, 3)), none,
-                         np.zeros((0, 2), np.int64), wide, none, 1.0)  # fmt: skip
+                         (none.astype(np.int32),) * 2, wide, none, 1.0)  # fmt: skip
     part = cloud[torch.from_numpy(rows)]
     lab = base_lab(part).cpu().numpy()
     ordered = part.scales.sort(dim=1, descending=True).values
@@ -265,7 +295,7 @@ def _fragments(cloud: GaussianCloud) -> Fragments:
     total = np.stack([np.bincount(cell, weights=lab[:, c] * footprint, minlength=len(first)) for c in range(3)], axis=1)
     mean = total / weight[:, None]
     bins, labs = _binned(np.concatenate([mean, lab.astype(np.float64)]))
-    of_cell, links = _linked(cell_key[first] // BLOCK, bins[: len(first)], group[first])
+    of_cell, a, b = _linked(cell_key[first] // BLOCK, bins[: len(first)], group[first])
     count = int(of_cell.max()) + 1
     of_row = np.full(len(cloud), -1, np.int32)
     of_row[rows] = of_cell[cell]
@@ -278,7 +308,7 @@ def _fragments(cloud: GaussianCloud) -> Fragments:
     pick = np.zeros(count, np.int64)
     pick[of_cell] = np.arange(len(of_cell))
     return Fragments(of_row, own_bin, rows[order].astype(np.int32), starts, bins[: len(first)][pick], labs,
-                     group[first][pick], links, wide, np.bincount(of_cell, minlength=count), side)  # fmt: skip
+                     group[first][pick], (a, b), wide, np.bincount(of_cell, minlength=count), side)  # fmt: skip
 
 
 def _binned(lab: F64) -> tuple[I64, F64]:
@@ -301,8 +331,8 @@ def _numbered(code: I64) -> tuple[I64, I64]:
     return number, first
 
 
-def _linked(block: I64, bins: I64, group: I64) -> tuple[I64, I64]:
-    """The fragment of each voxel: those of one bin and group in the same or adjacent blocks; and the linked fragments.
+def _linked(block: I64, bins: I64, group: I64) -> tuple[I64, I32, I32]:
+    """The fragment of each voxel, those of one bin and group in the same or adjacent blocks; and the ends of the links.
 
     Args:
         block: `[C, 3]` coordinates of the block of each voxel.
@@ -314,20 +344,21 @@ def _linked(block: I64, bins: I64, group: I64) -> tuple[I64, I64]:
     nodes, node = np.unique(kind, return_inverse=True)
     home, sort = nodes >> 34, nodes & ((1 << 34) - 1)
     starts = np.searchsorted(home, np.arange(len(blocks) + 1))
-    pairs = []
+    pairs, faces = [], []
     for step in _LINKED:
         other = blocks + int(_code(step[None])[0])
         place = np.minimum(np.searchsorted(blocks, other), len(blocks) - 1)
         met = np.flatnonzero(blocks[place] == other)
         pairs.append(_products(starts, met, place[met]))
+        faces += [pairs[-1]] if np.abs(step).sum() < 2 else []
     both = np.concatenate(pairs)
     same = both[sort[both[:, 0]] == sort[both[:, 1]]]
     graph = coo_matrix((np.ones(len(same), np.int8), (same[:, 0], same[:, 1])), shape=(len(nodes), len(nodes)))
     fragment = connected_components(graph, directed=False)[1].astype(np.int64)
-    links = np.sort(fragment[both], axis=1)
+    links = np.sort(fragment[np.concatenate(faces)], axis=1)
     links = links[links[:, 0] != links[:, 1]]
-    unique = np.unique(links[:, 0] * (len(nodes) + 1) + links[:, 1])
-    return fragment[node], np.stack([unique // (len(nodes) + 1), unique % (len(nodes) + 1)], axis=1)
+    unique = np.unique(links[:, 0] * len(nodes) + links[:, 1])
+    return fragment[node], (unique // len(nodes)).astype(np.int32), (unique % len(nodes)).astype(np.int32)
 
 
 def _products(starts: I64, a: I64, b: I64) -> I64:
