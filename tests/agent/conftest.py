@@ -17,6 +17,7 @@ from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.color import rgb_to_lab
 from scenewright.gaussians.files import save
 from scenewright.gaussians.language import encoders
+from scenewright.gaussians.language.encoders.vocabulary import Vocabulary
 from scenewright.gaussians.language.field.language_field import Group, LanguageField
 from scenewright.gaussians.language.field.store import save_field
 from scenewright.gaussians.scene import Frame, Scene
@@ -47,7 +48,7 @@ class KnowsNoGizmo(NamesOnly):
     """An encoder that does not know the word "gizmo", so that a gizmo can only be chosen by its colour."""
 
     dim = 2
-    vocabulary = SimpleNamespace(names=("lamp",), negatives=(), covered=lambda text, loose=False: frozenset())
+    vocabulary = Vocabulary({"lamp": ()}, {}, ())
     calibration = SimpleNamespace(threshold=0.5)
 
     def unknown_words(self, text: str) -> tuple[str, ...]:

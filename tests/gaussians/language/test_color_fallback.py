@@ -15,6 +15,7 @@ from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.color import BASIC, parse, rgb_to_lab
 from scenewright.gaussians.harmonics import SH_C0
+from scenewright.gaussians.language.encoders.vocabulary import Vocabulary
 from scenewright.gaussians.language.field.language_field import Group, LanguageField
 from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.language.query.resolve import resolve
@@ -101,13 +102,7 @@ class Knows:
 
     fingerprint, dim = "test:1", 2
 
-    class vocabulary:
-        names: tuple[str, ...] = ()
-        negatives: tuple[str, ...] = ()
-
-        @staticmethod
-        def covered(text: str, loose: bool = False) -> frozenset[str]:
-            return frozenset()
+    vocabulary = Vocabulary({"lamp": ()}, {}, ())
 
     class calibration:
         threshold = 0.5
