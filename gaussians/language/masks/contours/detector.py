@@ -65,5 +65,5 @@ def load(name: str) -> Detector:
         from . import network
 
         network.session()
-        return Detector(network.contours, 0.80, -0.38)
+        return Detector(network.contours, 0.86, 0.16)
     raise BackendError(f"unknown detector of contours {name!r}; use {' or '.join(NAMES)}")
