@@ -43,11 +43,23 @@ class Shares:
 
     Attributes:
         total: `[G]` posterior.
-        sources: `[G]` the probability by each source alone, in [0, 1]; sources that say nothing are left out.
+        logs: `[T, 1 + R]` log-likelihoods by each source of the phrase and of its rivals; sources that say nothing are
+            left out.
+        rows: `[T]` the groups that any source has seen; 0 for the others.
     """
 
     total: F64
-    sources: Mapping[str, F64]
+    logs: Mapping[str, F64]
+    rows: NDArray[np.intp]
+
+    @cached_property
+    def sources(self) -> dict[str, F64]:
+        """The probability `[G]` by each source alone, in [0, 1]."""
+        found = {}
+        for name, values in self.logs.items():
+            found[name] = np.zeros(len(self.total))
+            found[name][self.rows] = softmax(values)[:, 0]
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +105,11 @@ class Belief:
     def told(self) -> NDArray[np.bool_]:
         """Whether any source tells something of each group `[G]`: a picture, or a detector."""
         return self.seen | np.array([bool(g.votes) for g in self.field.groups], dtype=bool)
+
+    @cached_property
+    def rows(self) -> NDArray[np.intp]:
+        """The groups `[T]` of which any source tells something."""
+        return np.flatnonzero(self.told)
 
     @cached_property
     def heard(self) -> F64:
@@ -164,18 +181,18 @@ class Belief:
         meant = self.meant(text)
         known = why_unknown(self.encoder, text) is None
         if not known and not meant.any():
-            nothing = np.zeros(len(self.field.groups))
-            return Shares(nothing, {})
+            return Shares(np.zeros(len(self.field.groups)), {}, self.rows)
         trust = max(self.trust, MOST_TRUST) if trusting else self.trust
         logs = {"picture": self._pictures(text, known, meant, trust)}
         if self.detector is not None:
-            logs["detector"] = _tempered(softmax(_own_first(self.heard, meant)), self.detector.trust)
+            logs["detector"] = _tempered(softmax(_own_first(self.heard[self.rows], meant)), self.detector.trust)
         if self.scale is not None:
-            logs["size"] = _own_first(self.sized, meant)
+            logs["size"] = _own_first(self.sized[self.rows], meant)
         if any(g.rests for g in self.field.groups):
-            logs["support"] = _own_first(self.rested, meant)
-        total = softmax(np.sum(list(logs.values()), axis=0))[:, 0]
-        return Shares(np.where(self.told, total, 0.0), {name: softmax(value)[:, 0] for name, value in logs.items()})
+            logs["support"] = _own_first(self.rested[self.rows], meant)
+        total = np.zeros(len(self.field.groups))
+        total[self.rows] = softmax(np.sum(list(logs.values()), axis=0))[:, 0]
+        return Shares(total, logs, self.rows)
 
     def meant(self, text: str) -> NDArray[np.bool_]:
         """Which names `[H]` a phrase covers."""
@@ -187,20 +204,20 @@ class Belief:
         return np.array([*(n in covered for n in self.pictured), *(n in inner for n in beyond)], dtype=bool)
 
     def _pictures(self, text: str, known: bool, meant: NDArray[np.bool_], trust: float) -> F64:
-        """Tempered log-likelihood `[G, 1 + R]` by pictures of the phrase and of the names that it does not cover."""
-        count = len(self.pictured)
+        """Tempered log-likelihood `[T, 1 + R]` by pictures of the phrase and of the names that it does not cover."""
+        count, vectors = len(self.pictured), self.field.embeddings[self.rows]
         rivals = ~meant[:count]
         beyond = int((~meant[count:]).sum())
         if known:
-            share = softmax(phrase_logits(self.encoder, text, self.field.embeddings, rivals))
+            share = softmax(phrase_logits(self.encoder, text, vectors, rivals))
         else:  # a kind that only detectors know: neither for nor against it
-            among = softmax(phrase_logits(self.encoder, self.pictured[0], self.field.embeddings, rivals)[:, 1:])
+            among = softmax(phrase_logits(self.encoder, self.pictured[0], vectors, rivals)[:, 1:])
             share = np.concatenate([np.full((len(among), 1), 1 / count), among], axis=1)
         share = np.concatenate([share, np.full((len(share), beyond), 1 / count)], axis=1)
         constant = np.full(share.shape, 1 / count)
         constant[:, 0] = max(int(meant.sum()), 1) / count
         mixed = trust * share + (1 - trust) * constant
-        return np.log(np.where(self.seen[:, None], mixed, constant))
+        return np.log(np.where(self.seen[self.rows][:, None], mixed, constant))
 
     # -- names ------------------------------------------------------------------------------------------------------
 

@@ -15,9 +15,7 @@ SURE = 0.5  # probability from which a name tells a size
 LEAST = 2  # things that must agree
 AGREE = 1.6  # factor from the median within which a thing agrees
 MOST_AGREE = 2 / 3  # share of the things that must agree
-SHAPE = (
-    2.0  # factor between the scales by length and by height from which a thing is not whole, or not what it is called
-)
+SHAPE = 2.0  # factor between the scales by length and by height from which a thing is not whole, or is misnamed
 
 
 @dataclass(frozen=True)

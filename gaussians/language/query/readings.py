@@ -138,18 +138,22 @@ def _by_given_names(field: LanguageField, text: str, meant: frozenset[str], scor
     A group with a label but without any evidence (inserted under another encoder) scores 1 or 0 by its label. One that
     was given its name scores 1 by that name, and 0 by the name of another kind.
     """
-    unseen = ~field.embeddings.any(axis=1) & np.array([not g.votes for g in field.groups], dtype=bool)
-    known = np.array(
-        [g.label_score >= OWN_NAME and (g.label in meant or label_matches(g.label, text)) for g in field.groups],
-        dtype=bool,
-    )
-    given = np.array([bool(g.named_by) for g in field.groups], dtype=bool)
-    other = np.array([bool(g.named_by) and _another_kind(g.label, text) for g in field.groups], dtype=bool)
-    return np.where(unseen | (given & known) | other, known.astype(np.float64), scores)
+    scores = scores.copy()
+    seen: Flags = np.asarray(field.embeddings.any(axis=1))
+    for g in field.groups:
+        unseen = not seen[g.id] and not g.votes
+        if not unseen and not g.named_by:
+            continue
+        known = g.label_score >= OWN_NAME and (g.label in meant or label_matches(g.label, text))
+        if unseen or known or _another_kind(g.label, text):
+            scores[g.id] = float(known)
+    return scores
 
 
 def label_matches(label: str, text: str) -> bool:
     """Whether a label ends in the words of `text`: "pastry display case" is a display case, and a case."""
+    if not label:
+        return False
     asked, name = normalise(text), normalise(label)
     return bool(asked) and name[-len(asked) :] == asked
 

@@ -31,6 +31,7 @@ from .color.fallback import PARTS, by_color, by_hue, is_reliable
 from .part_query import Piece, pieces_of
 from .picking import by_distance, pick
 from .query import Query, Relation
+from .readings import is_known
 from .reshape import reshaped
 from .selection import Candidate, Selection, nothing
 from .terms import (
@@ -369,7 +370,14 @@ class Resolver:
         """
         if not is_name(query.text) or self.encoder is None or not is_reliable(self.field):
             return True
-        return why_unknown(self.encoder, query.text) is not None
+        return self._why_unknown(query.text) is not None
+
+    def _why_unknown(self, text: str) -> str | None:
+        """Why a name can match nothing: neither the encoder nor a detector knows it; None if one does, or without an
+        encoder."""
+        if self.encoder is None or is_known(self.encoder, self.field, text):
+            return None
+        return why_unknown(self.encoder, text)
 
     def stands(self, query: Query, thing: Group) -> bool:
         """Whether a group outside the table satisfies every relation of the query."""
@@ -388,7 +396,7 @@ class Resolver:
     # -- results ----------------------------------------------------------------------------------------------------
 
     def _why_absent(self, query: Query, near: Sequence[Candidate]) -> str:
-        if is_name(query.text) and self.encoder is not None and (why := why_unknown(self.encoder, query.text)):
+        if is_name(query.text) and (why := self._why_unknown(query.text)):
             return f"{query.describe()}: {why}; describe it by colour or place, or load a larger encoder"
         if not near:
             return f"{query.describe()} is not in this scene, nor is anything that could be compared with it"
