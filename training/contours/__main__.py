@@ -14,6 +14,7 @@ from typing import Any
 
 import torch
 
+from ...gaussians.errors import UserError
 from .. import export as common
 from ..renders import cache_folder
 from . import calibrate, dataset, export, fit, measure
@@ -44,44 +45,59 @@ def main(argv: list[str] | None = None) -> int:
         dataset.read(paths) for paths in (sets[0], sets[1][:CALIBRATION_SHARDS], sets[1][CALIBRATION_SHARDS:])
     )
     report(f"{len(data)} pictures to learn from, {len(judged)} held out")
-    start = _weights(options.start) if options.start is not None else None
+    start, before = _start(options.start)
     effort = fit.Effort(options.minutes, options.steps, options.seed, half=options.bf16)
     trained = fit.train(data, effort, report, start)
+    run = {
+        "seed": effort.seed, "data_seed": options.data_seed, "pictures": len(data), "steps": trained.steps,
+        "batch": effort.batch, "crop": effort.side, "bf16": effort.half, "loss": round(trained.loss, 4),
+    }  # fmt: skip
+    runs = [*before, run]
     if options.keep is not None:
         torch.save(trained.net.state_dict(), options.keep)
-    settings = {
-        "seed": effort.seed, "data_seed": options.data_seed, "batch": effort.batch, "crop": effort.side,
-        "bf16": effort.half, "pictures": len(data), "continued": options.start is not None,
-    }  # fmt: skip
-    report(measure.shown(finish(options, trained, settings, fitting, judged)["figures"]))
+        common.write_json(options.keep.with_suffix(".json"), {"runs": runs})
+    report(measure.shown(finish(options, trained.net, runs, fitting, judged)["figures"]))
     return 0
 
 
 def finish(
     options: argparse.Namespace,
-    trained: fit.Trained,
-    settings: dict[str, Any],
+    net: Contours,
+    runs: list[dict[str, Any]],
     fitting: dataset.Pictures,
     judged: dataset.Pictures,
 ) -> dict[str, Any]:
-    """Calibrate on the pictures `fitting`, export, measure on `judged`, and write the card; returns it."""
-    net = calibrate.calibrated(trained.net, fitting, settings["seed"])
+    """Calibrate on the pictures `fitting`, export, measure on `judged`, and write the card; returns it.
+
+    `runs` are the settings of each run of training, the first one first.
+    """
+    seed = int(runs[-1]["seed"])
+    net = calibrate.calibrated(net, fitting, seed)
     export.write(options.out, net)
-    card = settings | {
-        "steps": trained.steps, "loss": round(trained.loss, 4),
+    card = {
+        "steps": sum(run["steps"] for run in runs), "pictures": max(run["pictures"] for run in runs), "runs": runs,
         "parameters": sum(p.numel() for p in net.parameters()), "bytes": options.out.stat().st_size,
         "figures": measure.report(options.out, judged, options.captures),
-        "reliability": calibrate.reliability(net, judged, settings["seed"]), "objects": _sources(options.meshes),
+        "reliability": calibrate.reliability(net, judged, seed), "objects": _sources(options.meshes),
     }  # fmt: skip
     common.write_json(options.out.with_suffix(".json"), card)
     return card
 
 
-def _weights(path: Path) -> Contours:
-    """The network of a file that `--keep` wrote; only numbers are read from it."""
+def _start(path: Path | None) -> tuple[Contours | None, list[dict[str, Any]]]:
+    """The network of a file that `--keep` wrote and the runs behind it; only numbers are read from the file.
+
+    Raises:
+        UserError: the file or the list of runs beside it is missing.
+    """
+    if path is None:
+        return None, []
+    beside = path.with_suffix(".json")
+    if not (path.is_file() and beside.is_file()):
+        raise UserError(f"--start needs {path} and {beside}, as --keep writes them")
     net = Contours()
     net.load_state_dict(torch.load(path, weights_only=True))
-    return net
+    return net, json.loads(beside.read_text(encoding="utf-8"))["runs"]
 
 
 def _sources(meshes: Path | None) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scenewright.gaussians.errors import UserError
-from scenewright.training.contours import augment, calibrate, fit, measure, raster, solids
+from scenewright.training.contours import augment, calibrate, fit, measure, raster, shading, solids, textures, worlds
 from scenewright.training.contours.dataset import Pictures
 from scenewright.training.contours.model import STRIDE, Contours
 
@@ -154,3 +154,39 @@ def test_normals_of_a_block_point_outward() -> None:
 def test_a_folder_without_an_index_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"index\.json is missing; give --meshes a folder"):
         solids.foreign(tmp_path)
+
+
+@pytest.mark.slow  # compiles the kernels of light and texture
+@pytest.mark.parametrize("name", sorted(worlds.MAKERS))
+def test_photographs_of_a_world_repeat_by_seed_and_show_several_things(name: str) -> None:
+    pool = (solids.block(0.3, 0.2, 0.4), solids.own("chair", 1), solids.own("mug", 2))
+    shots = []
+    for _ in range(2):
+        rng = np.random.default_rng(7)
+        prints = textures.random_prints(rng, count=4)
+        world = worlds.MAKERS[name][0](rng, pool)
+        shots.append(next(s for _ in range(20) if (s := shading.photograph(world, rng, prints)) is not None))
+    one, two = shots
+    for column in ("picture", "things", "inverse"):
+        assert (getattr(one, column) == getattr(two, column)).all()
+    assert len(np.unique(one.things)) >= 4
+    assert one.picture.std() > 5  # neither black nor burnt out
+    assert ((one.inverse > 0) == (one.things > 0)).mean() > 0.999  # half precision rounds no depth to 0
+
+
+def test_textures_repeat_and_stay_in_range() -> None:
+    uv = np.random.default_rng(0).uniform(-2, 2, (500, 2)).astype(np.float32)
+    prints = textures.random_prints(np.random.default_rng(1), count=2, side=16)
+    own, rows = np.full((500, 3), 0.5, np.float32), np.zeros(500, np.int32)
+    flat = None
+    for kind in textures.Kind:
+        table = np.zeros((1, textures.WIDTH), np.float32)
+        table[0, :9] = [kind, 0.2, 0.3, 0.4, 0.9, 0.8, 0.7, 3.0, 5.0]
+        table[0, textures.Slot.AMOUNT] = 1
+        one, two = (textures.paint(table, rows, uv, own, prints) for _ in range(2))
+        assert (one == two).all() and one.min() >= 0 and one.max() <= 1
+        if kind == textures.Kind.FLAT:
+            flat = one
+            np.testing.assert_allclose(one, np.tile([0.2, 0.3, 0.4], (500, 1)), atol=1e-6)
+        else:
+            assert flat is not None and np.abs(one - flat).max() > 0.02, kind
