@@ -79,11 +79,13 @@ def test_borders_of_things_stand_out_from_what_is_inside_and_outside(session: An
     assert (strength[away > 5] > 0.5).mean() < 0.06
 
 
-@pytest.mark.parametrize("pattern", ["plain", "noise"])
+@pytest.mark.parametrize("pattern", ["plain", "stripes", "checks", "noise"])
 def test_a_textured_wall_gets_little(session: Any, pattern: str) -> None:
-    _, x = np.mgrid[:240, :320]
+    y, x = np.mgrid[:240, :320]
     value = {
         "plain": np.zeros((240, 320)),
+        "stripes": np.where(x // 12 % 2, 0.12, 0.0),
+        "checks": np.where((x // 16 + y // 16) % 2, 0.12, 0.0),
         "noise": 0.06 * np.random.default_rng(0).normal(size=(240, 320)),
     }[pattern]
     wall = np.clip(np.array([0.7, 0.66, 0.6]) * (0.85 + value + 0.1 * x / 320)[..., None], 0, 1).astype(np.float32)
