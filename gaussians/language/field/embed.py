@@ -1,6 +1,6 @@
 """`embed`: build the language field of a scene.
 
-surface points -> up and floor -> views -> segments -> revision by masks -> group of every Gaussian -> table of groups
+surface points -> up and floor -> views -> masks -> segments -> group of every Gaussian -> table of groups
 """
 
 from __future__ import annotations
@@ -20,10 +20,9 @@ from ...scene import Scene
 from ...viewpoints.coverage import choose_views
 from .. import encoders
 from ..encoders import Encoder
-from ..masks import Masker, joined
-from ..masks.association import Track, Tracks, associate
-from ..masks.lifting import lift
-from ..masks.mask_assignment import UNSEEN, apply_tracks, track_by_votes
+from ..masks import Masker
+from ..masks.lifting import Lifted, lift
+from ..masks.object_masks import Matches, Said, match, said_of, voted_objects
 from ..masks.tally import Tally
 from ..segmentation.group_renders import one_thread
 from ..segmentation.orient import estimate_frame
@@ -53,7 +52,8 @@ def embed(
         encoder: makes the image vectors that labels and queries are compared with.
         progress: called with the name of a stage and its completed share.
         views_per_candidate: renders of each candidate object, 1 to 4; see `scenewright bench select`.
-        masks: a source of masks of some views (`masks.load`), or several; their objects and labels take precedence.
+        masks: sources of masks of some views (`masks.load`). Each is believed as far as its views agree with each other
+            and with geometry; what no mask shows follows geometry.
 
     Raises:
         UserError: the scene has no Gaussians, or the vectors of the masks have another width than the encoder's.
@@ -68,77 +68,99 @@ def embed(
     scene = scene.replace(frame=frame)
     progress("views", 0.0)
     seen = choose_views(scene)
-    given = () if masks is None else tuple(masks) if isinstance(masks, Sequence) else (masks,)
-    tallies = [Tally(one) for one in given]
-    views = joined([tally.counting(one.masks(scene, progress)) for tally, one in zip(tallies, given, strict=True)])
-    tracks = associate(lift(scene.cloud, views)) if given else None
+    tallies = [Tally(one) for one in _maskers(masks)]
+    read = [lift(scene.cloud, t.counting(t.masker.masks(scene, progress))) for t in tallies]
+    sources = [one for one in read if one.labels]  # a source without masks says nothing
     progress("segments", 0.0)
     with one_thread():
         # Ours is trained on renders of both whole objects and fragments, and so can tell one from the other. An encoder
         # trained on photographs cannot, and takes a hundred times longer; it only names the groups found.
         judge = encoder if encoder.image_size and not encoders.uses_background(encoder) else encoders.load()
-        labels, segments = segment(scene, surface, judge, progress, views_per_candidate)
-        owner = None
-        if tracks is not None:
-            vectors = [_vector(t, encoder) for t in tracks.tracks]
-            labels, segments, owner = apply_tracks(surface, labels, segments, tracks, vectors)
+        about = [one.at(surface.rows) for one in sources]
+        labels, segments = segment(scene, surface, judge, progress, views_per_candidate, about)
         group = _segment_of_superpoint(segments, int(labels.max(initial=-1)) + 1)[labels]
         column = _assign(scene.cloud, surface, group)
-        if tracks is not None and owner is not None:
-            column = _with_voted_tracks(scene.cloud, surface, group, column, owner, track_by_votes(tracks))
+        if sources:
+            owner = _object_of(segments, group)
+            matches = [match(one, owner, len(segments)) for one in about]
+            segments = _with_what_masks_say(segments, sources, matches, encoder)
+            voted = voted_objects(sources, matches, len(segments))
+            column = _with_voted_objects(scene.cloud, surface, group, column, owner, voted)
         progress("table", 0.0)
         on_surface = np.zeros(len(scene.cloud), bool)
         on_surface[surface.rows] = True
         embedded = with_table(scene, segments, column, on_surface, seen, encoder)
-    return embedded if tracks is None else _with_mask_note(embedded, tracks, [tally.source() for tally in tallies])
+    return _with_mask_note(embedded, [t.source() for t in tallies]) if tallies else embedded
 
 
-def _vector(track: Track, encoder: Encoder) -> NDArray[np.float32] | None:
-    """The vector of a track: that of its masks; for an encoder without an image tower else the weighted mean of its
-    labels' text vectors, if it has a label.
+def _maskers(masks: Masker | Sequence[Masker] | None) -> list[Masker]:
+    return [] if masks is None else list(masks) if isinstance(masks, Sequence) else [masks]
+
+
+def _with_what_masks_say(
+    segments: Sequence[Segment], sources: Sequence[Lifted], matches: Sequence[Matches], encoder: Encoder
+) -> list[Segment]:
+    """The segments with the votes and the vectors of the masks that show them."""
+    made = list(segments)
+    for i, one in enumerate(segments):
+        if one.level == "object":
+            said = said_of(sources, matches, i)
+            made[i] = replace(one, votes=said.votes, vector=_vector(said, encoder))
+    return made
+
+
+def _vector(said: Said, encoder: Encoder) -> NDArray[np.float32] | None:
+    """The vector of an object: that of its masks; for an encoder without an image tower else the weighted mean of its
+    labels' text vectors, if enough views give a label.
 
     Raises:
         UserError: the vectors of the masks have another width than the encoder's.
     """
-    if track.vector is not None:
-        if len(track.vector) != encoder.dim:
+    if said.vector is not None:
+        if len(said.vector) != encoder.dim:
             raise UserError(
-                f"the masks' vectors have {len(track.vector)} numbers and the encoder's {encoder.dim}; "
+                f"the masks' vectors have {len(said.vector)} numbers and the encoder's {encoder.dim}; "
                 "name the encoder that made them with --encoder"
             )
-        return track.vector
-    return vector_of_votes(encoder, track.votes) if track.label and not encoder.image_size else None
+        return said.vector
+    return vector_of_votes(encoder, said.votes) if said.label and not encoder.image_size else None
 
 
-def _with_voted_tracks(
+def _with_voted_objects(
     cloud: GaussianCloud, surface: Surface, group: NDArray[np.int32], column: NDArray[np.int32],
     owner: NDArray[np.int32], voted: NDArray[np.int32],
 ) -> NDArray[np.int32]:  # fmt: skip
-    """`column` with Gaussians off the surface moved to the group of the nearest surface point of their voted track.
+    """`column` with Gaussians off the surface moved to the group of the nearest surface point of their voted object.
 
     Such Gaussians are few but large and make up much of distant objects. Agreement of views distinguishes them from
     floaters better than their distance from the surface does.
 
     Args:
-        group, owner: `[P]` group and track of each surface point.
-        voted: `[N]` track of each Gaussian, see `mask_assignment.track_by_votes`.
+        group, owner: `[P]` group and object of each surface point.
+        voted: `[N]` object of each Gaussian, see `object_masks.voted_objects`.
     """
-    column, off = column.copy(), (voted >= 0) | ((voted != UNSEEN) & (column != NO_GROUP))
+    column, off = column.copy(), voted >= 0
     off[surface.rows] = False
     for k in np.unique(voted[off]).tolist():
         points, rows = np.flatnonzero(owner == k), np.flatnonzero(off & (voted == k))
-        if len(points):
-            nearest = cKDTree(surface.points[points]).query(cloud.means[torch.from_numpy(rows)].numpy())[1]
-            column[rows] = group[points[nearest]]
+        nearest = cKDTree(surface.points[points]).query(cloud.means[torch.from_numpy(rows)].numpy())[1]
+        column[rows] = group[points[nearest]]
     return column
 
 
-def _with_mask_note(scene: Scene, tracks: Tracks, sources: Sequence[MaskSource]) -> Scene:
-    """The scene with the sources of its masks, and a note of how many tracks of them were used and discarded."""
+def _object_of(segments: Sequence[Segment], group: NDArray[np.int32]) -> NDArray[np.int32]:
+    """The object of each surface point `[P]` by its group, -1 for structure and for no group."""
+    whole = [t.parent if t.parent >= 0 else i if t.level == "object" else -1 for i, t in enumerate(segments)]
+    found: NDArray[np.int32] = np.array([*whole, -1], np.int32)[group]
+    return found
+
+
+def _with_mask_note(scene: Scene, sources: Sequence[MaskSource]) -> Scene:
+    """The scene with the sources of its masks, and a note of how many objects they show."""
     assert scene.language is not None and scene.language.making is not None
     making = replace(scene.language.making, masks=tuple(sources))
-    note = f"{len(tracks.tracks)} things were found by masks"
-    note += f", {tracks.discarded} that too few views confirm were discarded" if tracks.discarded else ""
+    shown = sum(bool(g.votes) for g in scene.language.objects())
+    note = f"masks of {sum(s.views for s in sources)} images were used; they name {shown} things"
     return scene.replace(language=replace(scene.language, notes=(*scene.language.notes, note), making=making))
 
 

@@ -6,19 +6,16 @@ The module of a source, and the libraries it needs, are imported when that sourc
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Protocol, runtime_checkable
-
-import numpy as np
 
 from ...errors import BackendError
 from ...scene import Scene
 from ..specs import remember
 from .view import NONE, ViewMasks, pack_layers
 
-__all__ = ["NONE", "Masker", "ViewMasks", "joined", "load", "load_all", "pack_layers"]
+__all__ = ["NONE", "Masker", "ViewMasks", "load", "load_all", "pack_layers"]
 
 Progress = Callable[[str, float], None]
 PICTURES = "pictures"
@@ -42,17 +39,6 @@ class Masker(Protocol):
             BackendError: a model is missing or fails.
         """
         ...
-
-
-def joined(sources: Iterable[Iterable[ViewMasks]]) -> list[ViewMasks]:
-    """The views of several sources, one source after another. Where only some sources give vectors, the masks of the
-    others get zero vectors, which say nothing."""
-    views = [view for source in sources for view in source]
-    width = next((view.vectors.shape[1] for view in views if view.vectors is not None), None)
-    if width is None:
-        return views
-    none = [np.zeros((len(view), width), np.float32) for view in views]
-    return [replace(v, vectors=n) if v.vectors is None else v for v, n in zip(views, none, strict=True)]
 
 
 def names() -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 The similarity of two masks is their intersection over union on the Gaussians that both views see. Masks are clustered
 agglomeratively, the most similar first. A track that too few of the views of its place confirm is discarded, and so is
 a label that too few of them give. The view consensus rate is that of MaskClustering (Yan et al., CVPR 2024), with
-blending weights instead of point clouds. `mask_assignment.py` combines the tracks with the segmentation.
+blending weights instead of point clouds. It is the baseline that benchmarks compare with.
 """
 
 from __future__ import annotations
@@ -54,12 +54,6 @@ class Track:
     votes: tuple[tuple[str, float], ...]
     vector: F32 | None
     parent: int = -1
-
-    @property
-    def heard(self) -> tuple[tuple[str, float], ...]:
-        """Its votes as `Group.votes`: with the number of views that see it and gave it no name; () without labels."""
-        silent = self.visible_in - sum(weight for _, weight in self.votes)
-        return (*self.votes, ("", max(silent, 0.0))) if self.votes else ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ weights. `association.py` decides which masks belong to one object.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +57,10 @@ class Lifted:
         norms = np.linalg.norm(total, axis=1, keepdims=True)
         units: F32 = (total / np.where(norms > 1e-12, norms, 1)).astype(np.float32)
         return units
+
+    def at(self, rows: NDArray[np.int64]) -> Lifted:
+        """The same for some of the Gaussians."""
+        return replace(self, weights=self.weights[rows], seen=self.seen[rows])
 
 
 def lift(cloud: GaussianCloud, views: Iterable[ViewMasks]) -> Lifted:

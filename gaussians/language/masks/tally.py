@@ -13,6 +13,7 @@ class Tally:
     """Counts the images and masks of a source while they are read."""
 
     def __init__(self, masker: Masker) -> None:
+        self.masker = masker
         self._spec, self._views, self._masks = spec_of(masker), 0, 0
 
     def counting(self, views: Iterable[ViewMasks]) -> Iterator[ViewMasks]:

@@ -10,6 +10,7 @@ import heapq
 
 import numpy as np
 
+from ..masks.evidence import Ledger
 from .learned_rule import load_rule
 from .regions import F64, I64, Borders, Graph, Node, Regions
 
@@ -21,6 +22,9 @@ FEATURES = (
     "larger on floor", "smaller on wall", "larger on wall", "gap", "touching", "concentric", "feet apart", "tops apart",
     "same facing", "smaller plane", "larger plane", "smaller line", "larger line", "off the plane",
 )  # fmt: skip
+
+GEOMETRY_BOUND = 3.0  # log-odds of a border where masks say something too
+APART = -3.0  # log-odds of two regions without a border
 
 
 def features(graph: Graph, pairs: list[tuple[int, int]]) -> F64:
@@ -141,26 +145,79 @@ def probability(described: F64) -> F64:
     return load_rule("affinity", FEATURES).probability(described)
 
 
-def merge_tree(graph: Graph) -> list[Node]:
+def merge_tree(graph: Graph, ledger: Ledger | None = None) -> list[Node]:
     """Merge the regions with the most probable border first, until no border is left.
+
+    Args:
+        ledger: what masks say about the regions; it also joins regions that do not touch. Its tables are used up.
 
     Returns the nodes of the merge tree, children before parents.
     """
     nodes = [Node(members, (), 1.0) for _, members in sorted(graph.members.items())]
     heap: list[tuple[float, int, int]] = []
+    linked = {} if ledger is None else _linked_by_masks(graph, ledger)
 
-    def offer(pairs: list[tuple[int, int]]) -> None:
-        if pairs:
-            likely = probability(features(graph, pairs))
-            for (i, j), p in zip(pairs, likely.tolist(), strict=True):
-                heapq.heappush(heap, (-p, i, j))
+    def offer(region: int, others: list[int]) -> None:
+        if others:
+            likely = _joint_probability(graph, ledger, region, others)
+            for other, p in zip(others, likely.tolist(), strict=True):
+                heapq.heappush(heap, (-p, min(region, other), max(region, other)))
 
-    offer(graph.pairs())
+    for i in sorted(graph.members):
+        offer(i, [j for j in sorted({*graph.around[i], *linked.get(i, ())}) if i < j])
     while heap:
         negative, i, j = heapq.heappop(heap)
         if i not in graph.members or j not in graph.members:
             continue
         new = graph.merge(i, j)
+        if ledger is not None:
+            ledger.merge(i, j, new)
+            near = (linked.pop(i, set()) | linked.pop(j, set())) - {i, j}
+            for other in near:
+                linked[other] = (linked[other] - {i, j}) | {new}
+            linked[new] = near
         nodes.append(Node(graph.members[new], (i, j), -negative))
-        offer([(other, new) for other in graph.around[new]])
+        offer(new, sorted({*graph.around[new], *linked.get(new, ())}))
     return nodes
+
+
+def _joint_probability(graph: Graph, ledger: Ledger | None, region: int, others: list[int]) -> F64:
+    """Probability that a region and each of some others are one object, from geometry and from masks.
+
+    Where masks say something, geometry's log-odds are bounded: it was fitted on other rooms and may be wrong here.
+    """
+    pairs = [(min(region, o), max(region, o)) for o in others]
+    if ledger is None:
+        return probability(features(graph, pairs))
+    touching = np.array([o in graph.around[region] for o in others])
+    odds = np.full(len(others), APART)
+    if touching.any():
+        odds[touching] = _log_odds(probability(features(graph, [q for q, t in zip(pairs, touching, strict=True) if t])))
+    said = ledger.log_odds(region, others)
+    bounded = np.where(said == 0, odds, np.clip(odds, -GEOMETRY_BOUND, GEOMETRY_BOUND))
+    return 1 / (1 + np.exp(-np.clip(bounded + said, -30, 30)))
+
+
+def border_odds(graph: Graph) -> tuple[I64, I64, F64]:
+    """The two superpoints `[B]` of each border of a graph that is not merged yet, and geometry's log-odds `[B]` that
+    they are one object."""
+    pairs = graph.pairs()
+    ends = np.array([[graph.members[i][0], graph.members[j][0]] for i, j in pairs], np.int64).reshape(-1, 2)
+    return ends[:, 0], ends[:, 1], _log_odds(probability(features(graph, pairs))) if pairs else np.zeros(0)
+
+
+def _log_odds(likely: F64) -> F64:
+    bounded = np.clip(likely, 1e-9, 1 - 1e-9)
+    result: F64 = np.log(bounded / (1 - bounded))
+    return result
+
+
+def _linked_by_masks(graph: Graph, ledger: Ledger) -> dict[int, set[int]]:
+    """Pairs of regions without a border that masks hold for one object, such as the back and the seat of a chair."""
+    likely = ledger.all_pairs() > -APART
+    linked: dict[int, set[int]] = {}
+    for i, j in np.argwhere(np.triu(likely, 1)).tolist():
+        if j not in graph.around[i]:
+            linked.setdefault(i, set()).add(j)
+            linked.setdefault(j, set()).add(i)
+    return linked

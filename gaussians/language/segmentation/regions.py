@@ -107,9 +107,10 @@ class Graph:
         return [(i, j) for i, near in self.around.items() for j in near if i < j]
 
     def merge(self, i: int, j: int) -> int:
-        """Merge regions i and j; returns the number of the merged region."""
+        """Merge regions i and j, which need not have a border; returns the number of the merged region."""
         new, self.next = self.next, self.next + 1
-        r, inner = self.regions, self.borders.touching[self.around[i][j]]
+        r, between = self.regions, self.around[i].get(j)
+        inner = 0.0 if between is None else self.borders.touching[between]
         for name, column in vars(r).items():
             if name not in ("low", "high"):
                 column[new] = column[i] + column[j]

@@ -6,7 +6,7 @@ parts by colour.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,11 +17,13 @@ from ...scene import Frame, Scene
 from ..encoders import Encoder
 from ..encoders.probability import wholeness
 from ..field.language_field import Level
+from ..masks.lifting import Lifted
 from . import grouping, planes, structure
 from .adjacency import build_graph
 from .affinity import merge_tree
 from .borders import refine_borders
 from .group_renders import mean_vectors
+from .mask_cuts import ledger_of, revised_by_masks
 from .regions import Graph, Node
 from .superpoints import Links, links_of, superpoints, touching
 from .surface import Surface
@@ -62,12 +64,23 @@ def segment(
     encoder: Encoder,
     progress: Progress = lambda stage, share: None,
     views_per_candidate: int = VIEWS_PER_CANDIDATE,
+    sources: Sequence[Lifted] = (),
 ) -> tuple[NDArray[np.int32], list[Segment]]:
-    """Superpoint of each surface point `[M]`, and the segments: structure first, then each object and its parts."""
+    """Superpoint of each surface point `[M]`, and the segments: structure first, then each object and its parts.
+
+    Args:
+        sources: masks of each source, lifted to the surface points.
+    """
     links = links_of(surface)
     labels, codes = superpoints_and_structure(surface, links, scene.frame)
+    graph = graph_of(surface, links, labels, codes, scene.frame)
+    ledger = None
+    if sources:
+        labels, codes = revised_by_masks(surface, links, labels, codes, graph, sources)
+        graph = graph_of(surface, links, labels, codes, scene.frame)
+        ledger = ledger_of(graph, labels, sources)
     count = len(codes)
-    nodes = merge_tree(graph_of(surface, links, labels, codes, scene.frame))
+    nodes = merge_tree(graph, ledger)
     size = np.bincount(labels, minlength=count)
     points = np.array([sum(int(size[s]) for s in n.members) for n in nodes], dtype=np.int64)
     evidence = _evidence(scene, surface, labels, nodes, points, encoder, views_per_candidate, progress)

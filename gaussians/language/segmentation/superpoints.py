@@ -59,9 +59,9 @@ def _median(values: NDArray[np.floating]) -> float:
     return float(np.median(values)) if len(values) else 0.0
 
 
-def superpoints(surface: Surface, links: Links, scale: float = SCALE) -> NDArray[np.int32]:
+def superpoints(surface: Surface, links: Links, scale: float = SCALE, least: int = MIN_POINTS) -> NDArray[np.int32]:
     """Superpoint of each surface point `[M]`, numbered from 0."""
-    labels = merge_regions(len(surface), links.pairs, links.weight, scale, MIN_POINTS)
+    labels = merge_regions(len(surface), links.pairs, links.weight, scale, least)
     return np.unique(labels, return_inverse=True)[1].astype(np.int32)
 
 

@@ -1,0 +1,206 @@
+"""Evidence of masks on pairs of regions, and what each source is worth: laws, a slow reference, simulated sources."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
+
+from scenewright.gaussians.language.masks.evidence import Ledger, Witness
+from scenewright.gaussians.language.masks.lifting import Lifted
+from scenewright.gaussians.language.masks.reliability import MOST, Reliability, estimate
+from scenewright.gaussians.language.masks.statements import HALF_SEEN, Counts, cover, decided
+
+REGIONS, PER_REGION, OBJECTS = 60, 5, 12
+
+
+def lifted(ids: NDArray[np.int64], seen: NDArray[np.bool_]) -> Lifted:
+    """A source that gives region r in view v the masks `ids[v, layer, r]` (-1 for none) where `seen[v, r]`.
+
+    Each region has PER_REGION points, each point ten pixels in each view that sees it.
+    """
+    views, layers, regions = ids.shape
+    rows, columns, names, view = [], [], 0, []
+    for v in range(views):
+        for layer in range(layers):
+            for name in np.unique(ids[v, layer][(ids[v, layer] >= 0) & seen[v]]).tolist():
+                own = np.flatnonzero((ids[v, layer] == name) & seen[v])
+                points = (own[:, None] * PER_REGION + np.arange(PER_REGION)).ravel()
+                rows += points.tolist()
+                columns += [names] * len(points)
+                view.append(v)
+                names += 1
+    points = regions * PER_REGION
+    weights = csr_matrix((np.full(len(rows), 10, np.float32), (rows, columns)), shape=(points, names))
+    whole = csr_matrix(np.repeat(seen.T, PER_REGION, axis=0).astype(np.float32) * 10)
+    return Lifted(weights, whole, np.array(view, np.int32), ("",) * names, np.ones(names, np.float32), None)
+
+
+@pytest.fixture
+def truth() -> NDArray[np.int64]:
+    return np.repeat(np.arange(OBJECTS), REGIONS // OBJECTS)
+
+
+def pairs_and_prior(truth: NDArray[np.int64], right: float = 0.9) -> tuple[Any, Any, Any]:
+    """All pairs of regions with a geometry that is right as often as said."""
+    first, second = np.triu_indices(REGIONS, 1)
+    rng = np.random.default_rng(0)
+    keep = (truth[first] == truth[second]) | (rng.random(len(first)) < 0.1)  # as many of the one kind as of the other
+    first, second = first[keep], second[keep]
+    same = truth[first] == truth[second]
+    said = np.where(rng.random(len(first)) < right, same, ~same)
+    return first, second, np.where(said, 3.0, -3.0)
+
+
+def odds_of(source: Lifted, truth: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.bool_], Reliability]:
+    """The log-odds of a source for pairs, and whether they are one object."""
+    labels = np.repeat(np.arange(REGIONS), PER_REGION).astype(np.int32)
+    first, second, prior = pairs_and_prior(truth)
+    about = cover(source, labels, REGIONS)
+    (worth,) = estimate([about], first, second, prior)
+    return worth.log_odds(about.between(first, second)), truth[first] == truth[second], worth
+
+
+def flat(truth: NDArray[np.int64], views: int) -> NDArray[np.int64]:
+    return np.tile(truth, (views, 1))[:, None]
+
+
+def reference_counts(source: Lifted, first: Sequence[int], second: Sequence[int]) -> tuple[float, float, float, float]:
+    """The counts of two sets of points, view by view and mask by mask."""
+    weights, seen = source.weights.toarray(), source.seen.toarray()
+    common = either = alone = views = 0.0
+    confirmed = [share_of_views(source, own) for own in (first, second)]
+    for v in range(seen.shape[1]):
+        a, b = float(seen[list(first), v].sum()), float(seen[list(second), v].sum())
+        masks = np.flatnonzero(source.view == v)
+        shares = [
+            decided(weights[np.ix_(list(own), masks)].sum(axis=0) / max(whole, 1e-9))
+            for own, whole in ((first, a), (second, b))
+        ]
+        word = a / (a + HALF_SEEN) * b / (b + HALF_SEEN)  # how well this view sees both
+        depth = [float(s.sum()) for s in shares]
+        covered = [min(d, 1.0) for d in depth]
+        both = float(shares[0] @ shares[1])
+        common += word * both
+        either += word * (depth[0] + depth[1] - both)
+        alone += word * (depth[0] * (1 - covered[1]) + (1 - covered[0]) * depth[1])
+        sure = [c * k for c, k in zip(covered, confirmed, strict=True)]
+        views += word * (sure[0] + sure[1] - sure[0] * sure[1])
+    return common, either, alone, views
+
+
+def share_of_views(source: Lifted, own: Sequence[int]) -> float:
+    """The share of the views of some points that have a mask over them, views that see more of them counting more."""
+    covered = total = 0.0
+    for v in range(source.seen.shape[1]):
+        whole = float(source.seen.toarray()[list(own), v].sum())
+        inside = source.weights.toarray()[np.ix_(list(own), np.flatnonzero(source.view == v))].sum(axis=0)
+        word = whole / (whole + HALF_SEEN)
+        covered += word * min(float(decided(inside / max(whole, 1e-9)).sum()), 1.0)
+        total += word
+    return covered / max(total, 1e-9)
+
+
+def test_counts_agree_with_the_reference() -> None:
+    rng = np.random.default_rng(3)
+    ids = np.sort(rng.integers(-1, 5, (6, 2, REGIONS)), axis=1)
+    source = lifted(ids, rng.random((6, REGIONS)) < 0.7)
+    noisy = source.weights.copy()
+    noisy.data *= rng.uniform(0.2, 1, len(noisy.data)).astype(np.float32)  # masks that cover points in part
+    source = replace(source, weights=noisy)
+    labels = rng.integers(0, 9, REGIONS * PER_REGION).astype(np.int32)
+    about = cover(source, labels, 9)
+    first, second = np.triu_indices(9, 1)
+    each, table = about.between(first, second), about.of_all()
+    for e, (i, j) in enumerate(zip(first, second, strict=True)):
+        true = reference_counts(source, np.flatnonzero(labels == i).tolist(), np.flatnonzero(labels == j).tolist())
+        for counts, at in ((each, (e,)), (table, (i, j)), (table, (j, i))):
+            found = (counts.common[at], counts.either[at], counts.alone[at], counts.views[at])
+            assert found == pytest.approx(true, abs=1e-3)  # float32 sums of 6 views
+
+
+def test_counts_of_merged_regions_are_sums() -> None:
+    rng = np.random.default_rng(4)
+    source = lifted(rng.integers(-1, 4, (5, 1, 4)), rng.random((5, 4)) < 0.8)
+    about = cover(source, np.repeat(np.arange(4), PER_REGION).astype(np.int32), 4)
+    size = np.array([3.0, 1.0, 2.0, 4.0])
+    worth = Reliability(np.linspace(-3, 3, 9), np.linspace(-1, 1, 9), 0.5)
+    ledger = Ledger([Witness(about, worth)], np.arange(4), size)
+    ledger.merge(0, 1, 4)
+    each = about.between(np.array([0, 1]), np.array([2, 2]))
+    whole = Counts(*(np.array([3 * 2 * a[0] + 1 * 2 * a[1]]) for a in vars(each).values()))
+    assert ledger.log_odds(4, [2]) == pytest.approx(worth.log_odds(whole, 4 * 2.0), abs=1e-4)
+
+
+def test_right_masks_outvote_geometry_both_ways(truth: NDArray[np.int64]) -> None:
+    odds, same, _ = odds_of(lifted(flat(truth, 12), np.ones((12, REGIONS), bool)), truth)
+    assert odds[same].min() > 2.5 and odds[~same].max() < -2.5  # geometry is wrong in a tenth of these pairs
+
+
+def test_masks_at_random_mean_nothing(truth: NDArray[np.int64]) -> None:
+    ids = np.random.default_rng(1).integers(0, OBJECTS, (12, 1, REGIONS))
+    odds, _, worth = odds_of(lifted(ids, np.ones((12, REGIONS), bool)), truth)
+    assert np.abs(odds).mean() < 0.5 and worth.agreement < 0.1
+
+
+def test_patches_of_objects_mean_little_by_apart_and_much_by_together(truth: NDArray[np.int64]) -> None:
+    ids = flat(np.arange(REGIONS) // 2, 12)  # pairs of regions: every object is cut in pieces, some across its border
+    ids = np.where(truth * 100 + ids > 0, truth * 100 + ids, ids)
+    odds, same, worth = odds_of(lifted(ids, np.ones((12, REGIONS), bool)), truth)
+    assert worth.covered[-1] > 1.5 and worth.covered[0] > -1.5
+    assert odds[~same].mean() < 0 < odds[same].max()
+
+
+def test_joined_objects_mean_little_by_together_and_much_by_apart(truth: NDArray[np.int64]) -> None:
+    odds, same, worth = odds_of(lifted(flat(truth // 4, 12), np.ones((12, REGIONS), bool)), truth)
+    assert worth.covered[0] < -2.5 and worth.covered[-1] < 1.5 and odds[same].min() > 0
+
+
+def test_layers_tell_by_the_level_that_joins_two_regions(truth: NDArray[np.int64]) -> None:
+    layers = np.stack([np.arange(REGIONS), truth, truth // 4, truth // 12])  # finest first
+    ids = np.tile(layers, (12, 1, 1))
+    odds, same, worth = odds_of(lifted(ids, np.ones((12, REGIONS), bool)), truth)
+    assert odds[same].min() > 1.5 and odds[~same].max() < -1.5
+    assert (np.diff(worth.covered) >= 0).all()
+
+
+def test_a_source_without_masks_says_nothing(truth: NDArray[np.int64]) -> None:
+    nothing = lifted(np.full((4, 1, REGIONS), -1), np.ones((4, REGIONS), bool))
+    odds, _, _ = odds_of(nothing, truth)
+    assert not odds.any()
+
+
+def test_views_that_repeat_each_other_raise_certainty_within_bounds(truth: NDArray[np.int64]) -> None:
+    rng = np.random.default_rng(2)
+    wrong = rng.random((3, REGIONS)) < 0.2
+    ids = np.where(wrong, rng.integers(0, OBJECTS, wrong.shape), truth)[:, None]
+    few, same, _ = odds_of(lifted(ids, np.ones((3, REGIONS), bool)), truth)
+    many, _, _ = odds_of(lifted(np.tile(ids, (40, 1, 1)), np.ones((120, REGIONS), bool)), truth)
+    assert np.abs(many).max() <= MOST
+    assert np.abs(many).mean() < 2.5 * np.abs(few).mean()  # forty times the views
+    assert (np.sign(many[same]) == np.sign(few[same])).mean() > 0.9
+
+
+def test_the_order_of_views_does_not_matter(truth: NDArray[np.int64]) -> None:
+    rng = np.random.default_rng(5)
+    ids, seen = rng.integers(-1, OBJECTS, (8, 1, REGIONS)), rng.random((8, REGIONS)) < 0.8
+    turned = rng.permutation(8)
+    one, other = (odds_of(lifted(i, s), truth)[0] for i, s in ((ids, seen), (ids[turned], seen[turned])))
+    assert one == pytest.approx(other, abs=1e-3)  # float32 sums in another order
+
+
+def test_a_bad_source_beside_a_good_one_does_not_harm(truth: NDArray[np.int64]) -> None:
+    seen = np.ones((12, REGIONS), bool)
+    good = lifted(flat(truth, 12), seen)
+    bad = lifted(np.random.default_rng(6).integers(0, OBJECTS, (12, 1, REGIONS)), seen)
+    labels = np.repeat(np.arange(REGIONS), PER_REGION).astype(np.int32)
+    first, second, prior = pairs_and_prior(truth)
+    covers = [cover(s, labels, REGIONS) for s in (good, bad)]
+    worth = estimate(covers, first, second, prior)
+    total = np.sum([r.log_odds(c.between(first, second)) for c, r in zip(covers, worth, strict=True)], axis=0)
+    assert ((total > 0) == (truth[first] == truth[second])).all()
