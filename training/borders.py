@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..gaussians.language.segmentation import borders, structure
+from ..gaussians.language.segmentation import borders, planes, structure
 from ..gaussians.language.segmentation.segment import superpoints_and_structure
 from ..gaussians.language.segmentation.settle import settled
 from ..gaussians.language.segmentation.superpoints import links_of, touching
@@ -31,13 +31,13 @@ def point_examples(scene: Scene, truth: NDArray[np.int32], rng: np.random.Genera
     labels, codes = superpoints_and_structure(surface, links, scene.frame)
     kinds = structure.kind_of(codes)
     owner = _owners(labels, truth[surface.rows], kinds, touching(labels, links), rng)
-    wanted = truth[surface.rows] + structure.CEILING  # things are numbered after floor, wall and ceiling
-    level = kinds != structure.NONE
+    wanted = truth[surface.rows] + planes.CEILING  # things are numbered after floor, wall and ceiling
+    level = kinds != planes.NONE
     examples = []
     for _ in range(2):
         point, thing, nearest, features = borders.describe(surface, labels, owner, level)
-        of_thing = np.where(level[labels[nearest]], structure.CEILING - 1, thing)
-        same = np.where(thing < 0, wanted[point] == structure.CEILING - 1, of_thing == wanted[point])
+        of_thing = np.where(level[labels[nearest]], planes.CEILING - 1, thing)
+        same = np.where(thing < 0, wanted[point] == planes.CEILING - 1, of_thing == wanted[point])
         examples.append(Examples(features, same, np.ones(len(same))))
         keep = same & (rng.random(len(same)) < 0.7)  # the next pass starts closer to the true labels
         labels = labels.copy()
@@ -53,9 +53,9 @@ def _owners(
     many = int(truth.max(initial=-1)) + 2
     counts = np.bincount(labels.astype(np.int64) * many + truth + 1, minlength=len(kinds) * many).reshape(-1, many)
     most = counts.argmax(axis=1) - 1
-    owner = np.where(kinds > 0, kinds.astype(np.int64) - 1, np.where(most < 0, -1, most + structure.CEILING))
+    owner = np.where(kinds > 0, kinds.astype(np.int64) - 1, np.where(most < 0, -1, most + planes.CEILING))
     for s in np.flatnonzero(owner < 0):
-        things = [t for t in sorted(near.get(int(s), ())) if owner[t] >= structure.CEILING]
+        things = [t for t in sorted(near.get(int(s), ())) if owner[t] >= planes.CEILING]
         if things and rng.random() < ABSORBED:
             owner[s] = owner[things[int(rng.integers(len(things)))]]
     return owner.astype(np.int32)

@@ -5,6 +5,7 @@ Colours and superpoints are not used here. `structure.py` decides which of the p
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,11 +14,18 @@ from numpy.typing import NDArray
 from ...scene import Frame
 from .surface import Surface
 
+NONE, FLOOR, WALL, CEILING = 0, 1, 2, 3
+KINDS = 4
 UP = np.array([0.0, 0.0, 1.0])
 
 MAX_BEHIND_WALL = 0.02  # share of the scene that may lie behind a wall
 WALL_LENGTH = 0.3  # of the scene's extent: shorter upright planes are furniture
 WALL_HEIGHT = 0.55  # likewise
+MAX_WALLS = 6
+MIN_LAYER = 0.02  # of the scene's area that a wall must hold, where it is found by positions alone
+SQUARE = 0.35  # sine of twice the angle by which walls that are found by positions alone may miss a right angle
+SHEET_CELLS = 10  # along each side of a wall
+SHEET_FILL = 0.5  # of its cells that must hold points
 
 
 @dataclass(frozen=True)
@@ -81,6 +89,74 @@ def ceiling_of(surface: Surface, flat: Level, free: NDArray[np.bool_]) -> Plane 
         return None
     size = np.ptp(np.quantile(flat.points[near, :2], [0.05, 0.95], axis=0), axis=0)
     return Plane(near, flat.points[:, 2] - top, flat.points[:, :2], UP) if (size > 0.6 * extent[:2]).all() else None
+
+
+def outer_layers(
+    flat: Level, area: NDArray[np.float32], spacing: float,
+    layer: Callable[[NDArray[np.float64], NDArray[np.floating], float, float], tuple[float, float]],
+) -> list[tuple[NDArray[np.float64], float, float]]:  # fmt: skip
+    """Walls and ceiling found by positions alone: planes at the edge of the scene in which points concentrate.
+
+    Returns the normal `[3]` into the room, the offset along it and the noise of each.
+
+    Args:
+        area: `[M]` weights.
+        layer: measures height and noise of a layer from heights, weights, a first height and the scene's size.
+    """
+    extent = extent_of(flat)
+    broad = float(extent.max())
+    height = np.quantile(flat.points[:, 2], 0.01) + extent[2] * np.array([0.1, 0.95])
+    standing = np.flatnonzero((flat.points[:, 2] > height[0]) & (flat.points[:, 2] < height[1]))
+    standing = standing[:: max(1, len(standing) // 20_000)]
+    if len(standing) < 200:
+        return []
+    points, weight = flat.points[standing], np.minimum(area[standing], np.quantile(area[standing], 0.9))
+
+    def peak(angle: float) -> tuple[float, float]:
+        """Share of the strongest layer at the edge in one direction, and its offset."""
+        off = points[:, :2] @ [np.cos(angle), np.sin(angle)]
+        low, high = np.quantile(off, [0.6, 0.998])
+        share, bins = np.histogram(off, 40, (low, high + 0.02 * broad), weights=weight)
+        smooth = np.convolve(share, np.ones(3), mode="same") / weight.sum()
+        best = int(np.argmax(smooth))
+        return float(smooth[best]), float(bins[best : best + 2].mean())
+
+    angles = np.radians(np.arange(0, 360, 4.0))
+    strength = np.array([peak(a)[0] for a in angles])
+    found: list[tuple[NDArray[np.float64], float, float]] = []
+    while strength.max() > MIN_LAYER and len(found) < MAX_WALLS:
+        best = angles[int(np.argmax(strength))]
+        strength[np.abs((angles - best + np.pi) % (2 * np.pi) - np.pi) < np.radians(25)] = 0
+        best = max(best + np.radians(np.arange(-4, 4.1, 0.5)), key=lambda a: peak(a)[0])
+        if found and abs(np.sin(2 * (best - np.arctan2(found[0][0][1], found[0][0][0])))) > SQUARE:
+            continue  # positions alone do not tell a wall from a slice through a corner
+        outward = np.array([np.cos(best), np.sin(best), 0.0])
+        across = np.array([-outward[1], outward[0], 0.0])
+        off = peak(best)[1] - flat.points @ outward
+        middle, noise = layer(off, area, 0.0, broad)
+        off -= middle
+        along = np.stack([flat.points @ across, flat.points[:, 2]], axis=1)
+        least = np.array([WALL_LENGTH * extent[:2].max(), WALL_HEIGHT * extent[2]])
+        if _is_sheet(off, along, max(2 * noise, 2 * spacing, 0.004 * broad), least):
+            found.append((-outward, float((flat.points @ -outward - off).mean()), noise))
+    off = float(np.quantile(flat.points[:, 2], 0.98)) - flat.points[:, 2]
+    middle, noise = layer(off, area, 0.0, broad)
+    off -= middle
+    if _is_sheet(off, flat.points[:, :2], max(2 * noise, 2 * spacing), 0.6 * extent[:2]):
+        found.append((-UP, float((-flat.points[:, 2] - off).mean()), noise))
+    return found
+
+
+def _is_sheet(off: NDArray[np.float64], along: NDArray[np.float64], reach: float, least: NDArray[np.float64]) -> bool:
+    """Whether points near a plane fill a large sheet with hardly anything behind it."""
+    near = np.abs(off) < reach
+    if near.sum() < 200 or float((off < -2 * reach).mean()) > 2 * MAX_BEHIND_WALL:
+        return False
+    low, high = np.quantile(along[near], [0.02, 0.98], axis=0)
+    cell = ((along[near] - low) / (high - low + 1e-9) * SHEET_CELLS).astype(np.int64)
+    cell = cell[((cell >= 0) & (cell < SHEET_CELLS)).all(axis=1)]
+    full = len(np.unique(cell[:, 0] * SHEET_CELLS + cell[:, 1])) / SHEET_CELLS**2
+    return bool((high - low >= least).all() and full > SHEET_FILL)
 
 
 def extent_of(flat: Level) -> NDArray[np.float64]:

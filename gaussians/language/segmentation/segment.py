@@ -170,11 +170,11 @@ def _segments(
     size = np.bincount(labels, minlength=count)
     total = np.stack([np.bincount(labels, weights=surface.lab[:, c], minlength=count) for c in range(3)], axis=1)
     lab: F64 = total / np.maximum(size, 1)[:, None]
-    codes = sorted({-1 - int(o) for o in owner if o < -1}, key=lambda c: (c % structure.KINDS, c))
+    codes = sorted({-1 - int(o) for o in owner if o < -1}, key=lambda c: (c % planes.KINDS, c))
     segments = []
     for c in codes:
         members = tuple(np.flatnonzero(owner == -1 - c).tolist())
-        segments.append(Segment(members, "structure", label=structure.NAMES[c % structure.KINDS]))
+        segments.append(Segment(members, "structure", label=structure.NAMES[c % planes.KINDS]))
     objects = [tuple(np.flatnonzero(owner == o).tolist()) for o in np.unique(owner[owner >= 0])]
     for members in sorted(objects, key=lambda m: (-sum(int(size[s]) for s in m), m)):
         clusters = grouping.parts_of(members, near, lab, size)

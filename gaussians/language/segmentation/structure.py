@@ -13,12 +13,10 @@ from numpy.typing import NDArray
 from ...scene import Frame
 from .coplanar import PlaneSuperpoints, plane_superpoints
 from .ground import Ground, ground_of
-from .planes import Level, Plane, ceiling_of, level, walls_of
+from .planes import CEILING, FLOOR, KINDS, NONE, WALL, Level, Plane, ceiling_of, level, walls_of
 from .superpoints import LIGHTNESS
 from .surface import Surface
 
-NONE, FLOOR, WALL, CEILING = 0, 1, 2, 3
-KINDS = 4
 NAMES = {FLOOR: "floor", WALL: "wall", CEILING: "ceiling"}
 
 MIN_SURFACE = 200  # points; smaller surfaces are not searched for structure
@@ -39,10 +37,19 @@ def structures(surface: Surface, labels: NDArray[np.int32], frame: Frame) -> NDA
     if len(surface) < MIN_SURFACE:
         return found
     terrain, planes = planes_of(surface, flat)
-    found[terrain | surface.sunk] = FLOOR
+    found[terrain] = FLOOR
+    found = np.where(surface.layer != NONE, surface.layer, found)
+    first = int(found.max(initial=0)) // KINDS + 1
     for number, (kind, plane) in enumerate(planes):
-        found[_points_of_plane(surface, labels, flat, plane, found == NONE)] = kind + KINDS * number * (kind == WALL)
+        code = kind if kind != WALL else _known_wall(found[plane.near], WALL + KINDS * (first + number))
+        found[_points_of_plane(surface, labels, flat, plane, found == NONE)] = code
     return found
+
+
+def _known_wall(codes: NDArray[np.int8], new: int) -> int:
+    """The code of the wall that is known to hold most of some points, or a new one if hardly any is known."""
+    walls = codes[kind_of(codes) == WALL]
+    return int(np.bincount(walls).argmax()) if len(walls) > 0.1 * len(codes) else new
 
 
 def kind_of(codes: NDArray[np.int8]) -> NDArray[np.int8]:

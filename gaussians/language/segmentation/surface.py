@@ -42,7 +42,7 @@ class Surface:
         neighbours: `[M, K]` int32, nearest points; a point with fewer repeats itself.
         gaps: `[M, K]` distances to them, scene units.
         spacing: median distance to the nearest neighbours, scene units.
-        sunk: `[M]` whether the point's Gaussian lies beneath the floor and so is part of it; see `settle.py`.
+        layer: `[M]` int8, structure code of a point known to lie in a noisy plane of the structure, else 0; see `settle.py`.
     """
 
     rows: NDArray[np.int64]
@@ -55,7 +55,7 @@ class Surface:
     neighbours: NDArray[np.int32]
     gaps: F32
     spacing: float
-    sunk: NDArray[np.bool_]
+    layer: NDArray[np.int8]
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -68,16 +68,16 @@ class Known:
     Attributes:
         rows: `[M]` of the cloud.
         points: `[M, 3]` world, scene units.
-        normal: `[3]` unit, of the plane that some of them lie in.
+        normals: `[M, 3]` unit, of the planes that some of them lie in.
         trust: `[M]` in [0, 1], share of that normal in the result; the rest is measured.
-        sunk: `[M]` see `Surface`.
+        layer: `[M]` see `Surface`.
     """
 
     rows: NDArray[np.int64]
     points: F32
-    normal: F32
+    normals: F32
     trust: F32
-    sunk: NDArray[np.bool_]
+    layer: NDArray[np.int8]
 
 
 def base_lab(cloud: GaussianCloud) -> torch.Tensor:
@@ -139,12 +139,13 @@ def surface_at(cloud: GaussianCloud, known: Known) -> Surface:
     part = cloud[torch.from_numpy(known.rows)].replace(means=torch.from_numpy(known.points))
     spacing = max(float(np.median(gaps[:, : max(1, k // 2)])), GRAIN * float(part.scales.amax(dim=1).median()))
     found = _measured(part, known.rows, neighbours, gaps, spacing)
-    same = np.where((found.normals @ known.normal)[:, None] < 0, -known.normal, known.normal)
+    against = (found.normals * known.normals).sum(axis=1, keepdims=True) < 0
+    same = np.where(against, -known.normals, known.normals)
     trust = known.trust[:, None]
     mixed = (1 - trust) * found.normals + trust * same
     mixed /= np.maximum(np.linalg.norm(mixed, axis=1, keepdims=True), 1e-9)
     flatness = np.maximum(found.flatness, known.trust)
-    return replace(found, normals=mixed.astype(np.float32), flatness=flatness, sunk=known.sunk)
+    return replace(found, normals=mixed.astype(np.float32), flatness=flatness, layer=known.layer)
 
 
 def _measured(
@@ -154,7 +155,7 @@ def _measured(
     normals, flatness = _smoothed_normals(part, neighbours)
     return Surface(
         rows, part.means.numpy(), normals, flatness, _smoothed_lab(raw_lab, neighbours), raw_lab, _footprint(part),
-        neighbours, gaps, spacing, np.zeros(len(rows), bool),
+        neighbours, gaps, spacing, np.zeros(len(rows), np.int8),
     )  # fmt: skip
 
 

@@ -233,3 +233,33 @@ def test_half_a_wall_is_a_wall_and_a_missing_one_is_not_missed(world: type[Any])
     share = kinds_of(made)
     assert share["wall"][WALL] > MOST and share["floor"][FLOOR] > MOST
     assert share["crate"][NONE] > MOST
+
+
+def test_walls_and_ceiling_of_a_hasty_fit_are_found_by_positions_alone(world: type[Any]) -> None:
+    """Normals are random and every plane is a layer some centimetres thick, as after a training of two minutes."""
+    made = world().sheet("floor", (-2, -1.5, 0), (4, 0, 0), (0, 3, 0), BROWN, 0.05)
+    made.sheet("ceiling", (-2, -1.5, 2.4), (4, 0, 0), (0, 3, 0), PALE, 0.05)
+    for name, corner, along in (
+        ("north", (-2, 1.5, 0), (4, 0, 0)), ("south", (-2, -1.5, 0), (4, 0, 0)),
+        ("west", (-2, -1.5, 0), (0, 3, 0)), ("east", (2, -1.5, 0), (0, 3, 0)),
+    ):  # fmt: skip
+        made.sheet(name, corner, along, (0, 0, 2.4), WHITE, 0.05)
+    made.box("crate", (0.2, -0.4, 0.02), (0.9, 0.3, 0.6), RED)
+    made.box("cupboard", (-1.9, 0.2, 0.02), (-1.4, 1.2, 1.6), BLUE)
+    cloud, rng = made.cloud(), np.random.default_rng(2)
+    shell = np.concatenate([own for name, own in made.rows.items() if name not in ("crate", "cupboard")])
+    means, quats = cloud.means.clone(), cloud.quats.clone()
+    means[torch.from_numpy(shell)] += torch.from_numpy(rng.normal(0, 0.03, (len(shell), 3))).float()
+    turned = torch.from_numpy(rng.normal(size=(len(shell), 4))).float()
+    quats[torch.from_numpy(shell)] = torch.nn.functional.normalize(turned, dim=1)
+    cloud = cloud.replace(means=means, quats=quats)
+    surface = settled(surface_of(cloud), cloud, Frame())
+    names = sorted(made.rows)
+    piece = made.labels(names)[surface.rows]
+    codes = structures(surface, superpoints(surface, links_of(surface)), Frame())
+    wanted = {"floor": FLOOR, "ceiling": CEILING, "crate": NONE, "cupboard": NONE}
+    for name in names:
+        right = kind_of(codes)[piece == names.index(name)] == wanted.get(name, WALL)
+        assert right.mean() > 0.8, (name, right.mean())
+    sides = [np.bincount(codes[piece == names.index(n)]).argmax() for n in ("north", "south", "west", "east")]
+    assert len(set(sides)) == 4  # each wall is one of its own
