@@ -1,8 +1,8 @@
 """Move the noisy points of floor, walls and ceiling into their planes, so that the noise decides nothing afterwards.
 
 A point belongs to the noisy layer of a plane if it lies within the layer and has the colour of the layer there.
-Behind the plane are only points of the layer; they tell its colour. Things before it keep their shape where their colour
-differs, however noisy it is; without noise nothing moves.
+Behind the plane are only points of the layer; they tell its colour. Things before it keep their shape where their
+colour differs, however noisy it is; without noise nothing moves.
 """
 
 from __future__ import annotations
@@ -88,7 +88,8 @@ def settled(surface: Surface, cloud: GaussianCloud, frame: Frame) -> Surface:
     kept = on_surface | (share > 0.5)
     toward = (normals @ frame.basis()).astype(np.float32)
     points = points - (share * shift)[:, None].astype(np.float32) * toward
-    return surface_at(cloud, Known(rows[kept], points[kept], toward[kept], share[kept].astype(np.float32), known[kept]))
+    trust = share[kept].astype(np.float32)
+    return surface_at(cloud, Known(rows[kept], points[kept], toward[kept], trust, known[kept]))
 
 
 def _layers(surface: Surface, flat: Level, ground: Ground, noisy: bool) -> list[_Layer]:

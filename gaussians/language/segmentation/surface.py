@@ -42,7 +42,7 @@ class Surface:
         neighbours: `[M, K]` int32, nearest points; a point with fewer repeats itself.
         gaps: `[M, K]` distances to them, scene units.
         spacing: median distance to the nearest neighbours, scene units.
-        layer: `[M]` int8, structure code of a point known to lie in a noisy plane of the structure, else 0; see `settle.py`.
+        layer: `[M]` int8, structure code of a point known to lie in a noisy plane, else 0; see `settle.py`.
     """
 
     rows: NDArray[np.int64]
