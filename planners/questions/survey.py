@@ -19,7 +19,7 @@ from ...gaussians.language.query.attributes import COLOR_HOLDS, color_scores
 from ...gaussians.language.query.nested import with_queries
 from ...gaussians.language.query.query import Query, Relation
 from ...gaussians.language.query.selection import Selection
-from ...gaussians.language.query.terms import color_term
+from ...gaussians.language.query.terms import LOOSE, color_term
 from ...gaussians.world import kinds, relations
 from ...gaussians.world.relation_geometry import HOLDS, Stand
 from ...gaussians.world.support import SHELL
@@ -41,8 +41,6 @@ if TYPE_CHECKING:
     from ...gaussians.scene import Scene
 
 _MEMORY = 4096  # queries whose results are kept
-# Relations that are read as to whichever anchor fits: "the lamp on the desk" where there are two desks.
-_LOOSE = frozenset({"on", "inside", "under", "below", "above", "next_to"})
 
 F64 = NDArray[np.float64]
 Finder = Callable[[Query], Selection]  # a query to rows of the stage
@@ -265,7 +263,7 @@ class Survey:
         The candidates of an ambiguous anchor are none of the query: "the lamp on the table" is no table.
         """
         relations = tuple(
-            r.model_copy(update={"anchors": tuple(self._each_of(a) for a in r.anchors)}) if r.name in _LOOSE else r
+            r.model_copy(update={"anchors": tuple(self._each_of(a) for a in r.anchors)}) if r.name in LOOSE else r
             for r in query.relations
         )
         return None if relations == query.relations else query.model_copy(update={"relations": relations})
@@ -278,7 +276,7 @@ class Survey:
         """The phrase within a query that is absent or ambiguous by itself, None if none is."""
         for relation in query.relations:
             for anchor in relation.anchors:
-                if anchor.text in SHELL or anchor.last or (anchor.pick == "one" and relation.name in _LOOSE):
+                if anchor.text in SHELL or anchor.last or (anchor.pick == "one" and relation.name in LOOSE):
                     every = anchor.model_copy(update={"pick": "all"})
                     if anchor.text not in SHELL and not anchor.last and self.find(every).verdict == "absent":
                         return anchor

@@ -1,10 +1,12 @@
 """Choose among the matches of a query by its `pick`: the only one, all, a count, the largest, the second from the left.
 
-Several matches of equal quality for pick "one" are an ambiguity; none of them is chosen.
+Several matches of equal quality for pick "one" are an ambiguity, and so are those that are equal in what a superlative
+compares; none of them is chosen.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -20,6 +22,8 @@ from .terms import Scored
 
 CLEAR_LEAD = 0.55  # share of the best score from which a match of the same name and colour is a rival
 NAME_LEAD = 0.35  # share of the best name score below which a match is rather a fragment or a similar object
+EQUAL_SIZE = 1.12  # factor of volume up to which sizes are equal: boxes are measured no better
+EQUAL_PLACE = 0.01  # of a typical object size: difference of places that cannot be measured
 MAX_LISTED = 6  # candidates listed in a sentence
 
 
@@ -51,6 +55,10 @@ def pick(query: Query, scored: Scored, stand: Stand) -> Choice:
     if query.pick == "middle" and len(ordered) % 2 == 0:
         reason = f"{query.describe()}: of {len(ordered)} none is in the middle ({listing(told)}); say which one"
         return Choice([], _refused(query, reason, told, "ambiguous"))
+    if len(tied := _tied(ordered, scored, query, stand)) > 1:
+        told = tuple(scored.candidate(i) for i in tied)
+        reason = f"{query.describe()}: {len(tied)} are equal in that ({listing(told)}); say which one, or 'all'"
+        return Choice([], _refused(query, reason, told, "ambiguous"))
     rank = (query.ordinal or 1) if query.pick == "nth" else len(ordered) // 2 + 1 if query.pick == "middle" else 1
     if abs(rank) > len(ordered):
         return Choice([], nothing(query, f"{query.describe()}: there are only {len(ordered)}", told))
@@ -79,6 +87,7 @@ def rivals(scored: Scored, matches: list[int]) -> list[int]:
     if "text" in scored.terms and own:
         sure = scored.terms["text"]
         own = [i for i in own if sure[i] >= NAME_LEAD * max(sure[own])]
+    own += _alike(scored, matches, own)
     if not own:
         return [i for i in matches if scored.score[i] >= CLEAR_LEAD * scored.score[matches[0]]]
     placed = {i: _other_terms(scored, i) for i in own}
@@ -87,8 +96,39 @@ def rivals(scored: Scored, matches: list[int]) -> list[int]:
 
 
 def _preferred(scored: Scored, matches: list[int]) -> list[int]:
-    """The matches that have exactly the name and colour of the query if there are any, else all."""
-    return [i for i in matches if scored.own[i]] or matches
+    """The matches that have exactly the name and colour of the query, and those nearly as sure, if there are any; else
+    all."""
+    own = [i for i in matches if scored.own[i]]
+    return sorted([*own, *_alike(scored, matches, own)], key=matches.index) or matches
+
+
+def _alike(scored: Scored, matches: list[int], own: list[int]) -> list[int]:
+    """The matches with another label that are nearly as surely what is named as the best of `own`.
+
+    Of two cabinets an encoder may call one a dresser: it is meant as well as the other.
+    """
+    if not own or "text" not in scored.terms or any(name.startswith("color ") for name in scored.terms):
+        return []
+    sure = scored.terms["text"]
+    least = NAME_LEAD * max(sure[own])
+    return [i for i in matches if not scored.own[i] and sure[i] >= least]
+
+
+def _tied(ordered: list[int], scored: Scored, query: Query, stand: Stand) -> list[int]:
+    """The first of an order by a superlative, and those that are equal to it as far as can be measured."""
+    groups = [scored.groups[i] for i in ordered]
+    if query.pick in ("largest", "smallest", "tallest", "shortest"):
+        word = "large" if query.pick in ("largest", "smallest") else "tall"
+        equal = math.log(EQUAL_SIZE) / (3 if word == "tall" else 1)
+        sizes = np.log(np.maximum([attributes.extent(g, word) for g in groups], 1e-12))
+        apart = np.abs(sizes - sizes[0])
+    elif query.pick in ("highest", "lowest", "leftmost", "rightmost", "nearest", "farthest"):
+        equal = EQUAL_PLACE * stand.scale
+        places = np.array([_keys(stand)[query.pick](g) for g in groups])
+        apart = places - places[0]
+    else:
+        return ordered[:1]
+    return [i for i, gap in zip(ordered, apart, strict=True) if gap < equal]
 
 
 def _other_terms(scored: Scored, index: int) -> float:

@@ -37,6 +37,7 @@ from .selection import Candidate, Selection, nothing
 from .terms import (
     ALL,
     FLOATERS,
+    LOOSE,
     ORDERING,
     STRUCTURE,
     Anchor,
@@ -253,12 +254,19 @@ class Resolver:
         """What the queries of a relation's anchors select; raises as `anchors`."""
         chosen = []
         for query in relation.anchors:  # "on the wall" means on any wall
-            if query not in self._anchored:
-                self._anchored[query] = self._anchor_selection(query)
-            if not self._anchored[query].chosen:
-                raise Unresolved(self._anchored[query])
-            chosen.append(self._anchored[query])
+            found = self._anchored_at(query)
+            if found.verdict == "ambiguous" and relation.name in LOOSE and query.pick == "one":
+                # The relation decides which of them is meant: "the lamp on the desk" where one of two holds a lamp.
+                found = self._anchored_at(query.model_copy(update={"pick": "all"}))
+            if not found.chosen:
+                raise Unresolved(found)
+            chosen.append(found)
         return chosen
+
+    def _anchored_at(self, query: Query) -> Selection:
+        if query not in self._anchored:
+            self._anchored[query] = self._anchor_selection(query)
+        return self._anchored[query]
 
     def _anchor_selection(self, query: Query) -> Selection:
         if query.text in STRUCTURE:

@@ -42,6 +42,8 @@ STRUCTURE = {
     "wall": "wall", "ceiling": "ceiling",
 }  # fmt: skip
 FLOATERS = frozenset({"floater", "noise", "floating bit", "stray"})
+# Relations that are read as to whichever anchor fits: "the lamp on the desk" where there are two desks.
+LOOSE = frozenset({"on", "inside", "under", "below", "above", "next_to"})
 ORDERING = frozenset(k.name for k in relations.KINDS if k.orders)
 MAX_CACHED = 4096  # phrases and colours whose scores a field caches
 MIN_LABEL_SCORE = 0.25  # labels less probable than this are not shown

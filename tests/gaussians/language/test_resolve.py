@@ -388,6 +388,26 @@ def test_an_anchor_found_by_its_colour_alone_is_an_anchor(name: QueryName) -> No
     assert "could not be confirmed" in answer.reason  # what rests on a doubtful anchor is as doubtful
 
 
+def test_a_relation_by_contact_chooses_among_several_anchors() -> None:
+    second = replace(ROOM[TABLE], center=(-3.0, -3.0, ROOM[TABLE].center[2]))
+    scene = scene_of((*ROOM, second))
+    assert ask(named("table"), scene).verdict == "ambiguous"
+    assert found(named("vase", **by("on", named("table"))), VASE, scene=scene)
+    assert ask(named("lamp", **by("on", named("table"))), scene).verdict == "absent"
+    assert ask(named("vase", **by("left_of", named("table"))), scene).verdict == "ambiguous"  # of which?
+
+
+def test_the_largest_of_three_equals_is_ambiguous() -> None:
+    scene = scene_of((*ROOM, *(Row("vase", "blue", (x, 3.0, 0.3), (0.5, 0.5, 0.5)) for x in (-2.0, 0.0, 2.0))))
+    for pick in ("largest", "tallest"):
+        answer = ask(named("vase", pick=pick), scene)
+        assert answer.verdict == "ambiguous" and len(answer.candidates) == 3 and "equal" in answer.reason
+    assert found(named("vase", pick="smallest"), VASE, scene=scene)
+    assert found(named("vase", pick="highest"), VASE, scene=scene)
+    assert ask(named("vase", pick="lowest"), scene).verdict == "ambiguous"
+    assert len(ask(named("vase", pick="rightmost"), scene).groups) == 1
+
+
 # -- colour where words fail -----------------------------------------------------------------------------------------
 
 
