@@ -59,11 +59,13 @@ def witnesses(
 class Ledger:
     """The log-odds of all pairs of regions under merging. Regions have the numbers of `segmentation.regions.Graph`."""
 
-    def __init__(self, known: Sequence[Witness], superpoint: I64, size: F64) -> None:
+    def __init__(self, known: Sequence[Witness], superpoint: I64, size: F64, geometry: float) -> None:
         """Args:
         superpoint: `[R]` superpoint of each region.
         size: `[R]` number of points of each region: large ones have more say in what they merge into.
+        geometry: bound of geometry's log-odds where masks say something.
         """
+        self.geometry = geometry
         self.slot = {i: i for i in range(len(superpoint))}
         self.size = size.astype(np.float64)
         self.leaves = np.ones(len(superpoint))

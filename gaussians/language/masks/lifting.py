@@ -34,6 +34,9 @@ class Lifted:
         labels: M names, "" for unknown.
         scores: `[M]` float32.
         vectors: `[M, D]` float32, unit or zero rows; None if no view has any.
+        places: `[N, 3]` centres of the Gaussians, world.
+        eyes: `[V, 3]` position of each view's camera, world.
+        focal: `[V]` its focal length, pixels.
     """
 
     weights: csr_matrix
@@ -42,6 +45,9 @@ class Lifted:
     labels: tuple[str, ...]
     scores: F32
     vectors: F32 | None
+    places: F32
+    eyes: NDArray[np.float64]
+    focal: NDArray[np.float64]
 
     def features(self) -> F32:
         """Unit mean vector `[N, D]` of the masks that contain each Gaussian, by weight; zero where none does.
@@ -60,7 +66,7 @@ class Lifted:
 
     def at(self, rows: NDArray[np.int64]) -> Lifted:
         """The same for some of the Gaussians."""
-        return replace(self, weights=self.weights[rows], seen=self.seen[rows])
+        return replace(self, weights=self.weights[rows], seen=self.seen[rows], places=self.places[rows])
 
 
 def lift(cloud: GaussianCloud, views: Iterable[ViewMasks]) -> Lifted:
@@ -83,6 +89,9 @@ def lift(cloud: GaussianCloud, views: Iterable[ViewMasks]) -> Lifted:
         labels=tuple(label for view in taken for label in view.labels),
         scores=np.concatenate([np.zeros(0, np.float32), *(v.scores for v in taken)]),
         vectors=_vectors(taken),
+        places=cloud.means.numpy(),
+        eyes=np.array([view.camera.position for view in taken], np.float64).reshape(-1, 3),
+        focal=np.array([view.camera.fx for view in taken], np.float64),
     )
 
 

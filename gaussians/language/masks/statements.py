@@ -23,6 +23,7 @@ F32 = NDArray[np.float32]
 I64 = NDArray[np.int64]
 
 UNDECIDED = 0.3  # share of a region in a mask up to which it is outside, and from one minus which it is inside
+CLEAR = 0.5  # of the best view's share of a region's surface, below which a view sees it through something else
 HALF_SEEN = 4.0  # pixels of blending weight at which a view's word on a region counts for half
 
 
@@ -131,14 +132,33 @@ def cover(lifted: Lifted, labels: NDArray[np.int32], count: int) -> Cover:
     points = len(labels)
     sums = csr_matrix((np.ones(points, np.float32), (labels, np.arange(points))), shape=(count, points))
     whole = np.asarray((sums @ lifted.seen).todense(), dtype=np.float32)
-    seen = whole / (whole + HALF_SEEN)
     inside = (sums @ lifted.weights).tocsr()
     rows = np.repeat(np.arange(count), np.diff(inside.indptr))
     views = lifted.view[inside.indices]
-    share = decided(inside.data / np.maximum(whole[rows, views], 1e-9)) * seen[rows, views]
+    share = inside.data / np.maximum(whole[rows, views], 1e-9)
+    masked = np.zeros_like(whole)
+    np.add.at(masked, (rows, views), share)
+    seen = _clearness(lifted, sums, whole) * whole / (whole + HALF_SEEN)
+    seen *= np.abs(2 * np.minimum(masked, 1) - 1)  # half in masks is neither in nor out
+    share = decided(share) * seen[rows, views]
     inside = csr_matrix((share.astype(np.float32), inside.indices, inside.indptr), shape=inside.shape)
     depth = np.zeros_like(seen)
     np.add.at(depth, (rows, views), inside.data)
     covered = np.minimum(depth, seen)
     confirmed = covered * (covered.sum(axis=1) / np.maximum(seen.sum(axis=1), 1e-9))[:, None]
     return Cover(inside, depth, covered, confirmed, seen, lifted.view)
+
+
+def _clearness(lifted: Lifted, sums: csr_matrix, whole: F32) -> F32:
+    """How clearly each view sees each region `[R, V]`, in [0, 1].
+
+    A view that looks through foliage or a thin wall sees less of a region than others do at the same distance, and its
+    masks are of what stands before it.
+    """
+    count = np.maximum(np.asarray(sums.sum(axis=1)), 1)
+    middle = (sums @ lifted.places) / count
+    distance = ((middle[:, None] - lifted.eyes[None]) ** 2).sum(axis=2)
+    share = whole * distance / lifted.focal**2
+    best = np.maximum(share.max(axis=1, initial=0, keepdims=True), 1e-12)
+    clear: F32 = np.minimum(share / (CLEAR * best), 1).astype(np.float32)
+    return clear

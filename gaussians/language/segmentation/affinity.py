@@ -23,7 +23,6 @@ FEATURES = (
     "same facing", "smaller plane", "larger plane", "smaller line", "larger line", "off the plane",
 )  # fmt: skip
 
-GEOMETRY_BOUND = 3.0  # log-odds of a border where masks say something too
 APART = -3.0  # log-odds of two regions without a border
 
 
@@ -194,7 +193,7 @@ def _joint_probability(graph: Graph, ledger: Ledger | None, region: int, others:
     if touching.any():
         odds[touching] = _log_odds(probability(features(graph, [q for q, t in zip(pairs, touching, strict=True) if t])))
     said = ledger.log_odds(region, others)
-    bounded = np.where(said == 0, odds, np.clip(odds, -GEOMETRY_BOUND, GEOMETRY_BOUND))
+    bounded = np.where(said == 0, odds, np.clip(odds, -ledger.geometry, ledger.geometry))
     return 1 / (1 + np.exp(-np.clip(bounded + said, -30, 30)))
 
 

@@ -25,6 +25,8 @@ I32 = NDArray[np.int32]
 I64 = NDArray[np.int64]
 
 PIECE_SCALE, PIECE_POINTS = 0.5, 12  # of the pieces that superpoints are cut into, see `superpoints`
+SURE = 5.0  # bound of geometry's log-odds in a clean scene
+CLEAN = 5.0  # median Lab difference of neighbouring points up to which a scene is clean
 WITHIN_SUPERPOINT = 2.0  # geometry's log-odds that two pieces of one superpoint are one object
 WITHIN_STRUCTURE = 2.0  # likewise that a superpoint found in a floor or wall belongs to it
 
@@ -55,7 +57,18 @@ def revised_by_masks(
     return cut, freed_from_structure(found, np.bincount(cut).astype(np.float64), about(cut))
 
 
-def ledger_of(graph: Graph, labels: I32, sources: Sequence[Lifted]) -> Ledger:
+def geometry_bound(surface: Surface) -> float:
+    """Bound of geometry's log-odds where masks speak.
+
+    Its rule was fitted on clean scenes. In a noisy capture, regions of one colour run over the borders of objects.
+    """
+    first = np.repeat(np.arange(len(surface)), surface.neighbours.shape[1])
+    difference = surface.raw_lab[first] - surface.raw_lab[surface.neighbours.ravel()]
+    noise = float(np.median(np.linalg.norm(difference, axis=1))) if len(difference) else 0.0
+    return SURE * float(np.clip(CLEAN / max(noise, 1e-9), 0.4, 1))
+
+
+def ledger_of(surface: Surface, graph: Graph, labels: I32, sources: Sequence[Lifted]) -> Ledger:
     """What masks say about the regions of a graph.
 
     Args:
@@ -67,7 +80,7 @@ def ledger_of(graph: Graph, labels: I32, sources: Sequence[Lifted]) -> Ledger:
     covers = [cover(s, labels, len(size)) for s in sources]
     worth = estimate(covers, *border_odds(graph))
     known = [Witness(c, r) for c, r in zip(covers, worth, strict=True)]
-    return Ledger(known, chosen, size[chosen])
+    return Ledger(known, chosen, size[chosen], geometry_bound(surface))
 
 
 def cut_superpoints(labels: I32, pieces: I32, pairs: I64, known: Sequence[Witness]) -> I32:

@@ -78,7 +78,7 @@ def segment(
     if sources:
         labels, codes = revised_by_masks(surface, links, labels, codes, graph, sources)
         graph = graph_of(surface, links, labels, codes, scene.frame)
-        ledger = ledger_of(graph, labels, sources)
+        ledger = ledger_of(surface, graph, labels, sources)
     count = len(codes)
     nodes = merge_tree(graph, ledger)
     size = np.bincount(labels, minlength=count)

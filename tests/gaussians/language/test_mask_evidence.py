@@ -14,7 +14,7 @@ from scipy.sparse import csr_matrix
 from scenewright.gaussians.language.masks.evidence import Ledger, Witness
 from scenewright.gaussians.language.masks.lifting import Lifted
 from scenewright.gaussians.language.masks.reliability import MOST, Reliability, estimate
-from scenewright.gaussians.language.masks.statements import HALF_SEEN, Counts, cover, decided
+from scenewright.gaussians.language.masks.statements import CLEAR, HALF_SEEN, Counts, cover, decided
 
 REGIONS, PER_REGION, OBJECTS = 60, 5, 12
 
@@ -38,7 +38,10 @@ def lifted(ids: NDArray[np.int64], seen: NDArray[np.bool_]) -> Lifted:
     points = regions * PER_REGION
     weights = csr_matrix((np.full(len(rows), 10, np.float32), (rows, columns)), shape=(points, names))
     whole = csr_matrix(np.repeat(seen.T, PER_REGION, axis=0).astype(np.float32) * 10)
-    return Lifted(weights, whole, np.array(view, np.int32), ("",) * names, np.ones(names, np.float32), None)
+    labels, scores = ("",) * names, np.ones(names, np.float32)
+    eyes = np.random.default_rng(9).uniform(3, 5, (views, 3))
+    places = np.zeros((points, 3), np.float32)
+    return Lifted(weights, whole, np.array(view, np.int32), labels, scores, None, places, eyes, np.full(views, 500.0))
 
 
 @pytest.fixture
@@ -70,40 +73,40 @@ def flat(truth: NDArray[np.int64], views: int) -> NDArray[np.int64]:
     return np.tile(truth, (views, 1))[:, None]
 
 
+def words(source: Lifted, own: Sequence[int]) -> tuple[list[float], list[NDArray[np.float64]]]:
+    """How well each view sees some points, and how far they lie in each mask of the view."""
+    weights, seen = source.weights.toarray(), source.seen.toarray()
+    whole = [float(seen[list(own), v].sum()) for v in range(seen.shape[1])]
+    middle = source.places[list(own)].mean(axis=0)
+    distance = [float(np.linalg.norm(middle - eye)) for eye in source.eyes]
+    surface = [w * d**2 / f**2 for w, d, f in zip(whole, distance, source.focal, strict=True)]
+    shares = [weights[np.ix_(list(own), np.flatnonzero(source.view == v))].sum(axis=0) / max(w, 1e-9)
+              for v, w in enumerate(whole)]  # fmt: skip
+    said = []
+    for w, clear, share in zip(whole, surface, shares, strict=True):
+        in_masks = min(float(share.sum()), 1.0)
+        said.append(min(clear / max(CLEAR * max(surface), 1e-12), 1) * w / (w + HALF_SEEN) * abs(2 * in_masks - 1))
+    return said, [np.asarray(decided(share), np.float64) for share in shares]
+
+
 def reference_counts(source: Lifted, first: Sequence[int], second: Sequence[int]) -> tuple[float, float, float, float]:
     """The counts of two sets of points, view by view and mask by mask."""
-    weights, seen = source.weights.toarray(), source.seen.toarray()
-    common = either = alone = views = 0.0
-    confirmed = [share_of_views(source, own) for own in (first, second)]
-    for v in range(seen.shape[1]):
-        a, b = float(seen[list(first), v].sum()), float(seen[list(second), v].sum())
-        masks = np.flatnonzero(source.view == v)
-        shares = [
-            decided(weights[np.ix_(list(own), masks)].sum(axis=0) / max(whole, 1e-9))
-            for own, whole in ((first, a), (second, b))
-        ]
-        word = a / (a + HALF_SEEN) * b / (b + HALF_SEEN)  # how well this view sees both
-        depth = [float(s.sum()) for s in shares]
-        covered = [min(d, 1.0) for d in depth]
-        both = float(shares[0] @ shares[1])
+    (words_a, shares_a), (words_b, shares_b) = (words(source, own) for own in (first, second))
+    views = range(source.seen.shape[1])
+    cover_a, cover_b = ([min(float(s.sum()), 1.0) for s in shares] for shares in (shares_a, shares_b))
+    sure_a = sum(w * c for w, c in zip(words_a, cover_a, strict=True)) / max(sum(words_a), 1e-9)
+    sure_b = sum(w * c for w, c in zip(words_b, cover_b, strict=True)) / max(sum(words_b), 1e-9)
+    common = either = alone = confirmed = 0.0
+    for v in views:
+        word = words_a[v] * words_b[v]  # how well this view sees both
+        depth_a, depth_b = float(shares_a[v].sum()), float(shares_b[v].sum())
+        both = float(shares_a[v] @ shares_b[v])
         common += word * both
-        either += word * (depth[0] + depth[1] - both)
-        alone += word * (depth[0] * (1 - covered[1]) + (1 - covered[0]) * depth[1])
-        sure = [c * k for c, k in zip(covered, confirmed, strict=True)]
-        views += word * (sure[0] + sure[1] - sure[0] * sure[1])
-    return common, either, alone, views
-
-
-def share_of_views(source: Lifted, own: Sequence[int]) -> float:
-    """The share of the views of some points that have a mask over them, views that see more of them counting more."""
-    covered = total = 0.0
-    for v in range(source.seen.shape[1]):
-        whole = float(source.seen.toarray()[list(own), v].sum())
-        inside = source.weights.toarray()[np.ix_(list(own), np.flatnonzero(source.view == v))].sum(axis=0)
-        word = whole / (whole + HALF_SEEN)
-        covered += word * min(float(decided(inside / max(whole, 1e-9)).sum()), 1.0)
-        total += word
-    return covered / max(total, 1e-9)
+        either += word * (depth_a + depth_b - both)
+        alone += word * (depth_a * (1 - cover_b[v]) + (1 - cover_a[v]) * depth_b)
+        a, b = cover_a[v] * sure_a, cover_b[v] * sure_b
+        confirmed += word * (a + b - a * b)
+    return common, either, alone, confirmed
 
 
 def test_counts_agree_with_the_reference() -> None:
@@ -130,7 +133,7 @@ def test_counts_of_merged_regions_are_sums() -> None:
     about = cover(source, np.repeat(np.arange(4), PER_REGION).astype(np.int32), 4)
     size = np.array([3.0, 1.0, 2.0, 4.0])
     worth = Reliability(np.linspace(-3, 3, 9), np.linspace(-1, 1, 9), 0.5)
-    ledger = Ledger([Witness(about, worth)], np.arange(4), size)
+    ledger = Ledger([Witness(about, worth)], np.arange(4), size, 5.0)
     ledger.merge(0, 1, 4)
     each = about.between(np.array([0, 1]), np.array([2, 2]))
     whole = Counts(*(np.array([3 * 2 * a[0] + 1 * 2 * a[1]]) for a in vars(each).values()))
