@@ -150,7 +150,8 @@ def _with_voted_objects(
 
 def _object_of(segments: Sequence[Segment], group: NDArray[np.int32]) -> NDArray[np.int32]:
     """The object of each surface point `[P]` by its group, -1 for structure and for no group."""
-    whole = [t.parent if t.parent >= 0 else i if t.level == "object" else -1 for i, t in enumerate(segments)]
+    above = [t.parent if t.parent >= 0 else i for i, t in enumerate(segments)]
+    whole = [i if segments[i].level == "object" else -1 for i in above]
     found: NDArray[np.int32] = np.array([*whole, -1], np.int32)[group]
     return found
 

@@ -153,7 +153,8 @@ def present_groups(field: LanguageField, level: str) -> tuple[Group, ...]:
         return tuple(rows)
     if level == "parts":
         split = {g.parent for g in field.groups if g.parent >= 0 and g.count > 0}
-        return tuple(g for g in rows if g.level != "structure" and g.id not in split)
+        room = {g.id for g in field.groups if g.level == "structure"}
+        return tuple(g for g in rows if g.id not in split | room and g.parent not in room)
     return tuple(g for g in rows if g.level == level)
 
 

@@ -7,7 +7,8 @@ caller supplies.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,7 @@ CERTAIN, RULED_OUT = 0.99, 0.01  # merge probabilities from which, and below whi
 MINOR_SHARE = 0.03  # of a node's points: a child smaller than this says nothing about the rest
 SAME_SHARE = 0.92  # of a node's points: a child that holds this much looks the same as the node
 PATCH_COLOR = 15.0  # Lab difference up to which touching patches of one object are one part
+PATCH_DIVIDED = 25.0  # Lab difference that a border counts for which masks divide surely
 PATCH_POINTS = 30  # surface points; smaller patches join the touching one they resemble most
 PATCH_SHARE = 0.01  # of the object's points; smaller patches are joined likewise
 
@@ -103,38 +105,47 @@ def weakest_merges(nodes: Sequence[Node], points: NDArray[np.int64]) -> F64:
     return np.clip(own, 1e-4, 1 - 1e-4)
 
 
+Divided = Mapping[tuple[int, int], float]  # two touching superpoints, the lower number first, and a number in [0, 1]
+NOT_DIVIDED: Divided = MappingProxyType({})
+
+
 def parts_of(
-    members: Sequence[int], touching: dict[int, set[int]], lab: F64, count: NDArray[np.int64]
-) -> list[list[int]]:
-    """The superpoints of one object as connected patches of one colour each, largest first.
+    members: Sequence[int], touching: dict[int, set[int]], lab: F64, count: NDArray[np.int64],
+    divided: Divided = NOT_DIVIDED,
+) -> list[list[int]]:  # fmt: skip
+    """The superpoints of one object as connected patches, each of one colour and in the same masks, largest first.
 
     Args:
         members: superpoint ids.
         touching: superpoints that each superpoint touches.
         lab: `[S, 3]` mean colour of every superpoint.
         count: `[S]` number of points of every superpoint.
+        divided: how surely masks divide two touching superpoints; 0 where left out.
     """
-    patches = _Patches(members, touching, lab, count)
+    patches = _Patches(members, touching, lab, count, divided)
     patches.join_similar()
     patches.join_small(max(PATCH_POINTS, PATCH_SHARE * sum(int(count[s]) for s in members)))
     return sorted(patches.members.values(), key=lambda c: (-sum(int(count[s]) for s in c), c))
 
 
 class _Patches:
-    """Patches of one colour under merging. A merged patch gets a new number, so that outdated pairs are recognised."""
+    """Patches under merging. A merged patch gets a new number, so that outdated pairs are recognised."""
 
     def __init__(
-        self, members: Sequence[int], touching: dict[int, set[int]], lab: F64, count: NDArray[np.int64]
-    ) -> None:
+        self, members: Sequence[int], touching: dict[int, set[int]], lab: F64, count: NDArray[np.int64],
+        divided: Divided,
+    ) -> None:  # fmt: skip
         own = set(members)
         self.members = {s: [s] for s in members}
         self.lab = {s: lab[s] for s in members}
         self.size = {s: max(int(count[s]), 1) for s in members}
-        self.near = {s: touching.get(s, set()) & own for s in members}
+        self.near = {  # the touching patches, and how surely masks divide this one from each
+            s: {t: divided.get((min(s, t), max(s, t)), 0.0) for t in touching.get(s, set()) & own} for s in members
+        }
         self.next = max(members, default=0) + 1
 
     def join_similar(self) -> None:
-        """Merge touching patches, the most similar first, while their colours differ by at most PATCH_COLOR."""
+        """Merge touching patches, the most similar first, while the gap between them is at most PATCH_COLOR."""
         heap = [(self.gap(s, t), s, t) for s in self.members for t in self.near[s] if s < t]
         heapq.heapify(heap)
         while heap and heap[0][0] <= PATCH_COLOR:
@@ -151,7 +162,9 @@ class _Patches:
             self.join(min(self.near[smallest], key=lambda t: (self.gap(smallest, t), t)), smallest)
 
     def gap(self, s: int, t: int) -> float:
-        return float(np.linalg.norm((self.lab[s] - self.lab[t]) * np.array([LIGHTNESS, 1.0, 1.0])))
+        """Difference of the colours of two touching patches, and of what masks say about them."""
+        color = float(np.linalg.norm((self.lab[s] - self.lab[t]) * np.array([LIGHTNESS, 1.0, 1.0])))
+        return color + PATCH_DIVIDED * self.near[s][t]
 
     def join(self, s: int, t: int) -> int:
         new, self.next = self.next, self.next + 1
@@ -159,7 +172,11 @@ class _Patches:
         self.lab[new] = (self.lab.pop(s) * a + self.lab.pop(t) * b) / (a + b)
         self.size[new] = a + b
         self.members[new] = self.members.pop(s) + self.members.pop(t)
-        self.near[new] = (self.near.pop(s) | self.near.pop(t)) - {s, t}
-        for other in self.near[new]:
-            self.near[other] = (self.near[other] - {s, t}) | {new}
+        first, second = self.near.pop(s), self.near.pop(t)
+        self.near[new] = {}
+        for other in sorted((first.keys() | second.keys()) - {s, t}):
+            said = [(w, near[other]) for w, near in ((a, first), (b, second)) if other in near]
+            divided = sum(w * d for w, d in said) / sum(w for w, _ in said)
+            self.near[new][other] = divided
+            self.near[other] = {k: d for k, d in self.near[other].items() if k not in (s, t)} | {new: divided}
         return new

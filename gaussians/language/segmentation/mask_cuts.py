@@ -27,6 +27,7 @@ I64 = NDArray[np.int64]
 PIECE_SCALE, PIECE_POINTS = 0.5, 12  # of the pieces that superpoints are cut into, see `superpoints`
 SURE = 5.0  # bound of geometry's log-odds in a clean scene
 CLEAN = 5.0  # median Lab difference of neighbouring points up to which a scene is clean
+HALF_SURE = 0.5  # views at which what they say of a border inside an object counts for half
 WITHIN_SUPERPOINT = 2.0  # geometry's log-odds that two pieces of one superpoint are one object
 WITHIN_STRUCTURE = 2.0  # likewise that a superpoint found in a floor or wall belongs to it
 
@@ -47,8 +48,7 @@ def revised_by_masks(
     def about(regions: I32) -> list[Witness]:
         return witnesses(sources, regions, int(regions.max(initial=-1)) + 1, worth)
 
-    fine = superpoints(surface, links, PIECE_SCALE, PIECE_POINTS)
-    pieces = np.unique(labels.astype(np.int64) * (int(fine.max()) + 1) + fine, return_inverse=True)[1].astype(np.int32)
+    pieces = pieces_of(surface, links, labels)[0]
     within = links.pairs[labels[links.pairs[:, 0]] == labels[links.pairs[:, 1]]]
     ends = np.unique(np.sort(pieces[within], axis=1), axis=0).astype(np.int64)
     cut = cut_superpoints(labels, pieces, ends[ends[:, 0] != ends[:, 1]], about(pieces))
@@ -66,6 +66,31 @@ def geometry_bound(surface: Surface) -> float:
     difference = surface.raw_lab[first] - surface.raw_lab[surface.neighbours.ravel()]
     noise = float(np.median(np.linalg.norm(difference, axis=1))) if len(difference) else 0.0
     return SURE * float(np.clip(CLEAN / max(noise, 1e-9), 0.4, 1))
+
+
+def pieces_of(surface: Surface, links: Links, labels: I32) -> tuple[I32, I64]:
+    """Smaller pieces of superpoints: the piece of each point `[P]`, and the superpoint of each piece."""
+    fine = superpoints(surface, links, PIECE_SCALE, PIECE_POINTS)
+    code = labels.astype(np.int64) * (int(fine.max(initial=0)) + 1) + fine
+    _, first, pieces = np.unique(code, return_index=True, return_inverse=True)
+    return pieces.astype(np.int32), labels[first].astype(np.int64)
+
+
+def dividing(labels: I32, links: Links, sources: Sequence[Lifted]) -> dict[tuple[int, int], float]:
+    """How surely masks divide touching superpoints, in [0, 1]: 1 where all views of all sources do.
+
+    Args:
+        labels: `[P]` superpoint of each surface point.
+        sources: masks lifted to the surface points.
+    """
+    ends = np.unique(np.sort(labels[links.pairs], axis=1), axis=0).astype(np.int64)
+    ends = ends[ends[:, 0] != ends[:, 1]]
+    total = np.zeros(len(ends))
+    for one in sources:
+        said = cover(one, labels, int(labels.max(initial=-1)) + 1).between(ends[:, 0], ends[:, 1])
+        apart = 1 - said.common / np.maximum(said.either, 1e-9)
+        total = np.maximum(total, apart * said.views / (said.views + HALF_SURE))
+    return {(a, b): float(d) for (a, b), d in zip(ends.tolist(), total, strict=True) if d > 0}
 
 
 def ledger_of(surface: Surface, graph: Graph, labels: I32, sources: Sequence[Lifted]) -> Ledger:

@@ -7,7 +7,7 @@ parts by colour.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -23,7 +23,7 @@ from .adjacency import build_graph
 from .affinity import merge_tree
 from .borders import refine_borders
 from .group_renders import mean_vectors
-from .mask_cuts import ledger_of, revised_by_masks
+from .mask_cuts import dividing, ledger_of, pieces_of, revised_by_masks
 from .regions import Graph, Node
 from .superpoints import Links, links_of, superpoints, touching
 from .surface import Surface
@@ -93,7 +93,10 @@ def segment(
         owner[list(members)] = number
     labels = refine_borders(surface, labels, owner, codes > 0)
     owner = _absorb_small(owner, labels, links)
-    return labels, _segments(surface, labels, owner, touching(labels, links))
+    if not sources:
+        return labels, _segments(surface, labels, owner, touching(labels, links))
+    labels, whole = pieces_of(surface, links, labels)
+    return labels, _segments(surface, labels, owner[whole], touching(labels, links), dividing(labels, links, sources))
 
 
 def _absorb_small(owner: NDArray[np.int32], labels: NDArray[np.int32], links: Links) -> NDArray[np.int32]:
@@ -163,9 +166,15 @@ def _rows_by_superpoint(surface: Surface, labels: NDArray[np.int32], count: int)
 
 
 def _segments(
-    surface: Surface, labels: NDArray[np.int32], owner: NDArray[np.int32], near: dict[int, set[int]]
-) -> list[Segment]:
-    """Segments in order: floor, each wall, ceiling; then the objects, largest first, each followed by its parts."""
+    surface: Surface, labels: NDArray[np.int32], owner: NDArray[np.int32], near: dict[int, set[int]],
+    divided: grouping.Divided | None = None,
+) -> list[Segment]:  # fmt: skip
+    """Segments in order: floor, each wall, ceiling; then the objects, largest first, each followed by its parts.
+
+    Args:
+        divided: how surely masks divide touching superpoints, None without masks. With it floor, walls and ceiling have
+            parts as well: what hangs at a wall may be no object by its shape.
+    """
     count = len(owner)
     size = np.bincount(labels, minlength=count)
     total = np.stack([np.bincount(labels, weights=surface.lab[:, c], minlength=count) for c in range(3)], axis=1)
@@ -174,12 +183,19 @@ def _segments(
     segments = []
     for c in codes:
         members = tuple(np.flatnonzero(owner == -1 - c).tolist())
-        segments.append(Segment(members, "structure", label=structure.NAMES[c % planes.KINDS]))
+        clusters = [members] if divided is None else grouping.parts_of(members, near, lab, size, divided)
+        segments += _with_parts(
+            Segment(members, "structure", label=structure.NAMES[c % planes.KINDS]), clusters, len(segments)
+        )
     objects = [tuple(np.flatnonzero(owner == o).tolist()) for o in np.unique(owner[owner >= 0])]
     for members in sorted(objects, key=lambda m: (-sum(int(size[s]) for s in m), m)):
-        clusters = grouping.parts_of(members, near, lab, size)
-        own = len(segments)
-        segments.append(Segment(members if len(clusters) == 1 else (), "object"))
-        if len(clusters) > 1:
-            segments.extend(Segment(tuple(c), "part", parent=own) for c in clusters)
+        clusters = grouping.parts_of(members, near, lab, size, divided or grouping.NOT_DIVIDED)
+        segments += _with_parts(Segment(members, "object"), clusters, len(segments))
     return segments
+
+
+def _with_parts(whole: Segment, clusters: Sequence[Sequence[int]], index: int) -> list[Segment]:
+    """A segment and its parts, if it has more than one; `index` is its own place in the list of segments."""
+    if len(clusters) == 1:
+        return [whole]
+    return [replace(whole, members=()), *(Segment(tuple(c), "part", parent=index) for c in clusters)]

@@ -27,7 +27,7 @@ VERBS: dict[str, Entry] = {
         "toss away, chuck in the bin, throw in the trash, be rid of, remove away, rid us of, hoover up",
     ),
     **same(("CLEAR", None), "clear, clear off, clear out"),
-    **same(("MERGE", None), "merge, combine, unite, join, join up, fuse, group, group together, treat, regard, count"),
+    **same(("MERGE", None), "merge, combine, unite, join, join up, fuse, group, group together, treat, regard"),
     **same(("SPLIT", None), "split, split up, divide, separate, break up, ungroup"),
     **same(("DROP", None), "drop"),
     **same(("TAKE", None), "take, throw, get, pick up, grab"),

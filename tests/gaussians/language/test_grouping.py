@@ -237,3 +237,15 @@ def test_a_lamp_is_its_shade_and_its_foot() -> None:
     close = lab + np.array([[0, 0, 0], [PATCH_COLOR - 1, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]])
     assert parts_of([0, 1], near, close, size) == [[0, 1]]  # shading does not part a shade
     assert parts_of([], near, lab, size) == []
+
+
+@given(patchworks())
+def test_parts_stay_on_one_side_of_a_border_that_masks_divide_surely(
+    world: tuple[list[int], dict[int, set[int]], np.ndarray, np.ndarray],
+) -> None:
+    members, near, lab, size = world
+    large = np.maximum(size, 1000)  # small patches join whatever they touch
+    odd = {(s, t): 1.0 for s in near for t in near[s] if s < t and (s % 2) != (t % 2)}
+    parts = parts_of(members, near, lab, large, odd)
+    assert all(len({m % 2 for m in part}) == 1 for part in parts)
+    assert parts_of(members, near, lab, size, {}) == parts_of(members, near, lab, size)

@@ -14,7 +14,13 @@ from scipy.sparse import csr_matrix
 from scenewright.gaussians.language.masks.evidence import Ledger, Witness
 from scenewright.gaussians.language.masks.lifting import Lifted
 from scenewright.gaussians.language.masks.reliability import MOST, Reliability, estimate
+<<<<<<< HEAD
 from scenewright.gaussians.language.masks.statements import CLEAR, HALF_SEEN, Counts, cover, decided
+=======
+from scenewright.gaussians.language.masks.statements import HALF_SEEN, Counts, cover, decided
+from scenewright.gaussians.language.segmentation.mask_cuts import dividing
+from scenewright.gaussians.language.segmentation.superpoints import Links
+>>>>>>> 308f23a (Parts follow what masks divide, in floor and walls too; the count of things is asked, not merged)
 
 REGIONS, PER_REGION, OBJECTS = 60, 5, 12
 
@@ -207,3 +213,17 @@ def test_a_bad_source_beside_a_good_one_does_not_harm(truth: NDArray[np.int64]) 
     worth = estimate(covers, first, second, prior)
     total = np.sum([r.log_odds(c.between(first, second)) for c, r in zip(covers, worth, strict=True)], axis=0)
     assert ((total > 0) == (truth[first] == truth[second])).all()
+
+
+def test_borders_that_all_views_show_divide_and_others_do_not(truth: NDArray[np.int64]) -> None:
+    """Neighbours in one line of regions: divided where the object changes, not at all without masks."""
+    labels = np.repeat(np.arange(REGIONS), PER_REGION).astype(np.int32)
+    line = np.arange(len(labels) - 1, dtype=np.int32)
+    links = Links(np.stack([line, line + 1], axis=1), np.ones(len(line), np.float32))
+    seen = np.ones((8, REGIONS), bool)
+    shown = dividing(labels, links, [lifted(flat(truth, 8), seen)])
+    border = {(r, r + 1) for r in range(REGIONS - 1) if truth[r] != truth[r + 1]}
+    assert border and all(shown[pair] > 0.9 for pair in border)
+    assert all(d < 0.05 for pair, d in shown.items() if pair not in border)
+    assert dividing(labels, links, [lifted(np.full((8, 1, REGIONS), -1), seen)]) == {}
+    assert dividing(labels, links, []) == {}
