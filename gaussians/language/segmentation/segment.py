@@ -180,7 +180,7 @@ def _segments(
     total = np.stack([np.bincount(labels, weights=surface.lab[:, c], minlength=count) for c in range(3)], axis=1)
     lab: F64 = total / np.maximum(size, 1)[:, None]
     codes = sorted({-1 - int(o) for o in owner if o < -1}, key=lambda c: (c % planes.KINDS, c))
-    segments = []
+    segments: list[Segment] = []
     for c in codes:
         members = tuple(np.flatnonzero(owner == -1 - c).tolist())
         clusters = [members] if divided is None else grouping.parts_of(members, near, lab, size, divided)
