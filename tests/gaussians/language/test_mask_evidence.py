@@ -14,13 +14,9 @@ from scipy.sparse import csr_matrix
 from scenewright.gaussians.language.masks.evidence import Ledger, Witness
 from scenewright.gaussians.language.masks.lifting import Lifted
 from scenewright.gaussians.language.masks.reliability import MOST, Reliability, estimate
-<<<<<<< HEAD
 from scenewright.gaussians.language.masks.statements import CLEAR, HALF_SEEN, Counts, cover, decided
-=======
-from scenewright.gaussians.language.masks.statements import HALF_SEEN, Counts, cover, decided
 from scenewright.gaussians.language.segmentation.mask_cuts import dividing
 from scenewright.gaussians.language.segmentation.superpoints import Links
->>>>>>> 308f23a (Parts follow what masks divide, in floor and walls too; the count of things is asked, not merged)
 
 REGIONS, PER_REGION, OBJECTS = 60, 5, 12
 
