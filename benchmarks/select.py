@@ -19,6 +19,7 @@ from ._select import (
     composed,
     costs,
     curves,
+    faults,
     floor_noise,
     lifted,
     meshes,
@@ -89,6 +90,7 @@ def run(quick: bool) -> Result:
         stability.thresholds(known, encoder),
         stability.floaters(steady, encoder, grouped, stability.FLOATERS[-1:] if quick else stability.FLOATERS),
         *([] if quick else [lifted.fewer_views(steady, encoder)]),
+        *([] if quick else [faults.measure(steady, [grouped(room) for room in steady], encoder)]),
         *([] if quick else [floor_noise.measure(plan.stability, grouped)]),
         *curves.measure([rooms[s] for s in plan.chart], encoder, grouped, quick),
     ]

@@ -18,7 +18,6 @@ from ...gaussians.language.encoders import Encoder
 from ...gaussians.language.field.embed import embed
 from ...gaussians.language.field.group_table import with_table
 from ...gaussians.language.masks import ViewMasks
-from ...gaussians.language.masks.association import INSIDE, associate
 from ...gaussians.language.masks.lifting import lift
 from ...gaussians.language.masks.sources.embedded import of_view
 from ...gaussians.language.segmentation.segment import Segment
@@ -27,6 +26,7 @@ from ...gaussians.scene import Scene
 from ...gaussians.viewpoints.coverage import Views
 from ..harness import Metric, Point
 from . import pictures
+from .association import INSIDE, associate
 from .cases import Case, Part
 from .stability import names_miou
 

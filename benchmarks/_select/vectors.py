@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from ...gaussians.language.encoders import Encoder
 from ...gaussians.language.encoders.probability import probability
-from ...gaussians.language.masks.association import associate
 from ...gaussians.language.masks.lifting import Lifted, lift
 from .._iou import Mask, iou
+from .association import associate
 from .cases import Case
 from .pictures import Seen
 

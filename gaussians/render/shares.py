@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
+DENSE_LABELS = 1_000_000  # range of labels up to which they are counted and not sorted
+
 
 @dataclass(frozen=True, eq=False)
 class Split:
@@ -26,10 +28,21 @@ class Split:
 
 def sum_pairs(count: int, rows: NDArray[np.integer], labels: NDArray[np.int32], weights: NDArray[np.floating]) -> Split:
     """Add up the weights of equal (row, label) pairs, in the order given; `count` is the number of Gaussians."""
-    names, column = np.unique(labels, return_inverse=True)
+    names, column = _numbered(labels)
     sizes = (count, max(len(names), 1))
     table = csr_matrix((weights.astype(np.float64), (rows, column)), shape=sizes)  # constructing it adds duplicates
     table.sort_indices()
     kept = table.data > 0
     row = np.repeat(np.arange(count), np.diff(table.indptr))[kept]
     return Split(row, names[table.indices[kept]].astype(np.int32), table.data[kept].astype(np.float32))
+
+
+def _numbered(labels: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The different labels, ascending, and the place of each label among them; without sorting if they are dense."""
+    low, high = (int(labels.min()), int(labels.max())) if len(labels) else (0, 0)
+    if high - low > max(len(labels), DENSE_LABELS):
+        names, place = np.unique(labels, return_inverse=True)
+        return names.astype(np.int64), place
+    shifted = labels.astype(np.int64) - low
+    there = np.bincount(shifted, minlength=1) > 0
+    return np.flatnonzero(there) + low, (np.cumsum(there) - 1)[shifted]

@@ -9,11 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .lifting import Lifted
-from .reliability import Reliability
+from .reliability import REPEATS, Reliability, chooses_objects
 from .statements import Counts, Cover, cover
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
+
+CHANCE = 0.03  # share of the views of a floor or wall in which a mask of an object covers it
+MOST_FOUND = 0.95  # largest share of the views of an object in which a source is taken to have a mask of it
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,22 +30,40 @@ class Witness:
         """Log-odds `[E]` that pairs of regions are one object."""
         return self.reliability.log_odds(self.cover.between(first, second))
 
-    def within_structure(self, regions: I64, size: F64) -> F64:
-        """Log-odds `[K]` that each region of a floor or wall is one thing with all the others together.
+    def within_structure(self, codes: NDArray[np.integer], size: F64) -> F64:
+        """Log-odds `[R]` that regions which geometry takes for floor or wall belong to it; 0 for the others.
 
-        Masks of objects leave floors and walls out. So here, and only here, two regions that a view leaves out are
-        together.
+        A source that chooses objects covers them in a share of the views, which is estimated from what geometry takes
+        for objects, and floors and walls hardly ever. One that divides whole pictures is asked whether a region is
+        together with the rest of its floor or wall.
 
         Args:
-            size: `[K]` number of points of each region.
+            codes: `[R]` structure of each region, 0 for none.
+            size: `[R]` number of points of each region.
         """
-        own = self.cover.rows(regions)
-        weight = np.outer(size, size).astype(np.float32)
-        np.fill_diagonal(weight, 0)
-        said, out = own.of_all(), (own.seen - own.covered) @ (own.seen - own.covered).T
-        whole = Counts(said.common + out, said.either + out, said.alone, own.seen @ own.seen.T)
-        summed = Counts(*((getattr(whole, f.name) * weight).sum(axis=1) for f in fields(whole)))
-        return self.reliability.log_odds(summed, weight.sum(axis=1, dtype=np.float64))
+        trust = chooses_objects(self.cover)
+        return trust * self._uncovered(codes, size) + (1 - trust) * self._with_rest(codes, size)
+
+    def _uncovered(self, codes: NDArray[np.integer], size: F64) -> F64:
+        views = self.cover.seen.sum(axis=1).astype(np.float64)
+        share = self.cover.covered.sum(axis=1) / np.maximum(views, 1e-9)
+        things = (codes == 0) & (views > 0)
+        found = float(np.average(share[things], weights=size[things])) if things.any() else 0.0
+        found = float(np.clip(found, 2 * CHANCE, MOST_FOUND))
+        per_view = share * np.log(CHANCE / found) + (1 - share) * np.log((1 - CHANCE) / (1 - found))
+        a = self.reliability.agreement
+        return np.where(codes > 0, REPEATS * views * a / np.maximum(1 + (views - 1) * a, 1e-9) * per_view, 0.0)
+
+    def _with_rest(self, codes: NDArray[np.integer], size: F64) -> F64:
+        odds = np.zeros(len(codes))
+        for code in sorted(set(codes[codes > 0].tolist())):
+            own = np.flatnonzero(codes == code)
+            weight = np.outer(size[own], size[own]).astype(np.float32)
+            np.fill_diagonal(weight, 0)
+            whole = self.cover.rows(own).of_all()
+            summed = Counts(*((getattr(whole, f.name) * weight).sum(axis=1) for f in fields(whole)))
+            odds[own] = self.reliability.log_odds(summed, np.maximum(weight.sum(axis=1, dtype=np.float64), 1e-9))
+        return odds
 
 
 def witnesses(
@@ -65,7 +86,7 @@ class Ledger:
         size: `[R]` number of points of each region: large ones have more say in what they merge into.
         geometry: bound of geometry's log-odds where masks say something.
         """
-        self.geometry = geometry
+        self.geometry, self.known = geometry, known
         self.slot = {i: i for i in range(len(superpoint))}
         self.size = size.astype(np.float64)
         self.leaves = np.ones(len(superpoint))

@@ -3,7 +3,7 @@
 One pass of the rasteriser per view gives the blending weight of each Gaussian inside each mask. Its cost does not
 depend on the width of feature vectors: these enter after masks have been grouped, or for `Lifted.features`. The method
 is that of training-free uplifting such as Occam's LGS (Cheng et al. 2024): a mean over views, weighted by the blending
-weights. `association.py` decides which masks belong to one object.
+weights. `statements.py` says what the masks of a source tell about pairs of regions.
 """
 
 from __future__ import annotations

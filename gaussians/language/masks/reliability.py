@@ -98,7 +98,7 @@ def estimate(covers: Sequence[Cover], first: I64, second: I64, prior: F64) -> li
     for one in covers:
         agreement = agreement_of(one, first, second)
         index, alone, certainty = _describe(one.between(first, second), 1.0, agreement)
-        said.append((agreement, certainty, _weights(index, alone), _chooses_objects(one)))
+        said.append((agreement, certainty, _weights(index, alone), chooses_objects(one)))
     belief = np.clip(prior, -PRIOR_BOUND, PRIOR_BOUND)
     chosen = [t * _table_of_objects(a) for a, _, _, t in said]
     tables = chosen
@@ -109,7 +109,7 @@ def estimate(covers: Sequence[Cover], first: I64, second: I64, prior: F64) -> li
     return [Reliability(t[:KNOTS], t[KNOTS:], a) for (a, _, _, _), t in zip(said, tables, strict=True)]
 
 
-def _chooses_objects(cover: Cover) -> float:
+def chooses_objects(cover: Cover) -> float:
     """1 for a source that leaves pixels out and so chooses what an object is, 0 for one that divides whole pictures."""
     share = float(cover.covered.sum()) / max(float(cover.seen.sum()), 1e-9)
     return float(np.clip((PARTITION - share) / 0.2, 0, 1))

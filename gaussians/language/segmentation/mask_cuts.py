@@ -119,7 +119,7 @@ def cut_superpoints(labels: I32, pieces: I32, pairs: I64, known: Sequence[Witnes
     """
     count = int(pieces.max(initial=-1)) + 1
     size = np.bincount(pieces, minlength=count).astype(np.float64)
-    odds = WITHIN_SUPERPOINT + sum((w.between(pairs[:, 0], pairs[:, 1]) for w in known), np.zeros(len(pairs)))
+    odds = _odds(pairs[:, 0], pairs[:, 1], known)
     owner = np.zeros(count, np.int64)
     owner[pieces] = labels
     doubtful = np.unique(owner[pairs[odds < 0, 0]])
@@ -131,13 +131,16 @@ def cut_superpoints(labels: I32, pieces: I32, pairs: I64, known: Sequence[Witnes
     return np.unique(key[pieces], return_inverse=True)[1].astype(np.int32)
 
 
+def _odds(first: I64, second: I64, known: Sequence[Witness]) -> F64:
+    """Log-odds `[E]` that pairs of pieces of a superpoint are one object."""
+    return WITHIN_SUPERPOINT + sum((w.between(first, second) for w in known), np.zeros(len(first)))
+
+
 def _agglomerate(own: I64, size: F64, known: Sequence[Witness]) -> I64:
     """Clusters `[K]` of some pieces by mean linkage: the most probable two are joined, until none is probable."""
     first, second = np.triu_indices(len(own), 1)
     odds = np.zeros((len(own), len(own)))
-    odds[first, second] = WITHIN_SUPERPOINT + sum(
-        (w.between(own[first], own[second]) for w in known), np.zeros(len(first))
-    )
+    odds[first, second] = _odds(own[first], own[second], known)
     odds = (odds + odds.T) * np.outer(size, size)
     total = size.copy()
     cluster = np.arange(len(own))
@@ -159,16 +162,8 @@ def _agglomerate(own: I64, size: F64, known: Sequence[Witness]) -> I64:
 def freed_from_structure(codes: NDArray[np.int8], size: F64, known: Sequence[Witness]) -> NDArray[np.int8]:
     """Structure codes `[S]` of superpoints, 0 for those that masks take out of their floor or wall.
 
-    Each is compared with all others of its floor or wall together.
-
     Args:
         size: `[S]` number of points of each superpoint.
     """
-    revised = codes.copy()
-    for code in sorted(set(codes[codes > 0].tolist())):
-        own = np.flatnonzero(codes == code)
-        if len(own) < 2:
-            continue
-        odds = WITHIN_STRUCTURE + sum((w.within_structure(own, size[own]) for w in known), np.zeros(len(own)))
-        revised[own[odds < 0]] = 0
-    return revised
+    odds = WITHIN_STRUCTURE + sum((w.within_structure(codes, size) for w in known), np.zeros(len(codes)))
+    return np.where(odds < 0, 0, codes).astype(np.int8)

@@ -11,13 +11,13 @@ import pytest
 import torch
 from numpy.typing import NDArray
 
+from scenewright.benchmarks._select.association import INSIDE, Tracks, associate
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud, concat
 from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.language.encoders.backends import vectors as vector_encoder
 from scenewright.gaussians.language.field.embed import embed
 from scenewright.gaussians.language.masks import ViewMasks
-from scenewright.gaussians.language.masks.association import INSIDE, Tracks, associate
 from scenewright.gaussians.language.masks.lifting import lift
 from scenewright.gaussians.render import render
 from scenewright.gaussians.scene import Frame, Scene
@@ -282,6 +282,23 @@ def test_the_order_of_views_and_masks_does_not_change_the_groups(scene: Any) -> 
     turned = [replace(v, ids=np.where(v.ids >= 0, len(v) - 1 - v.ids, -1), labels=v.labels[::-1]) for v in views[::-1]]
     one, other = (groups_of(cloud, v).cloud.group.numpy() for v in (views, turned))
     assert (one == other).mean() > 0.999  # sums over views in another order
+
+
+def test_a_mask_inside_a_mask_is_a_part(scene: Any) -> None:
+    cloud, truth = scene
+    top = (truth == 1) & (cloud.means[:, 2] > 0.47).numpy()
+    marked = cloud.replace(group=torch.from_numpy(top.astype(np.int32)))
+    views = []
+    for v in seen_by(cloud, truth, around(20)):
+        part = np.where((render(marked, v.camera).group.numpy() == 1), len(v), -1)
+        ids = np.stack([v.ids, part]).astype(np.int32)
+        views.append(ViewMasks(v.camera, ids, (*v.labels, ""), np.append(v.scores, 0.8)))
+    made = groups_of(cloud, views)
+    assert made.language is not None and min(best_ious(made, truth).values()) > 0.8
+    column = made.cloud.group.numpy()
+    inside = [g.id for g in made.language.groups if g.count and (top & (column == g.id)).sum() > 0.5 * g.count]
+    union = np.isin(column, inside)
+    assert (top & union).sum() / (top | union).sum() > 0.75  # the top is one colour with the rest of the table
 
 
 def test_masks_of_half_the_scene_leave_the_rest_to_geometry(scene: Any) -> None:

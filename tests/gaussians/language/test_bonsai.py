@@ -13,13 +13,13 @@ import pytest
 import torch
 from PIL import Image
 
+from scenewright.benchmarks._select.association import Tracks, associate
 from scenewright.gaussians.files import load
 from scenewright.gaussians.files.captures.capture import Capture, read_capture
 from scenewright.gaussians.harmonics import color_to_dc
 from scenewright.gaussians.language import masks
 from scenewright.gaussians.language.encoders.backends.vectors import Vectors, wrap
 from scenewright.gaussians.language.field.embed import embed
-from scenewright.gaussians.language.masks.association import Tracks, associate
 from scenewright.gaussians.language.masks.lifting import lift
 from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.language.query.resolve import resolve

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, diags
 
-from .lifting import Lifted
+from ...gaussians.language.masks.lifting import Lifted
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
