@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..masks.evidence import Ledger, Witness, witnesses
 from ..masks.lifting import Lifted
-from ..masks.reliability import estimate
+from ..masks.reliability import chooses_objects, estimate
 from ..masks.statements import cover
 from .affinity import border_odds
 from .regions import Graph
@@ -87,8 +87,11 @@ def dividing(labels: I32, links: Links, sources: Sequence[Lifted]) -> dict[tuple
     ends = ends[ends[:, 0] != ends[:, 1]]
     total = np.zeros(len(ends))
     for one in sources:
-        said = cover(one, labels, int(labels.max(initial=-1)) + 1).between(ends[:, 0], ends[:, 1])
-        apart = 1 - said.common / np.maximum(said.either, 1e-9)
+        about = cover(one, labels, int(labels.max(initial=-1)) + 1)
+        said = about.between(ends[:, 0], ends[:, 1])
+        # of a source that chooses objects, a mask inside a mask is a part, though half of the masks contain both
+        nested = 1 + chooses_objects(about)
+        apart = np.minimum(nested * (1 - said.common / np.maximum(said.either, 1e-9)), 1)
         total = np.maximum(total, apart * said.views / (said.views + HALF_SURE))
     return {(a, b): float(d) for (a, b), d in zip(ends.tolist(), total, strict=True) if d > 0}
 
