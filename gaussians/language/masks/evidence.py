@@ -9,13 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .lifting import Lifted
-from .reliability import REPEATS, Reliability, chooses_objects
+from .reliability import REPEATS, Reliability, chooses_objects, describe
 from .statements import Counts, Cover, cover
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 
 CHANCE = 0.03  # share of the views of a floor or wall in which a mask of an object covers it
+PART_INDEX = 0.7  # Jaccard index of the masks of two regions below which they are different parts
+PART_ALONE = 0.3  # share of those masks without any mask over the other region, above which it is chance
+PART_CERTAINTY = 0.5  # of a source from which it divides parts
 MOST_FOUND = 0.95  # largest share of the views of an object in which a source is taken to have a mask of it
 
 
@@ -122,3 +125,12 @@ class Ledger:
                 table[:, a] = table[a]
         self.size[a] += self.size[b]
         self.leaves[a] += self.leaves[b]
+
+
+def divided(known: Sequence[Witness], first: I64, second: I64) -> NDArray[np.bool_]:
+    """Pairs of regions `[E]` that a source shows as different parts: masks cover both, and few of them both at once."""
+    found = np.zeros(len(first), bool)
+    for one in known:
+        index, alone, certainty = describe(one.cover.between(first, second), 1.0, one.reliability.agreement)
+        found |= (index < PART_INDEX) & (alone < PART_ALONE) & (certainty > PART_CERTAINTY)
+    return found

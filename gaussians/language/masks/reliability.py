@@ -53,7 +53,7 @@ class Reliability:
         Args:
             size: number of leaf pairs that the counts are summed over.
         """
-        index, alone, certainty = _describe(counts, size, self.agreement)
+        index, alone, certainty = describe(counts, size, self.agreement)
         at = np.linspace(0, 1, KNOTS)
         result: F64 = certainty * (
             (1 - alone) * np.interp(index, at, self.covered) + alone * np.interp(index, at, self.alone)
@@ -61,7 +61,7 @@ class Reliability:
         return result
 
 
-def _describe(counts: Counts, size: F64 | float, agreement: float) -> tuple[F64, F64, F64]:
+def describe(counts: Counts, size: F64 | float, agreement: float) -> tuple[F64, F64, F64]:
     """Jaccard index, share of masks without a counterpart, and certainty, of some pairs."""
     either = np.maximum(counts.either, 1e-9)
     index = np.clip(counts.common / either, 0, 1).astype(np.float64)
@@ -97,7 +97,7 @@ def estimate(covers: Sequence[Cover], first: I64, second: I64, prior: F64) -> li
     said = []
     for one in covers:
         agreement = agreement_of(one, first, second)
-        index, alone, certainty = _describe(one.between(first, second), 1.0, agreement)
+        index, alone, certainty = describe(one.between(first, second), 1.0, agreement)
         said.append((agreement, certainty, _weights(index, alone), chooses_objects(one)))
     belief = np.clip(prior, -PRIOR_BOUND, PRIOR_BOUND)
     chosen = [t * _table_of_objects(a) for a, _, _, t in said]

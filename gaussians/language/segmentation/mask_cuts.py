@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..masks.evidence import Ledger, Witness, witnesses
+from ..masks.evidence import Ledger, Witness, divided, witnesses
 from ..masks.lifting import Lifted
 from ..masks.reliability import chooses_objects, estimate
 from ..masks.statements import cover
@@ -135,8 +135,9 @@ def cut_superpoints(labels: I32, pieces: I32, pairs: I64, known: Sequence[Witnes
 
 
 def _odds(first: I64, second: I64, known: Sequence[Witness]) -> F64:
-    """Log-odds `[E]` that pairs of pieces of a superpoint are one object."""
-    return WITHIN_SUPERPOINT + sum((w.between(first, second) for w in known), np.zeros(len(first)))
+    """Log-odds `[E]` that pairs of pieces of a superpoint stay together; those that masks divide do not."""
+    total = WITHIN_SUPERPOINT + sum((w.between(first, second) for w in known), np.zeros(len(first)))
+    return np.where(divided(known, first, second), np.minimum(total, -1.0), total)
 
 
 def _agglomerate(own: I64, size: F64, known: Sequence[Witness]) -> I64:
