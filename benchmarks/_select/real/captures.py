@@ -134,7 +134,7 @@ def _heard(session: Session, phrase: str, kind: str, thing: str) -> Heard:
 
 def _scored(truth: Truth, scene: Scene, heard: Sequence[Heard]) -> list[Heard]:
     """The phrases with their agreement; equal selections are rendered once."""
-    keys = [h.chosen.tobytes() if h.verdict == "found" else b"" for h in heard]
+    keys = [h.chosen.tobytes() if h.verdict in ("found", "unconfirmed") else b"" for h in heard]
     unique = {key: h.chosen for key, h in zip(keys, heard, strict=True) if key}
     order = {key: i for i, key in enumerate(unique)}
     chosen = np.stack(list(unique.values())) if unique else np.zeros((0, len(scene.cloud)), bool)
@@ -145,7 +145,8 @@ def _scored(truth: Truth, scene: Scene, heard: Sequence[Heard]) -> list[Heard]:
             zero = 0.0 if one.kind in ("said", "held_out") else None
             scored.append(replace(one, public=zero, other=zero))
             continue
-        scored.append(_compared(truth, one, [s[order[key]] for s in shown]))
+        compared = _compared(truth, one, [s[order[key]] for s in shown])
+        scored.append(replace(compared, wrong=compared.wrong and one.verdict == "found"))
     return scored
 
 
