@@ -98,7 +98,9 @@ def test_legs_are_counted_and_each_can_be_meant() -> None:
     assert overlap(every, posts) > 0.9 and "shape" in every.reason
     which = ask(scene, "leg", pick="one")
     assert which.verdict == "ambiguous" and len(which.candidates) == 4 and "group" not in which.reason
-    left = ask(scene, "leg", pick="leftmost")
+    tied = ask(scene, "leg", pick="leftmost")  # the front and the back leg on the left: equals are told
+    assert tied.verdict == "ambiguous" and len(tied.candidates) == 2
+    left = ask(scene, "leg", pick="nth", ordinal=1)
     x = cloud.means[left.ids, 0]
     assert left.verdict == "found" and bool((x < -0.4).all()) and 150 < len(left) < 250
     assert ask(scene, "leg", count=4).verdict == "found" and ask(scene, "leg", count=3).verdict == "ambiguous"

@@ -14,7 +14,8 @@ from scipy import ndimage
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.errors import FileError, UserError
 from scenewright.gaussians.files.captures.capture import Capture, read_capture, to_transforms
-from scenewright.gaussians.language import masks
+from scenewright.gaussians.language import encoders, masks
+from scenewright.gaussians.language.field.embed import embed
 from scenewright.gaussians.language.masks.sources.pictures import Pictures
 from scenewright.gaussians.lens import Lens
 from scenewright.gaussians.render import contributions, render
@@ -164,11 +165,12 @@ def test_the_sources_that_a_user_means(tmp_path: Path, scene: Scene) -> None:
     assert isinstance(only, Pictures) and "renders are used" in note
 
 
-def test_sources_are_joined_even_if_only_one_gives_vectors(tmp_path: Path, scene: Scene) -> None:
+def test_sources_count_even_if_only_one_gives_vectors(tmp_path: Path, scene: Scene) -> None:
     write(tmp_path, scene)
+    encoder = encoders.load("embedded")
     ids = np.zeros((72, 96), np.int32)
-    np.savez(tmp_path / "view0.npz", ids=ids, labels=np.array(["box"]), vectors=np.eye(1, 5))
+    np.savez(tmp_path / "view0.npz", ids=ids, labels=np.array(["box"]), vectors=np.eye(1, encoder.dim))
     sources, _ = masks.load_all(f"folder:{tmp_path}", tmp_path)
-    views = masks.joined(source.masks(scene) for source in sources)
-    assert len(views) == 7 and views[0].labels == ("box",)
-    assert all(v.vectors is not None and v.vectors.shape == (len(v), 5) for v in views)
+    field = embed(scene, encoder, masks=sources).language
+    assert field is not None and field.making is not None
+    assert [(s.views, s.masks > 0) for s in field.making.masks] == [(1, True), (6, True)]
