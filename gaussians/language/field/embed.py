@@ -161,7 +161,8 @@ def _with_mask_note(scene: Scene, sources: Sequence[MaskSource]) -> Scene:
     assert scene.language is not None and scene.language.making is not None
     making = replace(scene.language.making, masks=tuple(sources))
     shown = sum(bool(g.votes) for g in scene.language.objects())
-    note = f"masks of {sum(s.views for s in sources)} images were used; they name {shown} things"
+    note = f"masks of {sum(s.views for s in sources)} images were used"
+    note += f"; they name {shown} things" if shown else ""
     return scene.replace(language=replace(scene.language, notes=(*scene.language.notes, note), making=making))
 
 
