@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from .planes import Level, Plane, extent_of, mode
+from .planes import Level, Plane, extent_of, mode, outer_layers, walls_of
 from .surface import Surface
 
 F64 = NDArray[np.float64]
@@ -22,6 +22,7 @@ CELLS = 64  # of the height map across the larger side
 COARSE = 8  # cells of the height map along one side of a coarse cell, in which noise averages out
 ROUGHNESS = 0.003  # ground whose coarse cells vary in height by more than this share of the scene is terrain,
 UNEVEN = 1.0  # if this is also more than this share of the deviation of all its points
+COHERENT = 0.3  # share of the variance of heights between cells from which ground is rough and not noisy
 MAX_BUMP = 0.03  # of the scene: bumps, stones and low plants up to this height are terrain
 TALL_RATIO = 1.5  # a scene this many times as high as it is broad is one tall object without ground
 NEAR_GROUND = 0.06  # of the scene: height above the lowest points within which a floor is searched
@@ -110,7 +111,8 @@ def ground_of(surface: Surface, flat: Level) -> Ground | Mask | None:
     height, noise = layer(off, surface.area, height, broad)
     off = off - height
     reach = max(1.5 * surface.spacing, 0.003 * broad)
-    if _unevenness(plan, off, noise) > max(ROUGHNESS * broad, UNEVEN * noise):
+    uneven = _unevenness(plan, off, noise) > max(ROUGHNESS * broad, UNEVEN * noise)
+    if uneven or _is_rough(surface, flat, plan, off, noise):
         bump = float(np.median(np.abs(plan.above[weight] - np.median(plan.above[weight]))))
         limit = min(max(3.0 * bump, MAX_BUMP * broad), 0.08 * broad)
         terrain: Mask = plan.above < np.median(plan.above[weight]) + limit
@@ -232,6 +234,33 @@ def _unevenness(plan: _Map, off: F64, noise: float) -> float:
         return 0.0
     middle = off[near][order[starts + sizes // 2]][many]
     return 1.48 * float(np.median(np.abs(middle - np.median(middle))))
+
+
+def _is_rough(surface: Surface, flat: Level, plan: _Map, off: F64, noise: float) -> bool:
+    """Whether the ground is rough and lies in the open: stones and plants move neighbouring points alike, noise moves
+    each by itself. The floor of a room is never rough: what moves its points alike is a bad fit."""
+    if noise < ROUGHNESS * float(max(extent_of(flat))) or _coherence(plan.cell, off, noise) < COHERENT:
+        return False
+    closed = walls_of(surface, flat, np.ones(len(surface), bool))
+    return not closed and not outer_layers(flat, surface.area, surface.spacing, layer)
+
+
+def _coherence(cell: I64, off: F64, noise: float) -> float:
+    """Share of the variance of heights that lies between cells and not within them (the intraclass correlation)."""
+    near = np.abs(off) < 2.5 * noise
+    count, total, squares = (
+        np.bincount(cell[near], weights=w, minlength=CELLS * CELLS) for w in (None, off[near], off[near] ** 2)
+    )
+    full = count >= 2
+    n, first, second = count[full].astype(np.float64), total[full], squares[full]
+    points, cells = float(n.sum()), len(n)
+    if cells < 30:
+        return 0.0
+    within = float((second - first**2 / n).sum()) / max(points - cells, 1.0)
+    spread = float((n * (first / n - first.sum() / points) ** 2).sum()) / (cells - 1)
+    typical = (points - float((n**2).sum()) / points) / (cells - 1)
+    between = max((spread - within) / typical, 0.0)
+    return between / max(between + within, 1e-20)
 
 
 def _steps(plan: _Map, slope: F64, reach: float, highest: float) -> list[float]:
