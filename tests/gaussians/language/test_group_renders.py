@@ -27,7 +27,7 @@ from scenewright.gaussians.render import render
 from scenewright.gaussians.scene import Frame, Scene
 
 if TYPE_CHECKING:
-    from conftest import World
+    from painted_world import World
 
 Pictures = NDArray[np.uint8]
 _FRAME = Frame((0.0, 0.0, 1.0), 0.0)
