@@ -147,6 +147,11 @@ class LanguageField:
         """A cache of the readings of nouns, see `query/terms.py`; each new field starts with an empty one."""
         return {}
 
+    @cached_property
+    def beliefs(self) -> dict[tuple[str, float | None], Any]:
+        """A cache of the evidence about names, see `posterior.belief_of`; each new field starts with an empty one."""
+        return {}
+
     def require_encoder(self, fingerprint: str) -> Self:
         """This field, if it was made with the given encoder.
 

@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +33,7 @@ AGREEMENT_PRIOR = 4.0  # groups named by detectors that the trust by confidence 
 SURE_DETECTOR = 0.5  # probability by detectors alone from which a group tells whether pictures agree
 ESTIMATED = 0.5  # weight of sizes by an estimated scale
 SURE = 0.5  # posterior from which a name is confirmed in a scene whose pictures are not trusted
+MOST_BELIEFS = 4  # kept with a field; more only where the scale of a scene is changed again and again
 TRUSTED = (0.5, 0.9)  # trust in pictures at which the encoder's own threshold begins to confirm, and fully does
 
 
@@ -268,16 +268,18 @@ class Belief:
         return threshold + (max(SURE, threshold) - threshold) * (1 - sure)
 
 
-_beliefs: WeakKeyDictionary[LanguageField, dict[tuple[str, float | None], Belief]] = WeakKeyDictionary()
-
-
 def belief_of(field: LanguageField, encoder: Encoder, metres: float | None) -> Belief:
-    """The evidence about the names of a field, computed once for each field, encoder and scale."""
-    known = _beliefs.setdefault(field, {})
+    """The evidence about the names of a field, computed once for each field, encoder and scale.
+
+    The field itself holds it, so both are freed together.
+    """
     key = (encoder.fingerprint, metres)
-    if key not in known:
-        known[key] = Belief(field, encoder, metres)
-    return known[key]
+    if key not in field.beliefs:
+        if len(field.beliefs) >= MOST_BELIEFS:
+            field.beliefs.clear()
+        field.beliefs[key] = Belief(field, encoder, metres)
+    belief: Belief = field.beliefs[key]
+    return belief
 
 
 def _sharpened(confidence: float) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +19,7 @@ from scenewright.gaussians.language.encoders.vocabulary import Vocabulary
 from scenewright.gaussians.language.field.detectors import detector_of
 from scenewright.gaussians.language.field.language_field import Group, LanguageField, Names
 from scenewright.gaussians.language.field.making import Making
-from scenewright.gaussians.language.field.posterior import MOST_TRUST, Belief
+from scenewright.gaussians.language.field.posterior import MOST_BELIEFS, MOST_TRUST, Belief, belief_of
 from scenewright.gaussians.language.field.resting import with_rests
 from scenewright.gaussians.language.field.scale import estimate_scale
 from scenewright.gaussians.language.query.readings import Reading, readings
@@ -305,3 +307,17 @@ def test_the_scale_is_that_on_which_most_named_things_agree() -> None:
     )
     assert estimate_scale(rows[:1]) is None and estimate_scale((rows[0], rows[3])) is None  # one, or two that disagree
     assert estimate_scale([replace(g, label_score=0.3) for g in rows]) is None
+
+
+def test_the_evidence_is_computed_once_and_freed_with_its_field() -> None:
+    asked = field([picture("chair"), picture("sofa")])
+    first = belief_of(asked, ENCODER, None)
+    assert belief_of(asked, ENCODER, None) is first and belief_of(asked, ENCODER, 2.0) is not first
+    assert first.shares("chair").total[0] > 0.5
+    for metres in range(3 * MOST_BELIEFS):
+        belief_of(asked, ENCODER, float(metres + 1))
+    assert len(asked.beliefs) <= MOST_BELIEFS
+    freed = [weakref.ref(thing) for thing in (asked, first)]
+    del asked, first
+    gc.collect()
+    assert [thing() for thing in freed] == [None, None]
