@@ -77,7 +77,8 @@ def embed(
         # trained on photographs cannot, and takes a hundred times longer; it only names the groups found.
         judge = encoder if encoder.image_size and not encoders.uses_background(encoder) else encoders.load()
         about = [one.at(surface.rows) for one in sources]
-        labels, segments = segment(scene, surface, judge, progress, views_per_candidate, about)
+        found = segment(scene, surface, judge, progress, views_per_candidate, about)
+        labels, segments = found.labels, found.segments
         group = _segment_of_superpoint(segments, int(labels.max(initial=-1)) + 1)[labels]
         column = _assign(scene.cloud, surface, group)
         if sources:
@@ -90,7 +91,9 @@ def embed(
         on_surface = np.zeros(len(scene.cloud), bool)
         on_surface[surface.rows] = True
         embedded = with_table(scene, segments, column, on_surface, seen, encoder)
-    return _with_mask_note(embedded, [t.source() for t in tallies]) if tallies else embedded
+    believed = iter(found.agreement)
+    made = [t.source(next(believed) if one.labels else None) for t, one in zip(tallies, read, strict=True)]
+    return _with_mask_note(embedded, made) if made else embedded
 
 
 def _maskers(masks: Masker | Sequence[Masker] | None) -> list[Masker]:

@@ -20,7 +20,8 @@ class MaskSource:
         spec: as `masks.load` takes it ("folder:PATH"), or the name of its class.
         views: number of images that it gave masks of.
         masks: number of masks.
-        agreement: share of the labels of one thing that agree across views, in [0, 1]; None if it gives no labels.
+        agreement: how far its views agree with each other about what is one thing, in [0, 1], and so how far one
+            of them is believed, see `masks.reliability.agreement_of`; None if it gave no masks.
     """
 
     spec: str
@@ -29,9 +30,13 @@ class MaskSource:
     agreement: float | None = None
 
     def describe(self) -> str:
-        """ "folder:masks: 512 masks of 146 images; its labels agree in 81 %"."""
+        """ "folder:masks: 512 masks of 146 images, whose views agree to 81% and are believed as far"."""
         told = f"{self.spec}: {self.masks} masks of {self.views} images"
-        return told if self.agreement is None else f"{told}; its labels agree in {self.agreement:.0%}"
+        return (
+            told
+            if self.agreement is None
+            else f"{told}, whose views agree to {self.agreement:.0%} and are believed as far"
+        )
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ class Tally:
             self._masks += len(view)
             yield view
 
-    def source(self) -> MaskSource:
-        """What was counted so far."""
-        return MaskSource(self._spec, self._views, self._masks)
+    def source(self, agreement: float | None = None) -> MaskSource:
+        """What was counted so far, and how far the views agree with each other."""
+        told = None if agreement is None else round(agreement, 4)
+        return MaskSource(self._spec, self._views, self._masks, told)

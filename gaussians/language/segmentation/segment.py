@@ -58,6 +58,21 @@ class Segment:
     votes: tuple[tuple[str, float], ...] = ()
 
 
+@dataclass(frozen=True, eq=False)
+class Segmentation:
+    """What a surface consists of.
+
+    Attributes:
+        labels: `[M]` superpoint of each surface point.
+        segments: structure first, then each object and its parts.
+        agreement: for each source of masks, how far its views agree with each other, see `reliability.agreement_of`.
+    """
+
+    labels: NDArray[np.int32]
+    segments: list[Segment]
+    agreement: tuple[float, ...] = ()
+
+
 def segment(
     scene: Scene,
     surface: Surface,
@@ -65,8 +80,8 @@ def segment(
     progress: Progress = lambda stage, share: None,
     views_per_candidate: int = VIEWS_PER_CANDIDATE,
     sources: Sequence[Lifted] = (),
-) -> tuple[NDArray[np.int32], list[Segment]]:
-    """Superpoint of each surface point `[M]`, and the segments: structure first, then each object and its parts.
+) -> Segmentation:
+    """The structure, objects and parts that the surface points belong to.
 
     Args:
         sources: masks of each source, lifted to the surface points.
@@ -94,9 +109,11 @@ def segment(
     labels = refine_borders(surface, labels, owner, codes > 0)
     owner = _absorb_small(owner, labels, links)
     if not sources:
-        return labels, _segments(surface, labels, owner, touching(labels, links))
+        return Segmentation(labels, _segments(surface, labels, owner, touching(labels, links)))
     labels, whole = pieces_of(surface, links, labels)
-    return labels, _segments(surface, labels, owner[whole], touching(labels, links), dividing(labels, links, sources))
+    near, divided = touching(labels, links), dividing(labels, links, sources)
+    agreement = tuple(w.reliability.agreement for w in ledger.known) if ledger is not None else ()
+    return Segmentation(labels, _segments(surface, labels, owner[whole], near, divided), agreement)
 
 
 def _absorb_small(owner: NDArray[np.int32], labels: NDArray[np.int32], links: Links) -> NDArray[np.int32]:

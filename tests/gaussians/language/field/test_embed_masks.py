@@ -124,6 +124,27 @@ def test_embedding_with_masks_names_things_by_text_vectors(scene: Any) -> None:
         assert np.allclose(field.embeddings[group.id], np.eye(6, 8)[i], atol=1e-6)
 
 
+def test_a_field_tells_how_far_each_source_was_believed(scene: Any) -> None:
+    cloud, truth = scene
+    views, rng = seen_by(cloud, truth, around(12)), np.random.default_rng(3)
+    place = np.floor(cloud.means[:, 0].numpy() / 0.4).astype(int)  # slabs, of which each view joins others by chance
+    odd = []
+    for v in views:
+        slab = rng.integers(0, 4, np.ptp(place) + 1).astype(np.int32)
+        mixed = cloud.replace(group=torch.from_numpy(slab[place - place.min()]))
+        odd.append(ViewMasks(v.camera, render(mixed, v.camera).group.numpy(), ("",) * 4, np.full(4, 0.8, np.float32)))
+    nothing = [ViewMasks(v.camera, np.full(SIZE[::-1], -1, np.int32), (), np.zeros(0, np.float32)) for v in views]
+    encoder = vector_encoder.wrap([[name] for name in (*THINGS, "sofa", "lamp")], np.eye(6, 8))
+    sources = [Given(views), Given(nothing), Given(odd)]
+    made = embed(Scene(cloud, Frame(up_source="given", floor=0.0)), encoder, masks=sources).language
+    assert made is not None and made.making is not None
+    right, silent, chance = made.making.masks
+    assert (right.views, silent.views, silent.masks, silent.agreement) == (12, 12, 0, None)
+    assert right.agreement is not None and chance.agreement is not None
+    assert right.agreement > 0.7 and right.agreement > chance.agreement + 0.3  # views agree that a slab is in one mask
+    assert any(f"agree to {right.agreement:.0%}" in line for line in made.making.lines())
+
+
 def test_vectors_of_another_encoder_are_refused(scene: Any) -> None:
     cloud, truth = scene
     encoder = vector_encoder.wrap([["chair"], ["table"]], np.eye(2, 8))
