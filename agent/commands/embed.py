@@ -24,7 +24,8 @@ def command(
     A saved field is used as long as the scene file has not changed; another --encoder names its groups anew. --force
     embeds again, and so do --masks and --capture, and --up and --metres-per-unit, which are saved with the field.
 
-    --capture names the photographs that the scene was fitted from: what belongs together is then also read from them.
+    --capture names the photographs that the scene was fitted from: what belongs together is then also read from them,
+    and an encoder that was trained on photographs is shown crops of them instead of renders.
     """
     from ...gaussians.files import load
     from ...gaussians.files.captures.capture import read_capture
@@ -49,7 +50,7 @@ def command(
     known = None if again else load_field(loaded, scene)
     if known is None and not again and (why := mismatch(scene)) is not None:
         terminal.say(f"note: the language field beside {scene} {why}: embedding again")
-    embedded = known or embed(loaded, chosen, progress=terminal.progress, masks=sources)
+    embedded = known or embed(loaded, chosen, progress=terminal.progress, masks=sources, capture=taken)
     language = embedded.language
     assert language is not None
     other = language.encoder != chosen.fingerprint

@@ -34,8 +34,8 @@ class Encoder(Protocol):
         vocabulary: names that are proposed as labels and compete with a query.
         calibration: maps similarities to probabilities.
 
-    An encoder trained on photographs may have `on_background = True`: groups are then rendered before their own
-    background as well as alone.
+    An encoder trained on photographs may have `on_background = True`: groups are then shown before their own
+    background as well as alone, and in photographs where a capture is given.
     """
 
     @property
@@ -67,7 +67,8 @@ class Encoder(Protocol):
 
 
 def uses_background(encoder: Encoder) -> bool:
-    """Whether groups are rendered before their own background as well as alone for this encoder."""
+    """Whether this encoder was trained on photographs: it is shown groups before their own background as well as alone,
+    and in photographs where there are any."""
     return bool(getattr(encoder, "on_background", False))
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import torch
@@ -15,9 +16,11 @@ from scipy.spatial import cKDTree
 
 from ...cloud import NO_GROUP, GaussianCloud
 from ...errors import UserError
+from ...files.captures.capture import Capture
 from ...rotations import to_matrix
 from ...scene import Scene
 from ...viewpoints.coverage import choose_views
+from ...viewpoints.pictures import present
 from .. import encoders
 from ..encoders import Encoder
 from ..masks import Masker
@@ -31,6 +34,7 @@ from ..segmentation.settle import settled
 from ..segmentation.surface import MIN_OPACITY, Surface, least_opacity, surface_of
 from .group_table import vector_of_votes, with_table
 from .making import MaskSource
+from .photograph_crops import crops_of
 
 MAX_DISTANCE = 6.0  # spacings within which a Gaussian off the surface joins the group of the nearest surface point
 MAX_DISTANCE_OPAQUE = 2.0  # likewise for an opaque one, which is a floater: otherwise it would be a surface point
@@ -44,6 +48,7 @@ def embed(
     progress: Progress = lambda stage, share: None,
     views_per_candidate: int = VIEWS_PER_CANDIDATE,
     masks: Masker | Sequence[Masker] | None = None,
+    capture: Capture | None = None,
 ) -> Scene:
     """The scene with `cloud.group` filled and a language field; nothing else of the cloud changes.
 
@@ -54,10 +59,13 @@ def embed(
         views_per_candidate: renders of each candidate object, 1 to 4; see `scenewright bench select`.
         masks: sources of masks of some views (`masks.load`). Each is believed as far as its views agree with each other
             and with geometry; what no mask shows follows geometry.
+        capture: the photographs that the scene was fitted from. An encoder that was trained on photographs is shown
+            crops of them; the embedded one is shown renders, which it was trained on.
 
     Raises:
-        UserError: the scene has no Gaussians, or the vectors of the masks have another width than the encoder's.
-        FileError, BackendError: the masks cannot be loaded or made.
+        UserError: the scene has no Gaussians, the vectors of the masks have another width than the encoder's, or the
+            photographs do not show the scene.
+        FileError, BackendError: the masks cannot be loaded or made, or a photograph cannot be read.
     """
     if not len(scene.cloud):
         raise UserError("the scene has no Gaussians, so there is nothing to embed")
@@ -87,10 +95,14 @@ def embed(
             segments = _with_what_masks_say(segments, sources, matches, encoder)
             voted = voted_objects(sources, matches, len(segments))
             column = _with_voted_objects(scene.cloud, surface, group, column, owner, voted)
+        shots = 0
+        if capture is not None and encoders.uses_background(encoder):
+            segments, shots = _with_photographs(scene, segments, column, capture, encoder, progress)
         progress("table", 0.0)
         on_surface = np.zeros(len(scene.cloud), bool)
         on_surface[surface.rows] = True
         embedded = with_table(scene, segments, column, on_surface, seen, encoder)
+        embedded = _with_making(embedded, photographs=shots)
     believed = iter(found.agreement)
     made = [t.source(next(believed) if one.labels else None) for t, one in zip(tallies, read, strict=True)]
     return _with_mask_note(embedded, made) if made else embedded
@@ -110,6 +122,27 @@ def _with_what_masks_say(
             said = said_of(sources, matches, i)
             made[i] = replace(one, votes=said.votes, vector=_vector(said, encoder))
     return made
+
+
+def _with_photographs(
+    scene: Scene, segments: Sequence[Segment], column: NDArray[np.int32], capture: Capture, encoder: Encoder,
+    progress: Progress,
+) -> tuple[list[Segment], int]:  # fmt: skip
+    """The segments with the vectors of their crops in photographs, where masks give them none and a photograph shows
+    them well; and the number of photographs.
+
+    Args:
+        column: `[N]` group of each Gaussian.
+    """
+    if not present(capture):
+        return list(segments), 0
+    owner = _object_of(segments, column)
+    crops = crops_of(scene, owner, capture, encoder, lambda share: progress("photographs", share))
+    made = list(segments)
+    for i, vector in enumerate(crops.vectors):
+        if made[i].vector is None and vector.any():
+            made[i] = replace(made[i], vector=vector)
+    return made, crops.photographs
 
 
 def _vector(said: Said, encoder: Encoder) -> NDArray[np.float32] | None:
@@ -152,7 +185,7 @@ def _with_voted_objects(
 
 
 def _object_of(segments: Sequence[Segment], group: NDArray[np.int32]) -> NDArray[np.int32]:
-    """The object of each surface point `[P]` by its group, -1 for structure and for no group."""
+    """The object of each point `[P]` by its group, -1 for structure and for no group."""
     above = [t.parent if t.parent >= 0 else i for i, t in enumerate(segments)]
     whole = [i if segments[i].level == "object" else -1 for i in above]
     found: NDArray[np.int32] = np.array([*whole, -1], np.int32)[group]
@@ -161,12 +194,19 @@ def _object_of(segments: Sequence[Segment], group: NDArray[np.int32]) -> NDArray
 
 def _with_mask_note(scene: Scene, sources: Sequence[MaskSource]) -> Scene:
     """The scene with the sources of its masks, and a note of how many objects they show."""
-    assert scene.language is not None and scene.language.making is not None
-    making = replace(scene.language.making, masks=tuple(sources))
+    scene = _with_making(scene, masks=tuple(sources))
+    assert scene.language is not None
     shown = sum(bool(g.votes) for g in scene.language.objects())
     note = f"masks of {sum(s.views for s in sources)} images were used"
     note += f"; they name {shown} things" if shown else ""
-    return scene.replace(language=replace(scene.language, notes=(*scene.language.notes, note), making=making))
+    return scene.replace(language=replace(scene.language, notes=(*scene.language.notes, note)))
+
+
+def _with_making(scene: Scene, **told: Any) -> Scene:
+    """The scene with some fields of its making replaced."""
+    assert scene.language is not None and scene.language.making is not None
+    making = replace(scene.language.making, **told)
+    return scene.replace(language=replace(scene.language, making=making))
 
 
 def _segment_of_superpoint(segments: Sequence[Segment], count: int) -> NDArray[np.int32]:

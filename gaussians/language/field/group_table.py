@@ -61,9 +61,9 @@ def with_table(
 def renamed(scene: Scene, encoder: Encoder) -> Scene:
     """The scene with the same groups, embedded and named by another encoder.
 
-    Votes of detectors stay, and so do names that were given by sight or caption. Vectors that masks brought along are
-    of the other encoder's space; renders of the groups replace them, or for an encoder without an image tower the text
-    vectors of the votes.
+    Votes of detectors stay, and so do names that were given by sight or caption. Vectors of masks and of
+    photographs are of the other encoder's space; renders of the groups replace them, or for an encoder without an image
+    tower the text vectors of the votes.
 
     Raises:
         UserError: the scene has no language field.
@@ -82,7 +82,7 @@ def renamed(scene: Scene, encoder: Encoder) -> Scene:
     for row, group in zip(vectors, field.groups, strict=True):
         if not encoder.image_size and (vector := vector_of_votes(encoder, group.votes)) is not None:
             row[:] = vector
-    making = None if field.making is None else replace(field.making, encoder=spec_of(encoder))
+    making = None if field.making is None else replace(field.making, encoder=spec_of(encoder), photographs=0)
     made = replace(field, embeddings=vectors, encoder=encoder.fingerprint, making=making)
     return replace(scene, language=named(made, encoder, scene.frame))
 
