@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..terminal.output import terminal
+from .embedding import embedded_by, told_anew
 
 if TYPE_CHECKING:
     from ...gaussians.language.encoders import Encoder
@@ -93,7 +94,6 @@ def _with_saved_field(loaded: Scene, scene: Scene, options: SessionOptions) -> t
     """The scene with its saved field, named anew if that was made with another encoder; and the encoder, loaded only if
     needed. `scene` is `loaded` in the frame that the user gave; a field that was made in another frame is not used."""
     from ...gaussians.language import encoders
-    from ...gaussians.language.field.group_table import renamed
     from ...gaussians.language.field.store import load_field, mismatch
 
     embedded = load_field(loaded, options.path)
@@ -107,12 +107,9 @@ def _with_saved_field(loaded: Scene, scene: Scene, options: SessionOptions) -> t
         return scene, encoder
     if embedded.language.encoder == encoder.fingerprint:
         return embedded, encoder
-    made_by = embedded.language.encoder if embedded.language.making is None else embedded.language.making.encoder
-    terminal.say(
-        f"note: the saved language field is of the encoder {made_by}; its groups are named anew "
-        "(--encoder chooses that one, `scenewright embed` saves the new names)"
-    )
-    return renamed(embedded, encoder), encoder
+    again = "(--encoder chooses that one, `scenewright embed` saves the new names)"
+    terminal.say(f"note: {told_anew(embedded.language)} {again}")
+    return embedded_by(encoder, embedded, terminal.progress), encoder
 
 
 def _agrees(said: Frame, saved: Frame) -> bool:

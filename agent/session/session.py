@@ -22,6 +22,7 @@ from ...gaussians.timing import timed
 from . import log as session_log
 from .asker import Asker, see_answer
 from .clarify import Question, plan_with_answer, plan_with_query
+from .embedding import embedded_by
 from .history import History, State
 from .judge import Judge, JudgedError, known_judge
 from .observation import graph_of, picture_of
@@ -159,12 +160,18 @@ class Session:
         return self._encoder
 
     def embed(self) -> Scene:
-        """The scene with its language field, made now if it has none."""
-        if self.scene.language is None:
-            from ...gaussians.language.field.embed import embed
+        """The scene with its language field, made now if it has none.
 
+        The groups of a field that another encoder made are named anew by that of the session; a note of the field says
+        so.
+
+        Raises:
+            BackendError: the encoder cannot be loaded.
+        """
+        language = self.scene.language
+        if language is None or language.encoder != self.encoder.fingerprint:
             present = self._history.present
-            state = replace(present, scene=embed(present.scene, self.encoder, progress=self._progress))
+            state = replace(present, scene=embedded_by(self.encoder, present.scene, self._progress))
             self._record("embed", session_log.embed_fields, present, state)
             self._history.amend(state)
         return self.scene

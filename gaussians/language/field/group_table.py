@@ -25,6 +25,8 @@ from .posterior import Belief
 from .resting import with_rests
 from .scale import NOTE, estimate_scale
 
+NAMELESS = "the encoder sees no pictures, and no masks name the things here: nothing has a name"
+
 
 def with_table(
     scene: Scene,
@@ -61,7 +63,8 @@ def with_table(
 def renamed(scene: Scene, encoder: Encoder) -> Scene:
     """The scene with the same groups, embedded and named by another encoder.
 
-    Votes of detectors stay, and so do names that were given by sight or caption. Vectors of masks and of
+    Votes of detectors stay, and so do names that were given: to things that were inserted, by sight, by caption or by
+    the user. Vectors of masks and of
     photographs are of the other encoder's space; renders of the groups replace them, or for an encoder without an image
     tower the text vectors of the votes.
 
@@ -72,18 +75,22 @@ def renamed(scene: Scene, encoder: Encoder) -> Scene:
     if field is None:
         raise UserError("the scene has no language field yet; run `scenewright embed` on it first")
     members = index_groups(scene.cloud)
-    objects = [g.level == "object" and g.count > 0 for g in field.groups]
+    pictured = [g.level == "object" and g.count > 0 and not g.inserted for g in field.groups]
     clouds = [
         scene.cloud[torch.from_numpy(members.rows(field.leaves(g.id) if wanted else []))]
-        for g, wanted in zip(field.groups, objects, strict=True)
+        for g, wanted in zip(field.groups, pictured, strict=True)
     ]
     with one_thread():
         vectors = vectors_of(encoder, clouds, scene.frame, scene.cloud)
     for row, group in zip(vectors, field.groups, strict=True):
-        if not encoder.image_size and (vector := vector_of_votes(encoder, group.votes)) is not None:
+        said = ((group.label, 1.0),) if group.inserted else () if encoder.image_size else group.votes
+        if (vector := vector_of_votes(encoder, said)) is not None:
             row[:] = vector
     making = None if field.making is None else replace(field.making, encoder=spec_of(encoder), photographs=0)
-    made = replace(field, embeddings=vectors, encoder=encoder.fingerprint, making=making)
+    notes = tuple(note for note in field.notes if note != NAMELESS)
+    if not encoder.image_size and any(pictured) and not vectors.any():
+        notes = (*notes, NAMELESS)
+    made = replace(field, notes=notes, embeddings=vectors, encoder=encoder.fingerprint, making=making)
     return replace(scene, language=named(made, encoder, scene.frame))
 
 
@@ -112,7 +119,7 @@ def _named(field: LanguageField, encoder: Encoder, metres: float | None) -> Lang
 
 
 def _with_names(group: Group, names: Names) -> Group:
-    if group.level == "structure" or group.named_by:
+    if group.level == "structure" or group.named_by or group.inserted:
         return group
     label, score = names[0] if names else ("", 0.0)
     return replace(group, label=label, label_score=score, names=names)

@@ -70,6 +70,11 @@ class Group:
         if self.names[:1] != (first,):
             object.__setattr__(self, "names", (first,) if self.label else ())
 
+    @property
+    def inserted(self) -> bool:
+        """Whether it was put into the scene under its name: it is named surely, though no view has shown it."""
+        return self.level == "object" and self.views == 0 and self.label_score == 1.0 and bool(self.label)
+
 
 @dataclass(frozen=True, eq=False)
 class LanguageField:

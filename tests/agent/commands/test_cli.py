@@ -282,7 +282,7 @@ def test_a_given_frame_is_used_and_a_field_for_another_is_not(
 
     asked = []
 
-    def embed(scene: Scene, encoder: Any, progress: Any = None, masks: Any = None) -> Scene:
+    def embed(scene: Scene, encoder: Any, progress: Any = None, **_: Any) -> Scene:
         asked.append((scene.frame.up, scene.frame.up_source, scene.frame.metres_per_unit))
         raise KeyboardInterrupt
 

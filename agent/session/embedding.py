@@ -1,0 +1,46 @@
+"""The language field that a session needs: made if there is none, its groups named anew if another encoder made it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ...gaussians.scene import Scene
+
+if TYPE_CHECKING:
+    from ...gaussians.language.encoders import Encoder
+    from ...gaussians.language.field.language_field import LanguageField
+
+_ANEW = "the groups are of the encoder "
+
+
+def embedded_by(
+    encoder: Encoder, scene: Scene, progress: Callable[[str, float], None] = lambda stage, share: None
+) -> Scene:
+    """The scene with a language field of an encoder.
+
+    A field of another encoder keeps its groups, which are embedded and named anew; a note says so. Its column of groups
+    stays as it is, so that ids of groups mean the same.
+
+    Raises:
+        UserError: the scene has no Gaussians.
+    """
+    from ...gaussians.language.field.embed import embed
+    from ...gaussians.language.field.group_table import renamed
+
+    if scene.language is None:
+        return embed(scene, encoder, progress=progress)
+    if scene.language.encoder == encoder.fingerprint:
+        return scene
+    progress("names", 0.0)
+    named = renamed(scene, encoder)
+    assert named.language is not None
+    notes = (*(note for note in named.language.notes if not note.startswith(_ANEW)), told_anew(scene.language))
+    return named.replace(language=replace(named.language, notes=notes))
+
+
+def told_anew(field: LanguageField) -> str:
+    """A sentence about groups that are named anew, with the encoder that named them before."""
+    made_by = field.encoder if field.making is None else field.making.encoder
+    return f"{_ANEW}{made_by} and are named anew"
