@@ -12,12 +12,12 @@ from dataclasses import replace
 import torch
 from torch import Tensor
 
-from ..gaussians.language.field.language_field import Group
-from ..gaussians.language.query.selection import Selection, mask_of
+from ..gaussians.language.field.language_field import Group, LanguageField
+from ..gaussians.language.query.selection import Selection
 from ..gaussians.scene import Scene
 from ..gaussians.world.support import standing_on
 from .field_update import rows_in
-from .placement.bodies import Body
+from .placement.bodies import Body, bodies_of, mask_of_bodies
 
 MAX_NAMED = 4  # names in a note; further objects are counted
 
@@ -25,40 +25,54 @@ MAX_NAMED = 4  # names in a note; further objects are counted
 def carried_by(scene: Scene, groups: Iterable[int]) -> tuple[int, ...]:
     """Ids of all objects that stand on `groups`, directly or on one another; `groups` themselves are left out."""
     field = scene.language
+    own = [g for g in groups if g >= 0]
+    return () if field is None else _carried(scene, field, [field.groups[g] for g in own], own)
+
+
+def _carried(scene: Scene, field: LanguageField, supports: Sequence[Group], but: Sequence[int]) -> tuple[int, ...]:
+    """Ids of all objects that stand on some groups, directly or on one another; those in `but` are left out."""
+    found, open_ = dict.fromkeys(but), list(supports)
+    while open_:
+        under = standing_on(field, scene.frame, open_.pop())
+        fresh = [g for g in under if g.id not in found]
+        found |= dict.fromkeys(g.id for g in fresh)
+        open_ += fresh
+    return tuple(g for g in found if g not in but)
+
+
+def carried_on(scene: Scene, body: Body) -> tuple[int, ...]:
+    """Ids of all objects that stand on a body, directly or on one another.
+
+    Of a region or a part it is its own box that carries, and what it is a part of does not stand on it.
+    """
+    field = scene.language
     if field is None:
         return ()
-    own = [g for g in groups if g >= 0]
-    found, open_ = dict.fromkeys(own), list(own)
-    while open_:
-        under = standing_on(field, scene.frame, field.groups[open_.pop()])
-        fresh = [g.id for g in under if g.id not in found]
-        found |= dict.fromkeys(fresh)
-        open_ += fresh
-    return tuple(g for g in found if g not in own)
+    if body.group >= 0:
+        return carried_by(scene, [body.group])
+    leaves = {int(g) for g in torch.unique(scene.cloud.group[body.rows]) if g >= 0}
+    own = sorted(leaves | {field.groups[g].parent for g in leaves} - {-1})
+    region = Group(-1, "object", -1, body.label, 0.0, body.box, (0.0, 0.0, 0.0), len(body.rows), 0, 0.0)
+    return _carried(scene, field, [region], own)
 
 
 def with_carried(scene: Scene, bodies: Sequence[Body]) -> list[Body]:
     """The bodies with the Gaussians of the objects on them added; an object on two of them moves with the first."""
     full, claimed = list[Body](), {b.group for b in bodies}
     for body in bodies:
-        carried = tuple(g for g in carried_by(scene, [body.group]) if g not in claimed)
+        carried = tuple(g for g in carried_on(scene, body) if g not in claimed)
         claimed |= set(carried)
         if not carried or scene.language is None:
             full.append(body)
             continue
         rows = torch.cat([body.rows, *(rows_in(scene.cloud, scene.language, g) for g in carried)])
-        full.append(replace(body, rows=rows.sort().values, carried=carried))
+        full.append(replace(body, rows=torch.unique(rows), carried=carried))
     return full
 
 
 def rows_with_carried(scene: Scene, selection: Selection) -> Tensor:
-    """`[N]` bool: the selection's Gaussians and those of the objects that stand on its objects."""
-    mask = mask_of(scene.cloud, selection.ids)
-    field = scene.language
-    if field is not None:
-        for group in carried_by(scene, selection.groups):
-            mask[rows_in(scene.cloud, field, group)] = True
-    return mask
+    """`[N]` bool: the Gaussians of the selected things and those of the objects that stand on them."""
+    return mask_of_bodies(scene, with_carried(scene, bodies_of(scene, selection)))
 
 
 def carried_note(scene: Scene, bodies: Sequence[Body]) -> tuple[str, ...]:

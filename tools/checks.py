@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import torch
+from torch import Tensor
 
 from ..gaussians.camera import Camera
 from ..gaussians.language.field.measure import reach, solid_points
 from ..gaussians.language.query.selection import mask_of
 from ..gaussians.scene import Scene
 from ..gaussians.world.box import overlap
+from ..gaussians.world.core import coverage
 from .operation import Affine, Outcome
 from .placement.bodies import Array, centimetre, contact_box, neighbours
 from .placement.occupancy import obstacle_points, points_inside
@@ -17,6 +19,8 @@ from .receipt import Check, at_most, report
 
 # Foreign points allowed inside a body, as a share of the number of its own: floaters and touching surfaces.
 _TOUCHING = 0.01
+_DRIFT = 0.35  # of its size in plan: how far the middle of a thing that is turned or scaled may move
+_SAMPLE = 20_000  # Gaussians from which that is measured
 _ROWS = 1 << 16  # rows compared at a time, so that float64 copies stay small
 
 
@@ -115,6 +119,39 @@ def out_of_view_note(after: Scene, moved: tuple[Affine, ...], viewer: Camera) ->
 def _rms_radius(points: Array) -> float:
     """Root mean square distance of points from their mean."""
     return float(np.sqrt(((points - points.mean(axis=0)) ** 2).sum(axis=1).mean())) if len(points) else 0.0
+
+
+def stays_put(before: Scene, after: Scene, moved: tuple[Affine, ...]) -> Check:
+    """The middle of a turned or scaled thing stayed over the same spot, measured as the middle of its 5 % and 95 %
+    quantiles, seen from above.
+
+    A thing that turns about the middle of its box moves that middle by up to twice as far as thin ends reach out of it
+    on one side, which is allowed besides `_DRIFT`. A pivot that lies elsewhere moves it by more.
+    """
+    plan, worst, bound = np.array(before.frame.basis()[:2]), 0.0, _DRIFT
+    for body in moved:
+        step = max(1, len(body.rows) // _SAMPLE)
+        was, now = (_bulk(s, rows[::step], plan) for s, rows in ((before, body.source), (after, body.rows)))
+        size = max(float(np.linalg.norm(high - low)) for low, high in (was, now))
+        drift = float(np.linalg.norm(now.mean(axis=0) - was.mean(axis=0))) / max(size, 1e-30)
+        if drift > bound:
+            ends = solid_points(before.cloud, body.source) @ plan.T
+            uneven = (ends.min(axis=0) + ends.max(axis=0)) / 2 - was.mean(axis=0)
+            bound = max(bound, _DRIFT + 2 * float(np.linalg.norm(uneven)) / max(size, 1e-30))
+        worst = max(worst, drift)
+    return at_most("on the spot", worst, bound, "1", f"its middle moved by {worst:.2g} of its size")
+
+
+def _bulk(scene: Scene, rows: Tensor, plan: Array) -> Array:
+    """`[2, 2]` the 5 % and the 95 % quantile of what Gaussians cover, along two level axes."""
+    points = scene.cloud.means[rows].to(torch.float64).cpu().numpy() @ plan.T
+    weight = coverage(scene.cloud.scales[rows], scene.cloud.opacities[rows]).astype(np.float64)
+    found = []
+    for values in points.T:
+        order = np.argsort(values)
+        total = np.cumsum(weight[order])
+        found.append(values[order[np.searchsorted(total, np.array([0.05, 0.95]) * total[-1])]])
+    return np.stack(found, axis=1)
 
 
 def size_changed(before: Scene, after: Scene, body: Affine) -> Check:

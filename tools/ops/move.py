@@ -20,7 +20,17 @@ from ..checks import count_matches, moved_as_asked, overlap_notes, placed
 from ..cloud_diff import Draft
 from ..field_update import after_move
 from ..operation import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
-from ..placement.bodies import Array, Body, bodies_of, centimetre, contact_box, groups_of, heading, mask_of_bodies
+from ..placement.bodies import (
+    Array,
+    Body,
+    bodies_of,
+    centimetre,
+    contact_box,
+    groups_of,
+    heading,
+    mask_of_bodies,
+    strays_note,
+)
 from ..placement.overhead import place_above
 from ..placement.place import free_spot
 from ..placement.surroundings import Surroundings
@@ -83,7 +93,8 @@ class Move(TargetedOp):
         if self.place is None:
             notes += overlap_notes(after, groups_of(bodies))
         touched = scene.cloud.ids[torch.cat([body.rows for body in bodies])].sort().values
-        return Outcome(after, touched=touched, moved=tuple(moved), notes=(*notes, *carried_note(scene, bodies)))
+        notes = (*notes, *carried_note(scene, bodies), *strays_note(bodies))
+        return Outcome(after, touched=touched, moved=tuple(moved), notes=notes)
 
     def _moves(self, scene: Scene, bodies: list[Body], context: Context) -> tuple[list[Affine], tuple[str, ...]]:
         """The map requested for each body, and notes."""

@@ -15,11 +15,11 @@ from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
 from ..carried_objects import carried_note, rows_with_carried, with_carried
-from ..checks import count_matches, moved_as_asked, overlap_notes
+from ..checks import count_matches, moved_as_asked, overlap_notes, stays_put
 from ..cloud_diff import Draft
 from ..field_update import after_move
 from ..operation import Affine, Context, Outcome, TargetedOp
-from ..placement.bodies import Array, Body, bodies_of, groups_of, heading, turn_to_face
+from ..placement.bodies import Array, Body, bodies_of, groups_of, heading, strays_note, turn_to_face
 from ..receipt import Check
 from ..transform import axis_rotation, turn
 
@@ -75,7 +75,7 @@ class Rotate(TargetedOp):
             moved.append(Affine(body.rows, matrix, offset, body.rows))
         cloud = draft.done()
         after = scene.replace(cloud=cloud, language=after_move(scene, cloud, moved))
-        told = (*notes, *overlap_notes(after, groups_of(bodies)), *carried_note(scene, bodies))
+        told = (*notes, *overlap_notes(after, groups_of(bodies)), *carried_note(scene, bodies), *strays_note(bodies))
         touched = scene.cloud.ids[torch.cat([body.rows for body in bodies])].sort().values
         return Outcome(after, touched=touched, moved=tuple(moved), notes=told)
 
@@ -105,4 +105,9 @@ class Rotate(TargetedOp):
         return np.asarray(offset + sunk * up)
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
-        return moved_as_asked(before, outcome.scene, outcome.moved), count_matches(before, outcome.scene, outcome)
+        after, moved = outcome.scene, outcome.moved
+        return (
+            moved_as_asked(before, after, moved),
+            count_matches(before, after, outcome),
+            stays_put(before, after, moved),
+        )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
+import torch
 from pydantic import ConfigDict, Field, model_validator
 
 from ...gaussians.errors import InstructionError
@@ -12,11 +13,11 @@ from ...gaussians.language.field.measure import reach, solid_points
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, Given, Keywords, either, given
-from ..checks import count_matches, moved_as_asked, overlap_notes, size_changed
+from ..checks import count_matches, moved_as_asked, overlap_notes, size_changed, stays_put
 from ..cloud_diff import Draft
 from ..field_update import after_move
 from ..operation import Affine, Context, Length, Outcome, TargetedOp
-from ..placement.bodies import Array, Body, bodies_of, heading
+from ..placement.bodies import Array, Body, bodies_of, heading, strays_note
 from ..receipt import Check, at_most
 from ..transform import stretch, stretch_matrix
 
@@ -80,7 +81,8 @@ class Scale(TargetedOp):
         notes = overlap_notes(after, {b.group for b in bodies}) if larger else ()
         if self.length is not None:
             notes = (*self.length[1].assumption(scene.frame), *notes)
-        return Outcome(after, touched=selection.ids, moved=tuple(moved), notes=notes)
+        touched = cloud.ids[torch.cat([body.rows for body in bodies])].sort().values
+        return Outcome(after, touched=touched, moved=tuple(moved), notes=(*notes, *strays_note(bodies)))
 
     def _axis(self, body: Body, across: Array) -> Array | None:
         """The box axis along which the body is stretched; None for all."""
@@ -105,6 +107,7 @@ class Scale(TargetedOp):
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         checks = [moved_as_asked(before, outcome.scene, outcome.moved), count_matches(before, outcome.scene, outcome)]
+        checks.append(stays_put(before, outcome.scene, outcome.moved))
         checks += [size_changed(before, outcome.scene, body) for body in outcome.moved[:4]]
         if self.length is not None:
             checks.append(self._length_reached(before, outcome, selection, context, *self.length))

@@ -20,12 +20,14 @@ from ...gaussians.language.field.measure import as_axes, box_along, level_axes, 
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.box import Axes, Box
+from ...gaussians.world.core import core_of
 from ...gaussians.world.facing import facing_in
 from ...gaussians.world.relation_geometry import viewer_stand
 from ..cloud_diff import rows_of
 from ..operation import Direction
 
 Array = NDArray[np.float64]
+_MOST = 0.5  # share of an object's Gaussians from which they stand for it
 _CALIPERS = 1500  # points from which the footprint's orientation is found; more do not change it
 
 
@@ -39,6 +41,7 @@ class Body:
         box: upright oriented box of its solid Gaussians, scene units.
         label: its name, "" if unknown.
         carried: ids of the objects on it whose Gaussians are among `rows`; `box` leaves them out.
+        strays: how many selected Gaussians were left out of `rows`, as they lie far from it (see `world.core`).
     """
 
     rows: Tensor
@@ -46,6 +49,7 @@ class Body:
     box: Box
     label: str = ""
     carried: tuple[int, ...] = ()
+    strays: int = 0
 
     @property
     def center(self) -> Array:
@@ -57,8 +61,41 @@ class Body:
 
 
 def bodies_of(scene: Scene, selection: Selection) -> list[Body]:
-    """The selection split into things, in order of group id; Gaussians outside any group form one body at the end."""
-    return [_body(scene, rows, group) for group, rows in rows_by_thing(scene, selection)]
+    """The selection split into things, in order of group id.
+
+    Selected Gaussians of other things than those that are selected by their group are regions of colour, or parts: what
+    was found as one is one body, whatever the groups are that it reaches over. They come last, with the Gaussians
+    outside any group.
+    """
+    bodies, loose = list[Body](), list[Tensor]()
+    for group, rows in rows_by_thing(scene, selection):
+        if group >= 0 and (group in selection.groups or _is_most_of(scene, group, rows)):
+            bodies.append(_body(scene, rows, group))
+        else:
+            loose.append(rows)
+    if not loose:
+        return bodies
+    rows = torch.cat(loose).sort().values if len(loose) > 1 else loose[0]
+    label = selection.query.text if scene.language is not None else ""
+    return bodies + [_body(scene, part, -1, label) for part in _regions(scene, selection, rows)]
+
+
+def _is_most_of(scene: Scene, group: int, rows: Tensor) -> bool:
+    """Whether some Gaussians of an object are most of it, so that they stand for it."""
+    assert scene.language is not None
+    known = scene.language.groups[group]
+    return known.level != "structure" and len(rows) >= _MOST * known.count
+
+
+def _regions(scene: Scene, selection: Selection, rows: Tensor) -> list[Tensor]:
+    """The rows of each region that was found, of those that have no group of their own: by the nearest of them."""
+    found = [c for c in selection.candidates if c.group < 0 or c.group not in selection.groups]
+    if selection.verdict not in ("found", "unconfirmed") or len(found) < 2:
+        return [rows]
+    means = scene.cloud.means[rows].to(torch.float64).cpu().numpy()
+    gaps = np.stack([np.linalg.norm((means - np.array(c.center)) / max(*c.size, 1e-9), axis=1) for c in found])
+    nearest = torch.from_numpy(gaps.argmin(axis=0)).to(rows.device)
+    return [rows[nearest == i] for i in range(len(found)) if bool((nearest == i).any())]
 
 
 def rows_by_thing(scene: Scene, selection: Selection) -> list[tuple[int, Tensor]]:
@@ -90,12 +127,24 @@ def _owners(scene: Scene, selection: Selection) -> dict[int, int]:
     return owner
 
 
-def _body(scene: Scene, rows: Tensor, group: int) -> Body:
+def _body(scene: Scene, rows: Tensor, group: int, label: str = "") -> Body:
     known = scene.language.groups[group] if scene.language is not None and group >= 0 else None
+    strays = 0
+    if known is None or known.level != "structure":  # floors and walls are seen in pieces, between what hides them
+        core = core_of(scene.cloud, rows)
+        strays = core.strays
+        rows = rows[torch.from_numpy(core.belongs).to(rows.device)] if strays else rows
     points = solid_points(scene.cloud, rows)
     # Embedding found good axes for the field's box: they are kept, and the extents are measured again.
     axes = known.box.axes if known is not None else None
-    return Body(rows, group, contact_box(points, scene.frame, axes), known.label if known is not None else "")
+    box = contact_box(points, scene.frame, axes)
+    return Body(rows, group, box, known.label if known is not None else label, strays=strays)
+
+
+def strays_note(bodies: Sequence[Body]) -> tuple[str, ...]:
+    """A note with the number of selected Gaussians that stay where they are; empty if all of them go along."""
+    count = sum(body.strays for body in bodies)
+    return (f"{count:,} stray Gaussians far from it stayed where they are",) if count else ()
 
 
 def groups_of(bodies: Sequence[Body]) -> set[int]:

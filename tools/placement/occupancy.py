@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
-from ...gaussians.language.field.measure import OPAQUE
 from ...gaussians.rotations import to_matrix
 from ...gaussians.world.box import Box
+from ...gaussians.world.core import least_opacity
 
 Array = NDArray[np.float64]
 Bool = NDArray[np.bool_]
@@ -21,7 +21,7 @@ _LEVELS = 4  # most surface heights of one thing (a shelf and a chair have sever
 
 def obstacle_points(cloud: GaussianCloud, without: Tensor | None = None) -> NDArray[np.float32]:
     """`[M, 3]` float32 centres of the opaque Gaussians, and further points along the two long axes of large ones."""
-    solid = cloud.opacities >= OPAQUE
+    solid = cloud.opacities >= least_opacity(cloud.opacities)
     if without is not None:
         solid = solid & ~without
     rows = solid.nonzero().squeeze(1)

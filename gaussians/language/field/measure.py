@@ -21,13 +21,13 @@ from ...harmonics import dc_to_color
 from ...rotations import to_matrix
 from ...scene import Frame
 from ...world.box import Axes, Box
+from ...world.core import core_of
 
 F64 = NDArray[np.float64]
 
 LIT_QUANTILE = 0.8  # of lightness: that of an object's lit faces
 TRIM = 0.01  # share of the Gaussians on each side that may lie outside the box
 MIN_BOX_OPACITY = 0.05  # Gaussians below it do not extend a box
-OPAQUE = 0.3  # Gaussians below it are haze and not solid
 ANGLES = np.radians(np.arange(0.0, 90.0, 3.0))
 _SAMPLE = 1 << 13  # rows for a colour: the error of the mean is then about 1/90 of the standard deviation
 _EXTENT = 20_000  # rows for a box
@@ -148,16 +148,15 @@ def lightness_spread(taken: Sample) -> float:
 
 
 def centroid(cloud: GaussianCloud, rows: Tensor) -> F64:
-    """Unweighted mean `[3]` of the centres, scene units."""
-    means: F64 = cloud.means[rows].to(torch.float64).mean(dim=0).cpu().numpy()
-    return means
+    """Mean `[3]` of the centres of the solid Gaussians of a thing, without haze and strays, scene units."""
+    mean: F64 = solid_points(cloud, rows).mean(axis=0)
+    return mean
 
 
 def solid_points(cloud: GaussianCloud, rows: Tensor) -> F64:
-    """Centres `[M, 3]` of the rows with opacity of at least OPAQUE; of all rows if there are none."""
+    """Centres `[M, 3]` of the solid Gaussians of a thing, without haze and strays (see `world.core`)."""
     points: F64 = cloud.means[rows].to(torch.float64).cpu().numpy()
-    solid = (cloud.opacities[rows] >= OPAQUE).cpu().numpy()
-    return points[solid] if solid.any() else points
+    return points[core_of(cloud, rows).solid]
 
 
 def reach(values: F64) -> tuple[float, float]:
