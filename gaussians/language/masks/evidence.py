@@ -99,15 +99,25 @@ class Ledger:
             whole = one.cover.of_all().at(np.ix_(superpoint, superpoint))
             self.tables.append((one.reliability, Counts(*(getattr(whole, f.name) * scale for f in fields(whole)))))
 
-    def log_odds(self, region: int, others: Sequence[int]) -> F64:
-        """Log-odds that a region and each of some others are one object, bounded by what the sources are worth."""
+    def joined(self, region: int, others: Sequence[int], geometry: F64) -> F64:
+        """Log-odds `[E]` that a region and each of some others are one object, from geometry and from all sources.
+
+        The more certainly sources speak of a pair, the closer geometry's log-odds are bounded: its rule was fitted on
+        other rooms and may be wrong here. Where no view says anything, it has the word alone.
+
+        Args:
+            geometry: `[E]` geometry's log-odds.
+        """
         a, b = self.slot[region], np.array([self.slot[o] for o in others], np.int64)
         pairs = self.size[a] * self.size[b]
-        total = np.zeros(len(b))
+        total, silent = np.zeros(len(b)), np.ones(len(b))
         several = 2 - 1 / np.minimum(self.leaves[a], self.leaves[b])
         for reliability, counts in self.tables:
-            total += reliability.log_odds(counts.at((a, b)), pairs)
-        return several * total
+            said = counts.at((a, b))
+            total += reliability.log_odds(said, pairs)
+            silent *= 1 - describe(said, pairs, reliability.agreement)[2]
+        bound = self.geometry / np.maximum(1 - silent, 1e-3)
+        return np.clip(geometry, -bound, bound) + several * total
 
     def all_pairs(self) -> F64:
         """The same `[R, R]` for the first regions."""

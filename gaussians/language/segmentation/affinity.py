@@ -181,10 +181,7 @@ def merge_tree(graph: Graph, ledger: Ledger | None = None) -> list[Node]:
 
 
 def _joint_probability(graph: Graph, ledger: Ledger | None, region: int, others: list[int]) -> F64:
-    """Probability that a region and each of some others are one object, from geometry and from masks.
-
-    Where masks say something, geometry's log-odds are bounded: it was fitted on other rooms and may be wrong here.
-    """
+    """Probability that a region and each of some others are one object, from geometry and from masks."""
     pairs = [(min(region, o), max(region, o)) for o in others]
     if ledger is None:
         return probability(features(graph, pairs))
@@ -192,9 +189,7 @@ def _joint_probability(graph: Graph, ledger: Ledger | None, region: int, others:
     odds = np.full(len(others), APART)
     if touching.any():
         odds[touching] = _log_odds(probability(features(graph, [q for q, t in zip(pairs, touching, strict=True) if t])))
-    said = ledger.log_odds(region, others)
-    bounded = np.where(said == 0, odds, np.clip(odds, -ledger.geometry, ledger.geometry))
-    return 1 / (1 + np.exp(-np.clip(bounded + said, -30, 30)))
+    return 1 / (1 + np.exp(-np.clip(ledger.joined(region, others, odds), -30, 30)))
 
 
 def border_odds(graph: Graph) -> tuple[I64, I64, F64]:

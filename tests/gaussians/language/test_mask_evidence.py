@@ -139,7 +139,29 @@ def test_counts_of_merged_regions_are_sums() -> None:
     ledger.merge(0, 1, 4)
     each = about.between(np.array([0, 1]), np.array([2, 2]))
     whole = Counts(*(np.array([3 * 2 * a[0] + 1 * 2 * a[1]]) for a in vars(each).values()))
-    assert ledger.log_odds(4, [2]) == pytest.approx(worth.log_odds(whole, 4 * 2.0), abs=1e-4)
+    assert ledger.joined(4, [2], np.zeros(1)) == pytest.approx(worth.log_odds(whole, 4 * 2.0), abs=1e-4)
+
+
+def test_geometry_is_bounded_as_far_as_masks_speak() -> None:
+    views = 40
+    covered = np.zeros((views, 3), bool)
+    covered[:, :2] = True  # region 2 is in no mask, and region 1 is seen by one view only
+    seen = np.ones((views, 3), bool)
+    seen[1:, 1] = False
+    source = lifted(np.where(covered, 0, -1)[:, None], seen)
+    about = cover(source, np.repeat(np.arange(3), PER_REGION).astype(np.int32), 3)
+    silent = Reliability(np.zeros(9), np.zeros(9), 0.5)  # what it says is worth nothing, but it speaks
+
+    def left_of(log_odds: float, pair: tuple[int, int], sources: list[Witness]) -> float:
+        ledger = Ledger(sources, np.arange(3), np.ones(3), 2.0)
+        return float(ledger.joined(pair[0], [pair[1]], np.array([log_odds]))[0])
+
+    known = [Witness(about, silent)]
+    assert left_of(9.0, (0, 1), []) == 9.0
+    assert left_of(1.5, (0, 2), known) == 1.5 and left_of(-1.5, (0, 2), known) == -1.5
+    often, once = left_of(9.0, (0, 2), known), left_of(9.0, (0, 1), known)
+    assert 2.0 <= often < 2.2 < once <= 9.0
+    assert left_of(-9.0, (0, 2), known) == -often
 
 
 def test_right_masks_outvote_geometry_both_ways(truth: NDArray[np.int64]) -> None:
