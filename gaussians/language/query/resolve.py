@@ -26,9 +26,11 @@ from ..encoders.probability import why_unknown
 from ..field.group_index import GroupIndex, difference, index_groups, union
 from ..field.language_field import Group, LanguageField
 from ..field.measure import box_of
+from . import wholes
 from .attributes import COLOR_HOLDS, color_scores
 from .color.fallback import PARTS, by_color, by_hue, is_reliable
 from .part_query import Piece, pieces_of
+from .parts import NAMED
 from .picking import by_distance, pick
 from .query import Query, Relation
 from .readings import is_known
@@ -136,13 +138,21 @@ class Resolver:
         own = self._own(query, unmeant or frozenset())
         if not own.chosen:
             return own
+        pots = [] if self.bare or query.pick == "rest" else self._pots(query.text, own.groups)
+        if pots and wholes.means_both(query.text):
+            own = _told(_joined(own, self._take(query, pots)), f"with {wholes.named(pots)}")
         for other in query.also:
             more = self.select(other)
+            if more.verdict == "absent" and _is_included(query, other):
+                own = _told(own, f"no {other.text} of its own is there: what is seen of one is in the {query.text}")
+                continue
             if not more.chosen:
                 return replace(more, query=query)
             own = _doubted(_joined(own, more), more)
         for out in outs:
             own = _doubted(_without(own, out), out)
+        if (left := [pot for pot in pots if pot.group not in own.groups]) and not outs:
+            own = _told(own, wholes.without(query.text, left))
         if not len(own) and not (self.bare and own.groups):
             return nothing(query, f"nothing is left of {query.describe()}", own.candidates)
         return own
@@ -197,6 +207,12 @@ class Resolver:
         if query.pick == "rest":
             return _as_read(self._rest(query, rank, choice.chosen), rank, choice.chosen)
         return _as_read(self._take(query, tuple(rank.candidate(i) for i in choice.chosen)), rank, choice.chosen)
+
+    def _pots(self, text: str, plants: Sequence[int]) -> list[Candidate]:
+        """The pots in which groups stand that a phrase names as plants, where they are objects of their own."""
+        up = self.scene.frame.up_vector
+        found = [wholes.vessel_of(self.field, i, up) for i in plants] if wholes.names_plant(text) else []
+        return [candidate_of(self.field.groups[i]) for i in dict.fromkeys(found) if i is not None and i not in plants]
 
     def _last_selection(self, query: Query) -> Selection:
         """The Gaussians of the last selection that still exist, for "it"."""
@@ -309,6 +325,9 @@ class Resolver:
 
     def _part(self, query: Query, owner: Relation) -> Selection:
         """A named part of an object: pieces recognised by shape, else things of that name on the object."""
+        anchors = [a.group.id for a in self.anchors(owner) if a.group.id >= 0]
+        if wholes.names_vessel(query.text) and (pots := self._pots(owner.anchors[0].text, anchors)):
+            return self._take(query, pots)
         made: list[Piece] = []
         refusals: list[str] = []
         for anchor in self.anchors(owner):
@@ -424,6 +443,19 @@ class Resolver:
         if not self.bare:
             ids = self.members.ids_of(leaf for g in groups for leaf in self.field.leaves(g))
         return Selection(query, "found", ids, groups, tuple(chosen))
+
+
+def _is_included(query: Query, other: Query) -> bool:
+    """Whether a query is for what the things of another hold anyway, if it is not told apart: the pot of a plant, or a
+    part that is told by shape ("the lamp with its shade")."""
+    owned = any(r.name == "part_of" and r.anchors[0].text == query.text for r in other.relations)
+    potted = wholes.names_plant(query.text) and wholes.names_vessel(other.text)
+    return owned and (potted or other.text in NAMED)
+
+
+def _told(found: Selection, note: str) -> Selection:
+    """The selection with a further remark."""
+    return replace(found, reason="; ".join(r for r in (found.reason, note) if r))
 
 
 def _doubted(found: Selection, of: Selection) -> Selection:

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
+from ....gaussians.language.query import wholes
 from ....gaussians.language.query.query import Query, Relation
 from ....gaussians.world import relations
 from ....gaussians.world.words import head
@@ -75,9 +76,8 @@ class NounPhrase:
     def full(self) -> Query:
         """The query with all postmodifiers; they apply to each of several colours ("red and blue mugs")."""
         first = attach_modifiers(self.query, self.modifiers)
-        return (
-            updated(first, also=tuple(attach_modifiers(q, self.modifiers) for q in first.also)) if first.also else first
-        )
+        others = tuple(attach_modifiers(q, self.modifiers) for q in self.query.also)
+        return updated(first, also=(*others, *first.also[len(others) :])) if first.also else first
 
 
 def updated(query: Query, **fields: Any) -> Query:
@@ -151,6 +151,9 @@ def _narrow(query: Query, post: PostModifier, behind: Sequence[PostModifier]) ->
         return updated(query, exclude=(*query.exclude, *every))
     if post.kind == "lacking":
         return _lacking(query, post, anchors)
+    if post.kind == "having" and wholes.names_plant(query.text) and wholes.names_vessel(anchors[0].text):
+        pot = updated(anchors[0], relations=(*anchors[0].relations, _relation("part_of", [query])))
+        return updated(query, also=(*query.also, pot))  # "the plant with the pot": a pot is on no plant
     if name := _relation_name(post):
         own = post.kind == "related" and relations.named(str(post.value)).own_frame
         return updated(query, relations=(*query.relations, _relation(name, anchors, "object" if own else "viewer")))

@@ -37,6 +37,7 @@ class Phrases:
         before: operations of the previous clause, for "do the same to the lamp".
         colors: colours of the antecedent, which "the other one" has as well.
         sharing: whether the noun of the present phrase comes in a later one ("the red and the blue chair").
+        beside: the thing before the present phrase in its list, whose parts it may name ("the plant and its pot").
     """
 
     def __init__(self, antecedent: str = "", before: Sequence[Fields] = (), colors: tuple[str, ...] = ()) -> None:
@@ -44,6 +45,7 @@ class Phrases:
         self.before = list(before)
         self.colors = colors
         self.sharing = False
+        self.beside: NounPhrase | None = None
 
     def targeted(self, node: Node, op: str, **fields: Any) -> list[Fields]:
         """One operation on the things that a clause names, as fields."""
@@ -67,6 +69,7 @@ class Phrases:
         """The noun phrases of a `targets` node; an exclusion is added to each of them."""
         groups = trees(node, "group")
         found = self.group(groups[0])
+        self.beside = found[-1]
         return self.without(found, groups[1]) if len(groups) > 1 else found
 
     def group(self, node: Node) -> list[NounPhrase]:
@@ -77,7 +80,8 @@ class Phrases:
             if _is_headless(part) and (shared := next((t for p in parts[i + 1 :] if (t := self._named(p))), "")):
                 self.antecedent, self.colors, self.sharing = shared, (), True
             found.append(self.noun(part))
-            self.sharing = False
+            self.sharing, self.beside = False, found[-1]
+        self.beside = None
         return found
 
     def _named(self, node: Node) -> str:
@@ -159,7 +163,10 @@ class Phrases:
         if not among:
             self._require_thing(tag_of(node.children[-1]))  # type: ignore[arg-type]
         if owner := trees(node, "core"):
-            return self._owned(node, self.core(owner[0]))
+            whose = self.core(owner[0])
+            if whose.article == "pronoun" and self.beside is not None:
+                whose = self.beside
+            return self._owned(node, whose)
         first = tag_of(node.children[0])  # type: ignore[arg-type]
         if first.type == "PRON":
             return NounPhrase(Query(last=True, pick="any" if first.value == "any" else "one"), "pronoun")

@@ -18,6 +18,7 @@ _DESCRIBING_VERBS = ("DELETE", "SELECT", "HIDE", "ISOLATE", "FADE", "ADJUST", "R
 _ON_IT = phrases(
     "on it, on top, on top of it, in it, inside, inside it, on them, standing on it, next to it, beside it, near it, on"
 )
+_JOINTS = {"with": "AND", "including": "AND", "without": "BUT"}
 CARRYING = phrases("that has, which has, that have, which have, that holds, that carries, holding, carrying")
 _TURNING_VERBS = ("TURN", "ROTATE", "TURNROUND", "FACE", "MAKE")
 _FACING = phrases(
@@ -63,6 +64,10 @@ def tag_by_context(state: TaggerState, i: int, length: int) -> int | None:
         return i + 1
     if text in ("thing", "thingy", "thingie") and state.last_type == "NOUN" and verb not in ("ADD", "PUT"):
         return i + 1
+    if after in ("its", "their") and state.last_type in NOUNISH and (joint := _JOINTS.get(text)):
+        return state.emit(joint, None, i, 1)  # "the plant with its pot"
+    if text == "shade" and [t.type for t in state.clause.tags[-2:]] == ["PRON", "POSS"]:
+        return state.emit("NOUN", text, i, 1)
     if text in ("'s", "its", "their") and after:
         return _tag_possessive(state, i)
     if text == "with" and verb in ("MERGE", "TAKE") and state.ahead.object_follows(i + 1):
@@ -182,11 +187,12 @@ def _tag_around(state: TaggerState, i: int) -> int | None:
 
 def _tag_possessive(state: TaggerState, i: int) -> int:
     """Tag a possessive ("'s", "its"): POSS before a part ("its legs"), OWN before a property ("its size")."""
+    lamp = bool(state.clause.tags) and any("lamp" in tag.text for tag in state.clause.tags)
     if state.texts[i] != "'s":
         state.emit("PRON", "it", i, 1)
     j = state.ahead.skip_filler(i + 1)
     owned = state.ahead.phrase(j) if j < len(state.texts) else None
-    shade = state.texts[j : j + 1] == ("shade",) and bool(state.clause.tags) and "lamp" in state.clause.tags[-1].text
+    shade = lamp and state.texts[j : j + 1] == ("shade",)
     of_property = owned is not None and owned[0][0] in ("COLORWORD", "OPACITYWORD", "PROP") and not shade
     return state.emit("OWN" if of_property else "POSS", None, i, 1)
 
