@@ -86,6 +86,7 @@ _VES = {noun.removesuffix("e")[:-1] + "ves": noun for noun in (*_F, *_F_ALONE)}
 _COMPOUNDING = {"children": "child", "people": "person", "men": "man", "feet": "foot", "teeth": "tooth"} | {
     many: one for many, one in _VES.items() if one in _F
 }
+_PLURAL_ENDINGS = tuple(_COMPOUNDING)
 _NOT_MEN = _bag(
     "specimen abdomen omen amen ramen stamen cyclamen acumen regimen bitumen lumen semen dolmen albumen examen"
 )
@@ -174,6 +175,8 @@ def _irregular(word: str) -> str:
     if word in _IRREGULAR:
         return _IRREGULAR[word]
     if word in _NOT_MEN:
+        return ""
+    if not word.endswith(_PLURAL_ENDINGS):
         return ""
     for many, one in _COMPOUNDING.items():
         if word.endswith(many) and (word == many or len(word) > len(many) + 1):

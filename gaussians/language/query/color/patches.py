@@ -21,9 +21,11 @@ from scipy.sparse.csgraph import connected_components
 
 from ....camera import Vec3
 from ....cloud import GaussianCloud
-from ....color import naming_space
-from ...segmentation.surface import MIN_OPACITY, base_lab
+from ....color import naming_space, rgb_to_lab
+from ....harmonics import dc_to_color
+from ...segmentation.surface import MIN_OPACITY
 from ..attributes import color_scores
+from .numbering import dense, numbered, stable_order
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -281,16 +283,19 @@ def _fragments(cloud: GaussianCloud) -> Fragments:
         nowhere, unbinned = np.full(len(cloud), -1, np.int32), np.zeros(len(cloud), np.int32)
         return Fragments(nowhere, unbinned, none.astype(np.int32), np.zeros(1, np.int64), none, np.zeros((0, 3)), none,
                          (none.astype(np.int32),) * 2, wide, none, 1.0)  # fmt: skip
-    part = cloud[torch.from_numpy(rows)]
-    lab = base_lab(part).cpu().numpy()
-    ordered = part.scales.sort(dim=1, descending=True).values
-    footprint = (ordered[:, 0] * ordered[:, 1] * part.opacities).cpu().numpy()
+    at = torch.from_numpy(rows)
+    lab = rgb_to_lab(dc_to_color(cloud.sh[:, 0][at]).clamp(0, 1)).cpu().numpy()
+    x, y, z = cloud.scales[at].unbind(dim=1)
+    less, more = torch.minimum(x, y), torch.maximum(x, y)
+    most, middle = torch.maximum(more, z), torch.maximum(less, torch.minimum(more, z))
+    footprint = (most * middle * cloud.opacities[at]).cpu().numpy()
     footprint = np.minimum(footprint, np.quantile(footprint, 0.98))
-    group = part.group.cpu().numpy().astype(np.int64)
+    group = cloud.group[at].cpu().numpy().astype(np.int64)
     low, side = _grid(cloud)
-    cell_key = np.floor((part.means.cpu().numpy().astype(np.float64) - low) / side).astype(np.int64)
+    cell_key = np.floor((cloud.means[at].cpu().numpy().astype(np.float64) - low) / side).astype(np.int64)
     cell_key = np.clip(cell_key + _SPAN // 2, 0, _SPAN - 1)  # outliers far from the scene share its last voxels
-    cell, first = _numbered(_code(cell_key) * (int(group.max()) + 2) + group + 1)
+    voxel, kinds = dense(cell_key), int(group.max()) + 2
+    cell, first = numbered(voxel * kinds + group + 1)
     weight = np.bincount(cell, weights=footprint, minlength=len(first)) + 1e-20
     total = np.stack([np.bincount(cell, weights=lab[:, c] * footprint, minlength=len(first)) for c in range(3)], axis=1)
     mean = total / weight[:, None]
@@ -303,8 +308,9 @@ def _fragments(cloud: GaussianCloud) -> Fragments:
     own_bin[rows] = bins[len(first) :]
     wide = np.zeros(len(cloud), np.float32)
     wide[rows] = footprint
-    order = np.argsort(of_row[rows], kind="stable")
-    starts = np.searchsorted(of_row[rows][order], np.arange(count + 1))
+    own = of_row[rows]
+    order = stable_order(own, count)
+    starts = np.append(0, np.cumsum(np.bincount(own, minlength=count)))
     pick = np.zeros(count, np.int64)
     pick[of_cell] = np.arange(len(of_cell))
     return Fragments(of_row, own_bin, rows[order].astype(np.int32), starts, bins[: len(first)][pick], labs,
@@ -313,22 +319,16 @@ def _fragments(cloud: GaussianCloud) -> Fragments:
 
 def _binned(lab: F64) -> tuple[I64, F64]:
     """The bin `[M]` of each colour `[M, 3]` CIE Lab, and the mean colour `[B, 3]` of each bin."""
-    key = np.floor(naming_space(torch.from_numpy(lab)).numpy() / BIN).astype(np.int64) + _SPAN // 2
-    bins, first = _numbered(_code(key))
-    count = np.bincount(bins, minlength=len(first))
-    total = np.stack([np.bincount(bins, weights=lab[:, c], minlength=len(first)) for c in range(3)], axis=1)
+    key = np.floor(naming_space(torch.from_numpy(lab)).numpy() / BIN).astype(np.int64)
+    bins = dense(key)
+    count = np.bincount(bins)
+    total = np.stack([np.bincount(bins, weights=lab[:, c], minlength=len(count)) for c in range(3)], axis=1)
     return bins, total / count[:, None]
 
 
 def _code(key: I64) -> I64:
     """Three coordinates below `_SPAN` as one number."""
     return (key[:, 0] << 26) + (key[:, 1] << 13) + key[:, 2]
-
-
-def _numbered(code: I64) -> tuple[I64, I64]:
-    """The number of each code among the different ones, ascending, and where each first occurs."""
-    _, first, number = np.unique(code, return_index=True, return_inverse=True)
-    return number, first
 
 
 def _linked(block: I64, bins: I64, group: I64) -> tuple[I64, I32, I32]:
