@@ -15,12 +15,12 @@ import torch
 from torch import Tensor
 
 from ..gaussians.cloud import NO_GROUP
-from ..gaussians.color import rgb_to_lab, shade_of
+from ..gaussians.color import shade_of
 from ..gaussians.language.field.measure import sample
 from ..gaussians.language.query.selection import Selection, mask_of
 from ..gaussians.scene import Scene
 from ..tools.cloud_diff import Draft
-from ..tools.color_map import toward_color
+from ..tools.coloring.repaint import fit
 from ..tools.execute import carry_out
 from ..tools.operation import Context, EditOp
 
@@ -238,7 +238,7 @@ def _half(points: Tensor, rows: Tensor, share: float, rng: np.random.Generator) 
 def _tinted(attempt: Attempt, rows: Tensor, color: str):  # type: ignore[no-untyped-def]
     """The cloud after with some more rows in the new colour."""
     cloud = attempt.after.cloud
-    change = toward_color(sample(cloud, rows), rgb_to_lab(torch.tensor(shade_of(color), dtype=torch.float64)))
+    change = fit(sample(cloud, rows), torch.tensor(shade_of(color), dtype=torch.float64))
     draft = Draft(cloud)
     draft.map("sh", rows, change.on_harmonics)
     return draft.done()

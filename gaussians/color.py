@@ -25,6 +25,7 @@ EVERYDAY: dict[str, str] = {
     "taupe": "#8b7d6b", "rust": "#b7410e", "copper": "#b87333", "bronze": "#cd7f32", "brass": "#b5a642",
     "sand": "#c2b280", "wine": "#722f37", "denim": "#1560bd", "forest green": "#228b22", "sage": "#9caf88",
     "blonde": "#e6c98f", "wooden": "#9a6a3c", "oak": "#b5894f", "walnut": "#5d432c", "green": "#1f8b24",
+    "gold": "#cfa83a", "golden": "#cfa83a",
     "apricot": "#fbceb1", "scarlet": "#ff2400", "jade": "#00a86b", "off white": "#f5f2e8", "pink": "#ff8fb0",
 }  # fmt: skip
 
@@ -75,12 +76,17 @@ def plain_color(text: str) -> str:
 def shade_of(text: str) -> Rgb:
     """RGB of a colour word: of a basic term what people picture and furniture wears, of others as in `parse`.
 
-    CSS "blue" is a glowing #0000ff, which leaves a display no room for light and shadow and measures as purple.
+    CSS "blue" is a glowing #0000ff, which leaves a display no room for light and shadow and measures as purple. A
+    qualified basic term ("dark purple") is a shade of the same colour, not of the one in CSS.
 
     Raises:
         UserError: unknown colour.
     """
-    return parse(BASIC.get(plain_color(text), text))
+    plain = plain_color(text)
+    found = _QUALIFIER.match(plain)
+    if found and found.group(2) in BASIC:
+        return _qualify(found.group(1), parse(BASIC[found.group(2)]))
+    return parse(BASIC.get(plain, text))
 
 
 def parse(text: str) -> Rgb:
@@ -129,10 +135,10 @@ def _qualify(word: str, rgb: Rgb) -> Rgb:
     """Shift lightness or chroma of `rgb` in LCh as the qualifier says."""
     lightness, a, b = rgb_to_lab(torch.tensor(rgb)).tolist()
     chroma_gain = 1.3 if word in ("bright", "vivid", "deep") else 0.7 if word in ("pale", "light", "very light") else 1
-    if word in ("dark", "deep"):
-        lightness *= 0.6
-    elif word == "very dark":
-        lightness *= 0.35
+    if word in ("dark", "deep", "very dark"):
+        was, lightness = lightness, lightness * (0.35 if word == "very dark" else 0.6)
+        # Less light on one pigment scales a and b with L + 16; deep dyes and paints are duller still.
+        chroma_gain *= ((lightness + 16) / (was + 16)) ** 1.5
     elif word in ("light", "pale"):
         lightness += 0.5 * (100 - lightness)
     elif word == "very light":
@@ -172,6 +178,36 @@ def lab_to_rgb(lab: Tensor) -> Tensor:
     return torch.where(
         low, 12.92 * linear, torch.sign(linear) * (1.055 * linear.abs().clamp(min=1e-12) ** (1 / 2.4) - 0.055)
     )
+
+
+def ciede2000(a: Tensor, b: Tensor) -> Tensor:
+    """Visible difference of Lab colours `[..., 3]` by CIEDE2000 (ISO/CIE 11664-6:2014), its parametric factors 1."""
+    mean_chroma = (a[..., 1:].norm(dim=-1) + b[..., 1:].norm(dim=-1)) / 2
+    stretch = 1.5 - 0.5 * torch.sqrt(mean_chroma**7 / (mean_chroma**7 + 25.0**7))
+    (l1, c1, h1), (l2, c2, h2) = (_stretched(lab, stretch) for lab in (a, b))
+    both = (c1 * c2) > 0
+    turn = torch.where(both, (h2 - h1 + math.pi) % (2 * math.pi) - math.pi, 0.0)
+    light, chroma = (l1 + l2) / 2, (c1 + c2) / 2
+    middle = torch.where(both, (h1 + torch.where((h2 - h1).abs() > math.pi, turn, h2 - h1) / 2), h1 + h2)
+    d_light, d_chroma, d_hue = l2 - l1, c2 - c1, 2 * torch.sqrt(c1 * c2) * torch.sin(turn / 2)
+    degrees = torch.rad2deg(middle) % 360
+
+    def wave(factor: float, phase: float) -> Tensor:
+        return torch.cos(torch.deg2rad(factor * degrees - phase))
+
+    hues = 1 - 0.17 * wave(1, 30) + 0.24 * wave(2, 0) + 0.32 * wave(3, -6) - 0.20 * wave(4, 63)
+    scale_light = 1 + 0.015 * (light - 50) ** 2 / torch.sqrt(20 + (light - 50) ** 2)
+    scale_chroma, scale_hue = 1 + 0.045 * chroma, 1 + 0.015 * chroma * hues
+    rotation = torch.sin(torch.deg2rad(60 * torch.exp(-(((degrees - 275) / 25) ** 2))))
+    rotation = -2 * torch.sqrt(chroma**7 / (chroma**7 + 25.0**7)) * rotation
+    by_light, by_chroma, by_hue = d_light / scale_light, d_chroma / scale_chroma, d_hue / scale_hue
+    return torch.sqrt((by_light**2 + by_chroma**2 + by_hue**2 + rotation * by_chroma * by_hue).clamp(min=0))
+
+
+def _stretched(lab: Tensor, stretch: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+    """Lightness, chroma and hue (radians, 0 to 2 pi) of CIEDE2000, which stretches a near grey."""
+    a, b = lab[..., 1] * stretch, lab[..., 2]
+    return lab[..., 0], torch.hypot(a, b), torch.atan2(b, a) % (2 * math.pi)
 
 
 def displayable(lab: Tensor) -> Tensor:

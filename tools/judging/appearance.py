@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-import torch
 from numpy.typing import NDArray
 
 from ...gaussians.cloud import GaussianCloud
@@ -17,9 +16,9 @@ from ...gaussians.language.query.attributes import color_scores
 from ...gaussians.language.query.color.fallback import is_reliable
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.terms import ALL, ANYTHING, FLOATERS, STRUCTURE
-from ...gaussians.language.segmentation.group_renders import cameras_around, mean_vectors
-from ...gaussians.render import render
+from ...gaussians.language.segmentation.group_renders import mean_vectors
 from ...gaussians.scene import Frame, Scene
+from ..coloring.seen import seen_pixels
 from ..receipt import Check, at_least, report
 
 if TYPE_CHECKING:
@@ -30,8 +29,6 @@ MOST = 4  # things that are looked at in one operation
 LOOKS = 0.04  # probability below which a thing is not what it was called
 PIXELS = 96  # side of the pictures in which colours are measured
 COLOR_SEEN = 0.1  # score from which seen pixels may have the asked colour: half of the way to the next colour word
-_SOLID = 0.8  # alpha of a pixel that shows the thing and not what is behind it
-_MAX_GAUSSIANS = 8000
 
 
 def embedded() -> Encoder:
@@ -80,19 +77,7 @@ def looks_as_named(name: str, word: str, encoder: Encoder, clouds: Sequence[Gaus
 
 def seen_lab(cloud: GaussianCloud, scene: Scene) -> NDArray[np.float64]:
     """`[P, 3]` Lab of the pixels that show a cloud rendered alone."""
-    if not len(cloud):
-        return np.zeros((0, 3))
-    if len(cloud) > _MAX_GAUSSIANS:
-        step = len(cloud) / _MAX_GAUSSIANS
-        kept = cloud[torch.linspace(0, len(cloud) - 1, _MAX_GAUSSIANS).long()]
-        cloud = kept.replace(scales=kept.scales * float(np.sqrt(step)))
-    middle = scene.language.middle if scene.language is not None else np.zeros(3)
-    found = []
-    for camera in cameras_around(cloud.means.double().numpy(), scene.frame, middle, PIXELS, VIEWS):
-        seen = render(cloud, camera)
-        solid = seen.alpha > _SOLID
-        found.append((seen.rgb[solid] / seen.alpha[solid][:, None]).clamp(0, 1).double())
-    return rgb_to_lab(torch.cat(found)).numpy()
+    return rgb_to_lab(seen_pixels(cloud, scene, VIEWS, PIXELS)).numpy()
 
 
 def lit(lab: NDArray[np.float64]) -> NDArray[np.float64]:

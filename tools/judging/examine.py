@@ -19,6 +19,7 @@ from ...gaussians.errors import ScenewrightError
 from ...gaussians.language.field.measure import solid_points
 from ...gaussians.world import kinds
 from ...gaussians.world.box import Box
+from ..coloring.surfaces import surfaces
 from ..operation import Placement
 from ..ops.arrange import Arrange
 from ..ops.delete import Delete
@@ -120,7 +121,7 @@ def _isolate(case: Case, op: Isolate) -> Found:
 
 
 def _recolor(case: Case, op: Recolor) -> Found:
-    checks = [all_of_it(case, case.changes.colored)]
+    checks = [all_of_it(case, case.changes.colored, _to_paint(case, op))]
     rows = case.changes.shaded.nonzero().squeeze(1)
     shown = rows if len(rows) else case.target.nonzero().squeeze(1)
     if op.adjust is None and op.color is not None:
@@ -128,6 +129,18 @@ def _recolor(case: Case, op: Recolor) -> Found:
     elif op.adjust is not None:
         checks.append(_adjusted(case, op, shown))
     return [*checks, *_named(case, case.changes.shaded)], _NO_IDS
+
+
+def _to_paint(case: Case, op: Recolor) -> Tensor | None:
+    """`[N]` bool: what of the target has to change its colour; None for all of it.
+
+    A new colour leaves parts of other hues.
+    """
+    if op.color is None or not bool(case.target.any()):
+        return None
+    target = case.target.clone()
+    target[surfaces(case.before, case.meant).left] = False
+    return target
 
 
 def _after(case: Case, rows: Tensor) -> GaussianCloud:

@@ -9,21 +9,29 @@ import torch
 from pydantic import ConfigDict, Field, model_validator
 from torch import Tensor
 
+from ...gaussians.cloud import GaussianCloud
 from ...gaussians.color import rgb_to_lab, shade_of
-from ...gaussians.language.field.measure import Sample, lightness_spread, lit_lab, mean_lab, sample
+from ...gaussians.language.field.measure import Sample, lightness_spread, mean_lab, sample
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
 from ..checks import count_matches
 from ..cloud_diff import Draft, rows_of
-from ..color_map import NEAR, ColorMap, distance, saturation, toward_color, warmth
+from ..color_map import LUMA, NEAR, distance
+from ..coloring import adjust as adjusting
+from ..coloring.greys import grey_shift
+from ..coloring.repaint import Repaint, fit
+from ..coloring.scene_light import SceneLight, light_around, scene_light
+from ..coloring.seen import lit_color, lit_face, seen_colors
+from ..coloring.shading import Shading
+from ..coloring.surfaces import surfaces
 from ..field_update import after_recolor
 from ..operation import ColorName, Context, Outcome, TargetedOp
-from ..placement.bodies import rows_by_thing
 from ..receipt import Check, at_least, at_most, report
 
 Adjust = Literal["darker", "lighter", "more_saturated", "less_saturated", "warmer", "cooler", "toward"]
-SAME_COLOR = 20.0  # Lab distance, lightness weighted by half, below which things share one colour map
+_ROWS = 1 << 13  # rows written at a time: intermediates stay in a core's cache
+_TOLD = 0.03  # share of the target out of the display's range from which it is told
 
 
 class Recolor(TargetedOp):
@@ -63,52 +71,66 @@ class Recolor(TargetedOp):
         return self
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
-        asked = self._asked()
         draft = Draft(scene.cloud)
-        for rows in color_groups(scene, selection):
-            change = self._map(sample(scene.cloud, rows), asked)
-            draft.map("sh", rows, change.on_harmonics)
-        after = scene.replace(cloud=draft.done())
-        return Outcome(after.replace(language=after_recolor(after, selection.ids)), touched=selection.ids)
-
-    def _asked(self) -> Tensor | None:
-        """Lab of the named colour (see `gaussians.color.shade_of`)."""
         if self.color is None:
-            return None
-        return rgb_to_lab(torch.tensor(shade_of(self.color), dtype=torch.float64))
+            touched, notes = selection.ids, self._adjust(scene, selection, draft)
+        else:
+            touched, notes = self._paint(scene, selection, draft)
+        after = scene.replace(cloud=draft.done())
+        after = after.replace(language=after_recolor(after, touched))
+        return Outcome(after, touched=touched, notes=tuple(notes))
 
-    def _map(self, colors: Sample, asked: Tensor | None) -> ColorMap:
-        """The map for the things of one colour."""
-        if self.adjust is None:
-            assert asked is not None
-            return toward_color(colors, asked)
-        if self.adjust in ("more_saturated", "less_saturated"):
-            return saturation(1 + 1.5 * self.amount if self.adjust == "more_saturated" else 1 - self.amount)
+    def _adjust(self, scene: Scene, selection: Selection, draft: Draft) -> list[str]:
+        """Change the light or the pigment of the whole selection alike; notes for the receipt."""
+        rows = rows_of(scene.cloud, selection.ids)
+        colors = seen_colors(scene, rows)
+        change = self._adjustment(scene.cloud, colors)
+        draft.map("sh", rows, change.on_harmonics)
+        return _clipping(adjusting.clipped(colors.rgb, change(colors.rgb), colors.weight))
+
+    def _adjustment(self, cloud: GaussianCloud, colors: Sample) -> adjusting.Change:
+        if self.adjust == "darker":
+            return adjusting.darker(colors, self.amount)
+        if self.adjust == "lighter":
+            return adjusting.lighter(colors, self.amount)
         if self.adjust in ("warmer", "cooler"):
-            return warmth(self.amount if self.adjust == "warmer" else -self.amount)
-        return toward_color(colors, self._shifted(lit_lab(colors), asked), keep_pattern=True)
+            return adjusting.shown_warmth(colors, self.amount if self.adjust == "warmer" else -self.amount)
+        factor = 1 + 1.5 * self.amount if self.adjust == "more_saturated" else 1 - self.amount
+        return adjusting.Saturation(factor, scene_light(cloud).tint)
 
-    def _shifted(self, lit: Tensor, asked: Tensor | None) -> Tensor:
-        """The new colour of the lit faces: darker or lighter at constant hue, or part of the way to a colour."""
-        if asked is not None:
-            return lit + self.amount * (asked - lit)
-        lightness = float(lit[0])
-        new = (
-            lightness * (1 - 0.75 * self.amount)
-            if self.adjust == "darker"
-            else (lightness + 0.75 * self.amount * (100 - lightness))
-        )
-        # Chroma shrinks with lightness as it does in shadow, and a display has little chroma in very light colours.
-        chroma = (
-            min(1.0, new / max(lightness, 1.0))
-            if self.adjust == "darker"
-            else (min(1.0, 1.6 * (100 - new) / max(100 - lightness, 1.0)))
-        )
-        return torch.stack([torch.tensor(new, dtype=torch.float64), lit[1] * chroma, lit[2] * chroma])
+    def _paint(self, scene: Scene, selection: Selection, draft: Draft) -> tuple[Tensor, list[str]]:
+        """Give every surface of the selection a map to the colour; ids that were painted, and notes."""
+        found = surfaces(scene, selection)
+        light = scene_light(scene.cloud)
+        clipped = 0.0
+        for rows in found.painted:
+            colors = seen_colors(scene, rows)
+            made = fit(colors, self._aim(scene.cloud, rows, colors, light))
+            if self.adjust is not None:
+                made = made.mixed(self.amount)
+            _write(draft, scene.cloud, rows, made, Shading.of(scene.cloud, rows))
+            clipped = max(clipped, adjusting.clipped(colors.rgb, made(colors.rgb), colors.weight))
+        painted = scene.cloud.ids[torch.cat(found.painted)].sort().values
+        notes = [note for note in (found.note(), light.note()) if note is not None]
+        return painted, [*notes, *_clipping(clipped)]
+
+    def _aim(self, cloud: GaussianCloud, rows: Tensor, colors: Sample, light: SceneLight) -> Tensor:
+        """`[3]` display colour that the requested pigment has on lit faces, where the rows `[M]` of the cloud are."""
+        lit = float(lit_color(colors) @ torch.tensor(LUMA, dtype=torch.float64))
+        return light_around(cloud, rows, light, lit).on(self._pigment()).clamp(0, 1)
+
+    def _pigment(self) -> Tensor:
+        """`[3]` display colour of the requested pigment in good neutral light (see `gaussians.color.shade_of`)."""
+        assert self.color is not None
+        return torch.tensor(shade_of(self.color), dtype=torch.float64)
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
-        was, now = (sample(s.cloud, rows_of(s.cloud, selection.ids)) for s in (before, outcome.scene))
-        checks = [self._arrived(was, now), count_matches(before, outcome.scene, outcome)]
+        rows = rows_of(before.cloud, outcome.touched)
+        was, now = (seen_colors(s, rows_of(s.cloud, outcome.touched)) for s in (before, outcome.scene))
+        checks = [self._arrived(before.cloud, rows, was, now), count_matches(before, outcome.scene, outcome)]
+        if self.adjust in ("darker", "lighter"):
+            shift = grey_shift(sample(before.cloud, rows), sample(outcome.scene.cloud, rows))
+            checks.append(at_most("greys stay grey", shift, 2.0, "ΔE", f"the hue of greys shifted by {shift:.1f}"))
         if self.adjust is None:
             texture, kept = lightness_spread(was), lightness_spread(now)
             said = f"spread of lightness (shading, texture) went from {texture:.1f} to {kept:.1f}"
@@ -118,13 +140,12 @@ class Recolor(TargetedOp):
                 checks.append(report("texture kept", kept / max(texture, 1e-9), "1", said))
         return tuple(checks)
 
-    def _arrived(self, was: Sample, now: Sample) -> Check:
+    def _arrived(self, cloud: GaussianCloud, rows: Tensor, was: Sample, now: Sample) -> Check:
         """The lit faces have the requested colour, or the colour changed in the requested direction."""
         if self.adjust is None:
-            asked = self._asked()
-            assert asked is not None
-            off = float(distance(lit_lab(now), asked))
-            return at_most("colour", off, NEAR, "ΔE94", f"its lit faces are {off:.1f} from {self.color}")
+            asked = self._aim(cloud, rows, was, scene_light(cloud))
+            off = float(distance(lit_face(now), rgb_to_lab(asked)))
+            return at_most("colour", off, NEAR, "ΔE94", f"its lit faces are {off:.1f} from {self.color} in this light")
         step = self._progress(was, now)
         said = f"its colour moved by {step:.1f} in Lab"
         return at_least(f"{self.adjust.replace('_', ' ')}", step, 0.2, "ΔE", said)
@@ -141,26 +162,17 @@ class Recolor(TargetedOp):
             return gain if self.adjust == "more_saturated" else -gain
         if self.adjust in ("warmer", "cooler"):
             return float(new[2] - old[2]) * (1 if self.adjust == "warmer" else -1)
-        old, new = lit_lab(was), lit_lab(now)
+        old, new = lit_face(was), lit_face(now)
         if self.adjust in ("darker", "lighter"):
             return float(new[0] - old[0]) * (1 if self.adjust == "lighter" else -1)
-        asked = self._asked()
-        assert asked is not None
+        asked = rgb_to_lab(self._pigment())
         return float(torch.linalg.vector_norm(old - asked) - torch.linalg.vector_norm(new - asked))
 
 
-def color_groups(scene: Scene, selection: Selection) -> list[Tensor]:
-    """Rows that share one colour map: one group for things of nearly the same colour, else one for each thing.
+def _write(draft: Draft, cloud: GaussianCloud, rows: Tensor, made: Repaint, shading: Shading) -> None:
+    for block in torch.split(rows, _ROWS):
+        draft.write("sh", block, made.on_harmonics(draft.read("sh", block), shading.at(cloud.means[block])))
 
-    So patches of one cloth keep their shading relative to each other, while a white and a black chair both turn red.
-    """
-    found: list[tuple[Tensor, list[Tensor]]] = []
-    for _, rows in rows_by_thing(scene, selection):
-        mean = mean_lab(sample(scene.cloud, rows, 2048))
-        for other, alike in found:
-            if float(torch.linalg.vector_norm((mean - other) * torch.tensor([0.5, 1, 1]))) < SAME_COLOR:
-                alike.append(rows)
-                break
-        else:
-            found.append((mean, [rows]))
-    return [torch.cat(alike).sort().values for _, alike in found]
+
+def _clipping(share: float) -> list[str]:
+    return [f"{share:.0%} of it by area is brighter or purer than a display can show"] if share > _TOLD else []
