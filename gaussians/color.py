@@ -54,6 +54,8 @@ FAMILIES: dict[str, str] = {
 
 QUALIFIERS = ("very dark", "very light", "dark", "deep", "light", "pale", "bright", "vivid")
 
+_DARKENING = ("very dark", "dark", "deep")
+
 _TEXT_LIMIT = 80  # characters; no colour name with qualifiers is longer
 NAMING_LIGHTNESS = 0.45
 
@@ -77,14 +79,14 @@ def shade_of(text: str) -> Rgb:
     """RGB of a colour word: of a basic term what people picture and furniture wears, of others as in `parse`.
 
     CSS "blue" is a glowing #0000ff, which leaves a display no room for light and shadow and measures as purple. A
-    qualified basic term ("dark purple") is a shade of the same colour, not of the one in CSS.
+    dark shade of a basic term ("dark purple") is one of the same colour, not of the one in CSS.
 
     Raises:
         UserError: unknown colour.
     """
     plain = plain_color(text)
     found = _QUALIFIER.match(plain)
-    if found and found.group(2) in BASIC:
+    if found and found.group(1) in _DARKENING and found.group(2) in BASIC:
         return _qualify(found.group(1), parse(BASIC[found.group(2)]))
     return parse(BASIC.get(plain, text))
 
@@ -135,7 +137,7 @@ def _qualify(word: str, rgb: Rgb) -> Rgb:
     """Shift lightness or chroma of `rgb` in LCh as the qualifier says."""
     lightness, a, b = rgb_to_lab(torch.tensor(rgb)).tolist()
     chroma_gain = 1.3 if word in ("bright", "vivid", "deep") else 0.7 if word in ("pale", "light", "very light") else 1
-    if word in ("dark", "deep", "very dark"):
+    if word in _DARKENING:
         was, lightness = lightness, lightness * (0.35 if word == "very dark" else 0.6)
         # Less light on one pigment scales a and b with L + 16; deep dyes and paints are duller still.
         chroma_gain *= ((lightness + 16) / (was + 16)) ** 1.5
