@@ -7,19 +7,39 @@ from under the furniture.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
+import numpy as np
 import torch
 from torch import Tensor
 
 from ..gaussians.language.field.language_field import Group, LanguageField
 from ..gaussians.language.query.selection import Selection
 from ..gaussians.scene import Scene
-from ..gaussians.world.support import standing_on
+from ..gaussians.world.support import is_sheet, standing_on
+from .contact import held_by
 from .field_update import rows_in
-from .placement.bodies import Body, bodies_of, mask_of_bodies
+from .placement.bodies import Body, bodies_of, body_of, mask_of_bodies
 
+_OVER = 0.45  # of its height, from its middle: what lies higher in a region's footprint is on it
+_HIGHEST = 3.0  # times its height: what lies higher above it is something else
+_PIECE = 30  # Gaussians of the same object on a region from which they are a thing on it
 MAX_NAMED = 4  # names in a note; further objects are counted
+
+
+@dataclass(frozen=True, eq=False)
+class Stack:
+    """Things that come down together: one, and what stands on it.
+
+    Attributes:
+        ids: `[M]` int64, their Gaussians.
+        foot: `[K]` int64, those of the lowest thing, by which they stand.
+        label: its name.
+    """
+
+    ids: Tensor
+    foot: Tensor
+    label: str
 
 
 def carried_by(scene: Scene, groups: Iterable[int]) -> tuple[int, ...]:
@@ -41,19 +61,50 @@ def _carried(scene: Scene, field: LanguageField, supports: Sequence[Group], but:
 
 
 def carried_on(scene: Scene, body: Body) -> tuple[int, ...]:
-    """Ids of all objects that stand on a body, directly or on one another.
+    """Ids of all objects that stand on a body, directly or on one another, or are held by nothing but those.
 
     Of a region or a part it is its own box that carries, and what it is a part of does not stand on it.
     """
     field = scene.language
     if field is None:
         return ()
-    if body.group >= 0:
-        return carried_by(scene, [body.group])
-    leaves = {int(g) for g in torch.unique(scene.cloud.group[body.rows]) if g >= 0}
-    own = sorted(leaves | {field.groups[g].parent for g in leaves} - {-1})
-    region = Group(-1, "object", -1, body.label, 0.0, body.box, (0.0, 0.0, 0.0), len(body.rows), 0, 0.0)
-    return _carried(scene, field, [region], own)
+    if body.group >= 0 and (field.groups[body.group].level != "object" or is_sheet(field.groups[body.group].box.size)):
+        return ()
+    own = [body.group] if body.group >= 0 else _owners(field, scene.cloud.group[body.rows])
+    found = carried_by(scene, own) if body.group >= 0 else _carried(scene, field, [_region(body)], own)
+    return (*found, *held_by(scene, body, (*own, *found)))
+
+
+def _region(body: Body) -> Group:
+    """A group outside the table for a body that has none."""
+    return Group(-1, "object", -1, body.label, 0.0, body.box, (0.0, 0.0, 0.0), len(body.rows), 0, 0.0)
+
+
+def _owners(field: LanguageField, leaves: Tensor) -> list[int]:
+    """Ids of the groups that some Gaussians are in, with their objects; `leaves` `[M]` are their own groups."""
+    found = {int(g) for g in torch.unique(leaves) if g >= 0}
+    return sorted(found | {field.groups[g].parent for g in found} - {-1})
+
+
+def stacks_on(scene: Scene, body: Body) -> list[Stack]:
+    """What stands on a body, each thing with what stands on it in turn; the lowest first."""
+    field, stacks, claimed = scene.language, list[Stack](), set[int]()
+    if field is None:
+        return stacks
+    up, every_one = scene.frame.up_vector, carried_on(scene, body)
+    if len(above := _rest_above(scene, body)):  # what lies on a region carries the other things on it
+        rows = torch.unique(torch.cat([above, *(rows_in(scene.cloud, field, g) for g in every_one)]))
+        return [Stack(scene.cloud.ids[rows], scene.cloud.ids[above], "the rest of it")]
+    for group in sorted(every_one, key=lambda g: (field.groups[g].box.bottom(up), g)):
+        if group in claimed:
+            continue
+        on_it = carried_on(scene, body_of(scene, rows_in(scene.cloud, field, group), group))
+        whole = [g for g in (group, *on_it) if g not in claimed and g in every_one]
+        claimed |= set(whole)
+        rows = [rows_in(scene.cloud, field, g) for g in whole]
+        foot, every = scene.cloud.ids[rows[0]], scene.cloud.ids[torch.unique(torch.cat(rows))]
+        stacks.append(Stack(every, foot, field.groups[group].label))
+    return stacks
 
 
 def with_carried(scene: Scene, bodies: Sequence[Body]) -> list[Body]:
@@ -62,12 +113,30 @@ def with_carried(scene: Scene, bodies: Sequence[Body]) -> list[Body]:
     for body in bodies:
         carried = tuple(g for g in carried_on(scene, body) if g not in claimed)
         claimed |= set(carried)
-        if not carried or scene.language is None:
+        above = _rest_above(scene, body)
+        if (not carried and not len(above)) or scene.language is None:
             full.append(body)
             continue
-        rows = torch.cat([body.rows, *(rows_in(scene.cloud, scene.language, g) for g in carried)])
+        rows = torch.cat([body.rows, above, *(rows_in(scene.cloud, scene.language, g) for g in carried)])
         full.append(replace(body, rows=torch.unique(rows), carried=carried))
     return full
+
+
+def _rest_above(scene: Scene, body: Body) -> Tensor:
+    """Rows of what lies on a region and is of the same object: the stand on a cloth that was found by its colour."""
+    field = scene.language
+    none = body.rows[:0]
+    if field is None:
+        return none
+    leaves = [g for g in _owners(field, scene.cloud.group[body.rows]) if field.groups[g].level != "structure"]
+    mine = torch.zeros(len(field.groups) + 1, dtype=torch.bool, device=scene.cloud.device)
+    mine[leaves] = True
+    mine = mine[scene.cloud.group]
+    mine[body.rows] = False
+    rows = mine.nonzero().squeeze(1)
+    place = body.box.local(scene.cloud.means[rows].cpu().numpy()) / np.maximum(np.array(body.box.size), 1e-9)
+    over = (place[:, 2] > _OVER) & (place[:, 2] < 0.5 + _HIGHEST) & (np.abs(place[:, :2]) <= 0.5).all(axis=1)
+    return rows[torch.from_numpy(over).to(rows.device)] if over.sum() >= _PIECE else none
 
 
 def rows_with_carried(scene: Scene, selection: Selection) -> Tensor:
@@ -93,7 +162,8 @@ def unsupported_note(before: Scene, after: Scene, groups: tuple[int, ...]) -> tu
         return ()  # nothing moved or was removed
     targets = [old.groups[g] for g in groups if old.groups[g].level == "object"]
     stood = {g.id: (g, t) for t in targets for g in standing_on(old, before.frame, t) if g.id not in groups}
-    hanging = [g for g, t in stood.values() if new.groups[g.id].count and not _still_stands(after, g, t)]
+    left = [(g, t) for g, t in stood.values() if new.groups[g.id].count and new.groups[g.id].box == g.box]
+    hanging = [g for g, t in left if not _still_stands(after, g, t)]
     if not hanging:
         return ()
     named = ", ".join(g.label or "something" for g in sorted(hanging, key=lambda g: g.id)[:MAX_NAMED])

@@ -317,16 +317,36 @@ def test_what_is_inserted_behind_the_viewer_is_told(corner: Scene, context: Cont
     assert not do(corner, context, "insert", asset="mug", place=place).receipt.notes
 
 
-def test_what_stood_on_a_thing_is_named_when_the_thing_goes(corner: Scene, context: Context) -> None:
-    vase = "left hanging in the air: vase"
-    for data in (
-        {"op": "delete", "target": {"text": "table"}},
-        {"op": "scale", "target": {"text": "table"}, "factor": 0.5},
+def test_what_stood_on_a_deleted_thing_comes_down(corner: Scene, context: Context) -> None:
+    """Onto what is below it, as a person expects; with words of choice it goes too, or stays and that is told."""
+    rows = (corner.cloud.group == VASE).nonzero().squeeze(1)
+    ids = corner.cloud.ids[rows]
+    for on_it, low, told in (
+        ("settles", 0.0, "what stood on it now stands on what is below: vase"),
+        ("stays", contact(corner, VASE).bottom(np.array([0.0, 0.0, 1.0])), "left hanging in the air: vase"),
     ):
-        done = carry_out(corner, parse(data), context)
-        assert any(note.startswith(vase) for note in done.receipt.notes), (data, done.receipt.notes)
-    recolored = carry_out(corner, parse({"op": "recolor", "target": {"text": "table"}, "color": "teal"}), context)
-    assert not any("hanging" in note for note in recolored.receipt.notes)
+        done = do(corner, context, "delete", target=a("table"), on_it=on_it)
+        assert done.receipt.passed and any(note.startswith(told) for note in done.receipt.notes), done.receipt.notes
+        assert contact(done.scene, VASE).bottom(np.array([0.0, 0.0, 1.0])) == pytest.approx(low, abs=0.01)
+        assert_true_table(done.scene)
+    gone = do(corner, context, "delete", target=a("table"), on_it="goes")
+    assert "what stood on it was removed too: vase" in gone.receipt.notes
+    assert not bool(torch.isin(gone.scene.cloud.ids, ids).any()) and gone.receipt.removed > len(ids)
+    recolored = do(corner, context, "recolor", target=a("table"), color="teal")
+    assert not any("hanging" in note or "below" in note for note in recolored.receipt.notes)
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.6])
+def test_what_stands_on_a_scaled_thing_keeps_its_size_and_stands(
+    corner: Scene, context: Context, factor: float
+) -> None:
+    done = do(corner, context, "scale", target=a("table"), factor=factor)
+    assert "what stands on it went along: vase" in done.receipt.notes
+    was, now = contact(corner, VASE), contact(done.scene, VASE)
+    assert np.allclose(was.size, now.size, atol=1e-4)
+    up = np.array([0.0, 0.0, 1.0])
+    assert now.bottom(up) == pytest.approx(contact(done.scene, TABLE).top(up), abs=0.01)
+    assert_true_table(done.scene)
 
 
 @pytest.mark.parametrize(

@@ -4,32 +4,65 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
+import torch
+from torch import Tensor
+
 from ...gaussians.errors import ScenewrightError
 from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.scene import Scene
-from ..checks import count_matches, none_left
+from ..carried_objects import MAX_NAMED, Stack, stacks_on
+from ..checks import count_matches, none_left, supported
 from ..field_update import after_removal
 from ..operation import Context, Outcome, TargetedOp
+from ..placement.bodies import bodies_of
 from ..receipt import Check, report
+from ..settling import settle
 
 
 class Delete(TargetedOp):
-    """Remove the target from the scene."""
+    """Remove the target from the scene.
+
+    What stood on it comes down on what is below it; with `on_it` it is removed too, or stays where it is.
+    """
 
     example: ClassVar[tuple[str, dict[str, Any]]] = (
         "remove the coffee table",
         {"op": "delete", "target": {"text": "coffee table"}},
     )
     op: Literal["delete"] = "delete"
+    on_it: Literal["settles", "goes", "stays"] = "settles"
+
+    def may_change(self, scene: Scene, selection: Selection) -> Tensor:
+        asked = super().may_change(scene, selection)
+        if self.on_it == "stays":
+            return asked
+        for stack in _stacks(scene, selection):
+            asked |= mask_of(scene.cloud, stack.ids)
+        return asked
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
+        stacks = [] if self.on_it == "stays" else _stacks(scene, selection)
         go = mask_of(scene.cloud, selection.ids)
+        notes: tuple[str, ...] = ()
+        if self.on_it == "goes":
+            for stack in stacks:
+                go |= mask_of(scene.cloud, stack.ids)
+            names = ", ".join(stack.label or "something" for stack in stacks[:MAX_NAMED])
+            notes = (f"what stood on it was removed too: {names}",) if stacks else ()
+        removed = scene.cloud.ids[go]
         cloud = scene.cloud[~go]
-        after = scene.replace(cloud=cloud, language=after_removal(scene, cloud, selection.ids))
-        return Outcome(after, removed=scene.cloud.ids[go])
+        after = scene.replace(cloud=cloud, language=after_removal(scene, cloud, removed.sort().values))
+        if self.on_it != "settles" or not stacks:
+            return Outcome(after, removed=removed, notes=notes)
+        after, moved, note = settle(after, stacks)
+        touched = [after.cloud.ids[m.rows] for m in moved]
+        ids = torch.cat(touched).sort().values if touched else removed[:0]
+        return Outcome(after, removed=removed, touched=ids, moved=moved, notes=(note,) if note else ())
 
     def check(self, before: Scene, outcome: Outcome, selection: Selection, context: Context) -> tuple[Check, ...]:
         checks = [none_left(outcome.scene, outcome), count_matches(before, outcome.scene, outcome)]
+        if (stands := supported(outcome.scene, outcome.moved)) is not None:
+            checks.append(stands)
         if self.target.text or self.target.colors:
             checks.append(self._asked_again(outcome.scene, context))
         return tuple(checks)
@@ -43,3 +76,10 @@ class Delete(TargetedOp):
             return report("asked again", 0, "things", f"asking again gave: {error}")
         things = len(found.groups) if found.chosen else 0
         return report("asked again", things, "things", f"{every.describe()}: {things} left")
+
+
+def _stacks(scene: Scene, selection: Selection) -> list[Stack]:
+    """What stands on the target and is not part of it."""
+    found = [stack for body in bodies_of(scene, selection) for stack in stacks_on(scene, body)]
+    go = mask_of(scene.cloud, selection.ids)
+    return [stack for stack in found if not bool((go & mask_of(scene.cloud, stack.foot)).any())]

@@ -7,19 +7,21 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 import numpy as np
 import torch
 from pydantic import ConfigDict, Field, model_validator
+from torch import Tensor
 
 from ...gaussians.errors import InstructionError
 from ...gaussians.language.field.measure import reach, solid_points
-from ...gaussians.language.query.selection import Selection
+from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, Given, Keywords, either, given
+from ..carried_objects import MAX_NAMED, rows_with_carried, stacks_on
 from ..checks import count_matches, moved_as_asked, overlap_notes, size_changed, stays_put
-from ..cloud_diff import Draft
+from ..cloud_diff import Draft, rows_of
 from ..field_update import after_move
 from ..operation import Affine, Context, Length, Outcome, TargetedOp
-from ..placement.bodies import Array, Body, bodies_of, heading, strays_note
+from ..placement.bodies import Array, Body, bodies_of, contact_box, heading, strays_note
 from ..receipt import Check, at_most
-from ..transform import stretch, stretch_matrix
+from ..transform import shift, stretch, stretch_matrix
 
 Side = Literal["height", "width", "depth"]
 _SIDES: tuple[Side, ...] = ("height", "width", "depth")
@@ -68,21 +70,31 @@ class Scale(TargetedOp):
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         across = heading(context.viewer, scene.frame, "right")
         draft, moved = Draft(scene.cloud), []
-        bodies = bodies_of(scene, selection)
+        bodies, riders = bodies_of(scene, selection), list[Affine]()
+        names = list[str]()
         for body in bodies:
             matrix = stretch_matrix(self._axis(body, across), self._factor(scene, body, across))
             foot = body.foot(scene.frame.up_vector)
             offset = foot - matrix @ foot
             stretch(draft, body.rows, matrix, offset)
             moved.append(Affine(body.rows, matrix, offset, body.rows))
+            above = _raised(scene, body, moved[-1], selection)
+            riders += [asked for asked, _ in above]
+            names += [name for _, name in above]
+        for rider in riders:
+            shift(draft, rider.rows, rider.offset)
         cloud = draft.done()
-        after = scene.replace(cloud=cloud, language=after_move(scene, cloud, moved))
+        after = scene.replace(cloud=cloud, language=after_move(scene, cloud, [*moved, *riders]))
         larger = any(float(np.linalg.det(m.matrix)) > 1 for m in moved)
         notes = overlap_notes(after, {b.group for b in bodies}) if larger else ()
         if self.length is not None:
             notes = (*self.length[1].assumption(scene.frame), *notes)
-        touched = cloud.ids[torch.cat([body.rows for body in bodies])].sort().values
+        touched = torch.unique(cloud.ids[torch.cat([asked.rows for asked in (*moved, *riders)])])
+        notes += (f"what stands on it went along: {', '.join(names[:MAX_NAMED])}",) if names else ()
         return Outcome(after, touched=touched, moved=tuple(moved), notes=(*notes, *strays_note(bodies)))
+
+    def may_change(self, scene: Scene, selection: Selection) -> Tensor:
+        return rows_with_carried(scene, selection)
 
     def _axis(self, body: Body, across: Array) -> Array | None:
         """The box axis along which the body is stretched; None for all."""
@@ -126,6 +138,21 @@ class Scale(TargetedOp):
         # float32 centres: rounding is a few millionths of the coordinates, which may be far larger than the thing.
         bound = 1e-5 * max(1.0, asked, float(outcome.scene.cloud.means.abs().max()))
         return at_most("length", off, bound, "units", f"its {side} is within {off:.2g} units of {asked:.4g}")
+
+
+def _raised(scene: Scene, body: Body, asked: Affine, selection: Selection) -> list[tuple[Affine, str]]:
+    """The map and the name of each thing on a body that is scaled: it keeps its size and stands on the same spot."""
+    found, up = list[tuple[Affine, str]](), scene.frame.up_vector
+    own = mask_of(scene.cloud, selection.ids)
+    for stack in stacks_on(scene, body):
+        rows = rows_of(scene.cloud, stack.ids)
+        if bool(own[rows].any()):
+            continue
+        foot = contact_box(solid_points(scene.cloud, rows_of(scene.cloud, stack.foot)), scene.frame)
+        stands = np.array(foot.center) - up * (foot.size[2] / 2)
+        way = asked.matrix @ stands + asked.offset - stands
+        found.append((Affine(rows, np.eye(3), way, rows), stack.label or "something"))
+    return found
 
 
 def _side(body: Body, side: str, across: Array) -> int:

@@ -70,14 +70,14 @@ def bodies_of(scene: Scene, selection: Selection) -> list[Body]:
     bodies, loose = list[Body](), list[Tensor]()
     for group, rows in rows_by_thing(scene, selection):
         if group >= 0 and (group in selection.groups or _is_most_of(scene, group, rows)):
-            bodies.append(_body(scene, rows, group))
+            bodies.append(body_of(scene, rows, group))
         else:
             loose.append(rows)
     if not loose:
         return bodies
     rows = torch.cat(loose).sort().values if len(loose) > 1 else loose[0]
     label = selection.query.text if scene.language is not None else ""
-    return bodies + [_body(scene, part, -1, label) for part in _regions(scene, selection, rows)]
+    return bodies + [body_of(scene, part, -1, label) for part in _regions(scene, selection, rows)]
 
 
 def _is_most_of(scene: Scene, group: int, rows: Tensor) -> bool:
@@ -127,7 +127,8 @@ def _owners(scene: Scene, selection: Selection) -> dict[int, int]:
     return owner
 
 
-def _body(scene: Scene, rows: Tensor, group: int, label: str = "") -> Body:
+def body_of(scene: Scene, rows: Tensor, group: int, label: str = "") -> Body:
+    """One body of some rows `[M]` of a group (-1: none), without their strays; `label` is for those of no group."""
     known = scene.language.groups[group] if scene.language is not None and group >= 0 else None
     strays = 0
     if known is None or known.level != "structure":  # floors and walls are seen in pieces, between what hides them

@@ -18,7 +18,7 @@ from ..vocabulary import nouns
 from . import adding, changes, moving, shaping
 from .adding import inserted
 from .changes import Fields
-from .described import NounPhrase, all_of, existing, union
+from .described import NounPhrase, all_of, existing, is_all_on_it, union
 from .moving import moved
 from .phrases import Phrases
 from .places import MOTIONS
@@ -120,6 +120,8 @@ def delete(phrases: Phrases, node: Node) -> list[Fields]:
     if any(p.word.startswith(("onto", "into")) for n in found for p in n.modifiers):
         return moved(phrases, found, node, "MOVE")  # "chuck the cushion onto the bed"
     _require_clear_end(found)
+    if len(found) > 1 and is_all_on_it(found[-1]) and not found[0].query.last:  # "the table and what is on it"
+        return [{"op": "delete", "target": existing(found[:-1]), "on_it": "goes"}]
     return [{"op": "delete", "target": existing(found)}]
 
 

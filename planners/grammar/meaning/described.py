@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from ....gaussians.language.query import wholes
+from ....gaussians.language.query.nested import with_queries
 from ....gaussians.language.query.query import Query, Relation
 from ....gaussians.world import relations
 from ....gaussians.world.words import head
@@ -93,9 +94,20 @@ def updated(query: Query, **fields: Any) -> Query:
 
 
 def union(found: Sequence[NounPhrase]) -> Query:
-    """One query for several nouns."""
+    """One query for several nouns; "it" in a later one is the first: "the table and what is on it"."""
     first, *rest = (n.full() for n in found)
+    if rest and not first.last:
+        named = updated(first, also=())
+        rest = [
+            q if q.last else with_queries(q, lambda part: named if part == Query(last=True) else part) for q in rest
+        ]
     return updated(first, also=(*first.also, *rest)) if rest else first
+
+
+def is_all_on_it(phrase: NounPhrase) -> bool:
+    """Whether a phrase means everything that stands on what was named before it."""
+    on_it = Relation(name="on", anchors=(Query(last=True),))
+    return phrase.full() == Query(relations=(on_it,), pick="all")
 
 
 def existing(found: Sequence[NounPhrase]) -> Query:
