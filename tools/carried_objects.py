@@ -21,7 +21,7 @@ from .contact import held_by
 from .field_update import rows_in
 from .placement.bodies import Body, bodies_of, body_of, mask_of_bodies
 
-_OVER = 0.45  # of its height, from its middle: what lies higher in a region's footprint is on it
+_OVER = 0.35  # of its height, from its middle: what lies higher in a region's footprint is on it
 _HIGHEST = 3.0  # times its height: what lies higher above it is something else
 _PIECE = 30  # Gaussians of the same object on a region from which they are a thing on it
 MAX_NAMED = 4  # names in a note; further objects are counted
