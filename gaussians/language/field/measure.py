@@ -195,11 +195,12 @@ def _typical_reach(cloud: GaussianCloud, rows: Tensor, axes: Axes) -> F64:
 
 def _yaw(plan: F64) -> float:
     """Rotation (radians, in [-45°, 45°)) of the plan with the smallest box; 0 unless it saves over 2 % of the area."""
-    areas = []
-    for angle in ANGLES:
+    turned = np.empty((len(ANGLES), 2, len(plan)))
+    for place, angle in zip(turned, ANGLES, strict=True):
         c, s = np.cos(angle), np.sin(angle)
-        turned = plan @ np.array([[c, -s], [s, c]])
-        areas.append(float(np.prod(np.ptp(np.quantile(turned, [TRIM, 1 - TRIM], axis=0), axis=0) + 1e-9)))
+        place[:] = (plan @ np.array([[c, -s], [s, c]])).T
+    low, high = np.quantile(turned, [TRIM, 1 - TRIM], axis=-1)  # one call: hundreds of groups are measured
+    areas = np.prod(high - low + 1e-9, axis=1)
     best = int(np.argmin(areas))
     if areas[best] > 0.98 * areas[0]:
         return 0.0

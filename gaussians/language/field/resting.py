@@ -16,6 +16,7 @@ from ...world import kinds
 from .language_field import Group, LanguageField, Rest
 
 F64 = NDArray[np.float64]
+Span = tuple[float, float]
 
 GROUNDED = (0.03, 0.12)  # of the room's height, and of its own: an underside lower than either stands on the floor
 TOUCHING = 0.12  # of the smaller height: gap between an underside and the top that carries it
@@ -41,22 +42,28 @@ def with_rests(field: LanguageField, up: F64, floor: float | None) -> tuple[Grou
     """
     if floor is None or not field.groups:
         return field.groups
-    return tuple(_with_rest(g, field, up, floor) for g in field.groups)
+    span = [_heights(g, up) for g in field.groups]
+    return tuple(_with_rest(g, field, up, floor, span) for g in field.groups)
 
 
-def _with_rest(group: Group, field: LanguageField, up: F64, floor: float) -> Group:
-    return replace(group, rests=_rest(group, field, up, floor) if group.level == "object" and group.count else "")
+def _with_rest(group: Group, field: LanguageField, up: F64, floor: float, span: Sequence[Span]) -> Group:
+    rests = _rest(group, field, up, floor, span) if group.level == "object" and group.count else ""
+    return replace(group, rests=rests)
 
 
-def _rest(group: Group, field: LanguageField, up: F64, floor: float) -> Rest:
-    """What one object rests on, "" if nothing is near it."""
-    low, high = _heights(group, up)
-    room = max((_heights(g, up)[1] for g in field.groups if g.count), default=high) - floor
+def _rest(group: Group, field: LanguageField, up: F64, floor: float, span: Sequence[Span]) -> Rest:
+    """What one object rests on, "" if nothing is near it.
+
+    Args:
+        span: lowest and highest coordinate along up of each group.
+    """
+    low, high = span[group.id]
+    room = max((span[g.id][1] for g in field.groups if g.count), default=high) - floor
     if low - floor <= max(GROUNDED[0] * room, GROUNDED[1] * (high - low)):
         return "floor"
     middle = np.array(group.box.center)
     for other in field.objects():
-        if other.id != group.id and other.count and _carries(other, low, high, middle, up):
+        if other.id != group.id and other.count and _carries(other, span[other.id], low, high, middle):
             return "surface"
     if high - floor >= HANGING * room:
         return "ceiling"
@@ -64,9 +71,9 @@ def _rest(group: Group, field: LanguageField, up: F64, floor: float) -> Rest:
     return "wall" if any(_gap(group, wall) <= AT_WALL * room for wall in walls) else ""
 
 
-def _carries(lower: Group, low: float, high: float, middle: F64, up: F64) -> bool:
+def _carries(lower: Group, span: Span, low: float, high: float, middle: F64) -> bool:
     """Whether the top of `lower` meets the underside of a thing whose middle is above its footprint."""
-    bottom, top = _heights(lower, up)
+    bottom, top = span
     if abs(low - top) > TOUCHING * min(high - low, top - bottom) + 1e-9 or bottom >= low:
         return False
     axes = np.array(lower.box.axes)

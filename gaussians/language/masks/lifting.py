@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_matrix, hstack
+from scipy.sparse import csr_matrix
 
 from ...cloud import GaussianCloud
 from ...errors import UserError
@@ -83,8 +83,8 @@ def lift(cloud: GaussianCloud, views: Iterable[ViewMasks]) -> Lifted:
         taken.append(view)
     count = len(cloud)
     return Lifted(
-        weights=hstack(weights, format="csr") if weights else csr_matrix((count, 0), dtype=np.float32),
-        seen=hstack(seen, format="csr") if seen else csr_matrix((count, 0), dtype=np.float32),
+        weights=_side_by_side(weights, count),
+        seen=_side_by_side(seen, count),
         view=np.repeat(np.arange(len(taken), dtype=np.int32), [len(v) for v in taken]),
         labels=tuple(label for view in taken for label in view.labels),
         scores=np.concatenate([np.zeros(0, np.float32), *(v.scores for v in taken)]),
@@ -105,6 +105,25 @@ def _lift_view(cloud: GaussianCloud, view: ViewMasks) -> tuple[csr_matrix, csr_m
     member = csr_matrix((np.ones(len(pairs), np.float32), (pairs[:, 0], pairs[:, 1])), shape=(len(inside), len(view)))
     whole = csr_matrix(by_cell.sum(axis=1).astype(np.float32))
     return csr_matrix(by_cell @ member, dtype=np.float32), whole
+
+
+def _side_by_side(parts: list[csr_matrix], count: int) -> csr_matrix:
+    """The columns `[count, …]` float32 of some matrices beside each other. The list is emptied on the way, so that its
+    matrices are not held twice."""
+    lengths = sum((np.diff(part.indptr) for part in parts), np.zeros(count, np.int64))
+    starts = np.concatenate([[0], np.cumsum(lengths)])
+    columns = np.empty(int(starts[-1]), np.int32)
+    values = np.empty(len(columns), np.float32)
+    place, width = starts[:-1].copy(), 0
+    parts.reverse()
+    while parts:
+        part = parts.pop()
+        own = np.diff(part.indptr)
+        at = np.repeat(place - part.indptr[:-1], own) + np.arange(len(part.indices))
+        columns[at], values[at] = part.indices + width, part.data
+        place += own
+        width += part.shape[1]
+    return csr_matrix((values, columns, starts), shape=(count, width))
 
 
 def _vectors(views: list[ViewMasks]) -> F32 | None:

@@ -42,7 +42,7 @@ def open_side(center: F64, middle: F64, up: F64) -> F64:
 
 def cameras_around(points: F64, frame: Frame, middle: F64, pixels: int, count: int = len(VIEW_ANGLES)) -> list[Camera]:
     """`count` cameras that frame `points [M, 3]` (world), those on the open side first."""
-    low, high = np.quantile(points, 0.01, axis=0), np.quantile(points, 0.99, axis=0)
+    low, high = np.quantile(points, [0.01, 0.99], axis=0)
     center = (low + high) / 2
     radius = max(float(np.quantile(np.linalg.norm(points - center, axis=1), 0.98)), 1e-6)
     up = frame.up_vector

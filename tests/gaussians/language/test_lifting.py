@@ -11,12 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from masked_yard import THINGS, around, seen_by, yard
 from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
 
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.language.masks import ViewMasks
-from scenewright.gaussians.language.masks.lifting import Lifted, lift
+from scenewright.gaussians.language.masks.lifting import Lifted, _side_by_side, lift
 from scenewright.gaussians.render import contributions, split
 
 
@@ -173,3 +174,12 @@ def test_the_same_masks_give_the_same_bytes_wherever_their_arrays_lie() -> None:
         held = [held[i] for i in rng.permutation(len(held))[:40]]
         seen.add(lift(cloud, views).seen.data.tobytes())
     assert len(seen) == 1
+
+
+@given(st.lists(st.integers(0, 4), max_size=5), st.integers(0, 2**31))
+def test_masks_of_views_lie_side_by_side(widths: list[int], seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    parts = [rng.integers(0, 3, (6, w)).astype(np.float32) for w in widths]
+    made = _side_by_side([csr_matrix(p) for p in parts], 6)
+    assert made.dtype == np.float32 and made.has_sorted_indices
+    assert np.array_equal(made.toarray(), np.concatenate([np.zeros((6, 0), np.float32), *parts], axis=1))
