@@ -328,6 +328,11 @@ class Resolver:
         anchors = [a.group.id for a in self.anchors(owner) if a.group.id >= 0]
         if wholes.names_vessel(query.text) and (pots := self._pots(owner.anchors[0].text, anchors)):
             return self._take(query, pots)
+        if wholes.names_vessel(query.text) and wholes.names_plant(owner.anchors[0].text):
+            below = [wholes.beneath(self.field, i, self.scene.frame.up_vector) for i in anchors]
+            if places := [candidate_of(self.field.groups[i]) for i in dict.fromkeys(below) if i is not None]:
+                why = f"{query.describe()} is told by its place alone, below the {owner.anchors[0].text}"
+                return replace(self._take(query, places), verdict="unconfirmed", reason=why)
         made: list[Piece] = []
         refusals: list[str] = []
         for anchor in self.anchors(owner):

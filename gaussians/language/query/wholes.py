@@ -2,6 +2,7 @@
 
 "The potted plant" and "the plant with its pot" mean both; "the plant" means what grows, where the pot is an object of
 its own. A pot is told by its name, of which little is asked, and by its place: below or around the plant, no larger.
+Where nothing names what stands there, it is the pot only to who asks for the pot, and is not confirmed.
 """
 
 from __future__ import annotations
@@ -77,6 +78,19 @@ def without(text: str, pots: Sequence[Candidate]) -> str:
     """A sentence that plants were taken without the pots they stand in, and how to say both."""
     both = f"the {text} with its pot" if len(pots) == 1 else "the potted plants"
     return f'without {named(pots)}, which is a thing of its own; say "{both}" for both'
+
+
+def beneath(field: LanguageField, plant: int, up: F64) -> int | None:
+    """The object that a plant stands in by its place alone, where nothing tells what that is; None if there is none.
+
+    Args:
+        plant: id of a group, whatever its name.
+        up: unit vector `[3]`.
+    """
+    grown = field.groups[plant]
+    unnamed = [g for g in field.objects() if g.count and g.id != plant and g.label_score < MIN_NAMED]
+    near = [g for g in unnamed if _stands_in(grown, g, up)]
+    return max(near, key=lambda g: (g.count, -g.id)).id if near else None
 
 
 def _is(text: str, of: frozenset[str]) -> bool:

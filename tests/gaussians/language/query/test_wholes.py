@@ -143,3 +143,11 @@ def test_pots_are_told_wherever_the_scene_is_turned() -> None:
 
     groups = tuple(replace(g, box=along(g.box)) for g in field.groups)
     assert vessel_of(replace(field, groups=groups), 0, np.array([1.0, 0.0, 0.0])) == 1
+
+
+def test_what_nobody_names_below_a_plant_is_its_pot_only_where_it_is_asked_for() -> None:
+    scene = scene_of(CROWN, STOOL, OTHER_POT, names={1: (("stool", 0.05), ("vase", 0.04))})
+    asked = found(scene, Query(text="plant", also=(its("pot", "plant"),)))
+    assert asked.verdict == "unconfirmed" and asked.groups == (0, 1) and "place alone" in asked.reason
+    assert found(scene, its("pot", "plant")).verdict == "unconfirmed"
+    assert found(scene, "potted plant").groups == (0,) == found(scene, "plant").groups
