@@ -2,7 +2,8 @@
 
 The table covers the 1,203 names of LVIS and further everyday words. It says of which known kind a word names a sort
 ("folding chair": chair), which known kinds come nearest to it without being it ("wheelbarrow": bar cart), and to which
-family it belongs ("alligator": animal), whether or not the vocabulary holds members of that family.
+family it belongs ("alligator": animal), whether or not the vocabulary holds members of that family. Some kinds of the
+embedded encoder are coarse ("vegetable"): most of their synonyms name sorts of them, and the table says which do not.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ def known_as(text: str, vocabulary: Vocabulary | None = None) -> Known:
     vocabulary = _household() if vocabulary is None else vocabulary
     for phrase in _endings(text):
         own, covered = vocabulary.head(" ".join(phrase))
-        if phrase == own:
+        if phrase == own and not _is_sort(phrase, covered, vocabulary):
             return Known(tuple(n for n in vocabulary.names if n in covered), "same")
         if kinds := tuple(k for k in _table().sorts.get(phrase, ()) if k in vocabulary.kinds):
             return Known(kinds, "sort")
@@ -54,7 +55,23 @@ def known_as(text: str, vocabulary: Vocabulary | None = None) -> Known:
         if (family := _table().families.get(phrase)) is not None:
             members = {*vocabulary.broader.get(family, ()), *world.table().families.get(family, ())}
             return Known(tuple(n for n in vocabulary.names if n in members), "family")
+        if phrase == own:
+            return Known(tuple(n for n in vocabulary.names if n in covered), "sort")
     return Known((), "none")
+
+
+def is_loose(text: str, vocabulary: Vocabulary) -> bool:
+    """Whether the vocabulary covers a phrase by a coarse kind only ("cucumber" by vegetable), so that a thing of that
+    kind may or may not be what is named."""
+    phrase, covered = vocabulary.head(text)
+    return _is_sort(phrase, covered, vocabulary)
+
+
+def _is_sort(phrase: Words, covered: frozenset[str], vocabulary: Vocabulary) -> bool:
+    """Whether a phrase of the vocabulary names but a sort of the coarse kinds that it covers."""
+    coarse = _table().coarse
+    broader = any(normalise(term) == phrase for term in vocabulary.broader)
+    return bool(covered) and not broader and all(k in coarse and phrase not in coarse[k] for k in covered)
 
 
 def family_of(text: str) -> str | None:
@@ -64,11 +81,13 @@ def family_of(text: str) -> str | None:
 
 @dataclass(frozen=True)
 class _Table:
-    """Normalised phrases and what they come to: kinds they are sorts of, kinds they are near to, a family."""
+    """Normalised phrases and what they come to: kinds they are sorts of, kinds they are near to, a family; and the
+    phrases that name each coarse kind itself."""
 
     sorts: Mapping[Words, tuple[str, ...]]
     alike: Mapping[Words, tuple[str, ...]]
     families: Mapping[Words, str]
+    coarse: Mapping[str, frozenset[Words]]
 
 
 @cache
@@ -79,7 +98,8 @@ def _table() -> _Table:
     for family, words in data["families"].items():
         for word in (family, *words):
             families.setdefault(normalise(word), family)
-    return _Table(sorts, alike, families)
+    coarse = {kind: frozenset(normalise(n) for n in (kind, *names)) for kind, names in data["coarse"].items()}
+    return _Table(sorts, alike, families, coarse)
 
 
 def _by_phrase(rows: Mapping[str, list[str]]) -> dict[Words, tuple[str, ...]]:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ...errors import BackendError
 from ...world import kinds
 from ...world.words import normalise
-from ..encoders.known_words import known_as
+from ..encoders.known_words import is_loose, known_as
 from ..encoders.probability import why_unknown
 from ..field.language_field import LanguageField
 from ..field.posterior import SURE, Belief, belief_of
@@ -67,7 +67,10 @@ def readings(field: LanguageField, encoder: Encoder | None, text: str, metres: f
     alone = np.ones(len(field.groups)) if fit is None else fit.astype(np.float64)
     threshold = encoder.calibration.threshold
     scores = _by_given_names(field, text, exact, belief.shares(text).total * alone)
-    yield Reading(scores, belief.confirms, sized, exact, "" if sized else _only_likely(text))
+    note = "" if sized else _only_likely(text)
+    if is_loose(text, encoder.vocabulary):
+        sized, note = False, _read_as(text, next(iter(sorted(exact))))
+    yield Reading(scores, belief.confirms, sized, exact, note)
     wide = _wide(belief, text)
     if wide:
         note = f"no plain {text} is here, so the {{label}} is meant" if wide > encoder.vocabulary.covered(text) else ""
@@ -82,7 +85,7 @@ def readings(field: LanguageField, encoder: Encoder | None, text: str, metres: f
     sort = known_as(text, encoder.vocabulary)
     if sort.relation == "sort":
         meant = frozenset(sort.kinds)
-        note = f"{text!r} is read as {sort.kinds[0]}"
+        note = _read_as(text, sort.kinds[0])
         yield Reading(_by_given_names(field, text, meant, belief.of_kinds(meant)), belief.confirms, False, meant, note)
 
 
@@ -90,6 +93,10 @@ def is_known(encoder: Encoder, field: LanguageField, text: str) -> bool:
     """Whether the encoder knows a phrase, or a detector of the scene named something so."""
     belief = belief_of(field, encoder, None)
     return why_unknown(encoder, text) is None or bool(belief.meant(text).any())
+
+
+def _read_as(text: str, kind: str) -> str:
+    return f"{text!r} is read as {kind}"
 
 
 def _only_likely(text: str) -> str:

@@ -47,7 +47,7 @@ class Axes:
         rows = np.zeros((len(texts), self.dim), np.float32)
         for row, text in zip(rows, texts, strict=True):
             kinds = self.vocabulary.covered(text)
-            row[[KINDS.index(k) for k in kinds] or [-1]] = 1 / np.sqrt(max(len(kinds), 1))
+            row[[self.vocabulary.names.index(k) for k in kinds] or [-1]] = 1 / np.sqrt(max(len(kinds), 1))
         return rows
 
     def encode_images(self, images: NDArray[np.uint8]) -> NDArray[np.float32]:
@@ -243,6 +243,23 @@ def test_a_sort_of_a_kind_is_read_as_the_kind_and_said() -> None:
     reading, found = first(field([picture("chair"), picture("sofa")]), "barstool highchair")
     assert found == {0} and not reading.confirmed and "is read as chair" in reading.note
     assert first(field([picture("chair")]), "zyzzyva")[1] == set()
+
+
+def test_a_word_of_a_coarse_kind_is_read_as_the_kind_and_said() -> None:
+    """The encoder answers "cucumber" with any vegetable; "vegetable" is what the kind is called."""
+    coarse: dict[str, tuple[str, ...]] = {"vegetable" if k == "mug" else k: () for k in KINDS}
+    coarse["vegetable"] = ("cucumber",)
+
+    class Coarse(Axes):
+        fingerprint = "axes:3"
+        vocabulary = Vocabulary(coarse, {}, ("part of something",))
+
+    groups = field([picture("mug")]).groups
+    table = LanguageField(groups, np.array([picture("mug")], np.float32), "axes:3")
+    reading, *_ = readings(table, Coarse(), "cucumber", 1.0)
+    assert reading.scores[0] > reading.limit and not reading.confirmed and "is read as vegetable" in reading.note
+    reading, *_ = readings(table, Coarse(), "vegetable", 1.0)
+    assert reading.scores[0] > reading.limit and reading.confirmed and not reading.note
 
 
 def test_another_kind_of_a_known_name_must_have_its_size() -> None:

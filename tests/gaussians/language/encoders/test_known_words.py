@@ -5,7 +5,7 @@ import json
 import pytest
 
 from scenewright.gaussians.language.encoders import known_words
-from scenewright.gaussians.language.encoders.known_words import family_of, known_as
+from scenewright.gaussians.language.encoders.known_words import family_of, is_loose, known_as
 from scenewright.gaussians.language.encoders.vocabulary import Vocabulary
 from scenewright.gaussians.world import kinds
 from scenewright.gaussians.world.words import normalise
@@ -50,6 +50,30 @@ def test_what_is_returned_is_in_the_vocabulary():
 )
 def test_relations_are_told_apart(text, kinds_, relation):
     assert known_as(text, FEW) == (kinds_, relation)
+
+
+COARSE = Vocabulary(
+    {"vegetable": ("cucumber", "half tomato"), "knife": ("scissors",), "bucket": ("pail",), "chair": ("seat",)},
+    {"food": ("vegetable",)},
+    ("a piece of wall",),
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "kinds_", "relation"),
+    [
+        ("cucumber", ("vegetable",), "sort"),
+        ("half tomato", ("vegetable",), "sort"),
+        ("scissors", ("knife",), "alike"),
+        ("vegetables", ("vegetable",), "same"),
+        ("food", ("vegetable",), "same"),
+        ("pail", ("bucket",), "same"),
+        ("seat", ("chair",), "same"),
+    ],
+)
+def test_words_of_a_coarse_kind_are_sorts_of_it_unless_the_table_says_otherwise(text, kinds_, relation):
+    assert known_as(text, COARSE) == (kinds_, relation)
+    assert is_loose(f"the old {text}", COARSE) == (relation != "same")
 
 
 def test_families():
