@@ -1,7 +1,4 @@
-"""`python -m scenewright.training --out DIR`: train an encoder on procedural assets.
-
-Training uses seeds from 0, calibration from 10,000, measurement from 20,000.
-"""
+"""`python -m scenewright.training --out DIR`: train an encoder on procedural assets and on objects by other artists."""
 
 from __future__ import annotations
 
@@ -15,13 +12,10 @@ from typing import Any
 
 import torch
 
-from ..gaussians import assets
 from ..gaussians.language.encoders.backends.embedded import Embedded
-from . import captions, export, fit, foreign_meshes, in_rooms, measure, renders
+from . import captions, export, fit, foreign_meshes, in_rooms, measure, renders, sets, strangers
 
-CALIBRATION_SEEDS, MEASURING_SEEDS = 10_000, 20_000
 ROOMS = 16  # furnished rooms for measurement
-HELD_OUT = 8  # seeds of each kind for calibration, and as many for measurement
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -33,33 +27,41 @@ def main(argv: list[str] | None = None) -> int:
     def report(line: str) -> None:
         print(f"{time.monotonic() - start:7.1f} s  {line}", file=sys.stderr, flush=True)
 
-    kinds = assets.kinds(shown=True)
-    cache = options.cache or renders.cache_folder()
-    job_words = captions.vocabulary(kinds)
+    places = sets.Places(options.objects, options.cache or renders.cache_folder())
+    job_words = sets.vocabulary(options.objects is not None)
     job = fit.task(job_words, captions.words(job_words))
-    shown = renders.cached("train", kinds, range(options.assets), cache, report)
-    held = [
-        renders.cached(name, kinds, range(first, first + HELD_OUT), cache, report)
-        for name, first in (("calibrate", CALIBRATION_SEEDS), ("measure", MEASURING_SEEDS))
-    ]
-    effort = fit.Effort(options.minutes, options.steps, options.seed, options.bf16)
+    shown = sets.training(options.assets, places, report)
+    held, unseen = (sets.held_out(use, places, report) for use in ("calibrate", "measure"))
+    effort = fit.Effort(
+        options.minutes, options.steps, options.seed, options.bf16, options.resume, options.learning_rate
+    )
     rendered = time.monotonic() - start
-    towers = fit.train(shown, job, effort, report)
-    export.write_weights(options.out, towers, job)
-    rule = measure.calibrate(Embedded(options.out), held[0], measure.size_priors(shown), towers.scale)
+    crops = renders.joined(shown)
+    priors = measure.size_priors(crops)
+    if options.keep_weights:
+        scale, steps = Embedded(options.out).calibration.scale, 0
+    else:
+        towers = fit.train(crops, job, effort, report, places.cache / "checkpoint.pt")
+        export.write_weights(options.out, towers, job)
+        scale, steps = towers.scale, towers.steps
+    rule = measure.calibrate(Embedded(options.out), held, priors, scale)
     export.write_calibration(options.out, rule)
+    credits = strangers.credits(options.objects) if options.objects else []
     card = {
         "seed": effort.seed,
         "bf16": effort.half,
-        "steps": towers.steps,
+        "steps": steps,
+        "learning_rate": effort.peak,
         "training_minutes": effort.minutes,
         "designs_per_kind": options.assets,
-        "things": len(shown),
-        "pictures": len(shown) * renders.VIEWS,
+        "things": len(crops),
+        "pictures": len(crops) * renders.VIEWS,
+        "objects_by_others": strangers.trained(options.objects) if options.objects else 0,
         "cores": os.cpu_count(),
         "render_seconds": round(rendered, 1),
         "total_seconds": round(time.monotonic() - start, 1),
-    } | _measured(Embedded(options.out), held[1], options.strangers)
+        "credits": credits,
+    } | _measured(Embedded(options.out), unseen, options.strangers)
     export.write_calibration(options.out, replace(rule, measured=card["figures"]))
     export.write_json(options.out / "measured.json", card)
     for key, value in card["figures"].items():
@@ -73,8 +75,12 @@ def _options(argv: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--minutes", type=float, default=12.0, help="wall time of the training alone")
     parser.add_argument("--steps", type=int, help="exact number of steps, instead of a time")
     parser.add_argument("--bf16", action="store_true", help="convolutions in bfloat16: faster on recent processors")
+    parser.add_argument("--resume", type=Path, help="checkpoint.pt in the cache of an earlier training")
+    parser.add_argument("--keep-weights", action="store_true", help="calibrate and measure those of --out as they are")
+    parser.add_argument("--learning-rate", type=float, default=fit.PEAK_LR, help="the highest one")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--assets", type=int, default=60, help="designs of each kind to learn from")
+    parser.add_argument("--assets", type=int, default=40, help="designs of each kind to learn from")
+    parser.add_argument("--objects", type=Path, help="folder of objects by other artists to learn from as well")
     parser.add_argument("--strangers", type=Path, help="folder of third-party meshes to evaluate on as well")
     parser.add_argument(
         "--threads", type=int, default=os.cpu_count() or 1, help="CPU threads; use fewer on a shared machine"
@@ -85,8 +91,9 @@ def _options(argv: list[str] | None) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-def _measured(encoder: Embedded, crops: renders.Crops, meshes: Path | None) -> dict[str, Any]:
-    """The figures of the encoder card."""
+def _measured(encoder: Embedded, unseen: list[renders.Crops], meshes: Path | None) -> dict[str, Any]:
+    """The figures of the encoder card, on unseen designs of ours, and on packs and meshes of others."""
+    crops = unseen[0]
     image_ms, text_ms = measure.milliseconds(encoder)
     files = ("image.onnx", "text.onnx", "words.json")
     result = {
@@ -97,8 +104,10 @@ def _measured(encoder: Embedded, crops: renders.Crops, meshes: Path | None) -> d
         "figures": {k: round(v, 4) for k, v in measure.figures(encoder, crops).items()},
         "simulated": {"rooms": measure.ROOMS, "room": measure.ROOM, "merges": measure.MERGES},
         "kinds": measure.confusions(encoder, crops),
-        "rooms": in_rooms.judge(encoder, range(MEASURING_SEEDS, MEASURING_SEEDS + ROOMS)),
+        "rooms": in_rooms.judge(encoder, range(sets.MEASURING_SEEDS, sets.MEASURING_SEEDS + ROOMS)),
     }
+    if len(unseen) > 1:
+        result["packs"] = {k: round(v, 4) for k, v in measure.on_strangers(encoder, unseen[1]).items()}
     if meshes is not None:
         result["strangers"] = foreign_meshes.summary(
             foreign_meshes.judge(encoder, meshes), encoder.calibration.threshold

@@ -7,7 +7,8 @@ measured on the Gaussians themselves.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 
@@ -27,6 +28,16 @@ NEGATIVES: dict[str, tuple[str, ...]] = {
     FLOOR: ("part of the floor", "floor", "piece of the floor", "bare floor", "ground", "piece of ground"),
 }  # fmt: skip
 
+# Terms that cover labels beyond the table of kinds.
+FURTHER: dict[str, tuple[str, ...]] = {
+    "food": (
+        *("piece of fruit", "vegetable", "mushroom", "bread", "burger", "sandwich", "meat", "cheese", "egg", "fish"),
+        *("sushi", "pizza", "donut", "cookie", "cupcake", "ice cream", "fries", "cake", "apple", "banana"),
+    ),
+    "fruit": ("apple", "banana", "piece of fruit"), "dessert": ("cake", "cupcake", "ice cream"),
+    "weapon": ("sword", "shield"), "vehicle": ("bicycle", "toy car", "boat", "train"),
+}  # fmt: skip
+
 _SIZES = normalise("small large big little tiny huge tall short low high wide narrow long round square thin thick")
 _MATERIALS = normalise(
     "wooden wood metal steel iron glass plastic leather fabric velvet wool woollen cotton ceramic clay stone marble "
@@ -42,10 +53,14 @@ _LOOKS = normalise(
 _SHOWN = ("", "", "", "", "photo of ", "picture of the ", "one ")
 
 
-def vocabulary(names: Sequence[str]) -> Vocabulary:
+def vocabulary(names: Sequence[str], further: Mapping[str, Sequence[str]] = MappingProxyType({})) -> Vocabulary:
     """The vocabulary: the names with their synonyms, and those of similar kinds that are not shown.
 
     Synonyms that are also the name of a family are dropped, since they would contradict its training phrases.
+
+    Args:
+        names: kinds of the table.
+        further: labels that are no kinds of the table, and their synonyms; they belong to no family but `FURTHER`.
     """
     table = kinds.table()
     terms = {normalise(term) for term in table.families}
@@ -60,7 +75,10 @@ def vocabulary(names: Sequence[str]) -> Vocabulary:
         for term, members in table.families.items()
         if (covered := tuple(k for k in members if k in names)) and (term not in names or len(covered) > 1)
     }
-    return Vocabulary(kept, broader, tuple(NEGATIVES), frozenset(_modifiers()))
+    taken = {normalise(n) for name, said in kept.items() for n in (name, *said)} | {normalise(n) for n in further}
+    own = {label: tuple(n for n in said if normalise(n) not in terms | taken) for label, said in further.items()}
+    broader |= {term: members for term, members in FURTHER.items() if set(members) <= {*own, *kept}}
+    return Vocabulary(kept | own, broader, tuple(NEGATIVES), frozenset(_modifiers()))
 
 
 def words(vocabulary: Vocabulary) -> list[str]:

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from ..gaussians.language.encoders.vocabulary import Vocabulary
 
 _INTRO = """# Encoder card
 
-The embedded encoder is a small CLIP of our own. Its image tower is a residual convnet over {image_size}-pixel
+The embedded encoder is a small CLIP of our own. Its image tower holds residual convnets over {image_size}-pixel
 pictures; its text tower is one attention layer over words. Both map to vectors of {dim} numbers. It ships with the
 package as ONNX and needs no network and no GPU. This page is generated from the figures that training measured:
 `python -m scenewright.training.card` (from a checkout).
@@ -25,32 +26,35 @@ package as ONNX and needs no network and no GPU. This page is generated from the
 | fingerprint | `{fingerprint}` |
 | files | image tower {image_kb} kB, text tower {text_kb} kB, words {words_kb} kB |
 | speed, one thread | {milliseconds_per_image} ms a picture, {milliseconds_per_phrase} ms a phrase |
-| training set | {pictures:,} pictures of {things:,} things: {designs_per_kind} designs of each of {kinds:.0f} kinds |
+| training set | {pictures:,} pictures of {things:,} things: {designs_per_kind} designs of each of our kinds{too} |
+| names | {kinds:.0f} |
 | training | {steps:,} steps in {training_minutes:g} minutes on {cores} shared cores, rendering {render_seconds:.0f} s |
 
-    python -m scenewright.training --out FOLDER --assets {designs_per_kind}
+    python -m scenewright.training --out FOLDER --assets {designs_per_kind}{objects}
 
 trains such an encoder on a CPU, from a checkout with the extra `train`; `embedded:FOLDER` then selects it. The
 length of the training is wall time (`--minutes`), so that another machine makes more or fewer steps and gives other
-bytes. `--steps {steps} --seed {seed}` fixes the number of steps; the learning rate then follows steps instead of
-minutes.
-"""
+bytes. `--steps N --seed {seed}` fixes the number of steps; the learning rate then follows steps instead of minutes.
+{legs}"""
 
 _DATA = """
 ## Training set
 
-The training set consists of our own procedural assets only. Our own renderer renders each asset alone, from the
-sides from which such a thing is usually seen. The picture is cut to the silhouette and laid over neutral grey, as
-in the embedding of a scene. Half of the things are damaged as segmentation damages them: a side is cut off, the
-back is never seen, the underside is lost, the Gaussians are thinned and blurred as in a trained scene, or residue
-of the floor or a fragment of a neighbour is attached. Pieces of things, heaps of several things, and patches of
-wall and floor are classes of their own, so that a wrong segment is not called an object. Light, hue, saturation,
-resolution, framing and backgrounds vary during training. Random colour words stand before names: the vectors ignore
-colour, which is measured on the Gaussians instead.
+The training set consists of our own procedural assets{others}. Our own renderer
+renders each thing alone, from the sides from which such a thing is usually seen. The picture is cut to the silhouette
+and laid over neutral grey, as in the embedding of a scene. Two thirds of our assets are varied: their forms are
+tapered, bulged, leaned and stretched, their parts get other colours, grain, stripes, checks, blots and speckles are
+printed on them, and light comes from any side, so that names do not hang on the style of the assets. Half of the
+things are damaged as segmentation and capture damage them: a side is cut off, the back is never seen, the underside
+is lost, the Gaussians are thinned and blurred, they are as uneven, thick, faint and noisy as trained Gaussians, with
+floaters around them, or residue of the floor or a fragment of a neighbour is attached. Pieces of things, heaps of
+several things, and patches of wall and floor are classes of their own, so that a wrong segment is not called an
+object. Light, hue, saturation, resolution, framing, hidden parts and backgrounds vary during training. Random colour
+words stand before names: the vectors ignore colour, which is measured on the Gaussians instead.
 
 ## Accuracy
 
-Measured on designs whose seeds were not used in training; the calibration was fitted on a third set of seeds.
+Measured on designs whose seeds were not used in training; the calibration was fitted on a third set of seeds{third}.
 """
 
 _RULE = """
@@ -58,9 +62,10 @@ _RULE = """
 
 For each thing, a phrase competes with the names of all kinds that it does not mean and with the captions of
 non-objects, in a softmax at scale {scale:.1f}. If the scene's scale in metres is known, the measured size counts
-with weight {size_weight:g}. A thing with a probability of at least {threshold:.2f} counts as named. Scale, weight
-and threshold were fitted once, on {rooms} simulated rooms of {room} things and {merges} wrong segments. They are
-not tuned to a scene. A phrase with a word outside the vocabulary gets probability 0 and a reason.
+with weight {size_weight:g}. A thing with a probability of at least {threshold:.2f} counts as named. Scale and weight
+were fitted once on held-out things; the threshold is the lowest that refuses 97 % of the absent names in {rooms}
+simulated rooms of {room} things and {merges} wrong segments, of our things and of others'. They are not tuned to a
+scene. A phrase with a word outside the vocabulary gets probability 0 and a reason.
 """
 
 _LIMITS = """
@@ -68,8 +73,11 @@ _LIMITS = """
 
 - It knows only the kinds below. A thing of another kind gets the name of the most similar kind or is refused. For
   open vocabularies use another encoder, see the end of this page.
-- It learnt the style of our assets. It recognises other objects less often, above all in real captures. The figures
-  on meshes by others show how much.
+- It learnt the style of our assets and of low-poly models. It recognises other objects less often, above all in real
+  captures. The figures on meshes by others show how much.
+- Names of food, tools, vehicles and buildings are coarse, since few objects show them. They are there so that such a
+  thing is not given the name of a piece of furniture. A word for a sort of them ("cucumber") is answered as
+  unconfirmed, and the answer says that it is read as "vegetable".
 - It sees shape at {image_size} pixels. Kinds that differ by size alone (a coffee table, a table; a mug, a bin) need
   the measured size, hence metres.
 - It ignores colour, material, number, negation and relations by design. Other parts measure or resolve them.
@@ -132,13 +140,45 @@ def page(folder: Path) -> str:
     sizes = {f"{name.split('.')[0]}_kb": round(count / 1000) for name, count in card["bytes"].items()}
     flat = {k: v for k, v in card.items() if isinstance(v, str | int | float)} | sizes
     text = _INTRO.format(
-        **flat | {"kinds": card["figures"]["kinds"], "dim": words["dim"]}, image_size=words["image_size"]
+        **flat | {"kinds": card["figures"]["kinds"], "dim": words["dim"]},
+        image_size=words["image_size"],
+        legs=_legs(card.get("legs", [])) + _joined(card.get("joined")),
+        too=f" and {card['objects_by_others']} objects by others" if card["credits"] else "",
+        objects=" --objects OBJECTS" if card["credits"] else "",
     )
-    text += _DATA + _figures(card["figures"]) + _rooms(card["rooms"]) + _strangers(card.get("strangers"))
+    others = f" and of {card['objects_by_others']} objects by other artists\n(listed below, all CC0)"
+    text += _DATA.format(
+        others=others if card["credits"] else "",
+        third="\nand on further packs of other artists" if card["credits"] else "",
+    )
+    text += _figures(card["figures"]) + _rooms(card["rooms"]) + _packs(card) + _strangers(card.get("strangers"))
     text += _RULE.format(**rule, **card["simulated"]) + _LIMITS.format(image_size=words["image_size"])
     real = of_clip()
     others = _OTHERS.format(rivals=real.rivals, threshold=real.threshold, **real.measured)
-    return text + _kinds(Vocabulary.from_json(words["vocabulary"]), card["kinds"]) + others
+    return text + _kinds(Vocabulary.from_json(words["vocabulary"]), card["kinds"]) + _credits(card["credits"]) + others
+
+
+def _legs(legs: list[dict[str, Any]]) -> str:
+    """The sentence on trainings that continue one another, if there was more than one."""
+    if len(legs) < 2:
+        return ""
+    each = ", ".join(f"{leg['steps']:,} steps from a rate of {leg['learning_rate']:g}" for leg in legs)
+    return (
+        f"The shipped weights were trained in {len(legs)} parts, each continuing the last with `--resume`:\n{each}.\n"
+    )
+
+
+def _joined(first: dict[str, Any] | None) -> str:
+    """The sentences on the tower that the encoder was joined with, if there is one."""
+    if first is None:
+        return ""
+    return (
+        f"\nThe image tower is two: beside the one trained as above stands an earlier and smaller one, trained on "
+        f"{first['pictures']:,}\npictures of {first['kinds']} kinds of ours, not varied, in {first['steps']:,} steps. "
+        "Their vectors stand side by side, and each label got\none new vector, fitted on the whole training set "
+        "(`python -m scenewright.training.join`). The earlier tower tells our\nown designs apart, the later one "
+        "carries over to objects by others.\n"
+    )
 
 
 def _figures(figures: dict[str, float]) -> str:
@@ -155,6 +195,38 @@ def _rooms(found: dict[str, float]) -> str:
         f"{share['present_right']}, absent kinds refused {share['absent_refused']}.\n"
         "This is the upper bound that the encoder sets; segmentation causes any further loss.\n"
     )
+
+
+def _packs(card: dict[str, Any]) -> str:
+    """The paragraph on held-out packs of other artists, if there are any."""
+    found = card.get("packs")
+    if not found:
+        return ""
+    share = {key: f"{100 * value:.1f} %" for key, value in found.items()}
+    return (
+        f"\nOn the packs by other artists that are held out for measurement ({found['things']:.0f} pictures of whole "
+        f"things):\ntop-1 {share['top1_whole']}, with sizes {share['top1_size_whole']}; damaged "
+        f"{share['top1_damaged']} and {share['top1_size_damaged']}. In simulated rooms of them, with sizes:\npresent "
+        f"kinds answered correctly {share['present_right']}, absent kinds refused {share['absent_refused']}.\n"
+    )
+
+
+def _credits(rows: list[dict[str, Any]]) -> str:
+    """The table of the objects by others, by pack."""
+    if not rows:
+        return ""
+    lines = [
+        "\n## Objects by others\n",
+        "Low-poly models that their makers dedicated to the public domain (CC0 1.0); the files are not part of the",
+        "package. Packs that calibrate or measure are not trained on, nor are objects that no name fits (a bridge).\n",
+        "| pack | artist | licence | use | objects | names |",
+        "| --- | --- | --- | --- | --- | --- |",
+    ]
+    for row in rows:
+        licence = "CC0 1.0" if row["licence"].startswith("CC0") else row["licence"]
+        names = ", ".join(sorted(row["names"]))
+        lines.append(f"| {row['pack']} | {row['artist']} | {licence} | {row['use']} | {row['count']} | {names} |")
+    return "\n".join(lines) + "\n"
 
 
 def _strangers(found: dict[str, Any] | None) -> str:
@@ -178,13 +250,15 @@ def _strangers(found: dict[str, Any] | None) -> str:
 def _kinds(vocabulary: Vocabulary, table: dict[str, dict[str, float]]) -> str:
     lines = [
         "\n## Vocabulary, kind by kind\n",
+        "Figures are on unseen designs of ours; names that only objects by others show have none.\n",
         "| kind | right | mistaken for | also called |",
         "| --- | --- | --- | --- |",
     ]
     for kind in vocabulary.names:
-        row = table[kind]
+        row = table.get(kind, {"right": math.nan})
         wrong = ", ".join(f"{k} {100 * v:.0f} %" for k, v in row.items() if k != "right")
-        lines.append(f"| {kind} | {100 * row['right']:.0f} % | {wrong} | {', '.join(vocabulary.kinds[kind])} |")
+        right = "" if math.isnan(row["right"]) else f"{100 * row['right']:.0f} %"
+        lines.append(f"| {kind} | {right} | {wrong} | {', '.join(vocabulary.kinds[kind])} |")
     terms = "; ".join(f"{term} ({', '.join(kinds)})" for term, kinds in vocabulary.broader.items())
     return "\n".join(lines) + f"\n\nBroader terms: {terms}.\n\nNon-objects: {', '.join(vocabulary.negatives)}.\n"
 

@@ -82,12 +82,12 @@ def write_graph(
             dynamic_axes=dict.fromkeys(names, free), opset_version=_OPSET, dynamo=False,
         )  # fmt: skip
     model = onnx.load(str(path))
-    _halve(model)
+    halve(model)
     onnx.checker.check_model(model)
     path.write_bytes(model.SerializeToString(deterministic=True))
 
 
-def _halve(model: Any) -> None:
+def halve(model: Any) -> None:
     """Store float32 initializers as float16 behind a Cast node each; onnxruntime folds the casts when it loads."""
     import onnx
 

@@ -7,6 +7,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import torch
@@ -16,6 +17,7 @@ from torch.nn import functional
 
 from ..gaussians.language.encoders.backends.embedded import tokenise
 from ..gaussians.language.encoders.vocabulary import Vocabulary
+from ..gaussians.world import kinds
 from . import captions
 from .augment import augment
 from .model import DIM, LENGTH, ImageTower, TextTower
@@ -25,6 +27,10 @@ THINGS = 64  # objects per batch
 VIEWS_SHOWN = 2  # random views per object; more objects help more than more views
 CAPTIONS = 192  # phrases per batch
 PEAK_LR = 3e-3
+FURTHER_SHARE = (
+    0.5  # how often labels beyond the table of kinds are shown: they have few objects, which are soon learnt
+)
+NEGATIVE_SHARE = 2.5  # likewise for non-objects: wholeness weighs them against all names together
 MAX_SCALE = 40.0  # of the cosines; higher scales make the calibration brittle
 
 
@@ -78,22 +84,29 @@ class Effort:
         steps: exact number of steps. The result then depends on the seed alone, on one machine and torch version.
         seed: of weights, batches, captions and augmentation.
         half: convolutions in bfloat16: twice as fast on processors that support it, slower on others.
+        start: checkpoint of an earlier training with the same words and labels, to continue from.
+        peak: highest learning rate.
     """
 
     minutes: float
     steps: int | None
     seed: int
     half: bool
+    start: Path | None = None
+    peak: float = PEAK_LR
 
     def progress(self, step: int, seconds: float) -> float:
         """Progress from 0 at the start to 1 at the end."""
         return step / self.steps if self.steps else seconds / (60 * self.minutes)
 
 
-def train(crops: Crops, job: Task, effort: Effort, report: Callable[[str], None]) -> Towers:
-    """Train both towers and return the exponential moving average of their weights."""
+def train(crops: Crops, job: Task, effort: Effort, report: Callable[[str], None], keep: Path | None = None) -> Towers:
+    """Train both towers and return the exponential moving average of their weights, which is also kept in the file
+    `keep` for a later training to continue from."""
     torch.manual_seed(effort.seed)
     model = DualEncoder(len(job.index), len(job.classes))
+    if effort.start is not None:
+        model.load_state_dict(torch.load(effort.start, weights_only=True))
     model.image.to(memory_format=torch.channels_last)  # type: ignore[call-overload]  # twice as fast on CPUs
     mean = copy.deepcopy(model)
     optimizer = torch.optim.AdamW(
@@ -106,7 +119,7 @@ def train(crops: Crops, job: Task, effort: Effort, report: Callable[[str], None]
     start, step, running = time.monotonic(), 0, math.log(len(job.classes))
     while (progress := effort.progress(step, time.monotonic() - start)) < 1:
         for group in optimizer.param_groups:
-            group["lr"] = PEAK_LR * min(1.0, (step + 1) / 60) * (0.5 + 0.5 * math.cos(math.pi * progress)) + 1e-5
+            group["lr"] = effort.peak * min(1.0, (step + 1) / 60) * (0.5 + 0.5 * math.cos(math.pi * progress)) + 1e-5
         loss, seen = _loss(model, batches, step, effort.half)
         optimizer.zero_grad(set_to_none=True)
         loss.backward()  # type: ignore[no-untyped-call]
@@ -117,6 +130,8 @@ def train(crops: Crops, job: Task, effort: Effort, report: Callable[[str], None]
         step += 1
         if step % 100 == 0:
             report(f"step {step}, {100 * progress:.0f} %, picture loss {running:.3f}, scale {model.scale.item():.1f}")
+    if keep is not None:
+        torch.save(mean.state_dict(), keep)
     return Towers(mean.image.eval(), mean.text.eval(), mean.scale.item(), step)
 
 
@@ -150,7 +165,7 @@ class Batches:
     def __init__(self, crops: Crops, job: Task, seed: int) -> None:
         self.crops, self.job, self.seed = crops, job, seed
         self.label = np.array([job.classes.index(name) for name in crops.labels])
-        self.weight = _sampling_weights(self.label, len(job.classes))
+        self.weight = sampling_weights(self.label, job.classes)
         covers = {name: row for name, row in job.covers.items() if row.any()}
         self.phrases = list(covers)
         self.covered = np.stack(list(covers.values()))  # [P, C]
@@ -196,11 +211,20 @@ def _loss(model: DualEncoder, batches: Batches, step: int, half: bool) -> tuple[
     return seen + said + near, float(seen.detach())
 
 
-def _sampling_weights(label: NDArray[np.int64], classes: int) -> NDArray[np.float64]:
-    """Sampling weights `[M]`: all kinds equally often, labels above the median count by the square root of it."""
-    count = np.bincount(label, minlength=classes).astype(np.float64)
+def _often(label: str) -> float:
+    """How often a label is shown, in relation to a kind of the table."""
+    if label in captions.NEGATIVES:
+        return NEGATIVE_SHARE
+    return 1.0 if label in kinds.table().kinds else FURTHER_SHARE
+
+
+def sampling_weights(label: NDArray[np.int64], classes: tuple[str, ...]) -> NDArray[np.float64]:
+    """Sampling weights `[M]`: labels above the median count by the square root of it, the others equally often, each
+    times how often such a label is shown."""
+    often = np.array([_often(name) for name in classes])
+    count = np.bincount(label, minlength=len(often)).astype(np.float64)
     typical = np.median(count[count > 0])
-    share = np.where(count > typical, np.sqrt(count * typical), typical)
+    share = np.where(count > typical, np.sqrt(count * typical), typical) * often
     weight = share[label] / count[label]
     result: NDArray[np.float64] = weight / weight.sum()
     return result

@@ -11,7 +11,7 @@ from torch.nn import functional
 DIM = 128  # length of the shared vectors
 IMAGE_SIZE = 64  # side of the pictures, pixels
 LENGTH = 10  # words a phrase at most
-WIDTHS = (16, 32, 64, 128)  # channels at 1/2, 1/4, 1/8 and 1/16 of the side
+WIDTHS = (24, 48, 96, 192)  # channels at 1/2, 1/4, 1/8 and 1/16 of the side
 
 
 class _Block(nn.Module):

@@ -11,30 +11,33 @@ import itertools
 import json
 import math
 import os
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 
 from ..gaussians import assets
-from ..gaussians.assets import registry
 from ..gaussians.camera import Camera
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.language.encoders.framing import square_rgba
 from ..gaussians.language.segmentation import group_renders
 from ..gaussians.render import render
-from . import damage
+from ..gaussians.world import kinds as world
+from . import damage, restyle
 from .captions import FLOOR, PART, SEVERAL, WALL
 
 CROP = 80  # px, side of the stored crops: a quarter more than the encoder's input, room for augmentation
 CANVAS = 112  # px, side of the renders that crops are cut from
 VIEWS = 4  # per object
 STRETCH = 0.15  # standard deviation of the logarithm of the stretch of an axis
-VERSION = 3  # of the settings in this file; part of the cache key
+VERSION = 4  # of the settings in this file; part of the cache key
 
+DRAWN_AS_ANOTHER = ("wall shelf",)  # no builder of its own, but other artists' objects that show it
+Report = Callable[[str], None]
 WHOLE, DAMAGED, NONE = "whole", "damaged", "not an object"
 # A piece of these looks like a whole one, so it is no example of an incomplete object.
 SELF_SIMILAR = frozenset(
@@ -79,62 +82,103 @@ class Crops:
         return len(self.labels)
 
 
-def cached(name: str, kinds: tuple[str, ...], seeds: range, cache: Path, report: Callable[[str], None]) -> Crops:
-    """The set of these kinds and seeds, read from the cache, or rendered and stored there.
+def cached(name: str, key: str, things: Callable[[], Iterator[Thing]], cache: Path, report: Report) -> Crops:
+    """The pictures of some things, read from the cache or rendered and stored there.
 
-    The key of the cache contains a digest of one asset per kind, so changed assets are rendered again.
+    Args:
+        key: of everything that the things depend on.
+        things: makes them, if they are not in the cache.
     """
-    key = hashlib.sha256(json.dumps([VERSION, CROP, VIEWS, list(kinds), list(seeds)]).encode())
-    for kind in kinds:
-        key.update(assets.make(kind, seeds[0]).cloud.digest().encode())
-    path = cache / f"crops-{name}-{key.hexdigest()[:16]}.npz"
-    if path.is_file():
-        with np.load(path) as file:
-            return Crops(**{k: file[k] for k in ("pixels", "labels", "states", "seeds", "sizes")})
-    crops = render_set(kinds, seeds, report)
-    cache.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(f".{path.name}.{os.getpid()}.npz")
-    np.savez(partial, **vars(crops))
-    partial.replace(path)
-    return crops
+    stamp = hashlib.sha256(json.dumps([VERSION, CROP, VIEWS, key]).encode()).hexdigest()[:16]
+    folder = cache / f"crops-{name}-{stamp}"
+    if not (folder / "labels.npz").is_file():
+        render_set(things(), folder, report)
+    with np.load(folder / "labels.npz") as file:
+        columns = {k: file[k] for k in ("labels", "states", "seeds", "sizes")}
+    shape = (len(columns["labels"]), VIEWS, CROP, CROP, 4)
+    return Crops(np.memmap(folder / "pixels.raw", dtype=np.uint8, mode="r", shape=shape), **columns)
 
 
-def render_set(kinds: tuple[str, ...], seeds: range, report: Callable[[str], None] = lambda line: None) -> Crops:
-    """Make and render every kind for every seed, with damaged forms and non-objects cut from it."""
-    pixels: list[NDArray[np.uint8]] = []
-    things: list[Thing] = []
+def render_set(things: Iterator[Thing], folder: Path, report: Report = lambda line: None) -> None:
+    """Render every thing; `pixels.raw` and `labels.npz` are written to `folder`, the latter last."""
+    folder.mkdir(parents=True, exist_ok=True)
+    kept: list[Thing] = []
     sizes: list[NDArray[np.float64]] = []
-    for done, seed in enumerate(seeds):
-        for thing in things_of_seed(kinds, seed):
-            seen = pictures(thing, np.random.default_rng([seed, len(things)]))
+    with (folder / "pixels.raw").open("wb") as file:
+        for thing in things:
+            seen = pictures(thing, np.random.default_rng([thing.seed, len(kept)]))
             if seen is None:
                 continue
             low, high = damage.extent(thing.cloud)
-            pixels.append(seen)
+            seen.tofile(file)
             sizes.append(high - low)
-            things.append(Thing(GaussianCloud.empty(), thing.label, thing.state, seed))
-        report(f"rendered seed {done + 1} of {len(seeds)}: {len(things)} things")
-    return Crops(
-        np.stack(pixels),
-        np.array([t.label for t in things]),
-        np.array([t.state for t in things]),
-        np.array([t.seed for t in things], dtype=np.int64),
-        np.array(sizes, dtype=np.float32),
-    )
+            kept.append(replace(thing, cloud=GaussianCloud.empty()))
+            if len(kept) % 500 == 0:
+                report(f"rendered {len(kept)} things")
+    columns: dict[str, Any] = {
+        "labels": np.array([t.label for t in kept]),
+        "states": np.array([t.state for t in kept]),
+        "seeds": np.array([t.seed for t in kept], dtype=np.int64),
+        "sizes": np.array(sizes, dtype=np.float32),
+    }
+    np.savez(folder / "labels.npz", **columns)
 
 
-def things_of_seed(kinds: tuple[str, ...], seed: int) -> Iterator[Thing]:
-    """One object of each kind, whole and damaged, pieces and heaps of objects, and patches of wall and floor."""
-    rng = np.random.default_rng([seed, 7])
-    made = {kind: _design(kind, seed, rng) for kind in kinds}
+def joined(parts: Sequence[Crops]) -> Crops:
+    """Several sets as one, in memory."""
+    names = ("pixels", "labels", "states", "seeds", "sizes")
+    return Crops(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+
+
+def digest(kinds: tuple[str, ...], seeds: range) -> str:
+    """Changes with the kinds, the seeds, and the design of any kind."""
+    key = hashlib.sha256(json.dumps([list(kinds), list(seeds)]).encode())
     for kind in kinds:
-        asset, entry = made[kind], registry.KINDS[kind].known
+        key.update(assets.make(kind, seeds[0]).cloud.digest().encode())
+    return key.hexdigest()
+
+
+def shown_kinds() -> tuple[str, ...]:
+    """The kinds of the world table that are rendered and trained under their own names, sorted."""
+    return tuple(sorted({*DRAWN_AS_ANOTHER, *(k.name for k in world.table().kinds.values() if k.shown)}))
+
+
+def drawn_kinds() -> tuple[str, ...]:
+    """What is rendered for them: those kinds, and kinds that are drawn of their own and pass for one of them."""
+    shown = shown_kinds()
+    alike = (k for k in assets.kinds() if k not in shown and set(world.table().kinds[k].alike) & set(shown))
+    return (*shown, *alike)
+
+
+def label_of(kind: str) -> str:
+    """The label of a drawn kind: its own name, or that of the kind it passes for."""
+    entry = world.table().kinds[kind]
+    return kind if kind in shown_kinds() else next(k for k in entry.alike if world.table().kinds[k].shown)
+
+
+def things_of_seeds(kinds: tuple[str, ...], seeds: range, varied: float) -> Iterator[Thing]:
+    """`things_of_seed` for every seed."""
+    for seed in seeds:
+        yield from things_of_seed(kinds, seed, varied)
+
+
+def things_of_seed(kinds: tuple[str, ...], seed: int, varied: float = 0.0) -> Iterator[Thing]:
+    """One object of each kind, whole and damaged, pieces and heaps of objects, and patches of wall and floor.
+
+    Args:
+        varied: share of the objects with other colours, patterns, light and forms than our assets have.
+    """
+    rng = np.random.default_rng([seed, 7])
+    made = {kind: _design(kind, seed, rng, varied) for kind in kinds}
+    for kind in kinds:
+        asset, entry = made[kind], world.table().kinds[kind]
         hang = (entry.backed or entry.support == "wall", str(entry.support))
-        yield Thing(asset.cloud, kind, WHOLE, seed, *hang)
-        yield Thing(damaged(asset.cloud, made[kinds[rng.integers(len(kinds))]].cloud, rng), kind, DAMAGED, seed, *hang)
-        if rng.random() < 0.6 and (piece := fragment(asset, rng)) is not None:
+        label = label_of(kind)
+        yield Thing(asset.cloud, label, WHOLE, seed, *hang)
+        yield Thing(damaged(asset.cloud, made[kinds[rng.integers(len(kinds))]].cloud, rng), label, DAMAGED, seed, *hang)
+        if rng.random() < 0.4 and (piece := fragment(asset, rng)) is not None:
             yield Thing(piece, PART, NONE, seed)
-        if rng.random() < 0.5:
+        if rng.random() < 0.35:
             others = [made[kinds[i]].cloud for i in rng.integers(len(kinds), size=rng.choice([1, 1, 2]))]
             yield Thing(damage.several([asset.cloud, *others], rng), SEVERAL, NONE, seed)
     for upright in (True, True, False, False):
@@ -143,11 +187,13 @@ def things_of_seed(kinds: tuple[str, ...], seed: int) -> Iterator[Thing]:
         yield Thing(patch, WALL if upright else FLOOR, NONE, seed, upright, "wall" if upright else "floor")
 
 
-def _design(kind: str, seed: int, rng: np.random.Generator) -> assets.Asset:
+def _design(kind: str, seed: int, rng: np.random.Generator, varied: float) -> assets.Asset:
     """One design; half of them are stretched along each axis, since real proportions vary more than ours."""
     detail = float(rng.choice([0.4, 0.7, 1.0]))
-    asset = assets.make(kind, seed, detail=detail)
     stretch = np.exp(rng.normal(size=3) * STRETCH)
+    asset = assets.make(kind, seed, detail=detail)
+    if rng.random() < varied:
+        return restyle.with_cloud(asset, restyle.restyled(restyle.of_asset(asset), rng))
     if rng.random() < 0.5:
         return asset
     w, d, h = (max(0.006, s * f) for s, f in zip(asset.size, stretch.tolist(), strict=True))
@@ -157,7 +203,7 @@ def _design(kind: str, seed: int, rng: np.random.Generator) -> assets.Asset:
 def damaged(cloud: GaussianCloud, neighbour: GaussianCloud, rng: np.random.Generator) -> GaussianCloud:
     """Apply one to three kinds of damage that leave the object recognisable."""
     result = cloud
-    for damage_kind in rng.permutation(6)[: rng.choice([1, 2, 3], p=[0.4, 0.4, 0.2])]:
+    for damage_kind in rng.permutation(7)[: rng.choice([1, 2, 3], p=[0.4, 0.4, 0.2])]:
         if damage_kind == 0:  # cut by a plane from any side
             result = damage.cut(result, rng, rng.uniform(0.68, 0.92))
         elif damage_kind == 1:  # the back was never seen: it faces +y
@@ -169,6 +215,8 @@ def damaged(cloud: GaussianCloud, neighbour: GaussianCloud, rng: np.random.Gener
             result = damage.thinned(result, rng, rng.uniform(0.0, 0.85))
         elif damage_kind == 4:
             result = damage.with_residue(result, rng)
+        elif damage_kind == 5:
+            result = restyle.as_fitted(result, rng)
         else:
             result = damage.with_fragment(result, neighbour, rng)
     return result

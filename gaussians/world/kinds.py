@@ -41,7 +41,7 @@ class Kind:
         alike: kinds whose names people use for it, and the reverse: a "loveseat" may be called a sofa.
         support: what it stands on or hangs from; "surface": the top of another thing.
         asset: name of the builder that draws it, "" if it is drawn as a plain block.
-        shown: whether the trained encoder was shown pictures of it.
+        shown: whether the trained encoder was shown our own pictures of it.
         on: kinds that a small thing usually stands on, the likeliest first.
         backed: whether its back belongs against a wall.
         aisle: metres between its back and that wall, where people work behind it.

@@ -68,7 +68,7 @@ _FINAL_E = _bag(
     "movie cookie brownie hoodie selfie zombie genie doggie birdie smoothie rookie calorie collie pixie prairie "
     "menagerie foodie hippie magpie necktie bowtie potpie cutie sweetie veggie wheelie bookie auntie beanie onesie "
     "budgie barbie talkie goalie oldie goodie pinkie rotisserie patisserie brasserie jalousie townie newbie freebie "
-    "hankie reverie sortie aerie eyrie sharpie cootie bogie "
+    "hankie reverie sortie aerie eyrie sharpie cootie bogie plushie "
     "ache headache toothache stomachache backache earache heartache cache niche quiche creche avalanche moustache "
     "mustache brioche pastiche cliche psyche gouache cartouche cloche tranche porsche "
     "axe pickaxe battleaxe poleaxe mousse crevasse posse finesse impasse "

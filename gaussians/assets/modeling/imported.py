@@ -29,7 +29,7 @@ MAX_GAUSSIANS = 60_000  # per asset; larger splats are subsampled evenly, becaus
 SAMPLES = 10_000  # Gaussians per mesh
 CELL_SCALE = 1.35  # samples are random: larger cells close the holes between them
 # Rows: our x, y, z in the axes of a file whose y points up; its front +z becomes our -y.
-_FROM_Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+FROM_Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ def read(path: Path, size: Vec3, kind: str, up: str = "", tint: Rgb | None = Non
             raise FileError(f"{path} is larger than {MAX_BYTES >> 20} MB; make it smaller")
     except OSError as error:
         raise FileError(f"cannot read {path}: {error.strerror or error}") from error
-    turn = _FROM_Y_UP if (up or ("y" if path.suffix.lower() == ".glb" else "z")) == "y" else np.eye(3)
+    turn = FROM_Y_UP if (up or ("y" if path.suffix.lower() == ".glb" else "z")) == "y" else np.eye(3)
     if path.suffix.lower() == ".ply" and (cloud := _splats(path)) is not None:
         return _splat_asset(cloud, turn, size, kind)
     return _mesh_asset(path, turn, size, kind, tint)
@@ -111,7 +111,7 @@ def _splat_asset(cloud: GaussianCloud, turn: Array, size: Vec3, kind: str) -> As
 
 
 def _mesh_asset(path: Path, turn: Array, size: Vec3, kind: str, tint: Rgb | None) -> Asset:
-    xyz, normal, rgb, area = _surface(path)
+    xyz, normal, rgb, area = surface(path)
     xyz, normal = xyz @ turn.T, normal @ turn.T
     gain, foot = _gain(xyz.min(axis=0), xyz.max(axis=0), size)
     xyz, normal = (xyz - foot) * gain, normal / gain
@@ -126,7 +126,7 @@ def _mesh_asset(path: Path, turn: Array, size: Vec3, kind: str, tint: Rgb | None
     return _asset(unlit, unlit.cloud(np.array([-0.45, -0.6, 0.66])), size, kind)
 
 
-def _surface(path: Path) -> tuple[Array, Array, Array, float]:
+def surface(path: Path) -> tuple[Array, Array, Array, float]:
     """Evenly sampled points of a mesh, their normals and colours, and its area, in the file's frame and unit."""
     try:
         import trimesh

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -82,7 +82,7 @@ class Vocabulary:
 
     @classmethod
     def household(cls) -> Self:
-        """The names that ship with the embedded encoder: 81 household kinds, and captions of non-objects."""
+        """The names that ship with the embedded encoder: kinds of things, and captions of non-objects."""
         words = Path(__file__).parent / "weights" / "words.json"
         return cls.trained(json.loads(words.read_text(encoding="utf-8"))["vocabulary"])
 
@@ -91,19 +91,20 @@ class Vocabulary:
         """The names and phrases that an encoder was trained with; the table of kinds says which kind a phrase means.
 
         A phrase of a kind that the encoder was not trained on means a trained kind that is alike or has the same role
-        ("loveseat": sofa); if there is none, the phrase is left out.
+        ("loveseat": sofa); if there is none, the phrase is left out. Names that the table does not hold ("barrel") keep
+        every phrase that means no trained kind, and broader terms keep them as members.
         """
         found: dict[str, list[str]] = {name: [] for name in data["kinds"]}
         for name, phrases in data["kinds"].items():
             for phrase in phrases:
                 meant = world.find(phrase)
                 wanted = (name,) if meant is None else (meant.name, *meant.alike, meant.role)
-                if (known := next((w for w in wanted if w in found), None)) is not None:
+                ours = name not in world.table().kinds
+                if (known := next((w for w in wanted if w in found), name if ours else None)) is not None:
                     found[known].append(phrase)
-        families = {term: tuple(k for k in members if k in found) for term, members in world.table().families.items()}
         return cls(
-            {name: tuple(phrases) for name, phrases in found.items()},
-            {term: members for term, members in families.items() if members and term in data["broader"]},
+            {name: tuple(dict.fromkeys(phrases)) for name, phrases in found.items()},
+            {term: members for term, said in data["broader"].items() if (members := _members(term, said, found))},
             tuple(data["negatives"]),
             frozenset(data["modifiers"]),
         )
@@ -117,7 +118,8 @@ class Vocabulary:
         are refused against household names and 6 % against these, of the absent 98 % and 97 % (`home` in
         `benchmarks/_clip.py`).
         """
-        home, table = cls.household(), world.table()
+        table = world.table()
+        home = cls.household().within(table.kinds)
         own = [k for k in table.kinds.values() if not (k.like or k.alike or k.one or k.name in home.kinds)]
         named = set(home._phrases)
         beyond = {
@@ -128,6 +130,12 @@ class Vocabulary:
         beyond |= {name: () for name in table.others}
         return cls({**home.kinds, **beyond}, home.broader, home.negatives, home.modifiers)
 
+    def within(self, names: Container[str]) -> Self:
+        """The vocabulary with the kinds of these names only."""
+        kept = {k: v for k, v in self.kinds.items() if k in names}
+        terms = {term: tuple(k for k in members if k in kept) for term, members in self.broader.items()}
+        return type(self)(kept, {t: m for t, m in terms.items() if m}, self.negatives, self.modifiers)
+
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Self:
         """The inverse of `to_json`."""
@@ -137,3 +145,9 @@ class Vocabulary:
             tuple(data["negatives"]),
             frozenset(data["modifiers"]),
         )
+
+
+def _members(term: str, said: Sequence[str], known: Container[str]) -> tuple[str, ...]:
+    """The known members of a broader term: those of the table's family, and further ones that the table lacks."""
+    family = world.table().families.get(term, said)
+    return tuple(k for k in dict.fromkeys((*family, *(k for k in said if k not in world.table().kinds))) if k in known)

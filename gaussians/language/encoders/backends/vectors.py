@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....errors import BackendError
+from ....world import kinds as world
 from ....world.spelling import did_you_mean
 from ....world.words import normalise
 from .. import checked_images, checked_texts
@@ -126,7 +127,7 @@ class Vectors:
 
 def vocabulary_of(names: Sequence[Name]) -> Vocabulary:
     """Names as kinds, with their synonyms and those that household words have for them ("bike" for bicycle)."""
-    household = Vocabulary.household()
+    household = Vocabulary.household().within(world.table().kinds)
     kinds = {name: synonyms for name, *synonyms in names}
     if len(kinds) < len(names):
         twice = next(n for i, (n, *_) in enumerate(names) if n in [m for m, *_ in names[:i]])
