@@ -14,9 +14,10 @@ from ..gaussians.camera import Vec3
 from ..gaussians.cloud import NO_GROUP, GaussianCloud
 from ..gaussians.errors import InstructionError
 from ..gaussians.language.field.measure import reach, solid_points
+from ..gaussians.language.field.scale import SHAPE
 from ..gaussians.scene import Scene
 from ..gaussians.world import kinds
-from ..gaussians.world.box import Axes
+from ..gaussians.world.box import Axes, Box
 from ..gaussians.world.person import HUNG_AT
 from . import field_update
 from .cloud_diff import fresh_ids, joined
@@ -30,38 +31,66 @@ from .placement.surroundings import Surroundings
 from .transform import transformed
 
 _ASSUMED_WIDTH = 4.5  # metres, assumed width of a scene that gives no other hint of its scale
+_SURE = 0.5  # probability from which a name tells a size
+_WIDER = 1.3  # of the footprint of what is replaced: how wide a thing of unknown scale may be in its place
 _DOOR_HEIGHT = 1.6  # metres: taller objects at walls (doors, curtains, wardrobes) reach down to the floor
 
 
 @dataclass(frozen=True)
 class SceneScale:
-    """How many scene units a metre has, and the assumptions behind that as notes for the receipt."""
+    """How many scene units a metre has, and the assumptions behind that as notes for the receipt.
+
+    `guessed` where nothing in the scene told it.
+    """
 
     units_per_metre: float
     notes: tuple[str, ...] = ()
+    guessed: bool = False
 
 
-def scene_scale(scene: Scene, anchors: Sequence[Body] = ()) -> SceneScale:
-    """The scene's scale: the known one, else from objects of a usual height, else from the assumed width of a room."""
+def scene_scale(scene: Scene, anchors: Sequence[tuple[Body, str]] = ()) -> SceneScale:
+    """The scene's scale: the known one, else what the sizes of named things tell, else the assumed width of a room.
+
+    A thing tells the scale by the middle of the usual sizes of its kind, if its length and its height agree: what does
+    not have the shape of its kind is misnamed, or was found only in part.
+
+    Args:
+        anchors: things near the new one, each with what the user calls it ("" if nothing); they count twice.
+    """
     if scene.frame.metres_per_unit is not None:
         return SceneScale(1 / scene.frame.metres_per_unit)
-    known = [(b.label, b.box.size[2]) for b in anchors]
-    if scene.language is not None and not any(_usual_height(label) for label, _ in known):
-        known = [(g.label, g.box.size[2]) for g in scene.language.objects() if g.count and g.label_score > 0.5]
-    ratios = sorted(size / usual for label, size in known if (usual := _usual_height(label)))
-    if ratios:
-        names = ", ".join(dict.fromkeys(label for label, _ in known if _usual_height(label)))
-        said = f"the scene's scale is unknown; it was judged by the usual height of: {names}"
-        return SceneScale(ratios[len(ratios) // 2], (said,))
+    votes: list[tuple[float, str]] = []
+    for body, word in anchors:
+        votes += 2 * _vote(body.box, word or _sure_label(scene, body.group))
+    if scene.language is not None:
+        near = {body.group for body, _ in anchors}
+        for group in scene.language.objects():
+            if group.count and group.id not in near and group.label_score > _SURE:
+                votes += _vote(group.box, group.label)
+    if votes:
+        names = ", ".join(dict.fromkeys(name for _, name in votes))
+        said = f"the scene's scale is unknown; it was judged by the usual size of: {names}"
+        return SceneScale(float(np.exp(np.median([value for value, _ in votes]))), (said,))
     across = _across(scene)
     said = f"the scene's scale is unknown; it was taken to be {_ASSUMED_WIDTH:g} m across"
-    return SceneScale(across / _ASSUMED_WIDTH, (said,))
+    return SceneScale(across / _ASSUMED_WIDTH, (said,), guessed=True)
 
 
-def _usual_height(label: str) -> float | None:
-    """Middle of the usual heights of a kind, metres; None for things the library does not know."""
-    kind = kinds.find(label)
-    return None if kind is None else (kind.size[2][0] * kind.size[2][1]) ** 0.5
+def _sure_label(scene: Scene, group: int) -> str:
+    """The name of a group if it is sure, else ""."""
+    if scene.language is None or group < 0 or scene.language.groups[group].label_score <= _SURE:
+        return ""
+    return scene.language.groups[group].label
+
+
+def _vote(box: Box, name: str) -> list[tuple[float, str]]:
+    """Logarithm of units per metre that a thing of that name tells, and the name; empty if its shape is another."""
+    kind = kinds.find(name) if name else None
+    if kind is None or min(box.size) <= 0:
+        return []
+    width, depth, height = ((low * high) ** 0.5 if low > 0 else high / 2 for low, high in kind.size)
+    by_length, by_height = np.log(max(box.size[:2]) / max(width, depth)), np.log(box.size[2] / height)
+    return [] if abs(by_length - by_height) > np.log(SHAPE) else [(float(by_length + by_height) / 2, name)]
 
 
 def _across(scene: Scene) -> float:
@@ -122,6 +151,17 @@ def make_asset(scene: Scene, request: AssetRequest) -> ScaledAsset:
     cloud = transformed(cloud, np.eye(3), center)
     size = as_vec(np.array([max(high - low, 1e-6) for low, high in spans]))
     return ScaledAsset(cloud, made.kind, size, kinds.table().kinds[made.kind].support, notes)
+
+
+def fitted(scale: SceneScale, kind: str, old: Box) -> SceneScale:
+    """The scale at which a new thing is as large as what it replaces, where nothing tells the scale of the scene."""
+    size = kinds.find(kind)
+    if not scale.guessed or size is None:
+        return scale
+    width, depth, height = ((low * high) ** 0.5 if low > 0 else high / 2 for low, high in size.size)
+    factor = min(old.size[2] / height, _WIDER * max(old.size[:2]) / max(width, depth))
+    said = "the scene's scale is unknown; the new thing is as large as what it replaces"
+    return SceneScale(max(factor, 1e-9), (said,))
 
 
 def set_down(asset: ScaledAsset, foot: Array, axes: Axes) -> GaussianCloud:

@@ -15,7 +15,7 @@ from .carried_objects import MAX_NAMED, Stack
 from .cloud_diff import Draft, rows_of
 from .field_update import after_move
 from .operation import Affine
-from .placement.bodies import Array, centimetre, contact_box
+from .placement.bodies import Array, centimetre, contact_box, told_length
 from .placement.occupancy import obstacle_points
 from .transform import shift
 
@@ -47,15 +47,10 @@ def settle(scene: Scene, stacks: Sequence[Stack], rise: float = 0.0) -> tuple[Sc
         asked = Affine(rows, np.eye(3), offset, rows, support)
         scene = scene.replace(cloud=cloud, language=after_move(scene, cloud, [asked]))
         moved.append(asked)
-        told.append(f"{stack.label or 'something'} ({_length(scene, step)} {'down' if step < 0 else 'up'})")
+        told.append(f"{stack.label or 'something'} ({told_length(scene.frame, step)} {'down' if step < 0 else 'up'})")
     more = f" and {len(told) - MAX_NAMED} more" if len(told) > MAX_NAMED else ""
     note = f"what stood on it now stands on what is below: {', '.join(told[:MAX_NAMED])}{more}" if told else ""
     return scene, tuple(moved), note
-
-
-def _length(scene: Scene, step: float) -> str:
-    scale = scene.frame.metres_per_unit
-    return f"{abs(step) * scale:.2g} m" if scale is not None else f"{abs(step):.2g} units"
 
 
 def _way_down(scene: Scene, rows: Tensor, foot: Tensor, rise: float) -> tuple[float, float] | None:

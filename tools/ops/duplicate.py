@@ -60,7 +60,9 @@ class Duplicate(TargetedOp):
         bodies = bodies_of(scene, selection)
         objects, moved = NewObjects(scene), []
         notes = self.distance.assumption(scene.frame) if self.distance is not None else ()
-        for body, offset, support in self._copies(scene, bodies, context):
+        copies, found = self._copies(scene, bodies, context)
+        notes += found
+        for body, offset, support in copies:
             original = scene.cloud[body.rows]
             draft = Draft(original)
             shift(draft, torch.arange(len(original), device=original.device), offset)
@@ -75,13 +77,16 @@ class Duplicate(TargetedOp):
         focus = selection_of(selection, added, groups, said)
         return Outcome(after, added=added, moved=tuple(moved), notes=notes, focus=focus)
 
-    def _copies(self, scene: Scene, bodies: list[Body], context: Context) -> list[tuple[Body, Array, float | None]]:
-        """For each copy its original, its offset, and the height of its support (None if it was not placed)."""
+    def _copies(
+        self, scene: Scene, bodies: list[Body], context: Context
+    ) -> tuple[list[tuple[Body, Array, float | None]], tuple[str, ...]]:
+        """For each copy its original, its offset, and the height of its support (None if it was not placed); notes."""
         if self.direction is not None:
             way = heading(context.viewer, scene.frame, self.direction)
             step = self._step(scene, bodies, way)
-            return [(b, way * step * (i + 1), None) for i in range(self.count) for b in bodies]
+            return [(b, way * step * (i + 1), None) for i in range(self.count) for b in bodies], ()
         up, around, found = scene.frame.up_vector, Surroundings(scene, context), []
+        notes = dict[str, None]()
         place = self.place
         for body in [b for _ in range(self.count) for b in bodies]:
             if place is not None:
@@ -91,7 +96,8 @@ class Duplicate(TargetedOp):
             offset = spot.foot - body.foot(up)
             around.add_obstacle(solid_points(scene.cloud, body.rows) + offset, body.box.shifted(offset))
             found.append((body, offset, spot.support))
-        return [(body, offset, support) for body, offset, support in found]
+            notes |= dict.fromkeys(spot.notes)
+        return [(body, offset, support) for body, offset, support in found], tuple(notes)
 
     def _step(self, scene: Scene, bodies: list[Body], way: Array) -> float:
         """Step from one copy to the next: as given, or the extent of all originals together plus 8 cm."""

@@ -55,16 +55,19 @@ class Insert(EditOp):
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         around, objects, moved = Surroundings(scene, context), NewObjects(scene), []
         anchors = anchors_of(around, self.place) if self.place is not None else []
-        scale, start, notes = scene_scale(scene, anchors), viewed_point(around), dict[str, None]()
+        called = self.place.anchors[0].text if self.place is not None and len(anchors) == 1 else ""
+        named = [(body, called) for body in anchors]
+        scale, start, notes = scene_scale(scene, named), viewed_point(around), dict[str, None]()
         for index in range(self.count):
             request = AssetRequest(self.asset, self.color, context.seed + index, scale, self.height)
             asset = make_asset(scene, request)
+            around.rests = asset.support in ("floor", "table")
             spot = find_spot(around, asset, self.place, start)
             cloud = set_down(asset, spot.foot, spot.axes)
             add_obstacle(cloud, scene, around)
             hangs = self.place is None and asset.support in ("wall", "ceiling")
             moved.append(affine_of(objects.add(cloud, asset.label, spot.axes), None if hangs else spot.support))
-            notes |= dict.fromkeys(asset.notes)
+            notes |= dict.fromkeys((*asset.notes, *spot.notes))
         after, groups = objects.build_scene(context)
         added = objects.ids()
         query = Query(text=objects.entries[0].label, groups=groups)

@@ -33,7 +33,7 @@ from ..placement.bodies import (
 )
 from ..placement.overhead import place_above
 from ..placement.place import free_spot
-from ..placement.surroundings import Surroundings
+from ..placement.surroundings import Surroundings, support_height
 from ..placement.walls import require_clear_path
 from ..receipt import Check, at_most
 from ..transform import shift, turn
@@ -100,7 +100,7 @@ class Move(TargetedOp):
         """The map requested for each body, and notes."""
         said = self.distance.assumption(scene.frame) if self.distance is not None else ()
         if self.place is not None:
-            return self._placed(scene, bodies, context, self.place), said
+            return self._placed(scene, bodies, context, self.place)
         if self.toward is not None:
             goals = bodies_of(scene, context.resolve(scene, self.toward).require())
             return [self._asked(b, self._approach(scene, b, goals)) for b in bodies], said
@@ -131,12 +131,15 @@ class Move(TargetedOp):
             raise InstructionError("it already stands beside it: give a distance to move it anyway")
         return np.asarray(way * room)
 
-    def _placed(self, scene: Scene, bodies: list[Body], context: Context, place: Placement) -> list[Affine]:
-        """The map that puts each body on a free spot of its own."""
+    def _placed(
+        self, scene: Scene, bodies: list[Body], context: Context, place: Placement
+    ) -> tuple[list[Affine], tuple[str, ...]]:
+        """The map that puts each body on a free spot of its own, and notes."""
         up = scene.frame.up_vector
         around = Surroundings(scene, context, mask_of_bodies(scene, bodies), frozenset(groups_of(bodies)))
-        moved = []
+        moved, notes = [], dict[str, None]()
         for body in bodies:
+            around.rests = support_height(scene, body, context) is not None
             if place.relation == "above":
                 matrix, spot = place_above(around, body, place)
             else:
@@ -145,7 +148,8 @@ class Move(TargetedOp):
             points = solid_points(scene.cloud, body.rows) @ matrix.T + offset
             around.add_obstacle(points, contact_box(points, scene.frame, spot.axes))
             moved.append(Affine(body.rows, matrix, offset, body.rows, spot.support))
-        return moved
+            notes |= dict.fromkeys(spot.notes)
+        return moved, tuple(notes)
 
     def _asked(self, body: Body, offset: Array) -> Affine:
         return Affine(body.rows, np.eye(3), np.asarray(offset, dtype=np.float64), body.rows)

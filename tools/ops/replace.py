@@ -13,6 +13,7 @@ from ..new_objects import (
     NewObjects,
     add_obstacle,
     affine_of,
+    fitted,
     make_asset,
     scene_scale,
     set_down,
@@ -44,8 +45,10 @@ class Replace(TargetedOp):
         objects, moved, notes = NewObjects(scene, go), [], dict[str, None]()
         around = Surroundings(scene, context, go, frozenset(b.group for b in bodies))
         for index, body in enumerate(bodies):
-            request = AssetRequest(self.asset, self.color, context.seed + index, scene_scale(scene, [body]))
+            scale = fitted(scene_scale(scene, [(body, self.target.text)]), self.asset, body.box)
+            request = AssetRequest(self.asset, self.color, context.seed + index, scale)
             asset = make_asset(scene, request)
+            around.rests = asset.support in ("floor", "table")
             spot = spot_near(around, asset.size, standing_axes(around, [body]), body)
             cloud = set_down(asset, spot.foot, spot.axes)
             add_obstacle(cloud, scene, around)

@@ -216,6 +216,12 @@ def centimetre(frame: Frame, extent: float) -> float:
     return 0.01 / frame.metres_per_unit if frame.metres_per_unit is not None else extent / 100
 
 
+def told_length(frame: Frame, length: float) -> str:
+    """A length in scene units as a person is told: "0.4 m", or "0.4 units" where the scale is unknown."""
+    scale = frame.metres_per_unit
+    return f"{abs(length) * scale:.2g} m" if scale is not None else f"{abs(length):.2g} units"
+
+
 def front_of(scene: Scene, body: Body) -> Array | None:
     """`[3]` horizontal unit vector out of a body's front; None where neither its shape nor a wall tells it."""
     field = scene.language

@@ -17,9 +17,9 @@ from ...gaussians.errors import InstructionError
 from ...gaussians.world.box import Axes
 from ...gaussians.world.relations import named
 from ..operation import Placement
-from .bodies import Array, Body, bodies_of, centimetre, neighbours
+from .bodies import Array, Body, bodies_of, centimetre, neighbours, told_length
 from .occupancy import Bool, dilated, histogram, window_sum
-from .regions import Region, beside_region, distance_to, regions_of
+from .regions import Region, beside_region, distance_to, other_supports, regions_of
 from .surroundings import FLOOR_WORDS, Surroundings
 
 _CELLS = 220  # most cells along a side of the grid
@@ -80,6 +80,9 @@ def free_spot(around: Surroundings, size: Vec3, axes: Axes, place: Placement | N
             return Spot(foot, region.height, axes)
         crowded |= blocked
     where = place.describe() if place is not None else "on the floor"
+    for region in regions:
+        if (spot := _elsewhere(around, size, axes, region, anchors)) is not None:
+            return spot
     why = "everything there is taken" if crowded else "there is no surface there large enough to carry it"
     raise InstructionError(f"there is no room {where}: {why}; make it smaller, clear a spot or name another place")
 
@@ -117,16 +120,41 @@ def spot_near(around: Surroundings, size: Vec3, axes: Axes, body: Body) -> Spot:
         extents = np.array([body.box.extent(a) for a in plan])
         covered = np.column_stack([middle + under * extents, np.full(len(under), height)])
         surface = np.concatenate([surface, covered])
-    region = Region(middle - reach, middle + reach, lambda p: distance_to(p, middle), height, surface)
+    region = Region(middle - reach, middle + reach, lambda p: distance_to(p, middle), height, surface, beside=True)
     return _spot_in(around, size, axes, region, f"where the {body.label or 'thing'} stands")
 
 
 def _spot_in(around: Surroundings, size: Vec3, axes: Axes, region: Region, where: str) -> Spot:
     foot, crowded = _search(around, size, axes, region, ())
-    if foot is None:
-        why = "everything there is taken" if crowded else "no surface there is large enough to carry it"
-        raise InstructionError(f"there is no room {where}: {why}; clear a spot or name another place")
-    return Spot(foot, region.height, axes)
+    if foot is not None:
+        return Spot(foot, region.height, axes)
+    if (spot := _elsewhere(around, size, axes, region, ())) is not None:
+        return spot
+    why = "everything there is taken" if crowded else "no surface there is large enough to carry it"
+    raise InstructionError(f"there is no room {where}: {why}; clear a spot or name another place")
+
+
+def _elsewhere(around: Surroundings, size: Vec3, axes: Axes, region: Region, anchors: Sequence[Body]) -> Spot | None:
+    """A spot around a thing whose own support has no room: on a surface below it, or on the floor; None if there is
+    none, or the region is on or in a thing.
+
+    Where no floor was seen either, it is at the height of the thing's underside, which the note tells.
+    """
+    if not region.beside:
+        return None
+    for other in other_supports(around, size, np.array(axes[:2]), region):
+        foot, _ = _search(around, size, axes, other, anchors)
+        if foot is None:
+            continue
+        drop = region.height - other.height
+        if other.surface is not None:
+            notes = (f"it stands {told_length(around.frame, drop)} lower, on what was seen there",) if drop > 0 else ()
+        elif around.frame.floor is not None and other.height == around.floor:
+            notes = ("no room was seen around it: it stands on the floor",)
+        else:
+            notes = ("nothing was seen there to carry it: it is level with what it was put beside",)
+        return Spot(foot, other.height, axes, notes)
+    return None
 
 
 def _search(
@@ -151,7 +179,7 @@ def _search(
         carried = histogram(region.surface[:, :2], origin, cell, shape) > 0
         share = window_sum(dilated(carried, _closing_cells(region.surface, cell)).astype(np.int64), foot, counts)
         possible &= share / float(foot.prod()) >= _MIN_SUPPORTED
-    else:
+    elif region.walled:
         low, high = around.bounds_for(size, basis[:2])
         placed = centers @ (np.array(around.room_axes[:2]) @ basis[:2].T).T
         possible &= ((placed >= low - cell) & (placed <= high + cell)).all(axis=-1)

@@ -6,7 +6,7 @@ Whether a position in a region is free is decided in place.py.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from .surroundings import Surroundings
 Cost = Callable[[Array], Array]  # plan positions `[..., 2]` to costs `[...]`
 # Largest offset across the requested direction, as a share of that along it: 45 degrees, within the relation's cone.
 _MAX_LATERAL = 1.0
+_FEW = 20  # points that make no surface
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,8 @@ class Region:
         cost: `[..., 2]` plan positions to a cost `[...]`, infinite where forbidden.
         height: of the supporting surface, along up.
         surface: `[M, 3]` local points of the supporting surface; None if all of the bounds are supported.
+        walled: whether the thing stays in the room; else anywhere, as where no room was seen.
+        beside: whether the region is around a thing and not on or in it: any other surface there will do.
     """
 
     low: Array
@@ -42,6 +45,8 @@ class Region:
     cost: Cost
     height: float
     surface: Array | None
+    walled: bool = True
+    beside: bool = False
 
 
 def regions_of(
@@ -178,7 +183,7 @@ def _between_region(around: Surroundings, size: Vec3, plan: Array, first: Body, 
     middle, reach = (a + b) / 2, max(float(np.linalg.norm(b - a)) / 2, max(size[:2]))
     lower = min(first, second, key=lambda body: body.box.bottom(around.up))
     height, surface = around.base_under(lower, plan)
-    return Region(middle - reach, middle + reach, lambda p: distance_to(p, middle), height, surface)
+    return Region(middle - reach, middle + reach, lambda p: distance_to(p, middle), height, surface, beside=True)
 
 
 def beside_region(
@@ -204,7 +209,34 @@ def beside_region(
             return np.where(across > _MAX_LATERAL * along, np.inf, total + across)
         return np.asarray(total + 0.3 * (np.linalg.norm(offset, axis=-1) - along))
 
-    return Region(center - reach, center + reach, cost, height, surface)
+    return Region(center - reach, center + reach, cost, height, surface, beside=True)
+
+
+def other_supports(around: Surroundings, size: Vec3, plan: Array, region: Region) -> list[Region]:
+    """A region around a thing on other surfaces than the one that the thing stands on: those below it that were seen
+    there, the highest first, then the floor, whether or not a room was seen around it.
+
+    What may hang in the air, as a copy of something that does, goes no lower than its own height: else it is level.
+    """
+    half = np.array(size[:2]) / 2
+    heights = around.solid @ around.up.astype(np.float32)
+    slack = max(5 * centimetre(around.frame, max(size)), 0.02 * max(size))
+    level = around.solid[heights < region.height + slack]
+    local = level @ plan.T.astype(np.float32)
+    near = ((local > region.low - half) & (local < region.high + half)).all(axis=1)
+    points, found = local[near].astype(np.float64), list[Region]()
+    tops = (level[near] @ around.up.astype(np.float32)).astype(np.float64)
+    lowest = around.floor if around.frame.floor is not None else -np.inf
+    if not around.rests:
+        lowest = max(lowest, region.height - size[2] - slack)
+    if len(points) >= _FEW:
+        for height, at in surface_heights(tops, points, slack / 2):
+            if height > lowest + slack and at.sum() >= _FEW:
+                surface = np.column_stack([points[at], tops[at]])
+                found.append(replace(region, height=height, surface=surface))
+    found.sort(key=lambda r: -r.height)
+    under = around.floor if around.frame.floor is not None and lowest == around.floor else region.height
+    return [*found, replace(region, height=min(under, region.height), surface=None, walled=False)]
 
 
 def _wanted_side(around: Surroundings, anchor: Body, plan: Array, kind: RelationKind, start: Array | None) -> Array:

@@ -18,7 +18,7 @@ from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.box import Axes, Box
 from ..operation import Context
 from .bodies import Array, Body, as_vec, centimetre, contact_box, mask_of_bodies
-from .occupancy import obstacle_points
+from .occupancy import obstacle_points, surface_heights
 
 _LOW_CEILING = 240.0  # centimetres, height of a low room
 _SAMPLE_SIZE = 50_000  # points from which extents of the room are measured
@@ -40,6 +40,7 @@ class Surroundings:
         back: `[3]` direction of the thing's back, which "against a wall" brings to the wall; None allows any side.
         lift: height above the floor of a thing that hangs on a wall or from the ceiling, scene units.
         placed: boxes of the objects given to `add_obstacle`.
+        rests: whether the thing must rest on something: beside a thing in the air it goes on what is below that.
     """
 
     scene: Scene
@@ -49,6 +50,7 @@ class Surroundings:
     back: Array | None = None
     lift: float = 0.0
     placed: list[Box] = field(default_factory=list)
+    rests: bool = False
 
     @cached_property
     def frame(self) -> Frame:
@@ -139,10 +141,24 @@ class Surroundings:
         heights = self.solid @ self.up.astype(np.float32)
         near = (np.abs(heights - bottom) <= tolerance) & ~anchor.box.covers(self.solid)
         if near.sum() < 20:
-            return bottom, None
+            return self._below(anchor, plan, bottom + tolerance) if self.rests else (bottom, None)
         local = self.solid[near].astype(np.float64)
         level = float(np.median(heights[near]))
         return level, np.column_stack([local @ plan.T, heights[near]])
+
+    def _below(self, anchor: Body, plan: Array, highest: float) -> tuple[float, Array | None]:
+        """Height and points of the broadest surface under a thing that is in the air, else of the floor."""
+        heights = self.solid @ self.up.astype(np.float32)
+        under = (heights < highest) & anchor.box.covers(self.solid)
+        if self.frame.floor is not None:
+            under &= heights > self.floor + self.tolerance(anchor)
+        if under.sum() < 20:
+            return (self.floor if self.frame.floor is not None else anchor.box.bottom(self.up)), None
+        points, tops = self.solid[under].astype(np.float64) @ plan.T, heights[under].astype(np.float64)
+        tolerance = self.tolerance(anchor)
+        level = surface_heights(tops, points, tolerance)[0][0]
+        near = np.abs(heights - level) <= tolerance
+        return level, np.column_stack([self.solid[near].astype(np.float64) @ plan.T, heights[near]])
 
     def tolerance(self, anchor: Body) -> float:
         """Allowed unevenness of a surface: 3 % of its owner's height, between 1 and 4 centimetres."""
