@@ -43,7 +43,8 @@ class ColorMap:
 
     def on_harmonics(self, sh: Tensor) -> Tensor:
         """Coefficients `[N, K, 3]` that show the mapped colour in every direction."""
-        turned = sh @ self.matrix.T.to(sh)
+        own = torch.diagonal(self.matrix)
+        turned = sh * own.to(sh) if torch.equal(torch.diag(own), self.matrix) else sh @ self.matrix.T.to(sh)
         half = torch.full((3,), 0.5, dtype=torch.float64)
         shift = ((self(half) - half) / SH_C0).to(sh)
         turned[:, 0] += shift

@@ -18,7 +18,7 @@ from ...gaussians.language.query.query import Query
 from ...tools.operation import EditOp
 from ...tools.registry import parse as parse_op
 from ..plan import MAX_OPS, EditPlan
-from .meaning.changes import Fields
+from .meaning.changes import Fields, with_parts
 from .meaning.commands import operations_of
 from .meaning.phrases import Phrases
 from .parsing import Refusal, first_words, parse, trees
@@ -181,7 +181,7 @@ def _plan_clause(
         tree = parse(clause)
         if not follows and any(t.data in ("it_becomes", "it_moves") for t in trees(tree)):
             raise Refusal("it does not say what to do, or to what", *first_words(clause))
-        return operations_of(phrases, tree)
+        return with_parts(operations_of(phrases, tree), [t.text for t in clause.tags])
     except Refusal as refusal:
         raise Refusal(f"“{_quote(clause, cleaned)}”: {refusal}", *refusal.words, verdict=refusal.verdict) from None
 

@@ -18,10 +18,11 @@ from ...gaussians.cloud import GaussianCloud
 from ...gaussians.color import name_of, rgb_to_lab
 from ...gaussians.harmonics import dc_to_color
 from ...gaussians.language.field.measure import lit_of
+from .areas import areas
 from .grid import Grid
 
 _CELLS = 28  # along the longest axis
-_SAMPLE = 1 << 15  # Gaussians that hues are measured on
+_SAMPLE = 1 << 14  # Gaussians that hues are measured on
 _FEWEST = 64  # Gaussians below which a thing counts as one material
 _DARK = 9.0  # lightness below which a cell has no hue
 _FAR = 24.0  # Lab distance in a and b, at the lightness of the main material, from which a hue is another one
@@ -100,19 +101,15 @@ class _Cells:
 
     @classmethod
     def of(cls, cloud: GaussianCloud, rows: Tensor) -> _Cells:
-        rows = rows[:: max(1, len(rows) // _SAMPLE)]
-        points = cloud.means[rows]
-        extents = cloud.scales[rows].sort(dim=1).values
-        weight = extents[:, 1] * extents[:, 2] * cloud.opacities[rows]
-        weight = weight.clamp(max=float(weight.quantile(0.95)))
-        rgb = dc_to_color(cloud.sh[rows, 0]).clamp(0, 1)
+        points, area, rgb = areas(cloud, rows, _SAMPLE)
         grid = Grid.over(points, _CELLS)
-        sums = grid.sums(points, torch.cat([weight[:, None] * rgb, weight[:, None]], dim=1)).double()
+        sums = grid.sums(points, torch.cat([area[:, None] * rgb, area[:, None]], dim=1)).double()
         index = (sums[:, 3] > 1e-3 * sums[:, 3].max()).nonzero().squeeze(1)
-        area = sums[index, 3]
-        lab = rgb_to_lab(sums[index, :3] / area[:, None])
-        level = max(float((area * lab[:, 0]).sum() / area.sum()), _LEVEL)
-        return cls(grid, index, area / area.sum(), lab, hue_at(lab, level), level)
+        total = sums[index, 3]
+        lab = rgb_to_lab(sums[index, :3] / total[:, None])
+        share = total / total.sum()
+        level = max(float((share * lab[:, 0]).sum()), _LEVEL)
+        return cls(grid, index, share, lab, hue_at(lab, level), level)
 
 
 def hue_at(lab: Tensor, level: float) -> Tensor:

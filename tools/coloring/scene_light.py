@@ -11,6 +11,7 @@ of display values too.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import torch
 from torch import Tensor
@@ -23,6 +24,7 @@ from .quantiles import quantile
 
 WHITE = 0.92  # display luma of white paint in a well-exposed picture
 _SAMPLE = 1 << 14
+_FEW = 1 << 12  # Gaussians that the extent of a thing is measured on
 _NEUTRAL = 16.0  # Lab chroma up to which a bright surface may be white in tinted light
 _PURE = 4.0  # Lab chroma up to which it is white in neutral light
 _BRIGHT = 0.95  # quantile of the luma of near-neutral surfaces that white paint has
@@ -79,9 +81,17 @@ class SceneLight:
         return f"colours are meant in the scene's light: {', '.join(told)}" if told else None
 
 
+_KNOWN: WeakKeyDictionary[GaussianCloud, SceneLight] = WeakKeyDictionary()
+
+
 def scene_light(cloud: GaussianCloud) -> SceneLight:
-    """Estimate the light from the colours of a cloud's surfaces; the neutral light if too few can be white."""
-    return light_of(sample(cloud, size=_SAMPLE))
+    """Estimate the light from the colours of a cloud's surfaces; the neutral light if too few can be white.
+
+    A cloud does not change, so its light is estimated once.
+    """
+    if (found := _KNOWN.get(cloud)) is None:
+        found = _KNOWN[cloud] = light_of(sample(cloud, size=_SAMPLE))
+    return found
 
 
 def light_of(colors: Sample) -> SceneLight:
@@ -141,10 +151,11 @@ def light_around(cloud: GaussianCloud, rows: Tensor, light: SceneLight, lit: flo
 
 def _dimness(cloud: GaussianCloud, rows: Tensor, light: SceneLight) -> float:
     """Brightness of what is around a thing, relative to what the scene's light lets expect, at most 1."""
-    few = cloud.means[rows[:: max(1, len(rows) // _SAMPLE)]]
+    few = cloud.means[rows[:: max(1, len(rows) // _FEW)]]
     middle = few.median(dim=0).values
-    radius = float(torch.linalg.vector_norm(few - middle, dim=1).quantile(0.9))
-    every = torch.arange(0, len(cloud), max(1, len(cloud) // (4 * _SAMPLE)))
+    apart = torch.linalg.vector_norm(few - middle, dim=1)
+    radius = float(apart.kthvalue(max(1, int(0.9 * len(apart)))).values)
+    every = torch.arange(0, len(cloud), max(1, len(cloud) // (2 * _SAMPLE)))
     near = every[torch.linalg.vector_norm(cloud.means[every] - middle, dim=1) < _AROUND * radius]
     if light.share <= 0 or len(near) < _FEWEST:
         return 1.0

@@ -22,7 +22,7 @@ from ..color_map import LUMA
 VIEWS = 3
 PIXELS = 80  # side of a picture
 _SOLID = 0.8  # alpha of a pixel that shows the thing and not what is behind it
-_MOST = 8000  # Gaussians that are rendered
+_MOST = 6000  # Gaussians that are rendered
 _FEWEST = 32  # pixels, or the Gaussians themselves are sampled
 _LIT = (0.5, 0.95)  # quantiles of luma between which the lit faces are: without shadows and highlights
 

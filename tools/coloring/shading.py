@@ -11,14 +11,14 @@ import torch
 from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
-from ...gaussians.harmonics import dc_to_color
 from ..color_map import LUMA
+from .areas import areas
 from .grid import Grid
 
 _CELLS = 24  # along the longest axis
 _SMOOTHINGS = 2  # of 3 cells each: together about a tenth of the extent
 _BLACK = 0.01  # luma added to the weight, so that what is black has some
-_SAMPLE = 1 << 15  # Gaussians that it is measured on
+_SAMPLE = 1 << 14  # Gaussians that it is measured on
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,14 +36,10 @@ class Shading:
     @classmethod
     def of(cls, cloud: GaussianCloud, rows: Tensor) -> Shading:
         """The field over some rows `[M]` of a cloud, M > 0, weighted by opacity and footprint."""
-        rows = rows[:: max(1, len(rows) // _SAMPLE)]
-        points = cloud.means[rows]
-        extents = cloud.scales[rows].sort(dim=1).values
-        weight = extents[:, 1] * extents[:, 2] * cloud.opacities[rows]
-        weight = weight.clamp(max=float(weight.quantile(0.95)))
-        luma = dc_to_color(cloud.sh[rows, 0]).clamp(0, 1) @ torch.tensor(LUMA, dtype=torch.float32)
+        points, area, rgb = areas(cloud, rows, _SAMPLE)
+        luma = rgb @ torch.tensor(LUMA, dtype=torch.float32)
+        weight = area * (luma + _BLACK)
         grid = Grid.over(points, _CELLS)
-        weight = weight * (luma + _BLACK)
         sums = grid.sums(points, torch.stack([weight * luma, weight], dim=1))
         mean = sums[:, 0].sum() / sums[:, 1].sum().clamp(min=1e-30)
         sums = grid.smoothed(sums, _SMOOTHINGS)

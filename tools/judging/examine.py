@@ -136,7 +136,7 @@ def _to_paint(case: Case, op: Recolor) -> Tensor | None:
 
     A new colour leaves parts of other hues.
     """
-    if op.color is None or not bool(case.target.any()):
+    if op.color is None or op.paints_parts or not bool(case.target.any()):
         return None
     target = case.target.clone()
     target[surfaces(case.before, case.meant).left] = False

@@ -38,7 +38,8 @@ class Recolor(TargetedOp):
     """Change the target's colour, keeping its shading and texture.
 
     Give either `color` alone ("make it teal"), or `adjust` with `amount` ("a bit darker": amount 0.25, "much darker":
-    0.8). `adjust` "toward" also needs `color` ("a bit more blue": toward, blue, 0.25).
+    0.8). `adjust` "toward" also needs `color` ("a bit more blue": toward, blue, 0.25). A new colour leaves parts of
+    other hues, unless `whole` ("paint the whole chair").
     """
 
     model_config = ConfigDict(
@@ -59,6 +60,8 @@ class Recolor(TargetedOp):
     """A change relative to the colour it has."""
     amount: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 0.5
     """How far to adjust, 0 to 1; has no effect with `color` alone."""
+    whole: bool = False
+    """With `color`: parts of other hues (a cushion, handles) too; they are left otherwise."""
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
@@ -69,6 +72,12 @@ class Recolor(TargetedOp):
         if self.adjust not in (None, "toward") and self.color is not None:
             raise ValueError(f'give either a color or adjust "{self.adjust}", not both')
         return self
+
+    @property
+    def paints_parts(self) -> bool:
+        """Whether parts of other hues get a new colour too: asked for, or everything in the scene is meant."""
+        everything = self.target.text in ("", "everything") and self.target.pick == "all"
+        return self.whole or (everything and not (self.target.colors or self.target.relations))
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         draft = Draft(scene.cloud)
@@ -100,7 +109,7 @@ class Recolor(TargetedOp):
 
     def _paint(self, scene: Scene, selection: Selection, draft: Draft) -> tuple[Tensor, list[str]]:
         """Give every surface of the selection a map to the colour; ids that were painted, and notes."""
-        found = surfaces(scene, selection)
+        found = surfaces(scene, selection, whole=self.paints_parts)
         light = scene_light(scene.cloud)
         clipped = 0.0
         for rows in found.painted:

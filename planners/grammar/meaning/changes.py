@@ -5,13 +5,15 @@ Each function returns the fields of an operation without its target. The constan
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from ..parsing import Node, Refusal, tokens, trees
 
 Fields = dict[str, Any]
 
+# Words for a thing with all of its parts, by which a new colour means those of other hues too.
+WHOLE = frozenset({"the whole", "the entire", "the whole thing", "all of it", "it all"})
 # recolor.amount without a degree, for "a bit", for "much".
 AMOUNT: dict[str, float] = {"": 0.5, "little": 0.25, "much": 0.8}
 # scale.factor for bigger and smaller: without a degree, for "a bit", for "much".
@@ -35,6 +37,17 @@ def degree_of(node: Node) -> str:
     """The degree below a node: "", "little" or "much"."""
     found = tokens(node, "DEGREE")
     return str(found[0].value) if found else ""
+
+
+def with_parts(ops: Sequence[Fields], said: Sequence[str]) -> list[Fields]:
+    """The operations of a clause, new colours for parts of other hues too if it says so: "paint the whole chair".
+
+    Args:
+        said: the words of each tag of the clause.
+    """
+    if not any(words.lower() in WHOLE for words in said):
+        return list(ops)
+    return [{**op, "whole": True} if op.get("op") == "recolor" and op.get("color") else op for op in ops]
 
 
 def hue_of(node: Node) -> str:

@@ -106,3 +106,14 @@ def test_an_edit_does_not_touch_the_scene_before() -> None:
     for fields in ({"color": "gold"}, {"adjust": "lighter"}, {"adjust": "more_saturated"}):
         do(before, slice(0, 6500), **fields)
     assert torch.equal(before.cloud.sh, kept)
+
+
+def test_the_whole_thing_includes_the_cushion() -> None:
+    before = scene(noise=0.02)
+    done = do(before, slice(0, 6500), color="teal", whole=True)
+    same = (done.scene.cloud.sh == before.cloud.sh).all(dim=2).all(dim=1)
+    assert not bool(same[:6500].any())
+    hue = rgb_to_lab(0.5 + 0.28209479 * torch.stack([done.scene.cloud.sh[r, 0].mean(dim=0) for r in (
+        slice(0, 5000), slice(5000, 6500))]))  # fmt: skip
+    assert bool((hue[:, 1] < -10).all())  # both are teal
+    assert not any("left as they" in note for note in done.receipt.notes)
