@@ -94,7 +94,10 @@ class Repaint:
         matrix, gain, offset = self._parts(shading)
         half = torch.full((3,), 0.5, dtype=torch.float64)
         share = self.amount
-        turned = share * gain[:, None].to(sh) * (sh @ matrix.T.to(sh)) + (1 - share) * sh
+        turned = (sh.reshape(-1, 3) @ matrix.T.to(sh)).reshape(sh.shape)
+        turned *= (share * gain)[:, None].to(sh)
+        if share < 1:
+            turned += (1 - share) * sh
         shift = share * (gain * (matrix @ half) + offset - half) / SH_C0
         turned[:, 0] += shift.to(sh)
         return turned
