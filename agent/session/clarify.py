@@ -7,7 +7,7 @@ It never picks or confirms a candidate for the user.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,23 +15,18 @@ from ...gaussians.errors import UserError
 from ...gaussians.language.query.nested import Path, exchange, queries
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Candidate, Selection
+from .answers import chosen_numbers, plain, says_all, says_yes
 
 if TYPE_CHECKING:
     from ...planners.plan import EditPlan
     from ...tools.operation import EditOp
 
-_NUMBER = re.compile(r"(?:the\s+|number\s+|no\.?\s*|#)*(\d+)(?:st|nd|rd|th)?(?:\s+one)?", re.IGNORECASE)
-_YES = re.compile(
-    r"(yes|y|yeah|yep|ok|okay|sure|right|correct|confirm(ed)?|go ahead|do it|that is it|that's it|that one|it is)"
-    r"(,? please)?"
-)
-_ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 _SIDES = {"left": "leftmost", "right": "rightmost", "near": "nearest", "closest": "nearest", "close": "nearest",
           "far": "farthest", "big": "largest", "bigger": "largest", "biggest": "largest", "larger": "largest",
           "small": "smallest", "smaller": "smallest", "tall": "tallest", "taller": "tallest", "short": "shortest",
           "shorter": "shortest", "upper": "highest", "top": "highest", "higher": "highest", "lower": "lowest",
           "bottom": "lowest", "middle": "middle", "center": "middle", "centre": "middle", "front": "nearest",
-          "back": "farthest", "first": "", "last": ""}  # fmt: skip
+          "back": "farthest"}  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,8 +64,8 @@ def find_question(plan: EditPlan, step: int, verdict: str, resolve: Callable[[Qu
 
 
 def plan_with_answer(question: Question, answer: str, parse: Callable[[str], Query | None]) -> EditPlan:
-    """The plan with the user's answer in it: a number of the list, "all", or words ("the left one", "the red one");
-    "yes" to what is not confirmed.
+    """The plan with the user's answer in it: numbers of the list ("2", "1 and 3", "all but 2"), "all", or words ("the
+    left one", "the red one"); "yes" to what is not confirmed.
 
     Args:
         parse: reads a noun phrase as a query; returns None if it cannot.
@@ -78,16 +73,16 @@ def plan_with_answer(question: Question, answer: str, parse: Callable[[str], Que
     Raises:
         UserError: the answer does not choose a candidate; the message shows valid answers.
     """
-    query, said = question.selection.query, answer.strip().rstrip(".!").lower()
+    query, said = question.selection.query, plain(answer)
     if question.selection.verdict == "unconfirmed":
-        if not _YES.fullmatch(said):
+        if not says_yes(said):
             raise UserError(f"{answer!r} does not say whether that is meant; say 'yes' or 'no', or another instruction")
         return plan_with_query(question, query.model_copy(update={"confirmed": True}))
     chosen = _choice(question.candidates, query, said, parse)
     if chosen is None:
         raise UserError(
-            f"{answer!r} does not say which; answer with a number from 1 to {len(question.candidates)}, "
-            "'all', or a description such as 'the left one'"
+            f"{answer!r} does not say which; answer with a number from 1 to {len(question.candidates)}, several "
+            "('1 and 2'), 'all', or a description such as 'the left one'"
         )
     _require_choice(question, chosen, answer)
     return plan_with_query(question, chosen)
@@ -116,26 +111,24 @@ def _require_choice(question: Question, chosen: Query, answer: str) -> None:
 def _choice(
     candidates: tuple[Candidate, ...], query: Query, answer: str, parse: Callable[[str], Query | None]
 ) -> Query | None:
-    number = _NUMBER.fullmatch(answer)
-    if number and 1 <= int(number[1]) <= len(candidates):
-        return _picked(query, candidates[int(number[1]) - 1])
-    if answer in ("all", "all of them", "both", "every one", "each"):
-        return query.model_copy(update={"pick": "all"})
+    if (places := chosen_numbers(answer, len(candidates))) is not None:
+        return _picked(query, [candidates[i] for i in places])
+    if says_all(answer):
+        both = re.search(r"\bboth\b", answer) and len(candidates) != 2
+        return None if both else query.model_copy(update={"pick": "all"})
     words = re.fullmatch(rf"(?:the\s+)?(\w+)(?:\s+(?:one|{re.escape(query.text or 'one')}))?", answer)
-    if words and words[1] in _SIDES and _SIDES[words[1]]:
+    if words and words[1] in _SIDES:
         return query.model_copy(update={"pick": _SIDES[words[1]]})
-    if words and words[1] in _ORDINALS[: len(candidates)]:
-        return _picked(query, candidates[_ORDINALS.index(words[1])])
     said = parse(answer)
     return merge(query, said) if said is not None else None
 
 
-def _picked(query: Query, candidate: Candidate) -> Query:
-    """A query for the candidate's group; the words are kept for messages only. Raises UserError if the candidate is a
+def _picked(query: Query, candidates: Sequence[Candidate]) -> Query:
+    """A query for the candidates' groups; the words are kept for messages only. Raises UserError if a candidate is a
     place or a part without a row in the table of groups, so a number cannot pick it."""
-    if candidate.group < 0:
+    if any(c.group < 0 for c in candidates):
         raise UserError("that one cannot be picked by number; say where it is ('the left one'), or 'all'")
-    return Query(text=query.text, colors=query.colors, size=query.size, groups=(candidate.group,))
+    return Query(text=query.text, colors=query.colors, size=query.size, groups=tuple(c.group for c in candidates))
 
 
 def merge(query: Query, said: Query) -> Query:

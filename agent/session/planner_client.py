@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 from ...gaussians.errors import UserError
 from ...gaussians.language.query.nested import without_confirmation
 from ...gaussians.language.query.query import Query
+from .answers import only_an_answer
 
 if TYPE_CHECKING:
     from ...planners.budget import Budget, Ledger, Progress
@@ -106,7 +107,7 @@ class PlannerClient:
         self._planner = planner
 
     def plan(self, text: str, previous: str | None = None) -> EditPlan:
-        """The plan for an instruction; see `Planner.plan`.
+        """The plan for an instruction; see `Planner.plan`. A text that is only an answer ("all", "2") plans no edit.
 
         Raises:
             UserError: the text is too long or is not valid Unicode.
@@ -115,6 +116,9 @@ class PlannerClient:
         if not text.isprintable() and any("\ud800" <= c <= "\udfff" for c in text):
             raise UserError("the text is not UTF-8; type it again, or set the terminal to UTF-8")
         self.last = None
+        if only_an_answer(text):  # with the instruction before, a planner could read it as an edit of everything
+            self.last = _answer_to_nothing(text)
+            return self.last
         plan = self._planner.plan(text, previous=previous, observation=self._observation)
         self.last = plan.model_copy(update={"ops": without_confirmation(plan.ops)})
         return self.last
@@ -165,3 +169,13 @@ class PlannerClient:
 def _query(plan: EditPlan) -> Query | None:
     """The target of a plan of one operation."""
     return plan.ops[0].query() if len(plan.ops) == 1 else None
+
+
+def _answer_to_nothing(text: str) -> EditPlan:
+    """The plan, without operations, of an answer that no question waits for."""
+    from ...planners.plan import EditPlan
+
+    reason = (
+        f"{text.strip()!r} is an answer, but no question is open; say what to do, and with what: 'delete all chairs'"
+    )
+    return EditPlan(instruction=text, planner="session", verdict="not_an_edit", reason=reason)

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from ...gaussians.errors import AbsentError, InstructionError, ScenewrightError, UserError
+from ..session.answers import chosen_numbers
 from ..session.plan_report import candidate_json, planner_json, refusal_json, usage_lines
 from ..session.planner_client import is_dismissal, undo_or_redo
 from ..session.refusal import verdict_of
@@ -96,8 +97,7 @@ class Chat:
             self.tell(reason, {"verdict": "internal", "reason": reason}, "red")
 
     def _instruction(self, text: str) -> None:
-        question = self.session.question
-        if question is not None and question.selection.verdict != "absent" and undo_or_redo(text) is None:
+        if self._waits_for(text):
             if is_dismissal(text):
                 self.session.question = None
                 self.tell("nothing was changed", {"verdict": "cancelled"})
@@ -118,6 +118,14 @@ class Chat:
         else:
             result = self.session.do(text)
         self.show_result(result)
+
+    def _waits_for(self, text: str) -> bool:
+        """Whether a question is open that `text` may answer. Of the nearest things that were listed in place of one
+        that is absent, only a number chooses."""
+        question = self.session.question
+        if question is None or undo_or_redo(text) is not None:
+            return False
+        return question.selection.verdict != "absent" or chosen_numbers(text, len(question.candidates)) is not None
 
     def _question(self, text: str) -> None:
         """Answer a question about the scene."""
@@ -149,7 +157,9 @@ class Chat:
         lines += [f"  {i}. {c.describe()}" for i, c in enumerate(candidates, start=1)]
         verdict = question.selection.verdict if question is not None else ""
         if verdict == "ambiguous":
-            lines.append("Which one? A number, 'all', or for example 'the left one'.")
+            lines.append("Which one? A number, several ('1 and 2'), 'all', or for example 'the left one'.")
+        if verdict == "absent" and candidates:
+            lines.append("A number chooses one of them; or say it in other words.")
         if verdict == "unconfirmed":
             lines.append("Is that meant? 'yes' or 'no'.")
         data = {

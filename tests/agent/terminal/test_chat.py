@@ -77,6 +77,18 @@ def test_what_is_neither_an_answer_nor_an_instruction_leaves_the_question(boxes:
     assert session.done and set(session.scene.cloud.group.unique().tolist()) == {1, 2, 3}
 
 
+def test_two_numbers_answer_a_question(boxes: Scene, encoder: Any) -> None:
+    session, _, _ = _talk(boxes, encoder, "delete the red thing", "1 and 2")
+    assert set(session.scene.cloud.group.unique().tolist()) == {1, 3}
+
+
+def test_of_the_nearest_things_a_number_chooses_and_all_does_not(boxes: Scene, encoder: Any) -> None:
+    session, out, _ = _talk(boxes, encoder, "delete the purple thing", "all")
+    assert "The nearest things" in out and "no question is open" in out and session.scene is boxes
+    session, out, _ = _talk(boxes, encoder, "delete the purple thing", "1")
+    assert len(session.done) == 1 and len(session.scene.cloud) < len(boxes.cloud)
+
+
 def test_commands(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
     target = tmp_path / "out.ply"
     session, out, err = _talk(
