@@ -242,7 +242,7 @@ def _is_rough(surface: Surface, flat: Level, plan: _Map, off: F64, noise: float)
     if noise < ROUGHNESS * float(max(extent_of(flat))) or _coherence(plan.cell, off, noise) < COHERENT:
         return False
     closed = walls_of(surface, flat, np.ones(len(surface), bool))
-    return not closed and not outer_layers(flat, surface.area, surface.spacing, layer)
+    return not closed and not outer_layers(flat, surface.area, surface.spacing, noise, layer)
 
 
 def _coherence(cell: I64, off: F64, noise: float) -> float:

@@ -24,6 +24,7 @@ WALL_HEIGHT = 0.55  # likewise
 MAX_WALLS = 6
 MIN_LAYER = 0.02  # of the scene's area that a wall must hold, where it is found by positions alone
 SQUARE = 0.35  # sine of twice the angle by which walls that are found by positions alone may miss a right angle
+THICK = 4.0  # times the noise of the floor, from which a layer is no wall
 SHEET_CELLS = 10  # along each side of a wall
 SHEET_FILL = 0.5  # of its cells that must hold points
 
@@ -92,7 +93,7 @@ def ceiling_of(surface: Surface, flat: Level, free: NDArray[np.bool_]) -> Plane 
 
 
 def outer_layers(
-    flat: Level, area: NDArray[np.float32], spacing: float,
+    flat: Level, area: NDArray[np.float32], spacing: float, floor_noise: float,
     layer: Callable[[NDArray[np.float64], NDArray[np.floating], float, float], tuple[float, float]],
 ) -> list[tuple[NDArray[np.float64], float, float]]:  # fmt: skip
     """Walls and ceiling found by positions alone: planes at the edge of the scene in which points concentrate.
@@ -101,6 +102,8 @@ def outer_layers(
 
     Args:
         area: `[M]` weights.
+        floor_noise: standard deviation of the floor's points, scene units. A fit leaves all planes about as noisy; what
+            is much thicker than the floor is things in a row.
         layer: measures height and noise of a layer from heights, weights, a first height and the scene's size.
     """
     extent = extent_of(flat)
@@ -137,12 +140,14 @@ def outer_layers(
         off -= middle
         along = np.stack([flat.points @ across, flat.points[:, 2]], axis=1)
         least = np.array([WALL_LENGTH * extent[:2].max(), WALL_HEIGHT * extent[2]])
-        if _is_sheet(off, along, max(2 * noise, 2 * spacing, 0.004 * broad), least):
+        if noise < THICK * floor_noise and _is_sheet(off, along, max(2 * noise, 2 * spacing, 0.004 * broad), least):
             found.append((-outward, float((flat.points @ -outward - off).mean()), noise))
     off = float(np.quantile(flat.points[:, 2], 0.98)) - flat.points[:, 2]
     middle, noise = layer(off, area, 0.0, broad)
     off -= middle
-    if _is_sheet(off, flat.points[:, :2], max(2 * noise, 2 * spacing), 0.6 * extent[:2]):
+    if noise < THICK * floor_noise and _is_sheet(
+        off, flat.points[:, :2], max(2 * noise, 2 * spacing), 0.6 * extent[:2]
+    ):
         found.append((-UP, float((-flat.points[:, 2] - off).mean()), noise))
     return found
 

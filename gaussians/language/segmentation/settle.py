@@ -103,7 +103,7 @@ def _layers(surface: Surface, flat: Level, ground: Ground, noisy: bool) -> list[
         for at in ground.levels
     ]
     if noisy:
-        found = outer_layers(flat, surface.area, surface.spacing, layer)
+        found = outer_layers(flat, surface.area, surface.spacing, ground.noise, layer)
         for number, (normal, offset, noise) in enumerate(found):
             code = CEILING if normal[2] < -0.5 else WALL + KINDS * (number + 1)
             layers.append(_Layer(normal, offset, noise, DEPTH * width, code))
