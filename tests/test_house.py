@@ -29,7 +29,7 @@ MAY_IMPORT = {
     "agent": {"gaussians", "tools", "planners", "prompts", "agent", "benchmarks"},
     "prompts": {"prompts"},
     "benchmarks": {"gaussians", "tools", "planners", "agent", "prompts", "training", "benchmarks"},
-    "training": {"gaussians", "training"},
+    "training": {"gaussians", "planners", "training"},  # composed rooms are photographed and fitted too
 }
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..gaussians.language.segmentation import affinity
+from ..gaussians.language.segmentation.haze import HazyRule
 from ..gaussians.language.segmentation.learned_rule import Rule, rule_of
 from ..gaussians.language.segmentation.regions import Graph
 from ..gaussians.language.segmentation.segment import graph_of, superpoints_and_structure
@@ -52,14 +53,14 @@ def labelled_graph(scene: Scene, truth: NDArray[np.int32]) -> LabelledGraph:
     surface = settled(surface_of(scene.cloud), scene.cloud, scene.frame)
     links = links_of(surface)
     labels, kind_of = superpoints_and_structure(surface, links, scene.frame)
-    graph = graph_of(surface, links, labels, kind_of, scene.frame)
+    graph = graph_of(scene.cloud, surface, links, labels, kind_of, scene.frame)
     many = int(truth.max(initial=-1)) + 2
     counts = np.bincount(labels.astype(np.int64) * many + truth[surface.rows] + 1, minlength=len(kind_of) * many)
     rows = [m[0] for m in graph.members.values()]
     return LabelledGraph(graph, counts.reshape(-1, many)[rows].astype(np.float64))
 
 
-def collect_borders(known: LabelledGraph, rule: Rule | None, rng: np.random.Generator) -> Examples:
+def collect_borders(known: LabelledGraph, rule: Rule | HazyRule | None, rng: np.random.Generator) -> Examples:
     """Merge regions in the order of the rule (random if None) and return every border that occurs.
 
     Merges across objects are skipped, except for the share `WRONG_MERGES` of those that the rule would make.

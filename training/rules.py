@@ -15,6 +15,7 @@ import torch
 from numpy.typing import NDArray
 
 from ..gaussians.assets import Room, furnish
+from ..gaussians.language.segmentation.haze import HazyRule
 from ..gaussians.language.segmentation.learned_rule import Rule, rule_of
 from ..gaussians.scene import Scene
 
@@ -73,7 +74,7 @@ def fit(examples: Examples, names: tuple[str, ...], seed: int, steps: int) -> di
     }
 
 
-def judge(rule: Rule, examples: Examples) -> dict[str, float]:
+def judge(rule: Rule | HazyRule, examples: Examples) -> dict[str, float]:
     """Accuracy in each class, weighted by the cost of a mistake."""
     joined = rule.probability(examples.features) > 0.5
     return {

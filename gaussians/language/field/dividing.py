@@ -83,7 +83,7 @@ def pieces_of(cloud: GaussianCloud, frame: Frame, into: int) -> I32:
     labels = superpoints(surface, links)
     labels = np.unique(labels * (int(leaf.max()) + 1) + leaf, return_inverse=True)[1].astype(np.int32)
     size = np.bincount(labels)
-    nodes = _rooted(merge_tree(graph_of(surface, links, labels, np.zeros(len(size), np.int8), frame)), size)
+    nodes = _rooted(merge_tree(graph_of(cloud, surface, links, labels, np.zeros(len(size), np.int8), frame)), size)
     cut = _cut(nodes, np.array([int(size[list(n.members)].sum()) for n in nodes]), into)
     if cut is None:
         raise too_few

@@ -23,7 +23,7 @@ MAX_PROBES = 200  # points of a region from which distances are measured
 
 def build_graph(
     labels: NDArray[np.int32], points: F64, lab: F64, normals: F64, links: Links,
-    kind_of: NDArray[np.int8], spacing: float,
+    kind_of: NDArray[np.int8], spacing: float, haze: float = 0.0,
 ) -> Graph:  # fmt: skip
     """The adjacency graph of the superpoints that are not structure.
 
@@ -34,6 +34,7 @@ def build_graph(
         links: which points touch.
         kind_of: `[S]` structure kind of each superpoint, 0 for none.
         spacing: of the surface, scene units.
+        haze: of the scene, see `haze.py`.
     """
     chosen = np.flatnonzero(kind_of == 0)
     number = np.full(len(kind_of), -1)
@@ -48,7 +49,7 @@ def build_graph(
     distance = np.concatenate([np.zeros(int(inner.sum())), gap])
     weight = np.concatenate([links.weight[inner], np.zeros(len(gap))])
     key, borders = _borders(own[pairs], pairs, weight, distance, points, lab, normals)
-    return Graph(chosen, regions, key, borders, scale)
+    return Graph(chosen, regions, key, borders, scale, haze)
 
 
 def _regions(

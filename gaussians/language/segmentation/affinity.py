@@ -1,7 +1,7 @@
 """The probability that two adjacent regions are one object, from the features of their border, and the merge tree.
 
 The small network that computes the probability was fitted on furnished rooms with known objects
-(`training/affinity.py`).
+(`training/affinity.py`); in scenes fitted from photographs it is corrected (`haze.py`).
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import heapq
 import numpy as np
 
 from ..masks.evidence import Ledger
+from .haze import HazyRule, load_correction
 from .learned_rule import load_rule
 from .regions import F64, I64, Borders, Graph, Node, Regions
 
@@ -139,9 +140,14 @@ def _rests(upper: _Shape, lower: _Shape, contact: F64, level: F64) -> F64:
     return result
 
 
-def probability(described: F64) -> F64:
-    """Probability `[...]` that the regions on both sides of a border are one object, from its features `[..., F]`."""
-    return load_rule("affinity", FEATURES).probability(described)
+def probability(described: F64, haze: float = 0.0) -> F64:
+    """Probability `[...]` that the regions on both sides of a border are one object, from its features `[..., F]`.
+
+    Args:
+        haze: of the scene, see `haze.py`.
+    """
+    rule = HazyRule(load_rule("affinity", FEATURES), load_correction("affinity", FEATURES), haze)
+    return rule.probability(described)
 
 
 def merge_tree(graph: Graph, ledger: Ledger | None = None) -> list[Node]:
@@ -184,11 +190,12 @@ def _joint_probability(graph: Graph, ledger: Ledger | None, region: int, others:
     """Probability that a region and each of some others are one object, from geometry and from masks."""
     pairs = [(min(region, o), max(region, o)) for o in others]
     if ledger is None:
-        return probability(features(graph, pairs))
+        return probability(features(graph, pairs), graph.haze)
     touching = np.array([o in graph.around[region] for o in others])
     odds = np.full(len(others), APART)
     if touching.any():
-        odds[touching] = _log_odds(probability(features(graph, [q for q, t in zip(pairs, touching, strict=True) if t])))
+        near = [q for q, t in zip(pairs, touching, strict=True) if t]
+        odds[touching] = _log_odds(probability(features(graph, near), graph.haze))
     return 1 / (1 + np.exp(-np.clip(ledger.joined(region, others, odds), -30, 30)))
 
 
@@ -197,7 +204,9 @@ def border_odds(graph: Graph) -> tuple[I64, I64, F64]:
     they are one object."""
     pairs = graph.pairs()
     ends = np.array([[graph.members[i][0], graph.members[j][0]] for i, j in pairs], np.int64).reshape(-1, 2)
-    return ends[:, 0], ends[:, 1], _log_odds(probability(features(graph, pairs))) if pairs else np.zeros(0)
+    if not pairs:
+        return ends[:, 0], ends[:, 1], np.zeros(0)
+    return ends[:, 0], ends[:, 1], _log_odds(probability(features(graph, pairs), graph.haze))
 
 
 def _log_odds(likely: F64) -> F64:

@@ -86,16 +86,19 @@ class Borders:
 class Graph:
     """Regions and borders under merging. A merged region gets a new number, so that outdated pairs are recognised."""
 
-    def __init__(self, superpoint: I64, regions: Regions, ends: I64, borders: Borders, scale: float) -> None:
+    def __init__(
+        self, superpoint: I64, regions: Regions, ends: I64, borders: Borders, scale: float, haze: float = 0.0
+    ) -> None:
         """Args:
         superpoint: `[R]` superpoint of each region.
         ends: `[B, 2]` regions of each border, the smaller number first.
         scale: typical size of a region, scene units.
+        haze: of the scene, see `haze.py`.
         """
         count = len(superpoint)
         self.regions = Regions(*(_padded(a, max(2 * count - 1, 0)) for a in vars(regions).values()))
         self.borders = Borders(*(a.copy() for a in vars(borders).values()))
-        self.scale = scale
+        self.scale, self.haze = scale, haze
         self.members: dict[int, tuple[int, ...]] = {i: (int(s),) for i, s in enumerate(superpoint)}
         self.around: dict[int, dict[int, int]] = {i: {} for i in self.members}
         self.next = count

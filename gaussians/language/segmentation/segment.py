@@ -13,6 +13,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from ...cloud import GaussianCloud
 from ...scene import Frame, Scene
 from ..encoders import Encoder
 from ..encoders.probability import wholeness
@@ -23,6 +24,7 @@ from .adjacency import build_graph
 from .affinity import merge_tree
 from .borders import refine_borders
 from .group_renders import mean_vectors
+from .haze import haze_of
 from .mask_cuts import dividing, ledger_of, pieces_of, revised_by_masks
 from .regions import Graph, Node
 from .superpoints import Links, links_of, superpoints, touching
@@ -88,11 +90,11 @@ def segment(
     """
     links = links_of(surface)
     labels, codes = superpoints_and_structure(surface, links, scene.frame)
-    graph = graph_of(surface, links, labels, codes, scene.frame)
+    graph = graph_of(scene.cloud, surface, links, labels, codes, scene.frame)
     ledger = None
     if sources:
         labels, codes = revised_by_masks(surface, links, labels, codes, graph, sources)
-        graph = graph_of(surface, links, labels, codes, scene.frame)
+        graph = graph_of(scene.cloud, surface, links, labels, codes, scene.frame)
         ledger = ledger_of(surface, graph, labels, sources)
     count = len(codes)
     nodes = merge_tree(graph, ledger)
@@ -148,11 +150,15 @@ def superpoints_and_structure(
     return labels, codes
 
 
-def graph_of(surface: Surface, links: Links, labels: NDArray[np.int32], codes: NDArray[np.int8], frame: Frame) -> Graph:
+def graph_of(
+    cloud: GaussianCloud, surface: Surface, links: Links, labels: NDArray[np.int32], codes: NDArray[np.int8],
+    frame: Frame,
+) -> Graph:  # fmt: skip
     """The adjacency graph of the superpoints that are not structure, in the level frame."""
     flat = planes.level(surface, frame)
-    lab = surface.lab.astype(np.float64)
-    return build_graph(labels, flat.points, lab, flat.normals, links, structure.kind_of(codes), surface.spacing)
+    lab, kinds = surface.lab.astype(np.float64), structure.kind_of(codes)
+    haze = haze_of(cloud, surface.rows)
+    return build_graph(labels, flat.points, lab, flat.normals, links, kinds, surface.spacing, haze)
 
 
 def _evidence(
