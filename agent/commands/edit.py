@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -35,6 +36,7 @@ from ..terminal.output import error_json, terminal
 
 if TYPE_CHECKING:
     from ...gaussians.errors import UnconfirmedError
+    from ..session.replay import Replay
     from ..session.result import Result
     from ..session.session import Session
 
@@ -61,7 +63,11 @@ def command(
     ] = None,
     log: Log = None,
     replay: Annotated[
-        Path | None, typer.Option("--replay", metavar="LOG", help="Repeat the edits of the last session in a log.")
+        Path | None, typer.Option("--replay", metavar="LOG", help="Repeat the edits of a session in a log.")
+    ] = None,
+    session_of_log: Annotated[
+        str | None,
+        typer.Option("--session", metavar="ID", help="With --replay: the session, by id or number; default the last."),
     ] = None,
     up: Up = None,
     metres_per_unit: Scale = None,
@@ -92,6 +98,9 @@ def command(
         raise UserError('give either TEXT or --replay LOG: scenewright edit SCENE "make the sofa teal" -o out.ply')
     if output is None and not dry_run:
         raise UserError("say where to write the edited scene: -o out.ply (or try it first with --dry-run)")
+    if session_of_log is not None and replay is None:
+        raise UserError("--session names a session of a log; give the log with --replay")
+    chosen = _logged(replay, session_of_log) if replay is not None else None
     _check_targets(None if dry_run else output, pictures, force)
     started = time.perf_counter()
     seconds: dict[str, float] = {}
@@ -104,11 +113,11 @@ def command(
     with timed(seconds, "open"):
         session, had_field = open_session(options)
     targets = _Targets(None if dry_run else output, pictures, force, had_field)
-    results = [_instruct(session, str(text), dry_run)] if replay is None else _replay(session, replay)
-    lines, data = _report(results, replay is not None, dry_run)
-    with timed(seconds, "write"):
-        _write(session, results, targets, data)
-    session.close()
+    with closing(session):
+        results = [_instruct(session, str(text), dry_run)] if chosen is None else _replay(session, chosen)
+        lines, data = _report(results, chosen, dry_run)
+        with timed(seconds, "write"):
+            _write(session, results, targets, data)
     spent = {**data.pop("seconds", {}), **seconds, "total": time.perf_counter() - started}
     data["seconds"] = {stage: round(value, 3) for stage, value in spent.items()}
     lines += ["dry run: no scene was written"] if dry_run else [f"wrote {data['output']}"]
@@ -177,27 +186,44 @@ def _confirmed(session: Session, error: UnconfirmedError, dry_run: bool) -> Resu
     raise UnconfirmedError(f"{error}; nothing was changed. --yes goes on with it")
 
 
-def _replay(session: Session, log: Path) -> list[Result]:
-    """The edits of the last session in a log, carried out on this session; in a dry run nothing is written."""
+def _logged(log: Path, which: str | None) -> Replay:
+    """The session of a log that is replayed; says what is wrong with the log, which session it is, and of how many."""
+    from ..session.log import read_log
+    from ..session.log_sessions import logged_session, problems, sessions_of
+    from ..session.replay import Replay
+
+    content = read_log(log)
+    for problem in problems(content):
+        terminal.say(f"note: in the log {log}: {problem}")
+    chosen = logged_session(log, -1 if which is None else which)
+    terminal.say(f"replaying {chosen.describe()} of the {len(sessions_of(content))} in {log}")
+    return Replay(log, chosen)
+
+
+def _replay(session: Session, replay: Replay) -> list[Result]:
+    """The edits of a session in a log, carried out on this session; in a dry run nothing is written."""
     from ...gaussians.errors import UnconfirmedError, UserError
 
     try:
-        replayed = session.replay(log)
+        replayed = session.replay(replay.log, session=replay.session.number - 1)
     except UnconfirmedError as error:
         raise UnconfirmedError(f"{error}. --yes goes on with it") from error
+    for note in filter(None, (r.note for r in replayed)):
+        terminal.say(f"note: {note}")
     results = [r.result for r in replayed if r.result is not None]
     if not results:
-        raise UserError(f"the last session in {log} did nothing that could be replayed")
+        raise UserError(f"{replay.session.describe()} in {replay.log} did nothing that could be replayed")
     return results
 
 
-def _report(results: Sequence[Result], replayed: bool, dry_run: bool) -> tuple[list[str], dict[str, Any]]:
+def _report(results: Sequence[Result], replay: Replay | None, dry_run: bool) -> tuple[list[str], dict[str, Any]]:
     """The results as lines and as data."""
-    if not replayed:
+    if replay is None:
         return _lines(results[0], dry_run), results[0].to_json()
     lines = [line for result in results for line in (f"> {result.text}", *_lines(result, dry_run))]
     rows = [r.to_json() for r in results]
-    return lines, {"verdict": "ok", "replayed": rows, "dry_run": dry_run, "gaussians": rows[-1]["gaussians"]}
+    data = {"verdict": "ok", "session": replay.session.to_json(), "replayed": rows, "dry_run": dry_run}
+    return lines, {**data, "gaussians": rows[-1]["gaussians"]}
 
 
 def _lines(result: Result, dry_run: bool) -> list[str]:

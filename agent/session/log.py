@@ -5,17 +5,21 @@ Secrets are removed before anything is written: see `scrub`.
 
 Schema version 1. Every record has `v`, `seq` (1, 2, ... through the file), `time` (UTC, ISO 8601) and `kind`:
 
-    open    scenewright, scene (path or null), gaussians, digest     a session begins; undo never goes back before it
+    open    session, continues, scenewright, scene (path or null), gaussians, digest, file
+                                                                     a session begins; undo never goes back before it
     embed   encoder, things, before, after                           a language field was added to the scene; no edit
-    do      text, plan, receipts, before, after, seconds             an instruction was carried out
+    do      text, it, plan, receipts, selection, before, after, seconds
+                                                                     an instruction was carried out
     failed  text, plan (or null), error, message, before             an instruction was refused; nothing was changed
     undo    text, before, after                                      the last `do` was undone
     redo    text, before, after                                      the last `undo` was redone
-    save    path, digest                                             the scene was written to a file
+    save    path, digest, file                                       the scene was written to a file
 
-`before` and `after` are SHA-256 digests of the cloud, so that a reader can check that the records form a chain. The
-functions `*_fields` give the fields of a record. A session without a log does not call them, as digests of large clouds
-take time.
+`session` is the id of the session, `continues` that of the earlier one that ended with this scene, or null; `file` is
+the SHA-256 digest of the scene file's bytes; `it` and `selection` are what "it" referred to before and after. Logs of
+earlier versions lack some of these. `before` and `after` are SHA-256 digests of the cloud, so that a reader can check
+that the records form a chain. The functions `*_fields` give the fields of a record. A session without a log does not
+call them, as digests of large clouds take time.
 """
 
 from __future__ import annotations
@@ -32,6 +36,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from ...gaussians.errors import FileError, ScenewrightError
+from .log_lock import LogLock
 
 if TYPE_CHECKING:
     from ...planners.plan import EditPlan
@@ -72,21 +77,34 @@ class SessionLog:
     """An append-only log file. Each record is on the disk when `append` returns.
 
     An existing log is continued: its records stay and the numbering goes on. If a crash cut the last line short, the
-    next record begins on a new line, so that the damaged line does not spoil it.
+    next record begins on a new line, so that the damaged line does not spoil it. Until it is closed, no other session
+    can open the log.
+
+    Attributes:
+        found: what the log held when it was opened.
 
     Raises:
-        FileError: the file cannot be opened or written.
+        FileError: the file cannot be opened or written, or another session has it open.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = Path(path)
+        self._fd = -1
+        self._lock = LogLock(self.path)
         try:
-            content = read_log(self.path) if self.path.exists() else LogContent((), ())
+            self._open()
+        except BaseException:
+            self.close()
+            raise
+
+    def _open(self) -> None:
+        try:
+            self.found = read_log(self.path) if self.path.exists() else LogContent((), ())
             self._fd = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND | getattr(os, "O_CLOEXEC", 0), 0o644)
         except OSError as error:
             raise FileError(f"cannot open the session log {self.path}: {error.strerror}") from error
         self._torn = _ends_torn(self.path)
-        self._seq = max((r["seq"] for r in content.records), default=0)
+        self._seq = max((r["seq"] for r in self.found.records), default=0)
 
     def append(self, kind: str, fields: Mapping[str, Any]) -> Record:
         """Write one record and force it to the disk; returns it as written.
@@ -114,6 +132,7 @@ class SessionLog:
         if self._fd >= 0:
             os.close(self._fd)
             self._fd = -1
+        self._lock.release()
 
     def __enter__(self) -> Self:
         return self
@@ -169,6 +188,7 @@ def open_fields(state: State) -> dict[str, Any]:
         "scene": str(scene.path) if scene.path else None,
         "gaussians": len(scene.cloud),
         "digest": state.digest,
+        "file": _file_digest(scene.path),
     }
 
 
@@ -181,12 +201,14 @@ def embed_fields(before: State, after: State) -> dict[str, Any]:
 
 
 def do_fields(result: Result, before: State, after: State) -> dict[str, Any]:
-    """Fields of `do`. The plan holds its planner, prompt hash and model usage; `it` what "it" referred to."""
+    """Fields of `do`. The plan holds its planner, prompt hash and model usage."""
+    left = result.selection
     return {
         "text": result.text,
         "it": list(before.last.groups) if before.last is not None else [],
         "plan": result.plan.model_dump(mode="json") if result.plan is not None else None,
         "receipts": [r.model_dump(mode="json") for r in result.receipts],
+        "selection": {"groups": list(left.groups), "gaussians": len(left)} if left is not None else None,
         "before": before.digest,
         "after": after.digest,
         "seconds": dict(result.seconds),
@@ -211,7 +233,16 @@ def step_fields(text: str, before: State, after: State) -> dict[str, Any]:
 
 def save_fields(path: str | Path, state: State) -> dict[str, Any]:
     """Fields of `save`."""
-    return {"path": str(path), "digest": state.digest}
+    return {"path": str(path), "digest": state.digest, "file": _file_digest(Path(path))}
+
+
+def _file_digest(path: Path | None) -> str | None:
+    """The digest of a scene file's bytes; None if it is no longer there."""
+    from ...gaussians.language.field.store import fingerprint
+
+    if path is None or not path.exists():
+        return None
+    return fingerprint(path)
 
 
 def _clean(value: Any) -> Any:

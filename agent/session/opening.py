@@ -85,6 +85,8 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
         vlm=options.vlm,
         accept_unconfirmed=options.accept_unconfirmed,
     )
+    for note in session.log_notes:
+        terminal.say(f"note: {note}")
     if options.view != "auto" or options.size is not None:
         session.viewer = choose_view(session.scene, options.view, options.size)
     return session, scene.language is not None

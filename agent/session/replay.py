@@ -5,77 +5,114 @@ The whole session is read before the first plan is run.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
-from ...gaussians.errors import FileError, ScenewrightError, UserError
+from ...gaussians.errors import FileError, ScenewrightError
 from ...gaussians.language.query.nested import exchange, queries
-from .log import Record, read_log
+from .log import Record
+from .log_sessions import LoggedSession, logged_session
+from .refusal import with_message
 from .result import Result
 
 if TYPE_CHECKING:
+    from ...gaussians.language.query.selection import Selection
+    from ...gaussians.scene import Scene
     from ...planners.plan import EditPlan
 
 
 @dataclass(frozen=True)
+class Replay:
+    """A session of a log that is to be replayed."""
+
+    log: Path
+    session: LoggedSession
+
+
+@dataclass(frozen=True)
 class Replayed:
-    """One instruction of a replay: its result on this scene, or the error."""
+    """One instruction of a replay: its result on this scene, or the error; a note if it led to another scene than the
+    log says."""
 
     text: str
     result: Result | None
     error: ScenewrightError | None
+    note: str = ""
 
 
 @dataclass(frozen=True)
 class LoggedEdit:
-    """An edit of a logged session: its words, its plan, the digest of the cloud before it, and the groups that "it"
-    referred to, which a question or a selection between edits may have set."""
+    """An edit of a logged session: its words, its plan, the digests of the cloud before and after it, and the groups
+    that "it" referred to, which a question or a selection between edits may have set."""
 
     text: str
     plan: EditPlan
     before: str | None
     it: tuple[int, ...] = ()
+    after: str | None = None
 
     def plan_for(self, digest: str) -> EditPlan:
         """The plan for the cloud with this digest; on another cloud than the logged one, without group ids."""
         return self.plan if self.before == digest else portable(self.plan)
 
+    def difference(self, before: str, after: str) -> str:
+        """A sentence if the same cloud as the logged one was edited to another one; else ""."""
+        if before != self.before or self.after in (None, after):
+            return ""
+        return f"{self.text!r} led to another scene than in the log: the digests do not match"
 
-def logged_edits(log: str | Path, session: int) -> list[LoggedEdit]:
+
+def logged_edits(log: str | Path, session: int | str) -> list[LoggedEdit]:
     """The edits of a session that were not undone, oldest first.
 
     Args:
-        session: which of the sessions in the log, counted from the first (0) or the last (-1).
+        session: which of the sessions in the log, as `logged_session` takes it.
 
     Raises:
         FileError: the log cannot be read.
         UserError: it holds no such session.
     """
-    sessions = read_log(log).sessions()
-    if not sessions:
-        raise UserError(f"{log} holds no session; give a log written with --log")
-    if not -len(sessions) <= session < len(sessions):
-        raise UserError(f"{log} holds {len(sessions)} sessions; there is no session {session}")
     return [
-        LoggedEdit(str(r["text"]), read_plan(r, log), r.get("before"), tuple(r.get("it") or ()))
-        for r in not_undone(sessions[session])
+        LoggedEdit(str(r["text"]), read_plan(r, log), r.get("before"), tuple(r.get("it") or ()), r.get("after"))
+        for r in logged_session(log, session).edits
     ]
 
 
-def not_undone(records: list[Record]) -> list[Record]:
-    """The `do` records of a session that were not undone, or were redone."""
-    done: list[Record] = []
-    undone: list[Record] = []
-    for record in records:
-        if record["kind"] == "do":
-            done.append(record)
-            undone.clear()
-        elif record["kind"] == "undo" and done:
-            undone.append(done.pop())
-        elif record["kind"] == "redo" and undone:
-            done.append(undone.pop())
-    return done
+class Edited(Protocol):
+    """The part of `session.Session` that a replay uses."""
+
+    @property
+    def digest(self) -> str: ...
+    @property
+    def last(self) -> Selection | None: ...
+    def embed(self) -> Scene: ...
+    def remember(self, groups: tuple[int, ...]) -> None: ...
+    def apply(self, plan: EditPlan) -> Result: ...
+    def undo(self) -> Result: ...
+
+
+def replay_edits(session: Edited, edits: Sequence[LoggedEdit], skip_failed: bool) -> list[Replayed]:
+    """Carry out logged edits on a session; see `Session.replay`."""
+    outcome: list[Replayed] = []
+    for edit in edits:
+        try:
+            before = session.digest
+            if edit.it and before == edit.before and (session.last is None or session.last.groups != edit.it):
+                session.embed()
+                session.remember(edit.it)
+                before = session.digest
+            result = session.apply(edit.plan_for(before))
+            outcome.append(Replayed(edit.text, result, None, edit.difference(before, session.digest)))
+        except ScenewrightError as error:
+            if not skip_failed:
+                for _ in outcome:
+                    session.undo()
+                message = f"replay stopped at {edit.text!r}, all of it was undone: {error}"
+                raise with_message(error, message) from error
+            outcome.append(Replayed(edit.text, None, error))
+    return outcome
 
 
 def read_plan(record: Record, source: str | Path) -> EditPlan:

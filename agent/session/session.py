@@ -25,11 +25,12 @@ from .clarify import Question, plan_with_answer, plan_with_query
 from .embedding import embedded_by
 from .history import History, State
 from .judge import Judge, JudgedError, known_judge
+from .log_sessions import Beginning, begin
 from .observation import graph_of, picture_of
 from .plan_runner import PlanFailed, has_queries, run_plan
 from .planner_client import PlannerClient, is_dismissal, undo_or_redo
 from .refusal import refusal, with_message
-from .replay import Replayed, logged_edits
+from .replay import Replayed, logged_edits, replay_edits
 from .result import Result
 from .sight import needs_sight, point_out, with_source
 from .vision_client import VisionClient
@@ -79,6 +80,7 @@ class Session:
         question: the open question: an ambiguous query with its candidates, an absent one with the nearest things, or
             an unconfirmed one with what was chosen; None if there is none.
         accept_unconfirmed: edit what was chosen although its name is not confirmed, without asking.
+        log_notes: remarks about an existing log: the session that this one continues, broken lines, missing records.
         pixel_checks: also compare the viewer's picture before and after each operation.
 
     Raises:
@@ -118,7 +120,9 @@ class Session:
         self.question: Question | None = None
         self._history = History(State(scene))
         self._log = session_log.SessionLog(log) if log is not None else None
-        self._record("open", session_log.open_fields, self._history.present)
+        self.log_notes: tuple[str, ...] = ()
+        if self._log is not None:
+            self._take_over(begin(self._log, self._history.present))
 
     # -- state ------------------------------------------------------------------------------------------------------
 
@@ -126,6 +130,16 @@ class Session:
     def scene(self) -> Scene:
         """The present scene."""
         return self._history.present.scene
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 digest of the present cloud, as in the log."""
+        return self._history.present.digest
+
+    @property
+    def log_path(self) -> Path | None:
+        """The session log, if there is one."""
+        return self._log.path if self._log is not None else None
 
     @property
     def last(self) -> Selection | None:
@@ -392,6 +406,11 @@ class Session:
             last = found if found.chosen else None
         self._history.amend(replace(self._history.present, last=last, context=text or ""))
 
+    def remember(self, groups: tuple[int, ...]) -> None:
+        """Let "it" refer to these groups; the scene must be embedded."""
+        found = self._context(None).resolve(self.scene, Query(groups=groups[:256]))
+        self._history.amend(replace(self._history.present, last=found))
+
     # -- questions --------------------------------------------------------------------------------------------------
 
     def ask(self, text: str) -> Answer:
@@ -413,8 +432,7 @@ class Session:
         if self._vision and reading.sight:
             given = see_answer(text, given, survey, self.scene, self.viewer, self._vision)
         if groups := tuple(id for id in topic(given, survey) if isinstance(id, int)):
-            found = self._context(None).resolve(self.scene, Query(groups=groups[:256]))
-            self._history.amend(replace(self._history.present, last=found))
+            self.remember(groups)
         return given
 
     def describe(self) -> Description:
@@ -457,7 +475,7 @@ class Session:
         self.embed()
         return self._asker.survey(self.scene, self.viewer, self.encoder, self.last)
 
-    def replay(self, log: str | Path, *, session: int = -1, skip_failed: bool = False) -> list[Replayed]:
+    def replay(self, log: str | Path, *, session: int | str = -1, skip_failed: bool = False) -> list[Replayed]:
         """Carry out the edits of a logged session on this scene.
 
         Words are resolved again; group ids are used only where the cloud is the same. Instructions that were undone are
@@ -465,7 +483,7 @@ class Session:
 
         Args:
             log: a session log.
-            session: which of the sessions in it, counted from the first (0) or the last (-1).
+            session: which of the sessions in it, counted from the first (0) or the last (-1); or its id.
             skip_failed: report an instruction that cannot be carried out here and go on; without it the replayed edits
                 are undone and the error is raised.
 
@@ -473,23 +491,7 @@ class Session:
             FileError: the log cannot be read.
             UserError: it holds no such session.
         """
-        outcome: list[Replayed] = []
-        for edit in logged_edits(log, session):
-            try:
-                other = edit.it and (self.last is None or self.last.groups != edit.it)
-                if other and self.embed() and edit.before == self._history.present.digest:
-                    last = self._context(None).resolve(self.scene, Query(groups=edit.it[:256]))
-                    self._history.amend(replace(self._history.present, last=last))
-                result = self.apply(edit.plan_for(self._history.present.digest))
-                outcome.append(Replayed(edit.text, result, None))
-            except ScenewrightError as error:
-                if not skip_failed:
-                    for _ in outcome:
-                        self.undo()
-                    message = f"replay stopped at {edit.text!r}, all of it was undone: {error}"
-                    raise with_message(error, message) from error
-                outcome.append(Replayed(edit.text, None, error))
-        return outcome
+        return replay_edits(self, logged_edits(log, session), skip_failed)
 
     # -- undo and redo ----------------------------------------------------------------------------------------------
 
@@ -542,6 +544,17 @@ class Session:
         """Write a record into the log, if there is one; `fields` is called only then."""
         if self._log is not None:
             self._log.append(kind, fields(*args, **kwargs))
+
+    def _take_over(self, earlier: Beginning) -> None:
+        """Take over the notes, the last instruction and the selection of the session that this one continues."""
+        self.log_notes = earlier.notes
+        if not earlier.context:
+            return
+        self._history.amend(replace(self._history.present, context=earlier.context))
+        if earlier.groups and self.scene.language is not None:
+            found = self._context(None).resolve(self.scene, Query(groups=earlier.groups[:256]))
+            if len(found) == earlier.gaussians:
+                self._history.amend(replace(self._history.present, last=found))
 
     def _carry_out(self, plan: EditPlan, seconds: dict[str, float], *, dry_run: bool) -> tuple[Result, State]:
         self.question = None

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from ...planners.plan import EditPlan
     from ..session.result import Result
     from ..session.session import Session
+    from .output import Terminal
 
 STEP = 0.05  # metres, default distance by which a selection grows or shrinks
 _EXAMPLES = (
@@ -27,6 +28,7 @@ class Conversation(Protocol):
     """The part of `chat.Chat` that commands use."""
 
     session: Session
+    terminal: Terminal
     planned: EditPlan | None
     saved: bool
     ended: bool
@@ -160,6 +162,26 @@ def _history(chat: Conversation, _: str) -> None:
     chat.tell("\n".join(f"  {i}. {t}" for i, t in enumerate(done, 1)) or "nothing was done yet", {"done": list(done)})
 
 
+def _replay(chat: Conversation, which: str) -> None:
+    from ..session.log import read_log
+    from ..session.log_sessions import logged_session, sessions_of
+
+    log = chat.session.log_path
+    if log is None:
+        raise UserError("this chat has no log; begin it with --log FILE")
+    earlier = sessions_of(read_log(log))[:-1]
+    if not earlier:
+        raise UserError(f"{log} holds no session before this one")
+    chosen = logged_session(log, which) if which else earlier[-1]
+    replayed = chat.session.replay(log, session=chosen.number - 1)
+    chat.tell(f"replayed {chosen.describe()}", {"verdict": "ok", "session": chosen.to_json()})
+    for done in replayed:
+        if done.note:
+            chat.terminal.say(f"note: {done.note}")
+        if done.result is not None:
+            chat.show_result(done.result)
+
+
 def _save(chat: Conversation, arguments: str) -> None:
     try:
         words = shlex.split(arguments)
@@ -200,6 +222,7 @@ SLASH_COMMANDS: dict[str, SlashCommand] = {
     "/planner": SlashCommand("[NAME]: the planner and what its models cost; with a name, change the planner", _planner),
     "/judge": SlashCommand("[NAME|on|off]: judge each edit after it was made; alone: who judges", _judge),
     "/history": SlashCommand("list the instructions that led to this scene", _history),
+    "/replay": SlashCommand("[ID]: repeat the edits of an earlier session in the log; alone: the last one", _replay),
     "/save": SlashCommand("FILE [--force]: write the scene", _save),
     "/quit": SlashCommand("end the chat", _quit),
 }

@@ -254,6 +254,23 @@ def test_edit_replays_a_log(call: Any, room: Path, tmp_path: Path) -> None:
     assert (tmp_path / "a.ply").read_bytes() == (tmp_path / "b.ply").read_bytes()
 
 
+def test_a_replay_names_its_session_and_tells_what_is_wrong_with_the_log(call: Any, room: Path, tmp_path: Path) -> None:
+    log = tmp_path / "log.jsonl"
+    assert call("edit", room, "delete the green thing", "-o", tmp_path / "a.ply", "--log", log).code == 0
+    assert call("edit", room, "delete the purple thing", "-o", tmp_path / "b.ply", "--log", log).code == 3
+    second = call("edit", room, "make the green thing blue", "-o", tmp_path / "b.ply", "--log", log)
+    assert second.code == 0 and "begins in a log that holds 2 before it" in second.err
+    log.write_text(log.read_text() + '{"v": 1, "se')
+    id = read_log(log).sessions()[0][0]["session"]
+    answer = call("edit", room, "--replay", log, "--session", id, "-o", tmp_path / "c.ply", "--json")
+    assert answer.code == 0 and answer.data["session"] == {"number": 1, "id": id, "edits": 1}
+    assert f"replaying session 1 ({id}, 1 edit) of the 3" in answer.err and "not a whole record" in answer.err
+    assert (tmp_path / "a.ply").read_bytes() == (tmp_path / "c.ply").read_bytes()
+    answer = call("edit", room, "--replay", log, "--session", "9", "-o", tmp_path / "d.ply")
+    assert answer.code == 2 and "no session 9" in answer.err and not (tmp_path / "d.ply").exists()
+    assert call("edit", room, "delete the box", "--session", id, "-o", tmp_path / "d.ply").code == 2
+
+
 def test_the_groups_of_a_field_of_another_encoder_are_named_anew(
     call: Any, room: Path, encoder: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -22,10 +22,10 @@ from scenewright.agent.terminal.output import Terminal
 from scenewright.gaussians.scene import Scene
 
 
-def _talk(scene: Scene, encoder: Any, *lines: str) -> tuple[Session, str, str]:
+def _talk(scene: Scene, encoder: Any, *lines: str, log: Path | None = None) -> tuple[Session, str, str]:
     """The session, stdout and stderr after these lines were typed."""
     terminal = Terminal(io.StringIO(), io.StringIO())
-    session = Session(scene, encoder=encoder)
+    session = Session(scene, encoder=encoder, log=log)
     with create_pipe_input() as pipe:
         pipe.send_text("".join(f"{line}\r" for line in (*lines, "/quit")))
         Chat(session, terminal, pipe, DummyOutput()).run()
@@ -101,6 +101,18 @@ def test_commands(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
     assert "there is no command /nonsense" in out
     assert target.is_file() and "not saved" not in err
     assert session.done == ("make the green thing blue",)
+
+
+def test_what_an_earlier_chat_did_can_be_done_again(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
+    log = tmp_path / "s.jsonl"
+    first, _, _ = _talk(boxes, encoder, "delete the green thing", "/replay", log=log)
+    first.close()
+    second, out, _ = _talk(boxes, encoder, "/replay", "/replay nobody", log=log)
+    second.close()
+    assert second.done == ("delete the green thing",) and "replayed session 1" in out and "no session nobody" in out
+    assert second.digest == first.digest
+    _, out, _ = _talk(boxes, encoder, "/replay")
+    assert "begin it with --log FILE" in out
 
 
 def test_errors_are_one_sentence_and_the_conversation_goes_on(boxes: Scene, encoder: Any) -> None:
