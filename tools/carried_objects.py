@@ -17,7 +17,7 @@ from ..gaussians.language.field.language_field import Group, LanguageField
 from ..gaussians.language.query.selection import Selection
 from ..gaussians.scene import Scene
 from ..gaussians.world.support import is_sheet, standing_on
-from .contact import held_by
+from .contact import held_by, touching
 from .field_update import rows_in
 from .placement.bodies import Body, bodies_of, body_of, mask_of_bodies
 
@@ -72,6 +72,8 @@ def carried_on(scene: Scene, body: Body) -> tuple[int, ...]:
         return ()
     own = [body.group] if body.group >= 0 else _owners(field, scene.cloud.group[body.rows])
     found = carried_by(scene, own) if body.group >= 0 else _carried(scene, field, [_region(body)], own)
+    if scene.frame.metres_per_unit is None:  # boxes of captures reach far: what does not touch it does not stand on it
+        found = touching(scene, body, found)
     return (*found, *held_by(scene, body, (*own, *found)))
 
 

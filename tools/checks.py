@@ -78,7 +78,7 @@ def supported(after: Scene, moved: tuple[Affine, ...]) -> Check | None:
 
 def collision_free(after: Scene, moved: tuple[Affine, ...]) -> Check | None:
     """Number of solid points of other things inside a placed body; None if nothing was placed."""
-    placed = [body for body in moved if body.support is not None]
+    placed = [body for body in moved if body.support is not None and not body.touches]
     if not placed:
         return None
     worst, bound = 0, 0.0

@@ -56,6 +56,39 @@ def held_by(scene: Scene, body: Body, but: Iterable[int]) -> tuple[int, ...]:
         carrying |= np.isin(owner, [leaf for g in fresh for leaf in leaves[g.id]])
 
 
+def touching(scene: Scene, body: Body, groups: tuple[int, ...]) -> tuple[int, ...]:
+    """Those of some objects over a body that touch it, or another of them; and those that touch nothing else."""
+    field = scene.language
+    if field is None or not groups:
+        return groups
+    cloud = scene.cloud
+    near = _near(scene, body, [field.groups[g] for g in groups])
+    points, owner = cloud.means[near].cpu().numpy(), cloud.group[near].cpu().numpy()
+    carrying = torch.zeros(len(cloud), dtype=torch.bool, device=cloud.device)
+    carrying[body.rows] = True
+    held, kept = carrying[near].cpu().numpy(), []
+    touch = _TOUCH * max(body.box.size)
+    for group in sorted(groups, key=lambda g: field.groups[g].box.bottom(scene.frame.up_vector)):
+        leaves = set(field.leaves(group))
+        met = _contacts(points, owner, leaves, touch)
+        if len(met) <= _FEW or held[met].sum() > _FEW:
+            kept.append(group)
+            held |= np.isin(owner, list(leaves))
+    return tuple(g for g in groups if g in kept)
+
+
+def _contacts(
+    points: NDArray[np.float32], owner: NDArray[np.int32], leaves: set[int], touch: float
+) -> NDArray[np.intp]:
+    """Indices of the points nearest to those of a thing, within the distance `touch`; one for each that has any."""
+    mine = np.isin(owner, list(leaves))
+    if mine.all() or not mine.any():
+        return np.zeros(0, dtype=np.intp)
+    own = points[mine][:: max(1, int(mine.sum()) // _SAMPLE)]
+    gap, at = cKDTree(points[~mine]).query(own, distance_upper_bound=touch)
+    return np.flatnonzero(~mine)[at[np.isfinite(gap)]]
+
+
 def _is_above(scene: Scene, body: Body, group: Group) -> bool:
     """Whether an object that needs something under it is over a body's footprint, and not beside it."""
     if not group.count or group.id == body.group or max(group.box.size) > 2 * max(body.box.size):
@@ -92,12 +125,5 @@ def _is_held(
         carrying: `[M]` whether it is of what carries.
         leaves: groups of the thing.
     """
-    mine = np.isin(owner, list(leaves))
-    if mine.all() or not mine.any():
-        return False
-    own = points[mine][:: max(1, int(mine.sum()) // _SAMPLE)]
-    gap, at = cKDTree(points[~mine]).query(own, distance_upper_bound=touch)
-    met = np.isfinite(gap)
-    if met.sum() <= _FEW:
-        return False
-    return float(carrying[~mine][at[met]].mean()) >= _HELD
+    met = _contacts(points, owner, leaves, touch)
+    return len(met) > _FEW and float(carrying[met].mean()) >= _HELD

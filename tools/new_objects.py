@@ -281,6 +281,6 @@ def add_obstacle(cloud: GaussianCloud, scene: Scene, around: Surroundings) -> No
         around.add_obstacle(points.astype(np.float64), contact_box(points.astype(np.float64), scene.frame))
 
 
-def affine_of(rows: Tensor, support: float | None) -> Affine:
+def affine_of(rows: Tensor, support: float | None, touches: bool = False) -> Affine:
     """A new object (its rows of the new cloud) for the checks: it has no old rows, only a support."""
-    return Affine(rows, np.eye(3), np.zeros(3), rows[:0], support)
+    return Affine(rows, np.eye(3), np.zeros(3), rows[:0], support, touches)

@@ -172,6 +172,7 @@ class Affine:
         offset: `[3]` float64, scene units.
         source: `[M]` int64 rows of the old cloud they come from; empty for new objects.
         support: height along up of the surface it was put on, scene units; None if it was not put anywhere.
+        touches: whether it was put where other things reach into its place, which the notes tell.
     """
 
     rows: Tensor
@@ -179,6 +180,7 @@ class Affine:
     offset: NDArray[np.float64]
     source: Tensor
     support: float | None = None
+    touches: bool = False
 
 
 _NONE = torch.zeros(0, dtype=torch.int64)

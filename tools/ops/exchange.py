@@ -57,8 +57,10 @@ class Exchange(TargetedOp):
             turn(draft, asked.rows, asked.matrix, asked.offset)
         cloud = draft.done()
         after = scene.replace(cloud=cloud, language=after_move(scene, cloud, moved))
+        crowded = any(asked.touches for asked in moved)
+        notes = (*carried_note(scene, bodies), *(("there is little room: they touch what stands there",) * crowded))
         touched = cloud.ids[torch.cat([body.rows for body in bodies])].sort().values
-        return Outcome(after, touched=touched, moved=tuple(moved), notes=carried_note(scene, bodies))
+        return Outcome(after, touched=touched, moved=tuple(moved), notes=notes)
 
     def _two(self, scene: Scene, selection: Selection) -> list[Body]:
         """The two bodies; raises InstructionError if they are not two, or one stands on the other."""
@@ -78,15 +80,16 @@ class Exchange(TargetedOp):
             raise InstructionError("one of them stands and the other hangs: they cannot change places")
         matrix = axis_rotation(up, self._turn(scene, one, other))
         support: float | None = None
+        touches = False
         if hanging[0]:
             foot = other.center - up * (one.box.size[2] / 2)
         else:
             spot = spot_near(around, one.box.size, turned_axes(one.box.axes, matrix, scene.frame), other)
-            foot, support = spot.foot, spot.support
+            foot, support, touches = spot.foot, spot.support, spot.touches
         offset = foot - matrix @ one.foot(up)
         points = solid_points(scene.cloud, one.rows) @ matrix.T + offset
         around.add_obstacle(points, contact_box(points, scene.frame))
-        return Affine(one.rows, matrix, np.asarray(offset), one.rows, support)
+        return Affine(one.rows, matrix, np.asarray(offset), one.rows, support, touches)
 
     def _turn(self, scene: Scene, one: Body, other: Body) -> float:
         """Degrees by which a thing must turn to face as the other does; 0 where the front of either is unknown."""

@@ -61,7 +61,7 @@ class Insert(EditOp):
         for index in range(self.count):
             request = AssetRequest(self.asset, self.color, context.seed + index, scale, self.height)
             asset = make_asset(scene, request)
-            around.rests = asset.support in ("floor", "table")
+            around.rests = asset.support not in ("wall", "ceiling")
             spot = find_spot(around, asset, self.place, start)
             cloud = set_down(asset, spot.foot, spot.axes)
             add_obstacle(cloud, scene, around)

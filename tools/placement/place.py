@@ -24,6 +24,9 @@ from .surroundings import FLOOR_WORDS, Surroundings
 
 _CELLS = 220  # most cells along a side of the grid
 _FOOT_CELLS = 10  # cells along the shorter side of a footprint, unless the region is too large for that
+_CROWDED = 0.4  # share of the footprint of what replaces a thing that others may reach into
+_NEAR_BY = 0.5  # of its height: how much lower a free spot may be before a crowded one is better
+_LEAST_SUPPORTED = 0.4  # likewise, of its footprint that must lie over the support
 _MIN_SUPPORTED = 0.75  # share of the footprint that must lie over the support's surface
 WALL_WORDS = frozenset({"wall", "walls"})
 
@@ -37,12 +40,14 @@ class Spot:
         support: height along up of the surface there.
         axes: of the box that the search assumed; horizontal axes and up.
         notes: for the receipt.
+        touches: whether other things reach into its place, as no free one is near; the notes tell.
     """
 
     foot: Array
     support: float
     axes: Axes
     notes: tuple[str, ...] = ()
+    touches: bool = False
 
 
 def anchors_of(around: Surroundings, place: Placement) -> list[Body]:
@@ -121,14 +126,21 @@ def spot_near(around: Surroundings, size: Vec3, axes: Axes, body: Body) -> Spot:
         covered = np.column_stack([middle + under * extents, np.full(len(under), height)])
         surface = np.concatenate([surface, covered])
     region = Region(middle - reach, middle + reach, lambda p: distance_to(p, middle), height, surface, beside=True)
-    return _spot_in(around, size, axes, region, f"where the {body.label or 'thing'} stands")
+    return _spot_in(around, size, axes, region, f"where the {body.label or 'thing'} stands", _CROWDED)
 
 
-def _spot_in(around: Surroundings, size: Vec3, axes: Axes, region: Region, where: str) -> Spot:
+def _spot_in(around: Surroundings, size: Vec3, axes: Axes, region: Region, where: str, most_taken: float = 0.0) -> Spot:
+    """A free spot in a region, or one of whose footprint at most the share `most_taken` is taken by others."""
     foot, crowded = _search(around, size, axes, region, ())
     if foot is not None:
         return Spot(foot, region.height, axes)
-    if (spot := _elsewhere(around, size, axes, region, ())) is not None:
+    spot = _elsewhere(around, size, axes, region, ())
+    near = spot is not None and region.height - spot.support <= _NEAR_BY * size[2]
+    if most_taken and not near:
+        foot, _ = _search(around, size, axes, region, (), most_taken)
+        if foot is not None:
+            return Spot(foot, region.height, axes, ("there is little room: it touches what stands around it",), True)
+    if spot is not None:
         return spot
     why = "everything there is taken" if crowded else "no surface there is large enough to carry it"
     raise InstructionError(f"there is no room {where}: {why}; clear a spot or name another place")
@@ -158,9 +170,10 @@ def _elsewhere(around: Surroundings, size: Vec3, axes: Axes, region: Region, anc
 
 
 def _search(
-    around: Surroundings, size: Vec3, axes: Axes, region: Region, anchors: Sequence[Body]
+    around: Surroundings, size: Vec3, axes: Axes, region: Region, anchors: Sequence[Body], most_taken: float = 0.0
 ) -> tuple[Array | None, bool]:
-    """The best foot position on one support (None if there is none), and whether the support alone allowed one."""
+    """The best foot position on one support (None if there is none), and whether the support alone allowed one; of the
+    footprint at most the share `most_taken` may be taken."""
     basis = np.array(axes)
     half = np.array(size[:2]) / 2
     span = np.maximum(region.high - region.low, 0) + 2 * half
@@ -178,14 +191,15 @@ def _search(
     if region.surface is not None:
         carried = histogram(region.surface[:, :2], origin, cell, shape) > 0
         share = window_sum(dilated(carried, _closing_cells(region.surface, cell)).astype(np.int64), foot, counts)
-        possible &= share / float(foot.prod()) >= _MIN_SUPPORTED
+        possible &= share / float(foot.prod()) >= (_LEAST_SUPPORTED if most_taken else _MIN_SUPPORTED)
     elif region.walled:
         low, high = around.bounds_for(size, basis[:2])
         placed = centers @ (np.array(around.room_axes[:2]) @ basis[:2].T).T
         possible &= ((placed >= low - cell) & (placed <= high + cell)).all(axis=-1)
     some = bool(possible.any())
-    possible &= window_sum(blocked.astype(np.int64), foot, counts) == 0
-    cost = np.where(possible, region.cost(centers), np.inf)
+    taken = window_sum(blocked.astype(np.int64), foot, counts) / float(foot.prod())
+    possible &= taken <= most_taken
+    cost = np.where(possible, region.cost(centers) + 2 * max(size[:2]) * taken, np.inf)
     cost = cost + _overlap_cost(around, size, basis, centers, region.height, clear, anchors)
     best = np.unravel_index(int(np.argmin(cost)), cost.shape)
     if not np.isfinite(cost[best]):

@@ -25,6 +25,9 @@ _SAMPLE_SIZE = 50_000  # points from which extents of the room are measured
 _MIN_POINTS = 8  # points under a thing; fewer are floaters
 # Largest gap to the support as a share of the height: Gaussians reach about that far beyond their centres.
 _TOLERANCE = 0.03
+_RING = 1.8  # times its footprint: where the surface that carries a thing shows around it
+_RING_CELLS = 12  # along each side of that
+_AROUND = 0.2  # share of the cells around a footprint that a surface fills
 FLOOR_WORDS = frozenset({"floor", "ground", "carpet", "room"})
 
 
@@ -140,11 +143,22 @@ class Surroundings:
             return self.floor, None
         heights = self.solid @ self.up.astype(np.float32)
         near = (np.abs(heights - bottom) <= tolerance) & ~anchor.box.covers(self.solid)
+        if self.rests and not self._is_around(anchor, self.solid[near]):
+            return self._below(anchor, plan, bottom + tolerance)
         if near.sum() < 20:
-            return self._below(anchor, plan, bottom + tolerance) if self.rests else (bottom, None)
+            return bottom, None
         local = self.solid[near].astype(np.float64)
         level = float(np.median(heights[near]))
         return level, np.column_stack([local @ plan.T, heights[near]])
+
+    def _is_around(self, anchor: Body, points: NDArray[np.float32]) -> bool:
+        """Whether points at the height of a thing's underside lie around it, as of a table top: what is under it was
+        seen by no camera."""
+        place = np.abs(anchor.box.local(points)[:, :2]) / np.maximum(np.array(anchor.box.size[:2]), 1e-9)
+        ring = anchor.box.local(points[(place <= 0.5 * _RING).all(axis=1)])[:, :2]
+        cells = np.floor((ring / np.array(anchor.box.size[:2]) / _RING + 0.5) * _RING_CELLS).astype(np.intp)
+        filled = len(np.unique(np.clip(cells, 0, _RING_CELLS - 1) @ np.array([_RING_CELLS, 1])))
+        return filled >= _AROUND * _RING_CELLS**2 * (1 - _RING**-2)
 
     def _below(self, anchor: Body, plan: Array, highest: float) -> tuple[float, Array | None]:
         """Height and points of the broadest surface under a thing that is in the air, else of the floor."""
