@@ -35,7 +35,8 @@ Id = int | str
 _UP: Vec3 = (0.0, 0.0, 1.0)
 _SLAB = 0.15  # metres that floor, walls and ceiling reach out, and walls also in: what hangs on one lies in that slab
 
-_FURNITURE = "furnishing"  # the resolver takes "furniture" for anything at all
+# The resolver takes "furniture" for anything at all; "everything" in a graph is its things, not floor and walls.
+_READ_AS = {"furniture": "furnishing", "everything": ""}
 _ROW = re.compile(r"\(group (\d+)\)")
 _BEFORE_WALL = 0.45  # metres from a wall to the middle of what stands against it
 _REACH = 0.3  # metres, a hand's span and a half
@@ -171,7 +172,7 @@ class Stage:
         relations = tuple(self._relation(r) for r in query.relations)
         return query.model_copy(
             update={
-                "text": _FURNITURE if query.text == "furniture" else query.text,
+                "text": _READ_AS.get(query.text, query.text),
                 "pick": "all" if whole else query.pick,
                 "colors": tuple(map(self._color, query.colors)),
                 "not_colors": tuple(map(self._color, query.not_colors)),

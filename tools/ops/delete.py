@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal
 import torch
 from torch import Tensor
 
-from ...gaussians.errors import ScenewrightError
+from ...gaussians.errors import InstructionError, ScenewrightError
 from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.scene import Scene
 from ..carried_objects import MAX_NAMED, Stack, stacks_on
@@ -22,7 +22,8 @@ from ..settling import settle
 class Delete(TargetedOp):
     """Remove the target from the scene.
 
-    What stood on it comes down on what is below it; with `on_it` it is removed too, or stays where it is.
+    What stood on it comes down on what is below it; with `on_it` it is removed too, or stays where it is. What is left
+    of the whole scene ("everything but the sofa") always stays where it is.
     """
 
     example: ClassVar[tuple[str, dict[str, Any]]] = (
@@ -34,14 +35,18 @@ class Delete(TargetedOp):
 
     def may_change(self, scene: Scene, selection: Selection) -> Tensor:
         asked = super().may_change(scene, selection)
-        if self.on_it == "stays":
+        if self._leaves_all():
             return asked
         for stack in _stacks(scene, selection):
             asked |= mask_of(scene.cloud, stack.ids)
         return asked
 
+    def _leaves_all(self) -> bool:
+        """Whether everything that is not selected stays where it is."""
+        return self.on_it == "stays" or self.target.spatial
+
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
-        stacks = [] if self.on_it == "stays" else _stacks(scene, selection)
+        stacks = [] if self._leaves_all() else _stacks(scene, selection)
         go = mask_of(scene.cloud, selection.ids)
         notes: tuple[str, ...] = ()
         if self.on_it == "goes":
@@ -50,6 +55,10 @@ class Delete(TargetedOp):
             names = ", ".join(stack.label or "something" for stack in stacks[:MAX_NAMED])
             notes = (f"what stood on it was removed too: {names}",) if stacks else ()
         removed = scene.cloud.ids[go]
+        if len(removed) == len(scene.cloud):
+            raise InstructionError(
+                "that would leave no Gaussian: say what to keep, or delete all objects to keep the room"
+            )
         cloud = scene.cloud[~go]
         after = scene.replace(cloud=cloud, language=after_removal(scene, cloud, removed.sort().values))
         if self.on_it != "settles" or not stacks:
@@ -63,7 +72,7 @@ class Delete(TargetedOp):
         checks = [none_left(outcome.scene, outcome), count_matches(before, outcome.scene, outcome)]
         if (stands := supported(outcome.scene, outcome.moved)) is not None:
             checks.append(stands)
-        if self.target.text or self.target.colors:
+        if (self.target.text or self.target.colors) and not self.target.spatial:
             checks.append(self._asked_again(outcome.scene, context))
         return tuple(checks)
 

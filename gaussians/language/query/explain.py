@@ -11,10 +11,10 @@ from typing import Any
 
 from ...errors import UserError
 from .picking import rivals
-from .query import Query
+from .query import ALL, Query
 from .resolve import Resolver, Unresolved
 from .selection import Candidate, Verdict
-from .terms import ALL, FLOATERS, name_shares
+from .terms import FLOATERS, name_shares
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ Picks = Literal[
     "one", "all", "any", "largest", "smallest", "tallest", "shortest", "nearest", "farthest", "leftmost", "rightmost",
     "highest", "lowest", "middle", "nth", "rest",
 ]  # fmt: skip
+ALL = frozenset({"everything", "all", "scene", "room", "whole scene"})  # nouns that mean every Gaussian
 Sizes = Literal["small", "large", "tall", "short", "wide", "narrow"]
 
 
@@ -84,6 +85,11 @@ class Query(BaseModel):
     # question sets it, no planner (`nested.without_confirmation`): so it is in no schema, nor in the text above.
     confirmed: SkipJsonSchema[bool] = False
 
+    @property
+    def spatial(self) -> bool:
+        """Whether it means a part of the scene, with what belongs to no thing, rather than things by their names."""
+        return self.invert or self.pick == "rest" or self.text in ALL
+
     def describe(self) -> str:
         """The query in words, for messages: "the red chair left of the sofa"."""
         said = "it" if self.last else self._own_words()
@@ -102,7 +108,7 @@ class Query(BaseModel):
             said = f"{self.pick} {said}"
         if self.pick == "nth" and self.ordinal:
             said = f"{said} number {self.ordinal}"
-        if self.text != "everything":
+        if not (self.text == "everything" and said == self.text):
             said = f"{ {'all': 'every', 'any': 'any', 'rest': 'everything but the'}.get(self.pick, 'the') } {said}"
         if self.not_colors:
             said += f" that is not {' or '.join(self.not_colors)}"

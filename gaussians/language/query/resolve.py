@@ -29,15 +29,15 @@ from ..field.measure import box_of
 from . import wholes
 from .attributes import COLOR_HOLDS, color_scores
 from .color.fallback import PARTS, by_color, by_hue, is_reliable
+from .keeping import without_strays
 from .part_query import Piece, pieces_of
 from .parts import NAMED
 from .picking import by_distance, pick
-from .query import Query, Relation
+from .query import ALL, Query, Relation
 from .readings import is_known
 from .reshape import reshaped
 from .selection import Candidate, Selection, nothing
 from .terms import (
-    ALL,
     FLOATERS,
     LOOSE,
     ORDERING,
@@ -150,6 +150,8 @@ class Resolver:
                 return replace(more, query=query)
             own = _doubted(_joined(own, more), more)
         for out in outs:
+            if query.text in ALL and not _describes(query):  # what is kept alone takes no haze with it
+                out = replace(out, ids=without_strays(self.scene, self.members, out)) if len(out) else out
             own = _doubted(_without(own, out), out)
         if (left := [pot for pot in pots if pot.group not in own.groups]) and not outs:
             own = _told(own, wholes.without(query.text, left))
@@ -163,7 +165,9 @@ class Resolver:
             return self._last_selection(query)
         if query.groups:
             return self._explicit(query)
-        if query.text in ALL and not query.colors:
+        if query.text in ALL and _describes(query):
+            query = query.model_copy(update={"text": ""})  # "everything red": every thing that is red
+        if query.text in ALL:
             groups = tuple(g for g in present_groups(self.field, "all") if g.parent < 0)
             told = tuple(candidate_of(g) for g in groups)  # every_id includes Gaussians without a group
             return Selection(query, "found", self.members.every_id, tuple(g.id for g in groups), told)
@@ -448,6 +452,11 @@ class Resolver:
         if not self.bare:
             ids = self.members.ids_of(leaf for g in groups for leaf in self.field.leaves(g))
         return Selection(query, "found", ids, groups, tuple(chosen))
+
+
+def _describes(query: Query) -> bool:
+    """Whether a query restricts what it names by an attribute or a place."""
+    return bool(query.colors or query.not_colors or query.size or query.relations)
 
 
 def _is_included(query: Query, other: Query) -> bool:

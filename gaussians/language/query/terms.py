@@ -36,7 +36,6 @@ F64 = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 ANYTHING = frozenset({"", "thing", "object", "item", "one", "stuff", "furniture"})
-ALL = frozenset({"everything", "all", "scene", "room", "whole scene"})
 STRUCTURE = {
     "floor": "floor", "ground": "floor", "terrain": "floor", "soil": "floor", "grass": "floor", "carpeting": "floor",
     "wall": "wall", "ceiling": "ceiling",

@@ -18,7 +18,7 @@ from ..vocabulary import nouns
 from . import adding, changes, moving, shaping
 from .adding import inserted
 from .changes import Fields
-from .described import NounPhrase, all_of, existing, is_all_on_it, union
+from .described import EVERYTHING, NounPhrase, all_of, existing, is_all_on_it, union
 from .moving import moved
 from .phrases import Phrases
 from .places import MOTIONS
@@ -157,7 +157,7 @@ def keep(phrases: Phrases, node: Node) -> list[Fields]:
 
 def select(phrases: Phrases, node: Node) -> list[Fields]:
     word = tokens(node, "SELECT")[0].text
-    if word == "show" and phrases.query(node) == Query(pick="all"):
+    if word == "show" and phrases.query(node) in (Query(pick="all"), EVERYTHING):
         raise Refusal("to show what was hidden, use undo", word, verdict="impossible")
     return phrases.targeted(node, "select")
 

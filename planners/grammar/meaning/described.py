@@ -21,6 +21,10 @@ from ..vocabulary import nouns
 
 # These describe the first noun, not the last: "the cup on the table that is white".
 _OF_THE_FIRST = ("unrelated", "is_not_kind", "is_hue", "is_not_hue")
+# These leave "everything" the whole scene: "everything that is not the sofa".
+_OF_EVERYTHING = ("is_not_kind", "lacking")
+
+EVERYTHING = Query(text="everything", pick="all")  # the whole scene, with what belongs to no thing
 
 Article = Literal["def", "indef", "all", "both", "any", "bare", "pronoun"]
 
@@ -124,7 +128,7 @@ def existing(found: Sequence[NounPhrase]) -> Query:
 def all_of(target: Query, out: Query) -> Query:
     """The meaning of "all" before an exclusion: boxes in "all but the largest box", everything in "all but the box"."""
     ranked = out.pick not in ("one", "all", "any", "rest") and bool(out.text)
-    return updated(Query(text=out.text, pick="all")) if target == Query(pick="all") and ranked else target
+    return updated(Query(text=out.text, pick="all")) if target in (Query(pick="all"), EVERYTHING) and ranked else target
 
 
 def attach_modifiers(query: Query, modifiers: Sequence[PostModifier]) -> Query:
@@ -154,6 +158,8 @@ def _narrow(query: Query, post: PostModifier, behind: Sequence[PostModifier]) ->
     anchors = [a.full() for a in post.anchors]
     if anchors:
         anchors[-1] = attach_modifiers(anchors[-1], behind)
+    if query.text == EVERYTHING.text and post.kind not in _OF_EVERYTHING:
+        query = updated(query, text="")  # "everything on the table" is every thing on it
     if post.kind == "unrelated":
         wrong = _relation(_relation_name(replace(post, kind="related")), anchors)
         bad = updated(query, relations=(*query.relations, wrong), pick="all", count=None)

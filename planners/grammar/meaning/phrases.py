@@ -18,7 +18,7 @@ from ..tagging.tags import Tag
 from ..tagging.words import bag
 from ..vocabulary import nouns
 from .changes import Fields
-from .described import Article, NounPhrase, PostModifier, all_of, existing, union, updated
+from .described import EVERYTHING, Article, NounPhrase, PostModifier, all_of, existing, union, updated
 
 _SHAPES = bag("round square rectangular oval circular wooden metal plastic glass leather striped plain patterned")
 PARTS = frozenset({"part", "piece", "area", "region", "bit"})  # of things; selected by their own colour
@@ -103,7 +103,7 @@ class Phrases:
         assert isinstance(core, Tree)
         among = bool(rest) and isinstance(rest[0], Tree) and str(rest[0].data) == "part"
         head = self.core(core, among)
-        if head.query.text:
+        if head.query.text and head.query.text != EVERYTHING.text:
             self.antecedent, self.colors = _unshaped(head.query.text), head.query.colors
         headless = not tokens(core, "NOUN", "ONE", "THING") and bool(tokens(core, "SUP", "ORDINAL"))
         modifiers: list[PostModifier] = []
@@ -172,7 +172,8 @@ class Phrases:
             return NounPhrase(Query(last=True, pick="any" if first.value == "any" else "one"), "pronoun")
         if first.type == "EVERYTHING":
             rest = (Query(last=True),) if first.value == "else" else ()
-            return NounPhrase(Query(pick="all", exclude=rest), "all", True, said=first.text)
+            every = EVERYTHING if first.value else Query(pick="all")
+            return NounPhrase(updated(every, exclude=rest), "all", True, said=first.text)
         if first.type == "OTHERS":
             return NounPhrase(Query(text=self.antecedent, pick="all", exclude=(Query(last=True),)), "all", True)
         return self._common(node)

@@ -254,7 +254,7 @@ def _tag_determiner(state: TaggerState, i: int, value: str) -> int:
     if text in ("this", "that", "these", "those") and not noun_follows:
         return state.emit("PRON", "it", i, 1)
     if text == "all" and not noun_follows:
-        return state.emit("EVERYTHING", None, i, 1)
+        return state.emit("EVERYTHING", "scene", i, 1)
     if text == "both" and not noun_follows:
         return state.emit("PRON", "it", i, 1)
     return state.emit("DET", value, i, 1)

@@ -239,9 +239,12 @@ CLOSED: dict[str, Entry] = {
     **same(("LIKEIT", None), "like it, like this, like that, like this one, like that one, like these, like those, "
             "like them, just like it"),
     **same(("PRON", "any"), "one of them, any of them, either of them"),
-    **same(("EVERYTHING", None), "whatever is, what is, everything, all things, all objects, the whole scene, "
-            "the entire scene, anything, "
-            "every object, all the objects, the scene, the whole room, everything in the scene"),
+    **same(("EVERYTHING", None), "whatever is, what is, all things, all objects, every object, all the objects"),
+    **same(("EVERYTHING", "scene"), "everything, anything, the scene, the whole scene, the entire scene, the complete "
+            "scene, the full scene, all of the scene, the whole room, the entire room, everything in the scene, "
+            "the whole picture, the whole image, the whole capture, the whole model, the whole splat, "
+            "the entire model, my scene, this scene, the scene as a whole, all of this scene, whole scene, "
+            "entire scene, everything there is, everything here, this whole scene, my whole scene, my entire scene"),
     **same(("EVERYTHING", "else"), "everything else, the rest, all the rest, all else, anything else, "
             "the rest of the scene, the rest of the room, the rest of it"),
     **same(("ONE", False), "one"),
