@@ -37,40 +37,46 @@ def darker(colors: Sample, amount: float) -> ColorMap:
 
 @dataclass(frozen=True, eq=False)
 class Lift:
-    """A lightening without clipping: every Gaussian gets a gain of its own, the smaller the brighter it is.
+    """A lightening without clipping: what is bright gets a smaller gain than what is dark.
 
-    A colour of luma Y becomes one of luma `gain Y / (1 + (gain - 1) Y)`, which leaves black and white where they are.
-    Where a pure colour cannot become as light, it gets paler. Both are linear in the Gaussian's colour, so all bands of
-    its harmonics get the same matrix.
+    Around a place of luma S the gain is `gain / (1 + (gain - 1) S)`, which leaves black and white where they are. S is
+    smooth, so that colours beside each other keep their ratios, and what is grey by mixture stays grey. A Gaussian that
+    would be brighter than white gets a smaller gain, and one too pure to become as light gets paler. All of this is
+    linear in the Gaussian's colour, so all bands of its harmonics get the same matrix.
 
     Attributes:
-        gain: that of the darkest colours, at least 1.
+        gain: that of the darkest places, at least 1.
     """
 
     gain: float
 
-    def on_harmonics(self, sh: Tensor) -> Tensor:
-        """Coefficients `[N, K, 3]` of the lightened colours, in every direction."""
-        gain, keep = self._of(dc_to_color(sh[:, 0].double()))
+    def on_harmonics(self, sh: Tensor, shading: Tensor | None = None) -> Tensor:
+        """Coefficients `[N, K, 3]` of the lightened colours, in every direction.
+
+        Args:
+            shading: `[N]` low frequencies of the luma at the Gaussians; None: each Gaussian's own luma.
+        """
+        gain, keep = self._of(dc_to_color(sh[:, 0].double()), shading)
         color = sh.to(torch.float64, copy=True)
         color[:, 0] += 0.5 / SH_C0
         color = gain[:, None, None] * (keep[:, None, None] * color + (1 - keep[:, None, None]) * _luma(color))
         color[:, 0] -= 0.5 / SH_C0
         return color.to(sh.dtype)
 
-    def __call__(self, rgb: Tensor) -> Tensor:
+    def __call__(self, rgb: Tensor, shading: Tensor | None = None) -> Tensor:
         """Lightened colours `[M, 3]`."""
-        gain, keep = self._of(rgb.double())
+        gain, keep = self._of(rgb.double(), shading)
         made = gain[:, None] * (keep[:, None] * rgb + (1 - keep[:, None]) * _luma(rgb.double()))
         return made.to(rgb.dtype)
 
-    def _of(self, rgb: Tensor) -> tuple[Tensor, Tensor]:
+    def _of(self, rgb: Tensor, shading: Tensor | None) -> tuple[Tensor, Tensor]:
         """Gain `[M]` and the share of chroma that stays `[M]` for colours `[M, 3]` float64."""
-        luma = _luma(rgb)[:, 0].clamp(0, 1)
-        gain = self.gain / (1 + (self.gain - 1) * luma)
-        now = gain * luma
-        over = (gain * rgb.max(dim=1).values - now).clamp(min=1e-9)
-        room = rgb.max(dim=1).values.clamp(min=_TOP) - now  # what was clipped may stay so
+        luma, top = _luma(rgb)[:, 0], rgb.max(dim=1).values
+        around = luma if shading is None else shading.double()
+        gain = self.gain / (1 + (self.gain - 1) * around.clamp(0, 1))
+        gain = gain.minimum((_TOP / luma.clamp(min=1e-6)).clamp(min=1.0))
+        over = (gain * top - gain * luma).clamp(min=1e-9)
+        room = top.clamp(min=_TOP) - gain * luma  # what was clipped may stay so
         return gain, (room / over).clamp(0, 1)
 
 

@@ -48,7 +48,7 @@ _CANDIDATES = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4)  # of k
 _CLIPPED = 0.6  # share of k that stays even if highlights are clipped for it
 _LEAST_FINE = 0.35  # share of fine contrast that always stays
 _COARSE = 0.5  # p = k^_COARSE: large folds and sides keep more than fine contrast
-_BRIGHT_SIDE, _LEAST_BRIGHT = 0.6, 0.15  # exponent of low frequencies above the lit faces, q
+_BRIGHT_SIDE, _LEAST_BRIGHT = 0.55, 0.15  # exponent of low frequencies above the lit faces, q
 _VERY_DARK, _MIRRORED = 0.35, 0.4  # gain below which fine contrast grows on darker pigments, and with which exponent
 _MOST_FINE = 1.6
 _DIMMEST = 0.94  # the pigment is dimmed at most to this to leave room for highlights

@@ -24,7 +24,7 @@ PIXELS = 80  # side of a picture
 _SOLID = 0.8  # alpha of a pixel that shows the thing and not what is behind it
 _MOST = 6000  # Gaussians that are rendered
 _FEWEST = 32  # pixels, or the Gaussians themselves are sampled
-_LIT = (0.5, 0.95)  # quantiles of luma between which the lit faces are: without shadows and highlights
+_LIT = (0.45, 0.95)  # quantiles of luma between which the lit faces are: without shadows and highlights
 
 
 def seen_pixels(cloud: GaussianCloud, scene: Scene, views: int = VIEWS, pixels: int = PIXELS) -> Tensor:

@@ -94,7 +94,10 @@ class Recolor(TargetedOp):
         rows = rows_of(scene.cloud, selection.ids)
         colors = seen_colors(scene, rows)
         change = self._adjustment(scene.cloud, colors)
-        draft.map("sh", rows, change.on_harmonics)
+        if isinstance(change, adjusting.Lift):
+            _write(draft, scene.cloud, rows, change, Shading.of(scene.cloud, rows))
+        else:
+            draft.map("sh", rows, change.on_harmonics)
         return _clipping(adjusting.clipped(colors.rgb, change(colors.rgb), colors.weight))
 
     def _adjustment(self, cloud: GaussianCloud, colors: Sample) -> adjusting.Change:
@@ -178,7 +181,7 @@ class Recolor(TargetedOp):
         return float(torch.linalg.vector_norm(old - asked) - torch.linalg.vector_norm(new - asked))
 
 
-def _write(draft: Draft, cloud: GaussianCloud, rows: Tensor, made: Repaint, shading: Shading) -> None:
+def _write(draft: Draft, cloud: GaussianCloud, rows: Tensor, made: Repaint | adjusting.Lift, shading: Shading) -> None:
     for block in torch.split(rows, _ROWS):
         draft.write("sh", block, made.on_harmonics(draft.read("sh", block), shading.at(cloud.means[block])))
 

@@ -71,7 +71,7 @@ def test_the_lit_faces_come_near_the_asked_colour_and_shading_stays(had: str, as
     assert lightness_spread(after) > 0.2 * lightness_spread(before)
 
 
-@pytest.mark.parametrize("had", COLORS)
+@pytest.mark.parametrize("had", [c for c in COLORS if c != "black"])  # of which only the noise is seen
 @pytest.mark.parametrize("asked", ["teal", "gray", "olive", "brown", "navy", "#5a2a70"])
 def test_the_lit_faces_have_the_asked_colour_where_a_display_has_room(had: str, asked: str) -> None:
     # Half of what the issue of a scan allows between mean and asked colour: here nothing is hidden or foreign. The fit

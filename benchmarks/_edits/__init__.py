@@ -1,0 +1,1 @@
+"""Measurements of edits on real scenes."""
