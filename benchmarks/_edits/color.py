@@ -1,6 +1,7 @@
 """Colour edits on real scenes: do greys stay grey, and is a new colour the one that was asked, in the scene's light?
 
-Things are taken by boxes, so that no selection by words is measured with them, and looked at from a photograph's camera.
+Things are taken by boxes, so that no selection by words is measured with them, and looked at from a photograph's
+camera.
 
 - Shift of greys: of the pixels that show the thing and were grey (Lab chroma below 10, lightness above 10), nine in ten
   shift less in a and b of CIELAB, beyond what more or less light does to the little tint that they have.

@@ -19,7 +19,7 @@ from .quantiles import quantile
 from .seen import lit_color, lit_face
 
 _STEP = 0.75  # share of the lightness (or, lighter, of what is missing to white) that the amount 1 changes
-_HIGHLIGHT = 0.98  # quantile of the brightest channel that is not to be clipped
+_HIGHLIGHT = 0.995  # quantile of the brightest channel that is not to be clipped
 _TOP = 0.985  # display value that it reaches at most
 _DARKEST = 10.0  # Lab lightness that is lightened as if it were this: near black, a factor shows nothing
 _ABOVE, _BELOW = 0.02, 0.08  # display values outside the range by less are not seen as clipped
@@ -40,9 +40,9 @@ class Lift:
     """A lightening without clipping: what is bright gets a smaller gain than what is dark.
 
     Around a place of luma S the gain is `gain / (1 + (gain - 1) S)`, which leaves black and white where they are. S is
-    smooth, so that colours beside each other keep their ratios, and what is grey by mixture stays grey. A Gaussian that
-    would be brighter than white gets a smaller gain, and one too pure to become as light gets paler. All of this is
-    linear in the Gaussian's colour, so all bands of its harmonics get the same matrix.
+    smooth, so that colours beside each other keep their ratios, and what is grey by mixture stays grey. A Gaussian with
+    a channel that would be clipped gets a smaller gain. All of this is linear in the Gaussian's colour, so all bands of
+    its harmonics get the same factor.
 
     Attributes:
         gain: that of the darkest places, at least 1.
@@ -56,28 +56,20 @@ class Lift:
         Args:
             shading: `[N]` low frequencies of the luma at the Gaussians; None: each Gaussian's own luma.
         """
-        gain, keep = self._of(dc_to_color(sh[:, 0].double()), shading)
-        color = sh.to(torch.float64, copy=True)
-        color[:, 0] += 0.5 / SH_C0
-        color = gain[:, None, None] * (keep[:, None, None] * color + (1 - keep[:, None, None]) * _luma(color))
-        color[:, 0] -= 0.5 / SH_C0
-        return color.to(sh.dtype)
+        gain = self._of(dc_to_color(sh[:, 0].double()), shading)
+        made = sh * gain[:, None, None].to(sh)
+        made[:, 0] += (0.5 * (gain - 1) / SH_C0)[:, None].to(sh)
+        return made
 
     def __call__(self, rgb: Tensor, shading: Tensor | None = None) -> Tensor:
         """Lightened colours `[M, 3]`."""
-        gain, keep = self._of(rgb.double(), shading)
-        made = gain[:, None] * (keep[:, None] * rgb + (1 - keep[:, None]) * _luma(rgb.double()))
-        return made.to(rgb.dtype)
+        return rgb * self._of(rgb.double(), shading)[:, None].to(rgb)
 
-    def _of(self, rgb: Tensor, shading: Tensor | None) -> tuple[Tensor, Tensor]:
-        """Gain `[M]` and the share of chroma that stays `[M]` for colours `[M, 3]` float64."""
-        luma, top = _luma(rgb)[:, 0], rgb.max(dim=1).values
-        around = luma if shading is None else shading.double()
-        gain = self.gain / (1 + (self.gain - 1) * around.clamp(0, 1))
-        gain = gain.minimum((_TOP / luma.clamp(min=1e-6)).clamp(min=1.0))
-        over = (gain * top - gain * luma).clamp(min=1e-9)
-        room = top.clamp(min=_TOP) - gain * luma  # what was clipped may stay so
-        return gain, (room / over).clamp(0, 1)
+    def _of(self, rgb: Tensor, shading: Tensor | None) -> Tensor:
+        """Gain `[M]` of colours `[M, 3]` float64."""
+        around = (_luma(rgb)[:, 0] if shading is None else shading.double()).clamp(0, 1)
+        gain = self.gain / (1 + (self.gain - 1) * around)
+        return gain.minimum((_TOP / rgb.max(dim=1).values.clamp(min=1e-6)).clamp(min=1.0))
 
 
 def _luma(rgb: Tensor) -> Tensor:
