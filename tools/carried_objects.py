@@ -23,6 +23,7 @@ from .placement.bodies import Body, bodies_of, body_of, mask_of_bodies
 
 _OVER = 0.35  # of its height, from its middle: what lies higher in a region's footprint is on it
 _HIGHEST = 3.0  # times its height: what lies higher above it is something else
+_SHARE = 0.3  # of its objects' Gaussians: a region as large as that may have the rest of them on it
 _PIECE = 30  # Gaussians of the same object on a region from which they are a thing on it
 MAX_NAMED = 4  # names in a note; further objects are counted
 
@@ -73,7 +74,7 @@ def carried_on(scene: Scene, body: Body) -> tuple[int, ...]:
     own = [body.group] if body.group >= 0 else _owners(field, scene.cloud.group[body.rows])
     found = carried_by(scene, own) if body.group >= 0 else _carried(scene, field, [_region(body)], own)
     if scene.frame.metres_per_unit is None:  # boxes of captures reach far: what does not touch it does not stand on it
-        found = touching(scene, body, found)
+        found = touching(scene, body, found, own)
     return (*found, *held_by(scene, body, (*own, *found)))
 
 
@@ -131,6 +132,8 @@ def _rest_above(scene: Scene, body: Body) -> Tensor:
     if field is None:
         return none
     leaves = [g for g in _owners(field, scene.cloud.group[body.rows]) if field.groups[g].level != "structure"]
+    if len(body.rows) < _SHARE * sum(field.groups[g].count for g in leaves if field.groups[g].parent < 0):
+        return none  # a small patch of something large: what is above it is that
     mine = torch.zeros(len(field.groups) + 1, dtype=torch.bool, device=scene.cloud.device)
     mine[leaves] = True
     mine = mine[scene.cloud.group]

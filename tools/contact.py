@@ -56,8 +56,12 @@ def held_by(scene: Scene, body: Body, but: Iterable[int]) -> tuple[int, ...]:
         carrying |= np.isin(owner, [leaf for g in fresh for leaf in leaves[g.id]])
 
 
-def touching(scene: Scene, body: Body, groups: tuple[int, ...]) -> tuple[int, ...]:
-    """Those of some objects over a body that touch it, or another of them; and those that touch nothing else."""
+def touching(scene: Scene, body: Body, groups: tuple[int, ...], own: Iterable[int]) -> tuple[int, ...]:
+    """Those of some objects over a body that touch it, or another of them; and those that touch nothing else.
+
+    Args:
+        own: ids of the objects that the body is of.
+    """
     field = scene.language
     if field is None or not groups:
         return groups
@@ -66,7 +70,8 @@ def touching(scene: Scene, body: Body, groups: tuple[int, ...]) -> tuple[int, ..
     points, owner = cloud.means[near].cpu().numpy(), cloud.group[near].cpu().numpy()
     carrying = torch.zeros(len(cloud), dtype=torch.bool, device=cloud.device)
     carrying[body.rows] = True
-    held, kept = carrying[near].cpu().numpy(), []
+    held = carrying[near].cpu().numpy() | np.isin(owner, [leaf for g in own for leaf in field.leaves(g)])
+    kept = list[int]()
     touch = _TOUCH * max(body.box.size)
     for group in sorted(groups, key=lambda g: field.groups[g].box.bottom(scene.frame.up_vector)):
         leaves = set(field.leaves(group))

@@ -144,7 +144,7 @@ class Surroundings:
         heights = self.solid @ self.up.astype(np.float32)
         near = (np.abs(heights - bottom) <= tolerance) & ~anchor.box.covers(self.solid)
         if self.rests and not self._is_around(anchor, self.solid[near]):
-            return self._below(anchor, plan, bottom + tolerance)
+            return self._below(anchor, plan)
         if near.sum() < 20:
             return bottom, None
         local = self.solid[near].astype(np.float64)
@@ -160,10 +160,10 @@ class Surroundings:
         filled = len(np.unique(np.clip(cells, 0, _RING_CELLS - 1) @ np.array([_RING_CELLS, 1])))
         return filled >= _AROUND * _RING_CELLS**2 * (1 - _RING**-2)
 
-    def _below(self, anchor: Body, plan: Array, highest: float) -> tuple[float, Array | None]:
+    def _below(self, anchor: Body, plan: Array) -> tuple[float, Array | None]:
         """Height and points of the broadest surface under a thing that is in the air, else of the floor."""
         heights = self.solid @ self.up.astype(np.float32)
-        under = (heights < highest) & anchor.box.covers(self.solid)
+        under = (heights < anchor.box.bottom(self.up)) & anchor.box.covers(self.solid)
         if self.frame.floor is not None:
             under &= heights > self.floor + self.tolerance(anchor)
         if under.sum() < 20:
