@@ -6,7 +6,9 @@ camera.
 - Shift of greys: of the pixels that show the thing and were grey (Lab chroma below 10, lightness above 10), nine in ten
   shift less in a and b of CIELAB, beyond what more or less light does to the little tint that they have.
 - Distance from what was asked: CIEDE2000 of the mean pixel of the painted surface to the asked pigment times the
-  scene's light times the shading of the same pixels before (their mean luma relative to that of the lit faces).
+  scene's light times its shading. The shading is measured in the same pixels before: their mean luma relative to that
+  of the lit faces. A lighter pigment has less contrast than a dark one showed (noise and gloss are not shading), so the
+  nearest colour between that shading and full light counts; `strict` takes the shading as it was.
 
 Run `python -m scenewright.benchmarks._edits.color` to print the tables.
 """
@@ -52,6 +54,7 @@ COLORS = ("teal", "dark purple", "dark blue", "red", "gray", "white", "gold")
 SHADES = (("darker", 0.25), ("darker", 0.5), ("darker", 0.8), ("lighter", 0.25), ("lighter", 0.5))
 PIXELS = 240  # width of a picture
 _CAMERAS = 12  # photographs of which the best is taken
+_LEVELS = 17  # of light between the shading before and full light
 _SHOWN = 0.9  # share of a pixel's light that comes from the thing
 _FEWEST = 60  # pixels that show it
 
@@ -85,12 +88,14 @@ class Edit(NamedTuple):
     Attributes:
         scene, thing, asked: of what and to what.
         value: what was measured, ΔE; NaN where the edit was refused by its own checks.
+        strict: of a new colour, the distance to it in exactly the shading before.
     """
 
     scene: str
     thing: str
     asked: str
     value: float
+    strict: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +118,7 @@ def measure(names: Sequence[str] = tuple(THINGS)) -> tuple[list[Edit], list[Edit
     colors: list[Edit] = []
     for scene, thing, seen in _things(names):
         greys += [Edit(scene, thing, f"{way} by {amount}", _grey(seen, way, amount)) for way, amount in SHADES]
-        colors += [Edit(scene, thing, color, _color(seen, color)) for color in COLORS]
+        colors += [Edit(scene, thing, color, *_color(seen, color)) for color in COLORS]
     return greys, colors
 
 
@@ -127,6 +132,7 @@ def metrics(greys: Sequence[Edit], colors: Sequence[Edit]) -> tuple[Metric, ...]
     return (
         Metric("color.grey_shift.worst", max(shifts), "ΔE", "lower", 0.1, GREY_GOAL),
         Metric("color.distance.mean", fmean(done), "ΔE00", "lower", 0.1, COLOR_GOAL),
+        Metric("color.distance.strict", fmean(e.strict for e in colors if e.strict == e.strict), "ΔE00", "lower", 0.1),
         Metric("color.distance.within_goal", fmean(v <= COLOR_GOAL for v in done), "share", "higher", 0.05),
         Metric("color.refused", refused, "count", "lower"),
     )
@@ -191,21 +197,24 @@ def _grey(thing: _Thing, way: str, amount: float) -> float:
     return grey_shift(was, now)
 
 
-def _color(thing: _Thing, color: str) -> float:
+def _color(thing: _Thing, color: str) -> tuple[float, float]:
+    """The distance from a colour as `value` and `strict` of an `Edit`."""
     try:
         after = thing.recolored(color=color).scene
     except CheckFailedError:
-        return float("nan")
+        return float("nan"), float("nan")
     painted = (after.cloud.sh != thing.scene.cloud.sh).flatten(1).any(dim=1).nonzero().squeeze(1)
     shown = _shows(thing.scene, painted, thing.camera)
     if int(shown.sum()) < _FEWEST // 3:
-        return float("nan")
+        return float("nan"), float("nan")
     was, now = (render(s.cloud, thing.camera).rgb[shown].double().clamp(0, 1) for s in (thing.scene, after))
     weights = torch.tensor(LUMA, dtype=torch.float64)
     lit = float(lit_color(seen_colors(thing.scene, painted)) @ weights)
     shading = min(float((was @ weights).mean()) / max(lit, 1e-3), 1.0)
     asked = scene_light(thing.scene.cloud).on(torch.tensor(shade_of(color), dtype=torch.float64)).clamp(0, 1)
-    return float(ciede2000(rgb_to_lab(now.mean(dim=0)), rgb_to_lab(shading * asked)))
+    levels = torch.linspace(shading, 1, _LEVELS, dtype=torch.float64)[:, None]
+    far = ciede2000(rgb_to_lab(now.mean(dim=0)).expand(_LEVELS, 3), rgb_to_lab(levels * asked))
+    return float(far.min()), float(far[0])
 
 
 def table(edits: Sequence[Edit]) -> str:

@@ -35,9 +35,9 @@ _TRUST = 0.8  # share of a measured cast that is taken for light, the rest for p
 _AROUND = 2.5  # times the radius of a thing: its surroundings
 _FEWEST = 200  # Gaussians in them, or they are unknown
 _BELIEVED = 0.45  # exponent of what is missing there that is taken for a lack of light
-_OWN = 0.08  # the same of the thing's own darkness
+_OWN = 0.05  # the same of the thing's own darkness
 TYPICAL = 0.45  # display luma of an ordinary thing in good light
-_SHADE = 0.85  # the dimmest that a place counts as, relative to the scene
+_SHADE = 0.9  # the dimmest that a place counts as, relative to the scene
 _DIMMEST = 0.72  # exposures below count as this: a viewer's eye adapts to a dim picture as a whole
 
 
