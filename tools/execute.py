@@ -59,7 +59,9 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
     with timed(seconds, "apply"):
         outcome = op.apply(scene, chosen, context)
         unsupported = unsupported_note(scene, outcome.scene, chosen.groups)
-        outcome = replace(outcome, notes=(*outcome.notes, *unsupported))
+        query = op.query()
+        where = (chosen.reason,) if query is not None and query.region is not None and chosen.reason else ()
+        outcome = replace(outcome, notes=(*where, *outcome.notes, *unsupported))
     with timed(seconds, "check"):
         changed = difference(scene.cloud, outcome.scene.cloud, op.may_change(scene, chosen), outcome.removed)
         checks = [*_common_checks(op, changed, chosen), *op.check(scene, outcome, chosen, context)]

@@ -9,7 +9,7 @@ import pytest
 import torch
 
 from scenewright.gaussians.cloud import NO_GROUP, concat
-from scenewright.gaussians.errors import InstructionError
+from scenewright.gaussians.errors import AbsentError, InstructionError
 from scenewright.gaussians.language.query.resolve import resolve
 from scenewright.gaussians.scene import Scene
 from scenewright.tools.execute import Done, carry_out
@@ -80,3 +80,61 @@ def test_what_is_kept_alone_keeps_no_haze(way: str, hazy: Scene, real: Context) 
 def test_deleting_everything_is_refused(hazy: Scene, real: Context) -> None:
     with pytest.raises(InstructionError, match="what to keep"):
         do(hazy, real, "delete", target=EVERYTHING)
+
+
+def region(name: str, **more: Any) -> dict[str, Any]:
+    return {**EVERYTHING, "region": {"name": name, **more}}
+
+
+def test_a_height_cuts_by_centres_and_what_is_outside_is_the_rest(hazy: Scene, real: Context) -> None:
+    above = do(hazy, real, "select", target=region("above", distance=60, unit="cm")).selection.ids
+    rest = do(hazy, real, "select", target=region("above", distance=60, unit="cm", outside=True)).selection.ids
+    heights = hazy.cloud.means[:, 2]
+    assert torch.equal(above, hazy.cloud.ids[heights.double() > 0.6])
+    assert torch.equal(torch.cat([above, rest]).sort().values, hazy.cloud.ids)
+
+
+def test_a_length_without_a_known_scale_is_told(hazy: Scene, real: Context) -> None:
+    unknown = hazy.replace(frame=replace(hazy.frame, metres_per_unit=None))
+    (note, *_) = do(unknown, real, "delete", target=region("above", distance=1)).receipt.notes
+    assert "one scene unit as one metre" in note
+    assert "cuts through" in note
+
+
+def test_within_and_beyond_a_distance_are_measured_from_the_box(hazy: Scene, real: Context) -> None:
+    near = do(hazy, real, "select", target=region("within", of=({"groups": (ARMCHAIR,)},), distance=0.3)).selection
+    wider = do(hazy, real, "select", target=region("within", of=({"groups": (ARMCHAIR,)},), distance=0.6)).selection
+    assert set(near.ids.tolist()) < set(wider.ids.tolist())
+    assert ARMCHAIR not in near.groups or len(near) > 0
+    own = hazy.cloud.ids[: len(hazy.cloud) - 120][hazy.cloud.group[: len(hazy.cloud) - 120] == ARMCHAIR]
+    assert torch.isin(own, near.ids).float().mean() > 0.97
+    assert not torch.isin(hazy.cloud.ids[-60:], near.ids).any()  # its haze far away does not stretch the box
+
+
+def test_a_side_takes_things_whole_and_leaves_the_anchor(hazy: Scene, real: Context) -> None:
+    left = do(hazy, real, "select", target=region("left_of", of=({"groups": (0,)},))).selection
+    right = do(hazy, real, "select", target=region("right_of", of=({"groups": (0,)},))).selection
+    assert (1 in left.groups) != (1 in right.groups)
+    table = hazy.cloud.ids[hazy.cloud.group == 0]
+    for side in (left, right):
+        assert not torch.isin(table, side.ids).any()
+        for group in (1, ARMCHAIR):
+            share = torch.isin(hazy.cloud.ids[hazy.cloud.group == group], side.ids).float().mean()
+            assert share in (0.0, 1.0)
+
+
+def test_a_crop_keeps_a_thing_with_what_stands_on_it_and_no_floor(hazy: Scene, real: Context) -> None:
+    after = do(hazy, real, "isolate", target=region("around", of=({"groups": (0,)},))).scene.cloud
+    assert set(after.group.tolist()) <= {0, 3, NO_GROUP}
+    for group in (0, 3):
+        assert int((after.group == group).sum()) > 0.98 * int((hazy.cloud.group == group).sum())
+
+
+def test_things_are_restricted_to_a_part_of_space(hazy: Scene, real: Context) -> None:
+    target = {"pick": "all", "region": {"name": "within", "of": ({"groups": (0,)},), "distance": 0.2}}
+    assert set(do(hazy, real, "select", target=target).selection.groups) == {0, 3}
+
+
+def test_an_empty_part_of_space_is_absent(hazy: Scene, real: Context) -> None:
+    with pytest.raises(AbsentError, match="nothing lies"):
+        do(hazy, real, "delete", target=region("above", distance=90))

@@ -29,7 +29,9 @@ class Isolate(TargetedOp):
         return ~mask_of(scene.cloud, self._kept(scene, selection))
 
     def _kept(self, scene: Scene, selection: Selection) -> Tensor:
-        """Ids of what stays; of the whole scene everything does."""
+        """Ids of what stays: of things all but their strays, of a part of space all."""
+        if self.target.spatial:
+            return selection.ids
         return without_strays(scene, index_groups(scene.cloud), selection)
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:

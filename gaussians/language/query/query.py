@@ -6,11 +6,12 @@ and negation is a set difference, because encoders are near bag-of-words on both
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
+from ...world.lengths import Unit
 from ...world.relations import QueryName, named
 
 Name = Annotated[str, Field(max_length=80)]
@@ -40,6 +41,51 @@ class Relation(BaseModel):
         return named(self.name).told(*(a.describe() for a in self.anchors))
 
 
+class Region(BaseModel):
+    """A part of space. A Gaussian is in it by its centre, whether it belongs to a thing or not.
+
+    Attributes:
+        name: "above" and "below" a height; "left_of", "right_of", "in_front_of" and "behind" things, as the viewer sees
+            them: beyond the side of their box; "within" a distance of things; "around": the things with what stands on
+            them and nothing else (a crop), or with a distance the box around them, grown by it.
+        of: the things; without any, heights are above the floor, and the others are about the middle of the scene.
+        distance: beyond which it begins, or up to which it reaches. Without one, things are taken or left whole.
+        unit: of the distance.
+        outside: everything that is not in it.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: Literal["above", "below", "left_of", "right_of", "in_front_of", "behind", "within", "around"]
+    of: Annotated[tuple[Query, ...], Field(max_length=4)] = ()
+    distance: Annotated[float, Field(ge=0, le=10_000, allow_inf_nan=False)] | None = None
+    unit: Unit = "m"
+    outside: bool = False
+
+    @model_validator(mode="after")
+    def _measured(self) -> Self:
+        if self.distance is None and (self.name == "within" or not self.of):
+            raise ValueError(
+                f'a region "{self.name}" needs a distance' + ("" if self.name == "within" else " or things")
+            )
+        return self
+
+    def describe(self) -> str:
+        """ "more than 1 m above the floor"."""
+        far = "" if self.distance is None else f"{self.distance:g} {self.unit} "
+        floor = "the floor" if self.name in ("above", "below") else "the middle of the scene"
+        things = " and ".join(q.describe() for q in self.of) or floor
+        if self.name == "within":
+            return f"{'more than' if self.outside else 'within'} {far}{'from' if self.outside else 'of'} {things}"
+        words = {"left_of": "left of", "right_of": "right of", "in_front_of": "in front of"}.get(self.name, self.name)
+        lead = "more than " if far and self.name != "around" else ""
+        lead = "" if far and self.name in ("above", "below") and not self.of else lead
+        said = f"{lead}{far}{words} {things}"
+        if far and self.name in ("above", "below") and not self.of:
+            said = f"{words} {far}over {things}"
+        return f"not {said}" if self.outside else said
+
+
 class Query(BaseModel):
     """What to select.
 
@@ -49,6 +95,8 @@ class Query(BaseModel):
         not_colors: colour words that must not hold.
         size: a relative size word among those that otherwise match.
         relations: all must hold.
+        region: only what lies in this part of space; of "everything" every Gaussian in it, of things those that lie
+            mostly in it.
         pick: what to do with several matches. "one" demands exactly one and reports an ambiguity otherwise;
             "all" takes every match; "any" takes the best; superlatives and "nth" (with `ordinal`) order them,
             "middle" takes the middle one from left to right of an odd number;
@@ -72,6 +120,7 @@ class Query(BaseModel):
     not_colors: Annotated[tuple[Name, ...], Field(max_length=4)] = ()
     size: Sizes | None = None
     relations: Annotated[tuple[Relation, ...], Field(max_length=4)] = ()
+    region: Region | None = None
     pick: Picks = "one"
     ordinal: Annotated[int, Field(ge=1, le=1000)] | Annotated[int, Field(ge=-1000, le=-1)] | None = None
     count: Annotated[int, Field(ge=1, le=1000)] | None = None
@@ -114,7 +163,10 @@ class Query(BaseModel):
             said += f" that is not {' or '.join(self.not_colors)}"
         for r in self.relations:
             said += f" {r.describe()}"
+        if self.region is not None:
+            said += f" {self.region.describe()}"
         return said
 
 
 Relation.model_rebuild()
+Region.model_rebuild()

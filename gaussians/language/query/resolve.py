@@ -33,10 +33,11 @@ from .keeping import without_strays
 from .part_query import Piece, pieces_of
 from .parts import NAMED
 from .picking import by_distance, pick
-from .query import ALL, Query, Relation
+from .query import ALL, Query, Region, Relation
 from .readings import is_known
 from .reshape import reshaped
 from .selection import Candidate, Selection, nothing
+from .space import Inside, inside, mostly_in
 from .terms import (
     FLOATERS,
     LOOSE,
@@ -53,6 +54,8 @@ from .terms import (
 
 if TYPE_CHECKING:
     from ..encoders import Encoder
+
+_STACKED = 2  # how often a crop looks for what stands on what it keeps
 
 __all__ = ["STRUCTURE", "Resolver", "resolve"]  # builders of scenes need the words for structure
 
@@ -167,6 +170,8 @@ class Resolver:
             return self._explicit(query)
         if query.text in ALL and _describes(query):
             query = query.model_copy(update={"text": ""})  # "everything red": every thing that is red
+        if query.text in ALL and query.region is not None:
+            return self._in_region(query, query.region)
         if query.text in ALL:
             groups = tuple(g for g in present_groups(self.field, "all") if g.parent < 0)
             told = tuple(candidate_of(g) for g in groups)  # every_id includes Gaussians without a group
@@ -174,6 +179,9 @@ class Resolver:
         if query.text in FLOATERS and not query.colors:
             return self._floaters(query)
         try:
+            if query.region is not None:
+                held = mostly_in(self.scene, self._inside(query.region).rows)
+                out = out | {g.id for g in self.field.groups if g.id not in held}
             found = self.described(query, out)
             fronts = self._frames_told(query) if query.relations else ""
             for relation in query.relations if found.chosen else ():
@@ -231,6 +239,49 @@ class Resolver:
         if not len(ids):
             return nothing(query, "every Gaussian of this scene belongs to something; there are no floaters")
         return Selection(query, "found", ids, (), (), f"{len(ids)} Gaussians that belong to no group")
+
+    def _in_region(self, query: Query, region: Region) -> Selection:
+        """Every Gaussian of a part of space."""
+        try:
+            found = self._inside(region)
+        except Unresolved as anchor:
+            return replace(anchor.selection, query=query)
+        ids = self.members.ids_at(np.flatnonzero(found.rows))
+        if not len(ids):
+            return nothing(query, f"nothing lies {region.describe()} ({found.told})")
+        whole = mostly_in(self.scene, found.rows)
+        groups = tuple(g.id for g in present_groups(self.field, "object") if g.id in whole and g.parent < 0)
+        told = tuple(candidate_of(self.field.groups[i]) for i in groups)
+        made = Selection(query, "found", ids, groups, told, f"{len(ids):,} Gaussians {region.describe()}: {found.told}")
+        for of in region.of:
+            made = _doubted(made, self._anchored_at(of))
+        return made
+
+    def _inside(self, region: Region) -> Inside:
+        """The Gaussians in a region.
+
+        Raises:
+            Unresolved: one of its things is absent or ambiguous.
+        """
+        things = []
+        for query in region.of:
+            found = self._anchored_at(query)
+            if not found.chosen:
+                raise Unresolved(found)
+            things.append(self.select(query))
+        if region.name == "around" and region.distance is None:
+            seen = {g for found in things for g in found.groups}
+            for _ in range(_STACKED):
+                on = tuple(Query(groups=(g,)) for g in sorted(seen) if self.field.groups[g].level == "object")[:16]
+                more = [self._on(anchor) for anchor in on]
+                fresh = [g for g in dict.fromkeys(g for found in more for g in found) if g not in seen]
+                things += [self.select(Query(groups=(g,))) for g in fresh]
+                seen |= set(fresh)
+        return inside(self.scene, region, things, self.stand)
+
+    def _on(self, anchor: Query) -> tuple[int, ...]:
+        """Groups that stand on one group."""
+        return self.select(Query(pick="all", relations=(Relation(name="on", anchors=(anchor,)),))).groups
 
     def _explicit(self, query: Query) -> Selection:
         known = {g.id: g for g in present_groups(self.field, "all")}

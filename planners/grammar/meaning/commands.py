@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 
-from ....gaussians.language.query.query import Query
+from ....gaussians.language.query.query import Query, Region
 from ....gaussians.world.words import head
 from ..parsing import Node, Refusal, tokens, trees
 from ..vocabulary import nouns
@@ -170,6 +170,41 @@ def hide(phrases: Phrases, node: Node) -> list[Fields]:
     return phrases.targeted(node, "opacity", value=0.0)
 
 
+def crop(phrases: Phrases, node: Node) -> list[Fields]:
+    """Keep only some things with what stands on them: "crop to the table"."""
+    *_, kept = (phrases.targets(tree) for tree in trees(node, "targets"))
+    return _cropped(existing(kept))
+
+
+def crop_away(phrases: Phrases, node: Node) -> list[Fields]:
+    """ "crop around the table"; "crop everything above 1 m" removes it."""
+    found = phrases.query(node)
+    if tokens(node, "CROP")[0].value == "around":
+        return _cropped(found)
+    if found == EVERYTHING:
+        raise Refusal("say to what: crop to the table, crop to 2 m around the table", "crop")
+    if found.region is None:
+        raise Refusal("say crop to it, or remove it", tokens(node, "CROP")[0].text)
+    return [{"op": "delete", "target": found}]
+
+
+def crop_space(phrases: Phrases, node: Node) -> list[Fields]:
+    """Keep only a part of space: "crop to 2 m around the table"; "crop the scene above 1 m" removes it."""
+    space = tokens(node, "REGION", "HEIGHT")[0]
+    of = tuple(phrases.noun(tree).full() for tree in trees(node, "np"))
+    target = EVERYTHING.model_copy(update={"region": Region(**space.value, of=of)})
+    removed = space.type == "HEIGHT" and not tokens(node, "TO")
+    return [{"op": "delete" if removed else "isolate", "target": target}]
+
+
+def _cropped(kept: Query) -> list[Fields]:
+    """What keeps only a part of space or only things."""
+    if kept.region is not None and kept.text == EVERYTHING.text:
+        return [{"op": "isolate", "target": kept}]
+    around = Region(name="around", of=(kept,))
+    return [{"op": "isolate", "target": EVERYTHING.model_copy(update={"region": around})}]
+
+
 def fade(phrases: Phrases, node: Node) -> list[Fields]:
     share = changes.share_of(node)
     if share is None:
@@ -305,6 +340,7 @@ def _except(target: Query | None, out: Query) -> Query:
 
 
 _RULES = (
-    same, bare, merge, split, split_into, delete, clear, drop, take, keep, select, isolate, hide, fade, switch, paint,
-    give_color, change_from, tint, tint_more, give_shade, coat_on, adjust, change_opacity, make, it_becomes, put,
+    same, bare, merge, split, split_into, delete, clear, drop, take, keep, select, isolate, hide, crop, crop_away,
+    crop_space, fade, switch, paint, give_color, change_from, tint, tint_more, give_shade, coat_on, adjust,
+    change_opacity, make, it_becomes, put,
 )  # fmt: skip

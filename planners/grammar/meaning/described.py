@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 from ....gaussians.language.query import wholes
 from ....gaussians.language.query.nested import with_queries
-from ....gaussians.language.query.query import Query, Relation
+from ....gaussians.language.query.query import Query, Region, Relation
 from ....gaussians.world import relations
 from ....gaussians.world.words import head
 from ..parsing import Refusal
@@ -22,7 +22,7 @@ from ..vocabulary import nouns
 # These describe the first noun, not the last: "the cup on the table that is white".
 _OF_THE_FIRST = ("unrelated", "is_not_kind", "is_hue", "is_not_hue")
 # These leave "everything" the whole scene: "everything that is not the sofa".
-_OF_EVERYTHING = ("is_not_kind", "lacking")
+_OF_EVERYTHING = ("is_not_kind", "lacking", "in_region")
 
 EVERYTHING = Query(text="everything", pick="all")  # the whole scene, with what belongs to no thing
 
@@ -158,7 +158,7 @@ def _narrow(query: Query, post: PostModifier, behind: Sequence[PostModifier]) ->
     anchors = [a.full() for a in post.anchors]
     if anchors:
         anchors[-1] = attach_modifiers(anchors[-1], behind)
-    if query.text == EVERYTHING.text and post.kind not in _OF_EVERYTHING:
+    if query.text == EVERYTHING.text and post.kind not in _OF_EVERYTHING and not _is_beside(post):
         query = updated(query, text="")  # "everything on the table" is every thing on it
     if post.kind == "unrelated":
         wrong = _relation(_relation_name(replace(post, kind="related")), anchors)
@@ -172,6 +172,11 @@ def _narrow(query: Query, post: PostModifier, behind: Sequence[PostModifier]) ->
     if post.kind == "having" and wholes.names_plant(query.text) and wholes.names_vessel(anchors[0].text):
         pot = updated(anchors[0], relations=(*anchors[0].relations, _relation("part_of", [query])))
         return updated(query, also=(*query.also, pot))  # "the plant with the pot": a pot is on no plant
+    if post.kind == "in_region":
+        of = () if post.value["name"] in ("above", "below") and _is_floor(anchors) else tuple(anchors)
+        return _in_region(query, post.word, {**post.value, "of": of})
+    if query.text == EVERYTHING.text:
+        return _in_region(query, post.word, {"name": post.value, "of": tuple(anchors)})
     if name := _relation_name(post):
         own = post.kind == "related" and relations.named(str(post.value)).own_frame
         return updated(query, relations=(*query.relations, _relation(name, anchors, "object" if own else "viewer")))
@@ -194,6 +199,29 @@ def _narrow(query: Query, post: PostModifier, behind: Sequence[PostModifier]) ->
     if post.kind == "in_spot" and post.value == "corner":
         return updated(query, relations=(*query.relations, _relation("inside", [Query(text="corner")])))
     raise Refusal("things cannot be selected by this", post.word)
+
+
+def _is_beside(post: PostModifier) -> bool:
+    """Whether a postmodifier gives a side, which of everything is a part of space: "everything left of the table"."""
+    return post.kind == "related" and post.value in ("left_of", "right_of", "in_front_of", "behind")
+
+
+def _is_floor(anchors: Sequence[Query]) -> bool:
+    return all(head(a.text) in ("floor", "ground") for a in anchors)
+
+
+def _in_region(query: Query, said: str, fields: dict[str, Any]) -> Query:
+    """`query` restricted to a part of space.
+
+    Raises:
+        Refusal: it is restricted to another one already.
+    """
+    if query.region is not None:
+        raise Refusal("one part of the space at a time; say it in two steps", said)
+    try:
+        return updated(query, region=Region(**fields))
+    except ValueError as error:
+        raise Refusal("that is not a length for things in a room", said, verdict="impossible") from error
 
 
 def _lacking(query: Query, post: PostModifier, anchors: Sequence[Query]) -> Query:

@@ -141,6 +141,8 @@ class Phrases:
             anchors = self._sided(node)
         elif kind in ("is_hue", "is_not_hue"):
             value = tokens(node, "HUE")[0].value
+        elif kind == "in_region":
+            value = tokens(node, "REGION", "HEIGHT")[0].value
         elif kind == "is_tall":
             value = tokens(node, "TALLER")[0].value
         return PostModifier(kind, value, word, anchors, conjoined)

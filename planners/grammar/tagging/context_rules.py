@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from ..vocabulary import lexicon, quantities
 from .lookahead import match
+from .region_words import tag_region
 from .tags import TaggerState
 from .words import phrases
 
@@ -47,6 +48,10 @@ def tag_by_context(state: TaggerState, i: int, length: int) -> int | None:
     text, rest = state.texts[i], state.texts[i + 1 :]
     after = rest[0] if rest else ""
     verb = state.clause.verb
+    if (found := tag_region(state, i)) is not None:
+        return found
+    if verb == "CROP" and text in ("with", "including") and state.ahead.object_follows(i + 1):
+        return state.emit("AND", None, i, 1)
     if (found := _tag_having_or_lacking(state, i)) is not None or (found := _tag_around(state, i)) is not None:
         return found
     if (found := _tag_after_verb(state, i)) is not None:

@@ -239,8 +239,9 @@ CLOSED: dict[str, Entry] = {
     **same(("LIKEIT", None), "like it, like this, like that, like this one, like that one, like these, like those, "
             "like them, just like it"),
     **same(("PRON", "any"), "one of them, any of them, either of them"),
-    **same(("EVERYTHING", None), "whatever is, what is, all things, all objects, every object, all the objects"),
-    **same(("EVERYTHING", "scene"), "everything, anything, the scene, the whole scene, the entire scene, the complete "
+    **same(("EVERYTHING", None), "all things, all objects, every object, all the objects"),
+    **same(("EVERYTHING", "scene"), "whatever is, what is, everything, anything, the scene, "
+            "the whole scene, the entire scene, the complete "
             "scene, the full scene, all of the scene, the whole room, the entire room, everything in the scene, "
             "the whole picture, the whole image, the whole capture, the whole model, the whole splat, "
             "the entire model, my scene, this scene, the scene as a whole, all of this scene, whole scene, "

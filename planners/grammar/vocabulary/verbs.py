@@ -24,7 +24,9 @@ VERBS: dict[str, Entry] = {
         "destroy, banish, "
         "dispose of, do away with, bin, axe, purge, expunge, wipe out, rub out, delete away, get out, toss, toss out, "
         "yank, yank out, rip out, oust, evict, vaporize, obliterate, get shot of, junk, kick out, boot out, strip out, "
-        "toss away, chuck in the bin, throw in the trash, be rid of, remove away, rid us of, hoover up",
+        "toss away, chuck in the bin, throw in the trash, be rid of, remove away, rid us of, hoover up, "
+        "cut off, cut away, cut out, slice off, crop away, crop out, crop off, trim away, trim off, clip off, "
+        "chop off, saw off",
     ),
     **same(("CLEAR", None), "clear, clear off, clear out"),
     **same(("MERGE", None), "merge, combine, unite, join, join up, fuse, group, group together, treat, regard"),
@@ -43,6 +45,11 @@ VERBS: dict[str, Entry] = {
         "only show, "
         "only show me, leave only, leave just, leave nothing but, keep nothing but, show nothing but, "
         "single out, solo",
+    ),
+    **same(("CROP", None), "crop, crop in, crop down, trim, clip, cut down, cut, crop it, crop tightly"),
+    **same(
+        ("CROP", "around"),
+        "crop around, crop in on, crop in to, crop into, crop tightly around, cut around, crop closely around",
     ),
     **same(("HIDE", None), "hide, conceal, fade out"),
     **same(("FADE", None), "fade"),
