@@ -6,9 +6,9 @@ and negation is a set difference, because encoders are near bag-of-words on both
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
 from ...world.lengths import Unit
@@ -61,14 +61,6 @@ class Region(BaseModel):
     distance: Annotated[float, Field(ge=0, le=10_000, allow_inf_nan=False)] | None = None
     unit: Unit = "m"
     outside: bool = False
-
-    @model_validator(mode="after")
-    def _measured(self) -> Self:
-        if self.distance is None and (self.name == "within" or not self.of):
-            raise ValueError(
-                f'a region "{self.name}" needs a distance' + ("" if self.name == "within" else " or things")
-            )
-        return self
 
     def describe(self) -> str:
         """ "more than 1 m above the floor"."""
