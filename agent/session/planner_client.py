@@ -133,6 +133,12 @@ class PlannerClient:
             return False
         return True if plan.verdict == "not_an_edit" and QUESTION in plan.reason else None
 
+    def continues(self, text: str, previous: str | None) -> bool:
+        """Whether the grammar reads a text as going on with the instruction before ("a bit more")."""
+        from ...planners.grammar import GrammarPlanner
+
+        return previous is not None and GrammarPlanner().plan(text, previous=previous).ok
+
     def noun_phrase(self, text: str) -> Query | None:
         """A short noun phrase as a query, without asking the model of a cascade; None if it cannot be read."""
         from ...planners.cascade import without_model

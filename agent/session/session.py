@@ -470,6 +470,10 @@ class Session:
 
         return asks(text)
 
+    def continues(self, text: str) -> bool:
+        """Whether a text goes on with the instruction before: "closer", after something was moved."""
+        return self._planner.continues(text, self._history.present.context or None)
+
     def survey(self) -> Survey:
         """The scene as questions see it: boxes, colours and relations of its things; measured once for each scene."""
         self.embed()

@@ -6,12 +6,16 @@ instruction. Lines come from `input_lines.py`.
 
 from __future__ import annotations
 
+import shlex
 import shutil
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from ...gaussians.errors import AbsentError, InstructionError, ScenewrightError, UserError
+from ..pictures.named_cameras import view_text
 from ..session.answers import chosen_numbers
+from ..session.camera_moves import Looked, look
+from ..session.camera_words import read_moves
 from ..session.plan_report import candidate_json, planner_json, refusal_json, usage_lines
 from ..session.planner_client import is_dismissal, undo_or_redo
 from ..session.refusal import verdict_of
@@ -24,6 +28,7 @@ if TYPE_CHECKING:
     from prompt_toolkit.input import Input
     from prompt_toolkit.output import Output
 
+    from ...gaussians.camera import Camera
     from ...planners.plan import EditPlan
     from ..session.result import Result
     from ..session.session import Session
@@ -43,7 +48,7 @@ class Chat:
 
     Attributes:
         planned: the last plan that was carried out.
-        saved: whether the scene has not changed since it was saved.
+        home: the first view, whose left and right "from the left" means; None until the camera is moved.
         ended: whether the user ended the chat.
     """
 
@@ -53,8 +58,11 @@ class Chat:
         self.session = session
         self.terminal = terminal
         self.planned: EditPlan | None = None
-        self.saved = True
+        self.home: Camera | None = None
         self.ended = False
+        self._kept = session.scene
+        self._looked: Looked | None = None  # the last move of the camera
+        self._looking = False  # whether nothing was edited since
         self._lines = InputLines(COMMANDS, self._words, terminal.as_json, input, output)
         self._previous_plan: EditPlan | None = None
 
@@ -71,8 +79,34 @@ class Chat:
                 self.say(line.strip())
             if self.ended:
                 break
-        if not self.saved:
-            self.terminal.say("the edited scene was not saved")
+        while self.unsaved and not self._leave():
+            pass
+
+    @property
+    def unsaved(self) -> bool:
+        """Whether the scene looks other than when it was saved last; undoing all edits makes it as it was."""
+        now, kept = self.session.scene.cloud, self._kept.cloud
+        return any(
+            column is not before
+            for (name, column), (_, before) in zip(now.columns(), kept.columns(), strict=True)
+            if name not in ("group", "ids")
+        )
+
+    def kept(self) -> None:
+        """Note that the present scene was saved."""
+        self._kept = self.session.scene
+
+    def _leave(self) -> bool:
+        """Whether the chat may end although the scene is not saved. A person is asked for a file; a pipe is told."""
+        self.terminal.say("the edited scene was not saved")
+        if not self._lines.interactive:
+            return True
+        answer = self._lines.ask("save it as (a file, or 'no'): ")
+        if answer is None or answer.lower() in ("no", "n", "nein", "discard", "quit", "/quit", "exit", "/exit"):
+            return True
+        if answer:
+            self.say(answer if answer.startswith("/save ") else f"/save {shlex.quote(answer)}")
+        return False
 
     def say(self, line: str) -> None:
         """Handle one line: a command, an answer, a question or an instruction. Errors become one sentence."""
@@ -97,6 +131,8 @@ class Chat:
             self.tell(reason, {"verdict": "internal", "reason": reason}, "red")
 
     def _instruction(self, text: str) -> None:
+        if self._look(text):
+            return
         if self._waits_for(text):
             if is_dismissal(text):
                 self.session.question = None
@@ -119,6 +155,31 @@ class Chat:
             result = self.session.do(text)
         self.show_result(result)
 
+    def _look(self, text: str) -> bool:
+        """Move the camera, if that is what the text asks for; False if it does not.
+
+        "closer" alone goes on with an edit of the instruction before, unless the camera was moved since.
+        """
+        moves = read_moves(text)
+        if moves is None or self._names_a_camera():
+            return False
+        bare = all(move.bare for move in moves)
+        if bare and (self.session.question is not None or (not self._looking and self.session.continues(text))):
+            return False
+        self.home = self.home or self.session.viewer
+        looked = look(self.session, moves, self.home, self._looked)
+        self.session.viewer, self._looked, self._looking = looked.camera, looked, True
+        data = {"verdict": "ok", "view": view_text(looked.camera), "notes": list(looked.notes)}
+        self.tell("\n".join([looked.told, *(f"note: {note}" for note in looked.notes)]), data)
+        if self._lines.interactive:
+            self.show_picture()
+        return True
+
+    def _names_a_camera(self) -> bool:
+        """Whether a camera is one of the things in the scene, so that words about it may be an edit."""
+        language = self.session.scene.language
+        return language is not None and any(g.label == "camera" for g in language.groups)
+
     def _waits_for(self, text: str) -> bool:
         """Whether a question is open that `text` may answer. Of the nearest things that were listed in place of one
         that is absent, only a number chooses."""
@@ -134,7 +195,7 @@ class Chat:
 
     def show_result(self, result: Result) -> None:
         """Print the result and, on an interactive terminal, a picture."""
-        self.planned, self.saved = result.plan or self.planned, False
+        self.planned, self._looking = result.plan or self.planned, False
         lines = list(result.sentences()) or [result.text]
         lines += usage_lines(result.plan)
         if sum(result.seconds.values()) > 0:

@@ -60,6 +60,16 @@ class InputLines:
             except EOFError:
                 return
 
+    def ask(self, question: str) -> str | None:
+        """One more line from a person, after a question; None if the input has ended. It is kept in no history."""
+        from prompt_toolkit import PromptSession
+
+        prompt: PromptSession[str] = PromptSession(input=self._input, output=self._output)
+        try:
+            return prompt.prompt(question).strip()
+        except (EOFError, KeyboardInterrupt):
+            return None
+
     def _prompt(self) -> PromptSession[str]:
         from prompt_toolkit import PromptSession
         from prompt_toolkit.auto_suggest import AutoSuggestFromHistory

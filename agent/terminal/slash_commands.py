@@ -11,6 +11,7 @@ from ..session.plan_report import format_usage, plan_lines, selection_json, usag
 from .tables import table
 
 if TYPE_CHECKING:
+    from ...gaussians.camera import Camera
     from ...planners.plan import EditPlan
     from ..session.result import Result
     from ..session.session import Session
@@ -21,6 +22,7 @@ _EXAMPLES = (
     "make the armchair teal and remove the coffee table",
     "move the plant 50 cm to the left",
     "put a red ball on the table",
+    "look from the left, closer",
 )
 
 
@@ -30,12 +32,13 @@ class Conversation(Protocol):
     session: Session
     terminal: Terminal
     planned: EditPlan | None
-    saved: bool
+    home: Camera | None
     ended: bool
 
     def tell(self, text: str, data: dict[str, Any], style: str = "default") -> None: ...
     def show_result(self, result: Result) -> None: ...
     def show_picture(self) -> None: ...
+    def kept(self) -> None: ...
 
 
 class SlashCommand(NamedTuple):
@@ -116,7 +119,7 @@ def _show(chat: Conversation, view: str) -> None:
     from ..pictures.named_cameras import choose_view
 
     if view:
-        chat.session.viewer = choose_view(chat.session.scene, view)
+        chat.session.viewer, chat.home = choose_view(chat.session.scene, view), None
     chat.show_picture()
 
 
@@ -191,7 +194,7 @@ def _save(chat: Conversation, arguments: str) -> None:
     if len(names) != 1:
         raise UserError("give a file: /save out.ply (add --force to overwrite)")
     chat.session.save(names[0], force="--force" in words)
-    chat.saved = True
+    chat.kept()
     chat.tell(f"wrote {names[0]}", {"verdict": "ok", "path": names[0]})
 
 

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from prompt_toolkit.document import Document
 from prompt_toolkit.input import create_pipe_input
@@ -27,7 +28,7 @@ def _talk(scene: Scene, encoder: Any, *lines: str, log: Path | None = None) -> t
     terminal = Terminal(io.StringIO(), io.StringIO())
     session = Session(scene, encoder=encoder, log=log)
     with create_pipe_input() as pipe:
-        pipe.send_text("".join(f"{line}\r" for line in (*lines, "/quit")))
+        pipe.send_text("".join(f"{line}\r" for line in (*lines, "/quit", "no")))
         Chat(session, terminal, pipe, DummyOutput()).run()
     assert isinstance(terminal.out, io.StringIO) and isinstance(terminal.err, io.StringIO)
     return session, terminal.out.getvalue(), terminal.err.getvalue()
@@ -113,6 +114,62 @@ def test_what_an_earlier_chat_did_can_be_done_again(boxes: Scene, encoder: Any, 
     assert second.digest == first.digest
     _, out, _ = _talk(boxes, encoder, "/replay")
     assert "begin it with --log FILE" in out
+
+
+def test_the_camera_moves_and_the_scene_does_not(boxes: Scene, encoder: Any) -> None:
+    home = boxes.cameras[0]
+    session, out, _ = _talk(boxes, encoder, "look from the left")
+    assert session.viewer.position[0] < -3 and abs(session.viewer.forward[0]) > 0.7 and "from the left" in out
+    session, _, _ = _talk(boxes, encoder, "look from the left", "look from the right")  # both of the first view
+    assert session.viewer.position[0] > 3
+    session, _, _ = _talk(boxes, encoder, "from above")
+    assert session.viewer.forward[2] < -0.9
+    near, _, _ = _talk(boxes, encoder, "closer")
+    nearer, _, _ = _talk(boxes, encoder, "closer", "closer")
+    from_far = [float(np.linalg.norm(s.viewer.position - [0, 0, 0.4])) for s in (nearer, near)]
+    assert from_far[0] < from_far[1] < float(np.linalg.norm(home.position - [0, 0, 0.4]))
+    session, _, _ = _talk(boxes, encoder, *["orbit"] * 8)
+    np.testing.assert_allclose(session.viewer.position, home.position, atol=1e-6)
+    session, out, _ = _talk(boxes, encoder, "orbit", "look up", "reset the view")
+    assert session.viewer.name == "door" and session.scene is boxes and session.done == ()
+    session, _, _ = _talk(boxes, encoder, "orbit the green thing", "look at the purple thing")
+    pixel, _ = session.viewer.project(np.array([[0, 0.3, 0.3]]))
+    assert abs(pixel[0] - [480, 320]).max() < 1e-6
+
+
+def test_closer_goes_on_with_an_edit_until_the_camera_moves(boxes: Scene, encoder: Any) -> None:
+    session, _, _ = _talk(boxes, encoder, "move the green thing 10 cm to the left", "closer")
+    assert session.viewer.name == "door" and len(session.done) == 2
+    session, _, _ = _talk(boxes, encoder, "move the green thing 10 cm to the left", "orbit", "closer")
+    assert len(session.done) == 1
+
+
+def test_left_and_right_follow_the_camera(boxes: Scene, encoder: Any) -> None:
+    session, _, _ = _talk(boxes, encoder, "look from behind", "delete the left red thing")
+    assert set(session.scene.cloud.group.unique().tolist()) == {0, 1, 3}
+
+
+def test_leaving_with_an_unsaved_scene_asks_for_a_file(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
+    target = tmp_path / "my room.ply"
+    _, _, err = _talk(boxes, encoder, "delete the green thing", "/quit", "no suffix", str(target))
+    assert target.is_file() and err.count("was not saved") == 2  # asked again after a name that names no format
+    _, _, err = _talk(boxes, encoder, "delete the green thing", "/undo")
+    assert "not saved" not in err
+    _, _, err = _talk(boxes, encoder, "delete the green thing", f"/save '{tmp_path / 'b.ply'}'", "/undo")
+    assert "not saved" in err
+    _, _, err = _talk(boxes, encoder, "/select the green thing", "select the green thing")
+    assert "not saved" not in err
+
+
+def test_on_a_pipe_leaving_is_told_and_not_asked(boxes: Scene, encoder: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdin", io.StringIO("delete the green thing\nlook from the left\n"))
+    terminal = Terminal(io.StringIO(), io.StringIO())
+    terminal.as_json = True
+    Chat(Session(boxes, encoder=encoder), terminal).run()
+    assert isinstance(terminal.out, io.StringIO) and isinstance(terminal.err, io.StringIO)
+    done, looked = (json.loads(line) for line in terminal.out.getvalue().splitlines())
+    assert done["verdict"] == looked["verdict"] == "ok" and looked["view"].count(":") == 2
+    assert terminal.err.getvalue().count("was not saved") == 1
 
 
 def test_errors_are_one_sentence_and_the_conversation_goes_on(boxes: Scene, encoder: Any) -> None:
