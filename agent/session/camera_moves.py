@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 _TURNS = {"front": 0.0, "right": 90.0, "behind": 180.0, "left": -90.0}  # degrees from the first view
 _HEIGHTS = {"above": 75.0, "below": -35.0}  # degrees above the horizon
 _LEVEL = 5.0, 45.0  # degrees above the horizon, between which a view from a side stays
+_MANY = 8  # cameras from which they are those of photographs
+_NEARLY = 0.77  # cosine of about 40 degrees
 _FACES = {"left": "the left", "right": "the right", "front": "the front"}
 
 
@@ -30,12 +32,14 @@ class Looked:
         told: the moves in words: "from the left of the first view, closer".
         notes: what could not be done exactly.
         pivot: `[3]`, world, the point that the camera moves around; None if that is what it looks at now.
+        up: `[3]`, unit, world; kept, as it takes seconds to estimate where the file does not give it.
     """
 
     camera: Camera
     told: str
     notes: tuple[str, ...] = ()
     pivot: NDArray[np.float64] | None = None
+    up: NDArray[np.float64] | None = None
 
 
 def look(session: Session, moves: Sequence[CameraMove], home: Camera, before: Looked | None = None) -> Looked:
@@ -53,7 +57,8 @@ def look(session: Session, moves: Sequence[CameraMove], home: Camera, before: Lo
     told: list[str] = []
     notes: list[str] = []
     now = before if before is not None and before.camera is session.viewer else Looked(session.viewer, "")
-    up = framed(session.scene).frame.up_vector
+    known = before.up if before is not None else None
+    up = known if known is not None else framed(session.scene).frame.up_vector
     for move in moves:
         if move.kind == "thing":
             now = _at_thing(session, move, now.camera)
@@ -65,7 +70,15 @@ def look(session: Session, moves: Sequence[CameraMove], home: Camera, before: Lo
             now = _moved(session, move, now, up)
         told.append(now.told)
         notes.extend(now.notes)
-    return replace(now, told=", ".join(told), notes=tuple(notes))
+    if _unseen(session, now.camera):
+        notes.append("no photograph was taken from about there, so what is shown there is uncertain")
+    return replace(now, told=", ".join(told), notes=tuple(dict.fromkeys(notes)), up=up)
+
+
+def _unseen(session: Session, camera: Camera) -> bool:
+    """Whether the scene comes with its photographs' cameras, and none of them looks nearly the same way."""
+    cameras = session.scene.cameras
+    return len(cameras) >= _MANY and max(float(c.forward @ camera.forward) for c in cameras) < _NEARLY
 
 
 def _from_side(session: Session, move: CameraMove, camera: Camera, home: Camera, up: NDArray[np.float64]) -> Looked:

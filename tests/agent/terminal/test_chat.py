@@ -137,6 +137,14 @@ def test_the_camera_moves_and_the_scene_does_not(boxes: Scene, encoder: Any) -> 
     assert abs(pixel[0] - [480, 320]).max() < 1e-6
 
 
+def test_a_view_that_no_photograph_shows_is_told(boxes: Scene, encoder: Any) -> None:
+    photographed = boxes.replace(cameras=boxes.cameras * 8)
+    _, out, _ = _talk(photographed, encoder, "look from behind")
+    assert "no photograph was taken" in out
+    _, out, _ = _talk(photographed, encoder, "closer")
+    assert "no photograph" not in out
+
+
 def test_closer_goes_on_with_an_edit_until_the_camera_moves(boxes: Scene, encoder: Any) -> None:
     session, _, _ = _talk(boxes, encoder, "move the green thing 10 cm to the left", "closer")
     assert session.viewer.name == "door" and len(session.done) == 2
