@@ -3,7 +3,7 @@
 Things are taken by boxes, so that no selection by words is measured with them, and looked at from a photograph's
 camera.
 
-- Shift of greys: of the pixels that show the thing and were grey (Lab chroma below 10, lightness above 10), nine in ten
+- Shift of greys: of the pixels that show the thing and were grey (Lab chroma below 10, lightness above 15), nine in ten
   shift less in a and b of CIELAB, beyond what more or less light does to the little tint that they have.
 - Distance from what was asked: CIEDE2000 of the mean pixel of the painted surface to the asked pigment times the
   scene's light times its shading. The shading is measured in the same pixels before: their mean luma relative to that

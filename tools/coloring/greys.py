@@ -9,7 +9,8 @@ from .materials import hue_at
 from .quantiles import quantile
 
 _GREY = 10.0  # Lab chroma up to which a colour is a grey
-_SEEN = 10.0  # least lightness before and after: below it nobody sees a hue
+# Least lightness before and after: below it nobody sees a hue, and a display's transfer is no power law.
+_SEEN = 15.0
 _FEWEST = 8
 
 

@@ -31,6 +31,7 @@ from ..receipt import Check, at_least, at_most, report
 
 Adjust = Literal["darker", "lighter", "more_saturated", "less_saturated", "warmer", "cooler", "toward"]
 _ROWS = 1 << 13  # rows written at a time: intermediates stay in a core's cache
+_GREY_SHIFT = 4.0  # ΔE by which greys may shift: usual are 0 to 1, of whites turned blue 10 and more
 _TOLD = 0.03  # share of the target out of the display's range from which it is told
 
 
@@ -142,7 +143,9 @@ class Recolor(TargetedOp):
         checks = [self._arrived(before.cloud, rows, was, now), count_matches(before, outcome.scene, outcome)]
         if self.adjust in ("darker", "lighter"):
             shift = grey_shift(sample(before.cloud, rows), sample(outcome.scene.cloud, rows))
-            checks.append(at_most("greys stay grey", shift, 2.0, "ΔE", f"the hue of greys shifted by {shift:.1f}"))
+            checks.append(
+                at_most("greys stay grey", shift, _GREY_SHIFT, "ΔE", f"the hue of greys shifted by {shift:.1f}")
+            )
         if self.adjust is None:
             texture, kept = lightness_spread(was), lightness_spread(now)
             said = f"spread of lightness (shading, texture) went from {texture:.1f} to {kept:.1f}"
