@@ -24,7 +24,7 @@ FEATURES = (
     "same facing", "smaller plane", "larger plane", "smaller line", "larger line", "off the plane",
 )  # fmt: skip
 
-APART = -3.0  # log-odds of two regions without a border
+APART = -1.0  # log-odds of two regions without a border
 
 
 def features(graph: Graph, pairs: list[tuple[int, int]]) -> F64:
