@@ -155,11 +155,15 @@ class Context:
     renderer: str = "auto"
 
     def resolve(self, scene: Scene, query: Query) -> Selection:
-        """What `query` means in `scene`; whatever its verdict is (see `Selection.require`)."""
+        """What `query` means in `scene`; whatever its verdict is (see `Selection.require`).
+
+        What is too scattered or too large for one thing is unconfirmed (see `doubts`).
+        """
         from ..gaussians.language.query.resolve import resolve
+        from .doubts import with_doubt
 
         resolver: Resolver = self.resolver or resolve
-        return resolver(scene, query, self.viewer, encoder=self.encoder, last=self.last)
+        return with_doubt(scene, resolver(scene, query, self.viewer, encoder=self.encoder, last=self.last))
 
 
 @dataclass(frozen=True, eq=False)

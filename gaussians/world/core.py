@@ -48,10 +48,12 @@ class Core:
     Attributes:
         solid: `[M]` bool, the solid Gaussians of the connected main body: what boxes are measured on.
         belongs: `[M]` bool, all but the strays: light pieces that lie far from the core.
+        unity: share of what the selection covers that is in its heaviest connected piece; 1 for a thing in one piece.
     """
 
     solid: Bool
     belongs: Bool
+    unity: float = 1.0
 
     @property
     def strays(self) -> int:
@@ -98,12 +100,13 @@ def _core(cloud: GaussianCloud, rows: Tensor) -> Core:
         solid = np.ones(len(rows), dtype=bool)
     chosen = np.flatnonzero(solid)
     grid: _Grid | None = None
+    unity = 1.0
     if len(chosen) >= FEW:
         some = rows[torch.from_numpy(chosen[:: max(1, len(chosen) // _SAMPLE)]).to(rows.device)]
         weight = coverage(cloud.scales[some], cloud.opacities[some])
-        grid = _converged(cloud.means[some].cpu().numpy(), weight)
+        grid, unity = _converged(cloud.means[some].cpu().numpy(), weight)
     if grid is None:
-        return Core(solid, np.ones(len(rows), dtype=bool))
+        return Core(solid, np.ones(len(rows), dtype=bool), unity)
     away, heavy = grid.distance(cloud.means[rows].cpu().numpy())
     inner = away <= 0
     belongs = inner | heavy | (away <= _NEAR * grid.cell)
@@ -111,7 +114,7 @@ def _core(cloud: GaussianCloud, rows: Tensor) -> Core:
     if len(far):
         own = cloud.scales[rows[torch.from_numpy(far).to(rows.device)]].amax(dim=1).cpu().numpy()
         belongs[far] = away[far] <= _NEAR * grid.cell + own
-    return Core(solid & inner, belongs)
+    return Core(solid & inner, belongs, unity)
 
 
 def coverage(scales: Tensor, opacities: Tensor) -> F32:
@@ -128,12 +131,13 @@ def coverage(scales: Tensor, opacities: Tensor) -> F32:
 @dataclass(frozen=True, eq=False)
 class _Grid:
     """Voxels of one round: `low` `[3]` their corner, `cell` their side, `kept` and `heavy` `[X, Y, Z]` bool: those of
-    the core, and those of pieces that are too heavy to be strays."""
+    the core, and those of pieces that are too heavy to be strays; and the weight of the `heaviest` piece."""
 
     low: F64
     cell: float
     kept: Bool
     heavy: Bool
+    heaviest: float = 0.0
 
     def index(self, points: F32) -> tuple[NDArray[np.int32], NDArray[np.intp], F32]:
         """The nearest voxel `[M]` of points `[M, 3]`, flattened; and which of them lie beyond the grid, how far,
@@ -164,8 +168,9 @@ class _Grid:
         return away, heavy
 
 
-def _converged(points: F32, weight: F32) -> _Grid | None:
-    """The grid around the core of solid points `[M, 3]`; None if they have no extent or hold no strays."""
+def _converged(points: F32, weight: F32) -> tuple[_Grid | None, float]:
+    """The grid around the core of solid points `[M, 3]`, None if they have no extent or hold no strays; and the share
+    of all weight in its heaviest piece."""
     skip = int(_TRIM * len(points))
     ordered = np.sort(points, axis=0)
     low, high = ordered[skip].astype(np.float64), ordered[len(points) - 1 - skip].astype(np.float64)
@@ -184,7 +189,7 @@ def _converged(points: F32, weight: F32) -> _Grid | None:
         low, high = now_low, now_high
         if not shrunk:
             break
-    return None if whole else grid
+    return None if whole else grid, 1.0 if grid is None else grid.heaviest / max(float(weight.sum()), 1e-30)
 
 
 def _divided(points: F32, weight: F32, low: F64, high: F64, cell: float) -> tuple[_Grid, Bool]:
@@ -210,7 +215,7 @@ def _divided(points: F32, weight: F32, low: F64, high: F64, cell: float) -> tupl
     total[0] = 0.0
     kept = (total >= PIECE * total.max()) & (total > 0)
     heavy = total >= LOOSE * float(weight.sum())
-    grid = _Grid(corner, cell, kept[labels], heavy[labels])
+    grid = _Grid(corner, cell, kept[labels], heavy[labels], float(total.max()))
     return grid, within & grid.kept.ravel()[flat]
 
 

@@ -10,6 +10,7 @@ import pytest
 import torch
 
 from scenewright.gaussians.cloud import concat
+from scenewright.gaussians.errors import UnconfirmedError
 from scenewright.gaussians.language.field.measure import box_of
 from scenewright.gaussians.scene import Frame, Scene
 from scenewright.gaussians.world.box import Box, overlap
@@ -133,3 +134,17 @@ def test_a_crown_that_only_its_trunk_holds_goes_along(corner: Scene) -> None:
     scene = corner.replace(cloud=concat([corner.cloud, crown]), language=language)
     assert set(carried_on(scene, body(scene, TABLE))) == {VASE, 5}
     assert carried_on(scene, body(scene, CHAIR)) == ()
+
+
+def test_a_selection_scattered_over_a_capture_asks_first(corner: Scene, context: Context) -> None:
+    """Where the scale is unknown, as in captures; a thing in one piece, and what was confirmed, is taken."""
+    scene = unknown(corner, 0.6)
+    rows = scene.cloud.group == CHAIR
+    half = rows.nonzero().squeeze(1)[::2]
+    means = scene.cloud.means.clone()
+    means[half] += torch.tensor([0.0, 30.0, 10.0])
+    torn = scene.replace(cloud=scene.cloud.replace(means=means))
+    with pytest.raises(UnconfirmedError, match="in one piece"):
+        do(torn, context, "rotate", target={"text": "chair"}, degrees=20)
+    for whole, target in ((scene, {"text": "chair"}), (torn, {"text": "chair", "confirmed": True})):
+        assert do(whole, context, "recolor", target=target, color="red").receipt.passed
