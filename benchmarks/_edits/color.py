@@ -37,7 +37,7 @@ from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.language.segmentation.group_renders import cameras_around
 from ...gaussians.render import render
-from ...gaussians.scene import Scene
+from ...gaussians.scene import Frame, Scene
 from ...tools.color_map import LUMA
 from ...tools.coloring.greys import grey_shift
 from ...tools.coloring.scene_light import scene_light
@@ -55,6 +55,7 @@ SHADES = (("darker", 0.25), ("darker", 0.5), ("darker", 0.8), ("lighter", 0.25),
 PIXELS = 240  # width of a picture
 _CAMERAS = 12  # photographs of which the best is taken
 _LEVELS = 17  # of light between the shading before and full light
+_UPS: tuple[Vec3, ...] = ((0.0, 0.0, 1.0), (0.0, -1.0, 0.0), (0.0, 1.0, 0.0))  # where a file does not say it
 _SHOWN = 0.9  # share of a pixel's light that comes from the thing
 _FEWEST = 60  # pixels that show it
 
@@ -170,7 +171,9 @@ def _best(scene: Scene, rows: Tensor) -> Camera | None:
         step = max(1, len(scene.cameras) // _CAMERAS)
         cameras = [c.resized(PIXELS, PIXELS * c.height // c.width) for c in scene.cameras[::step]]
     else:
-        cameras = cameras_around(scene.cloud.means[rows].double().numpy(), scene.frame, np.zeros(3), PIXELS, 3)
+        points = scene.cloud.means[rows].double().numpy()
+        frames = [Frame(up) for up in _UPS]
+        cameras = [c for frame in frames for c in cameras_around(points, frame, np.zeros(3), PIXELS, 3)]
     counts = [int(_shows(scene, rows, c).sum()) for c in cameras]
     best = int(np.argmax(counts))
     return cameras[best] if counts[best] >= _FEWEST else None
