@@ -57,6 +57,9 @@ def command(
         Literal["auto", "cpu", "cuda"],
         typer.Option("--device", help="Where to train; auto: an NVIDIA GPU if there is one and gsplat is installed."),
     ] = "auto",
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Refuse a capture that lists photographs which are not there.")
+    ] = False,
     report: Annotated[
         Path | None,
         typer.Option("--report", metavar="FOLDER", help="Write report.json and comparisons with held-out photographs."),
@@ -90,7 +93,7 @@ def command(
     poses = output.with_name(output.name + ".poses")
     if unposed_photos(capture) and not poses.exists():
         terminal.say(f"the photographs have no poses: estimating them first, on the CPU, to be kept in {poses}")
-    photos = load_photos(capture, scale, terminal.progress, poses)
+    photos = load_photos(capture, scale, terminal.progress, poses, strict=strict)
     terminal.say(_describe(photos) + (", on the GPU" if where == "cuda" else ""))
     kept = output.with_name(output.name + ".checkpoint")
     if kept.exists():
@@ -145,6 +148,13 @@ def _describe(photos: Photos) -> str:
         named = ", ".join(photos.unplaced[:MAX_NAMED]) + (", ..." if len(photos.unplaced) > MAX_NAMED else "")
         every = len(photos.shots) + len(photos.held_out) + len(photos.unplaced)
         text += f"\nwarning: {len(photos.unplaced)} of {every} photographs left out, no pose was found: {named}"
+    if photos.missing:
+        named = ", ".join(name[:80] for name in photos.missing[:MAX_NAMED]) + (
+            ", ..." if len(photos.missing) > MAX_NAMED else ""
+        )
+        text += f"\nwarning: {len(photos.missing)} photographs are listed, but not there, and are left out: {named}"
+    if photos.frame_note is not None:
+        text += f"\nnote: {photos.frame_note}"
     return text if photos.warning is None else f"{text}\nwarning: {photos.warning}"
 
 
@@ -191,6 +201,7 @@ def _data(done: Fitted, photos: Photos, settings: Settings, output: Path) -> dic
         "held_out": {name: [round(v, 4) for v in values] for name, values in done.quality.each.items()},
         "photographs": len(photos.shots),
         "unplaced": list(photos.unplaced),
+        "missing": list(photos.missing),
         "steps": done.steps,
         "seconds": round(done.seconds, 2),
         "curve": [[round(s, 2), round(p, 3)] for s, p in done.curve],

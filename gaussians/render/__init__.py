@@ -17,6 +17,7 @@ from torch import Tensor
 from ..camera import Camera, Render, Vec3
 from ..cloud import GaussianCloud
 from ..errors import BackendError, UserError
+from ..scene import Scene
 from .shares import Split
 
 __all__ = ["Split", "backends", "contributions", "render", "split"]
@@ -40,14 +41,17 @@ def backends() -> tuple[str, ...]:
     return tuple(_MODULES)
 
 
-def render(cloud: GaussianCloud, camera: Camera, background: Vec3 = (0.0, 0.0, 0.0), backend: str = "auto") -> Render:
+def render(
+    cloud: GaussianCloud | Scene, camera: Camera, background: Vec3 = (0.0, 0.0, 0.0), backend: str = "auto"
+) -> Render:
     """Render colour, alpha, depth and group of every pixel in one pass.
 
     Gaussians with a non-finite value and Gaussians behind the camera are skipped; no pixel is ever NaN.
     The same input gives the same bytes.
 
     Args:
-        cloud: the Gaussians. They are copied to the back end's device; the image is returned on the cloud's device.
+        cloud: the Gaussians, or a scene. They are copied to the back end's device; the image is returned on the
+            cloud's device.
         camera: pose, intrinsics and image size.
         background: display-space RGB behind everything.
         backend: "auto" (the fast CPU renderer), or a name from `backends()`.
@@ -58,7 +62,7 @@ def render(cloud: GaussianCloud, camera: Camera, background: Vec3 = (0.0, 0.0, 0
     """
     if len(background) != 3 or not all(math.isfinite(channel) for channel in background):
         raise UserError(f"background must be three finite numbers, red green blue, got {background!r}")
-    return _load(backend).render(cloud, camera, background)
+    return _load(backend).render(cloud.cloud if isinstance(cloud, Scene) else cloud, camera, background)
 
 
 def contributions(cloud: GaussianCloud, camera: Camera, backend: str = "auto") -> Tensor:

@@ -28,9 +28,10 @@ if TYPE_CHECKING:
         UnconfirmedError,
         UserError,
     )
-    from .gaussians.files import load, save
+    from .gaussians.files import save
     from .gaussians.language.field.embed import embed
     from .gaussians.language.field.language_field import LanguageField
+    from .gaussians.language.field.loading import load
     from .gaussians.language.query.query import Query, Relation
     from .gaussians.language.query.selection import Selection
     from .gaussians.render import render
@@ -51,7 +52,7 @@ _HOME = {
     "Session": ".agent.session.session",
     "Result": ".agent.session.result",
     "Toolbox": ".agent.toolbox.toolbox",
-    "load": ".gaussians.files",
+    "load": ".gaussians.language.field.loading",
     "save": ".gaussians.files",
     "render": ".gaussians.render",
     "embed": ".gaussians.language.field.embed",

@@ -43,11 +43,12 @@ def read(path: Path) -> tuple[Scene, Report]:
         assert vertex is not None
         blocks = ply.read_rows(file, path, header, "vertex")
         means, quats, logs, logits, sh = _gather(blocks, vertex.count, degree)
+        more = ply.left_over(file, header, "vertex")
     scales, opacities = values.scales_from_logs(logs), values.opacities_from_logits(logits)
     cloud, notes = values.sound_cloud(means, quats, scales, opacities, sh)
     frame, cameras, ignored = comments.parse(header.comments)
     scene = Scene(cloud, frame, cameras, path=path)
-    return scene, Report(NAME, vertex.count, len(cloud), notes + ignored)
+    return scene, Report(NAME, vertex.count, len(cloud), notes + ignored + more)
 
 
 def _degree(path: Path, vertex: ply.Element | None) -> int:

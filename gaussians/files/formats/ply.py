@@ -142,6 +142,27 @@ def _check_size(file: BinaryIO, path: Path, header: Header) -> None:
         left -= max(needed, 0)
 
 
+def left_over(file: BinaryIO, header: Header, name: str) -> tuple[str, ...]:
+    """A note if the file holds more rows than its header declares: those after its last element, if they are of
+    element `name`; nothing if it ends there. Bytes too few for a row are passed over, as some writers pad their files.
+    """
+    element = header.element(name)
+    if element is None or header.elements[-1] is not element:
+        return ()
+    if header.encoding == "ascii":
+        file.seek(header.size)
+        more = sum(1 for line in file if line.strip()) - sum(e.count for e in header.elements)
+    else:
+        row = element.dtype(header.encoding).itemsize
+        known = sum(e.count * e.dtype(header.encoding).itemsize for e in header.elements)
+        more = (file.seek(0, 2) - header.size - known) // row
+    if more < 1:
+        return ()
+    return (
+        f"the header declares {element.count:,} {name} rows, the file holds about {more:,} more, which were left out",
+    )
+
+
 def _binary_rows(file: BinaryIO, path: Path, header: Header, name: str) -> Iterator[tuple[int, NDArray[Any]]]:
     file.seek(header.size)
     for element in header.elements:

@@ -18,6 +18,7 @@ from ...files.captures.capture import Capture, is_file, read_capture, unposed_ph
 from ...files.captures.image_file import MIN_SIDE, read_photo
 from ...lens import Lens, undistort
 from ..train import Shot
+from .frames import similarity
 from .pose_check import check_colors, check_views
 
 TEST_EVERY = 8  # every eighth photograph by name is held out, the convention of the field (Barron et al. 2022)
@@ -40,6 +41,8 @@ class Photos:
         warning: a suspected defect that the user should check, if any.
         poses_folder: folder with the estimated poses; None if the capture has poses.
         unplaced: names of photographs left out because no pose was found for them.
+        missing: names of photographs left out because they are listed, but not there.
+        frame_note: a sentence if the surveyed points were moved into the frame of the poses, or None.
     """
 
     shots: tuple[Shot, ...]
@@ -49,10 +52,17 @@ class Photos:
     warning: str | None = None
     poses_folder: Path | None = None
     unplaced: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
+    frame_note: str | None = None
 
 
 def load_photos(
-    path: Path, scale: float | None = None, progress: Progress = lambda stage, share: None, poses: Path | None = None
+    path: Path,
+    scale: float | None = None,
+    progress: Progress = lambda stage, share: None,
+    poses: Path | None = None,
+    *,
+    strict: bool = True,
 ) -> Photos:
     """Load the photographs of a capture.
 
@@ -62,10 +72,11 @@ def load_photos(
         scale: of the photographs' sides, in (0, 1]; None halves them until the longer side is at most `MAX_SIDE`.
         poses: a folder that stores estimated poses and is reused the next time; without it, photographs without poses
             are refused.
+        strict: refuse a capture that lists photographs which are not there, instead of leaving them out.
 
     Raises:
-        FileError: the capture cannot be read, a photograph is missing, broken or of another aspect ratio than its
-            camera, the cameras do not see the surveyed points, or there are too few photographs.
+        FileError: the capture cannot be read, a photograph is missing (with `strict`), broken or of another aspect
+            ratio than its camera, the cameras do not see the surveyed points, or there are too few photographs.
         UserError: the scale is out of range, or `poses` is occupied by something else.
         BackendError: poses have to be estimated, and pycolmap is not installed or failed.
     """
@@ -79,8 +90,10 @@ def load_photos(
         unplaced = estimate_poses(unposed, poses, progress)
         path = poses_folder = poses
     capture = read_capture(path)
-    points = _points(path if path.is_dir() else path.parent)
-    _check_present(capture)
+    points, frame_note = _points(path if path.is_dir() else path.parent, capture)
+    if strict:
+        _check_present(capture)
+    capture, missing = _present(capture)
     extent = _extent(capture)
     check_views(capture.path, capture.cameras, points)
     shots = []
@@ -95,7 +108,7 @@ def load_photos(
     train = [shots[i] for k, i in enumerate(order) if k % TEST_EVERY]
     if len(train) < MIN_PHOTOS:
         raise FileError(f"{capture.path} has {len(shots)} photographs; at least {MIN_PHOTOS + 1} are needed")
-    return Photos(tuple(train), tuple(held_out), points, extent, warning, poses_folder, unplaced)
+    return Photos(tuple(train), tuple(held_out), points, extent, warning, poses_folder, unplaced, missing, frame_note)
 
 
 def _extent(capture: Capture) -> float:
@@ -113,9 +126,51 @@ def _check_present(capture: Capture) -> None:
         raise FileError(f"the photograph {missing[0]} is missing{more}; restore it or remove it from {capture.path}")
 
 
-def _points(folder: Path) -> colmap.Points:
+def _present(capture: Capture) -> tuple[Capture, tuple[str, ...]]:
+    """The capture with those photographs that are there, and the names of the others.
+
+    Raises:
+        FileError: none of them is there.
+    """
+    there = [i for i, photo in enumerate(capture.photos) if is_file(photo)]
+    if not there:
+        first = str(capture.photos[0])[:200]
+        raise FileError(
+            f"none of the {len(capture.photos)} photographs of {capture.path} is there; the first is {first}"
+        )
+    if len(there) == len(capture.photos):
+        return capture, ()
+    missing = tuple(p.name for i, p in enumerate(capture.photos) if i not in set(there))
+    cameras, photos = tuple(capture.cameras[i] for i in there), tuple(capture.photos[i] for i in there)
+    return Capture(capture.path, cameras, photos, tuple(capture.lenses[i] for i in there)), missing
+
+
+def _points(folder: Path, capture: Capture) -> tuple[colmap.Points, str | None]:
+    """The surveyed points in the frame of the capture's cameras, and a sentence if they had to be moved into it."""
     sparse = colmap.find(folder)
-    return colmap.Points(np.zeros((0, 3)), np.zeros((0, 3))) if sparse is None else colmap.read_points(sparse)
+    if sparse is None:
+        return colmap.Points(np.zeros((0, 3)), np.zeros((0, 3))), None
+    points = colmap.read_points(sparse)
+    if capture.path == sparse or not len(points.means):
+        return points, None
+    found = similarity(
+        _views(sparse), {photo.name: c for photo, c in zip(capture.photos, capture.cameras, strict=True)}
+    )
+    if found is None or found.is_identity():
+        return points, None
+    return colmap.Points(found.apply(points.means), points.colors), (
+        f"{capture.path.name} and {sparse.name or sparse} are in different frames; the surveyed points were moved: "
+        f"{found.describe()}"
+    )
+
+
+def _views(sparse: Path) -> dict[str, Camera]:
+    """The cameras of a COLMAP model by file name; none if its cameras or photographs cannot be read, as only its points
+    are needed."""
+    try:
+        return {Path(view.name).name: view.camera for view in colmap.read_views(sparse)}
+    except FileError:
+        return {}
 
 
 def _shot(path: Path, camera: Camera, lens: Lens, scale: float | None) -> Shot:

@@ -172,8 +172,20 @@ WRONG: dict[str, tuple[Callable[[Told], object], str]] = {
 def test_what_is_wrong_with_transforms_is_said(capture: Path, call: Call, name: str) -> None:
     change, told = WRONG[name]
     changed(capture, change)
-    code, said = call()
+    code, said = call("--strict")
     assert code == 4 and told in said and said.count("\n") == 1
+
+
+def test_photographs_that_are_listed_and_not_there_are_left_out_and_told(capture: Path, call: Call) -> None:
+    (capture / "images/p02.png").unlink()
+    changed(capture, lambda told: told["frames"][5].update(file_path="images/\x1b[31m" + "a" * 5000))
+    code, said = call()
+    assert code == 0 and "warning: 2 photographs are listed, but not there, and are left out: p02.png" in said
+    assert "\x1b" not in said and len(said) < 2000
+    changed(capture, lambda told: [f.update(file_path=f"elsewhere/{i}.png") for i, f in enumerate(told["frames"])])
+    (capture.parent / "out/scene.ply").unlink()
+    code, said = call()
+    assert code == 4 and "none of the" in said and "is there; the first is" in said
 
 
 @pytest.mark.parametrize("body", [b"", b"hello", b'{"frames": [', bytes(range(256)), b"[1, 2]", b"[" * 100_000])
@@ -185,7 +197,7 @@ def test_transforms_that_are_no_json_are_refused(capture: Path, call: Call, body
 
 def test_what_would_steer_a_terminal_is_left_out(capture: Path, call: Call) -> None:
     changed(capture, lambda told: told["frames"][2].update(file_path="images/\x1b[31m\x9bred.png"))
-    code, said = call()
+    code, said = call("--strict")
     assert code == 4 and "[31mred.png is missing" in said and "\x1b" not in said and "\x9b" not in said
 
 
@@ -294,7 +306,7 @@ def test_a_quarter_turn_that_the_file_asks_for_is_made_where_the_camera_says_so(
 )
 def test_a_broken_photograph_is_named(capture: Path, call: Call, save: Callable[[Path], object], told: str) -> None:
     save(capture / "images/p03.png")
-    code, said = call()
+    code, said = call("--strict")
     assert code == 4 and told in said and "p03.png" in said
 
 
