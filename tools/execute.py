@@ -20,6 +20,7 @@ from . import pixel_diff
 from .carried_objects import unsupported_note
 from .cloud_diff import Difference, difference
 from .operation import Context, EditOp, Outcome
+from .ops.reframe import of_everything
 from .receipt import Check, Pixels, Receipt, SelectionSummary, at_most
 
 
@@ -52,6 +53,7 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
         UserError: a name in the operation (colour, asset) is unknown.
     """
     seconds: dict[str, float] = {}
+    op = of_everything(op)
     with timed(seconds, "resolve"):
         chosen = (_resolve(scene, op, context) if selection is None else selection).require()
         if op.query() is not None:

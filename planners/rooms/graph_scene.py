@@ -36,6 +36,7 @@ _UP: Vec3 = (0.0, 0.0, 1.0)
 _SLAB = 0.15  # metres that floor, walls and ceiling reach out, and walls also in: what hangs on one lies in that slab
 
 # The resolver takes "furniture" for anything at all; "everything" in a graph is its things, not floor and walls.
+_SIDES = ("left_of", "right_of", "in_front_of", "behind")
 _READ_AS = {"furniture": "furnishing", "everything": ""}
 _ROW = re.compile(r"\(group (\d+)\)")
 _BEFORE_WALL = 0.45  # metres from a wall to the middle of what stands against it
@@ -168,6 +169,9 @@ class Stage:
     def _read(self, query: Query) -> Query:
         """The query as it is meant of a room: "the wall" is all four, and what hangs on one lies at it."""
         plain = query.pick in ("one", "any") and not query.relations and not query.groups
+        if query.region is not None and query.region.distance is None and query.region.name in _SIDES:
+            beside = Relation(name=query.region.name, anchors=query.region.of[:1])
+            query = query.model_copy(update={"region": None, "relations": (*query.relations, beside)})
         whole = plain and STRUCTURE.get(query.text) == "wall" and "wall" in self.ids
         relations = tuple(self._relation(r) for r in query.relations)
         return query.model_copy(

@@ -42,17 +42,14 @@ class Relation(BaseModel):
 
 
 class Region(BaseModel):
-    """A part of space. A Gaussian is in it by its centre, whether it belongs to a thing or not.
+    """A part of space: beyond a height or a side of things, "within" a distance of them, or "around" them.
 
-    Attributes:
-        name: "above" and "below" a height; "left_of", "right_of", "in_front_of" and "behind" things, as the viewer sees
-            them: beyond the side of their box; "within" a distance of things; "around": the things with what stands on
-            them and nothing else (a crop), or with a distance the box around them, grown by it.
-        of: the things; without any, heights are above the floor, and the others are about the middle of the scene.
-        distance: beyond which it begins, or up to which it reaches. Without one, things are taken or left whole.
-        unit: of the distance.
-        outside: everything that is not in it.
+    `of` is the things; without them heights are over the floor. "around" without a distance is a crop: the things and
+    what stands on them. `outside`: all the rest.
     """
+
+    # Sides are the viewer's, and begin at the side of the things' box; without things, in the middle of the scene. A
+    # `distance` makes an exact border, which cuts things; without one they are in or out as a whole.
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -87,8 +84,7 @@ class Query(BaseModel):
         not_colors: colour words that must not hold.
         size: a relative size word among those that otherwise match.
         relations: all must hold.
-        region: only what lies in this part of space; of "everything" every Gaussian in it, of things those that lie
-            mostly in it.
+        region: only what lies in this part of space.
         pick: what to do with several matches. "one" demands exactly one and reports an ambiguity otherwise;
             "all" takes every match; "any" takes the best; superlatives and "nth" (with `ordinal`) order them,
             "middle" takes the middle one from left to right of an odd number;

@@ -11,6 +11,7 @@ from typing import Any
 from ..parsing import Node, Refusal, tokens, trees
 from . import changes, places
 from .changes import Fields
+from .described import EVERYTHING
 from .phrases import Phrases
 
 # ---- turning -------------------------------------------------------------------------------------------------
@@ -19,6 +20,9 @@ from .phrases import Phrases
 def rotate(phrases: Phrases, node: Node) -> list[Fields]:
     turns = trees(node, "turning")
     angle, clock, direction = (_only(turns, *kind) for kind in (("ANGLE", "NUMBER"), ("CLOCK",), ("DIR",)))
+    about = _only(turns, "AXIS") or "up"
+    if about != "up":
+        return _about(phrases, node, about, angle, clock)
     if angle is None and (share := _only(turns, "FRACTION")) is not None:
         angle = 360 * share
     if any(tokens(t, "UPSIDE") for t in turns):
@@ -38,6 +42,14 @@ def rotate(phrases: Phrases, node: Node) -> list[Fields]:
     # Without a number "turn it to the left" is a quarter turn and "around" half a turn.
     degrees = float(angle) if angle is not None else 180.0 if around else 90.0
     return phrases.targeted(node, "rotate", degrees=sign * degrees)
+
+
+def _about(phrases: Phrases, node: Node, axis: str, angle: float | None, clock: int | None) -> list[Fields]:
+    """A turn about an axis of the file, which only the whole scene takes."""
+    if phrases.query(node) != EVERYTHING:
+        raise Refusal("things turn about up, or tilt to a side; the whole scene turns about x, y or z", axis)
+    degrees = (90.0 if angle is None else float(angle)) * (clock or 1)
+    return [{"op": "reframe", "degrees": degrees, "axis": axis}]
 
 
 def flip(phrases: Phrases, node: Node) -> list[Fields]:
@@ -148,4 +160,52 @@ def _slight(turns: Sequence[Node]) -> float:
     return 15.0
 
 
-RULES = (rotate, flip, tilt, turn_to, scale, grow, grow_prop, measure, measure_prop, stretch, multiply)
+# ---- the whole scene -------------------------------------------------------------------------------------------
+
+
+def up_axis(phrases: Phrases, node: Node) -> list[Fields]:
+    return [{"op": "reframe", "up": tokens(node, "UPAXIS")[0].value}]
+
+
+def origin(phrases: Phrases, node: Node) -> list[Fields]:
+    """ "put the origin on the floor", "put the origin at the table"."""
+    where = tokens(node, "ORIGIN")[0].value
+    if not trees(node, "np"):
+        if where is None:
+            raise Refusal("say where to: on the floor, in the middle, at the table", "origin")
+        return [{"op": "reframe", "origin": where}]
+    if where is not None:
+        raise Refusal("say one place for the origin", "origin")
+    return [{"op": "reframe", "origin": "floor", "at": places.goal_of(phrases, trees(node, "np")[0]).full()}]
+
+
+def unit_is(phrases: Phrases, node: Node) -> list[Fields]:
+    return [{"op": "reframe", "unit": places.length(tokens(node, "LENGTH")[0].value)}]
+
+
+def scale_so(phrases: Phrases, node: Node) -> list[Fields]:
+    """ "scale the scene so that the table is 75 cm high": its unit is stated by a known length."""
+    known = changes.measured(node)
+    side = "height" if "height" in known else "width"
+    if side not in known:
+        raise Refusal("say tall or wide")
+    return [{"op": "reframe", "unit": known[side], "at": phrases.query(node), "side": side}]
+
+
+RULES = (
+    up_axis,
+    origin,
+    unit_is,
+    scale_so,
+    rotate,
+    flip,
+    tilt,
+    turn_to,
+    scale,
+    grow,
+    grow_prop,
+    measure,
+    measure_prop,
+    stretch,
+    multiply,
+)

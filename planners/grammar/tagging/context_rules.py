@@ -50,6 +50,8 @@ def tag_by_context(state: TaggerState, i: int, length: int) -> int | None:
     verb = state.clause.verb
     if (found := tag_region(state, i)) is not None:
         return found
+    if verb == "SCALESO" and text in ("is", "are", "becomes", "measures"):
+        return i + 1
     if verb == "CROP" and text in ("with", "including") and state.ahead.object_follows(i + 1):
         return state.emit("AND", None, i, 1)
     if (found := _tag_having_or_lacking(state, i)) is not None or (found := _tag_around(state, i)) is not None:

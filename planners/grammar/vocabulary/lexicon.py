@@ -99,6 +99,17 @@ def _several_things() -> dict[str, Entry]:
     return found
 
 
+def _axes() -> dict[str, Entry]:
+    """What a turn is about ("around the x axis", "about the vertical axis")."""
+    found: dict[str, Entry] = {}
+    for about in ("around", "about", "along", "on", "round"):
+        for axis in ("x", "y", "z"):
+            found |= {f"{about} {the}{axis}{word}": ("AXIS", axis) for the in ("", "the ") for word in ("", " axis")}
+        for the in ("the", "its", "a"):
+            found |= same(("AXIS", "up"), f"{about} {the} vertical axis, {about} {the} up axis, {about} {the} vertical")
+    return found
+
+
 CLOSED: dict[str, Entry] = {
     **_one_thing(),
     **_several_things(),
@@ -173,6 +184,7 @@ CLOSED: dict[str, Entry] = {
             "closer to the camera, closer to the viewer, toward the front, towards the front"),
     **same(("DIR", "up"), "up, upward, upwards, higher up, further up"),
     **same(("DIR", "down"), "down, downward, downwards, lower down, further down"),
+    **_axes(),
     **same(("CLOCK", -1), "clockwise"),
     **same(("CLOCK", 1), "counterclockwise, counter clockwise, anticlockwise, anti clockwise"),
     **same(("DEGREE", "little"), "a bit, a little, a little bit, slightly, somewhat, a touch, a tad, a smidge, "
@@ -239,8 +251,8 @@ CLOSED: dict[str, Entry] = {
     **same(("LIKEIT", None), "like it, like this, like that, like this one, like that one, like these, like those, "
             "like them, just like it"),
     **same(("PRON", "any"), "one of them, any of them, either of them"),
-    **same(("EVERYTHING", None), "all things, all objects, every object, all the objects"),
-    **same(("EVERYTHING", "scene"), "whatever is, what is, everything, anything, the scene, "
+    **same(("EVERYTHING", None), "whatever is, all things, all objects, every object, all the objects"),
+    **same(("EVERYTHING", "scene"), "what is, everything, anything, the scene, "
             "the whole scene, the entire scene, the complete "
             "scene, the full scene, all of the scene, the whole room, the entire room, everything in the scene, "
             "the whole picture, the whole image, the whole capture, the whole model, the whole splat, "

@@ -15,7 +15,33 @@ def same(value: Any, phrases: str) -> dict[str, Any]:
     return {p.strip(): value for p in phrases.split(",")}
 
 
+def _of_the_frame() -> dict[str, Entry]:
+    """What states the up axis, the origin or the scale of the scene."""
+    found: dict[str, Entry] = {}
+    for axis in ("x", "y", "z"):
+        for sign, said in (("", ""), ("-", "minus "), ("-", "negative "), ("-", "-")):
+            found |= same(
+                ("UPAXIS", sign + axis),
+                f"make {said}{axis} up, make {said}{axis} the up axis, set the up axis to {said}{axis}, set up to "
+                f"{said}{axis}, convert to {said}{axis} up, use {said}{axis} up, use {said}{axis} as up, make the "
+                f"scene {said}{axis} up, turn the scene {said}{axis} up, convert the scene to {said}{axis} up",
+            )
+    for put in ("put", "set", "move", "place", "shift"):
+        found[f"{put} the origin"] = ("ORIGIN", None)
+        for to in ("on", "to", "at", "onto"):
+            found[f"{put} the origin {to} the floor"] = found[f"{put} the origin {to} the ground"] = ("ORIGIN", "floor")
+        for to in ("in", "to", "at", "into"):
+            for middle in ("center", "centre", "middle"):
+                for of in ("", " of the scene", " of everything", " of the room"):
+                    found[f"{put} the origin {to} the {middle}{of}"] = ("ORIGIN", "middle")
+    scenes = ("the scene", "the whole scene", "everything")
+    found |= same(("UNITIS", None), "one unit is, 1 unit is, a unit is, one scene unit is, 1 scene unit is, one unit "
+                  "equals, 1 unit equals, the scale is")  # fmt: skip
+    return found | {f"{scale} {of} so that": ("SCALESO", None) for scale in ("scale", "resize") for of in scenes}
+
+
 VERBS: dict[str, Entry] = {
+    **_of_the_frame(),
     **same(
         ("DELETE", None),
         "delete, remove, erase, eliminate, discard, take away, take out, get rid of, throw away, throw out, "

@@ -239,7 +239,7 @@ def _is_everything(query: Query | None) -> bool:
     """Whether a query selects everything."""
     if query is None or query.groups or query.last:
         return query is not None and query.invert
-    open_ended = not (query.colors or query.not_colors or query.size or query.relations)
+    open_ended = not (query.colors or query.not_colors or query.size or query.relations or query.region)
     return query.invert or query.pick == "rest" or (query.pick == "all" and query.text in _EVERYTHING and open_ended)
 
 
