@@ -256,7 +256,6 @@ class TargetedOp(EditOp):
     """An operation on something that is already in the scene."""
 
     target: Query
-    """What to change."""
 
     def query(self) -> Query | None:
         return self.target

@@ -51,7 +51,7 @@ class Reframe(EditOp):
 
     model_config = ConfigDict(
         json_schema_extra=either(
-            _alone("degrees", at=NOT_GIVEN, side=NOT_GIVEN), _alone("up"), _alone("factor"),
+            _alone("degrees", at=NOT_GIVEN), _alone("up"), _alone("factor"),
             _alone("direction", distance=given()), _alone("origin"), _alone("unit"),
         )
     )  # fmt: skip
@@ -67,11 +67,9 @@ class Reframe(EditOp):
     direction: Direction | None = None
     distance: Length | None = None
     origin: Literal["floor", "middle"] | None = None
-    """Of the scene, or of `at`."""
     unit: Length | None = None
-    """Of one scene unit; with `at`, the true length of its `side`."""
     at: Query | None = None
-    side: Literal["height", "width"] = "height"
+    """Whose origin, or whose true height `unit` is; without it that of a scene unit."""
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
@@ -149,7 +147,7 @@ class Reframe(EditOp):
             raise InstructionError("say the length of a unit in metres, centimetres, feet or inches")
         if self.at is not None:
             (body, *_) = bodies_of(scene, context.resolve(scene, self.at).require())
-            length = body.box.size[2] if self.side == "height" else max(body.box.size[:2])
+            length = body.box.size[2]
         metres = unit.in_units(Frame(metres_per_unit=1.0)) / length
         before = "unknown" if frame.metres_per_unit is None else f"{frame.metres_per_unit:.4g} m"
         after = scene.replace(frame=replace(frame, metres_per_unit=metres, scale_source="given"))

@@ -44,8 +44,7 @@ class Relation(BaseModel):
 class Region(BaseModel):
     """A part of space: beyond a height or a side of things, "within" a distance of them, or "around" them.
 
-    `of` is the things; without them heights are over the floor. "around" without a distance is a crop: the things and
-    what stands on them. `outside`: all the rest.
+    Without things heights are over the floor. "around" without a distance crops to the things and what is on them.
     """
 
     # Sides are the viewer's, and begin at the side of the things' box; without things, in the middle of the scene. A
@@ -79,26 +78,22 @@ class Query(BaseModel):
     """What to select.
 
     Attributes:
-        text: the noun phrase without its measured attributes, singular, e.g. "coffee table"; "" means anything.
-        colors: colour words that must hold as measured ("red", "dark green"); every one of them.
+        text: the noun without its attributes, singular, e.g. "coffee table"; "" means anything.
+        colors: colour words that must hold as measured ("dark green"); every one of them.
         not_colors: colour words that must not hold.
-        size: a relative size word among those that otherwise match.
+        size: relative, among those that otherwise match.
         relations: all must hold.
         region: only what lies in this part of space.
-        pick: what to do with several matches. "one" demands exactly one and reports an ambiguity otherwise;
-            "all" takes every match; "any" takes the best; superlatives and "nth" (with `ordinal`) order them,
-            "middle" takes the middle one from left to right of an odd number;
-            "rest" takes everything but the matches.
-        ordinal: 1-based, with pick "nth", counted left to right as the viewer sees them; negative: right to left.
+        pick: of several matches. "one" demands exactly one; "any" takes the best; superlatives and "nth" (with
+            `ordinal`) order them; "rest" takes everything but the matches.
+        ordinal: from 1, left to right as the viewer sees them; negative: right to left.
         count: how many are meant ("two chairs"); fewer or more matches are reported.
-        exclude: set difference ("all chairs but the green one"); with pick "one" taken before asking whether there is
-            only one ("the other chair").
+        exclude: set difference ("all chairs but the green one"); with pick "one" taken first ("the other chair").
         also: set union ("the chairs and the lamp").
         last: the selection of the instruction before ("it", "them").
-        grow: metres by which what was found reaches out to the Gaussians around it; if negative draws back from them.
+        grow: metres by which the selection reaches out, or if negative draws back.
         invert: everything but what was found; after growing.
-        groups: explicit group ids (from a picked candidate or a planner that saw the graph); overrides `text` and
-            `pick`: whoever numbers things means each of them.
+        groups: ids of groups that are shown; they override `text` and `pick`.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")

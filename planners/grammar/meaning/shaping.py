@@ -186,10 +186,9 @@ def unit_is(phrases: Phrases, node: Node) -> list[Fields]:
 def scale_so(phrases: Phrases, node: Node) -> list[Fields]:
     """ "scale the scene so that the table is 75 cm high": its unit is stated by a known length."""
     known = changes.measured(node)
-    side = "height" if "height" in known else "width"
-    if side not in known:
-        raise Refusal("say tall or wide")
-    return [{"op": "reframe", "unit": known[side], "at": phrases.query(node), "side": side}]
+    if "height" not in known:
+        raise Refusal("say how tall it is")
+    return [{"op": "reframe", "unit": known["height"], "at": phrases.query(node)}]
 
 
 RULES = (

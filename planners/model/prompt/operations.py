@@ -14,6 +14,10 @@ from ....tools.registry import OPS
 
 _LIMITS = (("minimum", ">= {}"), ("exclusiveMinimum", "> {}"), ("maximum", "<= {}"), ("exclusiveMaximum", "< {}"))
 
+_WIDE = 1000  # limits as wide as this bar only nonsense, and are left to the validators
+
+_FEW = 2  # longer lists are left to the validators, too
+
 
 @cache
 def described() -> str:
@@ -32,14 +36,14 @@ def described() -> str:
 
 
 def _fields(made: dict[str, Any]) -> list[str]:
-    """One line a field: "- color (optional): text up to 40 characters. A CSS name."."""
+    """One line a field: "- color: text. A CSS name."."""
     told = []
     for name, field in made.get("properties", {}).items():
         if "const" in field:
             continue
-        needed = "" if name in made.get("required", ()) else " (optional)"
+        needed = " (required)" if name in made.get("required", ()) else ""
         default = field.get("default")
-        usual = f", default {json.dumps(default)}" if default not in (None, [], "") else ""
+        usual = f", default {json.dumps(default)}" if default not in (None, [], "", False) else ""
         about = f". {field['description'].strip()}" if field.get("description") else ""
         told.append(f"- {name}{needed}: {_type(field)}{usual}{about}")
     return told
@@ -52,13 +56,14 @@ def _type(field: dict[str, Any]) -> str:
     if "anyOf" in field:
         return " or ".join(_type(f) for f in field["anyOf"] if f.get("type") != "null")
     if "enum" in field:
-        return "one of " + ", ".join(json.dumps(v) for v in field["enum"])
+        return "one of " + ", ".join(map(str, field["enum"]))
     kind = str(field.get("type", "value"))
     if "prefixItems" in field:
         return "list of " + ", ".join(map(_type, field["prefixItems"]))
     if kind == "array":
-        return f"list of at most {field.get('maxItems', 'any number of')}: {_type(field['items'])}"
-    limits = " and ".join(form.format(f"{field[key]:g}") for key, form in _LIMITS if key in field)
+        most = field.get("maxItems", _WIDE)
+        return f"list of {'' if most > _FEW else f'at most {most}: '}{_type(field['items'])}"
+    limits = " and ".join(form.format(f"{field[key]:g}") for key, form in _LIMITS if abs(field.get(key, _WIDE)) < _WIDE)
     return (
         f"{kind} {limits}".strip()
         if kind in ("integer", "number")

@@ -186,4 +186,4 @@ def test_an_added_operation_tells_itself(monkeypatch: pytest.MonkeyPatch) -> Non
 
     monkeypatch.setitem(registry.OPS, "polish", Polish)
     text = operations.described.__wrapped__()
-    assert "### polish\nMake the target gleam." in text and "- shine (optional): number, default 0.5. How much." in text
+    assert "### polish\nMake the target gleam." in text and "- shine: number, default 0.5. How much." in text
