@@ -79,6 +79,10 @@ Vlm = Annotated[
         "'google:MODEL', 'transformers:FOLDER', or 'auto' (the one that SCENEWRIGHT_VLM names).",
     ),
 ]  # fmt: skip
+Assets = Annotated[
+    Path | None,
+    typer.Option("--assets", metavar="FOLDER", help="Insert the .glb and .ply files in this folder by their names."),
+]
 Picture = Annotated[
     bool, typer.Option("--picture", help="Send the viewer's picture to a language model that takes pictures.")
 ]

@@ -22,7 +22,7 @@ from ..gaussians.world.person import HUNG_AT
 from . import field_update
 from .cloud_diff import fresh_ids, joined
 from .field_update import NewObject
-from .operation import Affine, Context, Length, Placement
+from .operation import Affine, AssetSource, Context, Length, Placement
 from .placement.bodies import Array, Body, as_vec, contact_box, heading
 from .placement.occupancy import obstacle_points
 from .placement.overhead import Mount, region_above
@@ -123,13 +123,14 @@ class ScaledAsset:
 
 @dataclass(frozen=True)
 class AssetRequest:
-    """A request to the asset library: kind, colour, design seed, height, and the scene's scale."""
+    """A request to the asset library: kind, colour, design seed, height, the scene's scale, the user's own assets."""
 
     kind: str
     color: str | None
     seed: int
     scale: SceneScale
     height: Length | None = None
+    own: AssetSource | None = None
 
 
 def make_asset(scene: Scene, request: AssetRequest) -> ScaledAsset:
@@ -138,7 +139,9 @@ def make_asset(scene: Scene, request: AssetRequest) -> ScaledAsset:
     Raises:
         UserError: the library has no such kind, or the colour is unknown.
     """
-    made = assets.make(request.kind, request.seed, color=request.color)
+    made, told = request.own.natural(request.kind, request.color) if request.own is not None else (None, ())
+    if made is None:
+        made = assets.make(request.kind, request.seed, color=request.color)
     factor, notes = request.scale.units_per_metre, request.scale.notes
     if request.height is not None:
         factor = request.height.in_units(scene.frame) / made.size[2]
@@ -150,7 +153,8 @@ def make_asset(scene: Scene, request: AssetRequest) -> ScaledAsset:
     center = np.array([-(low + high) / 2 for low, high in spans[:2]] + [-spans[2][0]])
     cloud = transformed(cloud, np.eye(3), center)
     size = as_vec(np.array([max(high - low, 1e-6) for low, high in spans]))
-    return ScaledAsset(cloud, made.kind, size, kinds.table().kinds[made.kind].support, notes)
+    kind = kinds.find(made.kind)
+    return ScaledAsset(cloud, made.kind, size, kind.support if kind is not None else "floor", (*told, *notes))
 
 
 def fitted(scale: SceneScale, kind: str, old: Box) -> SceneScale:

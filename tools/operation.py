@@ -8,7 +8,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Annotated, Any, ClassVar, Literal, Protocol, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Protocol, Self
 
 import numpy as np
 import torch
@@ -24,6 +24,9 @@ from ..gaussians.world import relations
 from ..gaussians.world.lengths import Unit, in_metres
 from .alternatives import NOT_GIVEN, either, given
 from .receipt import Check, Pixels, Receipt, SelectionSummary
+
+if TYPE_CHECKING:
+    from ..gaussians.assets.modeling.make import Asset
 
 __all__ = [
     "Affine", "Check", "ColorName", "Context", "Direction", "EditOp", "Encoder", "Length", "Outcome", "Pixels",
@@ -127,6 +130,18 @@ class Encoder(Protocol):
         ...
 
 
+class AssetSource(Protocol):
+    """A user's own assets, by name."""
+
+    def natural(self, name: str, color: str | None) -> tuple[Asset | None, tuple[str, ...]]:
+        """The asset called `name` in its own proportions, metres, or None; and notes for the receipt.
+
+        Raises:
+            UserError: the colour is unknown.
+        """
+        ...
+
+
 Resolver = Callable[..., Selection]  # resolve(scene, query, viewer, encoder=None, last=None), as gaussians.language
 
 
@@ -143,6 +158,7 @@ class Context:
         pixel_width: width of these pictures, pixels.
         resolver: how queries become selections; None means `scenewright.gaussians.language.query.resolve`.
         renderer: back end of pixel checks, as `gaussians.render.render` takes it.
+        assets: the user's own assets, which are taken before those of the library; None: there are none.
     """
 
     viewer: Camera
@@ -153,6 +169,7 @@ class Context:
     pixel_width: int = 256
     resolver: Resolver | None = None
     renderer: str = "auto"
+    assets: AssetSource | None = None
 
     def resolve(self, scene: Scene, query: Query) -> Selection:
         """What `query` means in `scene`; whatever its verdict is (see `Selection.require`).

@@ -2,7 +2,23 @@
 
 from __future__ import annotations
 
-from ..options import Budget, Debug, Encoder, Json, Judge, Log, Picture, Planner, Scale, SceneFile, Seed, Up, View, Vlm
+from ..options import (
+    Assets,
+    Budget,
+    Debug,
+    Encoder,
+    Json,
+    Judge,
+    Log,
+    Picture,
+    Planner,
+    Scale,
+    SceneFile,
+    Seed,
+    Up,
+    View,
+    Vlm,
+)
 from ..terminal.output import terminal
 
 
@@ -11,6 +27,7 @@ def command(
     planner: Planner = "auto",
     vlm: Vlm = "auto",
     budget: Budget = None,
+    assets: Assets = None,
     picture: Picture = False,
     judge: Judge = None,
     encoder: Encoder = "auto",
@@ -29,7 +46,7 @@ def command(
     session, _ = open_session(
         SessionOptions(
             scene, planner, encoder, view, log=log, seed=seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
-            picture=picture, judge=judge, vlm=vlm,
+            picture=picture, judge=judge, vlm=vlm, assets=assets,
         )
     )  # fmt: skip
     try:

@@ -13,6 +13,7 @@ import typer
 
 from ...gaussians.timing import timed
 from ..options import (
+    Assets,
     Budget,
     Debug,
     Encoder,
@@ -76,6 +77,7 @@ def command(
     planner: Planner = "auto",
     vlm: Vlm = "auto",
     budget: Budget = None,
+    assets: Assets = None,
     picture: Picture = False,
     judge: Judge = None,
     encoder: Encoder = "auto",
@@ -109,6 +111,7 @@ def command(
         judge,
         vlm,
         yes,
+        assets,
     )  # fmt: skip
     with timed(seconds, "open"):
         session, had_field = open_session(options)

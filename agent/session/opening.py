@@ -31,6 +31,7 @@ class SessionOptions:
         judge: who judges edits, or None.
         vlm: a vision model, as `Session` takes it.
         accept_unconfirmed: edit without asking what was chosen although its name is not confirmed.
+        assets: folder of the user's own assets, or None.
         up, metres_per_unit: the scene's frame as the user gives it; a saved field made in another frame is not used.
     """
 
@@ -49,6 +50,7 @@ class SessionOptions:
     judge: str | None = None
     vlm: str = "auto"
     accept_unconfirmed: bool = False
+    assets: Path | None = None
 
 
 def open_session(options: SessionOptions, progress: Progress | None = None) -> tuple[Session, bool]:
@@ -84,6 +86,7 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
         judge=options.judge,
         vlm=options.vlm,
         accept_unconfirmed=options.accept_unconfirmed,
+        assets=options.assets,
     )
     for note in session.log_notes:
         terminal.say(f"note: {note}")

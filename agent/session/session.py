@@ -27,6 +27,7 @@ from .history import History, State
 from .judge import Judge, JudgedError, known_judge
 from .log_sessions import Beginning, begin
 from .observation import graph_of, picture_of
+from .own_assets import own_assets
 from .plan_runner import PlanFailed, has_queries, run_plan
 from .planner_client import PlannerClient, is_dismissal, undo_or_redo
 from .refusal import refusal, with_message
@@ -73,6 +74,7 @@ class Session:
             asked for happened and nothing else; repair it at most twice, else take it back. "vlm": also ask the vision
             model, with pictures before and after. None: do not judge.
         accept_unconfirmed: edit what was chosen although its name is not confirmed, without asking; for scripts.
+        assets: a folder with assets of your own (.glb, .ply), which are inserted by their names.
         vlm: a vision model for what geometry does not answer and words do not find: a name that `planners.model.load`
             takes, a back end, "auto" for the one that `SCENEWRIGHT_VLM` names, or None.
 
@@ -87,6 +89,7 @@ class Session:
         UserError: no such planner or judge, or the budget cannot be parsed.
         BackendError: a package, key or file that the planner needs is missing.
         FileError: the log cannot be opened.
+        UserError: there is no such folder of assets, or it holds none.
     """
 
     def __init__(
@@ -105,12 +108,14 @@ class Session:
         judge: str | None = None,
         vlm: str | ModelBackend | None = "auto",
         accept_unconfirmed: bool = False,
+        assets: str | Path | None = None,
     ) -> None:
         self._progress = progress or (lambda stage, fraction: None)
         # The planner comes first, so that an unknown name creates no log file.
         self._planner = PlannerClient(planner, self, budget, pictures, self._progress)
         self._vision = VisionClient(vlm, self._planner.ledger, self._progress)
         self._encoder = encoder
+        self._assets = own_assets(assets)
         self._asker = Asker()
         self._viewer = viewer
         self._seed = seed
@@ -220,7 +225,10 @@ class Session:
         from ...tools.operation import Context
 
         encoder = self.encoder if self.scene.language is not None else None
-        return Context(viewer=self.viewer, last=last, encoder=encoder, seed=self._seed, pixel_checks=self.pixel_checks)
+        return Context(
+            viewer=self.viewer, last=last, encoder=encoder, seed=self._seed, pixel_checks=self.pixel_checks,
+            assets=self._assets,
+        )  # fmt: skip
 
     # -- planner ----------------------------------------------------------------------------------------------------
 

@@ -6,6 +6,7 @@ The files themselves are read by `gaussians.assets.modeling.imported`.
 from __future__ import annotations
 
 import json
+import math
 import re
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,14 +18,17 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 from ...gaussians.assets.modeling import imported
 from ...gaussians.assets.modeling.make import Asset
 from ...gaussians.camera import Vec3
-from ...gaussians.color import Rgb
+from ...gaussians.color import Rgb, shade_of
 from ...gaussians.errors import FileError, UserError
+from ...gaussians.world import kinds
 from .label_encoder import agreement
 
 SUFFIXES = (".glb", ".ply")
 SAME_NAME = 0.45  # least agreement (label_encoder.py) of a file's name that equals the label or is a synonym of it
 SIMILAR_NAME = 0.25  # least agreement of a substitute: a name with the same head, or a broader word
 MOST_FILES = 5000
+_OFF = 1.8  # factor by which a thing may be larger or smaller than the usual things of its kind
+_SMALLEST, _LARGEST = 0.02, 6.0  # metres, longest side of a thing of unknown kind
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Za-z])(?=\d)|[_\-.]+")
 
 
@@ -118,6 +122,44 @@ class AssetFolder:
             except FileError as error:
                 notes.append(f"passed over {path.name}: {error}")
         return FolderAsset(None, tuple(notes))
+
+    def natural(self, name: str, color: str | None) -> tuple[Asset | None, tuple[str, ...]]:
+        """The asset called `name` in its own proportions, metres, None if no file is called so; and notes.
+
+        A size that is not plausible for its kind is taken for another unit, and the asset is scaled as a whole.
+
+        Raises:
+            UserError: the colour is unknown.
+        """
+        tint = shade_of(color) if color else None
+        notes: list[str] = []
+        for path in self.ranked(name, SAME_NAME)[:3]:
+            try:
+                up = self._entry(path).up
+                size, scaled = _plausible(imported.natural_size(path, up), name)
+                told = (*notes, f"{name}: {path.name} of your assets{scaled}")
+                return imported.read(path, size, name, up, tint), told
+            except FileError as error:
+                notes.append(f"passed over {path.name}: {error}")
+        return None, tuple(notes)
+
+
+def _plausible(size: Vec3, name: str) -> tuple[Vec3, str]:
+    """The size as it is if a thing of this name may have it in metres, else scaled as a whole; and how it was scaled,
+    as the end of a sentence."""
+    kind = kinds.find(name)
+    if kind is None:
+        factor = 1.0 if _SMALLEST <= max(size) <= _LARGEST else 1.0 / max(size)
+        about = "to 1 m, as its own size is none of a thing in a room"
+    else:
+        usual = [math.sqrt(max(low, 0.01) * max(high, 0.01)) for low, high in kind.size]
+        factor = math.exp(sum(math.log(u / max(s, 0.01 * max(size))) for u, s in zip(usual, size, strict=True)) / 3)
+        factor = 1.0 if 1 / _OFF <= factor <= _OFF else factor
+        about = f"to the usual size of a {kind.name}"
+    if factor == 1.0:
+        return size, ""
+    w, d, h = (factor * side for side in size)
+    return (w, d, h), f", scaled by {factor:.3g} {about}"
 
 
 def _read_index(path: Path) -> dict[str, Entry]:

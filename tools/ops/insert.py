@@ -59,7 +59,7 @@ class Insert(EditOp):
         named = [(body, called) for body in anchors]
         scale, start, notes = scene_scale(scene, named), viewed_point(around), dict[str, None]()
         for index in range(self.count):
-            request = AssetRequest(self.asset, self.color, context.seed + index, scale, self.height)
+            request = AssetRequest(self.asset, self.color, context.seed + index, scale, self.height, context.assets)
             asset = make_asset(scene, request)
             around.rests = asset.support not in ("wall", "ceiling")
             spot = find_spot(around, asset, self.place, start)

@@ -46,7 +46,7 @@ class Replace(TargetedOp):
         around = Surroundings(scene, context, go, frozenset(b.group for b in bodies))
         for index, body in enumerate(bodies):
             scale = fitted(scene_scale(scene, [(body, self.target.text)]), self.asset, body.box)
-            request = AssetRequest(self.asset, self.color, context.seed + index, scale)
+            request = AssetRequest(self.asset, self.color, context.seed + index, scale, own=context.assets)
             asset = make_asset(scene, request)
             around.rests = asset.support not in ("wall", "ceiling")
             spot = spot_near(around, asset.size, standing_axes(around, [body]), body)

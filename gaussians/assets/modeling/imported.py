@@ -53,15 +53,41 @@ def read(path: Path, size: Vec3, kind: str, up: str = "", tint: Rgb | None = Non
     Raises:
         FileError: the file cannot be read, holds no surface, or is too large.
     """
+    _check_bytes(path)
+    turn = _turn(path, up)
+    if path.suffix.lower() == ".ply" and (cloud := _splats(path)) is not None:
+        return _splat_asset(cloud, turn, size, kind)
+    return _mesh_asset(path, turn, size, kind, tint)
+
+
+def natural_size(path: Path, up: str = "") -> Vec3:
+    """Width, depth and height of the asset in a file, in the file's unit; arguments and errors as `read`."""
+    _check_bytes(path)
+    turn = _turn(path, up)
+    if path.suffix.lower() == ".ply" and (cloud := _splats(path)) is not None:
+        points = cloud.means.numpy().astype(np.float64) @ turn.T
+        low, high = np.quantile(points, [0.005, 0.995], axis=0)
+    else:
+        points = surface(path)[0] @ turn.T
+        low, high = points.min(axis=0), points.max(axis=0)
+    span = high - low
+    if not np.isfinite(span).all() or span.max() <= 0:
+        raise FileError(f"{path.name}: its bounding box is empty or not finite")
+    w, d, h = (float(max(side, 1e-4 * span.max())) for side in span)
+    return w, d, h
+
+
+def _check_bytes(path: Path) -> None:
     try:
         if path.stat().st_size > MAX_BYTES:
             raise FileError(f"{path} is larger than {MAX_BYTES >> 20} MB; make it smaller")
     except OSError as error:
         raise FileError(f"cannot read {path}: {error.strerror or error}") from error
-    turn = FROM_Y_UP if (up or ("y" if path.suffix.lower() == ".glb" else "z")) == "y" else np.eye(3)
-    if path.suffix.lower() == ".ply" and (cloud := _splats(path)) is not None:
-        return _splat_asset(cloud, turn, size, kind)
-    return _mesh_asset(path, turn, size, kind, tint)
+
+
+def _turn(path: Path, up: str) -> Array:
+    """`[3, 3]`, from the file's axes to ours."""
+    return FROM_Y_UP if (up or ("y" if path.suffix.lower() == ".glb" else "z")) == "y" else np.eye(3)
 
 
 def _splats(path: Path) -> GaussianCloud | None:

@@ -254,6 +254,18 @@ def test_edit_replays_a_log(call: Any, room: Path, tmp_path: Path) -> None:
     assert (tmp_path / "a.ply").read_bytes() == (tmp_path / "b.ply").read_bytes()
 
 
+def test_edit_inserts_assets_of_a_folder(call: Any, room: Path, tmp_path: Path) -> None:
+    import trimesh
+
+    (tmp_path / "mine").mkdir()
+    trimesh.creation.box((0.3, 0.6, 0.2)).export(tmp_path / "mine" / "gargoyle.glb")
+    edit = ("edit", room, "put a gargoyle on the green thing", "-o", tmp_path / "a.ply")
+    assert call(*edit).code == 2
+    answer = call(*edit, "--assets", tmp_path / "mine")
+    assert answer.code == 0 and "gargoyle.glb of your assets" in answer.out, answer.err
+    assert call(*edit, "--assets", tmp_path / "none", "--force").code == 2
+
+
 def test_a_replay_names_its_session_and_tells_what_is_wrong_with_the_log(call: Any, room: Path, tmp_path: Path) -> None:
     log = tmp_path / "log.jsonl"
     assert call("edit", room, "delete the green thing", "-o", tmp_path / "a.ply", "--log", log).code == 0
