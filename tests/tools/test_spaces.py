@@ -138,3 +138,34 @@ def test_things_are_restricted_to_a_part_of_space(hazy: Scene, real: Context) ->
 def test_an_empty_part_of_space_is_absent(hazy: Scene, real: Context) -> None:
     with pytest.raises(AbsentError, match="nothing lies"):
         do(hazy, real, "delete", target=region("above", distance=90))
+
+
+def test_floaters_are_what_lies_apart_and_no_wall(corner: Scene, real: Context) -> None:
+    g = torch.Generator().manual_seed(2)
+    first = int(corner.cloud.ids.max()) + 1
+    like = corner.cloud[torch.arange(300)]
+    # A plain wall: few wide flat Gaussians of no group, as captures have it; they overlap, so that it has no holes.
+    across, up = 6 * torch.rand(300, generator=g) - 3, 2.5 * torch.rand(300, generator=g)
+    places = torch.stack([across, torch.full((300,), 3.0), up])
+    wall = like.replace(
+        means=places.T.contiguous(),
+        scales=torch.tensor([0.2, 0.004, 0.2]).repeat(300, 1),
+        quats=torch.tensor([1.0, 0.0, 0.0, 0.0]).repeat(300, 1),
+        opacities=torch.full((300,), 0.9),
+        group=torch.full((300,), NO_GROUP, dtype=torch.int32),
+        ids=torch.arange(first, first + 300),
+    )
+    air = 8 * torch.rand(20, 3, generator=g) + torch.tensor([-4.0, -12.0, 1.0])
+    specks = like[torch.arange(20)].replace(means=air, ids=torch.arange(first + 300, first + 320))
+    blob = like[torch.arange(1)].replace(  # before the lens, and filed under a thing
+        means=torch.tensor([[0.0, -3.0, 1.6]]),
+        scales=torch.full((1, 3), 0.5),
+        opacities=torch.tensor([0.4]),
+        ids=torch.tensor([first + 320]),
+    )
+    scene = corner.replace(cloud=concat([corner.cloud, wall, specks, blob]))
+    found = do(scene, real, "delete", target={"text": "floater", "pick": "all"})
+    gone = set(scene.cloud.ids.tolist()) - set(found.scene.cloud.ids.tolist())
+    assert set(range(first + 300, first + 321)) <= gone
+    assert not gone & set(range(first, first + 300))
+    assert len(gone) - 21 < 0.001 * len(corner.cloud)

@@ -16,7 +16,6 @@ import numpy as np
 import torch
 
 from ...camera import Camera
-from ...cloud import NO_GROUP
 from ...errors import BackendError
 from ...scene import Scene
 from ...world import relations
@@ -29,6 +28,7 @@ from ..field.measure import box_of
 from . import wholes
 from .attributes import COLOR_HOLDS, color_scores
 from .color.fallback import PARTS, by_color, by_hue, is_reliable
+from .floaters import floaters
 from .keeping import without_strays
 from .part_query import Piece, pieces_of
 from .parts import NAMED
@@ -234,11 +234,16 @@ class Resolver:
         return replace(self.last, query=query, ids=there)
 
     def _floaters(self, query: Query) -> Selection:
-        """The Gaussians without a group: haze and floaters."""
-        ids = self.members.ids_of([NO_GROUP])
+        """The Gaussians that lie apart from every surface."""
+        cloud = self.scene.cloud
+        found = floaters(cloud)
+        ids = self.members.ids_at(np.flatnonzero(found))
         if not len(ids):
-            return nothing(query, "every Gaussian of this scene belongs to something; there are no floaters")
-        return Selection(query, "found", ids, (), (), f"{len(ids)} Gaussians that belong to no group")
+            return nothing(query, "every Gaussian of this scene lies at some surface; there are no floaters")
+        rows = torch.from_numpy(found).to(cloud.device)
+        share = float(cloud.opacities[rows].sum() / cloud.opacities.sum())
+        told = f"{len(ids):,} Gaussians that lie apart from every surface, {share:.1%} of all opacity"
+        return Selection(query, "found", ids, (), (), told)
 
     def _in_region(self, query: Query, region: Region) -> Selection:
         """Every Gaussian of a part of space."""
