@@ -23,6 +23,10 @@ Ids = Annotated[
         "--ids", metavar="FILE", help="Write the Gaussians' row numbers (.npy); with --batch a folder of <id>.npy."
     ),
 ]
+Save = Annotated[
+    Path | None,
+    typer.Option("--save", metavar="FILE", help="Write the selection: Gaussians (.ply, …), or a coloured mesh (.glb)."),
+]
 Grow = Annotated[float | None, typer.Option(metavar="METRES", help="Then add the Gaussians within this distance.")]
 Shrink = Annotated[
     float | None, typer.Option(metavar="METRES", help="Then remove those within this distance of other Gaussians.")
@@ -41,6 +45,7 @@ def command(
     shrink: Shrink = None,
     invert: Invert = False,
     explain: Explain = False,
+    save: Save = None,
     batch: Batch = None,
     encoder: Encoder = "auto",
     planner: Planner = "auto",
@@ -63,10 +68,12 @@ def command(
     _check_targets([t for t in targets if t is not None], force)
     if ids is not None and batch is not None:
         make_folder(ids)
+    if save is not None:
+        _check_save(save, batch is not None, force)
     changes = SelectionChanges(_steps(grow, shrink, invert), explain)
     session, _ = open_session(SessionOptions(scene, planner, encoder, view, vlm=vlm))
     if batch is None:
-        _one(session, str(text), changes, targets[0], force)
+        _one(session, str(text), changes, _Files(targets[0], save, force))
         return
     for row, target in zip(rows, targets, strict=True):
         session.recall(row.get("context"))
@@ -125,15 +132,42 @@ def _check_targets(targets: list[Path], force: bool) -> None:
     refuse_existing(targets, force)
 
 
-def _one(session: Session, text: str, changes: SelectionChanges, target: Path | None, force: bool) -> None:
+@dataclass(frozen=True)
+class _Files:
+    """The files that one answer is written to."""
+
+    ids: Path | None
+    save: Path | None
+    force: bool
+
+
+def _check_save(save: Path, batch: bool, force: bool) -> None:
+    """Check before the work that the selection can be written there."""
+    from ...gaussians.assets.exporting import check_export
+    from ...gaussians.errors import UserError
+    from ..output_files import refuse_existing, require_folder
+
+    if batch:
+        raise UserError("--save writes one selection; it does not go with --batch")
+    check_export(save)
+    require_folder(save)
+    refuse_existing([save], force)
+
+
+def _one(session: Session, text: str, changes: SelectionChanges, files: _Files) -> None:
     selection, data = _answer(session, text, changes)
     if selection is None or not selection.chosen:
         terminal.result(data["reason"], data)
         for number, c in enumerate(selection.candidates if selection is not None else (), start=1):
             terminal.say(f"  {number}. {c.describe()}, score {c.score:.2f}")
         raise typer.Exit(3)
-    if target is not None:
-        _write_rows(selection, target, force)
+    if files.ids is not None:
+        _write_rows(selection, files.ids, files.force)
+    if files.save is not None:
+        from ...gaussians.assets.exporting import export
+
+        export(session.scene, selection.ids, files.save, files.force)
+        data["path"] = str(files.save)
     things = ", ".join(c.describe() for c in selection.candidates) or data["asked"]
     note = f" ({selection.reason})" if selection.reason else ""
     doubt = "unconfirmed, " if selection.verdict == "unconfirmed" else ""

@@ -186,16 +186,34 @@ def _replay(chat: Conversation, which: str) -> None:
 
 
 def _save(chat: Conversation, arguments: str) -> None:
+    name, force = _file_of(arguments, "/save")
+    chat.session.save(name, force=force)
+    chat.kept()
+    chat.tell(f"wrote {name}", {"verdict": "ok", "path": name})
+
+
+def _export(chat: Conversation, arguments: str) -> None:
+    from pathlib import Path
+
+    from ...gaussians.assets.exporting import export
+
+    name, force = _file_of(arguments, "/export")
+    if chat.session.last is None:
+        raise UserError("nothing is selected; say for example /select the red chair")
+    export(chat.session.scene, chat.session.last.ids, Path(name), force)
+    chat.tell(f"wrote {name}: {len(chat.session.last):,} Gaussians", {"verdict": "ok", "path": name})
+
+
+def _file_of(arguments: str, command: str) -> tuple[str, bool]:
+    """The file that a command is to write, and whether it may overwrite it."""
     try:
         words = shlex.split(arguments)
     except ValueError as error:
-        raise UserError("a quotation mark is open; write for example /save 'my room.ply'") from error
+        raise UserError(f"a quotation mark is open; write for example {command} 'my room.ply'") from error
     names = [w for w in words if w != "--force"]
     if len(names) != 1:
-        raise UserError("give a file: /save out.ply (add --force to overwrite)")
-    chat.session.save(names[0], force="--force" in words)
-    chat.kept()
-    chat.tell(f"wrote {names[0]}", {"verdict": "ok", "path": names[0]})
+        raise UserError(f"give a file: {command} out.ply (add --force to overwrite)")
+    return names[0], "--force" in words
 
 
 def _quit(chat: Conversation, _: str) -> None:
@@ -227,5 +245,6 @@ SLASH_COMMANDS: dict[str, SlashCommand] = {
     "/history": SlashCommand("list the instructions that led to this scene", _history),
     "/replay": SlashCommand("[ID]: repeat the edits of an earlier session in the log; alone: the last one", _replay),
     "/save": SlashCommand("FILE [--force]: write the scene", _save),
+    "/export": SlashCommand("FILE [--force]: write the selection: Gaussians, or a coloured mesh (.glb)", _export),
     "/quit": SlashCommand("end the chat", _quit),
 }

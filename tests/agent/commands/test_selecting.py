@@ -140,3 +140,17 @@ def test_a_field_made_for_another_version_of_the_file_is_told_and_not_used(
     assert code == 0 and "another version" in err and len(embedded) == 2
     code, _, err = call("select", room, "the green thing")
     assert code == 0 and "another version" not in err and len(embedded) == 2
+
+
+def test_a_selection_is_written_as_gaussians_or_as_a_mesh(call: Any, room: Path, tmp_path: Path) -> None:
+    from scenewright.gaussians.files import load
+
+    answer = call("select", room, "the green thing", "--save", tmp_path / "green.ply", "--json")
+    assert answer.code == 0 and answer.data["path"] == str(tmp_path / "green.ply")
+    assert len(load(tmp_path / "green.ply").cloud) == answer.data["gaussians"] == 343
+    assert call("select", room, "the green thing", "--save", tmp_path / "green.glb").code == 0
+    assert (tmp_path / "green.glb").read_bytes()[:4] == b"glTF"
+    assert call("select", room, "the green thing", "--save", tmp_path / "green.glb").code == 2  # it exists
+    assert call("select", room, "the purple thing", "--save", tmp_path / "b.glb").code == 3
+    assert call("select", room, "the green thing", "--save", tmp_path / "b.xyz").code == 2
+    assert {p.name for p in tmp_path.glob("*.glb")} == {"green.glb"} and not (tmp_path / "b.xyz").exists()

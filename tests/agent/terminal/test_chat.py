@@ -180,6 +180,13 @@ def test_on_a_pipe_leaving_is_told_and_not_asked(boxes: Scene, encoder: Any, mon
     assert terminal.err.getvalue().count("was not saved") == 1
 
 
+def test_what_is_selected_is_exported(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
+    target = tmp_path / "green.ply"
+    _, out, _ = _talk(boxes, encoder, "/export a.ply", "/select the green thing", f"/export {target}", "/export")
+    assert "nothing is selected" in out and f"wrote {target}: 343 Gaussians" in out and "/export out.ply" in out
+    assert target.is_file()
+
+
 def test_errors_are_one_sentence_and_the_conversation_goes_on(boxes: Scene, encoder: Any) -> None:
     session, out, _ = _talk(boxes, encoder, "flurble the green thing", "/undo", "/save", "delete the green thing")
     assert "nothing to undo" in out and "/save out.ply" in out
