@@ -62,7 +62,7 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
         outcome = op.apply(scene, chosen, context)
         unsupported = unsupported_note(scene, outcome.scene, chosen.groups)
         query = op.query()
-        where = (chosen.reason,) if query is not None and query.region is not None and chosen.reason else ()
+        where = (chosen.reason,) if query is not None and query.spatial and chosen.reason else ()
         outcome = replace(outcome, notes=(*where, *outcome.notes, *unsupported))
     with timed(seconds, "check"):
         changed = difference(scene.cloud, outcome.scene.cloud, op.may_change(scene, chosen), outcome.removed)

@@ -169,3 +169,5 @@ def test_floaters_are_what_lies_apart_and_no_wall(corner: Scene, real: Context) 
     assert set(range(first + 300, first + 321)) <= gone
     assert not gone & set(range(first, first + 300))
     assert len(gone) - 21 < 0.001 * len(corner.cloud)
+    assert found.receipt.changed == 0  # nothing settles where haze was
+    assert "apart from every surface" in found.receipt.notes[0]

@@ -14,8 +14,8 @@ from ...gaussians.language.encoders.probability import probability
 from ...gaussians.language.field.measure import box_of
 from ...gaussians.language.query.attributes import color_scores
 from ...gaussians.language.query.color.fallback import is_reliable
-from ...gaussians.language.query.query import ALL, Query
-from ...gaussians.language.query.terms import ANYTHING, FLOATERS, STRUCTURE
+from ...gaussians.language.query.query import ALL, FLOATERS, Query
+from ...gaussians.language.query.terms import ANYTHING, STRUCTURE
 from ...gaussians.language.segmentation.group_renders import mean_vectors
 from ...gaussians.scene import Frame, Scene
 from ..coloring.seen import seen_pixels

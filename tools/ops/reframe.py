@@ -21,7 +21,7 @@ from ...gaussians.cloud import GaussianCloud
 from ...gaussians.errors import InstructionError
 from ...gaussians.language.field.language_field import LanguageField
 from ...gaussians.language.field.measure import as_axes
-from ...gaussians.language.query.query import Query
+from ...gaussians.language.query.query import ALL, Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.box import Box
@@ -171,7 +171,7 @@ def of_everything(op: EditOp) -> EditOp:
     query = op.query()
     if query is None or op.op not in ("rotate", "scale", "move") or query != Query(text=query.text, pick=query.pick):
         return op
-    if not query.spatial or query.pick == "rest":
+    if query.text not in ALL:
         return op
     said = op.model_dump(exclude_none=True, exclude={"op", "target"})
     if op.op == "rotate" and "toward" not in said:

@@ -11,10 +11,10 @@ from typing import Any
 
 from ...errors import UserError
 from .picking import rivals
-from .query import ALL, Query
+from .query import ALL, FLOATERS, Query
 from .resolve import Resolver, Unresolved
 from .selection import Candidate, Verdict
-from .terms import FLOATERS, name_shares
+from .terms import name_shares
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ Picks = Literal[
     "highest", "lowest", "middle", "nth", "rest",
 ]  # fmt: skip
 ALL = frozenset({"everything", "all", "scene", "room", "whole scene"})  # nouns that mean every Gaussian
+FLOATERS = frozenset({"floater", "noise", "floating bit", "stray", "haze", "speck"})
 Sizes = Literal["small", "large", "tall", "short", "wide", "narrow"]
 
 
@@ -120,7 +121,7 @@ class Query(BaseModel):
     @property
     def spatial(self) -> bool:
         """Whether it means a part of the scene, with what belongs to no thing, rather than things by their names."""
-        return self.invert or self.pick == "rest" or self.text in ALL
+        return self.invert or self.pick == "rest" or self.text in ALL | FLOATERS
 
     def describe(self) -> str:
         """The query in words, for messages: "the red chair left of the sofa"."""

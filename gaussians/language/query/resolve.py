@@ -33,13 +33,12 @@ from .keeping import without_strays
 from .part_query import Piece, pieces_of
 from .parts import NAMED
 from .picking import by_distance, pick
-from .query import ALL, Query, Region, Relation
+from .query import ALL, FLOATERS, Query, Region, Relation
 from .readings import is_known
 from .reshape import reshaped
 from .selection import Candidate, Selection, nothing
 from .space import Inside, inside, mostly_in
 from .terms import (
-    FLOATERS,
     LOOSE,
     ORDERING,
     STRUCTURE,

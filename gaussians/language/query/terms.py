@@ -40,7 +40,6 @@ STRUCTURE = {
     "floor": "floor", "ground": "floor", "terrain": "floor", "soil": "floor", "grass": "floor", "carpeting": "floor",
     "wall": "wall", "ceiling": "ceiling",
 }  # fmt: skip
-FLOATERS = frozenset({"floater", "noise", "floating bit", "stray"})
 # Relations that are read as to whichever anchor fits: "the lamp on the desk" where there are two desks.
 LOOSE = frozenset({"on", "inside", "under", "below", "above", "next_to"})
 ORDERING = frozenset(k.name for k in relations.KINDS if k.orders)
