@@ -91,3 +91,29 @@ def _room_of_the_readme(path: Path) -> None:
     camera = sw.Camera.look_at([0, -5, 2], [0, 0, 0.6], [0, 0, 1], 320, 240, 55)
     frame = sw.Frame((0, 0, 1), 0.0, 1.0, "given", "given")
     sw.save(sw.Scene(concat(clouds), frame, (camera,)), path)
+
+
+def _demo_examples() -> list[list[str]]:
+    """The README's commands on the room that `make demo` writes; chat is left out, as it waits for a person."""
+    return [words for words in _commands() if "demo/room.ply" in words and words[0] != "chat"]
+
+
+@pytest.mark.slow
+def test_the_examples_on_the_demo_room_do_what_they_say(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """On the very scene that they name, in the order in which they stand there."""
+    import scenewright as sw
+    from scenewright.agent.demo.run import Demo
+
+    (tmp_path / "demo").mkdir()
+    monkeypatch.chdir(tmp_path)
+    sw.save(sw.furnish(Demo.seed).scene, tmp_path / "demo" / "room.ply")  # as the demo does
+    examples = _demo_examples()
+    assert len(examples) >= 6
+    for words in examples:
+        with pytest.raises(SystemExit) as ended:
+            cli.main(words)
+        said = capsys.readouterr()
+        assert ended.value.code in (0, None), f"{' '.join(words)}: {said.err}"
+    assert (tmp_path / "out.ply").is_file() and (tmp_path / "rows.npy").is_file()
