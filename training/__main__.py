@@ -16,6 +16,7 @@ from ..gaussians.language.encoders.backends.embedded import Embedded
 from . import captions, export, fit, foreign_meshes, in_rooms, measure, renders, sets, strangers
 
 ROOMS = 16  # furnished rooms for measurement
+CALIBRATION_ROOMS = 6  # likewise for the usual confidence
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -46,6 +47,9 @@ def main(argv: list[str] | None = None) -> int:
         scale, steps = towers.scale, towers.steps
     rule = measure.calibrate(Embedded(options.out), held, priors, scale)
     export.write_calibration(options.out, rule)
+    rooms = range(sets.CALIBRATION_SEEDS, sets.CALIBRATION_SEEDS + CALIBRATION_ROOMS)
+    usual = in_rooms.confidence(Embedded(options.out), rooms)
+    rule = replace(rule, confidence=usual)
     credits = strangers.credits(options.objects) if options.objects else []
     card = {
         "seed": effort.seed,

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from ..gaussians import assets
 from ..gaussians.language.encoders import Encoder
 from ..gaussians.language.encoders.probability import labels, probability
+from ..gaussians.language.field.embed import embed
+from ..gaussians.language.field.posterior import Belief
 from ..gaussians.language.segmentation.group_renders import mean_vectors
 
 ABSENT = 6  # absent kinds queried in each room
@@ -44,6 +46,13 @@ def judge(encoder: Encoder, seeds: range) -> dict[str, float]:
         "present_right": round(float(np.mean(right)), 4),
         "absent_refused": round(float(np.mean(refused)), 4),
     }
+
+
+def confidence(encoder: Encoder, seeds: range) -> float:
+    """`Calibration.confidence`: mean over the rooms of these seeds, embedded as a user would."""
+    scenes = (embed(assets.furnish(seed).scene, encoder) for seed in seeds)
+    fields = (scene.language for scene in scenes)
+    return round(float(np.mean([Belief(f, encoder, None).confidence for f in fields if f is not None])), 2)
 
 
 def _room(encoder: Encoder, seed: int) -> tuple[list[str], NDArray[np.float32], NDArray[np.float64]]:

@@ -49,6 +49,8 @@ class Calibration:
         size_weight: weight of the measured size if metres are known; 0 ignores it.
         sizes: size prior of each kind by its canonical name; kinds without one are neutral.
         rivals: total weight of all rivals of a phrase, shared equally; None for weight 1 each.
+        confidence: mean probability of the best name over things like those that the encoder was trained with. The more
+            names it has, the lower it is; in scenes that it does not know it falls far below.
         measured: error rates on objects used neither for training nor for fitting.
     """
 
@@ -58,10 +60,13 @@ class Calibration:
     sizes: Mapping[str, SizePrior] = field(default_factory=dict)
     measured: Mapping[str, float] = field(default_factory=dict)
     rivals: float | None = None
+    confidence: float = 0.85
 
     def __post_init__(self) -> None:
         if not self.scale > 0 or not 0 < self.threshold < 1 or self.size_weight < 0:
             raise BackendError("broken calibration: scale must be > 0, threshold in (0, 1), size_weight >= 0")
+        if not 0 < self.confidence < 1:
+            raise BackendError("broken calibration: confidence must be in (0, 1)")
         if self.rivals is not None and not self.rivals > 0:
             raise BackendError("broken calibration: rivals must be > 0 or null")
 
@@ -74,6 +79,7 @@ class Calibration:
             "sizes": {k: {"mean": list(p.mean), "std": list(p.std)} for k, p in self.sizes.items()},
             "measured": dict(self.measured),
             "rivals": self.rivals,
+            "confidence": self.confidence,
         }
 
     @classmethod
@@ -82,7 +88,7 @@ class Calibration:
         sizes = {k: SizePrior(tuple(p["mean"]), tuple(p["std"])) for k, p in data.get("sizes", {}).items()}
         return cls(
             data["scale"], data["threshold"], data.get("size_weight", 0.0), sizes, data.get("measured", {}),
-            data.get("rivals"),
+            data.get("rivals"), data.get("confidence", 0.85),
         )  # fmt: skip
 
 

@@ -30,6 +30,7 @@ F64 = NDArray[np.float64]
 
 MOST_TRUST = 0.97  # in pictures: the embedded encoder names that share of whole things right that it was not trained on
 AGREEMENT_PRIOR = 4.0  # groups named by detectors that the trust by confidence is worth
+USUAL = 0.85  # confidence of an encoder of 81 names in our own rooms; that of others is told by their calibration
 SURE_DETECTOR = 0.5  # probability by detectors alone from which a group tells whether pictures agree
 ESTIMATED = 0.5  # weight of sizes by an estimated scale
 SURE = 0.5  # posterior from which a name is confirmed in a scene whose pictures are not trusted
@@ -145,18 +146,33 @@ class Belief:
         making = self.field.making
         if making is not None and making.trust is not None:
             return making.trust
-        there = np.array([g.level == "object" and g.count > 0 for g in self.field.groups], dtype=bool) & self.seen
+        there = self._pictured_objects
         if not there.any() or not self.encoder.vocabulary.names:  # a graph whose things all have no name
             return MOST_TRUST
         share = distribution(self.encoder, self.field.embeddings[there])
         by_confidence = MOST_TRUST
         if self.encoder.calibration.rivals is None:  # an open vocabulary is trained on photographs of everything
-            weight = np.sqrt([g.count for g, ok in zip(self.field.groups, there, strict=True) if ok])
-            best = share[:, : len(self.encoder.vocabulary.names)].max(axis=1)
-            by_confidence = _sharpened(float(np.average(best, weights=weight)))
+            by_confidence = sharpened(self._confidence(there, share), self.encoder.calibration.confidence)
         agreed = self._agreement(there, share)
         mean = (AGREEMENT_PRIOR * by_confidence + float(agreed.sum())) / (AGREEMENT_PRIOR + len(agreed))
         return min(mean, MOST_TRUST)
+
+    @property
+    def confidence(self) -> float:
+        """Mean probability by pictures alone of the best name, over the objects; larger ones weigh more."""
+        there = self._pictured_objects
+        return self._confidence(there, distribution(self.encoder, self.field.embeddings[there]))
+
+    @property
+    def _pictured_objects(self) -> NDArray[np.bool_]:
+        """Which groups `[G]` are objects with a picture."""
+        own = [g.level == "object" and g.count > 0 for g in self.field.groups]
+        return np.array(own, dtype=bool) & self.seen
+
+    def _confidence(self, there: NDArray[np.bool_], share: F64) -> float:
+        weight = np.sqrt([g.count for g, ok in zip(self.field.groups, there, strict=True) if ok])
+        best = share[:, : len(self.encoder.vocabulary.names)].max(axis=1)
+        return float(np.average(best, weights=weight))
 
     def _agreement(self, there: NDArray[np.bool_], share: F64) -> F64:
         """The probability that pictures give the name by detectors, for groups that detectors name surely."""
@@ -282,10 +298,14 @@ def belief_of(field: LanguageField, encoder: Encoder, metres: float | None) -> B
     return belief
 
 
-def _sharpened(confidence: float) -> float:
-    """Twice the log-odds of a confidence: an encoder is overconfident the more, the less it is right."""
-    right, wrong = confidence**2, (1 - confidence) ** 2
-    return right / max(right + wrong, 1e-12)
+def sharpened(confidence: float, usual: float) -> float:
+    """Twice the log-odds of a confidence: an encoder is overconfident the more, the less it is right.
+
+    Args:
+        usual: the confidence of the encoder where it knows things; there the result is that of `USUAL`.
+    """
+    odds = confidence / max(1 - confidence, 1e-12) * (1 - usual) / usual * USUAL / (1 - USUAL)
+    return odds**2 / (1 + odds**2)
 
 
 def _own_first(logs: F64, meant: NDArray[np.bool_]) -> F64:

@@ -19,7 +19,7 @@ from scenewright.gaussians.language.encoders.vocabulary import Vocabulary
 from scenewright.gaussians.language.field.detectors import detector_of
 from scenewright.gaussians.language.field.language_field import Group, LanguageField, Names
 from scenewright.gaussians.language.field.making import Making
-from scenewright.gaussians.language.field.posterior import MOST_BELIEFS, MOST_TRUST, Belief, belief_of
+from scenewright.gaussians.language.field.posterior import MOST_BELIEFS, MOST_TRUST, USUAL, Belief, belief_of, sharpened
 from scenewright.gaussians.language.field.resting import with_rests
 from scenewright.gaussians.language.field.scale import estimate_scale
 from scenewright.gaussians.language.query.readings import Reading, readings
@@ -98,6 +98,13 @@ def test_pictures_that_are_trusted_say_what_the_encoder_says() -> None:
         alone = probability(ENCODER, kind, table.embeddings)
         assert np.allclose(belief.shares(kind).total, alone, atol=0.12)
         assert (belief.shares(kind).total.argsort() == alone.argsort()).all()
+
+
+@pytest.mark.parametrize("usual", [0.4, 0.6, 0.85])
+def test_an_encoder_of_many_names_is_trusted_where_it_is_as_sure_as_usual(usual: float) -> None:
+    assert sharpened(usual, usual) == pytest.approx(sharpened(USUAL, USUAL))
+    assert sharpened(usual / 3, usual) < sharpened(usual, usual) < sharpened(0.99, usual)
+    assert sharpened(0.5, USUAL) == pytest.approx(0.5) and sharpened(1.0, usual) == pytest.approx(1.0)
 
 
 def test_posteriors_of_disjoint_kinds_sum_to_at_most_one() -> None:
