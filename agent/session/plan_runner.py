@@ -59,6 +59,7 @@ def run_plan(
         PlanFailed: an operation cannot be done, failed its own check, or was judged a failure.
     """
     from ...tools import execute
+    from ...tools.ops.reframe import of_everything
 
     words = plan.instruction if len(plan.ops) == 1 else ""
     carry_out = execute.carry_out if judge is None else partial(judge.carry_out, instruction=words)
@@ -68,7 +69,7 @@ def run_plan(
     for step, op in enumerate(plan.ops):
         context = context_of(last)
         try:
-            scene, receipt, last = carry_out(scene, op, context)
+            scene, receipt, last = carry_out(scene, of_everything(op), context)
         except ScenewrightError as error:
             raise PlanFailed(_in_plan(error, plan, step), _question(plan, step, error, scene, context)) from error
         receipts.append(

@@ -44,6 +44,7 @@ CLEAN: list[Json] = [
     {"op": "scale", "target": A_CHAIR, "height": {"value": 60, "unit": "cm"}},
     {"op": "arrange", "target": A_CHAIR, "x": -0.4, "turn": 30},
     {"op": "exchange", "target": {"groups": [CHAIR, ARMCHAIR], "pick": "all"}},
+    {"op": "reframe", "degrees": 30},
     {"op": "insert", "asset": "stool", "color": "red"},
     {"op": "insert", "asset": "vase", "place": {"relation": "on", "anchors": [{"text": "chair"}]}},
     {"op": "insert", "asset": "chair", "count": 2, "height": {"value": 70, "unit": "cm"}},

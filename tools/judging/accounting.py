@@ -21,6 +21,7 @@ _WAYS: dict[str, frozenset[str]] = {
     "scale": frozenset({"placed"}),
     "arrange": frozenset({"placed"}),
     "exchange": frozenset({"placed"}),
+    "reframe": frozenset({"placed"}),
     "insert": frozenset(),
     "duplicate": frozenset(),
     "select": frozenset(),

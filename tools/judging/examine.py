@@ -30,6 +30,7 @@ from ..ops.isolate import Isolate
 from ..ops.move import Move
 from ..ops.opacity import Opacity
 from ..ops.recolor import Recolor
+from ..ops.reframe import Reframe
 from ..ops.replace import Replace
 from ..ops.rotate import Rotate
 from ..ops.scale import Scale
@@ -410,6 +411,11 @@ def _as_high(case: Case, rows: Tensor) -> list[Check]:
     return [at_most("as high as the original", off, bound, "units", f"it hangs {off:.3g} units higher or lower")]
 
 
+def _reframe(case: Case, op: Reframe) -> Found:
+    every = torch.ones_like(case.changes.placed)
+    return ([] if op.unit is not None else [all_of_it(case, case.changes.placed, every)]), _NO_IDS
+
+
 _JUDGES: dict[type, Callable[[Case, Any], Found]] = {
     Delete: _delete,
     Isolate: _isolate,
@@ -423,4 +429,5 @@ _JUDGES: dict[type, Callable[[Case, Any], Found]] = {
     Insert: _insert,
     Replace: _replace,
     Duplicate: _duplicate,
+    Reframe: _reframe,
 }
