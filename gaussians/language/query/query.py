@@ -43,10 +43,7 @@ class Relation(BaseModel):
 
 
 class Region(BaseModel):
-    """A part of space: beyond a height or a side of things, "within" a distance of them, or "around" them.
-
-    Without things heights are over the floor. "around" without a distance crops to the things and what is on them.
-    """
+    """A part of space: over or below the floor or things, at a side of them, or near. "around" alone is a crop."""
 
     # Sides are the viewer's, and begin at the side of the things' box; without things, in the middle of the scene. A
     # `distance` makes an exact border, which cuts things; without one they are in or out as a whole.
