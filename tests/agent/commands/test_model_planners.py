@@ -231,7 +231,7 @@ def test_a_written_graph_is_seen_with_rows_for_ids() -> None:
 def _talk(session: Session, *lines: str) -> str:
     terminal = Terminal(io.StringIO(), io.StringIO())
     with create_pipe_input() as pipe:
-        pipe.send_text("".join(f"{line}\r" for line in (*lines, "/quit")))
+        pipe.send_text("".join(f"{line}\r" for line in (*lines, "/quit", "no")))
         Chat(session, terminal, pipe, DummyOutput()).run()
     assert isinstance(terminal.out, io.StringIO) and isinstance(terminal.err, io.StringIO)
     assert terminal.err.getvalue().count("asking") == 0  # no progress where nobody watches

@@ -123,7 +123,7 @@ def test_the_chat_asks(unsure: Scene, gizmo_encoder: Any, answer: str, done: tup
     out = io.StringIO()
     session = Session(unsure, encoder=gizmo_encoder, viewer=unsure.cameras[0])
     with create_pipe_input() as pipe:
-        pipe.send_text("".join(f"{line}\r" for line in (ORDER, answer, "/quit")))
+        pipe.send_text("".join(f"{line}\r" for line in (ORDER, answer, "/quit", "no")))  # "no": unsaved edits are left
         Chat(session, Terminal(out, io.StringIO()), pipe, DummyOutput()).run()
     assert "Is that meant? 'yes' or 'no'." in out.getvalue()
     assert len(session.done) == len(done) and all(word in said for word, said in zip(done, session.done, strict=True))
