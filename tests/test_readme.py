@@ -104,11 +104,12 @@ def test_the_examples_on_the_demo_room_do_what_they_say(
 ) -> None:
     """On the very scene that they name, in the order in which they stand there."""
     import scenewright as sw
-    from scenewright.agent.demo.run import Demo
 
     (tmp_path / "demo").mkdir()
     monkeypatch.chdir(tmp_path)
-    sw.save(sw.furnish(Demo.seed).scene, tmp_path / "demo" / "room.ply")  # as the demo does
+    seed = re.search(r"^SEED \?= (\d+)$", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
+    assert seed is not None
+    sw.save(sw.furnish(int(seed[1])).scene, tmp_path / "demo" / "room.ply")  # as `make demo` does
     examples = _demo_examples()
     assert len(examples) >= 6
     for words in examples:
