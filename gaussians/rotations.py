@@ -1,4 +1,4 @@
-"""Rotations as unit quaternions in wxyz order, batched over leading axes.
+"""Rotations as unit quaternions in wxyz order, batched over leading axes; and as a matrix about an axis.
 
 A quaternion and its negative are the same rotation. All functions return new tensors. Harmonics are rotated by
 `harmonics.rotate`.
@@ -6,14 +6,25 @@ A quaternion and its negative are the same rotation. All functions return new te
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor
 
 from .errors import UserError
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
+
+
+def axis_rotation(axis: NDArray[np.float64], degrees: float) -> NDArray[np.float64]:
+    """`[3, 3]` float64 rotation about an axis, counter-clockwise seen from its tip (Rodrigues)."""
+    x, y, z = axis / np.linalg.norm(axis)
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    angle = math.radians(degrees)
+    return np.asarray(np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross)
 
 
 def normalize(quats: Tensor) -> Tensor:

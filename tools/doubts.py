@@ -43,7 +43,7 @@ def with_doubt(scene: Scene, selection: Selection) -> Selection:
     if not why:
         return selection
     reason = f"what was found for {query.describe()} may be more than one thing: {why}"
-    return replace(selection, verdict="unconfirmed", reason="; ".join(r for r in (selection.reason, reason) if r))
+    return replace(selection, verdict="unconfirmed").noting(reason)
 
 
 def _too_large(scene: Scene, selection: Selection) -> str:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import torch
 from numpy.typing import NDArray
@@ -17,14 +15,6 @@ from .cloud_diff import Draft
 Array = NDArray[np.float64]
 _SWEEPS = 8  # Jacobi converges quadratically; float32 columns are orthogonal after 4 or 5
 _ROWS = 1 << 13  # Gaussians decomposed at a time: their columns stay in a core's cache
-
-
-def axis_rotation(axis: Array, degrees: float) -> Array:
-    """`[3, 3]` float64 rotation about a unit axis, counter-clockwise seen from its tip (Rodrigues)."""
-    x, y, z = axis / np.linalg.norm(axis)
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    angle = math.radians(degrees)
-    return np.asarray(np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross)
 
 
 def stretch_matrix(axis: Array | None, factor: float) -> Array:

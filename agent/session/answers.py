@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import re
 
-_ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
-_CARDINALS = ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+from ...planners.grammar.vocabulary.quantities import NUMBERS, ORDINALS
+
+_CARDINALS = {word: number for word, number in NUMBERS.items() if 1 <= number <= 10}
 _ALL = re.compile(
     r"(?:yes,? )?(?:all|both|everything|all of (?:them|these|those|it)|them all|(?:each|every)(?: one)?(?: of them)?"
     r"|everyone|all (?:together|please))(?: of (?:them|these|those))?(?: please)?"
@@ -56,7 +57,7 @@ def chosen_numbers(text: str, count: int) -> tuple[int, ...] | None:
         out = _listed(match[1], count)
         return None if out is None else tuple(i for i in range(count) if i not in out) or None
     if match := _FIRST.fullmatch(said):
-        many = int(match[2]) if match[2].isdigit() else _CARDINALS.index(match[2]) + 1
+        many = int(match[2]) if match[2].isdigit() else _CARDINALS[match[2]]
         places = tuple(range(count))
         return (places[:many] if match[1] == "first" else places[-many:]) if 0 < many <= count else None
     return _listed(said, count)
@@ -92,8 +93,8 @@ def _numbers(item: str, count: int, alone: bool) -> list[int] | None:
         return list(range(first, last + 1)) if 1 <= first <= last <= count else None
     if (match := _NUMBER.fullmatch(item)) is not None:
         return [int(match[1])]
-    if item in _ORDINALS:
-        return [_ORDINALS.index(item) + 1]
+    if item in ORDINALS:
+        return [ORDINALS[item]]
     if item == "last":
         return [count]
-    return None if alone or item not in _CARDINALS else [_CARDINALS.index(item) + 1]
+    return None if alone or item not in _CARDINALS else [_CARDINALS[item]]

@@ -33,7 +33,7 @@ from .planner_client import PlannerClient, is_dismissal, undo_or_redo
 from .refusal import refusal, with_message
 from .replay import Replayed, logged_edits, replay_edits
 from .result import Result
-from .sight import needs_sight, point_out, with_source
+from .sight import needs_sight, point_out
 from .vision_client import VisionClient
 
 if TYPE_CHECKING:
@@ -367,7 +367,7 @@ class Session:
         found = replace(self._context(self.last).resolve(self.scene, query), query=query)
         if self._vision and needs_sight(found):
             seen, told = self._by_sight(found)
-            found = with_source(self._context(None).resolve(self.scene, seen) if seen is not None else found, told)
+            found = (self._context(None).resolve(self.scene, seen) if seen is not None else found).noting(told)
         if found.chosen:
             self._history.amend(replace(self._history.present, last=found))
         return found

@@ -7,7 +7,7 @@ phrase, with at most three pictures.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ...gaussians.errors import BackendError
@@ -129,8 +129,3 @@ def _bare(query: Query) -> Query:
     """The query without what decided among candidates; its name and colours are kept for messages."""
     return Query(text=query.text, colors=query.colors, size=query.size, also=query.also, exclude=query.exclude,
                  grow=query.grow)  # fmt: skip
-
-
-def with_source(selection: Selection, told: str) -> Selection:
-    """The selection with a sentence that says how it was found."""
-    return replace(selection, reason="; ".join(filter(None, [selection.reason, told])))

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..camera import Camera
 from ..render import render
+from ..rotations import axis_rotation
 from ..scene import Scene
 from .coverage import fit_camera
 
@@ -62,7 +63,7 @@ def orbited(
     level = offset - (offset @ up) * up
     if np.linalg.norm(level) < 1e-6 * distance:  # right above or below: the picture's bottom is towards the viewer
         level = np.cross(camera.right, up)
-    level = _about(up, azimuth) @ (level / np.linalg.norm(level))
+    level = axis_rotation(up, azimuth) @ (level / np.linalg.norm(level))
     now = np.degrees(np.arcsin(np.clip(offset @ up / distance, -1, 1))) + elevation
     height = np.radians(np.clip(now if to is None else to, LOWEST, STEEPEST))
     eye = pivot + distance * (np.cos(height) * level + np.sin(height) * up)
@@ -86,7 +87,7 @@ def turned(camera: Camera, up: F64, *, left: float = 0.0, upward: float = 0.0) -
     level = camera.forward - (camera.forward @ up) * up
     if np.linalg.norm(level) < 1e-6:
         level = np.cross(up, camera.right)
-    level = _about(up, left) @ (level / np.linalg.norm(level))
+    level = axis_rotation(up, left) @ (level / np.linalg.norm(level))
     aim = np.cos(np.radians(goal)) * level + np.sin(np.radians(goal)) * up
     return _looking(camera, camera.position, camera.position + aim, up)
 
@@ -116,14 +117,6 @@ def _azimuth(direction: F64, up: F64, camera: Camera) -> float:
     if np.linalg.norm(level) < 1e-6:
         level = np.cross(camera.right, up)
     return float(np.degrees(np.arctan2(level @ np.cross(up, east), level @ east)))
-
-
-def _about(axis: F64, degrees: float) -> F64:
-    """`[3, 3]`, the rotation about a unit axis (Rodrigues' formula)."""
-    a = np.radians(degrees)
-    x, y, z = axis
-    k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.asarray(np.eye(3) + np.sin(a) * k + (1 - np.cos(a)) * k @ k, dtype=np.float64)
 
 
 def _looking(camera: Camera, eye: F64, target: F64, up: F64) -> Camera:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
-from masked_yard import SIZE, THINGS, around, seen_by, yard
+from masked_yard import SIZE, THINGS, around, seen_by, with_tops, yard
 from numpy.typing import NDArray
 from painted_world import World
 
@@ -17,7 +17,6 @@ from scenewright.benchmarks._select.association import INSIDE, Tracks, associate
 from scenewright.gaussians.cloud import GaussianCloud, concat
 from scenewright.gaussians.language.masks import ViewMasks
 from scenewright.gaussians.language.masks.lifting import lift
-from scenewright.gaussians.render import render
 
 
 def above(added: GaussianCloud, cloud: GaussianCloud) -> GaussianCloud:
@@ -136,15 +135,7 @@ def test_no_masks_make_no_tracks(scene: Any) -> None:
 
 def test_masks_of_parts_without_a_name_lie_in_their_thing(scene: Any) -> None:
     cloud, truth = scene
-    top = (truth == 1) & (cloud.means[:, 2] > 0.47).numpy()
-    marked = cloud.replace(group=torch.from_numpy(top.astype(np.int32)))
-    views = []
-    for v in seen_by(cloud, truth, around(20)):
-        part = np.where((render(marked, v.camera).group.numpy() == 1), len(v), -1)
-        views.append(
-            ViewMasks(v.camera, np.stack([v.ids, part]).astype(np.int32), (*v.labels, ""), np.append(v.scores, 0.8))
-        )
-    tracks, found = judged(cloud, truth, views)
+    tracks, found = judged(cloud, truth, with_tops(cloud, truth, seen_by(cloud, truth, around(20))))
     (part,) = (t for t in tracks.tracks if not t.label)
     assert tracks.tracks[part.parent].label == "table" and min(found.values()) > 0.9
 

@@ -17,9 +17,10 @@ from scenewright.gaussians.language.field.language_field import Group, LanguageF
 from scenewright.gaussians.language.field.measure import box_of, lab_of_cloud
 from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.language.query.selection import Selection, nothing
+from scenewright.gaussians.rotations import axis_rotation
 from scenewright.gaussians.scene import Frame, Scene
 from scenewright.tools.operation import Context
-from scenewright.tools.transform import axis_rotation, transformed
+from scenewright.tools.transform import transformed
 
 FRAME = Frame((0.0, 0.0, 1.0), 0.0, 1.0, "given", "given")
 TABLE, CHAIR, RED_CHAIR, VASE, FLOOR = range(5)

@@ -10,9 +10,9 @@ from torch import Tensor
 
 from scenewright.gaussians.cloud import GaussianCloud
 from scenewright.gaussians.harmonics import evaluate
-from scenewright.gaussians.rotations import normalize, to_matrix
+from scenewright.gaussians.rotations import axis_rotation, normalize, to_matrix
 from scenewright.tools.cloud_diff import Draft
-from scenewright.tools.transform import axis_rotation, stretch, stretch_matrix, stretched, transformed, turn
+from scenewright.tools.transform import stretch, stretch_matrix, stretched, transformed, turn
 
 seeds = st.integers(0, 10**6)
 units = st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-1, 1)).filter(lambda v: np.linalg.norm(v) > 0.1)

@@ -11,6 +11,7 @@ from torch import Tensor
 
 from ...gaussians.errors import InstructionError
 from ...gaussians.language.query.selection import Selection
+from ...gaussians.rotations import axis_rotation
 from ...gaussians.scene import Scene
 from ..alternatives import either, nonzero
 from ..carried_objects import carried_note, rows_with_carried, with_carried
@@ -21,7 +22,7 @@ from ..operation import Affine, Context, Metres, Outcome, TargetedOp
 from ..placement.bodies import Array, Body, bodies_of
 from ..placement.surroundings import support_height
 from ..receipt import Check
-from ..transform import axis_rotation, turn
+from ..transform import turn
 
 
 class Arrange(TargetedOp):

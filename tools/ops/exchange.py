@@ -11,6 +11,7 @@ from torch import Tensor
 from ...gaussians.errors import InstructionError
 from ...gaussians.language.field.measure import solid_points
 from ...gaussians.language.query.selection import Selection
+from ...gaussians.rotations import axis_rotation
 from ...gaussians.scene import Scene
 from ..carried_objects import carried_by, carried_note, rows_with_carried, with_carried
 from ..checks import count_matches, moved_as_asked, placed
@@ -30,7 +31,7 @@ from ..placement.bodies import (
 from ..placement.place import spot_near
 from ..placement.surroundings import Surroundings, support_height
 from ..receipt import Check
-from ..transform import axis_rotation, turn
+from ..transform import turn
 
 
 class Exchange(TargetedOp):

@@ -23,6 +23,7 @@ from ...gaussians.language.field.language_field import LanguageField
 from ...gaussians.language.field.measure import as_axes
 from ...gaussians.language.query.query import ALL, Query
 from ...gaussians.language.query.selection import Selection
+from ...gaussians.rotations import axis_rotation
 from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.box import Box
 from ...gaussians.world.core import least_opacity
@@ -31,7 +32,7 @@ from ..checks import count_matches, moved_as_asked
 from ..operation import Affine, Context, Direction, EditOp, Length, Outcome
 from ..placement.bodies import Array, bodies_of, heading
 from ..receipt import Check, at_most
-from ..transform import axis_rotation, shift, transformed
+from ..transform import shift, transformed
 
 Axis = Literal["up", "right", "forward", "x", "y", "z"]
 Signed = Literal["x", "y", "z", "-x", "-y", "-z"]

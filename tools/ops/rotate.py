@@ -12,6 +12,7 @@ from torch import Tensor
 from ...gaussians.language.field.measure import centroid, reach, solid_points
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
+from ...gaussians.rotations import axis_rotation
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
 from ..carried_objects import carried_note, rows_with_carried, with_carried
@@ -21,7 +22,7 @@ from ..field_update import after_move
 from ..operation import Affine, Context, Outcome, TargetedOp
 from ..placement.bodies import Array, Body, bodies_of, groups_of, heading, strays_note, turn_to_face
 from ..receipt import Check
-from ..transform import axis_rotation, turn
+from ..transform import turn
 
 
 class Rotate(TargetedOp):

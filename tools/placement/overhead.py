@@ -11,12 +11,12 @@ import numpy as np
 
 from ...gaussians.camera import Vec3
 from ...gaussians.errors import InstructionError
+from ...gaussians.rotations import axis_rotation
 from ...gaussians.scene import Scene
 from ...gaussians.world import kinds
 from ...gaussians.world.box import Axes
 from ...gaussians.world.person import HUNG_AT
 from ..operation import Context, Placement
-from ..transform import axis_rotation
 from .bodies import Array, Body, angle_between, as_vec, centimetre, front_of
 from .place import Spot, anchors_of, hanging_spot
 from .regions import Region, distance_to

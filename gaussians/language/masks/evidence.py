@@ -113,9 +113,9 @@ class Ledger:
         total, silent = np.zeros(len(b)), np.ones(len(b))
         several = 2 - 1 / np.minimum(self.leaves[a], self.leaves[b])
         for reliability, counts in self.tables:
-            said = counts.at((a, b))
-            total += reliability.log_odds(said, pairs)
-            silent *= 1 - describe(said, pairs, reliability.agreement)[2]
+            odds, certainty = reliability.judge(counts.at((a, b)), pairs)
+            total += odds
+            silent *= 1 - certainty
         bound = self.geometry / np.maximum(1 - silent, 1e-3)
         return np.clip(geometry, -bound, bound) + several * total
 

@@ -53,12 +53,16 @@ class Reliability:
         Args:
             size: number of leaf pairs that the counts are summed over.
         """
+        return self.judge(counts, size)[0]
+
+    def judge(self, counts: Counts, size: F64 | float = 1.0) -> tuple[F64, F64]:
+        """The same, and the certainty with which the source speaks of each pair, in [0, 1]."""
         index, alone, certainty = describe(counts, size, self.agreement)
         at = np.linspace(0, 1, KNOTS)
         result: F64 = certainty * (
             (1 - alone) * np.interp(index, at, self.covered) + alone * np.interp(index, at, self.alone)
         )
-        return result
+        return result, certainty
 
 
 def describe(counts: Counts, size: F64 | float, agreement: float) -> tuple[F64, F64, F64]:

@@ -27,8 +27,7 @@ def reshaped(scene: Scene, members: GroupIndex, found: Selection, query: Query) 
     if not len(ids):
         return nothing(query, f"nothing is left of {query.describe()}", found.candidates)
     told = () if query.invert else found.candidates
-    reason = "; ".join(r for r in (found.reason, change) if r)
-    return replace(found, ids=ids, groups=_whole_groups(scene, ids), candidates=told, reason=reason)
+    return replace(found, ids=ids, groups=_whole_groups(scene, ids), candidates=told).noting(change)
 
 
 def _whole_groups(scene: Scene, ids: torch.Tensor) -> tuple[int, ...]:

@@ -142,11 +142,11 @@ class Resolver:
             return own
         pots = [] if self.bare or query.pick == "rest" else self._pots(query.text, own.groups)
         if pots and wholes.means_both(query.text):
-            own = _told(_joined(own, self._take(query, pots)), f"with {wholes.named(pots)}")
+            own = _joined(own, self._take(query, pots)).noting(f"with {wholes.named(pots)}")
         for other in query.also:
             more = self.select(other)
             if more.verdict == "absent" and _is_included(query, other):
-                own = _told(own, f"no {other.text} of its own is there: what is seen of one is in the {query.text}")
+                own = own.noting(f"no {other.text} of its own is there: what is seen of one is in the {query.text}")
                 continue
             if not more.chosen:
                 return replace(more, query=query)
@@ -156,7 +156,7 @@ class Resolver:
                 out = replace(out, ids=without_strays(self.scene, self.members, out)) if len(out) else out
             own = _doubted(_without(own, out), out)
         if (left := [pot for pot in pots if pot.group not in own.groups]) and not outs:
-            own = _told(own, wholes.without(query.text, left))
+            own = own.noting(wholes.without(query.text, left))
         if not len(own) and not (self.bare and own.groups):
             return nothing(query, f"nothing is left of {query.describe()}", own.candidates)
         return own
@@ -188,7 +188,7 @@ class Resolver:
                     found = _doubted(found, anchor)
         except Unresolved as anchor:
             return replace(anchor.selection, query=query)
-        return replace(found, reason="; ".join(r for r in (found.reason, fronts) if r)) if fronts else found
+        return found.noting(fronts)
 
     def described(self, query: Query, out: frozenset[int] = frozenset()) -> Selection:
         """The selection of a query by name, attributes and relations."""
@@ -520,11 +520,6 @@ def _is_included(query: Query, other: Query) -> bool:
     owned = any(r.name == "part_of" and r.anchors[0].text == query.text for r in other.relations)
     potted = wholes.names_plant(query.text) and wholes.names_vessel(other.text)
     return owned and (potted or other.text in NAMED)
-
-
-def _told(found: Selection, note: str) -> Selection:
-    """The selection with a further remark."""
-    return replace(found, reason="; ".join(r for r in (found.reason, note) if r))
 
 
 def _doubted(found: Selection, of: Selection) -> Selection:

@@ -6,7 +6,7 @@ by its colour, or its name is only likely. It must be confirmed before it is edi
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -89,6 +89,10 @@ class Selection:
     def mask(self, cloud: GaussianCloud) -> Tensor:
         """Whether each row `[N]` of `cloud` is selected; ids that it no longer contains are ignored."""
         return mask_of(cloud, self.ids)
+
+    def noting(self, note: str) -> Selection:
+        """The same selection with a further remark in its reason; "" adds nothing."""
+        return replace(self, reason="; ".join(r for r in (self.reason, note) if r))
 
     def require(self) -> Selection:
         """This selection, if the verdict is "found".

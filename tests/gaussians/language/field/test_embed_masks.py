@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
-from masked_yard import SIZE, THINGS, around, seen_by, yard
+from masked_yard import SIZE, THINGS, around, seen_by, table_top, with_tops, yard
 from numpy.typing import NDArray
 
 from scenewright.gaussians.cloud import GaussianCloud
@@ -83,14 +83,8 @@ def test_the_order_of_views_and_masks_does_not_change_the_groups(scene: Any) -> 
 
 def test_a_mask_inside_a_mask_is_a_part(scene: Any) -> None:
     cloud, truth = scene
-    top = (truth == 1) & (cloud.means[:, 2] > 0.47).numpy()
-    marked = cloud.replace(group=torch.from_numpy(top.astype(np.int32)))
-    views = []
-    for v in seen_by(cloud, truth, around(20)):
-        part = np.where((render(marked, v.camera).group.numpy() == 1), len(v), -1)
-        ids = np.stack([v.ids, part]).astype(np.int32)
-        views.append(ViewMasks(v.camera, ids, (*v.labels, ""), np.append(v.scores, 0.8)))
-    made = groups_of(cloud, views)
+    top = table_top(cloud, truth)
+    made = groups_of(cloud, with_tops(cloud, truth, seen_by(cloud, truth, around(20))))
     assert made.language is not None and min(best_ious(made, truth).values()) > 0.8
     column = made.cloud.group.numpy()
     inside = [g.id for g in made.language.groups if g.count and (top & (column == g.id)).sum() > 0.5 * g.count]
