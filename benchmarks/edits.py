@@ -1,0 +1,115 @@
+"""bench edits: instructions in people's words on real scenes, carried out as a user would and graded by eye; and what
+colour edits do to greys and to the colour that was asked.
+
+The instructions were written from pictures by somebody who did not know what the program can do. Each run writes a
+contact sheet for each of them and `rows.json` into `SCENEWRIGHT_BENCH_EDITS` (by default a folder of the user's cache).
+Grades are committed with the hash of the pictures that were looked at; other pictures count as ungraded.
+
+Run `python -m scenewright.benchmarks.edits [SETTING ...] [--keep] [--only A01,A02]` for some of them; `--keep` keeps
+embedded scenes between runs, `--table` prints the table of `rows.json` with the present grades.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from . import _data
+from ._edits import color
+from ._edits.graded import carrying, grades, sheets
+from ._edits.graded.carrying import Carried, Instruction
+from ._edits.graded.scenes import SETTINGS, Place, prepared, results_folder
+from .harness import Metric, Result
+
+INSTRUCTIONS = carrying.HERE / "instructions.jsonl"
+_QUICK = 2  # instructions of each scene
+_ROWS = "rows.json"
+
+
+def run(quick: bool) -> Result:
+    """All instructions in all settings whose data are here, and the measures of colour."""
+    out, notes, rows = results_folder(), list[str](), list[grades.Row]()
+    for setting in SETTINGS:
+        place = prepared(setting)
+        if place is None:
+            notes.append(_data.missing(setting.scene))
+            continue
+        chosen = [i for i in instructions() if i.scene == setting.scene]
+        rows += list(measured(place, chosen[:_QUICK] if quick else chosen, out))
+    _write(rows, out / _ROWS)
+    notes.append(f"contact sheets and rows.json are in {out}")
+    found: tuple[Metric, ...] = grades.metrics(rows)
+    if not quick:
+        found += color.metrics(*color.measure())
+    return Result("edits of real scenes in people's words, graded by eye", "grade", found, (), tuple(notes))
+
+
+def instructions() -> list[Instruction]:
+    """The committed instructions."""
+    return [Instruction(**data) for data in _data.instructions(INSTRUCTIONS)]
+
+
+def measured(place: Place, chosen: Sequence[Instruction], out: Path) -> Iterator[grades.Row]:
+    """Carry out instructions in a setting, one by one, and write their sheets."""
+    answers, known = carrying.read_answers(), grades.read_grades()
+    for instruction in chosen:
+        carried, shown = carrying.carry_out(instruction, place, answers)
+        sheets.save(instruction, carried, shown, out)
+        yield grades.graded(instruction, carried, known)
+
+
+def _write(rows: Sequence[grades.Row], path: Path) -> None:
+    """Write rows in the place of older ones with the same key; others stay."""
+    kept = {c.key: c for c in _read(path)} if path.is_file() else {}
+    kept.update({row.carried.key: row.carried for row in rows})
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps([c.to_json() for c in kept.values()], indent=1, ensure_ascii=False), encoding="utf-8")
+
+
+def _read(path: Path) -> list[Carried]:
+    return [Carried.from_json(data) for data in json.loads(path.read_text(encoding="utf-8"))]
+
+
+def _print_table(out: Path) -> None:
+    """Print the table of the last runs with the present grades, and its figures."""
+    by_id, known = {i.id: i for i in instructions()}, grades.read_grades()
+    order = [setting.name for setting in SETTINGS]
+    carried = sorted(_read(out / _ROWS), key=lambda c: (order.index(c.key.split(" ", 1)[1]), c.key))
+    rows = [grades.graded(by_id[c.key.split(" ")[0]], c, known) for c in carried]
+    print(grades.table(rows))
+    for metric in grades.metrics(rows):
+        print(f"{metric.key}: {metric.value:.3g} {metric.unit}")
+
+
+def main() -> None:
+    """Carry out some instructions and print what became of them."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("settings", nargs="*", default=[s.name for s in SETTINGS])
+    parser.add_argument("--keep", action="store_true")
+    parser.add_argument("--only", default="")
+    parser.add_argument("--table", action="store_true")
+    given = parser.parse_args()
+    out = results_folder()
+    if given.table:
+        _print_table(out)
+        return
+    only = set(filter(None, given.only.split(",")))
+    for setting in (s for s in SETTINGS if s.name in given.settings):
+        start = time.perf_counter()
+        place = prepared(setting, out / "embedded" if given.keep else None)
+        if place is None:
+            print(_data.missing(setting.scene))
+            continue
+        print(f"{setting.name}: ready in {time.perf_counter() - start:.0f} s", flush=True)
+        chosen = [i for i in instructions() if i.scene == setting.scene and (not only or i.id in only)]
+        for row in measured(place, chosen, out):
+            _write([row], out / _ROWS)
+            c = row.carried
+            print(f"{c.key} [{c.look}] {c.outcome} ({row.counts}): {row.instruction.text}\n    {c.said}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
