@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ...world import kinds
 from ...world.words import normalise
+from ..encoders.probability import softmax
 from ..encoders.vocabulary import Vocabulary
 from .language_field import Group, Names
 
@@ -32,6 +33,7 @@ UNSEEN_VIEWS = 2.0  # views that a group without any mask is taken to have been 
 RIGHT = 0.8  # share of right labels of a detector about which nothing is known
 RIGHT_VIEWS = 5.0  # labels that this assumption is worth
 TRUST = (0.3, 0.95)  # least and largest trust in a detector
+OTHER = "another kind of thing"  # name of every kind that is not in question
 
 
 @dataclass(frozen=True)
@@ -98,6 +100,19 @@ def log_likelihoods(groups: Sequence[Group], names: Sequence[str], vocabulary: V
     silent = np.log(np.where(known, 1 - NAMED, 1 - NAMED_STRANGE))  # [H]
     row = {label: i for i, label in enumerate(detector.heard)}
     return np.stack([_of_votes(g.votes, np.log(said), silent, row) for g in groups])
+
+
+def log_shares(groups: Sequence[Group], names: Sequence[str], vocabulary: Vocabulary, detector: Detector) -> F64:
+    """Log-probability `[G, H]` of each name by the votes alone; the last name is `OTHER`.
+
+    Votes that contradict each other speak for a kind that the detector does not know. They do not speak for any single
+    name that was never heard: above the mean of all names, its share goes to `OTHER`.
+    """
+    share = softmax(log_likelihoods(groups, names[:-1], vocabulary, detector))
+    heard = np.stack([fits(label, names[:-1], vocabulary) for label in detector.heard]).max(axis=0) > 0
+    kept = np.where(heard, share, np.minimum(share, 1 / len(names)))
+    rest = np.maximum(1 - kept.sum(axis=1, keepdims=True), 1e-12)
+    return np.log(np.concatenate([kept, rest], axis=1))
 
 
 def _of_votes(votes: Names, said: F64, silent: F64, row: dict[str, int]) -> F64:

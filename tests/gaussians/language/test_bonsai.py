@@ -103,7 +103,8 @@ def test_words_find_what_was_drawn_by_hand(
     room: Scene, encoder: Vectors, capture: Capture, asked: dict[str, Any], drawn: tuple[int, ...], floor: float
 ) -> None:
     found = resolve(room, Query(**asked), capture.cameras[0], encoder)
-    assert found.verdict == "found"
+    # No source knows "cloth" or "tree" here: what is chosen by its colour alone waits for a yes.
+    assert found.verdict == ("found" if asked["text"] in NAMES else "unconfirmed")
     scores = []
     for path in sorted((capture.path.parent / "ground_truth").glob("*.png")):
         labels, camera = np.array(Image.open(path)), capture.camera(path.stem)

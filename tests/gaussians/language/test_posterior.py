@@ -16,7 +16,7 @@ from scenewright.gaussians.language.encoders import Encoder
 from scenewright.gaussians.language.encoders.calibration import Calibration, SizePrior
 from scenewright.gaussians.language.encoders.probability import probability
 from scenewright.gaussians.language.encoders.vocabulary import Vocabulary
-from scenewright.gaussians.language.field.detectors import detector_of
+from scenewright.gaussians.language.field.detectors import OTHER, detector_of
 from scenewright.gaussians.language.field.language_field import Group, LanguageField, Names
 from scenewright.gaussians.language.field.making import Making
 from scenewright.gaussians.language.field.posterior import MOST_BELIEFS, MOST_TRUST, USUAL, Belief, belief_of, sharpened
@@ -142,6 +142,24 @@ def test_agreement_with_detectors_raises_the_trust_in_pictures_and_contradiction
     wrong: list[Names] = [((k, 9.0),) for k in ("vase", "rug", "books", "mug")]
     alone, agreeing, contradicted = (believed(field(pictures, v)).trust for v in (None, right, wrong))
     assert contradicted < alone < agreeing
+
+
+def test_votes_that_contradict_each_other_speak_for_no_name_that_was_never_heard() -> None:
+    """They speak for a kind that is not in question: else, of few names, the unheard ones would share all of it."""
+    votes: list[Names] = [(("mug", 1.0), ("vase", 0.9), ("books", 0.8), ("", 6.0)), (("sofa", 9.0),)]
+    belief = believed(field([picture("mug", 0.0)] * 2, votes))
+    for kind in set(KINDS) - {"mug", "vase", "books", "sofa"}:
+        assert belief.shares(kind).total[0] < 1.01 / len(belief.names)  # no more than by chance
+    assert belief.shares("sofa").total[1] > belief.confirms
+    assert belief.names[-1] == OTHER and all(name != OTHER for names in belief.named() for name, _ in names)
+
+
+def test_sizes_that_tell_look_alikes_apart_raise_the_trust_in_pictures() -> None:
+    """A picture between chair and mug is unsure alone; its size in metres says which of both it is."""
+    between = [(a + b) / 2 for a, b in zip(picture("chair"), picture("mug"), strict=True)]
+    table = field([between] * 4, sizes=[LARGE, SMALL, LARGE, SMALL])
+    assert believed(table, 1.0).confidence > believed(table).confidence + 0.2
+    assert believed(table, 1.0).trust > believed(table).trust
 
 
 def test_one_view_in_thirty_names_nothing() -> None:

@@ -141,7 +141,7 @@ def scene_of(rows: tuple[Row, ...], loose: int = 10) -> Scene:
 
 
 SCENE = scene_of(ROOM)
-STRANGE = scene_of(tuple(replace(r, sure=min(r.sure, 0.5)) for r in ROOM))  # the encoder is sure of nothing here
+STRANGE = scene_of(tuple(replace(r, sure=min(r.sure, 0.35)) for r in ROOM))  # the encoder is sure of nothing here
 
 
 def ask(query: Query, scene: Scene = SCENE, viewer: Camera = EYE, last: Selection | None = None) -> Selection:
