@@ -9,6 +9,7 @@ import torch
 from numpy.typing import NDArray
 
 from ..gaussians.scene import Scene
+from ..gaussians.world import kinds
 from ..planners.compose.api import compose
 
 
@@ -17,6 +18,12 @@ def composed_room(text: str, seed: int) -> tuple[Scene, NDArray[np.int32]]:
 
     Parts count as their object; floor, walls and ceiling are -1.
     """
+    scene, objects, _ = named_room(text, seed)
+    return scene, objects
+
+
+def named_room(text: str, seed: int) -> tuple[Scene, NDArray[np.int32], tuple[str, ...]]:
+    """As `composed_room`, and the name of each object: its kind where there is one, else its label."""
     scene = compose(text, seed=seed, planner="grammar", best=True).build()
     field, group = scene.language, scene.cloud.group.numpy()
     assert field is not None, "composed rooms carry their groups"
@@ -26,4 +33,6 @@ def composed_room(text: str, seed: int) -> tuple[Scene, NDArray[np.int32]]:
     number = np.full(len(field.groups) + 1, -1, np.int32)
     number[objects] = np.arange(len(objects))
     bare = scene.cloud.replace(group=torch.full_like(scene.cloud.group, -1))
-    return replace(scene, cloud=bare, language=None), number[whole]
+    found = [(kinds.find(label), label) for label in (field.groups[i].label for i in objects)]
+    names = tuple(kind.name if kind else label for kind, label in found)
+    return replace(scene, cloud=bare, language=None), number[whole], names

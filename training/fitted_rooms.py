@@ -29,7 +29,7 @@ from ..gaussians.fit import Settings, fit, load_photos
 from ..gaussians.lens import Lens
 from ..gaussians.render import render
 from ..gaussians.scene import Scene
-from .composed_rooms import composed_room
+from .composed_rooms import named_room
 
 F64 = NDArray[np.float64]
 REACH = 0.15  # metres; a Gaussian farther from every true one belongs to no object
@@ -81,10 +81,20 @@ HELD_OUT = (FittedRoom("studio-long", "furnished", 9231, 3000, 40_000, 224, 0.00
 
 def known_room(recipe: FittedRoom) -> tuple[Scene, NDArray[np.int32]]:
     """The true room and the object of each Gaussian `[N]`, -1 for structure."""
+    scene, objects, _ = _known(recipe)
+    return scene, objects
+
+
+def names(recipe: FittedRoom) -> tuple[str, ...]:
+    """The name of each object of the room."""
+    return _known(recipe)[2]
+
+
+def _known(recipe: FittedRoom) -> tuple[Scene, NDArray[np.int32], tuple[str, ...]]:
     if recipe.room != "furnished":
-        return composed_room(recipe.room, recipe.seed)
+        return named_room(recipe.room, recipe.seed)
     room = furnish(recipe.seed, detail=1.6, ceiling=True)
-    return room.scene, room.truth.ids.numpy()
+    return room.scene, room.truth.ids.numpy(), tuple(o.kind for o in room.truth.objects)
 
 
 def fitted_room(recipe: FittedRoom, cache: Path) -> tuple[Scene, NDArray[np.int32]]:

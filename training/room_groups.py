@@ -1,0 +1,108 @@
+"""Vectors of the groups of whole rooms, embedded as a user embeds a scene, with the names of what they show.
+
+Pictures of single things are cleaner than those of groups in rooms: there, things hide each other, stand on others, and
+lose or gain pieces by the segmentation. The vectors of labels are therefore fitted on such groups too (`join.py`). The
+rooms are furnished ones, half of them with things in other colours, composed ones, and fitted ones
+(`fitted_rooms.py`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from ..gaussians.assets import furnish
+from ..gaussians.harmonics import color_to_dc, dc_to_color
+from ..gaussians.language.encoders import Encoder
+from ..gaussians.language.field.embed import embed
+from ..gaussians.language.field.language_field import LanguageField
+from ..gaussians.scene import Scene
+from ..planners.compose.knowledge import rooms as room_kinds
+from . import fitted_rooms
+from .composed_rooms import named_room
+from .restyle import color
+
+SEEDS = 40_000  # of the first room; no other use has seeds from here on
+FURNISHED, COMPOSED = 60, 2  # furnished rooms, and composed rooms of each kind
+PURE, WHOLE = 0.8, 0.5  # shares of a group that is one thing, and of the thing that is in the group
+MIXED, PIECE = 0.6, 0.25  # below them a group is several things, or part of one
+FEW = 30  # Gaussians of the smallest group
+
+
+@dataclass(frozen=True, eq=False)
+class RoomGroups:
+    """Vectors `[M, F]` of groups and their labels `[M]`: names of the vocabulary, or what is not an object."""
+
+    vectors: NDArray[np.float32]
+    labels: tuple[str, ...]
+
+
+def collect(encoder: Encoder, fits: Path | None) -> RoomGroups:
+    """The groups of all rooms.
+
+    Args:
+        fits: folder of the fitted rooms; None leaves them out.
+    """
+    names = {*encoder.vocabulary.names, *encoder.vocabulary.negatives}
+    vectors, labels = [], []
+    for scene, objects, kinds_of in _rooms(fits):
+        field = embed(scene, encoder)
+        assert field.language is not None
+        for row, label in _labelled(field, field.language, objects, kinds_of):
+            if label in names:
+                vectors.append(field.language.embeddings[row])
+                labels.append(label)
+    return RoomGroups(np.array(vectors, np.float32), tuple(labels))
+
+
+def _rooms(fits: Path | None) -> Iterator[tuple[Scene, NDArray[np.int32], tuple[str, ...]]]:
+    """Each room without a field, the object of each Gaussian `[N]` or -1, and the kind of each object."""
+    for seed in range(SEEDS, SEEDS + FURNISHED):
+        room = furnish(seed)
+        objects = room.truth.ids.numpy()
+        scene = _colored(room.scene, objects, seed) if seed % 2 else room.scene
+        yield scene, objects, tuple(o.kind for o in room.truth.objects)
+    for number, name in enumerate(name for name in room_kinds() if name != "room"):
+        for seed in range(SEEDS + COMPOSED * number, SEEDS + COMPOSED * (number + 1)):
+            yield named_room(name, seed)
+    for recipe in fitted_rooms.ROOMS if fits is not None else ():
+        assert fits is not None
+        yield (*fitted_rooms.fitted_room(recipe, fits), fitted_rooms.names(recipe))
+
+
+def _colored(scene: Scene, objects: NDArray[np.int32], seed: int) -> Scene:
+    """The room with each thing in one random colour; its brightness varies as before."""
+    rng, sh = np.random.default_rng(seed), scene.cloud.sh.clone()
+    for thing in range(int(objects.max()) + 1):
+        rows = torch.from_numpy(np.flatnonzero(objects == thing))
+        old = dc_to_color(sh[rows, 0]).clamp(0, 1)
+        bright = old.mean(dim=1, keepdim=True) / old.mean().clamp(min=0.05)
+        new = torch.from_numpy(color(rng)).to(old) * bright
+        sh[rows, 0] = color_to_dc(new.clamp(0, 1))
+    return replace(scene, cloud=scene.cloud.replace(sh=sh))
+
+
+def _labelled(
+    scene: Scene, field: LanguageField, objects: NDArray[np.int32], names: tuple[str, ...]
+) -> Iterator[tuple[int, str]]:
+    """Rows of the table with the label of each group that is clearly one thing, a piece, or several things."""
+    group = scene.cloud.group.numpy()
+    total = np.bincount(objects[objects >= 0], minlength=len(names))
+    for one in field.objects():
+        own = objects[np.isin(group, field.leaves(one.id))]
+        count = np.bincount(own[own >= 0], minlength=len(names))
+        if len(own) < FEW or not count.sum():
+            continue
+        best = int(count.argmax())
+        pure, whole = count[best] / len(own), count[best] / total[best]
+        if pure >= PURE and whole >= WHOLE:
+            yield one.id, names[best]
+        elif pure >= PURE and whole < PIECE:
+            yield one.id, "part of something"
+        elif pure < MIXED and (count >= PIECE * total).sum() > 1:
+            yield one.id, "several things together"
