@@ -18,17 +18,13 @@ from ...gaussians.language.query.query import Query
 from ...tools.operation import EditOp
 from ...tools.registry import parse as parse_op
 from ..plan import MAX_OPS, EditPlan
-from .meaning.changes import Fields, with_parts
-from .meaning.commands import operations_of
+from .meaning.changes import Fields
 from .meaning.phrases import Phrases
-from .parsing import Refusal, first_words, parse, trees
-from .tagging.lookahead import match
-from .tagging.non_edits import FORBIDDEN, STATEMENT, empty_refusal, is_chat, refuse_non_edit
+from .parsing import Refusal
+from .reader import Reader
+from .restating.smoothing import smoothed
 from .tagging.spelling import correct_spelling
-from .tagging.tagger import clauses
-from .tagging.tags import Clause, Tag, sentences
-from .tagging.words import Word, clean, split
-from .vocabulary import lexicon
+from .tagging.words import clean, split
 from .vocabulary.unsafe import unsafe_words
 
 if TYPE_CHECKING:
@@ -111,55 +107,13 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     """
     if phrase := unsafe_words(cleaned):
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
-    words, remarks = correct_spelling(split(cleaned))
+    words, remarks = correct_spelling(smoothed(split(cleaned)))
     before = _understand_previous(previous)
     phrases = Phrases(before.antecedent, before.again, before.colors)
-    ops: list[dict[str, Any]] = []
-    non_edit: Refusal | None = None
-    topic: Query | None = None
-    stated_first = False
-    for sentence, mark in sentences(words):
-        if ops and match(lexicon.RETRACTIONS, [w.text for w in sentence if w.text != ","], 0):
-            raise Refusal("it takes back what it said before; say only what to do", sentence[0].text)
-        for clause in clauses(sentence):
-            follows = bool(ops) or previous is not None or topic is not None
-            try:
-                ops += _plan_clause(clause, sentence, mark, phrases, follows, cleaned)
-            except Refusal as refusal:
-                if refusal.verdict != "not_an_edit" or (non_edit and not is_chat(refusal)):
-                    raise
-                non_edit, stated_first = refusal, not ops
-                topic = _topic(clause, refusal)
-    if non_edit and ops and str(non_edit) == STATEMENT and stated_first:
-        non_edit = None  # "I love the sofa. Delete the rug."
-        if topic is not None and ops[0].get("target") == Query(last=True):
-            ops[0] = {**ops[0], "target": topic}
-    if non_edit and ops and str(non_edit) == FORBIDDEN and topic is not None:
-        ops, non_edit = [_excluding(op, topic) for op in ops], None  # "don't touch the sofa, remove everything"
-    ops = _complete_halves(ops)
-    if not ops:
-        raise non_edit or empty_refusal(words)
-    if non_edit and not is_chat(non_edit):
-        raise Refusal(f"this part is not an edit, so nothing was planned: {non_edit}", *non_edit.words)
+    ops = _complete_halves(Reader(phrases, cleaned, previous is not None).read(words))
     if len(ops) > MAX_OPS:
         raise Refusal(f"that is more than {MAX_OPS} steps; say it in parts")
     return _Outcome(tuple(_merge_copies(ops)), phrases.antecedent, tuple(phrases.before), remarks, phrases.colors)
-
-
-def _topic(clause: Clause, non_edit: Refusal) -> Query | None:
-    """The query for what a statement or prohibition is about ("the sofa is ugly, delete it"); None if there is none."""
-    if str(non_edit) not in (STATEMENT, FORBIDDEN):
-        return None
-    first = next((i for i, t in enumerate(clause.tags) if t.type == "DET"), None)
-    if first is None:
-        return None
-    for end in range(len(clause.tags), first + 1, -1):
-        about = clause.tags[first:end]
-        with suppress(Refusal):
-            (op,) = operations_of(Phrases(), parse(Clause([Tag("SELECT", None, about[0].words), *about], "SELECT")))
-            query: Query = op["target"]
-            return query.model_copy(update={"pick": "one"}) if query.pick == "any" else query
-    return None
 
 
 def _understand_previous(previous: str | None) -> _Outcome:
@@ -170,37 +124,7 @@ def _understand_previous(previous: str | None) -> _Outcome:
     return _Outcome((), "")
 
 
-def _plan_clause(
-    clause: Clause, sentence: Sequence[Word], mark: str, phrases: Phrases, follows: bool, cleaned: str
-) -> list[dict[str, Any]]:
-    """The operations of one clause, as fields; refusals quote the clause."""
-    refuse_non_edit(clause, sentence, mark)
-    try:
-        if clause.unsupported:
-            raise Refusal(clause.unsupported, clause.tags[0].text, verdict="impossible")
-        tree = parse(clause)
-        if not follows and any(t.data in ("it_becomes", "it_moves") for t in trees(tree)):
-            raise Refusal("it does not say what to do, or to what", *first_words(clause))
-        return with_parts(operations_of(phrases, tree), [t.text for t in clause.tags])
-    except Refusal as refusal:
-        raise Refusal(f"“{_quote(clause, cleaned)}”: {refusal}", *refusal.words, verdict=refusal.verdict) from None
-
-
-def _quote(clause: Clause, cleaned: str) -> str:
-    words = [w for t in clause.tags for w in t.words]
-    quoted = cleaned[words[0].start : words[-1].end] if words else cleaned
-    return quoted if len(quoted) <= 80 else quoted[:79] + "…"
-
-
 # ---- combining the operations of several clauses ----
-
-
-def _excluding(op: Fields, spared: Query) -> Fields:
-    """An operation on all things of a kind, with the things that must not be touched excluded."""
-    target = op.get("target")
-    if target is None or target.pick != "all" or len(target.exclude) >= 4:
-        return op
-    return {**op, "target": target.model_copy(update={"exclude": (*target.exclude, spared)})}
 
 
 def _complete_halves(ops: Sequence[Fields]) -> list[Fields]:

@@ -39,6 +39,8 @@ def moved(phrases: Phrases, found: list[NounPhrase], node: Node, verb: str) -> l
     """
     first, second = _split_at_and(node)
     motion = places.read_motion(first, phrases, found[0])
+    if not motion.aims and (each := _each_to_its_place(found, verb)):
+        return each
     if not motion.aims:
         found[-1], motion.place = places.split_destination(found[-1], verb)
         if motion.place is None:
@@ -50,6 +52,14 @@ def moved(phrases: Phrases, found: list[NounPhrase], node: Node, verb: str) -> l
         more = places.read_motion(second, phrases, found[0])
         ops.append({"op": "move", "target": Query(last=True), **more.fields()})
     return ops
+
+
+def _each_to_its_place(found: list[NounPhrase], verb: str) -> list[Fields]:
+    """Moves for things that each have a destination: "put the vase on the shelf and the lamp on the desk"."""
+    parted = [places.split_destination(n, verb) for n in found]
+    if len(found) < 2 or not all(place and not thing.modifiers for thing, place in parted):
+        return []
+    return [{"op": "move", "target": existing([thing]), "place": place} for thing, place in parted]
 
 
 def raise_(phrases: Phrases, node: Node) -> list[Fields]:

@@ -105,7 +105,7 @@ class Phrases:
         head = self.core(core, among)
         if head.query.text and head.query.text != EVERYTHING.text:
             self.antecedent, self.colors = _unshaped(head.query.text), head.query.colors
-        headless = not tokens(core, "NOUN", "ONE", "THING") and bool(tokens(core, "SUP", "ORDINAL"))
+        headless = not tokens(core, "NOUN", "THING") and bool(tokens(core, "SUP", "ORDINAL"))
         modifiers: list[PostModifier] = []
         conjoined = False
         for child in rest:

@@ -26,7 +26,9 @@ _FACING = phrases(
     "face, facing, to face, faces, so that it faces, so it faces, so that they face, so they face, to be facing, be "
     "facing, to look at, to look toward, to look towards, look at, look toward, look towards, to point at, to point "
     "toward, to point towards, point at, to the direction of, in the direction of, so that it is facing, "
-    "so it is facing"
+    "so it is facing, until it faces, until they face, till it faces, until it is facing, so as to face, so it looks at, "
+    "so that it looks at, so it points at, so that it points at, until it looks at, until it points at, so that they are "
+    "facing, so they are facing, round to face, around to face, turned towards"
 )
 _AWAY = phrases(
     "away from, face away from, to face away from, facing away from, so that it faces away from, so it faces away "

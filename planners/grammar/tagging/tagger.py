@@ -26,6 +26,8 @@ _COMPARATIVES = {"bigger": "largest", "larger": "largest", "smaller": "smallest"
                  "shorter": "shortest"}  # fmt: skip
 _REPEATABLE = ("DELETE", "SELECT", "HIDE", "ISOLATE")
 MAX_NOUN_WORDS = 4
+_CHOOSING = ("DELETE", "SELECT", "HIDE", "ISOLATE", "MOVE", "KEEP", "ADJUST", "SCALE", "GROW", "ROTATE")
+_CHANGING = ("MAKE", "PAINT", "TURN", "CHANGE", "WANT")
 
 
 # ---- clauses -------------------------------------------------------------------------------------------------
@@ -174,9 +176,15 @@ def _tag_color(state: TaggerState, i: int, length: int) -> int | None:
         return state.emit("NOUN", state.texts[i], i, 1)
     if follows_det and taken == 1 and name in NOUN_COLORS and not _indefinite_hue(state, i):
         return state.emit("NOUN", name, i, 1)
-    if state.last_type == "EVERYTHING" and state.clause.verb in ("DELETE", "SELECT", "HIDE", "ISOLATE", "MOVE", "KEEP"):
+    changed = state.clause.verb in _CHANGING and state.ahead.hue_follows(_behind_joint(state.texts, i + taken))
+    if state.last_type == "EVERYTHING" and (changed or state.clause.verb in _CHOOSING):
         state.emit("REL", None, i, 0)  # "everything red" is everything that is red
     return state.emit("HUE", name, i, taken)
+
+
+def _behind_joint(texts: Sequence[str], i: int) -> int:
+    """The position behind "to", "into" or "in"."""
+    return i + (i < len(texts) and texts[i] in ("to", "into", "in"))
 
 
 def _shares_noun(state: TaggerState, i: int) -> bool:
@@ -224,6 +232,10 @@ def _tag_phrase(state: TaggerState, i: int, entry: Entry, taken: int) -> int:
         and state.last_type not in ("COLOR", "SIZE", "SUP", "DET")
     ):
         return state.emit("NUMBER", 1.0, i, 1)
+    if kind == "BUT" and text == "bar" and not _excludes(state, i):
+        return _tag_noun(state, i)
+    if kind == "DET" and text == "one" and state.last_type in ("SUP", "ORDINAL", "COLOR", "SIZE"):
+        return state.emit("ONE", False, i, 1)  # "the middle one of the three chairs"
     if kind == "NOT" and state.last_type in ("EVERYTHING", "NOUN", "THING") and state.ahead.hue_follows(behind):
         state.emit("REL", None, i, 0)
         return state.emit("NOT", None, i, taken)
@@ -245,6 +257,13 @@ def _tag_phrase(state: TaggerState, i: int, entry: Entry, taken: int) -> int:
     if kind == "COLORWORD" and text == "tint" and state.last_type in NOUNISH:
         return state.emit("UNKNOWN", None, i, taken)
     return state.emit(kind, value, i, taken)
+
+
+def _excludes(state: TaggerState, i: int) -> bool:
+    """Whether "bar" excludes what follows ("everything bar the sofa"), rather than being part of "bar stool"."""
+    named = state.last_type in (*NOUNISH, "EVERYTHING")
+    found = state.ahead.phrase(i + 1)
+    return named and found is not None and found[0][0] in ("DET", "PRON", "NUMBER")
 
 
 def _tag_determiner(state: TaggerState, i: int, value: str) -> int:
@@ -270,13 +289,24 @@ def _tag_noun(state: TaggerState, i: int, at_least: int = 0) -> int:
     while j < len(state.texts) and _continues_noun(state, j):
         j += 1
     kind = "NOUN" if j - i <= MAX_NOUN_WORDS else "UNKNOWN"
+    if j - i > 1 and not at_least and state.texts[j - 1] in lexicon.DONE:
+        kind = "UNKNOWN"  # "the sofa painted": what was done to it is no part of its name
     if kind == "NOUN" and state.last_type in ("DET", "COLOR", "SIZE", "ADJ") and state.ahead.colored_noun(j):
         kind = "ADJ"
     return state.emit(kind, " ".join(state.texts[i:j]), i, j - i)
 
 
+def _is_container(state: TaggerState, j: int) -> bool:
+    """Whether "can" behind a noun is a container ("the fuel can") and no verb."""
+    behind = state.texts[j + 1 : j + 2]
+    joint = not behind or behind[0] in (",", "and", "or", "but", "then", "to", "from", "by", "please", "'s", "too")
+    return joint or state.ahead.preposition_at(j + 1) or state.ahead.hue_follows(j + 1)
+
+
 def _continues_noun(state: TaggerState, j: int) -> bool:
     texts = state.texts
+    if texts[j] == "can":
+        return _is_container(state, j)
     if not may_be_noun(texts[j]) or texts[j] == ",":
         return False
     tables = (lexicon.CLOSED_PHRASES, lexicon.FILLER)

@@ -90,10 +90,20 @@ def split(cleaned: str) -> tuple[Word, ...]:
     """
     words: list[Word] = []
     for found in _TOKEN.finditer(cleaned):
+        if _is_dash(cleaned, found.start(), found.end()):
+            words.append(Word(",", found.start(), found.end()))  # "the lamp - delete it"
+            continue
         words += _parts(found.group().lower(), found.start(), found.end(), words)
     if len(words) > MAX_WORDS:
         raise UserError(f"the instruction has {len(words)} words, at most {MAX_WORDS} are read; say it in parts")
     return tuple(words)
+
+
+def _is_dash(cleaned: str, start: int, end: int) -> bool:
+    """Whether a mark is a dash between two parts of a sentence, not a hyphen or a minus."""
+    if cleaned[start:end] not in ("-", "–", "—", "―"):
+        return False
+    return cleaned[start:end] != "-" or (cleaned[end : end + 1] in (" ", "-") and cleaned[start - 1 : start] in (" ", "-"))
 
 
 def _parts(text: str, start: int, end: int, before: list[Word]) -> list[Word]:

@@ -1,0 +1,217 @@
+"""Fills in what a sentence leaves out: the verb of later parts, the thing of a remark, the verb of a terse order."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+from ..tagging.lookahead import Lookahead, color_at, match
+from ..vocabulary import lexicon
+from .chunks import is_thing
+from .wishes import states
+
+_PRONOUNS = frozenset("it them they those these this that him her both".split())
+_PRONOUN_PHRASES = (("this", "one"), ("that", "one"), ("these", "ones"), ("those", "ones"), ("all", "of", "them"),
+                    ("both", "of", "them"), ("the", "thing"), ("them", "all"), ("the", "two"))  # fmt: skip
+_TOPIC = re.compile(
+    r"^(?:(?:and |so |now |ok |okay |hey |well )?(?:as for|as to|about|regarding|concerning|with|see|you see|you know|you "
+    r"know what|know|remember|notice|look at|do you see|can you see|you can see|there is|here is|that is|this is|on to|next up|next|"
+    r"take|consider|speaking of|when it comes to|in the case of|oh|ah|i see|what about|how about) )?(?P<thing>\S.*?)"
+    r"(?: (?:over there|there|here|in there|over here))?$"
+)
+_JOINTS = (",", "and", "then", "so", "but", ";", ":")
+_MOST = 6  # joints that are tried
+
+
+def substitute(thing: Sequence[str], clause: Sequence[str]) -> list[str] | None:
+    """A clause whose first pronoun is replaced by a thing; None if it has none."""
+    for i, word in enumerate(clause):
+        for phrase in _PRONOUN_PHRASES:
+            if tuple(clause[i : i + len(phrase)]) == phrase:
+                return [*clause[:i], *thing, *clause[i + len(phrase) :]]
+        if word in ("its", "their"):
+            return [*clause[:i], *thing, "'s", *clause[i + 1 :]]
+        if word in _PRONOUNS and not (word in ("that", "this", "these", "those") and _is_noun_ahead(clause, i + 1)):
+            return [*clause[:i], *thing, *clause[i + 1 :]]
+    return None
+
+
+def _is_noun_ahead(clause: Sequence[str], i: int) -> bool:
+    return Lookahead(clause).noun_at(i)
+
+
+def topic_of(said: Sequence[str]) -> tuple[str, ...] | None:
+    """The thing that a sentence only names, to say something of it in the next; None if it does more."""
+    found = _TOPIC.match(" ".join(said))
+    if not found:
+        return None
+    thing = tuple(found.group("thing").split())
+    if thing[-1] in (",", ":", "?"):
+        thing = thing[:-1]
+    return thing if is_thing(thing) and not Lookahead(thing).verb(0) else None
+
+
+def about(thing: Sequence[str], clause: Sequence[str]) -> Iterator[list[str]]:
+    """Readings of a clause as said of a thing named before: "the shelf: paint it", "the rug: delete", "sofa: blue"."""
+    if (filled := substitute(thing, clause)) is not None:
+        yield filled
+        return
+    ahead = Lookahead(clause)
+    start, _ = ahead.skip_polite(0)
+    if (verb := ahead.verb(start)) is not None:
+        yield [*clause[: start + verb[1]], *thing, *clause[start + verb[1] :]]
+        return
+    for command in states(" ".join(thing), clause):
+        yield command.split()
+    yield [*thing, *clause]
+
+
+def topics(said: Sequence[str]) -> Iterator[list[str]]:
+    """Readings of a sentence whose first part names a thing and whose second says what to do with it."""
+    for i, word in enumerate(said):
+        if word in (",", ":") and 0 < i < len(said) - 1 and (thing := topic_of(said[:i])) is not None:
+            yield from about(thing, said[i + 1 :])
+
+
+def gapped(said: Sequence[str]) -> Iterator[list[str]]:
+    """Readings with the verb of the first part repeated in the later ones: "move A left and B right"."""
+    ahead = Lookahead(said)
+    start, _ = ahead.skip_polite(0)
+    if (verb := ahead.verb(start)) is None:
+        return
+    spoken = list(said[start : start + verb[1]])
+    joints = [i for i, w in enumerate(said) if w in (",", "and") and i > start and _opens_thing(said, i + 1)]
+    chosen = [tuple(joints), *((j,) for j in reversed(joints))] if len(joints) > 1 else [tuple(joints)]
+    for at in chosen[:_MOST]:
+        if at:
+            yield _with_verb(said, at, spoken)
+
+
+def _opens_thing(said: Sequence[str], i: int) -> bool:
+    while i < len(said) and said[i] in ("and", ",", "then", "also"):
+        i += 1
+    return i < len(said) and (Lookahead(said).object_follows(i))
+
+
+def _with_verb(said: Sequence[str], at: Sequence[int], verb: Sequence[str]) -> list[str]:
+    """The words with a full stop and the verb behind each joint."""
+    found: list[str] = []
+    skip = False
+    for i, word in enumerate(said):
+        if i in at:
+            found += [".", *verb]
+            skip = True
+        elif skip and word in ("and", ",", "then", "also"):
+            continue
+        else:
+            skip = False
+            found.append(word)
+    return found
+
+
+def splits(said: Sequence[str]) -> Iterator[list[str]]:
+    """Readings as two sentences, parted at a joint."""
+    at = [i for i, w in enumerate(said) if w in _JOINTS and 0 < i < len(said) - 1]
+    for i in sorted(at, key=lambda i: said[i] not in (",", ";", ":"))[:_MOST]:
+        first, second = list(said[:i]), list(said[i + 1 :])
+        while second and second[0] in _JOINTS:
+            second = second[1:]
+        while first and first[-1] in _JOINTS:
+            first = first[:-1]
+        if first and second:
+            yield [*first, ".", *second]
+
+
+_SUBJECTS = frozenset(
+    "i we you it they he she nobody everybody everyone someone somebody people guests visitors there this that these those "
+    "my our the grandma mum mom dad granny grandpa clients customers kids children".split()
+)
+_REMARKING = frozenset(
+    "is are was were am looks look seems seem feels feel keeps keep gets get takes take blocks block bothers hates hate "
+    "likes like loves love wants want needs need thinks think says said has have had does do did goes comes come coming "
+    "bumping bump can could will would might may never always sits sit stands stand sticks fits fit clashes matches "
+    "annoys hurts drives makes broke cost bought 's collects wastes smells works spoils ruins hides hide suits belongs "
+    "sees see find finds cannot started reminds used lets got prefers".split()
+)
+_ASKING = re.compile(
+    r"\b(?:should|must|ought|(?:has|have|needs?|wants?|got) to|to be|could you|can you|would you|will you|please|instead|"
+    r"would like|had better|delete|remove|paint|recolou?r|move|rotate|replace|duplicate|not|if|unless)\b"
+)
+
+
+def is_remark(said: Sequence[str]) -> bool:
+    """Whether words only say how things are: they begin with a subject, hold a verb of being, and ask for nothing."""
+    text = " ".join(said)
+    return (
+        len(said) > 1
+        and Lookahead(said).verb(0) is None
+        and (said[0] in _SUBJECTS or said[1] in _REMARKING)
+        and bool(_REMARKING & set(said))
+        and not _ASKING.search(text.replace("can not", "cannot").replace("do not", "").replace("does not", ""))
+    )
+
+
+def remarks(said: Sequence[str]) -> Iterator[list[str]]:
+    """Readings without a remark before or behind the order: "it is in the way, move it", "move it, it needs light"."""
+    for i, word in enumerate(said):
+        if word not in _JOINTS or not 0 < i < len(said) - 1:
+            continue
+        first, second = _trimmed(said[:i]), _trimmed(said[i + 1 :])
+        if first and second and is_remark(first):
+            thing = _subject_of(first)
+            filled = substitute(thing, second) if thing else None
+            yield filled if filled is not None else second
+        if first and second and is_remark(second) and word != "and":
+            yield first
+
+
+def _trimmed(said: Sequence[str]) -> list[str]:
+    words = list(said)
+    while words and words[0] in _JOINTS:
+        words = words[1:]
+    while words and words[-1] in _JOINTS:
+        words = words[:-1]
+    return words
+
+
+def _subject_of(said: Sequence[str]) -> list[str] | None:
+    """The thing that a remark is about: its subject, or else the last thing that it names."""
+    for i in range(1, min(len(said), 10)):
+        if said[i] in _REMARKING and said[0] not in ("i", "we", "you", "it", "they", "there", "nobody", "people", "someone"):
+            thing = tuple(said[:i])
+            if is_thing(thing) and (said[0] in ("the", "that", "this", "these", "those", "my", "our") or i == 1):
+                return list(thing)
+            break
+    for i in range(len(said) - 1, -1, -1):
+        if said[i] in ("the", "that", "this", "those", "these") and is_thing(tuple(said[i:])):
+            return list(said[i:])
+    return None
+
+
+_STATED = ("DIR", "LENGTH", "GROWN", "LIGHT", "PREP", "TO", "TOWARD", "SPOT", "AWAY", "UPSIDE", "TIMES", "DEGREE")
+_VERBLESS = 10  # words
+
+
+def terse(said: Sequence[str]) -> Iterator[str]:
+    """Readings of an order without a verb: "rug out", "sofa blue", "lamp 20 cm to the left", "blue for the sofa"."""
+    if len(said) > _VERBLESS or Lookahead(said).verb(0) is not None:
+        return
+    colored = color_at(said, 0)
+    if colored and said[colored[1] : colored[1] + 1] in (["for"], ("for",)):
+        yield f"paint {' '.join(said[colored[1] + 1 :])} {' '.join(said[: colored[1]])}"
+    first = Lookahead(said).phrase(0)
+    if first and first[0][0] in ("GROWN", "LIGHT") and len(said) > first[1]:
+        yield f"make {' '.join(said[first[1] :])} {' '.join(said[: first[1]])}"
+    for i in range(1, len(said)):
+        if _states_at(said, i) and is_thing(tuple(said[:i])):
+            yield from states(" ".join(said[:i]), said[i:])
+
+
+def _states_at(said: Sequence[str], i: int) -> bool:
+    """Whether what begins at `i` says what to become of the thing before it."""
+    if said[i] in ("out", "gone", "off", "away", "to", "onto", "into", "against", "in", "a", "another", "up", "down"):
+        return True
+    if color_at(said, i):
+        return True
+    found = match(lexicon.CLOSED_PHRASES, said, i)
+    return (found is not None and found[0][0] in _STATED) or said[i][0].isdigit()

@@ -1,0 +1,157 @@
+"""Removes what carries no meaning in spoken instructions: hesitation, tags, reasons, openers and well-wishing.
+
+Every function takes and gives the words of an instruction, marks included. Nothing that an operation could depend on is
+removed: what is dropped is a closed class ("er", "if you don't mind") or begins with a word that opens a reason.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from ..tagging.words import Word
+
+_SOUNDS = frozenset("er erm um umm uh uhm uhh hm hmm eh ah aha oh ooh oi yo huh ugh argh ahem".split())
+# Closing words, after a comma or before the end of a sentence.
+_TAGS = (
+    "please and thanks|please and thank you|pretty please|thanks a lot|thanks a bunch|thanks so much|thanks very much|"
+    "thank you kindly|much appreciated|ta|ta very much|cheers|cheers mate|thx|tyvm|"
+    "would you|will you|could you|can you|won't you|will not you|would not you|can not you|could not you|"
+    "would you mind|if you do not mind|if you would not mind|if that is (?:ok|okay|alright|all right|possible|fine)|"
+    "if it is (?:ok|okay|alright|all right|possible|not too much trouble|no trouble|not too much bother)|"
+    "if you (?:please|can|could|will|would|like|get a (?:sec|second|chance|minute)|have a (?:sec|second|minute))|"
+    "if (?:i|we) (?:may|can|could)|"
+    "if possible|when you (?:can|get a (?:chance|sec|second|minute|moment)|have a (?:sec|second|minute|moment))|"
+    "yeah|yes|yep|right|ok|okay|alright|all right|innit|is not it|do not you think|you know|you see|i think|i guess|"
+    "i suppose|i reckon|i would say|is that (?:ok|okay|alright|all right|possible)|that is (?:it|all)|there is a "
+    "(?:love|dear|good lad|good chap|star)|there you go|will ya|would ya|got it|see|hey|mate|love|dear|darling|"
+    "sweetie|honey|buddy|pal|dude|man|guys|folks|bro|my friend|sir|hun|my dear|my love|old chap|"
+    "for a change|for once|once and for all|for good|for heaven 's sake|for goodness sake|for god 's sake|"
+    "for crying out loud|then|now|so|thanks|please|thank you|too please|instead please|no\\s?\\?|eh|"
+    "as soon as (?:you can|possible)|before (?:i|we) (?:go|forget)|and that is (?:it|all|that)|and be done with it|"
+    "and be quick about it|or something|or whatever|or something like that|or so i think|somehow|"
+    "just in case|just because|because why not|why not|to start with|to be honest|to be fair|tbh|honestly|imo|imho|"
+    "in my opinion|for me|for us|for now|at last|like i said|as i said|as discussed|as agreed|as usual"
+)  # fmt: skip
+_TAG_END = re.compile(rf"(?:(?: ,)+ (?:{_TAGS})|(?<=\S) (?:please and thanks|please and thank you|pretty please|innit|"
+                      r"yeah|would you mate|will you mate|mate|thanks a lot|please now|if you do not mind|if you please|"
+                      r"if that is (?:ok|okay|alright|all right|possible)|for me|for us|when you (?:can|get a "
+                      r"(?:chance|sec|second|minute|moment)|have a (?:sec|second|minute|moment))|for goodness sake|"
+                      r"for god 's sake|as soon as (?:you can|possible)|and be done with it|and that is that|"
+                      r"would you kindly|if it is not too much (?:trouble|bother|to ask)|"
+                      r"if (?:i|we) (?:may|could)|once and for all|for heaven 's sake|to be honest|tbh|"
+                      r"or something|or whatever))(?= [.;!?]| *$)")  # fmt: skip
+# Words that open a sentence and say nothing of what to do; a comma need not follow.
+_OPENERS = re.compile(
+    r"^(?:(?:so|and|but|well|right|ok|okay|now|alright|all right|anyway|anyways|hey|hi|hello|listen|look|please|yes|yeah|"
+    r"yep|sure|fine|great|good|nice|perfect|lovely|thanks|thank you|cool|actually|honestly|basically|also|then|next|"
+    r"next up|go on|come on|here goes|let us see|let me see|let me think|you know what|guess what|first|firstly|"
+    r"first of all|first off|to start|to start with|to begin with|finally|lastly|last of all|last thing|one last thing|"
+    r"one more thing|another thing|and another thing|secondly|thirdly|mate|darling|dear|love|sorry|excuse me|pardon me|"
+    r"if you (?:would|could|can|please|do not mind|would not mind|like|would be so kind|get a chance)|"
+    r"if it is (?:possible|ok|okay|alright|not too much trouble|not too much bother|not a problem)|if possible|"
+    r"if that is (?:ok|okay|alright|possible)|if (?:i|we) may|if (?:i|we) could|"
+    r"when you (?:can|get a (?:chance|sec|second|minute|moment)|have a (?:sec|second|minute|moment))|"
+    r"quick one|small thing|quick favour|quick favor|do me a favou?r and|do me a favou?r|be a (?:love|dear|star|sport|"
+    r"darling) and|be so kind and|be so kind as to|be an angel and|go ahead and|why do not you|why do not we|"
+    r"why not|i was (?:thinking|wondering)(?: if| whether)? (?:you|we|i) (?:could|can|might|should)|"
+    r"i (?:think|guess|suppose|reckon|feel|believe|say|would say|am thinking)(?: that)? (?:you should|we should|"
+    r"we could|you could|we can|i will|i would like to|i want to)|"
+    r"(?:could|can|would|will) (?:you|we|i)(?: please| possibly| perhaps| maybe| kindly| also)* be (?:a|an) "
+    r"(?:love|dear|star|sport|darling|angel) and|"
+    r"(?:could|can|would|will) you (?:please )?do me a favou?r and|"
+    r"how would you feel about|what do you say we|what say we|it is time (?:we|to)|time to|it is about time (?:we|you|to)|"
+    r"i (?:will )?need you to|i am going to need you to|i am asking you to|i command you to|your job is to|"
+    r"the next step is to|the next thing is to|all i want is to|all i want is for you to|what i want is to|"
+    r"what i (?:would like|want) (?:you )?to (?:do )?(?:is|now is)(?: to)?|"
+    r"what (?:i|we) (?:want|need) to do is(?: to)?|"
+    r"would it be (?:ok|okay|possible|alright|all right|too much trouble) (?:to|if you could|if you)|"
+    r"is it (?:ok|okay|possible|alright) (?:to|if you could|if you|if i)|"
+    r"any chance (?:you could|you can|we could|of you)|is there any (?:chance|way) (?:you could|you can|to|we could)|"
+    r"(?:it would|it'd) be (?:great|good|nice|lovely|cool|better|best|helpful|awesome|fantastic|wonderful|super)"
+    r"(?: if you (?:could|would)| if we (?:could|would)| to)|"
+    r"i (?:would|'d) (?:be grateful|appreciate it) if you (?:could|would)|i (?:would )?wish you (?:would|could)|"
+    r"you (?:had better|better|might want to|may want to|could maybe|should probably|need to|have to|have got to|"
+    r"ought to|can go ahead and|can now)|we (?:had better|better|might want to|ought to|should probably|have to|"
+    r"have got to|need to|can|could|should|might as well)|i (?:might as well|had better)|"
+    r"let us (?:just )?go ahead and|let us (?:also |just |now |try to |please )*)"
+    r"(?: ,)* )(?=\S)"
+)
+_OPENING_MARKS = re.compile(r"^(?:[,:] )+")
+# Behind a command, these open a reason up to the next mark; "so that it faces" and "so it is" say what to do.
+_OWN_STATE = r"(?! (?:it|they|that|this) (?:is|are|faces?|looks?|points?|stands?|becomes?|matches|match|sits?|measures?))"
+_REASON = (
+    r"(?:because|cos|coz|cuz|'cause|cause|as it is|as they are|since it|since they|since we|since i|since the|since there|"
+    r"seeing as|seeing that|given that|in case|as (?:we|i|you|nobody|no one|there)|considering|now that|"
+    r"so that (?:i|we|you|he|she|people|there|nobody|no one|everyone|everybody|the|my|our|guests|visitors|kids)|"
+    r"so (?:i|we|you|he|she|people|there|nobody|no one|everyone|everybody|guests|visitors|kids|the kids|the dog|the "
+    r"cat|my|our)|so as to|so as not to|so that it (?:does|can|will|would)|so it (?:does|can|will|would|matches|has|gets|"
+    r"fits)|so they (?:do|can|will|would|match|have|get)|so that they (?:do|can|will|would)|"
+    r"in order to|to (?:make|free up|create|give|get|have|save|leave) (?:\w+ )*?(?:room|space|way|light|air|peace)|"
+    r"before (?:i|we|you|he|she|it|someone|somebody|anyone|people|the|my|our)|otherwise|or else|while (?:i|we|you|it)|"
+    r"for (?:the|my|our|a) (?:party|guests|wedding|visit|photo|photos|shoot|summer|winter|christmas|kids|children|baby|"
+    r"evening|meeting|presentation|concert|show)|to match the (?:rest|mood)|to brighten (?:things|the place|it) up|"
+    r"until (?:i|we|you))"
+)
+_TRAILING_REASON = re.compile(rf"(?<=\S)(?: ,)* {_REASON}(?= )[^.;!?]*(?= [.;!?]|$)")
+_FACING = re.compile(r"\b(?:so (?:that )?(?:it|they|he|she) (?:is |are )?(?:fac|look|point)|until|till)")
+_LEADING_REASON = re.compile(
+    r"^(?:because|cos|since|as|so that|so|in order to|in order that|to|given that|seeing as|seeing that|now that|before|"
+    r"after|while|when|whenever|if|in case|for|with|due to|thanks to|considering|although|though|even though) "
+    r"(?P<why>[^,.;!?]+?) , (?P<rest>.+)$"
+)
+_LEADING_AIM = re.compile(
+    r"^(?:to|in order to|so as to) (?:make|free up|create|get|have|save|give)(?: \w+){0,3}? "
+    r"(?:room|space|way|light)(?: here| in here| for (?:the )?\w+)? (?P<rest>\S.+)$"
+)
+
+
+def smoothed(words: Sequence[Word]) -> tuple[Word, ...]:
+    """The words of an instruction without hesitation, tags and reasons; each keeps its place in the text."""
+    texts = [w.text for w in words]
+    found, at = [], 0
+    for text in smooth(texts):
+        here = next((i for i in range(at, len(texts)) if texts[i] == text), None)
+        near = words[min(at if here is None else here, len(words) - 1)]
+        found.append(near if here is not None else Word(text, near.start, near.end))
+        at = at if here is None else here + 1
+    return tuple(found)
+
+
+def smooth(texts: Sequence[str]) -> list[str]:
+    """The words of an instruction without hesitation, tags and reasons; never fewer than none of them are left."""
+    said = " ".join(t for t in texts if t not in _SOUNDS)
+    said = re.sub(r"(?: (?:—|–|―))+", " ,", said)
+    said = re.sub(r"\. \.(?: \.)*", ",", said)
+    said = _settle_commas(said)
+    before = None
+    while before != said:
+        before = said
+        said = _settle_commas(_TAG_END.sub("", said))
+    found = said.split()
+    return found if found else list(texts)
+
+
+def _settle_commas(said: str) -> str:
+    """One comma where several stand, none beside a mark that ends a sentence."""
+    said = re.sub(r"(?:, )+(?=[,.;!?])", "", said)
+    said = re.sub(r"(?<=[.;!?:]) ,(?= |$)", "", said)
+    return re.sub(r"^(?:[,;] )+| ,$", "", said.strip())
+
+
+def unopened(said: str) -> str:
+    """A sentence without the words that only open it; the sentence itself if nothing else is left."""
+    while (found := _OPENERS.match(said)) and found.end() < len(said):
+        said = said[found.end() :]
+    return _OPENING_MARKS.sub("", said)
+
+
+def without_reason(said: str) -> str:
+    """A sentence without the reason behind or in front of its command."""
+    if not _FACING.search(said):
+        said = _TRAILING_REASON.sub("", said)
+    if found := _LEADING_AIM.match(said):
+        return found.group("rest").removeprefix(", ")
+    if found := _LEADING_REASON.match(said):
+        return found.group("rest")
+    return said
