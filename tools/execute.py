@@ -58,6 +58,7 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
         chosen = (_resolve(scene, op, context) if selection is None else selection).require()
         if op.query() is not None:
             chosen = _remaining(scene, chosen)
+        op = op.settled(scene, context)
     with timed(seconds, "apply"):
         outcome = op.apply(scene, chosen, context)
         unsupported = unsupported_note(scene, outcome.scene, chosen.groups)

@@ -252,6 +252,14 @@ class EditOp(BaseModel):
         query = self.query()
         return query.describe() if query is not None else ""
 
+    def settled(self, scene: Scene, context: Context) -> Self:
+        """The operation with what it takes from other things of the scene looked up; itself if it takes nothing.
+
+        Raises:
+            AbsentError, AmbiguousError: such a thing is not in the scene, or not unique.
+        """
+        return self
+
     def may_change(self, scene: Scene, selection: Selection) -> Tensor:
         """`[N]` bool: the Gaussians that may change or be removed; the others must stay the same bit for bit."""
         return mask_of(scene.cloud, selection.ids)

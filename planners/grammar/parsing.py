@@ -24,12 +24,14 @@ class Refusal(Exception):
     Attributes:
         verdict: verdict of the plan.
         words: the words that caused the refusal, as written.
+        firm: whether the words are understood and may mean two things, so that no other reading may decide.
     """
 
-    def __init__(self, reason: str, *words: str, verdict: str = "not_understood") -> None:
+    def __init__(self, reason: str, *words: str, verdict: str = "not_understood", firm: bool = False) -> None:
         super().__init__(reason)
         self.verdict = verdict
         self.words = words
+        self.firm = firm or verdict in ("impossible", "unsafe")
 
 
 def tag_of(token: Token) -> Tag:

@@ -110,7 +110,7 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     words, remarks = correct_spelling(smoothed(split(cleaned)))
     before = _understand_previous(previous)
     phrases = Phrases(before.antecedent, before.again, before.colors)
-    ops = _complete_halves(Reader(phrases, cleaned, previous is not None).read(words))
+    ops = _without_repeats(_complete_halves(Reader(phrases, cleaned, previous is not None).read(words)))
     if len(ops) > MAX_OPS:
         raise Refusal(f"that is more than {MAX_OPS} steps; say it in parts")
     return _Outcome(tuple(_merge_copies(ops)), phrases.antecedent, tuple(phrases.before), remarks, phrases.colors)
@@ -151,6 +151,12 @@ def _complete_halves(ops: Sequence[Fields]) -> list[Fields]:
             fields, taken = {**fields, "target": taken}, None
         settled.append(fields)
     return settled
+
+
+def _without_repeats(ops: Sequence[Fields]) -> list[Fields]:
+    """Drop deletions of what was just deleted: "we don't need the basin any more, delete it"."""
+    again = {"op": "delete", "target": Query(last=True)}
+    return [op for i, op in enumerate(ops) if not (i and op == again and ops[i - 1]["op"] == "delete")]
 
 
 def _merge_copies(ops: Sequence[Fields]) -> list[Fields]:

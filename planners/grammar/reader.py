@@ -12,7 +12,6 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from ...gaussians.errors import UserError
 from ...gaussians.language.query.query import Query
 from .meaning.changes import Fields, with_parts
 from .meaning.commands import operations_of
@@ -20,16 +19,17 @@ from .meaning.phrases import Phrases
 from .parsing import Refusal, first_words, parse, trees
 from .restating.corrections import corrected, takes_back
 from .restating.elision import about, topic_of
+from .restating.impossible import cannot_be
+from .restating.remarks import is_remark
 from .restating.restating import restatements
 from .tagging.non_edits import FORBIDDEN, STATEMENT, empty_refusal, is_chat, refuse_non_edit
 from .tagging.tagger import clauses
 from .tagging.tags import Clause, Tag, sentences
 from .tagging.words import Word
 
-_MOST_TRIES = 60
+_MOST_TRIES = 90
 _DEEPEST = 3
 _MOST_READINGS = 6  # of what was taken back
-_FINAL = ("impossible", "unsafe")  # what is understood, and cannot be done
 
 
 @dataclass
@@ -116,15 +116,19 @@ class Reader:
         new = len(self._serious()) - sum(not is_chat(r) for r in before.said)
         if refusal is None and not new:
             return
-        final = refusal if refusal is not None and refusal.verdict in _FINAL else None
+        final = refusal if refusal is not None and refusal.firm else None
         if final is None and depth < _DEEPEST:
             found = self._restated(sentence, mark, depth, before, new if refusal is None else None)
             if found is True:
                 return
             final = found or None
         self._restore(after if refusal is None else before)
-        if final or refusal:
-            raise final or refusal  # type: ignore[misc]
+        told = final or refusal
+        if told is None:
+            return
+        if not told.firm and (reason := cannot_be([w.text for w in sentence])):
+            raise Refusal(reason, sentence[0].text, verdict="impossible")
+        raise told
 
     def _corrected(self, readings: Sequence[str], sentence: Sequence[Word], depth: int) -> None:
         """Read a sentence that takes back part of what it says.
@@ -134,13 +138,13 @@ class Reader:
         """
         before = self._saved()
         final: Refusal | None = None
-        for reading in readings[:_MOST_READINGS]:
+        for reading in filter(None, readings[:_MOST_READINGS]):
             self._restore(before)
             try:
                 for part, mark in sentences(_spanning(reading.split(), sentence)):
                     self._sentence(part, mark, depth + 1)
             except Refusal as error:
-                final = final or (error if error.verdict in _FINAL else None)
+                final = final or (error if error.firm else None)
                 continue
             if len(self._state.ops) > len(before.ops):
                 return
@@ -157,8 +161,9 @@ class Reader:
             stated: how many parts of the sentence as it stands ask for no change; None if it is not understood.
         """
         final: bool | Refusal = False
+        follows = self._follows or bool(before.ops)
         plain = len(self._state.ops)
-        for candidate in restatements([w.text for w in sentence], mark):
+        for candidate in restatements([w.text for w in sentence], mark, follows):
             if self._tries >= _MOST_TRIES:
                 break
             self._tries += 1
@@ -167,15 +172,12 @@ class Reader:
                 for part, _ in sentences(_spanning(candidate, sentence)):
                     self._sentence(part, "", depth + 1)
             except Refusal as error:
-                final = final or (error if error.verdict in _FINAL else False)
+                final = final or (error if error.firm else False)
                 continue
             new = len(self._serious()) - sum(not is_chat(r) for r in before.said)
             done = len(self._state.ops) > len(before.ops)
-            if stated is None:
-                good = done or not new
-            else:
-                good = done and (new < stated or len(self._state.ops) > plain)
-            if good:
+            gained = new < (stated or 0) or len(self._state.ops) > plain
+            if (done and gained) or (stated is None and (done or not new)):
                 return True
         return final
 
@@ -207,17 +209,19 @@ class Reader:
             return with_parts(operations_of(self.phrases, tree), [t.text for t in clause.tags])
         except Refusal as refusal:
             said = f"“{_quote(clause, self._cleaned)}”: {refusal}"
-            raise Refusal(said, *refusal.words, verdict=refusal.verdict) from None
+            raise Refusal(said, *refusal.words, verdict=refusal.verdict, firm=refusal.firm) from None
 
     def _saved(self) -> _State:
         phrases = self.phrases
-        return replace(
-            self._state, antecedent=phrases.antecedent, before=tuple(phrases.before), colors=phrases.colors
-        )
+        return replace(self._state, antecedent=phrases.antecedent, before=tuple(phrases.before), colors=phrases.colors)
 
     def _restore(self, state: _State) -> None:
         self._state = replace(state)
-        self.phrases.antecedent, self.phrases.before, self.phrases.colors = state.antecedent, [*state.before], state.colors
+        self.phrases.antecedent, self.phrases.before, self.phrases.colors = (
+            state.antecedent,
+            [*state.before],
+            state.colors,
+        )
 
 
 def _spanning(texts: Sequence[str], sentence: Sequence[Word]) -> tuple[Word, ...]:
@@ -244,6 +248,9 @@ def _with_topics(parts: list[tuple[tuple[Word, ...], str]]) -> list[tuple[tuple[
     i = 0
     while i < len(parts):
         sentence, mark = parts[i]
+        if i + 2 < len(parts) and is_remark([w.text for w in parts[i + 1][0]]):
+            parts[i], parts[i + 1] = parts[i + 1], parts[i]  # "The rug. I hate beige. Make it teal."
+            sentence, mark = parts[i]
         if i + 1 < len(parts) and (topic := topic_of([w.text for w in sentence])) is not None:
             behind, last = parts[i + 1]
             joined = next(about(topic, [w.text for w in behind]), None)

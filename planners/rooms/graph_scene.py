@@ -15,7 +15,7 @@ import torch
 
 from ...gaussians.camera import Camera, Vec3
 from ...gaussians.cloud import GaussianCloud
-from ...gaussians.color import BASIC, plain_color
+from ...gaussians.color import BASIC, name_of, plain_color
 from ...gaussians.language.field.language_field import Group, LanguageField
 from ...gaussians.language.query.query import Query, Relation
 from ...gaussians.language.query.resolve import Resolver, resolve
@@ -153,6 +153,12 @@ class Stage:
         """The stage after some things were taken away."""
         gone = set(groups)
         return self._with({g: replace(self.group(g), count=0) for g in gone}, gone)
+
+    def color(self, index: int) -> str:
+        """The colour word of a thing, as the graph writes it or as an edit painted it; "" if it has none."""
+        lab = self.group(index).lab
+        written = self.graph.nodes[index].color if index < len(self.graph.nodes) else ""
+        return written if written and color_of(written) == lab else name_of(lab) if lab != NO_COLOR else ""
 
     def painted(self, groups: Iterable[int], color: str) -> Stage:
         """The stage after some things were given a colour."""

@@ -28,6 +28,7 @@ from ..grammar.tagging.spelling import misspelled_name
 # which the resolver sees a rival (0.55), so that an exact name beats a synonym, and that a broader word.
 EXACT, ALIKE, LOOSE, BROADER, NOT = 0.98, 0.5, 0.4, 0.26, 1e-4
 THRESHOLD = 0.2
+_SHORTEST_END, _SHORTEST_START = 5, 3  # letters of the two halves of a compound in one word
 _ABSENT = "nothing of all this"
 # Of "a stack of books" either may be meant, the stack or the books; "a picture of a dog" is only a picture.
 _COLLECTIVE = frozenset({"stack", "pile", "pair", "bunch", "set", "row", "group", "bouquet", "collection"})
@@ -135,7 +136,10 @@ def agreement(text: str, labels: Sequence[str]) -> list[float]:
     if max(found, default=NOT) > LOOSE:
         found = [NOT if p == LOOSE else p for p in found]
     if all(p < THRESHOLD for p in found):
-        found = [BROADER if _covers(asked, words(label)) else p for label, p in zip(labels, found, strict=True)]
+        found = [
+            BROADER if _covers(asked, words(label)) or _closes(asked, words(label)) else p
+            for label, p in zip(labels, found, strict=True)
+        ]
     if all(p < THRESHOLD for p in found) and (meant := respelt(asked, labels)) != asked:
         found = [_agrees(meant, words(label)) for label in labels]
     return found
@@ -163,6 +167,8 @@ def _agrees(asked: Phrase, label: Phrase) -> float:
         return NOT
     if asked == label:
         return EXACT
+    if "".join(asked) == "".join(label):
+        return EXACT  # "lawnmower" and "lawn mower"
     if (how := _names(asked, label)) > NOT:
         return how
     plain = _plainer(asked)
@@ -197,6 +203,14 @@ def _names(asked: Phrase, label: Phrase) -> float:
         if any(form[i:] in ends for i in range(1, len(form))):
             best = LOOSE
     return best
+
+
+def _closes(asked: Phrase, label: Phrase) -> bool:
+    """Whether one word is the end of a compound that a label writes as one: "bench" of "workbench"."""
+    if len(asked) != 1 or len(asked[0]) < _SHORTEST_END:
+        return False
+    head = label[-1]
+    return head.endswith(asked[0]) and len(head) - len(asked[0]) >= _SHORTEST_START
 
 
 def _forms(label: Phrase) -> tuple[Phrase, ...]:

@@ -129,6 +129,7 @@ class _Play:
             StepRefused: something is absent, ambiguous or cannot be.
             UserError: a word is unknown.
         """
+        op = self._settled(op)
         query = op.query()
         about_fresh = query is not None and query.last and bool(self.fresh)
         chosen = None if query is None or about_fresh else self._found(query)
@@ -140,6 +141,16 @@ class _Play:
             refuse_impossible(self.stage, step, chosen, anchors)
         self._after(op, chosen)
         return step
+
+    def _settled(self, op: EditOp) -> EditOp:
+        """The operation with the colour of the thing that it is to be like."""
+        like: Query | None = getattr(op, "like", None)
+        if like is None:
+            return op
+        colors = list(dict.fromkeys(self.stage.color(g) for g in self._found(like).groups))
+        if len(colors) > 1 or not colors[0]:
+            raise StepRefused("ambiguous", f"{like.describe()} has no single colour that is known; name the colour")
+        return op.model_copy(update={"color": colors[0], "like": None})
 
     def _found(self, query: Query) -> Selection:
         found = self.stage.find(query, self.last)

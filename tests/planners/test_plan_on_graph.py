@@ -179,7 +179,7 @@ def test_what_people_mean(text: str, meant: list[tuple[int, ...]]) -> None:
     "text",
     [
         "remove the rug... actually no",
-        "delete the sofa. No, delete the rug.",
+        "delete the sofa. No, not that.",
         "delete the rug if it is red",
         "delete the sofa or the rug",
         "nudge the vase an inch or two to the left",

@@ -12,6 +12,7 @@ from torch import Tensor
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.color import rgb_to_lab, shade_of
 from ...gaussians.language.field.measure import Sample, lightness_spread, mean_lab, sample
+from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
@@ -38,14 +39,15 @@ _TOLD = 0.03  # share of the target out of the display's range from which it is 
 class Recolor(TargetedOp):
     """Change the target's colour, keeping its shading and texture.
 
-    Give either `color` alone ("make it teal"), or `adjust` with `amount` ("a bit darker": amount 0.25, "much darker":
-    0.8). `adjust` "toward" also needs `color` ("a bit more blue": toward, blue, 0.25). A new colour leaves parts of
-    other hues, unless `whole` ("paint the whole chair").
+    Give either `color` alone ("make it teal"), `like` alone ("the same colour as the sofa"), or `adjust` with `amount`
+    ("a bit darker": amount 0.25, "much darker": 0.8). `adjust` "toward" also needs `color` ("a bit more blue": toward,
+    blue, 0.25). A new colour leaves parts of other hues, unless `whole` ("paint the whole chair").
     """
 
     model_config = ConfigDict(
         json_schema_extra=either(
-            {"color": given(), "adjust": NOT_GIVEN},
+            {"color": given(), "adjust": NOT_GIVEN, "like": NOT_GIVEN},
+            {"like": given(), "color": NOT_GIVEN, "adjust": NOT_GIVEN},
             {"adjust": given(enum=[a for a in get_args(Adjust) if a != "toward"]), "color": NOT_GIVEN},
             {"adjust": given(enum=["toward"]), "color": given()},
         )
@@ -61,18 +63,34 @@ class Recolor(TargetedOp):
     """A change relative to the colour it has."""
     amount: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 0.5
     """How far to adjust, 0 to 1; has no effect with `color` alone."""
+    like: Query | None = None
+    """The thing whose colour it gets."""
     whole: bool = False
     """With `color`: parts of other hues (a cushion, handles) too; they are left otherwise."""
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
-        if self.adjust is None and self.color is None:
-            raise ValueError("recolor needs a color or an adjust")
+        if self.like is not None and (self.color is not None or self.adjust is not None):
+            raise ValueError("give either the color, or like: the thing whose colour it gets")
+        if self.adjust is None and self.color is None and self.like is None:
+            raise ValueError("recolor needs a color, an adjust, or like")
         if self.adjust == "toward" and self.color is None:
             raise ValueError('adjust "toward" needs the color to go toward')
         if self.adjust not in (None, "toward") and self.color is not None:
             raise ValueError(f'give either a color or adjust "{self.adjust}", not both')
         return self
+
+    def settled(self, scene: Scene, context: Context) -> Self:
+        """With the pigment of the thing that it is to be like, its lit faces without the light there."""
+        if self.like is None:
+            return self
+        rows = rows_of(scene.cloud, context.resolve(scene, self.like).require().ids)
+        lit = lit_color(seen_colors(scene, rows))
+        luma = float(lit @ torch.tensor(LUMA, dtype=torch.float64))
+        white = torch.tensor(light_around(scene.cloud, rows, scene_light(scene.cloud), luma).white, dtype=torch.float64)
+        pigment = (lit / white.clamp(min=0.05)).clamp(0, 1)
+        written = "#" + "".join(f"{round(255 * float(c)):02x}" for c in pigment)
+        return self.model_copy(update={"color": written, "like": None})
 
     @property
     def paints_parts(self) -> bool:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from ....gaussians.language.query.query import Query
 from ..parsing import Node, Refusal, tokens, trees
 
 Fields = dict[str, Any]
@@ -204,6 +205,32 @@ def _more_opaque(_node: Node) -> Fields:
 
 def _upside(_node: Node) -> Fields:
     return {"op": "rotate", "degrees": 180.0, "axis": "forward"}
+
+
+# How far "a bit more" and "much more" move.
+FURTHER: dict[str, Fields] = {"little": {"value": 20, "unit": "cm"}, "much": {"value": 1, "unit": "m"}}
+
+
+def repeated(op: Fields, degree: str) -> Fields:
+    """An operation that goes further in the way of one before, by `degree`.
+
+    Raises:
+        Refusal: it has no "more": a colour by name, a place, a removal.
+    """
+    again = {**op, "target": Query(last=True)}
+    kind = op.get("op")
+    if kind == "move" and op.get("direction"):
+        amount = FURTHER.get(degree) or op.get("distance")
+        return {**again, **({"distance": amount} if amount else {})}
+    if kind == "scale" and op.get("factor"):
+        grows = float(op["factor"]) > 1
+        return {**again, "factor": (BIGGER if grows else SMALLER)[degree] if degree else op["factor"]}
+    if kind == "recolor" and op.get("adjust"):
+        return {**again, "amount": AMOUNT[degree]}
+    if kind == "rotate" and op.get("degrees") is not None and op.get("axis", "up") == "up" and not op.get("toward"):
+        turn = 15.0 if degree == "little" else abs(float(op["degrees"]))
+        return {**again, "degrees": turn if float(op["degrees"]) > 0 else -turn}
+    raise Refusal("say what more: which way, or how it should become", "more")
 
 
 _CHANGES: dict[str, Callable[[Node], Fields]] = {

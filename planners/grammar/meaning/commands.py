@@ -21,7 +21,7 @@ from .changes import Fields
 from .described import EVERYTHING, NounPhrase, all_of, existing, is_all_on_it, union
 from .moving import moved
 from .phrases import Phrases
-from .places import MOTIONS
+from .places import MOTIONS, goal_of
 
 
 def operations_of(phrases: Phrases, tree: Node) -> list[Fields]:
@@ -131,7 +131,7 @@ def clear(phrases: Phrases, node: Node) -> list[Fields]:
     if (place := next((n for n in found if _is_cleared(n)), None)) is not None:
         there = head(place.query.text) in nouns.PLACES
         raise Refusal(f"say {'what to remove from there' if there else 'whether to remove it or everything on it'}",
-                      "clear")  # fmt: skip
+                      "clear", firm=True)  # fmt: skip
     _require_clear_end(found)
     return [{"op": "delete", "target": union(found)}]
 
@@ -231,6 +231,18 @@ def give_color(phrases: Phrases, node: Node) -> list[Fields]:
     return phrases.targeted(node, "recolor", color=changes.hue_of(hue))
 
 
+def paint_like(phrases: Phrases, node: Node) -> list[Fields]:
+    """ "paint the chair the same colour as the table"."""
+    return phrases.targeted(node, "recolor", like=goal_of(phrases, trees(node, "np")[0]).full())
+
+
+def more(phrases: Phrases, node: Node) -> list[Fields]:
+    """The last change again, by a little or as said: "a bit more" behind "move it to the left"."""
+    if not phrases.before:
+        raise Refusal("say of what", "more")
+    return [changes.repeated(op, changes.degree_of(node)) for op in phrases.before]
+
+
 def change_from(phrases: Phrases, node: Node) -> list[Fields]:
     found = phrases.things(node)
     was = tokens(node, "HUE")[0].value
@@ -276,13 +288,18 @@ def change_opacity(phrases: Phrases, node: Node) -> list[Fields]:
 def make(phrases: Phrases, node: Node) -> list[Fields]:
     first, *others = trees(node)
     change, *more = others
-    if change.data == "absolute_size" and phrases.things(node)[0].article == "indef":
-        raise Refusal("say which existing one, or add one of that height", *phrases.things(node)[0].said.split())
-    ops = [{**changes.change(change), "target": existing(phrases.targets(first))}]
+    found = phrases.targets(first)
+    if tokens(node, "SHOULD") and found[0].article == "any":
+        found = [
+            replace(n, query=n.query.model_copy(update={"pick": "all"})) for n in found
+        ]  # "any mirror should be gold"
+    if change.data == "absolute_size" and found[0].article == "indef":
+        raise Refusal("say which existing one, or add one of that height", *found[0].said.split())
+    ops = [{**_changed(phrases, change), "target": existing(found)}]
     for also in more:
         inner = trees(also)
         same = inner[0].data != "targets"
-        fields = changes.change(inner[-1])
+        fields = _changed(phrases, inner[-1])
         if same and "color" in fields and "color" in ops[-1]:
             raise Refusal("one colour at a time", fields["color"])
         target = Query(last=True) if same else existing(phrases.targets(inner[0]))
@@ -291,7 +308,14 @@ def make(phrases: Phrases, node: Node) -> list[Fields]:
 
 
 def it_becomes(phrases: Phrases, node: Node) -> list[Fields]:
-    return [{**changes.change(c), "target": Query(last=True)} for c in trees(node)]
+    return [{**_changed(phrases, c), "target": Query(last=True)} for c in trees(node)]
+
+
+def _changed(phrases: Phrases, change: Node) -> Fields:
+    """The fields of a change; "the same colour as the table" names a thing, which other changes do not."""
+    if change.data == "become_like":
+        return {"op": "recolor", "like": goal_of(phrases, trees(change, "np")[0]).full()}
+    return changes.change(change)
 
 
 # ---- moving or adding ---------------------------------------------------------------------------------------------
@@ -323,7 +347,9 @@ def _require_clear_end(found: Sequence[NounPhrase]) -> None:
     """
     for noun, following in pairwise(found):
         if any(p.kind == "off" for p in noun.modifiers) and not following.modifiers:
-            raise Refusal("say in two clauses what it is removed from and what else to remove", following.said)
+            raise Refusal(
+                "say in two clauses what it is removed from and what else to remove", following.said, firm=True
+            )
 
 
 def _all_of(target: Query | None, out: Query, node: Node) -> Query | None:
@@ -341,6 +367,6 @@ def _except(target: Query | None, out: Query) -> Query:
 
 _RULES = (
     same, bare, merge, split, split_into, delete, clear, drop, take, keep, select, isolate, hide, crop, crop_away,
-    crop_space, fade, switch, paint, give_color, change_from, tint, tint_more, give_shade, coat_on, adjust,
-    change_opacity, make, it_becomes, put,
+    crop_space, fade, switch, paint, paint_like, more, give_color, change_from, tint, tint_more, give_shade, coat_on,
+    adjust, change_opacity, make, it_becomes, put,
 )  # fmt: skip

@@ -12,7 +12,7 @@ from typing import Any
 from lark import Token, Tree
 
 from ....gaussians.language.query.query import Query, Relation
-from ....gaussians.world.words import is_plural, singular
+from ....gaussians.world.words import MASS, is_plural, singular
 from ..parsing import Node, Refusal, tag_of, tokens, trees
 from ..tagging.tags import Tag
 from ..tagging.words import bag
@@ -240,6 +240,8 @@ class Phrases:
             return ("part" if singular(last.text) in PARTS else ""), bool(last.value)
         if last.type == "ONE":
             return self.antecedent, bool(last.value)
+        if last.type == "NUMBER" and any(t.type == "OTHER" for t in tags) and self.antecedent:
+            return self.antecedent, True  # "the other two"
         if last.type != "NOUN":
             if last.type in ("SUP", "ORDINAL") or self.sharing:
                 return self.antecedent, False
@@ -269,6 +271,9 @@ def _pick(tags: Sequence[Tag], article: Article, plural: bool, number: int | Non
     """The fields `pick`, `ordinal` and `count` of a query."""
     superlatives = [t for t in tags if t.type == "SUP"]
     ordinals = [t for t in tags if t.type == "ORDINAL"]
+    last = tags[-1]
+    if plural and superlatives and last.type == "NOUN" and str(last.value).split()[-1] in MASS:
+        plural = False  # "the tallest furniture" is one piece
     several = plural or (number or 1) > 1 or article in ("all", "both")
     if superlatives or ordinals:
         if several or len(superlatives) + len(ordinals) > 1:

@@ -10,8 +10,9 @@ from ..parsing import Refusal, parse
 from ..tagging.lookahead import color_at, may_be_noun
 from ..tagging.tagger import clauses
 from ..tagging.tags import Clause, Tag
-from ..tagging.words import Word
+from ..tagging.words import Word, bag
 
+_SPEAKING = bag("i we you he she could would should must looks look seems")  # never within a noun phrase
 _MODIFIERS = ("DET", "NUMBER", "OF", "COLOR", "COLORS", "SIZE", "SUP", "ORDINAL", "ADJ", "NONCOLOR", "OTHER", "TALL")
 _HEADS = ("NOUN", "ONE", "THING", "PRON", "EVERYTHING", "OTHERS")
 _PLACING = ("PREP", "NEAR", "BETWEEN", "CENTER", "TO", "TOWARD", "FROM")
@@ -87,10 +88,13 @@ def is_thing(texts: tuple[str, ...]) -> bool:
     """Whether words are one noun phrase or a list of them, with what describes it, and nothing else."""
     if not texts or len(texts) > 24 or not (may_be_noun(texts[-1]) or texts[-1] in ("me", "else", "it", "them", "all")):
         return False
+    if not _SPEAKING.isdisjoint(texts):
+        return False
     found = clauses(as_words(("select", *texts)))
     if len(found) != 1 or found[0].verb != "SELECT" or found[0].unsupported or found[0].negated:
         return False
-    if any(t.type in ("HUE", "DIR", "SHOULD", "GOES") for t in found[0].tags):
+    kinds = [t.type for t in found[0].tags]
+    if any(k in ("DIR", "SHOULD", "GOES") or (k == "HUE" and kinds[i - 1] != "REL") for i, k in enumerate(kinds)):
         return False
     try:
         tree = parse(Clause(found[0].tags, "SELECT"))

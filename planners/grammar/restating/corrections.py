@@ -13,7 +13,8 @@ from ..tagging.lookahead import Lookahead, match
 from ..vocabulary import lexicon
 from .chunks import Chunk, chunks, last_of
 
-_WAIT = r"(?:wait|hang on|hold on|hang about|one sec|stop|oops|whoops|scratch that|strike that|forget that|cancel that|"\
+_WAIT = r"(?:wait|hang on|hold on|hang about|one sec|stop|oops|whoops|scratch that|strike that|forget that|cancel "\
+        r"that|"\
         r"forget it|never mind|nevermind|not that|on second thoughts?|on reflection|changed my mind|i changed my mind|"\
         r"i have changed my mind|thinking about it|my bad|my mistake|correction|i take that back|come to think of it|"\
         r"sorry|apologies|pardon|actually|rather|make that|make it|i mean|i meant|i meant to say|i mean to say|"\
@@ -22,7 +23,8 @@ _WAIT = r"(?:wait|hang on|hold on|hang about|one sec|stop|oops|whoops|scratch th
 _STRONG = (
     r"(?:(?:no|nope|nah|oh no|oh)(?: ,)* (?:{w}(?: ,)* )*|(?:actually|wait|sorry|hang on|hold on|oops|scratch that|"
     r"strike that|forget that|cancel that|never mind|nevermind|i mean|i meant|i meant to say|make that|correction|"
-    r"on second thoughts?|or rather|or better|or better still|or actually|changed my mind|i have changed my mind|my mistake|my bad|"
+    r"on second thoughts?|or rather|or better|or better still|or actually|changed my mind|i have changed my mind|"
+    r"my mistake|my bad|"
     r"rather|not that)(?: ,)* (?:(?:no|nope|nah)(?: ,)* )?(?:{w}(?: ,)* )*)"
 ).replace("{w}", _WAIT)
 _TAKEN_BACK = re.compile(rf"(?P<before>.+?)(?: [,.;!?])+ (?P<mark>{_STRONG})(?P<after>\S.*)$")
@@ -39,17 +41,37 @@ _WHOLLY = re.compile(r"scratch that|strike that|forget that|forget it|cancel tha
 _OPENING = re.compile(rf"^(?:{_STRONG})\S")
 
 
+# Behind a sign these say only that the words before it are taken back.
+_NOTHING = re.compile(r"(?:(?:not|no|that|this|it|one|the|do|leave|keep|alone|as|is|was|really|at all|,|\.|so|"
+                      r"please|let|be|just|nothing|wait|"
+                      r"stop|sorry|thanks|thank|you|all|ok|okay|never|mind) ?)+|(?:i|we) .*|do not .*|not .*|leave "
+                      r".*|keep .*")  # fmt: skip
+_WHOLLY_BACK = re.compile(
+    r" [,.;!?](?: [,.;!?])* (?:no|nope|nah|no wait|wait no|actually no|no actually|scratch that|strike that|forget "
+    r"(?:it|that)|"
+    r"never ?mind|cancel that|on second thoughts?(?: ,)* no|no(?: ,)* sorry|wait|stop|oops)(?: ,| \.)*$"
+)
+
+
 def takes_back(texts: Sequence[str]) -> bool:
     """Whether a sentence begins by taking back the one before it."""
-    return _OPENING.match(" ".join(texts)) is not None
+    return _OPENING.match(" ".join(texts) + " .") is not None
 
 
 def corrected(said: str) -> Iterator[str]:
-    """The sentence with what was taken back replaced; several readings, the likeliest first; none without a sign."""
+    """The sentence with what was taken back replaced; several readings, the likeliest first; none without a sign.
+
+    A reading without words says that nothing was put in place of what was taken back.
+    """
     found = _TAKEN_BACK.match(said) or _BARE_MARK.match(said)
     if found is None and (behind := _RATHER_BEHIND.match(said)) is not None:
         found = behind
     if found is None:
+        if _WHOLLY_BACK.search(said):
+            yield ""
+        return
+    if _NOTHING.fullmatch(found.group("after")):
+        yield ""
         return
     before, after = found.group("before").split(), found.group("after").split()
     for after_now in _readings(after):

@@ -6,20 +6,24 @@ import re
 from collections.abc import Iterator, Sequence
 
 from ..tagging.lookahead import Lookahead, color_at, match
+from ..tagging.words import bag
 from ..vocabulary import lexicon
 from .chunks import is_thing
-from .wishes import states
+from .states import states
 
-_PRONOUNS = frozenset("it them they those these this that him her both".split())
+_PRONOUNS = bag("it them they those these this that him her both")
 _PRONOUN_PHRASES = (("this", "one"), ("that", "one"), ("these", "ones"), ("those", "ones"), ("all", "of", "them"),
                     ("both", "of", "them"), ("the", "thing"), ("them", "all"), ("the", "two"))  # fmt: skip
 _TOPIC = re.compile(
-    r"^(?:(?:and |so |now |ok |okay |hey |well )?(?:as for|as to|about|regarding|concerning|with|see|you see|you know|you "
-    r"know what|know|remember|notice|look at|do you see|can you see|you can see|there is|here is|that is|this is|on to|next up|next|"
+    r"^(?:(?:and |so |now |ok |okay |hey |well )?(?:as for|as to|about|regarding|concerning|with|see|you see|you "
+    r"know|you "
+    r"know what|know|remember|notice|look at|do you see|can you see|you can see|there is|here is|that is|this is|"
+    r"on to|next up|next|"
     r"take|consider|speaking of|when it comes to|in the case of|oh|ah|i see|what about|how about) )?(?P<thing>\S.*?)"
     r"(?: (?:over there|there|here|in there|over here))?$"
 )
-_JOINTS = (",", "and", "then", "so", "but", ";", ":")
+_NEW = ("a", "an", "another", "some", "more", "new")  # what begins so is no thing that was there before
+JOINTS = (",", "and", "then", "so", "but", ";", ":")
 _MOST = 6  # joints that are tried
 
 
@@ -46,6 +50,8 @@ def topic_of(said: Sequence[str]) -> tuple[str, ...] | None:
     if not found:
         return None
     thing = tuple(found.group("thing").split())
+    if thing[0] in _NEW or "more" in thing[:3]:
+        return None
     if thing[-1] in (",", ":", "?"):
         thing = thing[:-1]
     return thing if is_thing(thing) and not Lookahead(thing).verb(0) else None
@@ -111,90 +117,62 @@ def _with_verb(said: Sequence[str], at: Sequence[int], verb: Sequence[str]) -> l
 
 def splits(said: Sequence[str]) -> Iterator[list[str]]:
     """Readings as two sentences, parted at a joint."""
-    at = [i for i, w in enumerate(said) if w in _JOINTS and 0 < i < len(said) - 1]
+    at = [i for i, w in enumerate(said) if w in JOINTS and 0 < i < len(said) - 1]
     for i in sorted(at, key=lambda i: said[i] not in (",", ";", ":"))[:_MOST]:
         first, second = list(said[:i]), list(said[i + 1 :])
-        while second and second[0] in _JOINTS:
+        while second and second[0] in JOINTS:
             second = second[1:]
-        while first and first[-1] in _JOINTS:
+        while first and first[-1] in JOINTS:
             first = first[:-1]
-        if first and second:
+        if first and second and not _only_hues(second):
             yield [*first, ".", *second]
 
 
-_SUBJECTS = frozenset(
-    "i we you it they he she nobody everybody everyone someone somebody people guests visitors there this that these those "
-    "my our the grandma mum mom dad granny grandpa clients customers kids children".split()
-)
-_REMARKING = frozenset(
-    "is are was were am looks look seems seem feels feel keeps keep gets get takes take blocks block bothers hates hate "
-    "likes like loves love wants want needs need thinks think says said has have had does do did goes comes come coming "
-    "bumping bump can could will would might may never always sits sit stands stand sticks fits fit clashes matches "
-    "annoys hurts drives makes broke cost bought 's collects wastes smells works spoils ruins hides hide suits belongs "
-    "sees see find finds cannot started reminds used lets got prefers".split()
-)
-_ASKING = re.compile(
-    r"\b(?:should|must|ought|(?:has|have|needs?|wants?|got) to|to be|could you|can you|would you|will you|please|instead|"
-    r"would like|had better|delete|remove|paint|recolou?r|move|rotate|replace|duplicate|not|if|unless)\b"
-)
-
-
-def is_remark(said: Sequence[str]) -> bool:
-    """Whether words only say how things are: they begin with a subject, hold a verb of being, and ask for nothing."""
-    text = " ".join(said)
-    return (
-        len(said) > 1
-        and Lookahead(said).verb(0) is None
-        and (said[0] in _SUBJECTS or said[1] in _REMARKING)
-        and bool(_REMARKING & set(said))
-        and not _ASKING.search(text.replace("can not", "cannot").replace("do not", "").replace("does not", ""))
-    )
-
-
-def remarks(said: Sequence[str]) -> Iterator[list[str]]:
-    """Readings without a remark before or behind the order: "it is in the way, move it", "move it, it needs light"."""
-    for i, word in enumerate(said):
-        if word not in _JOINTS or not 0 < i < len(said) - 1:
-            continue
-        first, second = _trimmed(said[:i]), _trimmed(said[i + 1 :])
-        if first and second and is_remark(first):
-            thing = _subject_of(first)
-            filled = substitute(thing, second) if thing else None
-            yield filled if filled is not None else second
-        if first and second and is_remark(second) and word != "and":
-            yield first
-
-
-def _trimmed(said: Sequence[str]) -> list[str]:
-    words = list(said)
-    while words and words[0] in _JOINTS:
-        words = words[1:]
-    while words and words[-1] in _JOINTS:
-        words = words[:-1]
-    return words
-
-
-def _subject_of(said: Sequence[str]) -> list[str] | None:
-    """The thing that a remark is about: its subject, or else the last thing that it names."""
-    for i in range(1, min(len(said), 10)):
-        if said[i] in _REMARKING and said[0] not in ("i", "we", "you", "it", "they", "there", "nobody", "people", "someone"):
-            thing = tuple(said[:i])
-            if is_thing(thing) and (said[0] in ("the", "that", "this", "these", "those", "my", "our") or i == 1):
-                return list(thing)
-            break
-    for i in range(len(said) - 1, -1, -1):
-        if said[i] in ("the", "that", "this", "those", "these") and is_thing(tuple(said[i:])):
-            return list(said[i:])
-    return None
+def _only_hues(said: Sequence[str]) -> bool:
+    """Whether words are colours and joints alone: "make it red, blue and green" asks for one colour too many."""
+    i = 0
+    while i < len(said):
+        found = color_at(said, i)
+        if found is None and said[i] not in JOINTS:
+            return False
+        i += found[1] if found else 1
+    return True
 
 
 _STATED = ("DIR", "LENGTH", "GROWN", "LIGHT", "PREP", "TO", "TOWARD", "SPOT", "AWAY", "UPSIDE", "TIMES", "DEGREE")
 _VERBLESS = 10  # words
 
 
+_DO_TOO = re.compile(r"^(?:and |now |then |also )*(?:do|same for|ditto(?: for)?|likewise|so does|so should|so for) "
+                     r"(?P<thing>\S.*?)"
+                     r"(?: (?:too|as well|also|next|now|the same))*$")  # fmt: skip
+_MORE = re.compile(r"^(?:and |now |just |no |then |but )*(?P<degree>(?:even |a little |a bit |a tad |slightly |"
+                   r"much |a lot |a touch |"
+                   r"a little bit |some |quite a bit )*)(?:more|further|farther|again|once more|one more time)"
+                   r"(?: please| still| again| of the same| in (?:that|the same) direction| (?:that|the same) "
+                   r"way)*$")  # fmt: skip
+
+
+def following(said: Sequence[str]) -> Iterator[str]:
+    """Readings as the continuation of the command before: "a bit more", "do the wardrobe as well", "on the rug"."""
+    text = " ".join(said)
+    if found := _DO_TOO.match(text):
+        yield f"do the same to {found.group('thing')}"
+    if found := _MORE.match(text):
+        degree = found.group("degree").strip().removesuffix("even").strip()
+        yield f"{degree} more".strip()
+    ahead = Lookahead(said)
+    if ahead.preposition_at(0):
+        yield f"put it {text}"
+
+
 def terse(said: Sequence[str]) -> Iterator[str]:
     """Readings of an order without a verb: "rug out", "sofa blue", "lamp 20 cm to the left", "blue for the sofa"."""
-    if len(said) > _VERBLESS or Lookahead(said).verb(0) is not None:
+    if (
+        len(said) > _VERBLESS
+        or said[0] in ("all", "both", "everything", "it", "that", "they", "them", "this")
+        or Lookahead(said).verb(0) is not None
+    ):
         return
     colored = color_at(said, 0)
     if colored and said[colored[1] : colored[1] + 1] in (["for"], ("for",)):

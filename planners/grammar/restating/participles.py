@@ -65,7 +65,9 @@ def gerunds() -> dict[tuple[str, ...], tuple[str, ...]]:
     return {(form, *rest): (verb, *rest) for verb, *rest in sorted(_commands()) for form in _gerunds(verb)}
 
 
-def at(table: dict[tuple[str, ...], tuple[str, ...]], said: Sequence[str], i: int) -> tuple[tuple[str, ...], int] | None:
+def at(
+    table: dict[tuple[str, ...], tuple[str, ...]], said: Sequence[str], i: int
+) -> tuple[tuple[str, ...], int] | None:
     """The command whose form is at `i`, and how many words the form has; None if there is none."""
     for taken in range(min(LONGEST, len(said) - i), 0, -1):
         if (command := table.get(tuple(said[i : i + taken]))) is not None:

@@ -3,40 +3,53 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
 
-from .elision import gapped, remarks, splits, terse, topics
+from ..tagging.words import bag
+from .elision import following, gapped, splits, terse, topics
+from .remarks import remarks
 from .smoothing import unopened, without_reason
 from .wishes import wishes
 
-_QUESTIONING = frozenset("what where who which why how when is are does do did has have was were".split())
+_QUESTIONING = bag("what where who which why how when is are does do did has have was were")
 
 
-def restatements(texts: Sequence[str], mark: str) -> Iterator[list[str]]:
+def restatements(texts: Sequence[str], mark: str, follows: bool) -> Iterator[list[str]]:
     """Other ways to say a sentence, as words; a full stop among them parts sentences.
 
     Args:
         texts: the words of the sentence.
         mark: the mark that ends it.
+        follows: whether something was said before that it may continue.
     """
     said = " ".join(texts)
     seen = {said}
-    for reading in _readings(said, mark):
+    for reading in chain(_readings(said, mark), _continued(said) if follows else ()):
         if reading not in seen:
             seen.add(reading)
             yield reading.split()
+
+
+def _continued(said: str) -> Iterator[str]:
+    plain = unopened(said).removeprefix("no , ").removeprefix("no ")
+    yield plain
+    yield from following(plain.split())
 
 
 def _readings(said: str, mark: str) -> Iterator[str]:
     shorter = without_reason(said)
     plain = unopened(said)
     shortest = unopened(without_reason(plain)) if plain != said else unopened(shorter)
-    for words in dict.fromkeys((said, plain)):
-        yield from (" ".join(r) for r in topics(words.split()))
+    for text in dict.fromkeys((said, plain)):
+        yield from (" ".join(r) for r in topics(text.split()))
     yield from (plain, shorter, shortest)
+    asked = mark == "?" and plain.split()[0] in _QUESTIONING
+    words = shortest.split()
+    for whole in () if asked else dict.fromkeys((tuple(words), tuple(said.split()))):
+        yield from (" ".join(r) for r in remarks(whole))
     for base in dict.fromkeys((said, shorter, plain, shortest)):
         yield from wishes(base)
-    if mark == "?" and plain.split()[0] in _QUESTIONING:
+    if asked:
         return
-    words = shortest.split()
-    for reading in (gapped(words), map(str.split, terse(words)), remarks(words), splits(words)):
+    for reading in (gapped(words), map(str.split, terse(words)), splits(words)):
         yield from (" ".join(r) for r in reading)

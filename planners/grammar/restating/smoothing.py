@@ -9,9 +9,9 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from ..tagging.words import Word
+from ..tagging.words import Word, bag
 
-_SOUNDS = frozenset("er erm um umm uh uhm uhh hm hmm eh ah aha oh ooh oi yo huh ugh argh ahem".split())
+_SOUNDS = bag("er erm um umm uh uhm uhh hm hmm eh ah aha oh ooh oi yo huh ugh argh ahem")
 # Closing words, after a comma or before the end of a sentence.
 _TAGS = (
     "please and thanks|please and thank you|pretty please|thanks a lot|thanks a bunch|thanks so much|thanks very much|"
@@ -34,7 +34,8 @@ _TAGS = (
     "in my opinion|for me|for us|for now|at last|like i said|as i said|as discussed|as agreed|as usual"
 )  # fmt: skip
 _TAG_END = re.compile(rf"(?:(?: ,)+ (?:{_TAGS})|(?<=\S) (?:please and thanks|please and thank you|pretty please|innit|"
-                      r"yeah|would you mate|will you mate|mate|thanks a lot|please now|if you do not mind|if you please|"
+                      r"yeah|would you mate|will you mate|mate|thanks a lot|please now|if you do not mind|if you "
+                      r"please|"
                       r"if that is (?:ok|okay|alright|all right|possible)|for me|for us|when you (?:can|get a "
                       r"(?:chance|sec|second|minute|moment)|have a (?:sec|second|minute|moment))|for goodness sake|"
                       r"for god 's sake|as soon as (?:you can|possible)|and be done with it|and that is that|"
@@ -43,7 +44,8 @@ _TAG_END = re.compile(rf"(?:(?: ,)+ (?:{_TAGS})|(?<=\S) (?:please and thanks|ple
                       r"or something|or whatever))(?= [.;!?]| *$)")  # fmt: skip
 # Words that open a sentence and say nothing of what to do; a comma need not follow.
 _OPENERS = re.compile(
-    r"^(?:(?:so|and|but|well|right|ok|okay|now|alright|all right|anyway|anyways|hey|hi|hello|listen|look|please|yes|yeah|"
+    r"^(?:(?:so|and|but|well|right|ok|okay|now|alright|all right|anyway|anyways|hey|hi|hello|listen|look|please|"
+    r"yes|yeah|"
     r"yep|sure|fine|great|good|nice|perfect|lovely|thanks|thank you|cool|actually|honestly|basically|also|then|next|"
     r"next up|go on|come on|here goes|let us see|let me see|let me think|you know what|guess what|first|firstly|"
     r"first of all|first off|to start|to start with|to begin with|finally|lastly|last of all|last thing|one last thing|"
@@ -60,7 +62,8 @@ _OPENERS = re.compile(
     r"(?:could|can|would|will) (?:you|we|i)(?: please| possibly| perhaps| maybe| kindly| also)* be (?:a|an) "
     r"(?:love|dear|star|sport|darling|angel) and|"
     r"(?:could|can|would|will) you (?:please )?do me a favou?r and|"
-    r"how would you feel about|what do you say we|what say we|it is time (?:we|to)|time to|it is about time (?:we|you|to)|"
+    r"how would you feel about|what do you say we|what say we|it is time (?:we|to)|time to|it is about time (?:we|"
+    r"you|to)|"
     r"i (?:will )?need you to|i am going to need you to|i am asking you to|i command you to|your job is to|"
     r"the next step is to|the next thing is to|all i want is to|all i want is for you to|what i want is to|"
     r"what i (?:would like|want) (?:you )?to (?:do )?(?:is|now is)(?: to)?|"
@@ -79,13 +82,17 @@ _OPENERS = re.compile(
 )
 _OPENING_MARKS = re.compile(r"^(?:[,:] )+")
 # Behind a command, these open a reason up to the next mark; "so that it faces" and "so it is" say what to do.
-_OWN_STATE = r"(?! (?:it|they|that|this) (?:is|are|faces?|looks?|points?|stands?|becomes?|matches|match|sits?|measures?))"
+_OWN_STATE = (
+    r"(?! (?:it|they|that|this) (?:is|are|faces?|looks?|points?|stands?|becomes?|matches|match|sits?|measures?))"
+)
 _REASON = (
-    r"(?:because|cos|coz|cuz|'cause|cause|as it is|as they are|since it|since they|since we|since i|since the|since there|"
+    r"(?:because|cos|coz|cuz|'cause|cause|as it is|as they are|since it|since they|since we|since i|since the|"
+    r"since there|"
     r"seeing as|seeing that|given that|in case|as (?:we|i|you|nobody|no one|there)|considering|now that|"
     r"so that (?:i|we|you|he|she|people|there|nobody|no one|everyone|everybody|the|my|our|guests|visitors|kids)|"
     r"so (?:i|we|you|he|she|people|there|nobody|no one|everyone|everybody|guests|visitors|kids|the kids|the dog|the "
-    r"cat|my|our)|so as to|so as not to|so that it (?:does|can|will|would)|so it (?:does|can|will|would|matches|has|gets|"
+    r"cat|my|our)|so as to|so as not to|so that it (?:does|can|will|would)|so it (?:does|can|will|would|matches|"
+    r"has|gets|"
     r"fits)|so they (?:do|can|will|would|match|have|get)|so that they (?:do|can|will|would)|"
     r"in order to|to (?:make|free up|create|give|get|have|save|leave) (?:\w+ )*?(?:room|space|way|light|air|peace)|"
     r"before (?:i|we|you|he|she|it|someone|somebody|anyone|people|the|my|our)|otherwise|or else|while (?:i|we|you|it)|"
@@ -96,13 +103,49 @@ _REASON = (
 _TRAILING_REASON = re.compile(rf"(?<=\S)(?: ,)* {_REASON}(?= )[^.;!?]*(?= [.;!?]|$)")
 _FACING = re.compile(r"\b(?:so (?:that )?(?:it|they|he|she) (?:is |are )?(?:fac|look|point)|until|till)")
 _LEADING_REASON = re.compile(
-    r"^(?:because|cos|since|as|so that|so|in order to|in order that|to|given that|seeing as|seeing that|now that|before|"
+    r"^(?:because|cos|since|as|so that|so|in order to|in order that|to|given that|seeing as|seeing that|now that|"
+    r"before|"
     r"after|while|when|whenever|if|in case|for|with|due to|thanks to|considering|although|though|even though) "
     r"(?P<why>[^,.;!?]+?) , (?P<rest>.+)$"
 )
 _LEADING_AIM = re.compile(
     r"^(?:to|in order to|so as to) (?:make|free up|create|get|have|save|give)(?: \w+){0,3}? "
     r"(?:room|space|way|light)(?: here| in here| for (?:the )?\w+)? (?P<rest>\S.+)$"
+)
+
+
+_SIZED = r"(?P<size>big|large|tall|high|wide|long|deep|broad)"
+# Phrases with a plain equal of their own, wherever they stand.
+_REWORDED = tuple(
+    (re.compile(rf"(?<!\S){pattern}(?!\S)"), plain)
+    for pattern, plain in (
+        (rf"half as {_SIZED} again(?: as (?:it is|now|before))?", r"1.5 times as \g<size>"),
+        (rf"half again as {_SIZED}(?: as (?:it is|now|before))?", r"1.5 times as \g<size>"),
+        (rf"(?:as {_SIZED} again)", r"2 times as \g<size>"),
+        (r"(?:piece|bit|item|lump)s? of furniture", "furniture"),
+        (
+            r"(?:turn|spin|swing) (?P<x>\S.*?) (?:round |around |so (?:that )?it (?:is )?)?(?:to |and )?(?:face|"
+            r"faces|facing|look|looks|"
+            r"point|points) the (?:other|opposite) (?:way|direction)(?: round| around)?",
+            r"turn \g<x> around",
+        ),
+        (r"(?:to |so (?:that )?it (?:is )?)?(?:face|faces|facing) the (?:other|opposite) (?:way|direction)", "around"),
+        (r"(?:cut|chop|reduce|scale|bring|take|slash) (?P<x>\S.*?) (?:in|by|to|down to|down by) half", r"halve \g<x>"),
+        (r"whatever (?:is|are) (?:sitting|standing|lying|placed|resting|currently|now|there) ", "whatever is "),
+        (r"(?:only|just) the (?=\S.* (?:should|can|may|must) (?:stay|remain|be left))", "only the "),
+        (r"got to", "have to"),
+        (
+            r"(?P<v>paint|recolou?r|colou?r|dye|make|tint|turn) (?P<x>\S.*?) (?:(?:so (?:that )?(?:it|they) |to "
+            r")match(?:es)?|like)(?= (?:the|my|our|that|its|"
+            r"those|these) )",
+            r"\g<v> \g<x> the same colour as",
+        ),
+        (
+            r"(?P<verb>put|place|tidy|store|stow|pack|stick|pop) (?P<x>\S.*?) away (?P<p>in|into|on|onto|under|"
+            r"inside|behind)",
+            r"put \g<x> \g<p>",
+        ),
+    )
 )
 
 
@@ -124,6 +167,9 @@ def smooth(texts: Sequence[str]) -> list[str]:
     said = re.sub(r"(?: (?:—|–|―))+", " ,", said)
     said = re.sub(r"\. \.(?: \.)*", ",", said)
     said = _settle_commas(said)
+    for pattern, plain in _REWORDED:
+        said = pattern.sub(plain, said)
+    said = re.sub(r" (too|as well) (?:, and|,|and) ", r" \1 . ", said)
     before = None
     while before != said:
         before = said

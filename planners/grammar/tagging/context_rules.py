@@ -26,8 +26,10 @@ _FACING = phrases(
     "face, facing, to face, faces, so that it faces, so it faces, so that they face, so they face, to be facing, be "
     "facing, to look at, to look toward, to look towards, look at, look toward, look towards, to point at, to point "
     "toward, to point towards, point at, to the direction of, in the direction of, so that it is facing, "
-    "so it is facing, until it faces, until they face, till it faces, until it is facing, so as to face, so it looks at, "
-    "so that it looks at, so it points at, so that it points at, until it looks at, until it points at, so that they are "
+    "so it is facing, until it faces, until they face, till it faces, until it is facing, so as to face, so it "
+    "looks at, "
+    "so that it looks at, so it points at, so that it points at, until it looks at, until it points at, so that "
+    "they are "
     "facing, so they are facing, round to face, around to face, turned towards"
 )
 _AWAY = phrases(
@@ -93,7 +95,11 @@ def tag_by_context(state: TaggerState, i: int, length: int) -> int | None:
         return state.emit("FROMHUE", None, i, 1)
     if text in ("in", "with") and verb in _COLORING_VERBS and state.ahead.hue_follows(i + 1):
         return i + 1 + (after in ("a", "an"))
-    if text in ("on", "off") and not rest and verb == "TURN":
+    if (
+        text in ("on", "off")
+        and verb == "TURN"
+        and (not rest or (length == 0 or after in ("at", "in", "by", "over", "above")))
+    ):
         return state.emit("SWITCH", None, i, 1)
     if text == "over" and length == 1 and verb in ("TURN", "FLIP") and not rest:
         return state.emit("UPSIDE", None, i, 1)

@@ -13,6 +13,7 @@ from typing import Any
 from ....gaussians import color as colors
 from ....gaussians.world.words import plural
 from ..vocabulary import lexicon, nouns, quantities
+from ..vocabulary.shades import shade_at
 from ..vocabulary.verbs import Entry
 from .words import bag
 
@@ -29,6 +30,13 @@ def _color_names() -> frozenset[str]:
 
 def color_at(texts: Sequence[str], i: int) -> tuple[str, int] | None:
     """The colour phrase at `i` and its number of words, None if there is none."""
+    known = _named_color_at(texts, i)
+    shade = shade_at(texts, i) if i < len(texts) else None
+    return shade if shade and (known is None or known[1] < shade[1]) else known
+
+
+def _named_color_at(texts: Sequence[str], i: int) -> tuple[str, int] | None:
+    """The colour at `i` whose name has a value of its own, and its number of words."""
     for taken in (4, 3, 2, 1):
         if i + taken > len(texts):
             continue

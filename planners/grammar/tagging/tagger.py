@@ -14,7 +14,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..vocabulary import lexicon, quantities
+from ..vocabulary import lexicon, nouns, quantities
+from ..vocabulary.shades import shade_at
 from ..vocabulary.verbs import Entry
 from .context_rules import CARRYING, NOUNISH, facing_at, tag_by_context
 from .lookahead import NOUN_COLORS, color_at, compounds, match, may_be_noun, verb_classes
@@ -172,6 +173,9 @@ def _tag_color(state: TaggerState, i: int, length: int) -> int | None:
     follows_det = state.last_type in ("DET", "SIZE", "SUP", "ORDINAL", "COLOR") or (
         state.last_type in ("", *verb_classes()) and state.clause.verb != ""
     )
+    shade = shade_at(state.texts, i) if state.last_type == "DET" and state.clause.verb in _CHANGING else None
+    if shade and shade[1] == taken and state.clause.tags[-1].text not in ("a", "an"):
+        return _thing_then_hue(state, i, taken)
     if follows_det and taken == 2 and (state.texts[i] == "light" or state.texts[i] in NOUN_COLORS):
         return state.emit("NOUN", state.texts[i], i, 1)
     if follows_det and taken == 1 and name in NOUN_COLORS and not _indefinite_hue(state, i):
@@ -180,6 +184,13 @@ def _tag_color(state: TaggerState, i: int, length: int) -> int | None:
     if state.last_type == "EVERYTHING" and (changed or state.clause.verb in _CHOOSING):
         state.emit("REL", None, i, 0)  # "everything red" is everything that is red
     return state.emit("HUE", name, i, taken)
+
+
+def _thing_then_hue(state: TaggerState, i: int, taken: int) -> int:
+    """Tag the words of a shade as a thing and its new colour: "paint the brick red"."""
+    last = i + taken - 1
+    state.emit("NOUN", " ".join(state.texts[i:last]), i, taken - 1)
+    return state.emit("HUE", state.texts[last], last, 1)
 
 
 def _behind_joint(texts: Sequence[str], i: int) -> int:
@@ -223,6 +234,8 @@ def _tag_phrase(state: TaggerState, i: int, entry: Entry, taken: int) -> int:
     """Tag a phrase of the closed vocabulary, adjusting its class to the words around it."""
     kind, value = entry
     text, behind = state.texts[i], i + taken
+    if kind == "EVERYTHING" and text == "whatever" and taken == 2 and state.ahead.preposition_at(behind):
+        return state.emit("EVERYTHING", value, i, taken)
     if kind == "DET" and taken == 1:
         return _tag_determiner(state, i, value)
     if (
@@ -289,11 +302,16 @@ def _tag_noun(state: TaggerState, i: int, at_least: int = 0) -> int:
     while j < len(state.texts) and _continues_noun(state, j):
         j += 1
     kind = "NOUN" if j - i <= MAX_NOUN_WORDS else "UNKNOWN"
-    if j - i > 1 and not at_least and state.texts[j - 1] in lexicon.DONE:
+    if j - i > 1 and not at_least and _is_done(state.texts[j - 1]):
         kind = "UNKNOWN"  # "the sofa painted": what was done to it is no part of its name
     if kind == "NOUN" and state.last_type in ("DET", "COLOR", "SIZE", "ADJ") and state.ahead.colored_noun(j):
         kind = "ADJ"
     return state.emit(kind, " ".join(state.texts[i:j]), i, j - i)
+
+
+def _is_done(word: str) -> bool:
+    """Whether a word says what was done to a thing: no name of a thing ends with it ("the sofa painted")."""
+    return word in lexicon.DONE or (word.endswith("ed") and len(word) > 5 and not nouns.is_known(word))
 
 
 def _is_container(state: TaggerState, j: int) -> bool:

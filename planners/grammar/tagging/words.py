@@ -28,6 +28,12 @@ _CONTRACTIONS = {
     "you're": "you are", "they're": "they are", "we're": "we are", "it's": "it is", "that's": "that is",
     "what's": "what is", "where's": "where is", "who's": "who is", "how's": "how is", "there's": "there is",
     "here's": "here is", "let's": "let us", "lets": "let us", "gimme": "give me", "lemme": "let me",
+    "whatever's": "whatever is", "everything's": "everything is", "that'll": "that will", "it'll": "it will",
+    "you'll": "you will", "they'd": "they would", "it'd": "it would", "she'd": "she would",
+    "he'd": "he would", "we've": "we have", "you've": "you have", "they've": "they have", "weren't": "were not",
+    "hasn't": "has not", "haven't": "have not", "hadn't": "had not", "mustn't": "must not", "needn't": "need not",
+    "mightn't": "might not", "ain't": "is not", "gotta": "have to", "hafta": "have to", "dunno": "do not know",
+    "shan't": "shall not", "y'all": "you all", "outta": "out of", "kinda": "kind of", "sorta": "sort of",
     "wanna": "want to", "gonna": "going to", "pls": "please", "plz": "please", "thx": "thanks", "u": "you",
     "teh": "the", "hte": "the", "adn": "and", "nad": "and",
 }  # fmt: skip
@@ -103,7 +109,9 @@ def _is_dash(cleaned: str, start: int, end: int) -> bool:
     """Whether a mark is a dash between two parts of a sentence, not a hyphen or a minus."""
     if cleaned[start:end] not in ("-", "–", "—", "―"):
         return False
-    return cleaned[start:end] != "-" or (cleaned[end : end + 1] in (" ", "-") and cleaned[start - 1 : start] in (" ", "-"))
+    return cleaned[start:end] != "-" or (
+        cleaned[end : end + 1] in (" ", "-") and cleaned[start - 1 : start] in (" ", "-")
+    )
 
 
 def _parts(text: str, start: int, end: int, before: list[Word]) -> list[Word]:

@@ -110,6 +110,38 @@ def _axes() -> dict[str, Entry]:
     return found
 
 
+def _same_color() -> dict[str, Entry]:
+    """What gives a thing the colour of another ("the same colour as")."""
+    leads, sames = ("", "the ", "in the ", "to the ", "of the "), ("same", "exact same", "very same", "identical")
+    colors, likes = ("colour", "color", "shade", "hue", "paint"), ("as", "like", "as that of", "as the one of")
+    found: dict[str, Entry] = {
+        f"{lead}{alike} {color} {like}": ("COLORLIKE", None)
+        for lead in leads
+        for alike in sames
+        for color in colors
+        for like in likes
+    }
+    matching = ("to match the ", "matching the ", "in the ")
+    return found | {f"{lead}{color} of": ("COLORLIKE", None) for lead in matching for color in ("colour", "color")}
+
+
+def _standing() -> dict[str, Entry]:
+    """What begins a description by a place ("that stands", "which are hanging")."""
+    verbs = ("stands", "stand", "sits", "sit", "hangs", "hang", "lies", "lie", "rests", "lives")
+    forms = (*verbs, *(f"{be} {v}ing" for be in ("is", "are") for v in ("stand", "sitt", "hang", "ly")))
+    return {f"{that} {form}": ("REL", None) for that in ("that", "which") for form in forms}
+
+
+def _counted() -> dict[str, Entry]:
+    """From where things are counted ("from the left")."""
+    found: dict[str, Entry] = {}
+    for side, other in (("right", "left"), ("left", "right")):
+        leads = ("", "counting ", "along ", "in ", "starting ", "as seen ")
+        found |= {f"{lead}from the {side}": ("COUNTED", side) for lead in leads}
+        found |= {f"from {side} to {other}": ("COUNTED", side), f"from {side}": ("COUNTED", side)}
+    return found
+
+
 CLOSED: dict[str, Entry] = {
     **_one_thing(),
     **_several_things(),
@@ -130,6 +162,7 @@ CLOSED: dict[str, Entry] = {
     **same(("AS", None), "as"),
     **same(("NOT", None), "not"),
     **same(("INSTEAD", None), "instead of, in place of, rather than, in lieu of"),
+    **_same_color(),
     **same(("LIKE", None), "like, similar to, same as, identical to, matching"),
     **same(("GOES", None), "has to go, have to go, needs to go, need to go, must go, should go, can go, "
             "has got to go, have got to go, gotta go, may go, ought to go, can be removed, can be deleted"),
@@ -149,12 +182,15 @@ CLOSED: dict[str, Entry] = {
     **_said("SPOT", "center", alone=True),
     **_said("CENTER", "center"),
     **same(("SIDE", "leftmost"), "on the left, on the left side, on the left hand side, at the left, on my left, "
-            "on the far left, to the far left, on the very left, farthest to the left, furthest to the left, furthest left, "
-            "farthest left, far left, to the very left, on the extreme left, at the far left, at the left end, on the left end, "
+            "on the far left, to the far left, on the very left, farthest to the left, furthest to the left, "
+            "furthest left, "
+            "farthest left, far left, to the very left, on the extreme left, at the far left, at the left end, on "
+            "the left end, "
             "at the left hand end, on the left hand end, to my left, at the left side, over on the left"),
     **same(("SIDE", "rightmost"), "on the right, on the right side, on the right hand side, at the right, "
             "on my right, on the far right, to the far right, on the very right, farthest to the right, "
-            "furthest to the right, furthest right, farthest right, far right, to the very right, on the extreme right, at the "
+            "furthest to the right, furthest right, farthest right, far right, to the very right, on the extreme "
+            "right, at the "
             "far right, at the right end, on the right end, at the right hand end, on the right hand end, to my right, "
             "at the right side, over on the right"),
     **same(("SIDE", "nearest"), "in front, at the front, in the front, closest to me, nearest to me, nearest me, "
@@ -175,10 +211,7 @@ CLOSED: dict[str, Entry] = {
             "to the other side of the room, to the side, on its side, on its back, on their side, on their sides, "
             "side by side, on either side of, on each side of, on both sides of, every other, every second, "
             "in a line, in a circle, in a row, in rows"),
-    **same(("COUNTED", "right"), "from the right, counting from the right, from right to left, from right, along from the right, in from the "
-            "right, starting from the right, as seen from the right"),
-    **same(("COUNTED", "left"), "from the left, counting from the left, from left to right, from left, along from the left, in from the left, "
-            "starting from the left, as seen from the left"),
+    **_counted(),
     **same(("DIR", "left"), "to the left, left, leftward, leftwards, to my left, over to the left, further left, "
             "to the left side, more to the left, further to the left, farther left, over left"),
     **same(("DIR", "right"), "to the right, right, rightward, rightwards, to my right, over to the right, further "
@@ -195,7 +228,8 @@ CLOSED: dict[str, Entry] = {
     **same(("CLOCK", -1), "clockwise"),
     **same(("CLOCK", 1), "counterclockwise, counter clockwise, anticlockwise, anti clockwise"),
     **same(("DEGREE", "little"), "a bit, a little, a little bit, slightly, somewhat, a touch, a tad, a smidge, "
-            "a tiny bit, a hair, ever so slightly, a wee bit, a smidgen, a fraction, a whisker, a notch, a shade, a tad bit, "
+            "a tiny bit, a hair, ever so slightly, a wee bit, a smidgen, a fraction, a whisker, a notch, a shade, "
+            "a tad bit, "
             "a teeny bit, a teensy bit, just a bit, just a little, a wee touch, a bit of a way"),
     **same(("DEGREE", "much"), "much, a lot, way, far, considerably, significantly, a great deal, a good deal, "
             "substantially, lots, so much, very much"),
@@ -243,9 +277,7 @@ CLOSED: dict[str, Entry] = {
     **same(("COPIES", None), "copy of, copies of, duplicate of, duplicates of, clone of, clones of, more copies of, "
             "another copy of, copies from, more of"),
     **same(("REL", None), "that is, that are, which is, which are, who is, that was, which was, that were"),
-    **{f"{that} {stands}": ("REL", None) for that in ("that", "which")
-       for stands in ("stands", "stand", "sits", "sit", "hangs", "hang", "lies", "lie", "rests", "lives", "is standing",
-                      "is sitting", "is hanging", "are standing", "are sitting", "is lying", "are lying", "are hanging")},
+    **_standing(),
     **same(("DET", "def"), "the, my, our, your, this, that, these, those, the very, the whole, the entire"),
     **same(("DET", "indef"), "a, an, another, some, one more, a new, some new"),
     **same(("DET", "all"), "every last, every last one of the, every one of those, each one of the"),
@@ -335,9 +367,12 @@ PARTICIPLES = bag(
 )
 # What is said of a thing behind its name, never part of the name: "the sofa painted blue".
 DONE = bag(
-    "painted moved removed deleted turned rotated recolored recoloured coloured colored placed put shifted raised lowered "
+    "painted moved removed deleted turned rotated recolored recoloured coloured colored placed put shifted raised "
+    "lowered "
+    "used stood sat hung lay went "
     "enlarged shrunk scaled resized hidden swapped replaced duplicated copied cloned tinted dyed darkened lightened "
-    "brightened flipped spun twisted pushed pulled slid brought taken thrown gone doubled halved centred centered erased"
+    "brightened flipped spun twisted pushed pulled slid brought taken thrown gone doubled halved centred centered "
+    "erased"
 )
 
 # Dropped at the start of a clause that continues ("no, darker").
@@ -371,7 +406,8 @@ STRUCTURE = bag(
     "that than then so last next previous former latter or nor yet no without "
     "like about through across during via be is are was were am been being do does "
     "did done have has had can could will would shall should may might must i me we us you he she they him her "
-    "very quite rather too almost nearly only even ever never always often once again here there facing around nicer better "
+    "very quite rather too almost nearly only even ever never always often once again here there facing around "
+    "nicer better "
     "opposite beyond past before after during per same such something someone somebody neither "
     "much many few several enough whichever whatever "
     "more less most least not none nothing nobody except but and to of from off with for as by in on at into onto "

@@ -55,7 +55,7 @@ def is_container(phrase: str) -> bool:
 def is_seat(phrase: str) -> bool:
     """Whether people sit on it."""
     kind = kinds.of(phrase)
-    return kind is not None and (kind.seats > 0 or kind.role == "bed")
+    return kind is not None and not kind.holds and (kind.seats > 0 or kind.role == "bed")
 
 
 def is_furniture(phrase: str) -> bool:
@@ -80,9 +80,12 @@ COMPOUNDS: frozenset[tuple[str, ...]] = phrases(
     "kitchen scale; bathroom scale; "
     "gold fish; silver ware; copper pipe; cream jug; cream cake; left overs; back pack; bean bag; top hat; "
     "drop leaf table; lock box; play mat; play pen; fold up chair; coral reef; peach pit; sand box; sand castle; "
-    "snow blower; snow shovel; snow board; snow shoe; fuel can; petrol can; gas can; jerry can; oil can; beer can; paint tin; "
-    "drop cloth; paint roller; spray gun; clock radio; change machine; play house; copper pot; silver spoon; rose vase; "
-    "turn table; point set; set square; light box; light stand; mount board; stack chair; push chair; push cart; pull cord; "
+    "snow blower; snow shovel; snow board; snow shoe; fuel can; petrol can; gas can; jerry can; oil can; beer can; "
+    "paint tin; "
+    "drop cloth; paint roller; spray gun; clock radio; change machine; play house; copper pot; silver spoon; rose "
+    "vase; "
+    "turn table; point set; set square; light box; light stand; mount board; stack chair; push chair; push cart; "
+    "pull cord; "
     "slide projector; hang tag; drop light; lift chair; mark pen; rest room; roll cage; tip truck; wheel chair; wheel "
     "barrow; coat hook; coat tree; coat peg; bin lid; lime plaster; plum pudding; mint tea; olive oil; cut glass; drag "
     "racer; float glass; cool box; cool bag; warm light; salmon steak; coral lamp; tomato sauce; tomato soup",

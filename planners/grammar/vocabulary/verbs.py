@@ -165,7 +165,9 @@ UNSUPPORTED: dict[str, str] = {
     **same("moving parts and switches cannot be operated", "open, close, shut, turn on, turn off, switch on, "
             "switch off, unlock, lock, fold, unfold, light up, dim"),
     **same("only whole scenes of what is there can be edited, not what happens to it", "break, smash, bend, burn, "
-            "fill, empty, clean, wipe, wash, dust, polish, animate, cook, play, eat, wear, throw a party"),
+            "fill, empty, start, start up, drive, ring, plug in, unplug, water, feed, charge, knock, knock down, "
+            "demolish, "
+            "tear down, mow, inflate, clean, wipe, wash, dust, polish, animate, cook, play, eat, wear, throw a party"),
     **same("what was hidden comes back with undo", "unhide, reveal, restore, bring back"),
     **same("say what to select instead", "clear the selection, invert the selection, clear selection, "
             "invert selection, deselect, unselect, select none, select nothing, reset the selection"),

@@ -1,0 +1,34 @@
+"""Recognises what no operation does where a sentence is not understood otherwise: walls that move, things that run."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+_SHELL = re.compile(
+    r"\b(?:push|move|pull|shift|raise|lower|lift|extend|knock|widen|enlarge|take|shrink|stretch|rotate|turn|tear|break|"
+    r"slide|bring|drop|cut|open|smash|build|drill)(?: (?:up|out|down|through))? (?:(?:the|that|this|my|our|a) )?"
+    r"(?:(?:left|right|back|front|rear|far|side|whole|outer|inner|hand|entire|dividing|party) )*"
+    r"(?P<part>walls?|ceilings?|floors?|room|roof|doorway|building|house)(?= (?!paper|light|lamp|clock|mirror|unit|"
+    r"cabinet|shelf))"
+)
+_SHELL_SIZE = re.compile(
+    r"\bmake (?:the|this|that|my|our) (?P<part>walls?|ceilings?|floors?|room|roof|doorway|building|house) (?:\S+ )*?"
+    r"(?:bigger|larger|smaller|wider|narrower|higher|lower|taller|longer|shorter|deeper|thicker|thinner)\b"
+)
+_RUNNING = re.compile(
+    r"^(?:\S+ )*?(?:get|make|have|let|start|set|keep) (?:the|that|this|my|our|all|every) (?P<thing>\S.*?) (?:(?:to "
+    r")?(?:play|ring|sing|"
+    r"dance|talk|speak|bark|fly|drive|run|work|glow|blink|bounce|walk|beep|tick|boil|cook)|(?:play|ring|sing|danc|talk|speak|"
+    r"bark|fly|driv|runn|work|glow|blink|bounc|walk|beep|tick|boil|cook|spinn|rock|swing|mov|turn)ing)\b"
+)
+
+
+def cannot_be(texts: Sequence[str]) -> str:
+    """Why a sentence that is not understood asks for what no operation does; "" if that cannot be told."""
+    said = " ".join(texts) + " "
+    if found := _SHELL.search(said) or _SHELL_SIZE.search(said):
+        return f"the {found.group('part')} stays: it has no operation that moves or opens it"
+    if found := _RUNNING.search(said):
+        return f"scenes stand still: nothing makes the {found.group('thing')} run, move by itself or sound"
+    return ""

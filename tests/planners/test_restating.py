@@ -1,0 +1,112 @@
+"""Sentences that ask without a plain command mean what the plain command means, and what is no wish stays none."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scenewright.planners.grammar import GrammarPlanner
+from scenewright.planners.grammar.restating.restating import restatements
+from scenewright.planners.grammar.restating.smoothing import smoothed
+from scenewright.planners.grammar.tagging.words import clean, split
+
+CASES = [
+    json.loads(line) for line in (Path(__file__).parent / "restated.jsonl").read_text(encoding="utf-8").splitlines()
+]
+PLANNER = GrammarPlanner()
+
+
+@pytest.mark.parametrize("case", CASES, ids=[c["text"] for c in CASES])
+def test_a_sentence_means_its_plain_command(case: dict[str, str]) -> None:
+    plain, said = PLANNER.plan(case["means"]), PLANNER.plan(case["text"])
+    assert plain.ops, plain.reason
+    assert said.ops == plain.ops, said.reason
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "I really like the sofa",
+        "the lamp stands next to the sofa, doesn't it?",
+        "is there room for a second table?",
+        "the rug used to be blue",
+        "my wife painted the wall last year",
+        "what would look better in the corner, the plant or the lamp?",
+        "should the sofa be blue?",
+        "I wonder why the table is so big",
+        "do you think the vase belongs on the shelf?",
+        "the chair looks nice next to the window",
+        "I don't know where to put the lamp",
+    ],
+)
+def test_what_is_no_wish_changes_nothing(text: str) -> None:
+    plan = PLANNER.plan(text)
+    assert not plan.ops
+    assert plan.verdict in ("not_an_edit", "not_understood")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "delete the rug, no wait, I don't know",
+        "paint the sofa red, sorry, frobnicate it",
+        "I'd like the desk moved to the left, and the lamp frobnicated",
+        "the lamp needs frobnicating, delete the rug",
+        "the sofa should be blue unless the rug is red",
+    ],
+)
+def test_nothing_is_done_by_half(text: str) -> None:
+    assert not PLANNER.plan(text).ops
+
+
+@pytest.mark.parametrize(
+    ("text", "plain"),
+    [
+        ("er, um, delete the rug, please and thanks", "delete the rug"),
+        ("delete the lamp with the green shade", "delete the lamp with the green shade"),
+        ("make it half as big again", "make it 1.5 times as big"),
+        ("put the mug away in the cupboard", "put the mug in the cupboard"),
+    ],
+)
+def test_smoothing_drops_what_says_nothing(text: str, plain: str) -> None:
+    assert " ".join(w.text for w in smoothed(split(clean(text)))) == plain
+
+
+@given(st.text(alphabet="abcdefgh ,.-", max_size=60).filter(lambda t: bool(t.strip(" ,.-"))))
+def test_smoothing_invents_no_word(text: str) -> None:
+    words = split(clean(text))
+    assert {w.text for w in smoothed(words)} <= {w.text for w in words} | {",", "."}
+
+
+@given(
+    st.lists(
+        st.sampled_from(
+            [
+                "the",
+                "rug",
+                "sofa",
+                "should",
+                "be",
+                "blue",
+                "and",
+                ",",
+                "moved",
+                "left",
+                "no",
+                "wait",
+                "is",
+                "gone",
+                "I",
+                "it",
+            ]
+        ),
+        max_size=14,
+    )
+)
+def test_no_text_has_endless_readings(words: list[str]) -> None:
+    if words:
+        assert sum(1 for _ in restatements([w.lower() for w in words], "", True)) < 2000
