@@ -411,7 +411,8 @@ STRUCTURE = bag(
     "opposite beyond past before after during per same such something someone somebody neither "
     "much many few several enough whichever whatever "
     "more less most least not none nothing nobody except but and to of from off with for as by in on at into onto "
-    "it its them their itself themselves myself another every each all both any some else maybe perhaps together apart"
+    "it its them their itself themselves myself another every each all both any some else maybe perhaps together apart "
+    "sorry yeah yep nope okay thanks hello"
 )
 ADVERB_NOUNS = bag(
     "lily fly assembly jelly belly butterfly family dolly doily holly curly woolly ply july bully gully folly supply "
