@@ -48,6 +48,7 @@ class Kind:
         front: whether it has a side that people look at or use.
         round: whether its width equals its depth and all sides are alike.
         top: whether small things are put on it.
+        under: share of its height that is free beneath it: a box stands under a table, a bench under a tree.
         stores: whether things are kept in or on it: shelves, cabinets, chests.
         holds: whether things are put into it: boxes, bowls, sinks.
         fixed: whether it is part of the building or connected to it, so that it is not moved.
@@ -76,6 +77,7 @@ class Kind:
     front: bool = False
     round: bool = False
     top: bool = False
+    under: float = 0.0
     stores: bool = False
     holds: bool = False
     fixed: bool = False

@@ -18,6 +18,7 @@ from ..plan import Verdict
 Word = Annotated[str, Field(min_length=1, max_length=60)]
 Extent = Annotated[float, Field(ge=0.005, le=100, allow_inf_nan=False)]
 Scale = Literal["tiny", "small", "normal", "large", "huge"]
+Form = Literal["row", "grid", "circle", "back_to_back"]
 _MOST = 200  # most things of one brief
 
 
@@ -41,6 +42,24 @@ class RoomSize(BaseModel):
     area: Annotated[float, Field(gt=0, le=10_000, allow_inf_nan=False)] | None = None
 
 
+class Arrangement(BaseModel):
+    """How things of one kind stand together: in one row, in several rows one behind the other, in a circle, or in two
+    rows back to back.
+
+    Attributes:
+        form: "row", "grid" (several rows), "circle" or "back_to_back".
+        rows, columns: how many a grid has; None: as the number of things suggests.
+        gap: metres between neighbours, where stated.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    form: Form
+    rows: Annotated[int, Field(ge=1, le=60)] | None = None
+    columns: Annotated[int, Field(ge=1, le=60)] | None = None
+    gap: Annotated[float, Field(ge=0, le=20, allow_inf_nan=False)] | None = None
+
+
 class Thing(BaseModel):
     """Things of one kind that are wanted.
 
@@ -54,6 +73,8 @@ class Thing(BaseModel):
         width, depth, height: of each, metres, where stated.
         support: "floor", "wall" or "ceiling" where stated, None for the usual one; on another thing is a relation "on".
         optional: whether it was not asked for and may be left out where it does not fit.
+        arrangement: how several of them stand together, where stated.
+        called: the noun that was said, where `name` is another word for it.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -69,13 +90,16 @@ class Thing(BaseModel):
     height: Extent | None = None
     support: Literal["floor", "wall", "ceiling"] | None = None
     optional: bool = False
+    arrangement: Arrangement | None = None
+    called: Annotated[str, Field(max_length=60)] = ""
 
 
 class Relation(BaseModel):
     """A relation between things by their ids: "subject name objects".
 
     Several subjects are distributed evenly over several objects: of four chairs around two tables, two are at each.
-    `hard`: it was stated; otherwise it is a habit. `wall` as in `Wish`.
+    `hard`: it was stated; otherwise it is a habit. `wall` as in `Wish`. `distance`: metres between the two, where
+    stated. `sides`: the subjects are shared out over two opposite sides of the object, or over opposite walls.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -85,6 +109,8 @@ class Relation(BaseModel):
     objects: Annotated[tuple[Word, ...], Field(max_length=2)] = ()
     wall: Wall | None = None
     hard: bool = True
+    distance: Annotated[float, Field(ge=0, le=50, allow_inf_nan=False)] | None = None
+    sides: bool = False
 
 
 class Brief(BaseModel):

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from ..model.backend import ModelBackend
 
 _GROWTH = (1.0, 1.12, 1.25, 1.45, 1.7)  # factors on the sides of a room without a stated size, tried in turn
+_SHRINKING = (1.0, 0.999, 0.9, 0.8, 0.7)  # factors on things in a room with a stated size; below 1 all are small ones
 _STRIDE = 7919  # between the seeds of attempts, so that users' neighbouring seeds share no attempt
+_WORSE = 1000  # what is missing counts as much as so many things that nobody can walk up to
 EMBEDDED = "embedded"
 Mode = Literal["auto", "model"]
 
@@ -84,18 +86,36 @@ def compose(
 
 
 def arranged(brief: Brief, seed: int, effort: float) -> tuple[Posed, Layout]:
-    """The layout of a brief; a room without a stated size is enlarged until everything that was asked for fits."""
-    best: tuple[int, Posed, Layout] | None = None
-    for attempt, grow in enumerate(_GROWTH):
-        posed = problem_of(brief, seed, grow=grow)
-        layout = _with_missing_items(posed, solve(posed.problem, seed + _STRIDE * attempt, effort=effort))
-        failures = len(layout.conflicts) + sum(w.hard for w in layout.broken) + len(check(layout.graph).violations)
+    """The layout of a brief. A room without a stated size grows until everything that was asked for fits; in one with
+    a stated size the things shrink, as far as their own sizes are not stated. What fails in the end is explained."""
+    best: tuple[int, Posed, int] | None = None
+    layout: Layout | None = None
+    for attempt, (grow, shrink) in enumerate(_attempts(brief)):
+        posed = problem_of(brief, seed, grow=grow, shrink=shrink)
+        tried = solve(posed.problem, seed + _STRIDE * attempt, effort=effort, explained=False)
+        failures = _failures(posed, tried)
         if best is None or failures < best[0]:
-            best = failures, posed, layout
-        if failures == 0 or (attempt and layout.conflicts and not _may_grow(brief)):
+            best, layout = (failures, posed, attempt), tried
+        if failures == 0 or (attempt and failures < _WORSE):
             break
-    assert best is not None
-    return best[1:]
+    assert best is not None and layout is not None
+    failures, posed, attempt = best
+    if failures:
+        layout = solve(posed.problem, seed + _STRIDE * attempt, effort=effort)
+    return posed, _with_missing_items(posed, layout)
+
+
+def _failures(posed: Posed, layout: Layout) -> int:
+    """How many things and relations that were asked for are not there, times `_WORSE`, and how many faults the checker
+    finds in the rest, where people cannot get to everything."""
+    asked = {i.id for i in posed.problem.items if not i.optional}
+    broken = sum(w.hard for w in layout.broken)
+    return _WORSE * (broken + len(asked & set(layout.left_out))) + len(check(layout.graph).violations)
+
+
+def _attempts(brief: Brief) -> list[tuple[float, float]]:
+    """Factors on the room's sides and on the sizes of things, to be tried in turn."""
+    return [(g, 1.0) for g in _GROWTH] if _may_grow(brief) else [(1.0, s) for s in _SHRINKING]
 
 
 def _may_grow(brief: Brief) -> bool:

@@ -21,6 +21,7 @@ from .brief import Brief, Thing
 
 _FEWEST, _MOST = 8, 22  # fewest and most objects of a room without a stated size
 _PER_AREA = 0.9  # objects for each square metre of a stated size
+_NAMED, _EXTRAS = 4, 4  # from so many named things on a room gets at most so many others
 _SKIPPED = 0.15  # probability that a habit is left out, so that rooms of one kind differ
 _PLAIN = Kind(name="thing", size=((0.5, 0.5), (0.5, 0.5), (0.5, 0.5)))
 
@@ -33,6 +34,8 @@ class GroupRelation:
     objects: tuple[str, ...] = ()
     wall: Wall | None = None
     hard: bool = False
+    distance: float | None = None
+    sides: bool = False
 
 
 @dataclass
@@ -66,7 +69,8 @@ class Furnishing:
 
     def find(self, name: str) -> Group | None:
         """The group with this name or key, else a group that was asked for and has the same role."""
-        named = next((g for g in self.groups if g.kind.name == name or g.key == name), None)
+        named = next((g for g in self.groups if g.key == name), None)
+        named = named or next((g for g in self.groups if g.kind.name == name), None)
         kind = knowledge.things().get(name)
         if named or not kind:
             return named
@@ -86,7 +90,9 @@ class Furnishing:
         known = {g.key: g for g in self.groups}
         for said in self.brief.relations:
             if said.subject in known:
-                known[said.subject].relations.append(GroupRelation(said.name, said.objects, said.wall, said.hard))
+                known[said.subject].relations.append(
+                    GroupRelation(said.name, said.objects, said.wall, said.hard, said.distance, said.sides)
+                )
 
     def add(self, habit: knowledge.Habit, most: int | None = None) -> bool:
         """Add a habit, unless the room has it, the brief excludes it, or a thing that it needs is missing.
@@ -95,6 +101,8 @@ class Furnishing:
         """
         kind = knowledge.things()[habit.thing]
         if {kind.name, kind.role} & self.without or self._is_present(kind):
+            return False
+        if self.room.outdoor and kind.support in ("wall", "ceiling"):
             return False
         low, high = habit.count
         number = int(self.rng.integers(low, high + 1))
@@ -122,8 +130,11 @@ class Furnishing:
         self.pending = []
 
     def _is_present(self, kind: Kind) -> bool:
-        """Whether the room has this kind, or the brief asked for a kind of the same role."""
-        return any(g.kind.name == kind.name or (g.asked and g.kind.role == kind.role) for g in self.groups)
+        """Whether the room has this kind, or the brief asked for a kind of the same role or for "lamps" of any sort."""
+        return any(
+            g.kind.name == kind.name or (g.asked and (g.kind.role == kind.role or _covers(g, kind)))
+            for g in self.groups
+        )
 
     def _relation(self, wish: Sequence[str]) -> GroupRelation | None:
         """A habit's wish as a relation to groups of the room; None while its object is missing."""
@@ -158,7 +169,8 @@ class Furnishing:
         for seat in self.room.seats:
             if left <= 0:
                 break
-            habit = next(h for h in self.room.habits if h.thing == seat.thing)
+            habit = next((h for h in self.room.habits if h.thing == seat.thing), None)
+            habit = habit or knowledge.Habit(thing=seat.thing, count=(1, seat.most))
             number = min(seat.most, max(1, left // seat.holds) if seat is not self.room.seats[-1] else left)
             asked = self.find(habit.each) if habit.each else None
             if habit.each and asked is None:
@@ -181,11 +193,17 @@ class Furnishing:
         """Add habits and the things that styles add, up to the number that `_goal` gives."""
         if not self.brief.habits:
             return
+        asked = len(self.groups)
+        if self.brief.kind == "room" and asked >= _NAMED:
+            return  # the sentence names no kind of room, but what is in it
+        self._usual_places()
         goal = self._goal(area)
+        if asked >= _NAMED:
+            goal = min(goal, self.count() + _EXTRAS)
         chosen = [knowledge.styles()[s] for s in self.brief.styles if s in knowledge.styles()]
-        for habit in (*self.room.must, *self._companions()):
+        for habit in (*(() if self.room.outdoor and asked > 1 else self.room.must), *self._companions()):
             self.add(habit)
-        adds = [n for s in chosen for n in s.adds]
+        adds = [n for s in chosen for n in s.adds if not self.room.outdoor]
         usual = sorted(self.room.usual, key=lambda h: h.thing not in adds)
         for habit in usual:
             if self.count() >= goal:
@@ -199,6 +217,14 @@ class Furnishing:
             if self.count() < min(_FEWEST, goal):
                 self.add(habit)
 
+    def _usual_places(self) -> None:
+        """Give things that were asked for, without a word on where, their usual relations in such a room."""
+        for group in list(self.groups):
+            habit = next((h for h in self.room.habits if h.thing == group.kind.name), None)
+            if habit is None or group.relations or group.thing.arrangement:
+                continue
+            self.pending += [(group, w) for w in habit.wishes if w[0] not in ("on", "in_center", "aligned_with")]
+
     def _companions(self) -> list[knowledge.Habit]:
         """Habits that belong to things that were asked for: a chair to a desk."""
         return [h for h in self.room.usual if h.each and (g := self.find(h.each)) and g.asked]
@@ -211,13 +237,28 @@ class Furnishing:
         usual = 17 * size if area is None else min(max(_PER_AREA * area, 2.0), _MOST)
         return max(_FEWEST if area is None else 0, round(usual * share))
 
+    def _stands(self, group: Group) -> bool:
+        """Whether what is said of a small thing puts it on the floor: a vase in the corner."""
+        return any(_stands_on_floor(r) for r in group.relations)
+
+    def _shared_carrier(self, group: Group) -> Group | None:
+        """What carries the thing that a small thing is said to be next to."""
+        for relation in group.relations:
+            other = self.find(relation.objects[0]) if relation.hard and relation.objects else None
+            if other is not None and (on := next((r for r in other.relations if r.name == "on" and r.objects), None)):
+                return self.find(on.objects[0])
+        return None
+
     def support_small(self) -> None:
         """Put every small thing on a carrier, which is added if it is missing; without one it stands on the floor."""
         for group in list(self.groups):
             if group.kind.support != "surface" or group.thing.support or _carried(group):
                 continue
-            carrier = self.carrier(group.kind)
-            if carrier is None and group.kind.on:
+            if self._stands(group):
+                group.thing = group.thing.model_copy(update={"support": "floor"})
+                continue
+            carrier = self._shared_carrier(group) or self.carrier(group.kind)
+            if carrier is None and group.kind.on and not self.room.outdoor:
                 name = group.kind.on[0]
                 thing = Thing(id=self._key(name), name=name)
                 carrier = Group(thing.id, thing, knowledge.things()[name])
@@ -227,6 +268,16 @@ class Furnishing:
                 group.relations.append(GroupRelation("on", (carrier.key,)))
             else:
                 group.thing = group.thing.model_copy(update={"support": "floor"})
+
+
+def _stands_on_floor(relation: GroupRelation) -> bool:
+    return relation.hard and relation.name in ("in_corner", "against_wall", "in_center", "around", "under", "below")
+
+
+def _covers(group: Group, kind: Kind) -> bool:
+    """Whether the noun that was said for a group is the head of the name of a kind: "lamp" covers a floor lamp."""
+    said = group.thing.called or group.kind.name
+    return kind.name.endswith(f" {said}") or group.kind.name == kind.name
 
 
 def _role(name: str) -> str:

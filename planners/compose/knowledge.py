@@ -6,6 +6,7 @@ Things are those of the table of kinds. Sizes are rounded ranges of built rooms,
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
@@ -13,7 +14,7 @@ from typing import Annotated, Self
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
 
-from ...gaussians.world import kinds
+from ...gaussians.world import everyday, kinds
 from ...gaussians.world.kinds import Kind
 from ...gaussians.world.relations import WishName
 from ...gaussians.world.words import singular
@@ -64,6 +65,7 @@ class RoomKind(_Entry):
         must: habits that every such room has.
         usual: further habits, the likeliest first.
         seats: seats for guests, filled in this order.
+        outdoor: whether it is outdoors: without walls, ceiling, door and windows.
     """
 
     name: Name
@@ -75,6 +77,7 @@ class RoomKind(_Entry):
     must: tuple[Habit, ...]
     usual: tuple[Habit, ...]
     seats: tuple[Seat, ...] = ()
+    outdoor: bool = False
 
     @property
     def habits(self) -> tuple[Habit, ...]:
@@ -153,8 +156,10 @@ def thing_words() -> Table:
     """Names of things as tuples of words, the last one singular, and what they name."""
     every = kinds.table().kinds.values()
     told = {_words(a): k.one or k.name for k in every for a in k.names if a not in k.labels}
-    told = {w: name for w, name in told.items() if w not in room_words()}  # here a closet is a room, not a wardrobe
-    return MappingProxyType({(*w[:-1], singular(w[-1])): name for w, name in told.items()} | told)
+    more = {w: " ".join(w if "of" in w else (*w[:-1], singular(w[-1]))) for w in everyday.by_words()}
+    told = {(*w[:-1], singular(w[-1])): name for w, name in told.items()} | told
+    taken = room_words().keys() | style_words().keys()  # here a closet is a room, not a wardrobe
+    return MappingProxyType({w: name for w, name in (more | told).items() if w not in taken})
 
 
 @cache
@@ -191,11 +196,33 @@ def longest_name(words: Sequence[str], i: int) -> int:
     return max((f[1] for f in found if f), default=0)
 
 
+@cache
 def thing(name: str) -> Kind | None:
-    """The kind that a name means, in singular or plural; None if the table has no such name."""
+    """The kind that a name means, in singular or plural: of the table of kinds or of the everyday things, else that of
+    the longest ending that one of them has ("stone lantern"); None if there is none."""
     words = _words(" ".join(name.lower().split()))
-    found = lookup(thing_words(), words, 0) if words else None
-    return things()[found[0]] if found and found[1] == len(words) else None
+    if not words:
+        return None
+    found = lookup(thing_words(), words, 0)
+    if found and found[1] == len(words):
+        return things().get(found[0]) or everyday.find(found[0])
+    if found := _ending(words):
+        kind = things().get(found[0]) or everyday.find(found[0])
+        return replace(kind, name=" ".join(words), like=kind.role) if kind else None
+    return None
+
+
+def _ending(words: Sequence[str]) -> tuple[str, int] | None:
+    """The longest name of a thing that some words end with, before "of"."""
+    head = list(words[: words.index("of")] if "of" in words[1:] else words)
+    if found := next((f for i in range(len(head)) if (f := _whole(head[i:]))), None):
+        return found
+    return next((f for i in range(1, len(words)) if (f := _whole(words[i:]))), None)
+
+
+def _whole(words: Sequence[str]) -> tuple[str, int] | None:
+    found = lookup(thing_words(), words, 0)
+    return found if found and found[1] == len(words) else None
 
 
 def room(name: str) -> RoomKind:

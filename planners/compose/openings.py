@@ -53,8 +53,9 @@ def openings(brief: Brief, size: Size, rng: np.random.Generator, ids: Iterator[i
     """
     walls = _Walls(size, {w: [] for w in _WINDOW_WALLS})
     asked = {t.name: t for t in brief.things if t.name in ("door", "window")}
-    doors = asked["door"].count if "door" in asked else 1
-    low, high = knowledge.room(brief.kind).windows
+    kind = knowledge.room(brief.kind)
+    doors = asked["door"].count if "door" in asked else 0 if kind.outdoor else 1
+    low, high = kind.windows
     drawn = int(rng.integers(low, high + 1))
     needs = any(r.name == "at_window" for r in brief.relations)
     windows = asked["window"].count if "window" in asked else 0 if "window" in brief.without else max(drawn, int(needs))

@@ -9,10 +9,11 @@ from itertools import count
 import numpy as np
 
 from ...gaussians.world.person import HEADROOM, HUNG_AT
-from ..layout.problem import Item, Keepout, Problem, Wish
+from ..layout.problem import Item, Keepout, Problem, Wall, Wish
 from ..rooms.node import Size
 from . import knowledge, sizing
 from .brief import Brief
+from .formations import Formations, Formed
 from .furnishing import Furnishing, Group, GroupRelation, chained, furnish, pairs
 from .openings import beams, hang_curtains, openings
 from .sentence import vocabulary
@@ -20,6 +21,8 @@ from .sentence import vocabulary
 _TOP_SHARE = 0.5  # share of a top that small things may take that nobody asked for
 _OVERHEAD = HEADROOM + 0.05  # metres kept free under things that hang from the ceiling
 # With a hard wish of these names a counter has no aisle, as nobody works behind it.
+# Relations that hold for a row as a whole where they hold for its middle.
+_AIMED = ("facing", "in_front_of", "behind", "left_of", "right_of", "next_to", "far_from", "aligned_with")
 _WITHOUT_AISLE = ("against_wall", "in_corner", "at_window")
 
 
@@ -38,16 +41,17 @@ class Posed:
     remarks: tuple[str, ...] = ()
 
 
-def problem_of(brief: Brief, seed: int = 0, *, grow: float = 1.0) -> Posed:
+def problem_of(brief: Brief, seed: int = 0, *, grow: float = 1.0, shrink: float = 1.0) -> Posed:
     """The layout problem that a brief poses. The same brief and seed give the same problem.
 
     Args:
         brief: what is wanted.
         seed: draws sizes, colours and the habits that are added.
         grow: factor on each side of the room that the brief does not state.
+        shrink: factor on the sizes of things that the brief does not state.
     """
     made = furnish(brief, np.random.default_rng([seed, 0]), sizing.stated_area(brief))
-    sized = sizing.sized(made, np.random.default_rng([seed, 1]))
+    sized = sizing.sized(made, np.random.default_rng([seed, 1]), shrink)
     room = sizing.room_size(brief, sized, np.random.default_rng([seed, 2]), grow)
     return _ProblemBuilder(brief, made, sized, room, seed).build()
 
@@ -67,6 +71,7 @@ class _ProblemBuilder:
         self.area_taken: dict[int, float] = {}  # square metres, by id of the item that carries
         self.remarks = list(made.remarks)
         self.names: dict[int, str] = {}
+        self.formed = Formed((), frozenset())
 
     def build(self) -> Posed:
         doors, windows = openings(self.brief, self.room, self.rng, self.ids)
@@ -75,6 +80,7 @@ class _ProblemBuilder:
         carried = [(g, s) for g, s in self.sized if self._carrier(g)]
         for group, size in [*((g, s) for g, s in self.sized if not self._carrier(g)), *carried]:
             self._place(group, size)
+        self._form()
         for said in self.brief.relations:
             if said.subject in ("door", "window"):
                 self._add_wishes(said.subject, GroupRelation(said.name, said.objects, said.wall, said.hard))
@@ -88,8 +94,24 @@ class _ProblemBuilder:
             wishes=tuple(dict.fromkeys(self.wishes)),
             free=free if "dance floor" in self.brief.features else (),
             open=("south",),
+            rigid=self.formed.rigid,
         )
         return Posed(problem, self.names, tuple(dict.fromkeys(self.remarks)))
+
+    def _form(self) -> None:
+        """Find the formations; what is in one stands as the formation says, not with its own back to a wall."""
+        items = {_item_id(i): i for i in self.items}
+        finder = Formations([g for g, _ in self.sized], self.item_ids, items, self._key_of)
+        self.formed = finder.run()
+        first = {_first(g.members[0][0]) for g in self.formed.rigid}
+        loose = {"clear": (0.0,) * 4, "backed": False, "aisle": 0.0}
+        self.items = [
+            i.model_copy(update=loose) if i.id in self.formed.members and i.id not in first else i for i in self.items
+        ]
+
+    def _key_of(self, name: str) -> str:
+        group = self.made.find(name)
+        return group.key if group is not None else ""
 
     # ---- items -----------------------------------------------------------------------------------------------------
 
@@ -190,7 +212,7 @@ class _ProblemBuilder:
         flush = any(r.hard and r.name in _WITHOUT_AISLE for r in group.relations)
         return Item(
             id=next(self.ids),
-            label=kind.name[:80],
+            label=self._label(group)[:80],
             color=color,
             size=size,
             support=support,
@@ -200,6 +222,11 @@ class _ProblemBuilder:
             aisle=kind.aisle if floor and not flush else 0.0,
             optional=not group.asked,
         )
+
+    def _label(self, group: Group) -> str:
+        """The name of the kind, or the noun that was said where two groups of one kind were named differently."""
+        same = {g.thing.called for g, _ in self.sized if g.kind.name == group.kind.name and g.asked}
+        return group.thing.called or group.kind.name if len(same) > 1 else group.kind.name
 
     def _height(self, group: Group, size: Size) -> float | None:
         """Height of the underside of a thing that hangs on a wall, metres; None where a wish decides it."""
@@ -221,7 +248,14 @@ class _ProblemBuilder:
                 self.remarks.append(f"there is no window for the {key} to stand at")
             return
         if not relation.objects:
-            self.wishes += [Wish(subject=s, name=relation.name, hard=hard, wall=relation.wall) for s in subjects]
+            walls: tuple[Wall | None, ...] = ("west", "east") if relation.sides else (relation.wall,)
+            form = group.thing.arrangement if group is not None else None
+            group_is_row = form is not None and form.form == "row" and relation.name == "against_wall"
+            self.wishes += [
+                Wish(subject=s, name=relation.name, hard=hard and (self._leads(s, subjects) or group_is_row),
+                     wall=walls[k % len(walls)], distance=relation.distance)
+                for k, s in enumerate(subjects)
+            ]  # fmt: skip
             return
         groups = [self._ids(o) for o in relation.objects]
         if relation.name == "between":
@@ -234,8 +268,19 @@ class _ProblemBuilder:
         if relation.name == "on" and group and self._carrier(group) is None:
             self._add_rug_wishes(subjects, others, hard)
             return
+        aimed = relation.name in _AIMED
         for one, other in self._item_pairs(relation, subjects, others):
-            self._add_wish(one, relation.name, other, hard)
+            if relation.name == "around" and one in self.formed.circled:
+                self.wishes.append(Wish(subject=one, name="facing", objects=(other,), hard=hard))
+                continue
+            leads = not aimed or self._leads(one, subjects)
+            self._add_wish(one, relation.name, other, hard and leads, relation.distance)
+
+    def _leads(self, one: int, subjects: list[int]) -> bool:
+        """Whether a relation of a whole formation is asked of this member: of its middle one, the others follow."""
+        if one not in self.formed.members or len(subjects) < 3:
+            return True
+        return one == subjects[len(subjects) // 2]
 
     def _item_pairs(self, relation: GroupRelation, subjects: list[int], others: list[int]) -> list[tuple[int, int]]:
         """Pairs of related items; for "on", each item with the item that carries it."""
@@ -261,16 +306,16 @@ class _ProblemBuilder:
         for one, rug in pairs(subjects, rugs):
             self.wishes.append(Wish(subject=rug, name="under", objects=(one,), hard=hard))
 
-    def _add_wish(self, one: int, name: str, other: int, hard: bool) -> None:
+    def _add_wish(self, one: int, name: str, other: int, hard: bool, distance: float | None = None) -> None:
         """Add one relation between two items. If a desk is said to face something, its chair faces that instead."""
         if one == other:
             return
-        if name == "facing" and hard and (sitter := self._chair_at(one)):
-            self.wishes.append(Wish(subject=sitter, name="facing", objects=(other,)))
+        if name == "facing" and (sitter := self._chair_at(one)):
+            self.wishes.append(Wish(subject=sitter, name="facing", objects=(other,), hard=hard))
             if other in self.item_ids["window"]:
                 self.wishes.append(Wish(subject=one, name="at_window"))
             return
-        self.wishes.append(Wish(subject=one, name=name, objects=(other,), hard=hard))
+        self.wishes.append(Wish(subject=one, name=name, objects=(other,), hard=hard, distance=distance))
         if name == "in_front_of" and hard and self._has_front(other):
             self.wishes.append(Wish(subject=other, name="facing", objects=(one,), hard=False))
 
@@ -290,6 +335,11 @@ class _ProblemBuilder:
                     desks, chairs = self._ids(relation.objects[0]), self.item_ids.get(group.key, [])
                     return next((c for c, d in pairs(chairs, desks) if d == id), None)
         return None
+
+
+def _first(name: int | str) -> int:
+    assert isinstance(name, int)
+    return name
 
 
 def _item_id(item: Item) -> int:

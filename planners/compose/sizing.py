@@ -20,15 +20,25 @@ _PASSAGE = 0.35  # metres of passage around each thing on the floor, half of the
 _FLOOR_SHARE = 0.72  # share of the floor that things may take, clear space and passages included
 _WALL_SHARE = 0.62  # share of the wall length that things with their back to a wall may take
 _LONGEST = 2.0  # times the longest usual side: limit of a side where only the other one is stated
+_BESIDE = 0.03  # metres between things on a top
+_LOOSE = 1.15  # factor on the width of a top that holds several rows of things, as they differ in size
+_MOST_GROWN = 2.5  # factor by which what carries things may grow
 _SMALLEST = 1.0  # metres, least side of a room
 
 
-def size_of(group: Group, rng: np.random.Generator) -> Size:
-    """Width, depth and height of each thing of a group, metres: stated, or drawn from the usual range."""
+def size_of(group: Group, rng: np.random.Generator, shrink: float = 1.0) -> Size:
+    """Width, depth and height of each thing of a group, metres: stated, or drawn from the usual range.
+
+    `shrink` is a factor on what is not stated: 1 draws freely, less takes the lower end of the range and that factor.
+    """
     thing, kind = group.thing, group.kind
     where, factor = _SCALES[thing.scale]
     shares = rng.random(3) if thing.scale == "normal" else np.full(3, where)
-    drawn = [(low + (high - low) * t) * factor for (low, high), t in zip(kind.size, shares, strict=True)]
+    factors = (factor, factor, 1.0 if kind.top or kind.seats else factor)  # a long table is no higher than others
+    if shrink < 1.0:
+        shares = np.array([0.0, 0.0, shares[2]])
+        factors = (factor * shrink, factor * shrink, factors[2])
+    drawn = [(low + (high - low) * t) * f for (low, high), t, f in zip(kind.size, shares, factors, strict=True)]
     width, depth, height = (
         s if s is not None else float(d) for s, d in zip((thing.width, thing.depth, thing.height), drawn, strict=True)
     )
@@ -39,29 +49,84 @@ def size_of(group: Group, rng: np.random.Generator) -> Size:
     return round(width, 3), round(depth, 3), round(height, 3)
 
 
-def table_for(size: Size, chairs: int, is_round: bool) -> Size:
-    """The size of a table, made large enough for this many chairs around it."""
+def table_for(size: Size, chairs: int, is_round: bool, sides: int = 4, edge: float = _EDGE_PER_CHAIR) -> Size:
+    """The size of a table, made large enough for this many chairs around it, at one, two or four of its sides, each of
+    which takes `edge` metres."""
     width, depth, height = size
+    if sides < 4 and not is_round:
+        return round(max(width, ceil(chairs / sides) * edge), 3), depth, height
     if is_round:
-        need = round(max(width, chairs * _EDGE_PER_CHAIR / pi - 0.15), 3)
+        need = round(max(width, chairs * edge / pi - 0.15), 3)
         return need, need, height
-    ends = 2 * int(depth / _EDGE_PER_CHAIR)
-    need = ceil(max(chairs - ends, 0) / 2) * _EDGE_PER_CHAIR
+    ends = 2 * int(depth / edge)
+    need = ceil(max(chairs - ends, 0) / 2) * edge
     return round(max(width, need), 3), depth, height
 
 
-def sized(made: Furnishing, rng: np.random.Generator) -> list[tuple[Group, Size]]:
-    """Every group with the size of its things; tables are made large enough for their chairs."""
-    found = []
+def sized(made: Furnishing, rng: np.random.Generator, shrink: float = 1.0) -> list[tuple[Group, Size]]:
+    """Every group with the size of its things: one size for all of a kind. Tables are made large enough for their
+    chairs, and what carries things for what it carries."""
+    found = dict[str, Size]()
+    drawn = dict[tuple[object, ...], Size]()
     for group in made.groups:
-        size = size_of(group, rng)
-        around = ((g, r) for g in made.groups for r in g.relations if r.name == "around")
-        chairs = [g for g, relation in around if made.find(relation.objects[0]) is group]
-        sat = -(-sum(g.count for g in chairs) // group.count)
-        if sat > 1 and group.thing.width is None and group.kind.top:
-            size = table_for(size, sat, group.kind.round)
-        found.append((group, size))
-    return found
+        thing = group.thing
+        alike = (group.kind.name, thing.scale, thing.width, thing.depth, thing.height, thing.optional)
+        size = size_of(group, rng, shrink)
+        size = drawn.setdefault(alike, size)
+        around = [(g, r) for g in made.groups for r in g.relations if r.name == "around"]
+        chairs = [(g, r) for g, r in around if made.find(r.objects[0]) is group]
+        sat = -(-sum(g.count for g, _ in chairs) // group.count)
+        if sat > 1 and thing.width is None and group.kind.top:
+            edge = max(max(g.kind.size[0][1] for g, _ in chairs) + 0.08, _EDGE_PER_CHAIR)
+            sides = 2 if any(r.sides for _, r in chairs) else 1 if group.kind.backed else 4
+            size = table_for(size, sat, group.kind.round, sides, edge)
+        found[group.key] = size
+    for group in made.groups:
+        _fit_loads(made, group, found)
+        _fit_beneath(made, group, found)
+    return [(g, found[g.key]) for g in made.groups]
+
+
+def _fit_loads(made: Furnishing, carrier: Group, sizes: dict[str, Size]) -> None:
+    """Widen what carries things that were asked for until they fit on it in rows; where its own size is stated, or it
+    would grow too much, the things shrink instead."""
+    on = [(g, r) for g in made.groups if g.asked for r in g.relations if r.name == "on" and r.objects]
+    loads = [g for g, r in on if made.find(r.objects[0]) is carrier and g is not carrier and not carrier.kind.is_rug]
+    if not loads:
+        return
+    width, depth, height = sizes[carrier.key]
+    counts = [ceil(g.count / carrier.count) for g in loads]
+    deepest = max(sizes[g.key][1] for g in loads)
+    thing = carrier.thing
+    deep = depth if thing.depth is not None else min(max(depth, deepest + 0.02), _MOST_GROWN * depth)
+    rows = max(int((deep + 0.01) / (deepest + _BESIDE)), 1)
+    need = sum(n * (sizes[g.key][0] + _BESIDE) for g, n in zip(loads, counts, strict=True)) / rows
+    need = max(need, max(sizes[g.key][0] for g in loads) + 0.02)
+    if sum(counts) > 1 and rows > 1:
+        need *= _LOOSE
+    wide = width if thing.width is not None else min(max(width, need), _MOST_GROWN * width)
+    if carrier.kind.round:
+        wide = deep = max(wide, deep)
+    sizes[carrier.key] = round(wide, 3), round(deep, 3), height
+    factor = min(1.0, wide / need, (deep + 0.1) / deepest)
+    if factor < 1.0:
+        for g in loads:
+            if g.thing.width is None and g.thing.depth is None:
+                w, d, h = sizes[g.key]
+                sizes[g.key] = round(w * factor, 3), round(d * factor, 3), round(h * max(factor, 0.7), 3)
+
+
+def _fit_beneath(made: Furnishing, group: Group, sizes: dict[str, Size]) -> None:
+    """Make what is said to be under a thing small enough for the space beneath it."""
+    for relation in group.relations:
+        other = made.find(relation.objects[0]) if relation.name in ("under", "below") and relation.objects else None
+        if other is None or not other.kind.under or group.kind.is_rug or group.thing.height is not None:
+            continue
+        (width, depth, height), (w, d, h) = sizes[group.key], sizes[other.key]
+        factor = min(1.0, 0.98 * other.kind.under * h / height)
+        if width > w and depth > d and group.thing.width is None and group.thing.depth is None:
+            width, depth = 0.9 * w, 0.9 * d
+        sizes[group.key] = round(width, 3), round(depth, 3), round(height * factor, 3)
 
 
 def color_of(group: Group, styles: Sequence[str], rng: np.random.Generator, material_color: str) -> str:
@@ -105,6 +170,11 @@ def room_size(
     by_floor, by_walls = _floor_needed(groups) / (width * depth), _wall_needed(groups) / (2 * (width + depth))
     stretch = max(1.0, sqrt(by_floor), by_walls) * grow
     width, depth = width * stretch, depth * stretch
+    long, short = _formed_sides(groups)
+    if max(width, depth) < long:
+        width, depth = (long, depth) if width > depth else (width, long)
+    if min(width, depth) < short:
+        width, depth = max(width, short), max(depth, short)
     if said is not None:
         if said.area is not None and said.width is None and said.depth is None:
             ratio = sqrt(said.area / (width * depth))
@@ -119,6 +189,25 @@ def room_size(
         round(max(depth, 0.01 if said else _SMALLEST), 2),
         round(_height(brief, groups, height), 2),
     )
+
+
+def _formed_sides(groups: Sequence[tuple[Group, Size]]) -> tuple[float, float]:
+    """The longer and the shorter side of the floor, metres, that rows, grids and circles need at least."""
+    long = short = 0.0
+    for group, (width, depth, _) in groups:
+        form = group.thing.arrangement
+        if form is None or group.kind.support != "floor":
+            continue
+        gap = form.gap if form.gap is not None else 0.1 if group.kind.seats == 1 else 0.45
+        rows = 1 if form.form == "row" else form.rows or max(2, round(sqrt(group.count / 1.5)))
+        columns = form.columns or ceil(group.count / rows)
+        rows = ceil(group.count / columns)
+        if form.form == "circle":
+            sides = [group.count * (width + 0.1) / pi + 2 * depth + 1.0] * 2
+        else:
+            sides = [columns * (width + gap) + 0.4, rows * (depth + 0.6) + (1.0 if rows > 1 else 0.5)]
+        long, short = max(long, *sides), max(short, min(sides))
+    return long, short
 
 
 def _floor_needed(groups: Sequence[tuple[Group, Size]]) -> float:

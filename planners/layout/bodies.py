@@ -6,17 +6,17 @@ Positions are chosen by the search, except for seats: those are fixed relative t
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from ...gaussians.world import kinds, relations
+from ...gaussians.world import everyday, kinds, relations
 from ...gaussians.world.box import YawBox, plan_penetration, to_world
 from ...gaussians.world.person import HEADROOM, STEP
 from ...gaussians.world.support import SHELL
 from .lattice import EPSILON
-from .problem import Item, Problem, Wall
+from .problem import Item, Problem, Rigid, Wall
 
 TABLE_GAP = 0.03  # metres between a table and what stands around it
 _ELBOW = 0.08  # metres between neighbours at a table
@@ -110,6 +110,17 @@ class Prepared:
         """Pairs of which one may also stand before the other's front: a stool at a piano, no side table at a sofa."""
         return self._pairs(_BEFORE)
 
+    @cached_property
+    def sheltered(self) -> frozenset[tuple[int, int]]:
+        """Pairs, in both orders, of which one is to be under the other and fits between its legs or below its crown."""
+        pairs = set[tuple[int, int]]()
+        for wish, parts in zip(self.problem.wishes, self.participants, strict=True):
+            if wish.name in ("under", "below"):
+                one, other = self.items[parts[0]], self.items[parts[1]]
+                if one.size[2] <= everyday.free_beneath(other.label, other.size[2]):
+                    pairs |= {(parts[0], parts[1]), (parts[1], parts[0])}
+        return frozenset(pairs)
+
     def _pairs(self, names: tuple[str, ...]) -> frozenset[tuple[int, int]]:
         pairs = set[tuple[int, int]]()
         for wish, (one, *others) in zip(self.problem.wishes, self.participants, strict=True):
@@ -183,12 +194,32 @@ class Prepared:
                 around[parts[1]].append(parts[0])
                 taken.add(parts[0])
         found = []
+        bound = set[int]()
+        for group in self.problem.rigid:
+            body = self._rigid(group, around)
+            if body is not None and not bound & {m.item for m in body.members}:
+                bound |= {m.item for m in body.members}
+                found.append(body)
         for i, item in enumerate(self.items):
-            if item.stand is None and item.support in SHELL and i not in taken:
+            if item.stand is None and item.support in SHELL and i not in taken and i not in bound:
                 found.append(Body(self._without_overlaps((Member(i), *self._seats(i, around[i])))))
         seated = {m.item for b in found for m in b.members}
         found += [Body((Member(i),)) for i in sorted(taken - seated)]
         return tuple(found)
+
+    def _rigid(self, group: Rigid, around: Mapping[int, list[int]]) -> Body | None:
+        """The body of a rigid group, with the seats around each of its things; None if a thing has a place already."""
+        members: list[Member] = []
+        own = {self.index[name] for name, *_ in group.members}
+        for name, x, y, yaw in group.members:
+            i = self.index[name]
+            if self.items[i].stand is not None or self.items[i].support != "floor":
+                return None
+            members.append(Member(i, x, y, yaw))
+            for seat in self._seats(i, [s for s in around.get(i, []) if s not in own]):
+                sx, sy = to_world(x, y, yaw, seat.x, seat.y)
+                members.append(Member(seat.item, sx, sy, seat.yaw + yaw))
+        return Body(self._without_overlaps(tuple(members)))
 
     def box(self, member: Member) -> YawBox:
         """A member's box in the axes of its body, standing at height 0."""

@@ -48,7 +48,7 @@ def _priced(state: State, body: Body, surface: Surface, lattice: Lattice) -> Pos
     for member in body.members:
         moving = state.spot(member, 0.0, 0.0, lattice.yaw, surface.low)
         if not state.is_flat(member.item):
-            blocked(lattice, moving, [s for _, s in solids], taken)
+            blocked(lattice, moving, [s for j, s in solids if (member.item, j) not in prepared.sheltered], taken)
             _out_of_discs(state, lattice, moving, frame, taken)
         if taken.all():
             return None

@@ -13,7 +13,7 @@ from ...gaussians.world import kinds
 from ...gaussians.world.person import STEP
 from ..rooms.node import NodeId
 from .bodies import Prepared
-from .problem import Conflict, Item, Problem, Wish
+from .problem import Conflict, Item, Problem, Rigid, Wish
 from .search import Search
 from .sentences import describe_item, describe_keepout, describe_room, describe_wish
 from .state import State
@@ -211,6 +211,15 @@ class _Explainer:
             wishes=wishes,
             free=tuple(f for k, f in enumerate(self.problem.free) if Statement("keepout", k) in stated),
             walkway=self.problem.walkway,
+            rigid=self._rigid({self.prepared.items[i].id for i in rows}, stated),
+        )
+
+    def _rigid(self, there: set[NodeId], stated: frozenset[Statement]) -> tuple[Rigid, ...]:
+        """The rigid groups of which all things are there in their stated sizes."""
+        return tuple(
+            g
+            for g in self.problem.rigid
+            if all(name in there and Statement("size", name) in stated for name, *_ in g.members)
         )
 
     def _with_carriers(self, name: NodeId) -> tuple[int, ...]:

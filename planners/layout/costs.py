@@ -128,7 +128,7 @@ def wish_cost(state: State, body: Body, place: Positions) -> F64:
         if wish.name in ("on", "inside") and parts[1] in prepared.carriers[parts[0]]:
             continue
         one, *others = (s for s in spots if s is not None)
-        kept, cost = measure(wish.name, state.size, one, others, state.windows, wish.wall)
+        kept, cost = measure(wish.name, state.size, one, others, state.windows, wish.wall, wish.distance)
         missed = (BROKEN_HARD if wish.hard else BROKEN_SOFT) * (0.3 if proxied else 1.0)
         total += np.where(kept, 0.0, missed) + (2.0 if wish.hard else 1.5) * np.minimum(cost, 10.0)
     return total

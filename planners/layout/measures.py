@@ -35,6 +35,7 @@ IN_REACH = 0.6  # metres: largest gap of a thing "at" a window
 AT_TABLE = 0.4  # metres: largest gap between a thing and the table it stands around
 WALLS = ("west", "east", "south", "north")
 _INWARD = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))  # direction from each wall into the room
+OFF = 0.1  # metres, or share of the distance, that a stated distance may be off
 IN_LINE = 0.05  # metres: largest offset between the middles of aligned things
 _ROW = np.unique(FOOTPRINT[:, 0])  # one row of the points with which the checker samples footprints
 # The viewer looks along +y.
@@ -48,11 +49,15 @@ def measure(
     others: Sequence[YawBox],
     windows: Sequence[YawBox],
     wall: str | None = None,
+    distance: float | None = None,
 ) -> Measured:
     """Whether "one name others" holds in a room of `size`, and a cost that grows with the distance from ideal.
 
     Coordinates of each box may be numbers or arrays of one length. `wall`: the wall that the wish names, if any.
+    `distance`: the gap that the wish names, metres.
     """
+    if distance is not None:
+        return _at_distance(name, size, one, others, windows, wall, distance)
     if wall is not None:
         row = WALLS.index(wall)
         kept, cost = measure(name, size, one, others, [w for w in windows if _wall_of(w, size) == row])
@@ -80,6 +85,31 @@ def measure(
         gap = np.min([plan_gap(one, w) for w in windows], axis=0)
         return gap <= IN_REACH, gap
     return _scored(name, one, others)
+
+
+def _at_distance(
+    name: str,
+    size: Sequence[float],
+    one: YawBox,
+    others: Sequence[YawBox],
+    windows: Sequence[YawBox],
+    wall: str | None,
+    distance: float,
+) -> Measured:
+    """The measure of a wish with a stated gap; sides and fronts count as without one."""
+    kept: Any = True
+    cost: Any = 0.0
+    if name == "at_window":
+        gap = np.min([plan_gap(one, w) for w in windows], axis=0) if windows else np.inf
+    elif not others:
+        gaps = walls_gaps(one, size)
+        gap = gaps[WALLS.index(wall)] if wall is not None else np.min(gaps, axis=0)
+    else:
+        gap = plan_gap(one, others[0])
+        if relations.named(name).aim or name == "facing":
+            kept, cost = measure(name, size, one, others, windows)
+    off = np.abs(gap - distance)
+    return kept & (off <= np.maximum(OFF, OFF * distance)), cost + 2.0 * off
 
 
 def _scored(name: str, one: YawBox, others: Sequence[YawBox]) -> Measured:

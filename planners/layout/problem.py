@@ -67,7 +67,8 @@ class Wish(BaseModel):
     front is turned to the object. "around": the subject stands at a free side of the object, turned to it.
     "aligned_with": in one line, turned the same way. "far_from": at least half the room's diagonal away.
     `wall` names the wall for "against_wall", "in_corner" or "at_window": north is at positive y, behind; east at
-    positive x, on the right. A corner of two named walls is two wishes. None allows any wall.
+    positive x, on the right. A corner of two named walls is two wishes. None allows any wall. `distance`: metres
+    between the two (or to the wall or window) that are wanted, seen from above; "far_from" is then that distance alone.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -77,6 +78,7 @@ class Wish(BaseModel):
     objects: Annotated[tuple[NodeId, ...], Field(max_length=2)] = ()
     hard: bool = True
     wall: Wall | None = None
+    distance: Annotated[float, Field(ge=0, le=1000, allow_inf_nan=False)] | None = None
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
@@ -98,6 +100,17 @@ class Keepout(BaseModel):
     center: tuple[float, float] | None = None
 
 
+class Rigid(BaseModel):
+    """Things on the floor that are placed as one: a row of stools, desks in rows, chairs in a circle.
+
+    `members`: id, x, y (metres) and yaw (degrees) of each in the axes of the first, which is at 0, 0, 0.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    members: Annotated[tuple[tuple[NodeId, float, float, float], ...], Field(min_length=2, max_length=200)]
+
+
 class Problem(BaseModel):
     """A room, its things and the wishes about them.
 
@@ -109,6 +122,7 @@ class Problem(BaseModel):
         walkway: preferred width of passages for a person, metres.
         open: walls through which the viewer looks into the room: unless wished, nothing hangs there and no tall thing
             turns its back to them.
+        rigid: things that are placed as one where there is room for it, and singly otherwise.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -119,6 +133,7 @@ class Problem(BaseModel):
     free: Annotated[tuple[Keepout, ...], Field(max_length=16)] = ()
     walkway: Metres = WALKWAY
     open: Annotated[tuple[Wall, ...], Field(max_length=4)] = ()
+    rigid: Annotated[tuple[Rigid, ...], Field(max_length=64)] = ()
 
     @model_validator(mode="after")
     def _closed(self) -> Self:
@@ -131,6 +146,9 @@ class Problem(BaseModel):
         for wish in self.wishes:
             if missing := {wish.subject, *wish.objects} - known:
                 raise ValueError(f"a wish names {sorted(map(str, missing))}, which is not there")
+        for group in self.rigid:
+            if missing := {m[0] for m in group.members} - known:
+                raise ValueError(f"a rigid group names {sorted(map(str, missing))}, which is not there")
         return self
 
 

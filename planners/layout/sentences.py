@@ -23,7 +23,10 @@ def describe_wish(wish: Wish, item: Callable[[NodeId], Item]) -> str:
     """A wish in words: "the bed (3) is against a wall"."""
     kind = relations.named(wish.name)
     words = kind.at_wall.format(wish.wall) if wish.wall else kind.says(*(describe_item(item(o)) for o in wish.objects))
-    return f"{describe_item(item(wish.subject))} {words}"
+    apart = f", {wish.distance:g} m away" if wish.distance is not None else ""
+    if wish.name == "far_from" and wish.distance is not None:
+        words, apart = f"is {wish.distance:g} m from {describe_item(item(wish.objects[0]))}", ""
+    return f"{describe_item(item(wish.subject))} {words}{apart}"
 
 
 def describe_keepout(keepout: Keepout) -> str:

@@ -131,7 +131,7 @@ class State:
         if wish.name in ("on", "inside") and parts[1] in self.prepared.carriers[parts[0]]:
             return True, 0.0
         one, *others = (s for s in spots if s is not None)
-        kept, cost = measure(wish.name, self.size, one, others, self.windows, wish.wall)
+        kept, cost = measure(wish.name, self.size, one, others, self.windows, wish.wall, wish.distance)
         return bool(kept), float(cost)
 
     def cost(self) -> float:

@@ -32,7 +32,8 @@ def verified(prepared: Prepared, state: State) -> tuple[SceneGraph, tuple[Wish, 
     kept = [
         wish
         for row, wish in enumerate(prepared.problem.wishes)
-        if ((wish.subject, wish.name, wish.objects[0]) in stated if wish.name in STATED else state.holds(row)[0])
+        if (wish.name not in STATED or (wish.subject, wish.name, wish.objects[0]) in stated)
+        and ((wish.name in STATED and wish.distance is None) or state.holds(row)[0])
     ]
     return graph.model_copy(update={"relations": stated}), tuple(kept)
 

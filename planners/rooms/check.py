@@ -1,7 +1,7 @@
 """The checker of scene graphs: collisions, bounds of the room, support, stated relations and reachability.
 
 It treats every graph alike, whatever made it. Each violation is a sentence with ids and measured numbers. Boxes are
-solid: a chair pushed under a table collides with it.
+solid: a chair pushed under a table collides with it, unless the graph states that it is under it and it fits there.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Literal
 
 import numpy as np
 
-from ...gaussians.world import relations, support
+from ...gaussians.world import everyday, relations, support
 from ...gaussians.world.box import Boxes, overlap
 from ...gaussians.world.relation_geometry import HOLDS, degrees_aside
 from ...gaussians.world.support import SHELL
@@ -89,6 +89,7 @@ def _called(node: Node) -> str:
 def _collisions(graph: SceneGraph) -> Iterator[Violation]:
     """Pairs of overlapping boxes, by the separating axes of their footprints and their heights."""
     carried = {n.id: set(_carriers(graph, n)) for n in graph.nodes}
+    sheltered = set(_sheltered(graph))
     middles = np.array([n.position for n in graph.nodes]).reshape(-1, 3)
     reach = np.array([np.linalg.norm(n.size) / 2 for n in graph.nodes])
     for i, a in enumerate(graph.nodes):
@@ -96,10 +97,26 @@ def _collisions(graph: SceneGraph) -> Iterator[Violation]:
         for b in (graph.nodes[i + 1 + int(j)] for j in np.flatnonzero(near)):
             if b.id in carried[a.id] or a.id in carried[b.id] or a.is_stepped_on or b.is_stepped_on:
                 continue  # a thing on a shelf or a seat is inside its box; things stand on rugs
+            if (a.id, b.id) in sheltered or (b.id, a.id) in sheltered:
+                continue
             depth = overlap(a.box, b.box)
             if depth > TOUCHING:
                 said = f"{_called(a)} and {_called(b)} are {depth:.2f} m in each other"
                 yield Violation("collision", (a.id, b.id), depth, "m", said)
+
+
+def _sheltered(graph: SceneGraph) -> Iterator[tuple[Id, Id]]:
+    """Pairs of which the first is stated to be under the second, is there, and fits between its legs or below its
+    crown: a box under a table, a bench under a tree."""
+    said = [(a, b) for a, name, b in graph.relations if (k := relations.stated(name)) and k.name in ("under", "below")]
+    if not said:
+        return
+    nodes, stage = {n.id: n for n in graph.nodes}, Stage.of(graph)
+    for a, b in said:
+        one, other = nodes[a], nodes[b]
+        fits = one.top <= other.bottom + everyday.free_beneath(other.label, other.size[2]) + TOUCHING
+        if fits and _score(stage, "under", one, other) >= HOLDS:
+            yield a, b
 
 
 def _carriers(graph: SceneGraph, node: Node) -> Iterator[Id]:

@@ -11,9 +11,10 @@ from typing import Any, Literal
 
 from ....gaussians.world.kinds import Kind
 from ....gaussians.world.relations import WishName
+from ....gaussians.world.words import is_plural
 from ...layout.problem import Wall
 from .. import knowledge
-from ..brief import Brief, RefusedError, Relation, RoomSize, Scale, Thing
+from ..brief import Arrangement, Brief, RefusedError, Relation, RoomSize, Scale, Thing
 from .amounts import Side
 
 _BARE_PLURAL = 2  # count of "chairs" where the kind of room has no habit of chairs
@@ -32,6 +33,8 @@ class Said:
     sides: dict[Side, float] = field(default_factory=dict)
     styles: tuple[str, ...] = ()
     shape: str = ""
+    own: bool = False  # "its own monitor": one for each of what it belongs to
+    arrangement: Arrangement | None = None
 
     @property
     def plain(self) -> bool:
@@ -49,6 +52,9 @@ class Draft:
     support: Literal["floor", "wall", "ceiling"] | None = None
     each: Draft | None = None
     placed: bool = False  # whether it is the subject of a relation
+    arrangement: Arrangement | None = None
+    called: str = ""  # the noun that was said, where it is not the name
+    seated: bool = False  # whether its count is that of the people, where none is stated
 
     @property
     def kind(self) -> Kind | None:
@@ -56,7 +62,7 @@ class Draft:
 
     @property
     def several(self) -> bool:
-        return self.plural or (self.said.count or 1) > 1
+        return self.plural or (self.said.count or 1) > 1 or self.each is not None
 
 
 @dataclass(frozen=True)
@@ -68,6 +74,8 @@ class Link:
     objects: tuple[Draft, ...] = ()
     wall: Wall | None = None
     hard: bool = True
+    distance: float | None = None
+    sides: bool = False
 
 
 class Reading:
@@ -77,6 +85,7 @@ class Reading:
         self.drafts: list[Draft] = []
         self.recent: list[Draft] = []  # in the order of their last mention
         self.links: list[Link] = []
+        self.suggested: list[Link] = []  # of the links those that "with" suggests: "a desk with a lamp"
 
     def add(self, draft: Draft) -> Draft:
         self.drafts.append(draft)
@@ -89,25 +98,41 @@ class Reading:
     def known(self, name: str, head: str, without: Draft | None = None) -> Draft | None:
         """The draft that "the NAME" refers to: one of that name, or one whose name ends with the head noun."""
         others = [d for d in reversed(self.recent) if d is not without]
-        same = (d for d in others if d.name == name)
-        return next(same, None) or next((d for d in others if head in (d.name, d.name.rsplit(" ", 1)[-1])), None)
+        if same := next((d for d in others if d.name == name), None):
+            return same
+        if " " in name and name.endswith(f" {head}"):  # "the teacher's desk" is not just any desk
+            role = kind.role if (kind := knowledge.thing(name)) else ""
+            return next((d for d in others if d.name in (head, role)), None) if role != name else None
+        return next((d for d in others if d.name.endswith(head)), None)
 
-    def before(self, subject: Draft | None) -> Draft | None:
-        """The draft that "it" refers to in a relation of `subject`."""
-        return next((d for d in reversed(self.recent) if d is not subject), None)
+    def before(self, subject: Draft | None, word: str = "it") -> Draft | None:
+        """The draft that "it" or "them" refers to in a relation of `subject`: the last single thing, the last
+        several ones."""
+        others = [d for d in reversed(self.recent) if d is not subject]
+        fit = (d for d in others if d.several == (word in ("them", "these", "those")))
+        return next(fit, None) or next(iter(others), None)
 
     def pair(self, subject: Draft | None) -> tuple[Draft, ...]:
         """The drafts that "them" refers to: one draft of several things, or the last two drafts."""
         others = [d for d in reversed(self.recent) if d is not subject]
-        if others and others[0].several:
-            return (others[0],)
+        if many := next((d for d in others[:2] if d.several), None):
+            return (many,)
         return tuple(reversed(others[:2]))
 
     def link(self, link: Link) -> None:
         """Add a relation, unless it is there already."""
         link.subject.placed = True
+        if link.objects:  # what is said replaces what "with" suggests
+            gone = [x for x in self.suggested if x.subject is link.subject and (
+                x.objects != link.objects or x.name in ("on", "next_to"))]  # fmt: skip
+            self.links = [x for x in self.links if not any(x is g for g in gone)]
         if link not in self.links:
             self.links.append(link)
+
+    def suggest(self, link: Link) -> None:
+        """Add a relation that "with" suggests; a stated relation of the same thing replaces it."""
+        self.link(link)
+        self.suggested.append(link)
 
     def seat_chairs(self) -> None:
         """Relate chairs without a relation to the last table by a soft "around"."""
@@ -127,17 +152,21 @@ class Reading:
                 )
             if draft.kind is None:
                 found.append(f"the usual size of a {draft.name} is unknown; it is a plain box of half a metre")
-            if draft.said.shape and draft.said.shape not in draft.name:
+            if draft.said.shape and draft.said.shape not in draft.name and not (draft.kind and draft.kind.round):
                 found.append(f"the shape of the {draft.name} ({draft.said.shape}) is not shown")
         return found
 
-    def counts(self, room: str) -> dict[int, int]:
-        """The number of things of each draft, by `id(draft)`."""
+    def counts(self, room: str, seats: int | None = None) -> dict[int, int]:
+        """The number of things of each draft, by `id(draft)`; `seats`: people, each of whom gets "each desk"."""
         habits = {h.thing: h.count[1] for h in knowledge.room(room).habits}
         found: dict[int, int] = {}
 
         def count(draft: Draft, deep: int = 0) -> int:
             own = draft.said.count
+            if own is None and draft.seated and seats:
+                own = seats
+            if own is None and draft.kind and is_plural(draft.kind.name):
+                own = 1  # string lights are one thing
             if own is None:
                 own = max(habits.get(draft.name, 0), _BARE_PLURAL) if draft.plural and not draft.each else 1
             times = count(draft.each, deep + 1) if draft.each is not None and deep < 4 else 1
@@ -159,7 +188,7 @@ def _is_table(name: str) -> bool:
 def brief_of(reading: Reading, kind: str, seats: int | None, size: dict[Side, float], **rest: Any) -> Brief:
     """A brief from everything that was read."""
     reading.seat_chairs()
-    counts = reading.counts(kind)
+    counts = reading.counts(kind, seats)
     drafts = _within(reading.drafts, counts)
     ids = _ids(drafts)
     things = tuple(_thing(d, ids[id(d)], counts[id(d)]) for d in drafts)
@@ -170,6 +199,8 @@ def brief_of(reading: Reading, kind: str, seats: int | None, size: dict[Side, fl
             objects=tuple(ids[id(o)] for o in x.objects),
             wall=x.wall,
             hard=x.hard,
+            distance=x.distance,
+            sides=x.sides,
         )
         for x in reading.links
         if all(id(d) in ids for d in (x.subject, *x.objects))
@@ -213,6 +244,8 @@ def _thing(draft: Draft, id: str, count: int) -> Thing:
         depth=_side(sides.get("depth", long if "width" in sides else None)),
         height=_side(sides.get("height")),
         support=draft.support,
+        arrangement=draft.arrangement or said.arrangement,
+        called=draft.called[:60],
     )
 
 

@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import Any
 
 from ....gaussians.errors import UserError
+from ....gaussians.world import everyday
 from ....gaussians.world.words import is_plural, singular
 from ...grammar.tagging.lookahead import color_at, match, may_be_noun
 from ...grammar.tagging.words import clean
@@ -22,9 +23,20 @@ from . import amounts, vocabulary
 from .amounts import Side
 from .drafts import Said, brief_of
 from .linking import Linker
+from .noun_phrases import NounPhrases
+from .numbers_and_rows import standing, times
 from .tokenize import refuse_others, words_of
 
 _MARKS = frozenset(".;!?\n:")
+_OWNING = ("has", "have", "gets", "get")
+_SAID_OF = ("be", "is", "are", "in", "painted", "all", "colored", "coloured")
+_IRRELEVANT = ("selling", "sells", "serving", "serves", "like")  # what stands behind them is not in the room itself
+_PLANTED = (["pot"], ["tree"], ["bush"], ["plant"], ["hedge"], ["trees"], ["pots"], ["bushes"], ["plants"], ["bouquet"])
+_AFTER_ROUND = (["it"], ["the"], ["them"], ["each"], ["every"], ["this"], ["that"], ["both"])
+_OPENERS = frozenset(
+    {"a", "an", "the", "its", "their", "his", "her", "my", "our", "your", "own", "another", "with", "and"}
+)
+_ENDS = frozenset({",", "and", "with", "that", "which", "or", "but", "to", "for", "as", "is", "are", "has", "have"})
 
 
 def read(text: str) -> Brief:
@@ -47,12 +59,11 @@ def read(text: str) -> Brief:
     return reader.brief()
 
 
-class _Reader:
+class _Reader(NounPhrases):
     """The state of one reading."""
 
     def __init__(self, texts: Sequence[str]) -> None:
-        self.texts = list(texts)
-        self.said = Said()
+        super().__init__(texts)
         self.linker = Linker()
         self.kind = ""
         self.styles: list[str] = []
@@ -64,11 +75,13 @@ class _Reader:
         self.remarks: list[str] = []
         self.unknown: list[str] = []
         self.about_room = True  # whether a size that comes next is that of the room
+        self.modifiers: list[str] = []  # unknown words before a noun, kept in its name
 
     def run(self) -> None:
         i = 0
-        steps = (self._mark, self._size, self._negation, self._only, self._long_name, self._feature, self._place,
-                 self._people, self._count, self._color, self._name, self._attribute, self._filler)  # fmt: skip
+        steps = (self._mark, self._size, self._negation, self._only, self._formation, self._long_name, self._feature,
+                 self._place, self._people, self._count, self._color, self._name, self._attribute,
+                 self._filler)  # fmt: skip
         while i < len(self.texts):
             taken = next((n for step in steps if (n := step(i))), 0)
             i += taken or self._unknown(i)
@@ -80,6 +93,7 @@ class _Reader:
             RefusedError: it names neither a room nor a thing.
         """
         reading = self.linker.reading
+        self._settle_count()
         if not self.kind and not any(d.kind for d in reading.drafts):
             told = f": “{' '.join(self.unknown[:5])}” was not understood" if self.unknown else ""
             raise RefusedError(
@@ -113,14 +127,25 @@ class _Reader:
             self.linker.comma()
         elif text in _MARKS:
             self.linker.stop()
-        elif text in ("but", "with") or (text == "and" and self.said == Said()):
-            self.linker.joined(text)
+        elif text in ("but", "with", "w") or (text == "and" and self.said == Said()):
+            self.linker.joined("with" if text == "w" else text)
+        elif text in _OWNING and self.linker.last is not None and not self.linker.opens:
+            self.linker.joined("with")
         else:
             return 0
+        self.modifiers = []
         if text in _MARKS or text == ",":
+            self._settle_count()
             self.about_room = self.about_room or text in _MARKS
             self.said = Said()
         return 1
+
+    def _settle_count(self) -> None:
+        """Give a number without a noun to the things before it: "tulips, say six"."""
+        last = self.linker.last
+        bare = self.said.count is not None and self.said == Said(count=self.said.count)
+        if bare and self.said.count and last is not None and last.plural and not (last.said.count or last.each):
+            self.linker.counted(self.said.count)
 
     def _size(self, i: int) -> int:
         found = amounts.read(self.texts[i:])
@@ -128,12 +153,47 @@ class _Reader:
             return 0
         behind = self.texts[i + found.taken : i + found.taken + 1]
         last = self.linker.last
+        if last is not None and set(found.sides) == {"any"} and (taken := self._distance(i + found.taken, found)):
+            return found.taken + taken
         if behind and (behind[0] == "of" or behind[0] not in {",", *_MARKS, "where", *vocabulary.FILLER}):
             self.said = replace(self.said, sides={**self.said.sides, **found.sides})
-        elif self.about_room or last is None or (not self.size and _before(self.texts, i) in (",", ";", ".", ":")):
+        elif self.about_room or last is None or (not self.size and self.before(i) in (",", ";", ".", ":")):
             self.size.update(found.sides)
         else:
             last.said = replace(last.said, sides={**last.said.sides, **found.sides})
+        return found.taken
+
+    def _distance(self, i: int, found: amounts.Extents) -> int:
+        """Read what follows a length that is a distance: "2 m from the bench", "1 m apart", "50 cm in front of"."""
+        metres, rest = found.sides["any"], tuple(self.texts[i : i + 3])
+        linker = self.linker
+        if rest[:1] == ("apart",):
+            linker.apart(metres)
+            return 1
+        away = 2 if rest[:2] == ("away", "from") else 1 if rest[:1] in (("from",), ("off",)) else 0
+        if away:
+            linker.distance = metres
+            return away + linker.away(self.texts, i + away)
+        if rest[:1] == ("away",):
+            linker.from_there(metres)
+            return 1
+        relation = match(vocabulary.RELATIONS, self.texts, i)
+        if relation and relation[0] in ("in_front_of", "behind", "left_of", "right_of", "above"):
+            linker.distance = metres
+            return linker.place(self.texts, i)
+        return 0
+
+    def _formation(self, i: int) -> int:
+        """Read how things stand together: "in two rows of three" behind a noun, "three rows of four" before it."""
+        found = standing(self.texts, i)
+        if found is None:
+            return 0
+        if not found.behind:
+            self.said = replace(self.said, count=found.count, arrangement=found.arrangement)
+            return found.taken
+        self._settle_count()
+        self.linker.arrange(found.arrangement, found.count)
+        self.said = Said()
         return found.taken
 
     def _negation(self, i: int) -> int:
@@ -161,7 +221,7 @@ class _Reader:
                 self.remarks.append(f"{found[0]}: kept in the brief, but not drawn")
             return found[1]
         looks = self.said.color or self.said.material
-        told = looks or (self.said.styles and self.said.styles[-1]) or (_before(self.texts, i) == "light" and "light")
+        told = looks or (self.said.styles and self.said.styles[-1]) or (self.before(i) == "light" and "light")
         if self.texts[i] in vocabulary.STRUCTURE and not self.linker.waiting and told:
             self.features.append(f"{told} {self.texts[i]}")
             self.remarks.append(f"{told} {self.texts[i]}: kept in the brief, but layouts have no paint")
@@ -170,8 +230,13 @@ class _Reader:
         return 0
 
     def _place(self, i: int) -> int:
+        if self.texts[i] in ("round", "down", "off") and self.texts[i + 1 : i + 2] not in _AFTER_ROUND:
+            return 0
+        self.linker.asked = self.before(i)
         taken = self.linker.place(self.texts, i)
         if taken:
+            self._settle_count()
+            self.modifiers = []
             self.said = Said()
         return taken
 
@@ -194,18 +259,40 @@ class _Reader:
         return end - i + (person or behind in ("seater", "seat"))
 
     def _count(self, i: int) -> int:
+        if self.texts[i] == "both":
+            self.said = replace(self.said, determiner="the")
+            return 1
         if found := match(vocabulary.COUNTS, self.texts, i):
-            self.said = replace(self.said, count=found[0])
+            behind = self.texts[i + found[1] : i + found[1] + 1]
+            one = "set" in self.texts[i : i + found[1]] and bool(behind) and behind[0] in vocabulary.PAIRS
+            self.said = replace(self.said, count=1 if one else found[0])
             return found[1]
+        if found := times(self.texts, i):
+            return self._times(i, *found)
         number = quantities.read(self.texts[i:])
         if number and number.kind == "NUMBER" and number.value == int(number.value) and 1 <= number.value <= 10**6:
             self.said = replace(self.said, count=int(number.value))
             return number.taken
         return 0
 
+    def _times(self, i: int, count: int, taken: int) -> int:
+        """Give "x2" to the noun behind it, or to the one before it."""
+        if self.noun_follows(i + taken) and not self.stood_before(i):
+            self.said = replace(self.said, count=count)
+        else:
+            self.linker.counted(count)
+        return taken
+
     def _color(self, i: int) -> int:
         found = color_at(self.texts, i)
-        if not found or knowledge.lookup(knowledge.thing_words(), self.texts, i):
+        if not found or self.texts[i + found[1] : i + found[1] + 1] in _PLANTED:
+            return 0
+        last = self.linker.last
+        if last is not None and self.before(i) in _SAID_OF and not self.noun_follows(i + found[1]):
+            last.said = replace(last.said, color=found[0][:40])
+            return found[1]
+        name = knowledge.lookup(knowledge.thing_words(), self.texts, i)
+        if name and (name[1] > found[1] or not self.noun_follows(i + found[1])):
             return 0
         if self.texts[i] in vocabulary.MATERIALS and found[1] == 1:
             return 0
@@ -226,23 +313,61 @@ class _Reader:
             return 0
         taken, what, name = best
         if what == 0:
-            self._thing(name, self.texts[i + taken - 1], i)
+            return self._noun(i, name, taken)
+        if what == -1 and not is_plural(self.texts[i]) and self.name_at(i + taken):
+            self.modifiers += self.texts[i : i + taken]  # a "studio monitor" is no studio
         elif what == -1:
-            self._room(name)
+            self._room(name, " ".join(self.texts[i : i + taken]))
         else:
             self.styles.append(name) if not self.linker.reading.drafts else None
             self.said = replace(self.said, styles=(*self.said.styles, self.texts[i]))
         return taken
 
+    def _noun(self, i: int, name: str, taken: int) -> int:
+        """Read a noun phrase from its first name of a thing: nouns before the head ("stone lantern") are part of the
+        name, and what follows "of" ("crates of oranges") belongs to it too."""
+        texts = self.texts
+        if self.is_verb(i, taken):
+            return 0
+        if not is_plural(texts[i + taken - 1]) and knowledge.lookup(knowledge.room_words(), texts, i + taken):
+            return taken  # "a vegetable garden" holds no vegetable
+        before: list[str] = []
+        while not is_plural(texts[i + taken - 1]) and (more := self.name_at(i + taken)):
+            before += texts[i : i + taken]
+            i, (name, taken) = i + taken, more
+        lead, self.modifiers = [*self.modifiers, *before], []
+        said = " ".join(texts[i : i + taken])
+        end, content = self.content(i + taken)
+        if content:
+            head = singular(texts[i + taken - 1])
+            whole = knowledge.thing(f"{content} {head}")
+            measured = head in vocabulary.MEASURES
+            if content.endswith(f" {head}"):
+                name = content  # a "rack of dumbbells"
+            elif whole is not None and whole.name in knowledge.things():
+                name = whole.name
+            elif measured:
+                name = content if head in ("pair", "set", "group", "row", "line") else f"{head} of {content}"
+        if lead and (known := self.sort(lead, singular(said) if " of " not in said else said)):
+            name = known
+        if self.before(i - len(before)) in _IRRELEVANT:
+            return end - i + len(before)
+        self._thing(name[:60], said, i)
+        return end - i + len(before)
+
     def _thing(self, name: str, word: str, i: int) -> None:
         said = self.said
         if said.styles and self.kind and self.linker.reading.drafts:
             self.remarks.append(f"“{said.styles[-1]}” of the {name} is not shown")
-        self.linker.thing(name, singular(word), said, is_plural(word))
+        head = singular(word.rsplit(" ", 1)[-1])
+        self.linker.thing(name, head, said, is_plural(word), singular(word) if singular(word) != name else "")
         self.said, self.about_room = Said(), False
 
-    def _room(self, name: str) -> None:
+    def _room(self, name: str, word: str) -> None:
         said = self.said
+        if self.kind not in ("", "room", name) and said.determiner != "the" and everyday.find(word):
+            self._thing(singular(word), word, 0)  # a greenhouse in a garden
+            return
         self.said = Said()
         if self.linker.in_room():
             if name != "room" and not self.kind:
@@ -268,8 +393,13 @@ class _Reader:
         elif text in vocabulary.SHAPES:
             self.said = replace(self.said, shape=text)
         elif text in ("each", "every"):
+            if i + 1 == len(self.texts) or self.texts[i + 1] in (",", "and", *_MARKS):
+                self.linker.each_behind()
+                return 1
             self.said = replace(self.said, determiner="each")
             self.linker.each()
+        elif text == "own" and self.before(i) in ("its", "their", "his", "her"):
+            self.said = replace(self.said, own=True)
         elif text in ("the", "this", "that", "those", "these"):
             self.said = replace(self.said, determiner="the")
         elif text in ("a", "an"):
@@ -289,18 +419,30 @@ class _Reader:
         return int(text in vocabulary.FILLER or match(lexicon.FILLER, self.texts, i) is not None or text in "-&/'\"()")
 
     def _unknown(self, i: int) -> int:
-        """An unknown word: a thing without a usual size if it is an everyday noun; else it is listed as unknown."""
+        """An unknown word: the head of a noun phrase is a thing without a usual size; words before a name are kept in
+        the name. All are listed as unknown, except everyday nouns."""
         word = self.texts[i]
-        everyday = nouns.is_known(word)
-        behind = knowledge.lookup(knowledge.thing_words(), self.texts, i + 1)
-        if everyday and may_be_noun(word) and not behind and word not in vocabulary.STRUCTURE:
-            self._thing(singular(word)[:60], word, i)
+        behind = self.noun_follows(i + 1)
+        if word in vocabulary.PARTS or singular(word) in vocabulary.PARTS:
+            if not behind:
+                self.linker.drop()
             return 1
-        self.unknown.append(word)
-        if not behind:
+        known = nouns.is_known(word) and may_be_noun(word) and not word.endswith(vocabulary.NOT_THINGS)
+        if behind:
+            self.modifiers.append(word)
+        elif known or self._is_head(i):
+            lead, self.modifiers = self.modifiers, []
+            self._thing(" ".join([*lead, singular(word)])[:60], word, i)
+        else:
             self.linker.drop()
+        if not known or behind:
+            self.unknown.append(word)
         return 1
 
-
-def _before(texts: Sequence[str], i: int) -> str:
-    return texts[i - 1] if i else ""
+    def _is_head(self, i: int) -> bool:
+        """Whether an unknown word is the head of a noun phrase by its place: after a determiner, a number or an
+        adjective, and before the end of the phrase."""
+        word, after = self.texts[i], self.texts[i + 1] if i + 1 < len(self.texts) else "."
+        opened = self.before(i) in _OPENERS or self.said != Said() or bool(self.modifiers)
+        ends = after in _ENDS or bool(match(vocabulary.RELATIONS, self.texts, i + 1)) or after in _MARKS
+        return opened and ends and may_be_noun(word) and not word.endswith(vocabulary.NOT_THINGS) and len(word) > 2

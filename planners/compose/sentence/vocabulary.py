@@ -8,7 +8,7 @@ from __future__ import annotations
 from ....gaussians.color import FAMILIES
 from ....gaussians.world import relations
 from ...grammar.tagging.words import bag, phrases
-from ..brief import Scale
+from ..brief import Form, Scale
 
 Phrase = tuple[str, ...]
 
@@ -23,7 +23,24 @@ _SAID = [kind for kind in relations.KINDS if kind.used("wish") or kind.phrases.d
 RELATIONS: dict[Phrase, str] = {
     **{tuple(p.split()): kind.name for kind in _SAID for p in kind.phrases.in_descriptions()},
     **{tuple(p.split()): f"reversed {kind.name}" for kind in _SAID for p in kind.phrases.in_reverse()},
-    **_table({"at": "at", "hanging from, hung from, suspended from, dangling from, from": "from"}),
+    **_table(
+        {
+            "at, per": "at",
+            "hanging from, hung from, suspended from, dangling from, from": "from",
+            "at the end of, at one end of, at the head of, at the edge of, at the base of, at the corner of, around "
+            "the corner from, close beside, tucked beside, butted up against, off": "next_to",
+            "round, all round, encircling, circling, grouped around, clustered around, placed around, standing around, "
+            "sitting around, arranged round, set round": "around",
+            "face, faces, faced toward, faced towards, that face, which face, pointed at, pointing at, aimed at, "
+            "turned to face, looks out on, looks onto, looks at, looking onto, look at, looking toward, looking "
+            "towards": "facing",
+            "goes on, stands on, sits on, sitting on, standing on, resting on, lying on, placed on, displayed on": "on",
+            "goes under, tucked under, tucked underneath, stored under": "under",
+            "goes next to, stands next to, sits next to, right beside, right next to": "next_to",
+            "hangs above, hangs over, hanging above, suspended above, suspended over, hung over": "above",
+            "along, lined along, running along, all along, down": "against",
+        }
+    ),
 }
 
 # Relations without an object, or whose object is a part of the room.
@@ -32,7 +49,19 @@ SPOTS: dict[Phrase, str] = {
     **_table({
         "on the wall, hung on the wall, mounted on the wall, wall mounted, on the walls, hanging on the wall, hanging "
         "on the walls, on a wall": "wall",
+        "face each other, face one another, faces each other, looking at each other, face to face with each "
+        "other": "facing",
+        "in front, out in front, right in front": "rel in_front_of",
+        "on top": "rel on",
         "on the floor, on the ground": "floor",
+        "at the back, in the back, at the rear, in the rear, at the far end, along the back, across the back, at the "
+        "very back": "part north",
+        "at the front, in the front, up front, along the front, out front": "part south",
+        "on the left, to the left, on the left side, on the left hand side, to one side, off to the left, off to one "
+        "side, on one side": "part west",
+        "on the right, to the right, on the right side, on the right hand side, to the other side, off to the right, "
+        "on the other side": "part east",
+        "on opposite walls, against opposite walls, along opposite walls, on facing walls, at opposite walls": "walls",
         "from the ceiling, on the ceiling, hanging from the ceiling, hung from the ceiling, suspended from the "
         "ceiling, overhead, under the ceiling, ceiling mounted": "ceiling",
     }),
@@ -64,14 +93,16 @@ MATERIALS = dict.fromkeys(
     "wooden wood oak walnut pine teak mahogany timber birch reclaimed leather rattan wicker bamboo cane straw jute "
     "metal metallic steel chrome aluminium aluminum concrete stone stainless iron marble porcelain ceramic"
 )}  # fmt: skip
-SHAPES = bag("round square rectangular circular oval curved shaped corner open closed tiered folding")
+SHAPES = bag("round square rectangular circular oval curved shaped open closed tiered l-shaped")
 COUNTS: dict[Phrase, int] = {
     ("a", "few"): 3, ("few",): 3, ("several",): 4, ("multiple",): 4, ("many",): 6, ("some",): 3, ("lots", "of"): 6,
     ("plenty", "of"): 6, ("a", "lot", "of"): 6, ("numerous",): 6, ("various",): 4, ("a", "couple", "of"): 2,
     ("a", "couple"): 2, ("a", "pair", "of"): 2, ("pair", "of"): 2, ("both",): 2, ("a", "number", "of"): 4,
     ("a", "set", "of"): 3, ("rows", "of"): 6, ("a", "row", "of"): 4, ("dozens", "of"): 24, ("a", "bunch", "of"): 4,
     ("a", "handful", "of"): 4, ("two", "rows", "of"): 6, ("a", "series", "of"): 4, ("a", "group", "of"): 4,
-    ("enough",): 4, ("a", "dozen"): 12, ("half", "a", "dozen"): 6,
+    ("enough",): 4, ("a", "dozen"): 12, ("half", "a", "dozen"): 6, ("loads", "of"): 6, ("a", "load", "of"): 6,
+    ("piles", "of"): 4, ("half", "dozen"): 6, ("a", "cluster", "of"): 4, ("a", "collection", "of"): 4,
+    ("an", "array", "of"): 6, ("heaps", "of"): 6, ("pairs", "of"): 4,
 }  # fmt: skip
 PEOPLE = bag(
     "people person persons guests guest students student kids kid children child adults adult pupils pupil diners "
@@ -81,6 +112,46 @@ PEOPLE = bag(
 )
 # Parts of the room; after a colour or a material they state a feature of it.
 STRUCTURE = bag("wall walls floor floors ceiling ceilings paint wallpaper flooring floorboards tiles tile parquet")
+# Words that say how things stand together, before or behind their names.
+FORMS: dict[str, Form] = {
+    **dict.fromkeys(bag("row rows line lines column columns rank ranks aisle file"), "row"),
+    **dict.fromkeys(bag("circle ring semicircle horseshoe round"), "circle"),
+    **dict.fromkeys(bag("grid block"), "grid"),
+}  # fmt: skip
+# Of "a stack of books" the books are the thing; of "a crate of apples" the crate.
+MEASURES = bag("stack pile heap bundle pair set string collection tower bunch group cluster bank row rows line range")
+PAIRS = bag("scales drums drawers keys weights shelves stairs steps cutlery tools doors clubs skis oars headphones")
+# Parts of things and of the room, which are no things by themselves.
+PARTS = bag(
+    "end ends back front side sides foot head edge edges top bottom middle centre center rear base row rows column "
+    "columns line lines circle ring half halves third angle angles direction way distance left right north south east "
+    "west aisle floor floors ground wall walls ceiling ceilings room garden terrace balcony space height width length "
+    "depth level metre metres meter meters foot feet rest place position spot point background foreground inside "
+    "outside entrance exit light dark day night morning evening summer winter spring autumn time afternoon sun shade "
+    "sky weather season house home building street town city country manor world style"
+)
+NOT_THINGS = (
+    "ness",
+    "ity",
+    "tion",
+    "sion",
+    "ment",
+    "ance",
+    "ence",
+    "ism",
+    "ship",
+    "hood",
+    "ing",
+    "ly",
+    "ful",
+    "less",
+    "ous",
+    "ive",
+    "able",
+    "ible",
+    "ish",
+    "ed",
+)  # endings of words that name no thing one can put in a room
 ABSTRACT = bag(
     "vibe feel feeling atmosphere ambiance ambience touch touches style theme mood lighting daylight sunlight sense "
     "layout specification specifications character charm design decor decoration decorations view air scheme palette "
@@ -88,7 +159,9 @@ ABSTRACT = bag(
     "flow zone zones storage seating furniture furnishings essentials amenities comfort function purpose party event "
     "use everything goods gourmet items stuff things thing pathways walkway walkways access colors colours color "
     "colour light window-light symmetry harmony privacy conversation studying reading working work sleep play "
-    "playing relaxation gaming cooking eating dining exercise maximizing overall area areas corner nook spot"
+    "playing relaxation gaming cooking eating dining exercise maximizing overall area areas corner nook spot owner "
+    "owners selling sale sales music air summer winter dinner lunch breakfast tea drinks food sound noise smell colour "
+    "mess clutter bit lot kind sort type shape form size idea plan dream memory life love fun charm magic"
 )
 NEGATIONS = phrases(
     "no, without, without any, without a, not any, lacking, minus, free of, instead of, rather than, but no, does not "
@@ -112,7 +185,10 @@ FILLER = bag(
     "side each every on few will good enough plan made ready offering offers boasting fitted attached other another "
     "own both only hello hi hey thanks thank generous dedicated simple looking ones one two-person scene 3d model "
     "render picture photo-realistic go goes around accompanied facing try do does not you'd just extra "
-    "centrally surrounded distinct clear creating create between natural main principal"
+    "centrally surrounded distinct clear creating create between natural main principal has gets goes stands sits "
+    "least most say well old new ones please plain empty own its their his her my stood laid set w facing against "
+    "round lots big-ish old-fashioned proper lovely pretty beautiful usual same different single double "
+    "himself herself each being lined lit selling full fully half tucked running leading down up off out"
 )
 BUILD = bag("make create build design generate compose furnish imagine give show draw let set put place plan want need")
 EDITS = frozenset({"DELETE", "MOVE", "ROTATE", "SCALE", "RECOLOR", "REPLACE", "DUPLICATE", "HIDE", "ISOLATE", "SELECT",

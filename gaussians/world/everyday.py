@@ -1,0 +1,85 @@
+"""Everyday things that the table of kinds lacks: nouns in classes with a usual size, a support and a shape.
+
+`everyday.json` lists the classes; a boulder is a "large rock" and is as large and as round as one. Sizes are rounded
+from common knowledge, metres.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from . import kinds
+from .kinds import Kind, Phrase, Range, words_of
+from .words import singular
+
+_FILE = Path(__file__).with_name("everyday.json")
+_SPREAD = 0.1  # share by which things of a class differ from its size
+_FIELDS = frozenset("support under on backed front round top stores holds clear seats colors".split())  # noqa: SIM905
+
+
+@cache
+def _classes() -> tuple[Mapping[str, Any], ...]:
+    return tuple(json.loads(_FILE.read_bytes()))
+
+
+@cache
+def by_words() -> Mapping[Phrase, int]:
+    """Every noun as a tuple of words, the last one singular and as written, and the row of its class."""
+    found: dict[Phrase, int] = {}
+    for row, entry in enumerate(_classes()):
+        for noun in entry["words"].split(", "):
+            words = words_of(noun)
+            for form in (words, (*words[:-1], singular(words[-1]))):
+                if form not in kinds.by_words():
+                    found.setdefault(form, row)
+    return MappingProxyType(found)
+
+
+def find(name: str) -> Kind | None:
+    """The thing that a whole name means, in singular or plural, as a kind of that name; None if the table lacks it."""
+    words = words_of(name)
+    row = _row(words) if words else None
+    return None if row is None else _kind(" ".join(words), row)
+
+
+def of(label: str) -> Kind | None:
+    """The thing that a label means by its longest ending that the table holds: "old oak tree" to a tree."""
+    words = words_of(label)
+    rows = (_row(words[start:]) for start in range(len(words)))
+    row = next((r for r in rows if r is not None), None)
+    return None if row is None else _kind(" ".join(words), row)
+
+
+def shape(label: str) -> str:
+    """The shape of the class of a label: the name of a builder of assets or of a plain solid; "" if there is none."""
+    words = words_of(label)
+    rows = (_row(words[start:]) for start in range(len(words)))
+    row = next((r for r in rows if r is not None), None)
+    return "" if row is None else str(_classes()[row]["shape"])
+
+
+def free_beneath(label: str, height: float) -> float:
+    """Metres of height that are free beneath a thing of this label and height: between a table's legs, under a tree."""
+    kind = kinds.of(label) or of(label)
+    return kind.under * height if kind is not None else 0.0
+
+
+def _row(words: Phrase) -> int | None:
+    table = by_words()
+    found = table.get(words)
+    return table.get((*words[:-1], singular(words[-1]))) if found is None and words else found
+
+
+@cache
+def _kind(name: str, row: int) -> Kind:
+    entry = _classes()[row]
+    given: dict[str, Any] = {key: tuple(v) if isinstance(v, list) else v for key, v in entry.items() if key in _FIELDS}
+    low, high = 1.0 - _SPREAD, 1.0 + _SPREAD
+    width, depth, height = ((side * low, side * high) for side in entry["size"])
+    size: tuple[Range, Range, Range] = (width, depth, height)
+    return Kind(name=name, size=size, asset="", **given)

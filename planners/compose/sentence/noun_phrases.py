@@ -1,0 +1,88 @@
+"""Noun phrases of a description: names of things at a position, words before the head, and what follows "of".
+
+`read.py` reads the phrases in their order and keeps the modifiers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ....gaussians.world.words import singular
+from ...grammar.tagging.lookahead import color_at, match, may_be_noun
+from .. import knowledge
+from . import vocabulary
+from .drafts import Said
+
+_BEFORE_VERBS = frozenset({"to", "you", "we", "i", "can", "that", "which", "who", "will", "should", "must", "they"})
+ADJECTIVES = frozenset(
+    {*vocabulary.SIZES, *vocabulary.MATERIALS, *vocabulary.SHAPES, "old", "new", "wooden", "empty", "full", "plain"}
+)
+
+
+class NounPhrases:
+    """Questions about the noun phrases of one description.
+
+    Attributes:
+        texts: its words.
+        said: the modifiers before the next noun.
+    """
+
+    def __init__(self, texts: Sequence[str]) -> None:
+        self.texts = list(texts)
+        self.said = Said()
+
+    def before(self, i: int) -> str:
+        """The word before position `i`, "" at the beginning."""
+        return self.texts[i - 1] if i else ""
+
+    def sort(self, lead: Sequence[str], name: str) -> str:
+        """The name of a thing with the words before it, unless those are materials or colours."""
+        plain = [w for w in lead if w not in vocabulary.MATERIALS and w not in vocabulary.FILLER]
+        for word in lead:
+            if word in vocabulary.MATERIALS and not self.said.material:
+                self.said = replace(self.said, material=word)
+        return " ".join([*plain, name]) if plain else ""
+
+    def name_at(self, i: int) -> tuple[str, int] | None:
+        """The name of a thing at position `i`, unless it is a relation or a verb there."""
+        if i >= len(self.texts) or self.texts[i] in (",", "and") or self.is_verb(i, 1):
+            return None
+        if match(vocabulary.RELATIONS, self.texts, i) or match(vocabulary.SPOTS, self.texts, i):
+            return None
+        return knowledge.lookup(knowledge.thing_words(), self.texts, i)
+
+    def noun_follows(self, i: int) -> bool:
+        """Whether a noun phrase goes on at position `i` with the name of a thing, past adjectives."""
+        while i < len(self.texts) and (self.texts[i] in ADJECTIVES or color_at(self.texts, i)):
+            if self.name_at(i):
+                return True
+            i += 1
+        return i < len(self.texts) and self.name_at(i) is not None
+
+    def is_verb(self, i: int, taken: int) -> bool:
+        """Whether a name of one word is a verb or a part of the room here: "can fit", "to plan", "the back"."""
+        if taken > 1:
+            return False
+        text, before = self.texts[i], self.before(i)
+        return text in vocabulary.PARTS or (before in _BEFORE_VERBS and text not in knowledge.things())
+
+    def content(self, i: int) -> tuple[int, str]:
+        """What a thing is full of or made of: "of oranges" at position `i`; the end of the phrase and the noun."""
+        texts = self.texts
+        if texts[i : i + 1] != ["of"] or texts[i + 1 : i + 2] in (["the"], ["each"], ["every"], ["them"]):
+            return i, ""
+        j = i + 1
+        while j < len(texts) and (texts[j] in ADJECTIVES or texts[j] in ("a", "an", "some", "many")):
+            j += 1
+        while j < len(texts) and color_at(texts, j) and not self.name_at(j):
+            j += color_at(texts, j)[1]  # type: ignore[index]
+        if found := self.name_at(j):
+            return j + found[1], found[0]
+        if j < len(texts) and may_be_noun(texts[j]) and texts[j] not in vocabulary.FILLER:
+            return j + 1, singular(texts[j])
+        return i, ""
+
+    def stood_before(self, i: int) -> bool:
+        """Whether the word before position `i` ends a noun phrase."""
+        return bool(i) and knowledge.lookup(knowledge.thing_words(), self.texts, i - 1) is not None
