@@ -18,6 +18,7 @@ _YES = re.compile(
     r"(yes|y|yeah|yep|ok|okay|sure|right|correct|confirm(ed)?|go ahead|do it|that is it|that's it|that one|it is)"
     r"(,? please)?"
 )
+_NO = re.compile(r"(?:no|nope|none|none of (?:them|these|those)|neither|another one|something else)(?:,? please)?")
 _BUT = re.compile(
     r"(?:all|every one|each|everything)(?: of (?:them|these|those))?,? (?:but|except(?: for)?|without) (.+)"
 )
@@ -36,6 +37,11 @@ def plain(text: str) -> str:
 def says_yes(text: str) -> bool:
     """Whether a text agrees, and says nothing else."""
     return _YES.fullmatch(plain(text)) is not None
+
+
+def rejects(text: str) -> bool:
+    """Whether a text says that nothing on a list is meant, and says nothing else: "no", "none of them"."""
+    return _NO.fullmatch(plain(text)) is not None
 
 
 def says_all(text: str) -> bool:

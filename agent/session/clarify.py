@@ -39,6 +39,8 @@ class Question:
         path: where in the operation the query is.
         selection: its verdict ("ambiguous", "absent" or "unconfirmed"), reason and candidates.
         resolve: resolves another query in the same state of the scene.
+        offered: the candidates are things that may be meant by a name that was not found, see `offers`.
+        page: how often nothing was meant of what was offered before.
     """
 
     plan: EditPlan
@@ -46,6 +48,8 @@ class Question:
     path: Path
     selection: Selection
     resolve: Callable[[Query], Selection]
+    offered: bool = False
+    page: int = 0
 
     @property
     def candidates(self) -> tuple[Candidate, ...]:

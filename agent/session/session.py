@@ -14,12 +14,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec
 
 from ...gaussians.camera import Camera
-from ...gaussians.errors import ScenewrightError, UnconfirmedError, UserError
+from ...gaussians.errors import AbsentError, ScenewrightError, UnconfirmedError, UserError
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ...gaussians.timing import timed
 from . import log as session_log
+from .answers import chosen_numbers, rejects
 from .asker import Asker, see_answer
 from .clarify import Question, plan_with_answer, plan_with_query
 from .embedding import embedded_by
@@ -341,16 +342,35 @@ class Session:
         """Choose among the candidates of `question`: by a number, "all", "the left one", "the red one"; or confirm what
         was chosen, by "yes".
 
+        Of the things that are offered in place of one that was not found by its name, numbers choose; the field keeps
+        that name for them.
+
         Raises:
             UserError: there is no open question, or the answer does not choose. The question then stays open.
+            AbsentError: the answer is "no", and `question` offers other things.
             UnconfirmedError: the answer is "no" to what was chosen; the question is closed.
         """
         return self.apply(self.answered(text))
+
+    def offer_others(self) -> ScenewrightError | None:
+        """Let the open question offer other things than those it lists, none of which is meant, and the error that says
+        so. None if there are none left."""
+        asked = self.question
+        return None if asked is None else self._offer(asked, page=asked.page + 1 if asked.offered else 0)
 
     def answered(self, text: str) -> EditPlan:
         """The plan of `question` with the answer in it; raises as `answer`."""
         if self.question is None or not self.question.candidates:
             raise UserError("there is no open question; give an instruction")
+        if rejects(text) and (error := self.offer_others()) is not None:
+            raise error
+        if self.question.offered and (places := chosen_numbers(text, len(self.question.candidates))) is not None:
+            from .offers import chosen
+
+            absent = self.question.selection
+            scene, meant = chosen(self.scene, absent.query, absent.candidates, places)
+            self._history.amend(replace(self._history.present, scene=scene))
+            return plan_with_query(self.question, meant)
         if self.question.selection.verdict == "unconfirmed" and is_dismissal(text):
             asked, self.question = self.question.selection.query.describe(), None
             raise UnconfirmedError(f"nothing was changed; say in other words what is meant by {asked}")
@@ -602,11 +622,29 @@ class Session:
         if seen is None and question.selection.verdict == "unconfirmed" and self.accept_unconfirmed:
             return plan_with_answer(question, "yes", self._planner.noun_phrase)
         if seen is None:
-            raise (with_message(failure.error, f"{failure.error}; {told}") if told else failure.error) from (
-                failure.__cause__
-            )
+            error = failure.error
+            if question.selection.verdict == "absent":
+                error = self._offer(question, error) or error
+            raise (with_message(error, f"{error}; {told}") if told else error) from failure.__cause__
         plan = plan_with_query(question, seen)
         return plan.model_copy(update={"reason": "; ".join(filter(None, [plan.reason, told]))[:2000]})
+
+    def _offer(
+        self, question: Question, error: ScenewrightError | None = None, *, page: int = 0
+    ) -> ScenewrightError | None:
+        """Let the open question offer what may be meant by what was not found, and the error that says so; None if
+        there is nothing to offer. What an earlier step of the same plan makes is not offered."""
+        from .offers import offered
+
+        encoder = self.encoder if self.scene.language is not None else None
+        found = offered(self.scene, question.selection, self.viewer, encoder, question.resolve, page=page)
+        if found is None:
+            return None
+        told = found.reason.removeprefix(question.selection.reason).removeprefix("; ")
+        selection = replace(found, verdict="absent", ids=found.ids[:0], groups=())
+        self.question = replace(question, selection=selection, offered=True, page=page)
+        said = str(error) if error is not None else f"nothing was changed; {question.selection.query.describe()}"
+        return with_message(error or AbsentError(said), f"{said}; {told}")
 
     def _by_sight(self, selection: Selection) -> tuple[Query | None, str]:
         """The query for what a vision model points at, None if at nothing, and a sentence about it. The scene's field

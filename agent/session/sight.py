@@ -18,6 +18,7 @@ from ...gaussians.scene import Scene
 
 if TYPE_CHECKING:
     from ...gaussians.camera import Camera
+    from ...gaussians.language.field.language_field import NamedBy
     from ...gaussians.language.query.selection import Selection
     from .vision_client import VisionClient
 
@@ -79,7 +80,7 @@ def point_out(scene: Scene, selection: Selection, viewer: Camera, vision: Vision
         return Sighted(scene, None, f"{backend.name} {doubt} in {pictures}")
     if seen.part:
         return Sighted(scene, None, f"{backend.name} says that only a part of a group is meant; say which thing it is")
-    shown, meant = _named(scene, query, seen.groups)
+    shown, meant = named(scene, query, seen.groups, "sight")
     agreed = "confirmed by a second look" if seen.confirmed else "not confirmed by a second look"
     return Sighted(shown, meant, f"pointed out by {backend.name} in {pictures}, {agreed}")
 
@@ -111,21 +112,21 @@ def _phrase(query: Query) -> str:
     return query.model_copy(update={"also": (), "exclude": (), "grow": None}).describe()
 
 
-def _named(scene: Scene, query: Query, groups: tuple[int, ...]) -> tuple[Scene, Query]:
+def named(scene: Scene, query: Query, groups: tuple[int, ...], by: NamedBy) -> tuple[Scene, Query]:
     """The scene with the name of the query on what was pointed at, and the query that means it.
 
     Several groups are one thing in pieces if one thing is asked for, and several things otherwise.
     """
-    kept = _bare(query)
+    kept = bare(query)
     if not is_name(query.text):
         return scene, kept.model_copy(update={"groups": groups})
     if query.pick in ("one", "any") and query.count in (None, 1):
-        scene, whole = joined(scene, groups, query.text, "sight")
+        scene, whole = joined(scene, groups, query.text, by)
         return scene, kept.model_copy(update={"groups": (whole,)})
-    return with_names(scene, dict.fromkeys(groups, query.text), "sight"), kept.model_copy(update={"groups": groups})
+    return with_names(scene, dict.fromkeys(groups, query.text), by), kept.model_copy(update={"groups": groups})
 
 
-def _bare(query: Query) -> Query:
+def bare(query: Query) -> Query:
     """The query without what decided among candidates; its name and colours are kept for messages."""
     return Query(text=query.text, colors=query.colors, size=query.size, also=query.also, exclude=query.exclude,
                  grow=query.grow)  # fmt: skip

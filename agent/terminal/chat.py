@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...gaussians.errors import AbsentError, InstructionError, ScenewrightError, UserError
 from ..pictures.named_cameras import view_text
-from ..session.answers import chosen_numbers
+from ..session.answers import chosen_numbers, rejects
 from ..session.camera_moves import Looked, look
 from ..session.camera_words import read_moves
 from ..session.plan_report import candidate_json, planner_json, refusal_json, usage_lines
@@ -135,6 +135,8 @@ class Chat:
             return
         if self._waits_for(text):
             if is_dismissal(text):
+                if rejects(text) and (others := self.session.offer_others()) is not None:
+                    raise others
                 self.session.question = None
                 self.tell("nothing was changed", {"verdict": "cancelled"})
                 return
@@ -213,9 +215,11 @@ class Chat:
         question = self.session.question
         candidates = question.candidates if question else ()
         lines = [str(error)]
-        if isinstance(error, AbsentError) and candidates:
+        offered = question is not None and question.offered
+        if isinstance(error, AbsentError) and candidates and not offered:
             lines.append("The nearest things that are there:")
-        lines += [f"  {i}. {c.describe()}" for i, c in enumerate(candidates, start=1)]
+        where = [f", {c.seen_from(self.session.viewer)}" if offered else "" for c in candidates]
+        lines += [f"  {i}. {c.describe()}{side}" for i, (c, side) in enumerate(zip(candidates, where, strict=True), 1)]
         verdict = question.selection.verdict if question is not None else ""
         if verdict == "ambiguous":
             lines.append("Which one? A number, several ('1 and 2'), 'all', or for example 'the left one'.")

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -24,7 +24,6 @@ from ....agent.session.result import Result
 from ....agent.session.session import Session
 from ....gaussians.camera import Camera
 from ....gaussians.errors import ScenewrightError, UserError
-from ....gaussians.scene import Scene
 from .scenes import Place
 
 Picture = NDArray[np.uint8]  # [H, W, 3]
@@ -32,6 +31,7 @@ Outcome = Literal["done", "asked", "refused"]
 Answers = Mapping[str, Mapping[str, str]]  # answers by the key of the instruction, then by the hash of the question
 ROUNDS = 3  # questions that are answered at most
 CHANGED = 12  # of 255: a pixel that differs by more has changed
+_ASKED = 2  # how much larger the pictures of a question are, so that numbers leave things visible
 _CLOSEST = 0.25  # share of a view that a close-up shows at least
 
 HERE = Path(__file__).parent
@@ -107,7 +107,7 @@ def carry_out(instruction: Instruction, place: Place, answers: Answers) -> tuple
         failed: ScenewrightError = error
         while True:
             said, outcome = f"{verdict_of(failed)}: {failed}", _outcome(session, failed)
-            answer = answers.get(key, {}).get(_hash(said))
+            answer = answers.get(key, {}).get(_asks(said, session.question))
             if answer is None or len(told) >= 2 * ROUNDS:
                 break
             told += [said, answer]
@@ -120,9 +120,16 @@ def carry_out(instruction: Instruction, place: Place, answers: Answers) -> tuple
     if result is None:
         question = session.question
         shown = Shown(()) if question is None or not question.candidates else _asked(question, place)
-        return Carried(key, outcome, questions, said, tuple(told), _hash(said)), shown
+        look = _asks(said, question)
+        return Carried(key, outcome, questions, said, tuple(told), look), shown
     look, shown = _done(result, place)
     return Carried(key, "done", questions, "\n".join(result.sentences()), tuple(told), look), shown
+
+
+def _asks(said: str, question: Question | None) -> str:
+    """The hash of what was said and of the things that it offers."""
+    things = [] if question is None else [f"{c.describe()} {c.center} {c.size}" for c in question.candidates]
+    return _hash(said, *things)
 
 
 def _outcome(session: Session, error: ScenewrightError) -> Outcome:
@@ -160,26 +167,15 @@ def _done(result: Result, place: Place) -> tuple[str, Shown]:
 
 
 def _asked(question: Question, place: Place) -> Shown:
-    """What a question offers: what was chosen, lit, or the candidates with numbers, from two views."""
+    """What a question offers: what was chosen, lit, or the candidates with numbers, from every view."""
     pictures = []
-    for view in _showing(question, place.scene, place.views):
+    for view in place.views:
+        larger = view.resized(_ASKED * view.width, _ASKED * view.height)
         if question.selection.verdict == "unconfirmed":
-            pictures.append(spotlight(place.scene, view, question.selection))
+            pictures.append(spotlight(place.scene, larger, question.selection))
         else:
-            pictures.append(numbered(place.scene, view, question.candidates))
-    return Shown((tuple([picture(place.scene, place.views[0]), *pictures]),))
-
-
-def _showing(question: Question, scene: Scene, views: Sequence[Camera]) -> tuple[Camera, Camera]:
-    """The viewer's view, and the one that has most of the candidates nearest to its middle."""
-
-    def centred(view: Camera) -> float:
-        pixels, depth = view.project(np.array([c.center for c in question.candidates], dtype=np.float64))
-        inside = view.contains(pixels, depth)
-        off = np.abs(pixels - [view.width / 2, view.height / 2]).max(axis=1) / view.width
-        return float((inside * (1 - off)).sum())
-
-    return views[0], max(views, key=centred)
+            pictures.append(numbered(place.scene, larger, question.candidates))
+    return Shown(tuple(tuple(pictures[i : i + 2]) for i in range(0, len(pictures), 2)))
 
 
 def _changed(before: Picture, after: Picture) -> NDArray[np.bool_]:

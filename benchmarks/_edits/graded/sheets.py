@@ -5,13 +5,12 @@ from __future__ import annotations
 import textwrap
 from pathlib import Path
 
-import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from .carrying import Carried, Instruction, Shown
+from .carrying import Carried, Instruction, Picture, Shown
 
 _PAPER, _INK, _NOTE = (250, 249, 246), (20, 20, 24), (110, 60, 40)
-_TILE = 400  # pixels, width of a picture on a sheet
+_WIDTH = 1200  # pixels of a sheet
 _QUALITY = 82
 
 
@@ -24,7 +23,7 @@ def draw(instruction: Instruction, carried: Carried, shown: Shown) -> Image.Imag
         lines += [(line, _NOTE) for part in told.split("\n") for line in textwrap.wrap(part, 165)]
     head = 22 * len(lines) + 10
     strips = [_strip(row) for row in shown.rows]
-    sheet = Image.new("RGB", (3 * _TILE, head + sum(s.height + 4 for s in strips)), _PAPER)
+    sheet = Image.new("RGB", (_WIDTH, head + sum(s.height + 4 for s in strips)), _PAPER)
     pen = ImageDraw.Draw(sheet)
     for i, (line, ink) in enumerate(lines):
         pen.text((6, 4 + 22 * i), line, fill=ink, font=font)
@@ -43,10 +42,12 @@ def save(instruction: Instruction, carried: Carried, shown: Shown, out: Path) ->
     return path
 
 
-def _strip(row: tuple[np.ndarray, ...]) -> Image.Image:
+def _strip(row: tuple[Picture, ...]) -> Image.Image:
+    """Pictures side by side over the width of a sheet: three of an edit, two of a question."""
+    width = _WIDTH // (3 if len(row) > 2 else 2)
     tiles = [Image.fromarray(p) for p in row]
-    tiles = [t.resize((_TILE, round(t.height * _TILE / t.width)), Image.Resampling.LANCZOS) for t in tiles]
-    strip = Image.new("RGB", (3 * _TILE, tiles[0].height), _PAPER)
-    for i, tile in enumerate(tiles[:3]):
-        strip.paste(tile, (i * _TILE, 0))
+    tiles = [t.resize((width, round(t.height * width / t.width)), Image.Resampling.LANCZOS) for t in tiles]
+    strip = Image.new("RGB", (_WIDTH, tiles[0].height), _PAPER)
+    for i, tile in enumerate(tiles):
+        strip.paste(tile, (i * width, 0))
     return strip

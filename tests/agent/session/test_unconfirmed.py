@@ -49,15 +49,18 @@ def test_an_edit_waits_for_a_yes(session: Session, unsure: Scene) -> None:
     assert result.receipts[0].selection.verdict == "found" and "confirmed" in result.receipts[0].selection.reason
 
 
-def test_a_no_closes_the_question_and_other_words_leave_it_open(session: Session, unsure: Scene) -> None:
+def test_a_no_offers_other_things_once_and_other_words_leave_it_open(session: Session, unsure: Scene) -> None:
     with pytest.raises(UnconfirmedError):
         session.do(ORDER)
     with pytest.raises(UserError, match="'yes'"):
         session.answer("flurble")
     assert session.question is not None
-    with pytest.raises(UnconfirmedError, match="nothing was changed"):
+    with pytest.raises(AbsentError, match=r"nothing was changed.*its number"):
         session.answer("no")
-    assert session.scene is unsure and session.question is None
+    assert session.scene is unsure and session.question is not None and session.question.offered
+    first = session.question.candidates[0].group
+    result = session.answer("1")
+    assert result.selection is not None and result.selection.groups == (first,)
 
 
 def test_every_doubtful_thing_of_an_instruction_is_asked_about(session: Session, unsure: Scene) -> None:
