@@ -24,6 +24,8 @@ from .placement.bodies import Body, bodies_of, body_of, mask_of_bodies
 _OVER = 0.35  # of its height, from its middle: what lies higher in a region's footprint is on it
 _HIGHEST = 3.0  # times its height: what lies higher above it is something else
 _SHARE = 0.3  # of its objects' Gaussians: a region as large as that may have the rest of them on it
+_DROP = 1.15  # of the height of what a thing stood on: how far it comes down, with the error of measured boxes
+_WIDEST = 1.2  # of the longer side of what carries it: a rider that is wider, where boxes are of a capture, is none
 _PIECE = 30  # Gaussians of the same object on a region from which they are a thing on it
 MAX_NAMED = 4  # names in a note; further objects are counted
 
@@ -36,11 +38,13 @@ class Stack:
         ids: `[M]` int64, their Gaussians.
         foot: `[K]` int64, those of the lowest thing, by which they stand.
         label: its name.
+        most: how far it comes down at most, scene units: the height of what it stood on.
     """
 
     ids: Tensor
     foot: Tensor
     label: str
+    most: float = float("inf")
 
 
 def carried_by(scene: Scene, groups: Iterable[int]) -> tuple[int, ...]:
@@ -74,8 +78,13 @@ def carried_on(scene: Scene, body: Body) -> tuple[int, ...]:
     own = [body.group] if body.group >= 0 else _owners(field, scene.cloud.group[body.rows])
     found = carried_by(scene, own) if body.group >= 0 else _carried(scene, field, [_region(body)], own)
     if scene.frame.metres_per_unit is None:  # boxes of captures reach far: what does not touch it does not stand on it
-        found = touching(scene, body, found, own)
+        narrow = tuple(g for g in found if _level_side(field.groups[g]) <= _WIDEST * max(body.box.size[:2]))
+        found = touching(scene, body, narrow, own)
     return (*found, *held_by(scene, body, (*own, *found)))
+
+
+def _level_side(group: Group) -> float:
+    return max(group.box.size[:2])
 
 
 def _region(body: Body) -> Group:
@@ -95,9 +104,10 @@ def stacks_on(scene: Scene, body: Body) -> list[Stack]:
     if field is None:
         return stacks
     up, every_one = scene.frame.up_vector, carried_on(scene, body)
+    most = _DROP * body.box.size[2]
     if len(above := _rest_above(scene, body)):  # what lies on a region carries the other things on it
         rows = torch.unique(torch.cat([above, *(rows_in(scene.cloud, field, g) for g in every_one)]))
-        return [Stack(scene.cloud.ids[rows], scene.cloud.ids[above], "the rest of it")]
+        return [Stack(scene.cloud.ids[rows], scene.cloud.ids[above], "the rest of it", most)]
     for group in sorted(every_one, key=lambda g: (field.groups[g].box.bottom(up), g)):
         if group in claimed:
             continue
@@ -106,7 +116,7 @@ def stacks_on(scene: Scene, body: Body) -> list[Stack]:
         claimed |= set(whole)
         rows = [rows_in(scene.cloud, field, g) for g in whole]
         foot, every = scene.cloud.ids[rows[0]], scene.cloud.ids[torch.unique(torch.cat(rows))]
-        stacks.append(Stack(every, foot, field.groups[group].label))
+        stacks.append(Stack(every, foot, field.groups[group].label, most))
     return stacks
 
 

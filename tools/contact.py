@@ -23,6 +23,7 @@ from .placement.bodies import Body
 _ASIDE = 1.1  # of the footprint of what holds: within which the middle of a held thing lies
 _TOUCH = 0.03  # of the holder's size: distance at which points touch
 _HELD = 0.75  # share of the contacts of a thing that must be with what holds it
+_MOSTLY = 0.5  # share of the contacts of a thing over another that must be with what carries it, else it leans there
 _FEW = 4  # contacts that do not count
 _SAMPLE = 3000  # points of a thing that are compared
 
@@ -57,7 +58,8 @@ def held_by(scene: Scene, body: Body, but: Iterable[int]) -> tuple[int, ...]:
 
 
 def touching(scene: Scene, body: Body, groups: tuple[int, ...], own: Iterable[int]) -> tuple[int, ...]:
-    """Those of some objects over a body that touch it, or another of them; and those that touch nothing else.
+    """Those of some objects over a body that touch mostly it, or another of them; and those that touch nothing else.
+    A patch of the wall that meets the body touches mostly its own like.
 
     Args:
         own: ids of the objects that the body is of.
@@ -76,7 +78,7 @@ def touching(scene: Scene, body: Body, groups: tuple[int, ...], own: Iterable[in
     for group in sorted(groups, key=lambda g: field.groups[g].box.bottom(scene.frame.up_vector)):
         leaves = set(field.leaves(group))
         met = _contacts(points, owner, leaves, touch)
-        if len(met) <= _FEW or held[met].sum() > _FEW:
+        if len(met) <= _FEW or held[met].mean() >= _MOSTLY:
             kept.append(group)
             held |= np.isin(owner, list(leaves))
     return tuple(g for g in groups if g in kept)

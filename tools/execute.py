@@ -19,6 +19,7 @@ from ..gaussians.timing import timed
 from . import pixel_diff
 from .carried_objects import unsupported_note
 from .cloud_diff import Difference, difference
+from .enclosed import with_enclosed
 from .operation import Context, EditOp, Outcome
 from .ops.reframe import of_everything
 from .receipt import Check, Pixels, Receipt, SelectionSummary, at_most
@@ -53,18 +54,22 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
         UserError: a name in the operation (colour, asset) is unknown.
     """
     seconds: dict[str, float] = {}
+    inner: tuple[str, ...] = ()
     op = of_everything(op)
     with timed(seconds, "resolve"):
         chosen = (_resolve(scene, op, context) if selection is None else selection).require()
         if op.query() is not None:
             chosen = _remaining(scene, chosen)
+            chosen = with_enclosed(scene, chosen) if op.takes_enclosed else chosen
+            if chosen.enclosed is not None:
+                inner = (f"{len(chosen.enclosed):,} Gaussians inside it went along",)
         op = op.settled(scene, context)
     with timed(seconds, "apply"):
         outcome = op.apply(scene, chosen, context)
         unsupported = unsupported_note(scene, outcome.scene, chosen.groups)
         query = op.query()
         where = (chosen.reason,) if query is not None and query.spatial and chosen.reason else ()
-        outcome = replace(outcome, notes=(*where, *outcome.notes, *unsupported))
+        outcome = replace(outcome, notes=(*where, *inner, *outcome.notes, *unsupported))
     with timed(seconds, "check"):
         changed = difference(scene.cloud, outcome.scene.cloud, op.may_change(scene, chosen), outcome.removed)
         checks = [*_common_checks(op, changed, chosen), *op.check(scene, outcome, chosen, context)]

@@ -71,6 +71,13 @@ def scene_scale(scene: Scene, anchors: Sequence[tuple[Body, str]] = ()) -> Scene
         names = ", ".join(dict.fromkeys(name for _, name in votes))
         said = f"the scene's scale is unknown; it was judged by the usual size of: {names}"
         return SceneScale(float(np.exp(np.median([value for value, _ in votes]))), (said,))
+    if long := [
+        vote for body, word in anchors for vote in _long_vote(body.box, word or _sure_label(scene, body.group))
+    ]:
+        said = (
+            f"the scene's scale is unknown; it was judged by the usual length of: {', '.join(name for _, name in long)}"
+        )
+        return SceneScale(float(np.exp(np.median([value for value, _ in long]))), (said,))
     across = _across(scene)
     said = f"the scene's scale is unknown; it was taken to be {_ASSUMED_WIDTH:g} m across"
     return SceneScale(across / _ASSUMED_WIDTH, (said,), guessed=True)
@@ -91,6 +98,15 @@ def _vote(box: Box, name: str) -> list[tuple[float, str]]:
     width, depth, height = ((low * high) ** 0.5 if low > 0 else high / 2 for low, high in kind.size)
     by_length, by_height = np.log(max(box.size[:2]) / max(width, depth)), np.log(box.size[2] / height)
     return [] if abs(by_length - by_height) > np.log(SHAPE) else [(float(by_length + by_height) / 2, name)]
+
+
+def _long_vote(box: Box, name: str) -> list[tuple[float, str]]:
+    """As `_vote`, by the longest side alone: what is found only in part, or lies, is hardly longer than its kind."""
+    kind = kinds.find(name) if name else None
+    if kind is None or max(box.size) <= 0:
+        return []
+    usual = max((low * high) ** 0.5 if low > 0 else high / 2 for low, high in kind.size)
+    return [(float(np.log(max(box.size) / usual)), name)]
 
 
 def _across(scene: Scene) -> float:
@@ -141,7 +157,7 @@ def make_asset(scene: Scene, request: AssetRequest) -> ScaledAsset:
     """
     made, told = request.own.natural(request.kind, request.color) if request.own is not None else (None, ())
     if made is None:
-        made = assets.make(request.kind, request.seed, color=request.color)
+        made = assets.make(request.kind, request.seed, color=request.color or _usual_color(request))
     factor, notes = request.scale.units_per_metre, request.scale.notes
     if request.height is not None:
         factor = request.height.in_units(scene.frame) / made.size[2]
@@ -155,6 +171,17 @@ def make_asset(scene: Scene, request: AssetRequest) -> ScaledAsset:
     size = as_vec(np.array([max(high - low, 1e-6) for low, high in spans]))
     kind = kinds.find(made.kind)
     return ScaledAsset(cloud, made.kind, size, kind.support if kind is not None else "floor", (*told, *notes))
+
+
+def _usual_color(request: AssetRequest) -> str | None:
+    """A usual colour of a small thing that is called by the very name of its kind: an apple is red or green. None for
+    furniture, which comes in any colour, and for what is drawn as something like it."""
+    kind = kinds.find(request.kind)
+    if kind is None or kind.support != "surface" or not kind.colors:
+        return None
+    said = " ".join(kinds.words_of(request.kind))
+    named = {kind.name, *(kind.also or ())}
+    return kind.colors[request.seed % len(kind.colors)] if said in named else None
 
 
 def fitted(scale: SceneScale, kind: str, old: Box) -> SceneScale:

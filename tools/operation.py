@@ -242,6 +242,7 @@ class EditOp(BaseModel):
 
     op: str
     example: ClassVar[tuple[str, dict[str, Any]]]
+    takes_enclosed: ClassVar[bool] = False  # whether what a thing of a capture encloses is edited with it
 
     def query(self) -> Query | None:
         """The query of its target, or None if it has no target."""

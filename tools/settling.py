@@ -30,14 +30,14 @@ def settle(scene: Scene, stacks: Sequence[Stack], rise: float = 0.0) -> tuple[Sc
 
     Args:
         scene: without what the stacks stood on.
-        stacks: lowest first.
+        stacks: lowest first; one that would come down by more than it may stays where it is.
         rise: how far a stack may also come up, onto something taller in the old place, scene units.
     """
     moved, told = list[Affine](), list[str]()
     for stack in stacks:
         rows = rows_of(scene.cloud, stack.ids)
         way = _way_down(scene, rows, rows_of(scene.cloud, stack.foot), rise)
-        if way is None:
+        if way is None or -way[0] > stack.most:
             continue
         step, support = way
         offset = scene.frame.up_vector * step

@@ -42,11 +42,12 @@ def after(result: Result, camera: Camera) -> Picture:
 
 
 def numbered(scene: Scene, camera: Camera, candidates: Sequence[Candidate]) -> Picture:
-    """The scene with a number at each candidate that the camera sees; candidates without a group at their centre."""
+    """The scene with a number at each candidate that the camera sees; candidates without a group in it, as what an
+    earlier step of a failed plan made, at their centre."""
     from .marked_views import draw_view
     from .marks import draw_marks, numbered_marks
 
-    if scene.language is None or any(c.group < 0 for c in candidates):
+    if scene.language is None or any(not 0 <= c.group < len(scene.language.groups) for c in candidates):
         return _numbered_at_centres(scene, camera, candidates)
     drawing = draw_view(scene, camera, [c.group for c in candidates])
     return draw_marks(drawing.image, drawing.labels, numbered_marks(len(candidates)), outlines=False)[0]

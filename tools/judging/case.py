@@ -14,6 +14,7 @@ from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.scene import Scene
 from ...gaussians.world.box import Box
+from ..enclosed import with_enclosed
 from ..operation import Context, EditOp
 from ..placement.bodies import Body, bodies_of, centimetre, contact_box
 from .changes import Changes, changes_between
@@ -50,9 +51,11 @@ class Case:
 
     @cached_property
     def meant(self) -> Selection:
-        """What a repair chose, else `asked`; empty where nothing was found."""
+        """What a repair chose, else `asked`, with what it encloses; empty where nothing was found."""
         found = self.chosen if self.chosen is not None else self.asked
-        return found if found is not None and found.chosen else Selection(Query(), "found", _NO_IDS)
+        if found is None or not found.chosen:
+            return Selection(Query(), "found", _NO_IDS)
+        return with_enclosed(self.before, found) if self.op.takes_enclosed and len(found) else found
 
     @cached_property
     def target(self) -> Tensor:

@@ -30,6 +30,7 @@ class Delete(TargetedOp):
         "remove the coffee table",
         {"op": "delete", "target": {"text": "coffee table"}},
     )
+    takes_enclosed: ClassVar[bool] = True
     op: Literal["delete"] = "delete"
     on_it: Literal["settles", "goes", "stays"] = "settles"
 

@@ -23,6 +23,7 @@ class Isolate(TargetedOp):
         "isolate the guitar",
         {"op": "isolate", "target": {"text": "guitar"}},
     )
+    takes_enclosed: ClassVar[bool] = True
     op: Literal["isolate"] = "isolate"
 
     def may_change(self, scene: Scene, selection: Selection) -> Tensor:

@@ -58,6 +58,7 @@ class Move(TargetedOp):
         "move the lamp 40 cm to the left",
         {"op": "move", "target": {"text": "lamp"}, "direction": "left", "distance": {"value": 40, "unit": "cm"}},
     )
+    takes_enclosed: ClassVar[bool] = True
     op: Literal["move"] = "move"
     direction: Direction | None = None
     distance: Length | None = None

@@ -33,6 +33,7 @@ class Replace(TargetedOp):
         "replace the stool with a green armchair",
         {"op": "replace", "target": {"text": "stool"}, "asset": "armchair", "color": "green"},
     )
+    takes_enclosed: ClassVar[bool] = True
     op: Literal["replace"] = "replace"
     asset: AssetName
     """Kind of the new object, singular."""

@@ -44,6 +44,7 @@ class Rotate(TargetedOp):
         "turn the chair 90 degrees clockwise",
         {"op": "rotate", "target": {"text": "chair"}, "degrees": -90},
     )
+    takes_enclosed: ClassVar[bool] = True
     op: Literal["rotate"] = "rotate"
     degrees: Annotated[float, Field(ge=-3600, le=3600, allow_inf_nan=False)] | None = None
     axis: Literal["up", "right", "forward"] = "up"

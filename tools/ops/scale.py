@@ -46,6 +46,7 @@ class Scale(TargetedOp):
         "make the plant twice as tall",
         {"op": "scale", "target": {"text": "potted plant"}, "factor": 2, "axis": "height"},
     )
+    takes_enclosed: ClassVar[bool] = True
     op: Literal["scale"] = "scale"
     factor: Annotated[float, Field(ge=0.01, le=100, allow_inf_nan=False)] | None = None
     axis: Literal["all", "width", "depth", "height"] = "all"

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -65,8 +65,10 @@ def bodies_of(scene: Scene, selection: Selection) -> list[Body]:
 
     Selected Gaussians of other things than those that are selected by their group are regions of colour, or parts: what
     was found as one is one body, whatever the groups are that it reaches over. They come last, with the Gaussians
-    outside any group.
+    outside any group. What lies inside a thing is of the body that is nearest, and its box leaves it out.
     """
+    if selection.enclosed is not None:
+        return _with_inside(scene, bodies_of(scene, _without_inside(selection)), selection.enclosed)
     bodies, loose = list[Body](), list[Tensor]()
     for group, rows in rows_by_thing(scene, selection):
         if group >= 0 and (group in selection.groups or _is_most_of(scene, group, rows)):
@@ -78,6 +80,22 @@ def bodies_of(scene: Scene, selection: Selection) -> list[Body]:
     rows = torch.cat(loose).sort().values if len(loose) > 1 else loose[0]
     label = selection.query.text if scene.language is not None else ""
     return bodies + [body_of(scene, part, -1, label) for part in _regions(scene, selection, rows)]
+
+
+def _without_inside(selection: Selection) -> Selection:
+    assert selection.enclosed is not None
+    outer = selection.ids[~torch.isin(selection.ids, selection.enclosed, assume_unique=True)]
+    return replace(selection, ids=outer, enclosed=None)
+
+
+def _with_inside(scene: Scene, bodies: list[Body], inside: Tensor) -> list[Body]:
+    """The bodies with the enclosed Gaussians, each in the body whose box is nearest for its size."""
+    rows = rows_of(scene.cloud, inside)
+    points = scene.cloud.means[rows].to(torch.float64).cpu().numpy()
+    reach_of = [np.abs(b.box.local(points)) / np.maximum(np.array(b.box.size), 1e-9) for b in bodies]
+    nearest = torch.from_numpy(np.stack([r.max(axis=1) for r in reach_of]).argmin(axis=0)).to(rows.device)
+    parts = (rows[nearest == i] for i in range(len(bodies)))
+    return [replace(b, rows=torch.cat([b.rows, part]).sort().values) for b, part in zip(bodies, parts, strict=True)]
 
 
 def _is_most_of(scene: Scene, group: int, rows: Tensor) -> bool:

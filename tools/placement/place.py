@@ -24,6 +24,7 @@ from .surroundings import FLOOR_WORDS, Surroundings
 
 _CELLS = 220  # most cells along a side of the grid
 _FOOT_CELLS = 10  # cells along the shorter side of a footprint, unless the region is too large for that
+_ASIDE = 0.3  # of the longer side of what is replaced: how far aside the new thing may stand in a capture
 _CROWDED = 0.4  # share of the footprint of what replaces a thing that others may reach into
 _NEAR_BY = 0.5  # of its height: how much lower a free spot may be before a crowded one is better
 _LEAST_SUPPORTED = 0.4  # likewise, of its footprint that must lie over the support
@@ -114,6 +115,9 @@ def spot_beside(around: Surroundings, body: Body) -> Spot:
 def spot_near(around: Surroundings, size: Vec3, axes: Axes, body: Body) -> Spot:
     """The spot of a thing that is removed, or the nearest free one on the same support.
 
+    In a scene of unknown scale, which is a capture, remains and neighbours hardly leave an old place free: what is not
+    near it is not taken.
+
     Raises:
         InstructionError: there is none within its own size.
     """
@@ -126,7 +130,17 @@ def spot_near(around: Surroundings, size: Vec3, axes: Axes, body: Body) -> Spot:
         covered = np.column_stack([middle + under * extents, np.full(len(under), height)])
         surface = np.concatenate([surface, covered])
     region = Region(middle - reach, middle + reach, lambda p: distance_to(p, middle), height, surface, beside=True)
-    return _spot_in(around, size, axes, region, f"where the {body.label or 'thing'} stands", _CROWDED)
+    where = f"where the {body.label or 'thing'} stands"
+    if around.frame.metres_per_unit is not None:
+        return _spot_in(around, size, axes, region, where, _CROWDED)
+    try:
+        spot: Spot | None = _spot_in(around, size, axes, region, where, _CROWDED)
+    except InstructionError:
+        spot = None
+    if spot is not None and distance_to((plan @ spot.foot)[None], middle)[0] <= _ASIDE * max(body.box.size[:2]):
+        return spot
+    foot = body.foot(around.up) + around.up * (height - float(body.foot(around.up) @ around.up))
+    return Spot(foot, height, axes, ("there is little room: it touches what stands around it",), True)
 
 
 def _spot_in(around: Surroundings, size: Vec3, axes: Axes, region: Region, where: str, most_taken: float = 0.0) -> Spot:

@@ -69,6 +69,7 @@ class Selection:
         groups: ids of the selected groups.
         candidates: best first; those selected, those that are ambiguous, or the nearest ones.
         reason: one sentence for the user.
+        enclosed: `[K]` int64 sorted, those of `ids` that lie inside what was found; None if there are none.
     """
 
     query: Query
@@ -77,6 +78,7 @@ class Selection:
     groups: tuple[int, ...] = ()
     candidates: tuple[Candidate, ...] = ()
     reason: str = ""
+    enclosed: Tensor | None = None
 
     def __len__(self) -> int:
         return int(self.ids.shape[0])

@@ -139,9 +139,12 @@ def by_hue(scene: Scene, field: LanguageField, query: Query, stands: Stands, nam
 def is_reliable(field: LanguageField) -> bool:
     """Whether the objects of the scene are named surely on the whole; larger ones weigh more.
 
-    Otherwise (a capture unlike the training data of the encoder) single sure labels are not reliable either.
+    Otherwise (a capture unlike the training data of the encoder) single sure labels are not reliable either. Names that
+    were given to things later say nothing about the encoder.
     """
-    objects = [g for g in field.objects() if g.count]
+    objects = [g for g in field.objects() if g.count and g.named_by != "user"]
+    if not objects:
+        return False
     weights = [math.sqrt(g.count) for g in objects]
     sure = sum(w * g.label_score for w, g in zip(weights, objects, strict=True))
     return sure >= RELIABLE * sum(weights)
