@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 from torch import Tensor
 
 from ..gaussians.language.field.language_field import Group
+from ..gaussians.language.query.color.fallback import is_reliable
 from ..gaussians.scene import Scene
 from ..gaussians.world import kinds
 from ..gaussians.world.core import least_opacity
@@ -58,8 +59,8 @@ def held_by(scene: Scene, body: Body, but: Iterable[int]) -> tuple[int, ...]:
 
 
 def touching(scene: Scene, body: Body, groups: tuple[int, ...], own: Iterable[int]) -> tuple[int, ...]:
-    """Those of some objects over a body that touch mostly it, or another of them; and those that touch nothing else.
-    A patch of the wall that meets the body touches mostly its own like.
+    """Those of some objects over a body that touch mostly it, or another of them. A patch of the wall that meets the
+    body touches mostly its own like. What touches nothing counts where things are told apart reliably.
 
     Args:
         own: ids of the objects that the body is of.
@@ -73,12 +74,12 @@ def touching(scene: Scene, body: Body, groups: tuple[int, ...], own: Iterable[in
     carrying = torch.zeros(len(cloud), dtype=torch.bool, device=cloud.device)
     carrying[body.rows] = True
     held = carrying[near].cpu().numpy() | np.isin(owner, [leaf for g in own for leaf in field.leaves(g)])
-    kept = list[int]()
+    kept, apart = list[int](), is_reliable(field)
     touch = _TOUCH * max(body.box.size)
     for group in sorted(groups, key=lambda g: field.groups[g].box.bottom(scene.frame.up_vector)):
         leaves = set(field.leaves(group))
         met = _contacts(points, owner, leaves, touch)
-        if len(met) <= _FEW or held[met].mean() >= _MOSTLY:
+        if apart if len(met) <= _FEW else held[met].mean() >= _MOSTLY:
             kept.append(group)
             held |= np.isin(owner, list(leaves))
     return tuple(g for g in groups if g in kept)

@@ -44,9 +44,12 @@ def settle(scene: Scene, stacks: Sequence[Stack], rise: float = 0.0) -> tuple[Sc
         draft = Draft(scene.cloud)
         shift(draft, rows, offset)
         cloud = draft.done()
-        asked = Affine(rows, np.eye(3), offset, rows, support)
-        scene = scene.replace(cloud=cloud, language=after_move(scene, cloud, [asked]))
-        moved.append(asked)
+        foot = rows_of(scene.cloud, stack.foot)
+        rest = rows[~torch.isin(rows, foot)]
+        asked = [Affine(foot, np.eye(3), offset, foot, support)]  # what stands on it may reach lower than its feet
+        asked += [Affine(rest, np.eye(3), offset, rest)] if len(rest) else []
+        scene = scene.replace(cloud=cloud, language=after_move(scene, cloud, asked))
+        moved += asked
         told.append(f"{stack.label or 'something'} ({told_length(scene.frame, step)} {'down' if step < 0 else 'up'})")
     more = f" and {len(told) - MAX_NAMED} more" if len(told) > MAX_NAMED else ""
     note = f"what stood on it now stands on what is below: {', '.join(told[:MAX_NAMED])}{more}" if told else ""

@@ -127,9 +127,11 @@ def carry_out(instruction: Instruction, place: Place, answers: Answers) -> tuple
 
 
 def _asks(said: str, question: Question | None) -> str:
-    """The hash of what was said and of the things that it offers."""
-    things = [] if question is None else [f"{c.describe()} {c.center} {c.size}" for c in question.candidates]
-    return _hash(said, *things)
+    """The hash of what is asked for and of the things that are offered, or of what was said where nothing is."""
+    if question is None or not question.candidates:
+        return _hash(said)
+    asked = (question.selection.verdict, question.selection.query.describe())
+    return _hash(*asked, *(f"{c.group} {c.color} {c.center} {c.size}" for c in question.candidates))
 
 
 def _outcome(session: Session, error: ScenewrightError) -> Outcome:

@@ -18,7 +18,7 @@ import torch
 from ...camera import Camera
 from ...errors import BackendError
 from ...scene import Scene
-from ...world import relations
+from ...world import kinds, relations
 from ...world.facing import Facing, facing_in
 from ...world.relation_geometry import HOLDS, Stand, object_stand, viewer_stand
 from ..encoders.probability import why_unknown
@@ -54,6 +54,7 @@ from .terms import (
 if TYPE_CHECKING:
     from ..encoders import Encoder
 
+SURE_KIND = 0.25  # probability of a name from which a thing has the parts of its kind
 _STACKED = 2  # how often a crop looks for what stands on what it keeps
 
 __all__ = ["STRUCTURE", "Resolver", "resolve"]  # builders of scenes need the words for structure
@@ -413,7 +414,15 @@ class Resolver:
             return choice.refusal
         rows = np.unique(np.concatenate([kept[i].rows for i in choice.chosen]))
         told = tuple(rank.candidate(i) for i in choice.chosen)
-        return Selection(query, "found", self.members.ids_at(rows), (), told, "told by its shape")
+        made_of = Selection(query, "found", self.members.ids_at(rows), (), told, "told by its shape")
+        if all(self._is_kind_of(a) for a in anchors):
+            return made_of
+        return replace(made_of, verdict="unconfirmed").noting(f"whether it has a {query.text} at all is not known")
+
+    def _is_kind_of(self, group: int) -> bool:
+        """Whether a group is surely of a kind that is known, so that it has the parts of its kind."""
+        known = self.field.groups[group]
+        return known.label_score >= SURE_KIND and kinds.find(known.label) is not None
 
     def _fits(self, query: Query, piece: Group) -> bool:
         """Whether a piece has the colours of the query and satisfies its other relations."""
