@@ -54,7 +54,6 @@ from .terms import (
 if TYPE_CHECKING:
     from ..encoders import Encoder
 
-SURE_KIND = 0.25  # probability of a name from which a thing has the parts of its kind
 _STACKED = 2  # how often a crop looks for what stands on what it keeps
 
 __all__ = ["STRUCTURE", "Resolver", "resolve"]  # builders of scenes need the words for structure
@@ -415,14 +414,14 @@ class Resolver:
         rows = np.unique(np.concatenate([kept[i].rows for i in choice.chosen]))
         told = tuple(rank.candidate(i) for i in choice.chosen)
         made_of = Selection(query, "found", self.members.ids_at(rows), (), told, "told by its shape")
-        if all(self._is_kind_of(a) for a in anchors):
+        if not any(self._is_of_no_kind(a) for a in anchors):
             return made_of
         return replace(made_of, verdict="unconfirmed").noting(f"whether it has a {query.text} at all is not known")
 
-    def _is_kind_of(self, group: int) -> bool:
-        """Whether a group is surely of a kind that is known, so that it has the parts of its kind."""
+    def _is_of_no_kind(self, group: int) -> bool:
+        """Whether a group has a name that was given to it later, of a kind whose parts are not known."""
         known = self.field.groups[group]
-        return known.label_score >= SURE_KIND and kinds.find(known.label) is not None
+        return bool(known.named_by) and kinds.find(known.label) is None
 
     def _fits(self, query: Query, piece: Group) -> bool:
         """Whether a piece has the colours of the query and satisfies its other relations."""
