@@ -116,18 +116,18 @@ def _share(found: Sequence[Judged]) -> float:
 def judged(scene: Scene, truth: Truth, seed: int, hidden: bool = True) -> list[Judged]:
     """`EDITS` judged edits of one room, half of them sabotaged, and as many hidden sabotages as apply."""
     rng = np.random.default_rng([zlib.crc32(b"judge"), seed])
-    attempts = _attempts(scene, truth, rng)
+    tries = attempts(scene, truth, rng)
     kinds, found = list(SABOTAGES), list[Judged]()
     for k in range(EDITS):
         if k % 2 == 0:
-            attempt, seconds = next(attempts)
+            attempt, seconds = next(tries)
             found.append(_judge(attempt, attempt.scene, attempt.after, "clean", seconds))
         else:
             kind = kinds[k // 2 % len(kinds)]
-            found += _sabotaged(attempts, kind, SABOTAGES[kind])
+            found += _sabotaged(tries, kind, SABOTAGES[kind])
     for kind, damage in HIDDEN.items() if hidden else ():
         for _ in range(EDITS // 5):
-            found += _sabotaged(attempts, kind, damage)
+            found += _sabotaged(tries, kind, damage)
     return found
 
 
@@ -164,7 +164,7 @@ def _judge(attempt: Attempt, before: Scene, after: Scene, kind: str, edit_second
     return Judged(attempt.op, kind, findings, time.perf_counter() - started, edit_seconds, case)
 
 
-def _attempts(scene: Scene, truth: Truth, rng: np.random.Generator) -> Iterator[tuple[Attempt, float]]:
+def attempts(scene: Scene, truth: Truth, rng: np.random.Generator) -> Iterator[tuple[Attempt, float]]:
     """Clean edits without end, and their seconds: of things whose selection is right by the truth."""
     context = Context(viewer=scene.cameras[0], encoder=encoders.load())
     found = _selections(scene, truth, context)
@@ -174,7 +174,7 @@ def _attempts(scene: Scene, truth: Truth, rng: np.random.Generator) -> Iterator[
         op = _operation(step, query, found, rng)
         try:
             started = time.perf_counter()
-            done = carry_out(scene, op, context)
+            done = carry_out(scene, op, context, seen=False)
         except ScenewrightError:
             continue
         targeted = op.query() is not None

@@ -1,5 +1,5 @@
-"""bench edits: instructions in people's words on real scenes, carried out as a user would and graded by eye; and what
-colour edits do to greys and to the colour that was asked.
+"""bench edits: instructions in people's words on real scenes, carried out as a user would and graded by eye; what
+colour edits do to greys and to the colour that was asked; and which sabotaged edits the checks of every edit catch.
 
 The instructions were written from pictures by somebody who did not know what the program can do. Each run writes a
 contact sheet for each of them and `rows.json` into `SCENEWRIGHT_BENCH_EDITS` (by default a folder of the user's cache).
@@ -18,7 +18,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from . import _data
-from ._edits import color
+from ._edits import color, sabotage
 from ._edits.graded import carrying, grades, sheets
 from ._edits.graded.carrying import Carried, Instruction
 from ._edits.graded.scenes import SETTINGS, Place, prepared, results_folder
@@ -30,7 +30,7 @@ _ROWS = "rows.json"
 
 
 def run(quick: bool) -> Result:
-    """All instructions in all settings whose data are here, and the measures of colour."""
+    """All instructions in all settings whose data are here, the measures of colour, and of the checks."""
     out, notes, rows = results_folder(), list[str](), list[grades.Row]()
     for setting in SETTINGS:
         place = prepared(setting)
@@ -44,6 +44,7 @@ def run(quick: bool) -> Result:
     found: tuple[Metric, ...] = grades.metrics(rows)
     if not quick:
         found += color.metrics(*color.measure())
+    found += sabotage.measure(quick)
     return Result("edits of real scenes in people's words, graded by eye", "grade", found, (), tuple(notes))
 
 

@@ -20,6 +20,8 @@ from . import pixel_diff
 from .carried_objects import unsupported_note
 from .cloud_diff import Difference, difference
 from .enclosed import with_enclosed
+from .judging.case import Case
+from .judging.examine import measured
 from .operation import Context, EditOp, Outcome
 from .ops.reframe import of_everything
 from .receipt import Check, Pixels, Receipt, SelectionSummary, at_most
@@ -39,12 +41,16 @@ class Done(NamedTuple):
     selection: Selection
 
 
-def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection | None = None) -> Done:
+def carry_out(
+    scene: Scene, op: EditOp, context: Context, selection: Selection | None = None, *, seen: bool = True
+) -> Done:
     """Resolve the target, apply the operation and check it.
 
     Args:
         scene: never changed.
         selection: what to apply it to, instead of resolving the operation's own query.
+        seen: also check what a person sees (see `judging`); a judge, who measures the same and repairs it, does not ask
+            for it.
 
     Raises:
         AbsentError, AmbiguousError, UnconfirmedError: the target (or an anchor) is not in the scene, not unique, or not
@@ -57,12 +63,9 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
     inner: tuple[str, ...] = ()
     op = of_everything(op)
     with timed(seconds, "resolve"):
-        chosen = (_resolve(scene, op, context) if selection is None else selection).require()
-        if op.query() is not None:
-            chosen = _remaining(scene, chosen)
-            chosen = with_enclosed(scene, chosen) if op.takes_enclosed else chosen
-            if chosen.enclosed is not None:
-                inner = (f"{len(chosen.enclosed):,} Gaussians inside it went along",)
+        chosen = target_of(scene, op, context, selection)
+        if chosen.enclosed is not None:
+            inner = (f"{len(chosen.enclosed):,} Gaussians inside it went along",)
         op = op.settled(scene, context)
     with timed(seconds, "apply"):
         outcome = op.apply(scene, chosen, context)
@@ -70,9 +73,36 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
         query = op.query()
         where = (chosen.reason,) if query is not None and query.spatial and chosen.reason else ()
         outcome = replace(outcome, notes=(*where, *inner, *outcome.notes, *unsupported))
+    receipt = checked(scene, op, chosen, outcome, context, seconds, seen)
+    return Done(outcome.scene, receipt, chosen if outcome.focus is None else outcome.focus)
+
+
+def checked(
+    scene: Scene,
+    op: EditOp,
+    chosen: Selection,
+    outcome: Outcome,
+    context: Context,
+    seconds: dict[str, float],
+    seen: bool = True,
+) -> Receipt:
+    """The receipt of what an operation did to a selection.
+
+    Args:
+        scene: before.
+        seconds: of the stages before; those of the checks are added.
+        seen: as in `carry_out`.
+
+    Raises:
+        CheckFailedError: the outcome fails a post-condition.
+    """
     with timed(seconds, "check"):
         changed = difference(scene.cloud, outcome.scene.cloud, op.may_change(scene, chosen), outcome.removed)
         checks = [*_common_checks(op, changed, chosen), *op.check(scene, outcome, chosen, context)]
+    if seen:
+        with timed(seconds, "see"):
+            crowded = any(body.touches for body in outcome.moved)
+            checks += measured(Case(scene, outcome.scene, op, context, chosen, crowded)).checks
     compared: Pixels | None = None
     if context.pixel_checks:
         with timed(seconds, "pixels"):
@@ -82,7 +112,7 @@ def carry_out(scene: Scene, op: EditOp, context: Context, selection: Selection |
     receipt = receipt.model_copy(update={"pixels": compared, "seconds": seconds})
     if not receipt.passed:
         raise CheckFailedError(_failure_message(receipt))
-    return Done(outcome.scene, receipt, chosen if outcome.focus is None else outcome.focus)
+    return receipt
 
 
 def preview(scene: Scene, op: EditOp, context: Context, selection: Selection | None = None) -> Receipt:
@@ -94,11 +124,18 @@ def preview(scene: Scene, op: EditOp, context: Context, selection: Selection | N
     return carry_out(scene, op, context, selection).receipt.model_copy(update={"dry_run": True})
 
 
-def _resolve(scene: Scene, op: EditOp, context: Context) -> Selection:
+def target_of(scene: Scene, op: EditOp, context: Context, selection: Selection | None = None) -> Selection:
+    """What an operation is applied to: what its own words mean, or `selection`; with what is enclosed in it, if the
+    operation takes that along; empty for an operation without a target, such as insert.
+
+    Raises:
+        AbsentError, AmbiguousError, UnconfirmedError: as `carry_out`.
+    """
     query = op.query()
-    if query is None:  # an operation without a target, such as insert
+    if query is None:
         return Selection(Query(), "found", torch.zeros(0, dtype=torch.int64))
-    return context.resolve(scene, query)
+    chosen = _remaining(scene, (context.resolve(scene, query) if selection is None else selection).require())
+    return with_enclosed(scene, chosen) if op.takes_enclosed else chosen
 
 
 def _remaining(scene: Scene, selection: Selection) -> Selection:

@@ -132,7 +132,7 @@ class Receipt(BaseModel):
         pixels: what changed in the viewer's picture, if it was compared.
         checks: every post-condition.
         notes: what the user should know: assumptions taken, defaults used, neighbours touched.
-        seconds: wall time of each stage: "resolve", "apply", "check", "pixels".
+        seconds: wall time of each stage: "resolve", "apply", "check", "see", "pixels".
         backends: what was used, by role: "resolver", "encoder", "renderer".
         dry_run: True if nothing was kept.
         judged: what the judge measured, if there was one.

@@ -110,7 +110,7 @@ class Judge:
         from ...tools import execute
         from ...tools.receipt import Judgement, Repair
 
-        done = execute.carry_out(scene, op, context)
+        done = execute.carry_out(scene, op, context, seen=False)
         started = time.perf_counter()
         found = self._findings(scene, done.scene, op, _Try(context, None, ""), instruction)
         repairs: list[Repair] = []
@@ -120,7 +120,7 @@ class Judge:
                 break
             repairs.append(Repair(failed=found.failed, tried=again.told))
             try:
-                done = execute.carry_out(again.scene or scene, op, again.context, again.selection)
+                done = execute.carry_out(again.scene or scene, op, again.context, again.selection, seen=False)
             except ScenewrightError as error:
                 repairs[-1] = repairs[-1].model_copy(update={"tried": f"{again.told}, which failed: {error}"})
                 continue

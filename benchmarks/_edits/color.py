@@ -141,20 +141,27 @@ def metrics(greys: Sequence[Edit], colors: Sequence[Edit]) -> tuple[Metric, ...]
 
 def _things(names: Sequence[str]) -> Iterator[tuple[str, str, _Thing]]:
     for name in names:
-        scene = _scene(name)
-        for thing, (low, high) in THINGS[name].items() if scene is not None else ():
+        scene = scene_named(name)
+        for thing, box in THINGS[name].items() if scene is not None else ():
             assert scene is not None
-            means = scene.cloud.means
-            inside = ((means >= torch.tensor(low)) & (means <= torch.tensor(high))).all(dim=1)
-            rows = inside.nonzero().squeeze(1)
-            camera = _best(scene, rows)
+            rows = rows_within(scene, box)
+            camera = best_camera(scene, rows)
             if camera is not None:
                 yield name, thing, _Thing(scene, rows, camera)
 
 
-def _scene(name: str) -> Scene | None:
+def rows_within(scene: Scene, box: Box) -> Tensor:
+    """Rows `[M]` of the Gaussians whose centres lie in a box of `THINGS`."""
+    means, (low, high) = scene.cloud.means, box
+    return ((means >= torch.tensor(low)) & (means <= torch.tensor(high))).all(dim=1).nonzero().squeeze(1)
+
+
+def scene_named(name: str, file: Path | None = None) -> Scene | None:
+    """A scene of `THINGS` with the photographs' cameras, from a file if one is given; None if its data are missing."""
     captures, scenes = folder("captures"), folder("scenes")
-    if name in _FILES:
+    if file is not None:
+        scene: Scene | None = load(file)
+    elif name in _FILES:
         path = None if scenes is None else scenes / _FILES[name]
         scene = load(path) if path is not None and path.exists() else None
     else:
@@ -165,7 +172,7 @@ def _scene(name: str) -> Scene | None:
     return scene
 
 
-def _best(scene: Scene, rows: Tensor) -> Camera | None:
+def best_camera(scene: Scene, rows: Tensor) -> Camera | None:
     """The camera that shows most of a thing; None if none shows enough."""
     if scene.cameras:
         step = max(1, len(scene.cameras) // _CAMERAS)

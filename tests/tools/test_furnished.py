@@ -298,7 +298,7 @@ def test_a_receipt_survives_json_and_a_preview_changes_nothing(corner: Scene, co
         op = parse({**data, "target": a("armchair")})
         receipt = preview(corner, op, context)
         assert receipt.dry_run and Receipt.model_validate_json(receipt.to_json()) == receipt
-        assert set(receipt.seconds) == {"resolve", "apply", "check"} and receipt.sentence()
+        assert set(receipt.seconds) == {"resolve", "apply", "check", "see"} and receipt.sentence()
     assert corner.cloud.digest() == digest
 
 

@@ -28,6 +28,7 @@ _WAYS: dict[str, frozenset[str]] = {
     "merge": frozenset(),
     "split": frozenset(),
 }
+_CARRIED = {"delete": frozenset({"placed"}), "replace": frozenset({"placed"})}
 _ADDS = frozenset({"insert", "duplicate", "replace"})
 _COMPLETE = 0.99  # share of the target's visual weight that must change: a few Gaussians may already be as asked
 
@@ -36,7 +37,10 @@ def only_as_asked(case: Case) -> Check:
     """No Gaussian changed but those that the words mean, none in another way, and none appeared unasked."""
     stray = int((case.changes.any & ~case.free).sum())
     ways = _WAYS.get(case.op.op)
-    wrong = 0 if ways is None else int((_otherwise(case.changes, ways) & case.free).sum())
+    wrong = 0 if ways is None else int((_otherwise(case.changes, ways) & case.free & case.target).sum())
+    if ways is not None:  # what stood on a thing that goes comes down
+        carried = case.free & ~case.target
+        wrong += int((_otherwise(case.changes, ways | _CARRIED.get(case.op.op, frozenset())) & carried).sum())
     new = 0 if ways is None or case.op.op in _ADDS else len(case.changes.added)
     said = f"{stray} Gaussians of other things changed, {wrong} of the target changed in another way"
     said += f", {new} appeared" if new else ""

@@ -85,7 +85,7 @@ def lit(lab: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.array([np.quantile(lab[:, 0], 0.8), np.median(lab[:, 1]), np.median(lab[:, 2])])
 
 
-def looks_colored(name: str, word: str, cloud: GaussianCloud, scene: Scene) -> Check:
+def looks_colored(name: str, word: str, cloud: GaussianCloud, scene: Scene, least: float = COLOR_SEEN) -> Check:
     """The pixels that show a thing have the colour `word`.
 
     The best of three measures counts: the lit pixels, the mean pixel, and the share of the pixels of that colour.
@@ -96,4 +96,4 @@ def looks_colored(name: str, word: str, cloud: GaussianCloud, scene: Scene) -> C
     scores = [float(color_scores(word, lit(lab))), float(color_scores(word, lab.mean(axis=0)))]
     scores.append(float((color_scores(word, lab) >= 0.5).mean()))
     best = max(scores)
-    return at_least(name, best, COLOR_SEEN, "1", f"its pixels fit the colour {word} with a score of {best:.2f}")
+    return at_least(name, best, least, "1", f"its pixels fit the colour {word} with a score of {best:.2f}")

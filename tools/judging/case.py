@@ -31,6 +31,7 @@ class Case:
         op: the operation.
         context: viewer, encoder and "it" as the operation had them.
         chosen: what a repair took the words to mean; None: they are asked again.
+        crowded: whether the operation told that a new thing touches what stands around it.
     """
 
     before: Scene
@@ -38,6 +39,7 @@ class Case:
     op: EditOp
     context: Context
     chosen: Selection | None = None
+    crowded: bool = False
 
     @cached_property
     def changes(self) -> Changes:
@@ -55,7 +57,8 @@ class Case:
         found = self.chosen if self.chosen is not None else self.asked
         if found is None or not found.chosen:
             return Selection(Query(), "found", _NO_IDS)
-        return with_enclosed(self.before, found) if self.op.takes_enclosed and len(found) else found
+        whole = found.enclosed is not None or not self.op.takes_enclosed or not len(found)
+        return found if whole else with_enclosed(self.before, found)
 
     @cached_property
     def target(self) -> Tensor:

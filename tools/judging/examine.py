@@ -16,10 +16,12 @@ from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.errors import ScenewrightError
+from ...gaussians.harmonics import dc_to_color
 from ...gaussians.language.field.measure import solid_points
 from ...gaussians.world import kinds
 from ...gaussians.world.box import Box
 from ..coloring.surfaces import surfaces
+from ..new_objects import scene_scale
 from ..operation import Placement
 from ..ops.arrange import Arrange
 from ..ops.delete import Delete
@@ -34,9 +36,9 @@ from ..ops.reframe import Reframe
 from ..ops.replace import Replace
 from ..ops.rotate import Rotate
 from ..ops.scale import Scale
-from ..placement.bodies import bodies_of, contact_box, heading
+from ..placement.bodies import bodies_of, contact_box, heading, mask_of_bodies
 from ..receipt import Check, at_least, at_most, report
-from . import appearance, standing
+from . import appearance, hues, sizes, spots, standing
 from .accounting import all_of_it, only_as_asked
 from .case import Case
 from .leftovers import left_behind
@@ -46,6 +48,8 @@ _RIGID = 0.01  # of its size: RMS by which a thing that moved may be out of shap
 _WAY = 0.03  # of the way, and at least 2 cm: error of a moved thing's place
 _TURN = 2.0  # degrees
 _SIZE = 0.03  # error of a size ratio, and at most a third of the change that was asked for
+_BRIGHTEST = 0.97  # display value of the brightest channel from which a colour may stay as it is
+_PART = 0.05  # score of a colour that only parts of a new thing have
 _LEVEL = 0.03  # of its height, and at least 2 cm: by how much a copy of a thing that hangs may hang higher or lower
 
 
@@ -80,7 +84,14 @@ def examine(case: Case) -> Findings:
         if found is None or found.verdict != "found":
             told = found.reason if found is not None else ""
             return Findings((at_least("asked again", 0, 1, "things", f"asking again: {told}"),))
+    return measured(case)
+
+
+def measured(case: Case) -> Findings:
+    """As `examine`, of an edit whose target is known (`Case.chosen`): its words are not asked again."""
     checks = [only_as_asked(case)]
+    if case.before.language is None:  # nothing tells one thing from another
+        return Findings(tuple(checks))
     judge = _JUDGES.get(type(case.op))
     more, residue = judge(case, case.op) if judge is not None else ([], _NO_IDS)
     return Findings((*checks, *more), residue)
@@ -94,22 +105,25 @@ def _named(case: Case, changed: Tensor) -> list[Check]:
     if not bool(changed.any()):
         return []
     cloud = case.before.cloud
-    whole = case.bodies and bool((changed == case.target).all())
+    # Parts of other hues may keep their colour: the whole thing is looked at, and not the frame of a television.
+    whole = case.bodies and not bool((changed & ~case.free).any()) and bool((changed & case.target).any())
     return _seen(case, [cloud[b.rows] for b in case.bodies] if whole else [cloud[changed]])
 
 
 def _seen(case: Case, clouds: Sequence[GaussianCloud]) -> list[Check]:
     """The encoder finds these things to be what the words of the target name; empty if they name no kind of thing.
 
-    It only reports where the scene was embedded by another encoder, or looks like nothing that ours was trained on.
+    Nothing is looked at where the scene was embedded by another encoder, or looks like nothing that ours was trained
+    on.
     """
     query, encoder = case.op.query(), appearance.embedded()
-    if query is None or not appearance.is_looked_for(query, encoder):
+    if (
+        query is None
+        or not appearance.is_looked_for(query, encoder)
+        or not appearance.is_judge_of(encoder, case.before)
+    ):
         return []
-    seen = appearance.looks_as_named("looks as named", query.text.lower(), encoder, clouds, case.before)
-    if not appearance.is_judge_of(encoder, case.before):
-        seen = report(seen.name, seen.value, seen.unit, seen.sentence)
-    return [seen]
+    return [appearance.looks_as_named("looks as named", query.text.lower(), encoder, clouds, case.before)]
 
 
 def _delete(case: Case, op: Delete) -> Found:
@@ -127,16 +141,22 @@ def _recolor(case: Case, op: Recolor) -> Found:
     shown = rows if len(rows) else case.target.nonzero().squeeze(1)
     if op.adjust is None and op.color is not None:
         checks.append(appearance.looks_colored("seen in the colour", op.color, _after(case, shown), case.after))
+        checks += hues.as_asked(case, op, shown[case.target[shown]])
     elif op.adjust is not None:
         checks.append(_adjusted(case, op, shown))
+        if op.adjust in ("darker", "lighter"):
+            checks += hues.kept_in_light(case, shown[case.target[shown]])
     return [*checks, *_named(case, case.changes.shaded)], _NO_IDS
 
 
 def _to_paint(case: Case, op: Recolor) -> Tensor | None:
     """`[N]` bool: what of the target has to change its colour; None for all of it.
 
-    A new colour leaves parts of other hues.
+    A new colour leaves parts of other hues. What is as bright as a display shows cannot become lighter or purer.
     """
+    if op.adjust in ("lighter", "more_saturated"):
+        shown = dc_to_color(case.before.cloud.sh[:, 0])
+        return case.target & (shown.amax(dim=1) < _BRIGHTEST)
     if op.color is None or op.paints_parts or not bool(case.target.any()):
         return None
     target = case.target.clone()
@@ -198,7 +218,7 @@ def _near(name: str, off: float, way: float, case: Case, told: str) -> Check:
 
 def _move(case: Case, op: Move) -> Found:
     left, residue = left_behind(case)
-    checks = [all_of_it(case, _elsewhere(case)), left]
+    checks = [all_of_it(case, _elsewhere(case), _of_bodies(case)), left]
     for body in case.bodies[: appearance.MOST]:
         checks.append(_displaced(case, body.rows))
         motion = standing.rigid_motion(case, body.rows)
@@ -218,6 +238,11 @@ def _move(case: Case, op: Move) -> Found:
         elif op.place is not None:
             checks += _placed(case, op.place, case.now(body.rows), body.label)
     return [*checks, *_named(case, _elsewhere(case) & case.target)], residue
+
+
+def _of_bodies(case: Case) -> Tensor:
+    """`[N]` bool: the target without its strays, which stay where they are."""
+    return case.target & mask_of_bodies(case.before, case.bodies)
 
 
 def _elsewhere(case: Case) -> Tensor:
@@ -259,30 +284,28 @@ def _rotate(case: Case, op: Rotate) -> Found:
     checks: list[Check] = []
     axis = heading(case.context.viewer, case.before.frame, op.axis)
     if op.degrees is not None and op.toward is None and abs(op.degrees % 360) > 1e-6:
-        checks.append(all_of_it(case, case.changes.placed))
+        checks.append(all_of_it(case, case.changes.placed, _of_bodies(case)))
     for body in case.bodies[: appearance.MOST]:
         checks.append(_displaced(case, body.rows))
         motion = standing.rigid_motion(case, body.rows)
         if motion is not None and op.degrees is not None and op.toward is None:
             off = abs((standing.turned_by(motion[0], axis) - op.degrees + 180) % 360 - 180)
             checks.append(at_most("turned as said", off, _TURN, "degrees", f"its turn is off by {off:.2g} degrees"))
-        if motion is not None and op.axis == "up":
-            stray = float(np.linalg.norm(motion[1]))
-            told = f"its middle moved by {stray:.3g} units"
-            checks.append(at_most("stayed in place", stray, 0.5 * max(body.box.size), "units", told))
+        if motion is not None:
+            checks += spots.pivot_kept(case, body, motion[0])
     return [*checks, *_named(case, case.changes.placed & case.target)], _NO_IDS
 
 
 def _scale(case: Case, op: Scale) -> Found:
     checks: list[Check] = []
     if op.factor != 1:
-        checks.append(all_of_it(case, case.changes.placed))
+        checks.append(all_of_it(case, case.changes.placed, _of_bodies(case)))
     for body in case.bodies[: appearance.MOST]:
         rows = case.now(body.rows)
         if len(rows) < 4:
             checks.append(at_most("size as asked", 1.0, _SIZE, "1", "nothing of it is there any more"))
             continue
-        checks.append(_resized(case, op, body.box, rows))
+        checks += [_resized(case, op, body.box, rows), spots.foot_kept(case, body), spots.underside_kept(case, body)]
     return [*checks, *_named(case, case.changes.placed & case.target)], _NO_IDS
 
 
@@ -306,7 +329,7 @@ def _resized(case: Case, op: Scale, was: Box, rows: Tensor) -> Check:
 
 def _arrange(case: Case, op: Arrange) -> Found:
     left, residue = left_behind(case)
-    checks = [all_of_it(case, case.changes.placed), left]
+    checks = [all_of_it(case, case.changes.placed, _of_bodies(case)), left]
     way = np.array([op.x, op.y, op.z]) / (case.before.frame.metres_per_unit or 1.0) @ case.before.frame.basis()
     for body in case.bodies[: appearance.MOST]:
         checks.append(_displaced(case, body.rows))
@@ -326,7 +349,7 @@ def _arrange(case: Case, op: Arrange) -> Found:
 
 
 def _exchange(case: Case, op: Exchange) -> Found:
-    checks = [all_of_it(case, case.changes.placed)]
+    checks = [all_of_it(case, case.changes.placed, _of_bodies(case))]
     if len(case.bodies) != 2:
         return checks, _NO_IDS
     for one, other in (case.bodies, case.bodies[::-1]):
@@ -351,10 +374,13 @@ def _new(case: Case, kind: str, color: str | None, count: int) -> list[Check]:
     clouds = [case.after.cloud[rows] for rows in case.added]
     told = f"{len(clouds)} new things are there, {count} were asked for"
     checks = [at_most("as many as asked", abs(len(clouds) - count), 0, "things", told)]
-    if encoder.knows(kind.lower()) and clouds:
+    looking = case.chosen is None or appearance.is_judge_of(encoder, case.before)
+    if looking and encoder.knows(kind.lower()) and clouds and case.context.assets is None:
         checks.append(appearance.looks_as_named("looks as named", kind.lower(), encoder, clouds, case.after))
     if color is not None:
-        checks += [appearance.looks_colored("seen in the colour", color, c, case.after) for c in clouds[:1]]
+        seen = (appearance.looks_colored("seen in the colour", color, c, case.after, _PART) for c in clouds[:1])
+        checks += seen
+        checks += [hues.new_in_color("hue as asked", color, c, case.after) for c in clouds[:1]]
     return checks
 
 
@@ -362,10 +388,12 @@ def _insert(case: Case, op: Insert) -> Found:
     checks = _new(case, op.asset, op.color, op.count)
     for rows in case.added[: appearance.MOST]:
         checks += _placed(case, op.place, rows, op.asset)
+        box = case.box_after(rows)
         if op.height is not None:
-            asked = op.height.in_units(case.before.frame)
-            off = abs(case.box_after(rows).size[2] / asked - 1)
+            off = abs(box.size[2] / op.height.in_units(case.before.frame) - 1)
             checks.append(at_most("as tall as asked", off, _SIZE, "1", f"its height is off by {off:.1%}"))
+        else:
+            checks.append(sizes.of_its_kind(case, op.asset, box, sizes.scale_around(case)))
     return checks, _NO_IDS
 
 
@@ -376,9 +404,9 @@ def _replace(case: Case, op: Replace) -> Found:
     for rows in case.added[: appearance.MOST]:
         checks += _placed(case, None, rows, op.asset)
         box = case.box_after(rows)
-        off = min(float(np.linalg.norm(np.array(box.center) - b.center)) for b in case.bodies)
-        reach = max(*box.size, *(s for b in case.bodies for s in b.box.size))
-        checks.append(at_most("in its place", off, 1.25 * reach, "units", f"it stands {off:.3g} units from the old"))
+        scale = scene_scale(case.before, [(b, op.target.text) for b in case.bodies])
+        sized = sizes.fits_old(case, box) if scale.guessed else sizes.of_its_kind(case, op.asset, box, scale)
+        checks += [spots.in_its_place(case, rows, box), sized]
     return checks, residue
 
 
@@ -390,7 +418,11 @@ def _duplicate(case: Case, op: Duplicate) -> Found:
     for rows in case.added[: appearance.MOST]:
         off = min(abs(len(rows) / max(len(one), 1) - 1) for one in like) if like else 1.0
         checks.append(at_most("like the original", off, 0.01, "1", f"its Gaussians are off by {off:.1%}"))
-        near = min(float(np.linalg.norm(np.array(case.box_after(rows).center) - b.center)) for b in case.bodies)
+        box = case.box_after(rows)
+        near = min(float(np.linalg.norm(np.array(box.center) - b.center)) for b in case.bodies)
+        whole = min(case.bodies, key=lambda b: abs(len(b.rows) - len(rows)))
+        now = contact_box(solid_points(case.after.cloud, rows), case.after.frame, whole.box.axes)
+        checks += [sizes.like_original(now, whole.box), hues.like_original(case, rows, whole.rows)]
         checks.append(at_least("beside the original", near, 0.2 * min(case.bodies[0].box.size), "units",
                                f"it stands {near:.3g} units from the original"))  # fmt: skip
         if op.direction is None:

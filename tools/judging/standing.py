@@ -27,11 +27,13 @@ from .case import Case
 
 _FEET = 0.05  # of its height: the lowest part of a thing, on which it stands
 _AIR = 4.0  # centimetres between a thing and what carries it: cushions are soft, and boxes miss thin feet
+_CAPTURED = 0.1  # of its size: the same where the scale is unknown, as the surfaces of captures are thick
 _AT_WALL = 8.0  # centimetres between a thing that hangs and what it hangs on: brackets and frames
-_NOTHING = 100.0  # of a thing's size: the gap that is told where nothing is near it
 _SURFACE = 0.02  # share of the points under a thing that must be at its underside
 _FEW = (2, 7)  # least and most number of such points that do not count: stray ones
-_RELATED = 0.5 * HOLDS  # score from which an asked relation is accepted: boxes measured twice differ a little
+_SPARSE = 12  # points under a thing below which two make a surface
+_RELATED = 0.35 * HOLDS  # score from which an asked relation is accepted: boxes measured twice differ a little
+_CROWDED = 0.3  # the same where there is little room, which the operation tells
 _INSIDE = 0.01  # share of a thing's points that others may have within it
 
 
@@ -42,7 +44,7 @@ def stands(case: Case, rows: Tensor, label: str) -> Check:
         rows: of the cloud after.
         label: its kind; things for walls and ceilings need only touch something.
     """
-    points, others = solid_points(case.after.cloud, rows), _others(case, rows)
+    points, others = solid_points(case.after.cloud, rows), other_points(case, rows)
     box = case.box_after(rows)
     known, reach = kinds.find(label) if label else None, max(box.size)
     hung = known.support if known is not None and known.support in ("wall", "ceiling") else ""
@@ -52,13 +54,26 @@ def stands(case: Case, rows: Tensor, label: str) -> Check:
         if not len(others):
             return report("carried", 0.0, "units", "the scene shows no ceiling above it")
     gap = _nearest(points, others) if hung else _gap_below(case, points, box, others)
-    bound = _AT_WALL * case.cm(reach) if hung else max(_AIR * case.cm(reach), _FEET * box.size[2])
+    captured = case.before.frame.metres_per_unit is None
+    standing = _CAPTURED * max(reach, box.size[2]) if captured else max(_AIR * case.cm(reach), _FEET * box.size[2])
+    bound = _AT_WALL * case.cm(reach) if hung else standing
     if math.isinf(gap):
-        return at_most("carried", _NOTHING * reach, bound, "units", "nothing near it carries it")
+        return _level(case, box, bound)
     return at_most("carried", gap, bound, "units", f"{gap:.3g} units lie between it and what carries it")
 
 
-def _others(case: Case, rows: Tensor) -> NDArray[np.float32]:
+def _level(case: Case, box: Box, bound: float) -> Check:
+    """Where the scene shows nothing near a new thing, it is as high as what it was copied from or replaces."""
+    up = case.before.frame.up_vector
+    if not case.bodies:
+        return report("carried", 0.0, "units", "the scene shows nothing that could carry it")
+    off = min(abs(box.bottom(up) - body.box.bottom(up)) for body in case.bodies)
+    return at_most(
+        "carried", off, bound, "units", f"nothing is seen below it; it is {off:.3g} units off the old height"
+    )
+
+
+def other_points(case: Case, rows: Tensor) -> NDArray[np.float32]:
     """Solid points of everything that the edit left where it was."""
     own = torch.zeros(len(case.after.cloud), dtype=torch.bool, device=case.after.cloud.device)
     own[rows] = True
@@ -90,7 +105,7 @@ def _gap_below(case: Case, points: Array, box: Box, others: NDArray[np.float32])
     slack = max(0.25 * box.size[2], 0.02 * max(box.size))
     gaps = np.sort(np.abs(heights[heights < low + slack] - low))
     # Several points make a surface: a single stray one carries nothing. A cushion is touched by a part of it only.
-    enough = int(np.clip(_SURFACE * len(gaps), *_FEW))
+    enough = int(np.clip(_SURFACE * len(gaps), *_FEW)) if len(gaps) >= _SPARSE else 1
     gap = float(gaps[enough]) if len(gaps) > enough else math.inf
     floor = case.after.frame.floor
     return gap if floor is None else min(gap, abs(low - floor))
@@ -101,8 +116,8 @@ def free_of_others(case: Case, rows: Tensor) -> Check:
     points = solid_points(case.after.cloud, rows)
     box = case.box_after(rows)
     clear = min(max(0.15 * box.size[2], 1e-9), 4 * case.cm(max(box.size)))
-    inside = points_inside(points, _others(case, rows), box, clear)
-    bound = max(_INSIDE * len(points), 3.0)
+    inside = points_inside(points, other_points(case, rows), box, clear)
+    bound = max((_CROWDED if case.crowded else _INSIDE) * len(points), 3.0)
     return at_most("free of others", inside, bound, "Gaussians", f"{inside} points of other things are inside it")
 
 
@@ -128,10 +143,23 @@ def in_relation(case: Case, place: Placement, rows: Tensor) -> Check | None:
         thing = replace(anchors[0], level="object", box=box)
         score = max(score, float(relations.score(name, thing, anchors, frame)))
     score = max(score, _beside(box, anchors[0].box, case) if name == "next_to" else 0.0)
+    if name == "on":  # a box that is a little too high or too low does not count against it
+        score = max(score, float(_rests_on(case, box, anchors)))
     if name == "above":  # on the wall behind it counts, as long as it hangs higher
         up = case.before.frame.up_vector
         score = max(score, float(box.bottom(up) > anchors[0].box.top(up) - _FEET * box.size[2]))
     return at_least("placed as asked", score, _RELATED, "1", f"{place.describe()} holds with a score of {score:.2f}")
+
+
+def _rests_on(case: Case, box: Box, anchors: list[Group]) -> bool:
+    """Whether the middle of a box lies over one of the anchors, and its underside in their upper half or above."""
+    up = case.before.frame.up_vector
+    foot = np.array(box.center) - up * (box.size[2] / 2)
+    for anchor in anchors:
+        x, y, z = anchor.box.local(foot[None])[0] / np.maximum(np.array(anchor.box.size), 1e-9)
+        if max(abs(x), abs(y)) <= 0.5 and 0 <= z <= 1:
+            return True
+    return False
 
 
 def _anchors(case: Case, place: Placement) -> list[Group]:

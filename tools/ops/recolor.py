@@ -136,7 +136,7 @@ class Recolor(TargetedOp):
         clipped = 0.0
         for rows in found.painted:
             colors = seen_colors(scene, rows)
-            made = fit(colors, self._aim(scene.cloud, rows, colors, light))
+            made = fit(colors, self.aim(scene.cloud, rows, colors, light))
             if self.adjust is not None:
                 made = made.mixed(self.amount)
             _write(draft, scene.cloud, rows, made, Shading.of(scene.cloud, rows))
@@ -145,7 +145,7 @@ class Recolor(TargetedOp):
         notes = [note for note in (found.note(), light.note()) if note is not None]
         return painted, [*notes, *_clipping(clipped)]
 
-    def _aim(self, cloud: GaussianCloud, rows: Tensor, colors: Sample, light: SceneLight) -> Tensor:
+    def aim(self, cloud: GaussianCloud, rows: Tensor, colors: Sample, light: SceneLight) -> Tensor:
         """`[3]` display colour that the requested pigment has on lit faces, where the rows `[M]` of the cloud are."""
         lit = float(lit_color(colors) @ torch.tensor(LUMA, dtype=torch.float64))
         return light_around(cloud, rows, light, lit).on(self._pigment()).clamp(0, 1)
@@ -176,7 +176,7 @@ class Recolor(TargetedOp):
     def _arrived(self, cloud: GaussianCloud, rows: Tensor, was: Sample, now: Sample) -> Check:
         """The lit faces have the requested colour, or the colour changed in the requested direction."""
         if self.adjust is None:
-            asked = self._aim(cloud, rows, was, scene_light(cloud))
+            asked = self.aim(cloud, rows, was, scene_light(cloud))
             off = float(distance(lit_face(now), rgb_to_lab(asked)))
             return at_most("colour", off, NEAR, "ΔE94", f"its lit faces are {off:.1f} from {self.color} in this light")
         step = self._progress(was, now)

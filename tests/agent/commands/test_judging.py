@@ -31,8 +31,8 @@ def test_edit_tells_what_was_judged(call: Call, room: Path, tmp_path: Path, orde
 def test_a_refused_edit_writes_nothing(call: Call, room: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     first = execute.carry_out
 
-    def unchanged(scene: Any, *args: Any) -> Done:
-        return first(scene, *args)._replace(scene=scene)
+    def unchanged(scene: Any, *args: Any, **how: Any) -> Done:
+        return first(scene, *args, **how)._replace(scene=scene)
 
     monkeypatch.setattr(execute, "carry_out", unchanged)
     answer = call("edit", room, TEXT, "-o", tmp_path / "out.ply", "--judge")

@@ -22,6 +22,7 @@ from scenewright.gaussians.language.field import embed as embedding
 from scenewright.gaussians.language.field.language_field import Group, LanguageField
 from scenewright.gaussians.language.field.measure import box_of, lab_of_cloud
 from scenewright.gaussians.scene import Scene
+from scenewright.tools.judging import appearance
 
 
 class Oracle:
@@ -81,6 +82,7 @@ def oracle(monkeypatch: pytest.MonkeyPatch) -> Oracle:
 
     monkeypatch.setattr(assets, "furnish", remember)
     monkeypatch.setattr(encoders, "load", lambda spec="auto": oracle)
+    monkeypatch.setattr(appearance, "is_judge_of", lambda encoder, scene: False)  # the oracle reads no pictures
     monkeypatch.setattr(
         embedding, "embed", lambda scene, encoder, progress=None: _embed_truth(rooms[-1], oracle, scene)
     )

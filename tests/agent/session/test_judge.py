@@ -172,8 +172,8 @@ def test_a_seed_that_places_badly_is_tried_again_with_another(
     """An insertion that hangs in the air: another design and spot, told in the receipt."""
     first = execute.carry_out
 
-    def lifted(scene: Scene, op: Any, context: Any, *more: Any) -> Done:
-        done = first(scene, op, context, *more)
+    def lifted(scene: Scene, op: Any, context: Any, *more: Any, **how: Any) -> Done:
+        done = first(scene, op, context, *more, **how)
         if context.seed != 0:
             return done
         draft, cloud = Draft(done.scene.cloud), done.scene.cloud
