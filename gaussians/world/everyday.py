@@ -29,13 +29,16 @@ def _classes() -> tuple[Mapping[str, Any], ...]:
 
 @cache
 def by_words() -> Mapping[Phrase, int]:
-    """Every noun as a tuple of words, the last one singular and as written, and the row of its class."""
+    """Every noun as a tuple of words, the last one singular and as written, and the row of its class. Words that mean a
+    kind only as labels are here too: in a sentence a car is no toy car."""
+    taken = {words_of(n) for k in kinds.table().kinds.values() for n in k.names if n not in k.labels}
+    taken |= {(*w[:-1], singular(w[-1])) for w in taken}
     found: dict[Phrase, int] = {}
     for row, entry in enumerate(_classes()):
         for noun in entry["words"].split(", "):
             words = words_of(noun)
             for form in (words, (*words[:-1], singular(words[-1]))):
-                if form not in kinds.by_words():
+                if form not in taken:
                     found.setdefault(form, row)
     return MappingProxyType(found)
 

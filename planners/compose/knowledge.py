@@ -149,6 +149,7 @@ def _words(name: str) -> tuple[str, ...]:
 
 
 Table = Mapping[tuple[str, ...], str]
+_ALIASES = {("mobile",): "baby mobile"}  # words that mean another thing as the label of a thing
 
 
 @cache
@@ -159,7 +160,7 @@ def thing_words() -> Table:
     more = {w: " ".join(w if "of" in w else (*w[:-1], singular(w[-1]))) for w in everyday.by_words()}
     told = {(*w[:-1], singular(w[-1])): name for w, name in told.items()} | told
     taken = room_words().keys() | style_words().keys()  # here a closet is a room, not a wardrobe
-    return MappingProxyType({w: name for w, name in (more | told).items() if w not in taken})
+    return MappingProxyType({w: name for w, name in (more | told | _ALIASES).items() if w not in taken})
 
 
 @cache

@@ -315,9 +315,17 @@ class _ProblemBuilder:
             if other in self.item_ids["window"]:
                 self.wishes.append(Wish(subject=one, name="at_window"))
             return
+        if self._hangs(other) and name in ("in_front_of", "behind"):  # a wall has no side but the one in the room
+            self.wishes.append(Wish(subject=one, name="next_to", objects=(other,), hard=hard, distance=distance))
+            if name == "in_front_of":
+                self.wishes.append(Wish(subject=other, name="facing", objects=(one,), hard=hard))
+            return
         self.wishes.append(Wish(subject=one, name=name, objects=(other,), hard=hard, distance=distance))
         if name == "in_front_of" and hard and self._has_front(other):
             self.wishes.append(Wish(subject=other, name="facing", objects=(one,), hard=False))
+
+    def _hangs(self, id: int) -> bool:
+        return any(i.id == id and i.support == "wall" for i in self.items)
 
     def _has_front(self, id: int) -> bool:
         kind = knowledge.thing(next(i.label for i in self.items if i.id == id))

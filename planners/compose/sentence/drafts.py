@@ -85,6 +85,7 @@ class Reading:
         self.drafts: list[Draft] = []
         self.recent: list[Draft] = []  # in the order of their last mention
         self.links: list[Link] = []
+        self.capped: list[str] = []  # remarks on things of which too many were asked for
         self.suggested: list[Link] = []  # of the links those that "with" suggests: "a desk with a lamp"
 
     def add(self, draft: Draft) -> Draft:
@@ -109,8 +110,8 @@ class Reading:
         """The draft that "it" or "them" refers to in a relation of `subject`: the last single thing, the last
         several ones."""
         others = [d for d in reversed(self.recent) if d is not subject]
-        fit = (d for d in others if d.several == (word in ("them", "these", "those")))
-        return next(fit, None) or next(iter(others), None)
+        fit = [d for d in others if d.several == (word in ("them", "these", "those"))] or others
+        return next((d for d in fit if not (d.kind and d.kind.opening)), None) or next(iter(fit), None)
 
     def pair(self, subject: Draft | None) -> tuple[Draft, ...]:
         """The drafts that "them" refers to: one draft of several things, or the last two drafts."""
@@ -170,6 +171,8 @@ class Reading:
             if own is None:
                 own = max(habits.get(draft.name, 0), _BARE_PLURAL) if draft.plural and not draft.each else 1
             times = count(draft.each, deep + 1) if draft.each is not None and deep < 4 else 1
+            if own * times > _MOST and draft.each is not None:
+                self.capped.append(f"{own * times} of “{draft.name}” were asked for; at most {_MOST} are built")
             return max(1, min(own * times, _MOST))
 
         for draft in self.drafts:
@@ -189,6 +192,7 @@ def brief_of(reading: Reading, kind: str, seats: int | None, size: dict[Side, fl
     """A brief from everything that was read."""
     reading.seat_chairs()
     counts = reading.counts(kind, seats)
+    rest["remarks"] = tuple(dict.fromkeys((*rest.get("remarks", ()), *reading.capped)))[:64]
     drafts = _within(reading.drafts, counts)
     ids = _ids(drafts)
     things = tuple(_thing(d, ids[id(d)], counts[id(d)]) for d in drafts)

@@ -126,6 +126,11 @@ class Linker:
         if links and links[-1].subject is self.last:
             links[-1] = replace(links[-1], distance=metres)
 
+    def elsewhere(self) -> None:
+        """Let what follows be about no thing: a dance floor has a place, but is no thing."""
+        self._finish()
+        self.last = Draft("", Said(), False)
+
     def drop(self) -> None:
         """Drop the waiting relation, as its object cannot be placed."""
         self.waiting = None
@@ -337,7 +342,7 @@ class Linker:
         part = texts[j] if j < len(texts) else ""
         if part in ("wall", "walls") and name in ("against", "on", "at", "next_to", "inside", "in_front_of"):
             self._at_wall(name, vocabulary.WALLS.get(sides[-1]) if sides else None)
-        elif part in ("corner", "corners") and name in ("inside", "at", "against", "on") and sides:
+        elif part in ("corner", "corners") and name in ("inside", "at", "against", "on"):
             walls = [w for s in sides for w in vocabulary.CORNERS.get(s, ())]
             for wall in dict.fromkeys(walls) or (None,):
                 self._place("in_corner", cast("Wall | None", wall))

@@ -32,6 +32,7 @@ _OWNING = ("has", "have", "gets", "get")
 _SAID_OF = ("be", "is", "are", "in", "painted", "all", "colored", "coloured")
 _IRRELEVANT = ("selling", "sells", "serving", "serves", "like")  # what stands behind them is not in the room itself
 _PLANTED = (["pot"], ["tree"], ["bush"], ["plant"], ["hedge"], ["trees"], ["pots"], ["bushes"], ["plants"], ["bouquet"])
+_AFTER_PLACE = (["with"], [":"], [","], ["."], ["interior"], ["where"], ["-"], ["for"], ["has"])
 _AFTER_ROUND = (["it"], ["the"], ["them"], ["each"], ["every"], ["this"], ["that"], ["both"])
 _OPENERS = frozenset(
     {"a", "an", "the", "its", "their", "his", "her", "my", "our", "your", "own", "another", "with", "and"}
@@ -75,6 +76,7 @@ class _Reader(NounPhrases):
         self.remarks: list[str] = []
         self.unknown: list[str] = []
         self.about_room = True  # whether a size that comes next is that of the room
+        self.unshown: tuple[str, ...] = ()  # adjectives of the next noun that boxes do not show
         self.modifiers: list[str] = []  # unknown words before a noun, kept in its name
 
     def run(self) -> None:
@@ -217,6 +219,7 @@ class _Reader(NounPhrases):
         if found := match(vocabulary.FEATURES, self.texts, i):
             self.features.append(found[0])
             self.said = Said()
+            self.linker.elsewhere()
             if found[0] not in ("high ceiling", "low ceiling", "dance floor"):
                 self.remarks.append(f"{found[0]}: kept in the brief, but not drawn")
             return found[1]
@@ -335,6 +338,10 @@ class _Reader(NounPhrases):
         while not is_plural(texts[i + taken - 1]) and (more := self.name_at(i + taken)):
             before += texts[i : i + taken]
             i, (name, taken) = i + taken, more
+        if self._is_place(i, taken, word := texts[i + taken - 1]):
+            self._room("room", word)
+            self.modifiers = []
+            return taken + len(before)
         lead, self.modifiers = [*self.modifiers, *before], []
         said = " ".join(texts[i : i + taken])
         end, content = self.content(i + taken)
@@ -357,6 +364,8 @@ class _Reader(NounPhrases):
 
     def _thing(self, name: str, word: str, i: int) -> None:
         said = self.said
+        self.remarks += [f"“{u}” of the {name} is not shown" for u in self.unshown]
+        self.unshown = ()
         if said.styles and self.kind and self.linker.reading.drafts:
             self.remarks.append(f"“{said.styles[-1]}” of the {name} is not shown")
         head = singular(word.rsplit(" ", 1)[-1])
@@ -427,6 +436,9 @@ class _Reader(NounPhrases):
             if not behind:
                 self.linker.drop()
             return 1
+        if behind and word.endswith(vocabulary.ADJECTIVE_ENDINGS) and not nouns.is_known(word):
+            self.unshown = (*self.unshown, word)
+            return 1
         known = nouns.is_known(word) and may_be_noun(word) and not word.endswith(vocabulary.NOT_THINGS)
         if behind:
             self.modifiers.append(word)
@@ -438,6 +450,11 @@ class _Reader(NounPhrases):
         if not known or behind:
             self.unknown.append(word)
         return 1
+
+    def _is_place(self, i: int, taken: int, word: str) -> bool:
+        """Whether the first noun phrase names the place that is described: "a nail bar with", "a caravan: …"."""
+        first = not self.kind and not self.linker.reading.drafts and not is_plural(word)
+        return first and word in vocabulary.PLACES and self.texts[i + taken : i + taken + 1] in _AFTER_PLACE
 
     def _is_head(self, i: int) -> bool:
         """Whether an unknown word is the head of a noun phrase by its place: after a determiner, a number or an

@@ -35,7 +35,9 @@ RELATIONS: dict[Phrase, str] = {
             "turned to face, looks out on, looks onto, looks at, looking onto, look at, looking toward, looking "
             "towards": "facing",
             "goes on, stands on, sits on, sitting on, standing on, resting on, lying on, placed on, displayed on": "on",
-            "goes under, tucked under, tucked underneath, stored under": "under",
+            "full of, filled with, packed with, loaded with, covered in, piled with, topped off with, overflowing with, "
+        "crammed with, stacked with": "reversed on",
+        "goes under, tucked under, tucked underneath, stored under": "under",
             "goes next to, stands next to, sits next to, right beside, right next to": "next_to",
             "hangs above, hangs over, hanging above, suspended above, suspended over, hung over": "above",
             "along, lined along, running along, all along, down": "against",
@@ -121,6 +123,14 @@ FORMS: dict[str, Form] = {
 # Of "a stack of books" the books are the thing; of "a crate of apples" the crate.
 MEASURES = bag("stack pile heap bundle pair set string collection tower bunch group cluster bank row rows line range")
 PAIRS = bag("scales drums drawers keys weights shelves stairs steps cutlery tools doors clubs skis oars headphones")
+# Heads of names of places: a text that begins with "a nail bar with" describes one.
+PLACES = bag(
+    "bar pub club stall stand booth shop store parlour parlor caravan marquee tent cabin house hall lounge den station "
+    "centre center workshop ward wagon carriage boat ship bus train van truck hut shed barn stable yard camp arena pool "
+    "lobby suite quarters chamber cell dungeon cave bunker treehouse pavilion gazebo conservatory winery brewery"
+)
+# Endings of adjectives that boxes cannot show: "a striped awning", "mismatched chairs".
+ADJECTIVE_ENDINGS = ("ed", "ing", "able", "ible", "ish", "less", "ful")
 # Parts of things and of the room, which are no things by themselves.
 PARTS = bag(
     "end ends back front side sides foot head edge edges top bottom middle centre center rear base row rows column "
@@ -128,6 +138,8 @@ PARTS = bag(
     "west aisle floor floors ground wall walls ceiling ceilings room garden terrace balcony space height width length "
     "depth level metre metres meter meters foot feet rest place position spot point background foreground inside "
     "outside entrance exit light dark day night morning evening summer winter spring autumn time afternoon sun shade "
+    "hotel school office shop store church museum hospital station airport village farm pub club restaurant cafe mall "
+    "market university college theatre cinema factory warehouse library bar diner studio apartment flat "
     "sky weather season house home building street town city country manor world style"
 )
 NOT_THINGS = (
