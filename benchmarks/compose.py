@@ -63,7 +63,7 @@ def made(case: Case, seed: int = _SEED) -> Made:
     graph = result.layout.graph if result is not None else None
     judged = _composed.judge(graph, case)
     wrong = Counter[str](v.kind for v in check(graph).violations) if graph is not None else Counter[str]()
-    told = " ".join((*result.remarks, refused)) if result is not None else refused
+    told = " ".join((*result.remarks, *result.unmet, refused)) if result is not None else refused
     untold = tuple(f for f in judged.faults if not _told(f, told))
     return Made(case, judged, wrong, len(graph.nodes) if graph is not None else 0, refused, untold, seconds)
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...gaussians.timing import timed
-from ..options import Debug, Force, Json, Planner, Seed, Size, View
+from ..options import Budget, Debug, Force, Json, Planner, Seed, Size, View
 from ..terminal.output import terminal
 
 if TYPE_CHECKING:
@@ -56,6 +56,7 @@ def command(
     ] = False,
     detail: Annotated[float, typer.Option("--detail", help="Factor on the number of Gaussians, 0.05 to 8.")] = 1.0,
     planner: Planner = "auto",
+    budget: Budget = None,
     seed: Seed = 0,
     view: View = "auto",
     size: Size = None,
@@ -73,9 +74,9 @@ def command(
     seconds: dict[str, float] = {}
     started = time.perf_counter()
     with timed(seconds, "compose"):
-        graph = _graph(wish, seed, planner, best)
+        graph, unmet = _graph(wish, seed, planner, budget, best)
     with timed(seconds, "check"):
-        _print_violations(graph)
+        _print_violations(graph, unmet)
     built = None
     if targets.scene is not None or targets.picture is not None:
         from ...planners.rooms.build import construct
@@ -111,15 +112,16 @@ def _check_paths(targets: _Targets, assets: Path | None) -> None:
         raise UserError(f"{assets} is not a folder; give one that holds .glb or .ply files")
 
 
-def _graph(wish: str, seed: int, planner: str, best: bool) -> SceneGraph:
-    """The given graph, or one composed from the words; prints what was assumed and left out."""
+def _graph(wish: str, seed: int, planner: str, budget: str | None, best: bool) -> tuple[SceneGraph, int]:
+    """The given graph, or one composed from the words, and how many of their wishes are not met; prints what was
+    assumed, left out and not met."""
     from ...planners.rooms.graph import SceneGraph
 
     if wish.lower().endswith(".json"):
-        return SceneGraph.read(Path(wish))
+        return SceneGraph.read(Path(wish)), 0
     from ...planners.compose.api import composed
 
-    composition = composed(wish, seed=seed, planner=planner)
+    composition = composed(wish, seed=seed, planner=planner, budget=budget)
     for remark in composition.remarks:
         terminal.say(f"note: {remark}")
     layout = composition.layout
@@ -128,9 +130,11 @@ def _graph(wish: str, seed: int, planner: str, best: bool) -> SceneGraph:
         terminal.say(f"left out, as there is no room: {', '.join(f'{label[i]} ({i})' for i in layout.left_out)}")
     if layout.conflicts and not best:
         _refuse_conflict(layout.conflicts, layout.graph)
+    for line in composition.unmet:
+        terminal.say(f"not as said: {line}")
     for conflict in layout.conflicts:
         terminal.say(f"not possible together: {'; '.join(conflict.statements)}")
-    return layout.graph
+    return layout.graph, len(composition.unmet)
 
 
 def _refuse_conflict(conflicts: Any, graph: SceneGraph) -> None:
@@ -152,8 +156,8 @@ def _refuse_conflict(conflicts: Any, graph: SceneGraph) -> None:
     terminal.refuse(error, data)
 
 
-def _print_violations(graph: SceneGraph) -> None:
-    """Print the violations that the checker finds in the graph."""
+def _print_violations(graph: SceneGraph, unmet: int) -> None:
+    """Print the violations that the checker finds in the graph; `unmet`: wishes that are listed above as not met."""
     from ...planners.rooms.check import check, sentences
 
     report = check(graph)
@@ -161,9 +165,8 @@ def _print_violations(graph: SceneGraph) -> None:
     for line in lines[:_MAX_VIOLATIONS]:
         terminal.say(f"check: {line}")
     more = f" ({len(lines) - _MAX_VIOLATIONS} more are not shown)" if len(lines) > _MAX_VIOLATIONS else ""
-    terminal.say(
-        f"check: {len(lines)} things are wrong{more}" if lines else f"check: {_counted(graph)}; nothing is wrong"
-    )
+    sound = f"nothing collides or floats, {unmet} not as said" if unmet else "nothing is wrong"
+    terminal.say(f"check: {len(lines)} things are wrong{more}" if lines else f"check: {_counted(graph)}; {sound}")
 
 
 def _write(graph: SceneGraph, built: Built | None, targets: _Targets) -> None:

@@ -40,22 +40,25 @@ def compose(text: str, *, seed: int = 0, planner: str = "auto", best: bool = Fal
     return layout.graph
 
 
-def composed(text: str, *, seed: int = 0, planner: str = "auto") -> Composition:
+def composed(text: str, *, seed: int = 0, planner: str = "auto", budget: str | None = None) -> Composition:
     """The room that `text` describes, with its brief, remarks, omissions and conflicts.
 
     Args:
         planner: "grammar" for the embedded reader; "auto" asks the model that the environment names
             (`SCENEWRIGHT_MODEL`), or the one named after "auto:", where the reader does not understand everything; a
             model alone ("openai:...") is always asked.
+        budget: limits of the model, as `Budget.parse` reads them: "20s,0.05usd".
 
     Raises:
-        UserError: the words describe no room, or no planner has this name.
-        BackendError: the model cannot be reached.
+        UserError: the words describe no room, no planner has this name, or the budget is none.
+        BackendError: the model cannot be reached, or the budget is used up.
     """
+    from ..budget import Budget, Ledger
     from .compose import compose as proposed
 
+    ledger = Ledger(Budget.parse(budget)) if budget is not None else None
     backend, mode = _proposer(planner)
-    return proposed(text, seed=seed, planner=backend, mode=mode)
+    return proposed(text, seed=seed, planner=backend, mode=mode, ledger=ledger)
 
 
 def _proposer(spec: str) -> tuple[ModelBackend | None, Mode]:

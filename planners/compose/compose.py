@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import time
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
+from ...gaussians.errors import BackendError
+from ..budget import Budget, Ledger
 from ..layout import solve
 from ..layout.problem import Conflict, Layout, Problem
 from ..plan import Usage
@@ -12,14 +15,17 @@ from ..rooms.check import check
 from .brief import Brief, RefusedError
 from .problems import Posed, problem_of
 from .sentence.read import read
+from .unmet import unmet_wishes
 
 if TYPE_CHECKING:
     from ..model.backend import ModelBackend
+    from .proposing import Proposal
 
 _GROWTH = (1.0, 1.12, 1.25, 1.45, 1.7)  # factors on the sides of a room without a stated size, tried in turn
 _SHRINKING = (1.0, 0.999, 0.9, 0.8, 0.7)  # factors on things in a room with a stated size; below 1 all are small ones
 _STRIDE = 7919  # between the seeds of attempts, so that users' neighbouring seeds share no attempt
 _WORSE = 1000  # what is missing counts as much as so many things that nobody can walk up to
+_SECONDS = 120.0  # time limit of a model, all attempts together, where no budget is given
 EMBEDDED = "embedded"
 Mode = Literal["auto", "model"]
 
@@ -37,6 +43,7 @@ class Composition:
         proposer: where the brief comes from: "embedded", the model's name, or "given".
         prompt_hash: hash of the prompt, "" where no model was asked.
         usage: what the model used, None where none was asked.
+        unmet: what was asked for and is not in the room as asked for, a sentence each.
     """
 
     brief: Brief
@@ -47,6 +54,7 @@ class Composition:
     proposer: str = EMBEDDED
     prompt_hash: str = ""
     usage: Usage | None = None
+    unmet: tuple[str, ...] = ()
 
     @property
     def ok(self) -> bool:
@@ -61,28 +69,76 @@ def compose(
     planner: ModelBackend | None = None,
     mode: Mode = "auto",
     effort: float = 1.0,
-    seconds: float = 120.0,
+    ledger: Ledger | None = None,
 ) -> Composition:
     """A room from a description.
 
     Args:
         text: a description in words, or a brief.
         seed: the same words and seed give the same room.
-        planner: a language model that proposes the brief; without one the embedded reader does.
+        planner: a language model that proposes the brief; without one the embedded reader does. Where the wishes of a
+            brief conflict, it is asked once for a second brief.
         mode: "auto" asks the model only where the embedded reader did not understand everything; "model" always.
         effort: of the layout solver.
-        seconds: time limit of the model, all attempts together.
+        ledger: limits of the model, and what it has spent; None: two minutes, all attempts together.
 
     Raises:
         UserError: the text is too long to be a description.
         RefusedError: the text describes no room.
         BackendError: the model gave no brief.
+        OverBudgetError: the budget is used up.
     """
-    brief, proposer, prompt_hash, usage = _brief(text, planner, mode, seconds)
+    ledger = ledger if ledger is not None else Ledger(Budget(seconds=_SECONDS))
+    started = time.monotonic()
+    brief, proposal = _brief(text, planner, mode, ledger)
     posed, layout = arranged(brief, seed, effort)
+    if layout.conflicts and planner is not None and isinstance(text, str):
+        left = ledger.budget.seconds - (time.monotonic() - started)
+        second = _second(text, brief, layout, planner, ledger, left)
+        if second is not None:
+            again = arranged(second.brief, seed, effort)
+            if len(again[1].conflicts) < len(layout.conflicts) and _names_as_much(second.brief, brief):
+                brief, (posed, layout), proposal = second.brief, again, _joined(proposal, second)
     unknown = [f"not understood: {', '.join(brief.unknown)}"] if brief.unknown else []
     remarks = (*unknown, *brief.remarks, *posed.remarks)
-    return Composition(brief, posed.problem, layout, remarks, posed.names, proposer, prompt_hash, usage)
+    unmet = unmet_wishes(brief, posed, layout)
+    if proposal is None:
+        proposer = "given" if isinstance(text, Brief) else EMBEDDED
+        return Composition(brief, posed.problem, layout, remarks, posed.names, proposer, unmet=unmet)
+    name = planner.name if planner is not None else ""
+    return Composition(
+        brief, posed.problem, layout, remarks, posed.names, name, proposal.prompt_hash, proposal.usage, unmet
+    )
+
+
+def _joined(first: Proposal | None, second: Proposal) -> Proposal:
+    """The second proposal with the usage of both."""
+    return second if first is None else replace(second, usage=first.usage.plus(second.usage))
+
+
+def _second(
+    text: str, brief: Brief, layout: Layout, planner: ModelBackend, ledger: Ledger, left: float
+) -> Proposal | None:
+    """A second brief of a model that is told what is not possible together; None where it gives none in time."""
+    from .proposing import propose
+
+    if left <= 0:
+        return None
+    told = ["; ".join(c.statements) for c in layout.conflicts[:4]]
+    try:
+        ledger.require()
+        proposal = propose(text, planner, seconds=left, heard=brief, conflicts=told)
+    except BackendError:
+        return None  # the first brief stands, with its conflict
+    except RefusedError:
+        return None
+    ledger.add(proposal.usage)
+    return proposal
+
+
+def _names_as_much(second: Brief, first: Brief) -> bool:
+    """Whether a second brief gives up none of the things of the first."""
+    return sum(t.count for t in second.things) >= sum(t.count for t in first.things)
 
 
 def arranged(brief: Brief, seed: int, effort: float) -> tuple[Posed, Layout]:
@@ -145,13 +201,13 @@ def _with_missing_items(posed: Posed, layout: Layout) -> Layout:
 
 
 def _brief(
-    text: str | Brief, planner: ModelBackend | None, mode: Mode, seconds: float
-) -> tuple[Brief, str, str, Usage | None]:
-    """The brief, its proposer, the hash of the prompt and the usage."""
+    text: str | Brief, planner: ModelBackend | None, mode: Mode, ledger: Ledger
+) -> tuple[Brief, Proposal | None]:
+    """The brief, and the proposal of the model if it was asked."""
     if isinstance(text, Brief):
-        return text, "given", "", None
+        return text, None
     if planner is None:
-        return read(text), EMBEDDED, "", None
+        return read(text), None
     embedded: Brief | None = None
     if mode == "auto":
         try:
@@ -160,8 +216,10 @@ def _brief(
             if refusal.verdict != "not_understood":
                 raise
         if embedded is not None and not embedded.unknown:
-            return embedded, EMBEDDED, "", None
+            return embedded, None
     from .proposing import propose
 
-    proposal = propose(text, planner, seconds=seconds, heard=embedded)
-    return proposal.brief, planner.name, proposal.prompt_hash, proposal.usage
+    ledger.require()
+    proposal = propose(text, planner, seconds=ledger.budget.seconds, heard=embedded)
+    ledger.add(proposal.usage)
+    return proposal.brief, proposal

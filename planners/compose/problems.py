@@ -34,11 +34,13 @@ class Posed:
         problem: for the layout solver.
         names: for each item that was asked for, its id to the id of the brief's thing.
         remarks: what was added or left out, a sentence each.
+        stated: the wishes that the brief states, those of the members of formations included.
     """
 
     problem: Problem
     names: dict[int, str]
     remarks: tuple[str, ...] = ()
+    stated: frozenset[Wish] = frozenset()
 
 
 def problem_of(brief: Brief, seed: int = 0, *, grow: float = 1.0, shrink: float = 1.0) -> Posed:
@@ -84,9 +86,12 @@ class _ProblemBuilder:
         for said in self.brief.relations:
             if said.subject in ("door", "window"):
                 self._add_wishes(said.subject, GroupRelation(said.name, said.objects, said.wall, said.hard))
+        stated = set(self.wishes)
         for group, _ in self.sized:
             for relation in group.relations:
+                before = len(self.wishes)
                 self._add_wishes(group.key, relation, group)
+                stated |= {w for w in self.wishes[before:] if relation.hard and w.name == relation.name}
         free = (Keepout(name="dance floor", radius=round(min(1.4, 0.22 * min(self.room[:2])), 2)),)
         problem = Problem(
             size=self.room,
@@ -96,7 +101,7 @@ class _ProblemBuilder:
             open=("south",),
             rigid=self.formed.rigid,
         )
-        return Posed(problem, self.names, tuple(dict.fromkeys(self.remarks)))
+        return Posed(problem, self.names, tuple(dict.fromkeys(self.remarks)), frozenset(stated))
 
     def _form(self) -> None:
         """Find the formations; what is in one stands as the formation says, not with its own back to a wall."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Annotated, Any, Literal, Self
@@ -69,7 +70,14 @@ class Proposal:
     usage: Usage
 
 
-def propose(text: str, model: ModelBackend, *, seconds: float = 120.0, heard: Brief | None = None) -> Proposal:
+def propose(
+    text: str,
+    model: ModelBackend,
+    *,
+    seconds: float = 120.0,
+    heard: Brief | None = None,
+    conflicts: Sequence[str] = (),
+) -> Proposal:
     """The brief that a model proposes for a description.
 
     Args:
@@ -77,6 +85,7 @@ def propose(text: str, model: ModelBackend, *, seconds: float = 120.0, heard: Br
         model: the model that is asked.
         seconds: time limit of all attempts together.
         heard: the brief of the embedded reader; the prompt describes its kind of room.
+        conflicts: what of that brief is not possible together; it is asked for one that is.
 
     Raises:
         UserError: the text is too long to be a description.
@@ -87,7 +96,13 @@ def propose(text: str, model: ModelBackend, *, seconds: float = 120.0, heard: Br
     if phrase := unsafe_words(cleaned):
         raise RefusedError("this is no description of a room", "unsafe", (phrase[:60],))
     ends = time.monotonic() + seconds
-    messages = [Message("system", _system(heard)), Message("user", f"Description: {json.dumps(cleaned)}\nAnswer:")]
+    asked = f"Description: {json.dumps(cleaned)}\nAnswer:"
+    messages = [Message("system", _system(heard)), Message("user", asked)]
+    if heard is not None and conflicts:
+        first = json.dumps({"verdict": "ok", "brief": heard.model_dump(mode="json", exclude_defaults=True)})
+        told = prompts.load("compose_conflict").fill(conflicts="\n".join(f"- {c}" for c in conflicts))
+        messages += [Message("assistant", first[:_LONGEST]), Message("user", told)]
+    opening = len(messages)
     usage = Usage(model=model.name)
     fault = ""
     for _ in range(1 + REPAIRS):
@@ -107,7 +122,7 @@ def propose(text: str, model: ModelBackend, *, seconds: float = 120.0, heard: Br
         except ValueError as error:
             fault = str(error)[:_FAULT]
             repair = prompts.load("compose_repair").fill(fault=fault)
-            messages = [*messages[:2], Message("assistant", answer.text[:_LONGEST]), Message("user", repair)]
+            messages = [*messages[:opening], Message("assistant", answer.text[:_LONGEST]), Message("user", repair)]
             continue
         return Proposal(_accepted(found), prompt_hash(), usage)
     raise BackendError(f"{model.name} gave no valid brief in {1 + REPAIRS} attempts; the last fault: {fault}")
@@ -133,7 +148,7 @@ def schema() -> dict[str, Any]:
 
 def prompt_hash() -> str:
     """The hash of the prompt files."""
-    return prompts.short_hash(*(prompts.load(name).hash for name in ("compose", "compose_repair")))
+    return prompts.short_hash(*(prompts.load(name).hash for name in ("compose", "compose_repair", "compose_conflict")))
 
 
 def _system(heard: Brief | None) -> str:

@@ -35,9 +35,10 @@ RELATIONS: dict[Phrase, str] = {
             "turned to face, looks out on, looks onto, looks at, looking onto, look at, looking toward, looking "
             "towards": "facing",
             "goes on, stands on, sits on, sitting on, standing on, resting on, lying on, placed on, displayed on": "on",
-            "full of, filled with, packed with, loaded with, covered in, piled with, topped off with, overflowing with, "
-        "crammed with, stacked with": "reversed on",
-        "goes under, tucked under, tucked underneath, stored under": "under",
+            "full of, filled with, packed with, loaded with, covered in, piled with, overflowing with, topped "
+            "off with, "
+            "crammed with, stacked with": "reversed on",
+            "goes under, tucked under, tucked underneath, stored under": "under",
             "goes next to, stands next to, sits next to, right beside, right next to": "next_to",
             "hangs above, hangs over, hanging above, suspended above, suspended over, hung over": "above",
             "along, lined along, running along, all along, down": "against",
@@ -126,7 +127,8 @@ PAIRS = bag("scales drums drawers keys weights shelves stairs steps cutlery tool
 # Heads of names of places: a text that begins with "a nail bar with" describes one.
 PLACES = bag(
     "bar pub club stall stand booth shop store parlour parlor caravan marquee tent cabin house hall lounge den station "
-    "centre center workshop ward wagon carriage boat ship bus train van truck hut shed barn stable yard camp arena pool "
+    "centre center workshop ward wagon carriage boat ship bus train van truck hut shed barn stable yard camp arena "
+    "pool "
     "lobby suite quarters chamber cell dungeon cave bunker treehouse pavilion gazebo conservatory winery brewery"
 )
 # Endings of adjectives that boxes cannot show: "a striped awning", "mismatched chairs".

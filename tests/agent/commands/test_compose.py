@@ -30,6 +30,7 @@ class Composed:
     layout: Layout
     problem: Problem = HARP
     remarks: tuple[str, ...] = ("cozy also means warm light, which boxes do not show",)
+    unmet: tuple[str, ...] = ("there is no trombone",)
 
 
 @pytest.fixture
@@ -80,8 +81,22 @@ def test_words_are_composed_with_seed_and_planner(compose: Any, monkeypatch: pyt
     asked = _composer(monkeypatch)
     code, out, err = compose("a small room", "--seed", "7", "--planner", "grammar", "--json")
     assert code == 0 and SceneGraph.model_validate_json(out).nodes
-    assert asked == [{"text": "a small room", "seed": 7, "planner": "grammar"}]
+    assert asked == [{"text": "a small room", "seed": 7, "planner": "grammar", "budget": None}]
     assert "warm light" in err and "harp (9)" in err
+
+
+def test_the_budget_is_passed_on_and_what_is_not_as_said_is_listed(
+    compose: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = _composer(monkeypatch)
+    code, _, err = compose("a small room", "--budget", "5s,0.01usd")
+    assert code == 0 and asked[0]["budget"] == "5s,0.01usd"
+    assert "not as said: there is no trombone" in err and "nothing is wrong" not in err
+
+
+def test_a_budget_that_is_none_is_refused(compose: Any) -> None:
+    code, _, err = compose("a small room", "--budget", "much")
+    assert code == 2 and "is not a budget" in err
 
 
 def test_a_conflict_writes_nothing_unless_the_best_is_wanted(
