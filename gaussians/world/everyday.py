@@ -59,11 +59,23 @@ def of(label: str) -> Kind | None:
 
 
 def shape(label: str) -> str:
-    """The shape of the class of a label: the name of a builder of assets or of a plain solid; "" if there is none."""
+    """The shape of the class of a label: the name of a builder of assets or of a plain solid; "" if there is none.
+
+    Kinds that no builder draws have one too.
+    """
     words = words_of(label)
+    meant = kinds.of(label)
+    if meant is not None and meant.name in _drawn():
+        return _drawn()[meant.name]
     rows = (_row(words[start:]) for start in range(len(words)))
     row = next((r for r in rows if r is not None), None)
     return "" if row is None else str(_classes()[row]["shape"])
+
+
+@cache
+def _drawn() -> Mapping[str, str]:
+    """Shapes of kinds without a builder, by name."""
+    return {name: entry["shape"] for entry in _classes() for name in entry.get("drawn", "").split(", ") if name}
 
 
 def free_beneath(label: str, height: float) -> float:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import atan2, ceil, cos, degrees, pi, sin, sqrt, tan
 
+from ...gaussians.world import everyday
 from ...gaussians.world.person import STEP
 from ..layout.problem import Item, Rigid
 from .furnishing import Group, GroupRelation, pairs
@@ -22,6 +23,7 @@ _KNEES = 0.45  # between a seat and the table before it
 _SEAT_GAP = 0.03  # between a table and its chairs
 _IN_REACH = 0.75  # from outside a circle to what is in its middle, over the things in the circle
 _OPENING = 0.65  # in a circle, to walk in
+_TRUNK = 0.07  # of a tree's width: radius of its trunk
 _MOST_AT_ROUND = 4  # seats that the four sides of a round table hold
 
 
@@ -58,7 +60,7 @@ class Formations:
     def run(self) -> Formed:
         """All formations; a thing belongs to one at most."""
         found = list[Rigid]()
-        for finder in (self._arranged, self._facing, self._flanked, self._circled, self._between):
+        for finder in (self._arranged, self._facing, self._flanked, self._circled, self._between, self._beneath):
             for group in self.groups:
                 for places in finder(group):
                     own = {p[0] for p in places}
@@ -251,6 +253,16 @@ class Formations:
                 places.append((id, x, (deepest - depth) / 2, 0.0))
                 x += width / 2 + 0.06
             yield places
+
+    def _beneath(self, group: Group) -> Iterator[list[Place]]:
+        """Something under a tree, beside its trunk."""
+        for relation in group.relations:
+            own, others = list(self.ids.get(group.key, ())), self._objects(relation)
+            if relation.name not in ("under", "below") or len(own) != 1 or len(others) != 1:
+                continue
+            if everyday.shape(self.items[others[0]].label) == "tree" and self._is_free(others[0]):
+                (w, _, _), (_, depth, _) = self.items[others[0]].size, self.items[own[0]].size
+                yield [(others[0], 0.0, 0.0, 0.0), (own[0], 0.0, -(_TRUNK * w + depth / 2 + 0.03), 0.0)]
 
 
 def _from_first(places: Sequence[Place]) -> Iterator[Place]:

@@ -21,6 +21,8 @@ from .brief import Brief, Thing
 
 _FEWEST, _MOST = 8, 22  # fewest and most objects of a room without a stated size
 _PER_AREA = 0.9  # objects for each square metre of a stated size
+_FOCI = ("altar", "stage", "blackboard", "whiteboard", "projector screen", "lectern", "pulpit", "podium", "screen")
+_AUDIENCE = 4  # so many seats without another place face what an audience looks at
 _NAMED, _EXTRAS = 4, 4  # from so many named things on a room gets at most so many others
 _SKIPPED = 0.15  # probability that a habit is left out, so that rooms of one kind differ
 _PLAIN = Kind(name="thing", size=((0.5, 0.5), (0.5, 0.5), (0.5, 0.5)))
@@ -86,6 +88,8 @@ class Furnishing:
             if thing.name in ("door", "window"):
                 continue
             kind = knowledge.thing(thing.name) or replace(_PLAIN, name=thing.name)
+            if self.room.outdoor and kind.support == "wall" and thing.support is None:
+                kind = replace(kind, support="floor")  # a chalkboard at a stall stands; there is no wall
             self.groups.append(Group(thing.id, thing, kind))
         known = {g.key: g for g in self.groups}
         for said in self.brief.relations:
@@ -224,6 +228,11 @@ class Furnishing:
             if habit is None or group.relations or group.thing.arrangement:
                 continue
             self.pending += [(group, w) for w in habit.wishes if w[0] not in ("on", "in_center", "aligned_with")]
+        focus = next((g for g in self.groups if g.asked and g.kind.name in _FOCI), None)
+        for group in self.groups if focus is not None else ():
+            many = group.asked and group.kind.seats and group.count >= _AUDIENCE
+            if many and focus is not None and not any(r.name in ("facing", "around") for r in group.relations):
+                group.relations.append(GroupRelation("facing", (focus.key,)))
 
     def _companions(self) -> list[knowledge.Habit]:
         """Habits that belong to things that were asked for: a chair to a desk."""

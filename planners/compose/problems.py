@@ -100,6 +100,7 @@ class _ProblemBuilder:
             free=free if "dance floor" in self.brief.features else (),
             open=("south",),
             rigid=self.formed.rigid,
+            outdoor=knowledge.room(self.brief.kind).outdoor,
         )
         return Posed(problem, self.names, tuple(dict.fromkeys(self.remarks)), frozenset(stated))
 

@@ -230,7 +230,8 @@ class Prepared:
         """The members that do not overlap an earlier one."""
         kept: list[Member] = []
         for member in members:
-            if not any(plan_penetration(self.box(member), self.box(other)) > EPSILON for other in kept):
+            others = [o for o in kept if (member.item, o.item) not in self.sheltered]
+            if not any(plan_penetration(self.box(member), self.box(other)) > EPSILON for other in others):
                 kept.append(member)
         return tuple(kept)
 

@@ -122,6 +122,7 @@ class Problem(BaseModel):
         walkway: preferred width of passages for a person, metres.
         open: walls through which the viewer looks into the room: unless wished, nothing hangs there and no tall thing
             turns its back to them.
+        outdoor: whether it is a place without walls and ceiling.
         rigid: things that are placed as one where there is room for it, and singly otherwise.
     """
 
@@ -134,6 +135,7 @@ class Problem(BaseModel):
     walkway: Metres = WALKWAY
     open: Annotated[tuple[Wall, ...], Field(max_length=4)] = ()
     rigid: Annotated[tuple[Rigid, ...], Field(max_length=64)] = ()
+    outdoor: bool = False
 
     @model_validator(mode="after")
     def _closed(self) -> Self:

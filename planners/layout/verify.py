@@ -72,4 +72,6 @@ def _graph(prepared: Prepared, state: State) -> SceneGraph:
         n if n.support in ("floor", "wall", "ceiling", *there) else n.model_copy(update={"support": "floor"})
         for n in nodes
     ]
-    return SceneGraph(room=RoomShape(size=prepared.problem.size), nodes=tuple(grounded))
+    return SceneGraph(
+        room=RoomShape(size=prepared.problem.size, outdoor=prepared.problem.outdoor), nodes=tuple(grounded)
+    )

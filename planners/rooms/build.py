@@ -29,6 +29,7 @@ from ...gaussians.language.field.measure import lab_of_cloud
 from ...gaussians.language.query.terms import STRUCTURE
 from ...gaussians.scene import Frame, Scene
 from ...gaussians.timing import timed
+from ...gaussians.world import everyday
 from ...gaussians.world.box import Box
 from ...tools.field_update import NewObject, append_objects
 from .asset_folder import AssetFolder
@@ -44,6 +45,8 @@ __all__ = ["Built", "Look", "build", "construct"]
 SMALLEST, LARGEST = 0.5, 60.0  # metres: limits of a room's sides; nobody can stand in a smaller one
 MOST_THINGS = 400  # each of some thousand Gaussians
 WALLS = ("north", "west", "east")  # the south is left open, for looking in
+_GROUND = ("tiles", "planks", "plain")  # outdoors
+_GREEN = ("tree", "bush", "rock", "tent")  # shapes of what stands on grass
 _SPARE = 256  # ids up to this much above the number of nodes are kept as they are, with empty rows between them
 _LEVEL = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 # Composed rooms are made for viewing: this cover of Gaussians lets no light from behind the walls through.
@@ -117,7 +120,10 @@ def construct(
         carried = loads(graph)
         made = {n.id: maker.make(n, carried.get(n.id, ())) for n in drawn}
     things = {key: one.asset for key, one in made.items()}
-    closed = any(n.support == "ceiling" for n in graph.nodes) if ceiling is None else ceiling
+    hung = any(n.support == "ceiling" for n in graph.nodes) and not graph.room.outdoor
+    closed = hung if ceiling is None else ceiling
+    if graph.room.outdoor and look.floor is None:
+        look = replace(look, floor=_ground(graph, seed))
     with timed(seconds, "room"):
         layout = _layout(graph, drawn, things, seed)
         room = raised(layout, layout.rng, detail, closed, look)
@@ -148,13 +154,33 @@ def _layout(graph: Drawn, drawn: Sequence[Node], things: Mapping[NodeId, Asset],
     """The things at their rest positions, in the order of `drawn`."""
     width, depth, height = graph.room.size
     names = zlib.crc32(" ".join(n.label for n in drawn).encode())  # two rooms of one seed need not share their paint
-    layout = Layout(width, depth, height, WALLS, np.random.default_rng([names, seed & 0xFFFFFFFF]))
+    layout = Layout(width, depth, height, _walls(graph), np.random.default_rng([names, seed & 0xFFFFFFFF]))
     boxes = rest_boxes(graph, things)
     number = {n.id: i for i, n in enumerate(drawn)}
     for node in drawn:
         support = number[node.support] if node.support in number else str(node.support)
         layout.put(things[node.id], boxes[node.id], support)
     return layout
+
+
+def _ground(graph: Drawn, seed: int) -> str:
+    """The ground of an outdoor place: grass where trees or shrubs stand, else tiles, planks or earth."""
+    green = any(everyday.shape(n.label) in _GREEN or n.label == "shrub" for n in graph.nodes)
+    return "grass" if green else _GROUND[zlib.crc32(str(seed).encode()) % len(_GROUND)]
+
+
+def _walls(graph: Drawn) -> tuple[str, ...]:
+    """The walls that are built: all but the south one; outdoors those that something hangs on."""
+    if not graph.room.outdoor:
+        return WALLS
+    width, depth, _ = graph.room.size
+    found = set()
+    for node in graph.nodes:
+        if node.support == "wall":
+            x, y = node.position[:2]
+            gaps = {"north": depth / 2 - y, "west": width / 2 + x, "east": width / 2 - x}
+            found.add(min(gaps, key=lambda wall: gaps[wall]))
+    return tuple(wall for wall in WALLS if wall in found)
 
 
 def _given(graph: Drawn) -> tuple[Camera, ...]:

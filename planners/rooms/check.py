@@ -139,7 +139,8 @@ def _out_of_bounds(graph: SceneGraph) -> Iterator[Violation]:
         out = {
             "left of the room": -width / 2 - low[0], "right of the room": high[0] - width / 2,
             "in front of the room": -depth / 2 - low[1], "behind the room": high[1] - depth / 2,
-            "below the floor": -low[2], "above the ceiling": high[2] - height,
+            "below the floor": -low[2],
+            "above the ceiling": 0.0 if graph.room.outdoor else high[2] - height,
         }  # fmt: skip
         for side, far in out.items():
             if far > inward:

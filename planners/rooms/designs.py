@@ -18,9 +18,10 @@ from ...gaussians.assets.modeling import make
 from ...gaussians.assets.modeling.make import Asset
 from ...gaussians.assets.modeling.materials import Material
 from ...gaussians.assets.modeling.shapes import Piece, bounds, box
+from ...gaussians.assets.modeling.solids import solid
 from ...gaussians.camera import Vec3
 from ...gaussians.color import BASIC, Rgb, parse, plain_color, shade_of
-from ...gaussians.world import kinds
+from ...gaussians.world import everyday, kinds
 from .asset_folder import AssetFolder
 from .color_words import NO_COLOR, color_of, hex_of
 from .node import Node
@@ -84,16 +85,27 @@ class AssetMaker:
                 return Made(taken.asset, notes)
         kind = kind_of(node.label)
         if kind is None:
-            color = shade_of("gray") if rgb is None else rgb
-            why = f"no asset is called {node.label!r}: {said} is drawn as a plain block"
-            return Made(_block(size, color, self.detail), (*notes, why), True)
-        if _is_stand_in(node.label):
+            kind = registry.KINDS.get(everyday.shape(node.label))
+            if kind is None:
+                return self._plain(node, size, rgb, notes)
+            notes = (*notes, f"no asset is called {node.label!r}: {said} is drawn as a {kind.name}")
+        elif _is_stand_in(node.label):
             notes = (*notes, f"no asset is called {node.label!r}: {said} is drawn as a {kind.name}")
         best = self._nearest(kind, size, rgb, loads, f"{node.label}{node.color}")
         if best.stretch > REPORTED_STRETCH:
             times = math.exp(best.stretch)
             notes = (*notes, f"{said} is stretched: one side {times:.1f} times as much as another of our {kind.name!r}")
         return Made(best.finished(size, kind.name, self.detail), notes)
+
+    def _plain(self, node: Node, size: Vec3, rgb: Rgb | None, notes: tuple[str, ...]) -> Made:
+        """A thing of no kind, as the solid of its class of nouns, else as a block."""
+        said, shape = f"{node.label or 'thing'} ({node.id})", everyday.shape(node.label)
+        pieces = solid(shape, size, rgb)
+        if pieces is None:
+            why = f"no asset is called {node.label!r}: {said} is drawn as a plain block"
+            return Made(_block(size, shade_of("gray") if rgb is None else rgb, self.detail), (*notes, why), True)
+        made = make.to_asset(make.fit_to_size(pieces, size), "block", rgb or shade_of("gray"), 0, self.detail)
+        return Made(made, (*notes, f"no asset is called {node.label!r}: {said} is drawn as a plain {shape}"))
 
     def _nearest(self, kind: registry.Kind, size: Vec3, rgb: Rgb | None, loads: Sequence[Load], salt: str) -> _Design:
         """The design that has to be stretched least; with loads, one that supports them is preferred."""

@@ -23,10 +23,14 @@ if TYPE_CHECKING:
     from ...gaussians.scene import Scene
 
 
+_OUTDOOR_HEIGHT = 2.5  # metres, at least, of a room whose height is not given
+
+
 class SceneGraph(BaseModel):
     """A room, its objects, and relations `[id, name, id]` between them that were stated or measured.
 
-    `viewer` is optional; without one the viewer stands before the room, at negative y, and looks along +y.
+    `viewer` is optional; without one the viewer stands before the room, at negative y, and looks along +y. A room of
+    two sides, or of no height, is outdoors.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -37,6 +41,22 @@ class SceneGraph(BaseModel):
         tuple[tuple[NodeId, Annotated[str, Field(max_length=40)], NodeId], ...], Field(max_length=65536)
     ] = ()
     viewer: Viewpoint | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_height(cls, data: Any) -> Any:
+        """A room without a height is outdoors, and as high as what stands in it."""
+        room = data.get("room") if isinstance(data, dict) else None
+        size = room.get("size") if isinstance(room, dict) else None
+        if (
+            not isinstance(room, dict)
+            or not isinstance(size, list | tuple)
+            or len(size) not in (2, 3)
+            or (len(size) == 3 and size[2])
+        ):
+            return data
+        height = max(_extent_of(data.get("nodes"))[2], _OUTDOOR_HEIGHT)
+        return {**data, "room": {**room, "size": [*size[:2], height], "outdoor": room.get("outdoor", True)}}
 
     @model_validator(mode="after")
     def _closed(self) -> Self:

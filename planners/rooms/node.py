@@ -73,12 +73,16 @@ class Node(BaseModel):
 
 
 class RoomShape(BaseModel):
-    """The room: width (x), depth (y) and height (z) in metres, and where up is, which is always +z."""
+    """The room: width (x), depth (y) and height (z) in metres, and where up is, which is always +z.
+
+    `outdoor`: it has no ceiling, and walls only where something hangs on them; its height is that of what stands in it.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     size: Size
     up: Point = (0.0, 0.0, 1.0)
+    outdoor: bool = False
 
     @model_validator(mode="after")
     def _upright(self) -> Self:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 
 import numpy as np
@@ -15,6 +16,7 @@ from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.language.field.language_field import Group, LanguageField
 from scenewright.gaussians.scene import Frame, Scene
 from scenewright.gaussians.world.box import Box
+from scenewright.planners.rooms.check import check
 from scenewright.planners.rooms.graph import SceneGraph
 from scenewright.planners.rooms.node import Node, RoomShape
 
@@ -131,9 +133,17 @@ def test_open_graph_is_refused(nodes: tuple[Node, ...], relations: tuple[tuple[i
         '{"room": {"size": [4, 4, 3]}, "nodes": [], "extra": 1}',
         '{"room": {"size": [4, -4, 3]}}',
         '{"room": {"size": [4, 4, NaN]}}',
-        '{"room": {"size": [4, 4]}}',
+        '{"room": {"size": [4]}}',
     ],
 )
 def test_strictness(bad: str) -> None:
     with pytest.raises(ValueError):
         SceneGraph.model_validate_json(bad)
+
+
+@pytest.mark.parametrize("size", [[8, 6], [8, 6, 0]])
+def test_a_room_without_a_height_is_outdoors_and_as_high_as_what_stands_in_it(size: list[float]) -> None:
+    tree = {"id": 1, "label": "tree", "size": [1.5, 1.5, 3.2], "position": [0, 0, 1.6]}
+    graph = SceneGraph.model_validate_json(json.dumps({"room": {"size": size}, "nodes": [tree]}))
+    assert graph.room.outdoor and graph.room.size == (8.0, 6.0, 3.2)
+    assert check(graph).ok and SceneGraph.model_validate_json(graph.model_dump_json()) == graph

@@ -32,7 +32,7 @@ class Look:
     """How floor and walls look; fields that are None are drawn at random.
 
     Attributes:
-        floor: "planks", "tiles", "carpet" or "plain".
+        floor: "planks", "tiles", "carpet", "plain" or "grass".
         walls: colour of the paint, as `color.parse` takes it.
         cover: standard deviation of their Gaussians over the length of a cell: more closes gaps and blurs texture.
     """
@@ -116,6 +116,7 @@ def _shell(layout: Layout, rng: np.random.Generator, ceiling: bool, look: Look) 
         ),
         "carpet": tone.plain(str(rng.choice(["#a99f90", "#8d939b", "#b3a58c", "#7f8a86"])), "weave"),
         "plain": tone.plain(str(rng.choice(["#b9b4aa", "#a7a29b", "#cfc7b8"])), "flat"),
+        "grass": Material((0.36, 0.5, 0.24), "weave", scale=0.3),
     }[look.floor or drawn]
     paint = tone.plain(
         str(rng.choice(["#ece7dc", "#dfe4e6", "#e6dccb", "#d5dfd6", "#e9dcd7", "#cfd8e2", "#f0ece4", "#d9cdbb"])),

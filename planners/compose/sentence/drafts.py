@@ -113,6 +113,10 @@ class Reading:
         fit = [d for d in others if d.several == (word in ("them", "these", "those"))] or others
         return next((d for d in fit if not (d.kind and d.kind.opening)), None) or next(iter(fit), None)
 
+    def first(self, subject: Draft) -> Draft | None:
+        """The first thing on the floor, which what hangs overhead is likely above."""
+        return next((d for d in self.drafts if d is not subject and d.kind and d.kind.support == "floor"), None)
+
     def pair(self, subject: Draft | None) -> tuple[Draft, ...]:
         """The drafts that "them" refers to: one draft of several things, or the last two drafts."""
         others = [d for d in reversed(self.recent) if d is not subject]

@@ -297,7 +297,9 @@ class Linker:
         if not pronoun and (stated == 1 or (word in ("each", "every") and draft.said.count)):
             self.counted(_TWO * stated)
         self._finish()
-        if texts[i + taken - 1] == "of":
+        if texts[i + taken - 1] == "of" and "aisle" in texts[i + taken : i + taken + 3]:
+            self.arrange(Arrangement(form="grid", columns=_TWO))
+        elif texts[i + taken - 1] == "of":
             self.waiting = _Waiting(draft, "next_to", sides=True)
         elif owner := (self.parent if self.parent is not draft else None) or self.reading.before(draft):
             self._link(draft, "next_to", (owner,), _Waiting(draft, "next_to", sides=True))
@@ -382,8 +384,13 @@ class Linker:
             self.reading.link(Link(subject, "against_wall", (), cast(Wall, spot.removeprefix("part ")), False))
         elif spot == "walls":
             self.reading.link(Link(subject, "against_wall", sides=True))
+        elif spot == "floor":
+            subject.support = "floor"
         else:
-            subject.support = "floor" if spot == "floor" else "ceiling"
+            subject.support = "ceiling"
+            owner = self.parent if self.parent is not subject else None
+            if (owner := owner or self.reading.first(subject)) is not None:
+                self.reading.link(Link(subject, "above", (owner,), hard=False))
 
     def _face_each_other(self, subject: Draft) -> None:
         other = subject if subject.several else self.reading.before(subject)
