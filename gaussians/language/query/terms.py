@@ -40,6 +40,7 @@ STRUCTURE = {
     "floor": "floor", "ground": "floor", "terrain": "floor", "soil": "floor", "grass": "floor", "carpeting": "floor",
     "wall": "wall", "ceiling": "ceiling",
 }  # fmt: skip
+COLORED = {"grass": "green"}  # structure that has its name by its colour: a paved ground is no grass
 # Relations that are read as to whichever anchor fits: "the lamp on the desk" where there are two desks.
 LOOSE = frozenset({"on", "inside", "under", "below", "above", "next_to"})
 ORDERING = frozenset(k.name for k in relations.KINDS if k.orders)
@@ -250,7 +251,9 @@ def _scored(
     limits: dict[str, float] = {}
     own = np.ones(len(groups), bool)
     if query.text in STRUCTURE:
-        terms["text"], limits["text"] = np.ones(len(groups)), 0.5
+        terms["text"], limits["text"] = np.ones(len(groups)), attributes.COLOR_HOLDS
+        if query.text in COLORED:
+            terms["text"] = color_term(field, COLORED[query.text])[rows]
     elif reading is not None:
         terms["text"], limits["text"] = reading.scores[rows], reading.limit
         own &= np.array([g.label in reading.kinds for g in groups], dtype=bool) if reading.kinds else True

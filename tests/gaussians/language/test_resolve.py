@@ -244,6 +244,12 @@ def test_structure_is_found_by_name_and_by_nothing_else(text: str) -> None:
     assert not {FLOOR, WALL} & set(everything.groups)
 
 
+def test_only_a_green_ground_is_grass() -> None:
+    lawn = scene_of((replace(ROOM[FLOOR], color="green"), *ROOM[FLOOR + 1 :]))
+    assert ask(named("grass"), lawn).groups == (FLOOR,) and ask(named("ground"), lawn).groups == (FLOOR,)
+    assert ask(named("grass")).verdict == "absent"  # this floor is brown
+
+
 def test_structure_of_another_colour_is_absent_and_not_some_thing_of_that_colour() -> None:
     assert ask(named("wall", "orange")).verdict == "absent"
     assert found(named("wall", "white"), WALL)
