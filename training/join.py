@@ -1,9 +1,10 @@
 """`python -m scenewright.training.join FOLDER... --out DIR`: one encoder from the image towers of several encoders.
 
 The towers see the same pictures, and their vectors stand side by side. Each label gets one new vector, fitted on the
-training set. A tower that learnt our assets as they are tells those apart best; a tower that learnt them varied and
-beside objects by others carries over to strangers. Phrases go through the text tower of the last encoder, and from
-there to the new vectors of the labels that they are near to. Its vocabulary is that of the last encoder.
+training set, and then on that and the groups of whole rooms (`room_groups.py`). A tower that learnt our assets as they
+are tells those apart best; a tower that learnt them varied and beside objects by others carries over to strangers.
+Phrases go through the text tower of the last encoder, and from there to the new vectors of the labels that they are
+near to. Its vocabulary is that of the last encoder.
 `python -m scenewright.training --out DIR --keep-weights` then calibrates and measures the result.
 """
 
@@ -12,8 +13,9 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -25,9 +27,10 @@ from torch.nn import functional
 
 from ..gaussians.language.encoders.backends.embedded import Embedded
 from ..gaussians.language.encoders.calibration import Calibration
-from . import captions, export, fit, renders, sets
+from . import captions, export, fit, renders, room_groups, sets
 from .augment import augment, plain
 from .model import IMAGE_SIZE
+from .room_groups import RoomGroups
 
 STEPS, THINGS = 1500, 512  # of the fit, and things per step
 RATE, SCALE_RATE = 2e-3, 1e-2  # at the start; they fall to 0
@@ -36,6 +39,8 @@ AUGMENTED = 2  # of the views of each thing; the others are seen as they are
 FIRST_SEED = 7_000_000  # of the augmentation; the training of a tower sees others
 SHARP = 25.0  # scale of the softmax over labels that a phrase goes through
 PARTS = 32  # things whose pictures are encoded at a time
+ROOM_SHARE = 0.25  # weight of the groups of rooms beside the pictures of single things
+ROOM_GROUPS = 256  # of them per step
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,17 +67,24 @@ def features(towers: Sequence[Embedded], crops: renders.Crops, seed: int) -> NDA
 
 
 def fit_anchors(
-    seen: NDArray[np.float32], labels: Sequence[str], job: fit.Task, seed: int, steps: int = STEPS
+    seen: NDArray[np.float32],
+    labels: Sequence[str],
+    job: fit.Task,
+    seed: int,
+    steps: int = STEPS,
+    rooms: RoomGroups | None = None,
 ) -> Anchors:
-    """Fit one vector per label, so that views, and means over two views, are nearest to that of their label.
+    """Fit one vector per label, so that views, means over two views, and groups are nearest to that of their label.
 
     Args:
         seen: `[M, V, F]` vectors of pictures.
         labels: `[M]`.
+        rooms: groups of whole rooms; None for none.
     """
     torch.manual_seed(seed)
     pictures, label = torch.from_numpy(seen), torch.tensor([job.classes.index(name) for name in labels])
     often = torch.from_numpy(fit.sampling_weights(label.numpy(), job.classes))
+    in_rooms = None if rooms is None else _loss_in_rooms(rooms, job)
     table, log_scale = nn.Parameter(_means(pictures, label, len(job.classes))), nn.Parameter(torch.tensor(FIRST_SCALE))
     log_scale.data.log_()
     optimizer = torch.optim.Adam([{"params": [table], "lr": RATE}, {"params": [log_scale], "lr": SCALE_RATE}])
@@ -85,6 +97,8 @@ def fit_anchors(
         one, mean = functional.normalize(vectors.flatten(0, 1), dim=1), functional.normalize(vectors.mean(dim=1), dim=1)
         single = functional.cross_entropy(scale * one @ anchors.T, label[rows].repeat_interleave(2))
         loss = 0.5 * single + 0.5 * functional.cross_entropy(scale * mean @ anchors.T, label[rows])
+        if in_rooms is not None:
+            loss = loss + ROOM_SHARE * in_rooms(anchors, scale)
         optimizer.zero_grad(set_to_none=True)
         loss.backward()  # type: ignore[no-untyped-call]
         optimizer.step()
@@ -92,6 +106,19 @@ def fit_anchors(
     return Anchors(
         functional.normalize(table.detach(), dim=1).numpy(), log_scale.detach().exp().clamp(max=MAX_SCALE).item()
     )
+
+
+def _loss_in_rooms(rooms: RoomGroups, job: fit.Task) -> Callable[[torch.Tensor, torch.Tensor], torch.Tensor]:
+    """The loss of anchors `[C, F]` and their scale over some groups of rooms; rare labels are drawn more often."""
+    vectors = functional.normalize(torch.from_numpy(rooms.vectors), dim=1)
+    label = torch.tensor([job.classes.index(name) for name in rooms.labels])
+    often = torch.bincount(label, minlength=len(job.classes))[label].float().rsqrt()
+
+    def loss(anchors: torch.Tensor, scale: torch.Tensor) -> torch.Tensor:
+        rows = torch.multinomial(often, ROOM_GROUPS, replacement=True)
+        return functional.cross_entropy(scale * vectors[rows] @ anchors.T, label[rows])
+
+    return loss
 
 
 def _means(pictures: torch.Tensor, label: torch.Tensor, count: int) -> torch.Tensor:
@@ -168,6 +195,7 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--objects", type=Path, help="as for the training")
     parser.add_argument("--cache", type=Path, default=renders.cache_folder())
+    parser.add_argument("--fits", type=Path, help="folder of fitted rooms (training.fitted_rooms)")
     parser.add_argument("--assets", type=int, default=40, help="designs of each kind to fit the vectors on")
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args(argv)
@@ -183,6 +211,10 @@ def main(argv: list[str] | None = None) -> int:
     seen = np.concatenate([features(towers, crops, FIRST_SEED + options.seed) for crops in shown])
     labels = [name for crops in shown for name in crops.labels.tolist()]
     write(options.out, towers, fit_anchors(seen, labels, job, options.seed))
+    report("embed rooms")
+    others = room_groups.rooms_of_others(options.objects) if options.objects else ()
+    rooms = room_groups.collect(Embedded(options.out), chain(room_groups.own_rooms(options.fits), others))
+    write(options.out, towers, fit_anchors(seen, labels, job, options.seed, rooms=rooms))
     return 0
 
 

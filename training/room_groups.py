@@ -2,13 +2,13 @@
 
 Pictures of single things are cleaner than those of groups in rooms: there, things hide each other, stand on others, and
 lose or gain pieces by the segmentation. The vectors of labels are therefore fitted on such groups too (`join.py`). The
-rooms are furnished ones, half of them with things in other colours, composed ones, and fitted ones
-(`fitted_rooms.py`).
+rooms are furnished ones, half of them with things in other colours, composed ones, fitted ones (`fitted_rooms.py`), and
+empty ones in which objects by other artists stand.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -17,21 +17,28 @@ import torch
 from numpy.typing import NDArray
 
 from ..gaussians.assets import furnish
+from ..gaussians.camera import Vec3
+from ..gaussians.cloud import GaussianCloud, concat
 from ..gaussians.harmonics import color_to_dc, dc_to_color
 from ..gaussians.language.encoders import Encoder
 from ..gaussians.language.field.embed import embed
 from ..gaussians.language.field.language_field import LanguageField
 from ..gaussians.scene import Scene
 from ..planners.compose.knowledge import rooms as room_kinds
-from . import fitted_rooms
+from . import fitted_rooms, strangers
 from .composed_rooms import named_room
 from .restyle import color
+from .strangers import Stranger
 
 SEEDS = 40_000  # of the first room; no other use has seeds from here on
 FURNISHED, COMPOSED = 60, 2  # furnished rooms, and composed rooms of each kind
 PURE, WHOLE = 0.8, 0.5  # shares of a group that is one thing, and of the thing that is in the group
 MIXED, PIECE = 0.6, 0.25  # below them a group is several things, or part of one
 FEW = 30  # Gaussians of the smallest group
+STANDING, APART, TRIES = 10, 0.15, 60  # objects by others in a room, metres between them, spots tried for each
+LARGEST = 2.6  # metres, longest side of an object by others in a room; larger ones are shrunk
+KnownRoom = tuple[Scene, NDArray[np.int32], tuple[str, ...]]
+"""A scene without a field, the object of each Gaussian `[N]` or -1 for structure, and the name of each object."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,15 +49,11 @@ class RoomGroups:
     labels: tuple[str, ...]
 
 
-def collect(encoder: Encoder, fits: Path | None) -> RoomGroups:
-    """The groups of all rooms.
-
-    Args:
-        fits: folder of the fitted rooms; None leaves them out.
-    """
+def collect(encoder: Encoder, rooms: Iterable[KnownRoom]) -> RoomGroups:
+    """The groups of rooms whose label is in the vocabulary."""
     names = {*encoder.vocabulary.names, *encoder.vocabulary.negatives}
     vectors, labels = [], []
-    for scene, objects, kinds_of in _rooms(fits):
+    for scene, objects, kinds_of in rooms:
         field = embed(scene, encoder)
         assert field.language is not None
         for row, label in _labelled(field, field.language, objects, kinds_of):
@@ -60,8 +63,12 @@ def collect(encoder: Encoder, fits: Path | None) -> RoomGroups:
     return RoomGroups(np.array(vectors, np.float32), tuple(labels))
 
 
-def _rooms(fits: Path | None) -> Iterator[tuple[Scene, NDArray[np.int32], tuple[str, ...]]]:
-    """Each room without a field, the object of each Gaussian `[N]` or -1, and the kind of each object."""
+def own_rooms(fits: Path | None) -> Iterator[KnownRoom]:
+    """Rooms of our own assets.
+
+    Args:
+        fits: folder of the fitted rooms; None leaves them out.
+    """
     for seed in range(SEEDS, SEEDS + FURNISHED):
         room = furnish(seed)
         objects = room.truth.ids.numpy()
@@ -73,6 +80,50 @@ def _rooms(fits: Path | None) -> Iterator[tuple[Scene, NDArray[np.int32], tuple[
     for recipe in fitted_rooms.ROOMS if fits is not None else ():
         assert fits is not None
         yield (*fitted_rooms.fitted_room(recipe, fits), fitted_rooms.names(recipe))
+
+
+def rooms_of_others(objects: Path) -> Iterator[KnownRoom]:
+    """Empty rooms in which every object that is trained on stands once, as it is or with another look."""
+    rng = np.random.default_rng(SEEDS)
+    named = [s for s in strangers.listed(objects, "train") if s.label != strangers.UNNAMED]
+    waiting = [named[i] for i in rng.permutation(len(named))]
+    seed = SEEDS
+    while waiting:
+        room = furnish(seed)
+        shell = room.scene.cloud[torch.from_numpy(np.flatnonzero(room.truth.ids.numpy() < 0))]
+        held = _stood(waiting, shell, room.size, rng)
+        placed = {thing.path for thing, _ in held} or {waiting[0].path}  # the first is too large for any room
+        waiting, seed = [s for s in waiting if s.path not in placed], seed + 1
+        if held:
+            clouds = [shell, *(cloud for _, cloud in held)]
+            objects_of = np.concatenate([np.full(len(c), i - 1, np.int32) for i, c in enumerate(clouds)])
+            starts = np.cumsum([0, *(len(c) for c in clouds)])
+            clouds = [
+                c.replace(ids=torch.arange(int(i), int(i) + len(c))) for c, i in zip(clouds, starts, strict=False)
+            ]
+            yield replace(room.scene, cloud=concat(clouds)), objects_of, tuple(thing.label for thing, _ in held)
+
+
+def _stood(
+    waiting: Sequence[Stranger], shell: GaussianCloud, size: Vec3, rng: np.random.Generator
+) -> list[tuple[Stranger, GaussianCloud]]:
+    """The next objects that find a free spot on the floor of a room, at most `STANDING`."""
+    middle = shell.means.mean(dim=0).numpy()
+    taken: list[tuple[float, float, float]] = []
+    held = []
+    for stranger in waiting[: 2 * STANDING]:
+        cloud = strangers.seen(replace(stranger, size=min(stranger.size, LARGEST)), rng)
+        reach = float(np.linalg.norm((cloud.means.amax(dim=0) - cloud.means.amin(dim=0))[:2].numpy()) / 2)
+        for _ in range(TRIES):
+            x, y = (rng.uniform(-1, 1) * max(side / 2 - reach, 0) for side in size[:2])
+            if all(np.hypot(x - a, y - b) > reach + r + APART for a, b, r in taken):
+                taken.append((x, y, reach))
+                offset = torch.tensor([middle[0] + x, middle[1] + y, 0.0], dtype=cloud.means.dtype)
+                held.append((stranger, cloud.replace(means=cloud.means + offset)))
+                break
+        if len(held) == STANDING:
+            break
+    return held
 
 
 def _colored(scene: Scene, objects: NDArray[np.int32], seed: int) -> Scene:

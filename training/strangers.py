@@ -162,6 +162,11 @@ def things(strangers: list[Stranger], variants: int, seed: int, unchanged: bool 
                 yield Thing(damage.several([cloud, other], rng), SEVERAL, NONE, seed + number)
 
 
+def seen(stranger: Stranger, rng: np.random.Generator) -> GaussianCloud:
+    """The object as it is or, for half of the draws, a variant of it."""
+    return plain(stranger) if rng.random() < 0.5 else _variant(stranger, rng)
+
+
 def _variant(stranger: Stranger, rng: np.random.Generator) -> GaussianCloud:
     """The object with fewer samples, another form, colours and light, for a third of the draws with its own."""
     found = surface(stranger, float(rng.choice([0.2, 0.45, 1.0])))

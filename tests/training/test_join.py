@@ -12,6 +12,7 @@ from scenewright.gaussians.language.encoders.backends.embedded import Embedded
 from scenewright.gaussians.language.encoders.calibration import Calibration
 from scenewright.training import captions, export, fit, join, renders
 from scenewright.training.model import DIM, IMAGE_SIZE
+from scenewright.training.room_groups import RoomGroups
 
 pytest.importorskip("onnx")
 RNG = np.random.default_rng(0)
@@ -76,4 +77,21 @@ def test_vectors_of_labels_are_fitted_and_a_function_of_the_seed() -> None:
     assert np.array_equal(first.vectors, second.vectors) and first.scale == second.scale
     assert np.allclose(np.linalg.norm(first.vectors, axis=1), 1, atol=1e-5)
     guess = (seen.mean(axis=1) @ first.vectors.T).argmax(axis=1)
+    assert np.mean(np.array(JOB.classes)[guess] == np.array(names)) > 0.95
+
+
+def test_groups_of_rooms_move_the_vectors_of_their_labels_towards_them() -> None:
+    """In rooms the things of one label look otherwise: without them, they would be taken for the label beside it."""
+    names = [name for name in JOB.classes for _ in range(12)]
+    middle = RNG.normal(size=(len(JOB.classes), 32))
+    seen = np.repeat(middle, 12, axis=0)[:, None] + 0.3 * RNG.normal(size=(len(names), renders.VIEWS, 32))
+    there = 0.45 * middle[0] + 0.55 * middle[1] + 0.1 * RNG.normal(size=(30, 32))
+    rooms = RoomGroups(there.astype(np.float32), (JOB.classes[0],) * 30)
+    alone, with_rooms = (
+        join.fit_anchors(seen.astype(np.float32), names, JOB, 3, steps=120, rooms=r).vectors for r in (None, rooms)
+    )
+    assert (
+        np.mean((there @ alone.T).argmax(axis=1) == 0) < 0.5 < 0.9 < np.mean((there @ with_rooms.T).argmax(axis=1) == 0)
+    )
+    guess = (seen.mean(axis=1) @ with_rooms.T).argmax(axis=1)
     assert np.mean(np.array(JOB.classes)[guess] == np.array(names)) > 0.95
