@@ -175,10 +175,17 @@ def _joined(first: dict[str, Any] | None) -> str:
     return (
         f"\nThe image tower is two: beside the one trained as above stands an earlier and smaller one, trained on "
         f"{first['pictures']:,}\npictures of {first['kinds']} kinds of ours, not varied, in {first['steps']:,} steps. "
-        "Their vectors stand side by side, and each label got\none new vector, fitted on the whole training set "
-        "(`python -m scenewright.training.join`). The earlier tower tells our\nown designs apart, the later one "
-        "carries over to objects by others.\n"
+        "Their vectors stand side by side, and each label got\none new vector, fitted on the whole training set"
+        f"{_in_rooms(first)} (`python -m scenewright.training.join`).\nThe earlier tower tells our own designs apart, "
+        "the later one carries over to objects by others.\n"
     )
+
+
+def _in_rooms(first: dict[str, Any]) -> str:
+    """The clause on the groups of rooms that the vectors of labels were fitted on, if there were any."""
+    if not first.get("groups"):
+        return ""
+    return f" and on {first['groups']:,}\ngroups and {first['regions']:,} regions of rooms, as segmentation finds them"
 
 
 def _figures(figures: dict[str, float]) -> str:

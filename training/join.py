@@ -32,15 +32,14 @@ from .augment import augment, plain
 from .model import IMAGE_SIZE
 from .room_groups import RoomGroups
 
-STEPS, THINGS = 1500, 512  # of the fit, and things per step
+STEPS, THINGS = 4000, 512  # of the fit, and things per step
 RATE, SCALE_RATE = 2e-3, 1e-2  # at the start; they fall to 0
 FIRST_SCALE, MAX_SCALE = 30.0, 60.0  # of the cosines
 AUGMENTED = 2  # of the views of each thing; the others are seen as they are
 FIRST_SEED = 7_000_000  # of the augmentation; the training of a tower sees others
 SHARP = 25.0  # scale of the softmax over labels that a phrase goes through
 PARTS = 32  # things whose pictures are encoded at a time
-ROOM_SHARE = 0.25  # weight of the groups of rooms beside the pictures of single things
-ROOM_GROUPS = 256  # of them per step
+ROOM_GROUPS = 512  # groups and regions of rooms per step
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +97,7 @@ def fit_anchors(
         single = functional.cross_entropy(scale * one @ anchors.T, label[rows].repeat_interleave(2))
         loss = 0.5 * single + 0.5 * functional.cross_entropy(scale * mean @ anchors.T, label[rows])
         if in_rooms is not None:
-            loss = loss + ROOM_SHARE * in_rooms(anchors, scale)
+            loss = loss + in_rooms(anchors, scale)
         optimizer.zero_grad(set_to_none=True)
         loss.backward()  # type: ignore[no-untyped-call]
         optimizer.step()
@@ -213,7 +212,9 @@ def main(argv: list[str] | None = None) -> int:
     write(options.out, towers, fit_anchors(seen, labels, job, options.seed))
     report("embed rooms")
     others = room_groups.rooms_of_others(options.objects) if options.objects else ()
-    rooms = room_groups.collect(Embedded(options.out), chain(room_groups.own_rooms(options.fits), others))
+    embedded = Embedded(options.out)
+    groups = room_groups.collect(embedded, chain(room_groups.own_rooms(options.fits), others))
+    rooms = room_groups.joined([groups, room_groups.collect_nodes(embedded, room_groups.own_rooms(None))])
     write(options.out, towers, fit_anchors(seen, labels, job, options.seed, rooms=rooms))
     return 0
 

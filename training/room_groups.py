@@ -8,7 +8,7 @@ empty ones in which objects by other artists stand.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -23,17 +23,30 @@ from ..gaussians.harmonics import color_to_dc, dc_to_color
 from ..gaussians.language.encoders import Encoder
 from ..gaussians.language.field.embed import embed
 from ..gaussians.language.field.language_field import LanguageField
+from ..gaussians.language.segmentation.affinity import merge_tree
+from ..gaussians.language.segmentation.group_renders import mean_vectors
+from ..gaussians.language.segmentation.segment import (
+    VIEWS_PER_CANDIDATE,
+    graph_of,
+    rendered_nodes,
+    rows_of_nodes,
+    superpoints_and_structure,
+)
+from ..gaussians.language.segmentation.settle import settled
+from ..gaussians.language.segmentation.superpoints import links_of
+from ..gaussians.language.segmentation.surface import surface_of
 from ..gaussians.scene import Scene
 from ..planners.compose.knowledge import rooms as room_kinds
 from . import fitted_rooms, strangers
+from .captions import PART, SEVERAL
 from .composed_rooms import named_room
 from .restyle import color
 from .strangers import Stranger
 
 SEEDS = 40_000  # of the first room; no other use has seeds from here on
 FURNISHED, COMPOSED = 60, 2  # furnished rooms, and composed rooms of each kind
-PURE, WHOLE = 0.8, 0.5  # shares of a group that is one thing, and of the thing that is in the group
-MIXED, PIECE = 0.6, 0.25  # below them a group is several things, or part of one
+PURE, WHOLE = 0.8, 0.7  # shares of a group that is one thing, and of the thing that is in the group
+MIXED, PIECE = 0.6, 0.4  # below them a group is several things, or part of one
 FEW = 30  # Gaussians of the smallest group
 STANDING, APART, TRIES = 10, 0.15, 60  # objects by others in a room, metres between them, spots tried for each
 LARGEST = 2.6  # metres, longest side of an object by others in a room; larger ones are shrunk
@@ -49,6 +62,11 @@ class RoomGroups:
     labels: tuple[str, ...]
 
 
+def joined(parts: Sequence[RoomGroups]) -> RoomGroups:
+    """All groups of several."""
+    return RoomGroups(np.concatenate([p.vectors for p in parts]), tuple(name for p in parts for name in p.labels))
+
+
 def collect(encoder: Encoder, rooms: Iterable[KnownRoom]) -> RoomGroups:
     """The groups of rooms whose label is in the vocabulary."""
     names = {*encoder.vocabulary.names, *encoder.vocabulary.negatives}
@@ -61,6 +79,39 @@ def collect(encoder: Encoder, rooms: Iterable[KnownRoom]) -> RoomGroups:
                 vectors.append(field.language.embeddings[row])
                 labels.append(label)
     return RoomGroups(np.array(vectors, np.float32), tuple(labels))
+
+
+def collect_nodes(encoder: Encoder, rooms: Iterable[KnownRoom]) -> RoomGroups:
+    """The regions of rooms that the segmentation has to judge: whole objects, pieces of one, and several together."""
+    names = {*encoder.vocabulary.names, *encoder.vocabulary.negatives}
+    vectors, labels = [], []
+    for scene, objects, kinds_of in rooms:
+        clouds, told = _nodes(scene, objects, kinds_of, names)
+        middle = scene.cloud.means.median(dim=0).values.double().numpy()
+        vectors += list(mean_vectors(encoder, clouds, scene.frame, middle, VIEWS_PER_CANDIDATE))
+        labels += told
+    return RoomGroups(np.array(vectors, np.float32), tuple(labels))
+
+
+def _nodes(
+    scene: Scene, objects: NDArray[np.int32], kinds_of: tuple[str, ...], names: Collection[str]
+) -> tuple[list[GaussianCloud], list[str]]:
+    """The Gaussians of each region of a room that is rendered and has a clear label, and that label."""
+    surface = settled(surface_of(scene.cloud), scene.cloud, scene.frame)
+    links = links_of(surface)
+    labels, codes = superpoints_and_structure(surface, links, scene.frame)
+    nodes = merge_tree(graph_of(scene.cloud, surface, links, labels, codes, scene.frame), None)
+    size = np.bincount(labels, minlength=len(codes))
+    points = np.array([sum(int(size[s]) for s in n.members) for n in nodes], dtype=np.int64)
+    asked = sorted(set(rendered_nodes(nodes, points).values()))
+    total = np.bincount(objects[surface.rows][objects[surface.rows] >= 0], minlength=len(kinds_of))
+    clouds, told = [], []
+    for rows in rows_of_nodes(surface, labels, [nodes[i] for i in asked]):
+        label = _label(objects[rows], total, kinds_of)
+        if label in names:
+            clouds.append(scene.cloud[torch.from_numpy(rows)])
+            told.append(label)
+    return clouds, told
 
 
 def own_rooms(fits: Path | None) -> Iterator[KnownRoom]:
@@ -146,14 +197,21 @@ def _labelled(
     total = np.bincount(objects[objects >= 0], minlength=len(names))
     for one in field.objects():
         own = objects[np.isin(group, field.leaves(one.id))]
-        count = np.bincount(own[own >= 0], minlength=len(names))
-        if len(own) < FEW or not count.sum():
-            continue
-        best = int(count.argmax())
-        pure, whole = count[best] / len(own), count[best] / total[best]
-        if pure >= PURE and whole >= WHOLE:
-            yield one.id, names[best]
-        elif pure >= PURE and whole < PIECE:
-            yield one.id, "part of something"
-        elif pure < MIXED and (count >= PIECE * total).sum() > 1:
-            yield one.id, "several things together"
+        if len(own) >= FEW and (label := _label(own, total, names)):
+            yield one.id, label
+
+
+def _label(own: NDArray[np.int32], total: NDArray[np.int64], names: Sequence[str]) -> str:
+    """What some Gaussians are by the objects `own [K]` that they belong to; "" if that is not clear.
+
+    Args:
+        total: number of Gaussians of each object.
+    """
+    count = np.bincount(own[own >= 0], minlength=len(names))
+    if not count.any():
+        return ""
+    best = int(count.argmax())
+    pure, whole = count[best] / len(own), count[best] / total[best]
+    if pure >= PURE:
+        return names[best] if whole >= WHOLE else PART if whole < PIECE else ""
+    return SEVERAL if pure < MIXED and (count >= PIECE * np.maximum(total, 1)).sum() > 1 else ""

@@ -166,13 +166,11 @@ def _evidence(
     encoder: Encoder, views_per_candidate: int, progress: Progress,
 ) -> dict[int, float]:  # fmt: skip
     """Log-odds that a node is one whole object, from its renders, for large nodes that geometry leaves undecided."""
-    wanted = [i for i in grouping.undecided_nodes(nodes, points) if points[i] >= MIN_OBJECT]
-    same = grouping.nearly_same_ancestor(nodes, points)
-    asked = sorted({int(same[i]) for i in wanted}, key=lambda i: (-points[i], i))[:MAX_RENDERED]
+    stand_in = rendered_nodes(nodes, points)
+    asked = sorted(set(stand_in.values()))
     if not asked:
         return {}
-    rows = _rows_by_superpoint(surface, labels, int(labels.max(initial=-1)) + 1)
-    owned = [np.sort(np.concatenate([rows[s] for s in nodes[i].members])) for i in asked]
+    owned = rows_of_nodes(surface, labels, [nodes[i] for i in asked])
     clouds = [scene.cloud[torch.from_numpy(own)] for own in owned]
     middle = np.median(surface.points, axis=0).astype(np.float64)
     vectors = mean_vectors(
@@ -180,7 +178,25 @@ def _evidence(
     )
     whole = np.clip(wholeness(encoder, vectors), 0.001, 0.999)
     odds = {i: float(np.log(w / (1 - w))) for i, w in zip(asked, whole, strict=True)}
-    return {i: odds[int(same[i])] for i in wanted if int(same[i]) in odds}
+    return {i: odds[other] for i, other in stand_in.items()}
+
+
+def rendered_nodes(nodes: list[Node], points: NDArray[np.int64]) -> dict[int, int]:
+    """The node that is rendered for each large node that geometry leaves undecided: itself, or one nearly the same.
+
+    Args:
+        points: `[K]` number of surface points of each node.
+    """
+    wanted = [i for i in grouping.undecided_nodes(nodes, points) if points[i] >= MIN_OBJECT]
+    same = grouping.nearly_same_ancestor(nodes, points)
+    asked = set(sorted({int(same[i]) for i in wanted}, key=lambda i: (-points[i], i))[:MAX_RENDERED])
+    return {i: int(same[i]) for i in wanted if int(same[i]) in asked}
+
+
+def rows_of_nodes(surface: Surface, labels: NDArray[np.int32], nodes: Sequence[Node]) -> list[NDArray[np.int64]]:
+    """The Gaussians of each node, ascending."""
+    rows = _rows_by_superpoint(surface, labels, int(labels.max(initial=-1)) + 1)
+    return [np.sort(np.concatenate([rows[s] for s in node.members])) for node in nodes]
 
 
 def _rows_by_superpoint(surface: Surface, labels: NDArray[np.int32], count: int) -> list[NDArray[np.int64]]:
