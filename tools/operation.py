@@ -94,6 +94,8 @@ class Placement(BaseModel):
 
     relation: relations.PlacementName
     anchors: Annotated[tuple[Query, ...], Field(max_length=2)] = ()
+    corner: Literal["front left", "front right", "back left", "back right"] | None = None
+    """With "corner": which corner of the room, as the viewer sees it."""
     offset: tuple[Metres, Metres] | None = None
     """With "on", or "against" a wall: near which point, metres along the scene graph's x and y from the middle of the
     anchor or of the floor."""
@@ -105,6 +107,8 @@ class Placement(BaseModel):
             raise ValueError(f'place "{self.relation}" needs an anchor: say {kind.told("what")}')
         if self.offset is not None and (self.relation not in _OFFSET or (self.relation != "on" and self.anchors)):
             raise ValueError(f'an offset goes with "on", or "against" a wall, not with "{self.describe()}"')
+        if self.corner is not None and (self.relation != "corner" or self.anchors):
+            raise ValueError(f'a corner of the room goes with relation "corner" alone, not with "{self.describe()}"')
         if len(self.anchors) > kind.anchors:
             raise ValueError(f'place "{self.relation}" takes one anchor, got {len(self.anchors)}')
         return self
@@ -112,6 +116,8 @@ class Placement(BaseModel):
     def describe(self) -> str:
         """ "next to the sofa"."""
         kind = relations.named(self.relation)
+        if self.corner is not None:
+            return f"in the {self.corner} corner of the room"
         return kind.told(*(a.describe() for a in self.anchors)) if self.anchors else kind.told(kind.default)
 
 

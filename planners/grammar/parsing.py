@@ -24,6 +24,7 @@ class Refusal(Exception):
     Attributes:
         verdict: verdict of the plan.
         words: the words that caused the refusal, as written.
+        remark: whether it is of a sentence that only says how things are.
         firm: whether the words are understood and may mean two things, so that no other reading may decide.
     """
 
@@ -31,6 +32,7 @@ class Refusal(Exception):
         super().__init__(reason)
         self.verdict = verdict
         self.words = words
+        self.remark = False
         self.firm = firm or verdict in ("impossible", "unsafe")
 
 

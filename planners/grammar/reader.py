@@ -20,7 +20,7 @@ from .parsing import Refusal, first_words, parse, trees
 from .restating.corrections import corrected, takes_back
 from .restating.elision import about, topic_of
 from .restating.impossible import cannot_be
-from .restating.remarks import is_remark
+from .restating.remarks import is_remark, subject_of
 from .restating.restating import restatements
 from .tagging.non_edits import FORBIDDEN, STATEMENT, empty_refusal, is_chat, refuse_non_edit
 from .tagging.tagger import clauses
@@ -87,6 +87,8 @@ class Reader:
             non_edit = None  # "I love the sofa. Delete the rug."
             if topic is not None and ops[0].get("target") == Query(last=True):
                 ops[0] = {**ops[0], "target": topic}
+        if non_edit and ops and all(str(r) == STATEMENT and r.remark for r in said):
+            non_edit = None  # "Lose the flip chart. It's ancient."
         if non_edit and ops and str(non_edit) == FORBIDDEN and topic is not None:
             ops, non_edit = [_excluding(op, topic) for op in ops], None  # "don't touch the sofa, remove everything"
         if not ops:
@@ -128,7 +130,23 @@ class Reader:
             return
         if not told.firm and (reason := cannot_be([w.text for w in sentence])):
             raise Refusal(reason, sentence[0].text, verdict="impossible")
+        if told.verdict == "not_understood" and depth == 0 and is_remark([w.text for w in sentence]):
+            return self._remark(sentence)
         raise told
+
+    def _remark(self, sentence: Sequence[Word]) -> None:
+        """Keep a sentence that only says how things are apart; "it" may mean what it is about."""
+        state = self._state
+        said = Refusal(STATEMENT, sentence[0].text, verdict="not_an_edit")
+        said.remark = True
+        state.said = (*state.said, said)
+        state.stated_first = not state.ops
+        about_it = subject_of([w.text for w in sentence])
+        if about_it is not None:
+            spoken = clauses(_spanning(("select", *about_it), sentence))
+            with suppress(Refusal):
+                (op,) = operations_of(Phrases(), parse(spoken[0]))
+                state.topic = op["target"]
 
     def _corrected(self, readings: Sequence[str], sentence: Sequence[Word], depth: int) -> None:
         """Read a sentence that takes back part of what it says.
@@ -191,6 +209,7 @@ class Reader:
             except Refusal as refusal:
                 if refusal.verdict != "not_an_edit" or (self._serious() and not is_chat(refusal)):
                     raise
+                refusal.remark = is_remark([w.text for w in sentence])
                 state.said = (*state.said, refusal)
                 state.stated_first = not state.ops
                 state.topic = _topic(clause, refusal)

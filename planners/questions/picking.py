@@ -29,6 +29,10 @@ def picked(query: Query, things: Sequence[Thing], stand: Stand) -> Thing | None:
         "rightmost": lambda t: -float(at(t) @ stand.right),
         "nearest": lambda t: float(np.linalg.norm(at(t) - stand.eye)),
         "farthest": lambda t: -float(np.linalg.norm(at(t) - stand.eye)),
+        "front left": lambda t: float(at(t) @ (stand.right + stand.forward)),
+        "front right": lambda t: float(at(t) @ (stand.forward - stand.right)),
+        "back left": lambda t: float(at(t) @ (stand.right - stand.forward)),
+        "back right": lambda t: -float(at(t) @ (stand.right + stand.forward)),
     }
     order = "leftmost" if query.pick in ("nth", "middle") else query.pick
     if order not in keys:

@@ -57,6 +57,8 @@ def regions_of(
     if place is not None and place.offset is not None:
         start = _offset_point(around, place.offset, anchors)
     if place is None or not anchors:
+        if place is not None and place.corner is not None:
+            return [_corner_region(around, size, plan, place.corner)]
         return [_room_region(around, size, plan, place.relation if place is not None else "on", start)]
     kind, anchor = named(place.relation), anchors[0]
     if kind.region == "top":
@@ -98,6 +100,22 @@ def _room_region(around: Surroundings, size: Vec3, plan: Array, relation: str, s
     def cost(p: Array) -> Array:
         local: Array = p @ to_room.T
         return costs[relation](local) if relation in costs else distance_to(local, wanted)
+
+    corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])]) @ to_room
+    return Region(corners.min(axis=0), corners.max(axis=0), cost, around.floor + around.lift, None)
+
+
+def _corner_region(around: Surroundings, size: Vec3, plan: Array, corner: str) -> Region:
+    """The floor, the best place the nearest to a corner of the room that the viewer names ("back left")."""
+    room = np.array(around.room_axes[:2])
+    low, high, to_room = *around.bounds_for(size, plan), room @ plan.T
+    stand = viewer_stand(around.context.viewer, around.frame.up_vector, 1.0)
+    depth, side = corner.split()
+    way = (stand.forward if depth == "back" else -stand.forward) + (stand.right if side == "right" else -stand.right)
+    wanted = np.where(room @ way > 0, high, low)
+
+    def cost(p: Array) -> Array:
+        return distance_to(p @ to_room.T, wanted)
 
     corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])]) @ to_room
     return Region(corners.min(axis=0), corners.max(axis=0), cost, around.floor + around.lift, None)

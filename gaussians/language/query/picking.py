@@ -16,7 +16,7 @@ from ...world.box import Boxes, distances
 from ...world.relation_geometry import Stand
 from ..field.language_field import Group
 from . import attributes
-from .query import Query
+from .query import CORNERS, Query
 from .selection import Candidate, Selection, Verdict, nothing
 from .terms import Scored
 
@@ -122,7 +122,7 @@ def _tied(ordered: list[int], scored: Scored, query: Query, stand: Stand) -> lis
         equal = math.log(EQUAL_SIZE) / (3 if word == "tall" else 1)
         sizes = np.log(np.maximum([attributes.extent(g, word) for g in groups], 1e-12))
         apart = np.abs(sizes - sizes[0])
-    elif query.pick in ("highest", "lowest", "leftmost", "rightmost", "nearest", "farthest"):
+    elif query.pick in ("highest", "lowest", "leftmost", "rightmost", "nearest", "farthest", *CORNERS):
         equal = EQUAL_PLACE * stand.scale
         places = np.array([_keys(stand)[query.pick](g) for g in groups])
         apart = places - places[0]
@@ -175,6 +175,9 @@ def _keys(stand: Stand) -> dict[str, Callable[[Group], float]]:
     def away(g: Group) -> float:
         return float(np.linalg.norm(np.array(g.box.center) - stand.eye))
 
+    def deep(g: Group) -> float:
+        return float(np.array(g.box.center) @ stand.forward)
+
     def height(g: Group) -> float:
         return float(np.array(g.box.center) @ stand.up)
 
@@ -191,4 +194,8 @@ def _keys(stand: Stand) -> dict[str, Callable[[Group], float]]:
         "lowest": height,
         "nth": rightward,
         "middle": rightward,
+        "front left": lambda g: rightward(g) + deep(g),
+        "front right": lambda g: deep(g) - rightward(g),
+        "back left": lambda g: rightward(g) - deep(g),
+        "back right": lambda g: -rightward(g) - deep(g),
     }

@@ -17,8 +17,9 @@ from ...world.relations import QueryName, named
 Name = Annotated[str, Field(max_length=80)]
 Picks = Literal[
     "one", "all", "any", "largest", "smallest", "tallest", "shortest", "nearest", "farthest", "leftmost", "rightmost",
-    "highest", "lowest", "middle", "nth", "rest",
+    "highest", "lowest", "middle", "nth", "rest", "front left", "front right", "back left", "back right",
 ]  # fmt: skip
+CORNERS = ("front left", "front right", "back left", "back right")  # of the room, as the viewer sees it
 ALL = frozenset({"everything", "all", "scene", "room", "whole scene"})  # nouns that mean every Gaussian
 FLOATERS = frozenset({"floater", "noise", "floating bit", "stray", "haze", "speck"})
 Sizes = Literal["small", "large", "tall", "short", "wide", "narrow"]

@@ -21,7 +21,7 @@ from .changes import Fields
 from .described import EVERYTHING, NounPhrase, all_of, existing, is_all_on_it, union
 from .moving import moved
 from .phrases import Phrases
-from .places import MOTIONS, goal_of
+from .places import MOTIONS, goal_of, length
 
 
 def operations_of(phrases: Phrases, tree: Node) -> list[Fields]:
@@ -138,6 +138,9 @@ def clear(phrases: Phrases, node: Node) -> list[Fields]:
 
 def drop(phrases: Phrases, node: Node) -> list[Fields]:
     found = phrases.things(node)
+    far = [t for d in trees(node, "distance") for t in tokens(d, "LENGTH")]
+    if len(far) == len(trees(node, *MOTIONS)) == 1:
+        return phrases.targeted(node, "move", direction="down", distance=length(far[0].value))
     if trees(node, *MOTIONS) or any(n.modifiers or n.article == "all" for n in found):
         raise Refusal("say put or delete", "drop")
     return phrases.targeted(node, "delete")
@@ -145,7 +148,8 @@ def drop(phrases: Phrases, node: Node) -> list[Fields]:
 
 def take(phrases: Phrases, node: Node) -> list[Fields]:
     found = phrases.things(node)
-    if not trees(node, *MOTIONS):
+    goes = any(p.word.startswith(("into", "onto", "against", "up against")) for p in found[-1].modifiers)
+    if not trees(node, *MOTIONS) and not goes:
         return [{"op": "select", "target": existing(found), "held": "taken"}]
     return moved(phrases, found, node, "MOVE")
 

@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 from ....gaussians.language.query import wholes
 from ....gaussians.language.query.nested import with_queries
-from ....gaussians.language.query.query import Query, Region, Relation
+from ....gaussians.language.query.query import CORNERS, Query, Region, Relation
 from ....gaussians.world import relations
 from ....gaussians.world.words import head
 from ..parsing import Refusal
@@ -194,6 +194,8 @@ def _narrow(query: Query, post: PostModifier, behind: Sequence[PostModifier]) ->
         if post.value == "right":
             return updated(query, ordinal=-(query.ordinal or 1))
         return query
+    if post.kind == "in_spot" and post.value in CORNERS and query.pick in ("one", "any"):
+        return updated(query, pick=post.value)
     if post.kind == "in_spot" and post.value == "center" and query.pick == "one":
         return updated(query, pick="middle")
     if post.kind == "in_spot" and post.value == "corner":

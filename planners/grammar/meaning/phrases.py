@@ -224,7 +224,7 @@ class Phrases:
         if tags[-1].type == "ONE" and len(tags) == 1 and not plural:  # "all but one"
             fields["pick"] = "any"
         if any(t.type == "OTHER" for t in tags):
-            fields["exclude"] = (Query(last=True),)
+            fields["exclude"], fields["count"] = (Query(last=True),), None  # the others are counted with it
             if tags[-1].type == "ONE" and not fields["colors"]:
                 fields["colors"] = self.colors
         if joined := next((t.value for t in tags if t.type == "COLORS"), ()):

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ....gaussians.language.query.query import CORNERS
 from ....gaussians.world import relations
 from ....gaussians.world.words import head
 from ..parsing import Node, Refusal, tag_of, tokens, trees
@@ -78,11 +79,16 @@ def _read_one(kind: str, node: Node, motion: Motion, phrases: Phrases, said: str
     elif kind == "times":
         motion.set("times", whole(tokens(node, "TIMES", "NUMBER")[0].value, said), said)
     elif kind == "spot":
-        motion.set("place", {"relation": tokens(node, "SPOT")[0].value}, said)
+        motion.set("place", spot(tokens(node, "SPOT")[0].value), said)
     elif kind == "toward":
         motion.set("toward", goal_of(phrases, trees(node, "np")[0]).full(), said)
     elif kind == "to":
         motion.set("place", _place_of_goal(goal_of(phrases, trees(node, "np")[0]), moved), said)
+
+
+def spot(name: str) -> Fields:
+    """The place that a spot of the room is: its middle, some corner, or a corner by name ("back left")."""
+    return {"relation": "corner", "corner": name} if name in CORNERS else {"relation": name}
 
 
 def length(value: tuple[float, str]) -> Fields:
@@ -177,7 +183,7 @@ def placement(modifiers: Sequence[PostModifier]) -> Fields:
     if first.kind == "in_spot":
         if rest:
             raise Refusal("a place is one phrase", rest[0].word)
-        return {"relation": first.value}
+        return spot(first.value)
     on_floor = first.value == "on" and head(first.anchors[0].query.text) in ("floor", "ground")
     if on_floor and rest and rest[0].kind in ("related", "between"):
         return placement(rest)  # "on the floor in front of the sofa": "on the floor" is redundant

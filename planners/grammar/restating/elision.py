@@ -153,14 +153,25 @@ _MORE = re.compile(r"^(?:and |now |just |no |then |but )*(?P<degree>(?:even |a l
                    r"way)*$")  # fmt: skip
 
 
+_TOO = re.compile(r"^(?:and |then |oh |also )*(?:the )?(?P<thing>\S.*?) (?:too|as well|also|likewise)$")
+_NICER = re.compile(r"^(?:in )?(?P<hue>\S.*?) (?:would|might|could) (?:be|look|suit|work|go|fit|feel)(?: it| "
+                    r"them)? (?:much |far |way |a lot |so "
+                    r"much )?(?:better|nicer|best|good|nice|great|well|lovely|perfect|prettier)(?: there| on "
+                    r"it)?$")  # fmt: skip
+
+
 def following(said: Sequence[str]) -> Iterator[str]:
     """Readings as the continuation of the command before: "a bit more", "do the wardrobe as well", "on the rug"."""
     text = " ".join(said)
     if found := _DO_TOO.match(text):
         yield f"do the same to {found.group('thing')}"
+    if found := _TOO.match(text):
+        yield f"do the same to {found.group('thing')}"
     if found := _MORE.match(text):
         degree = found.group("degree").strip().removesuffix("even").strip()
         yield f"{degree} more".strip()
+    if found := _NICER.match(text):
+        yield f"make it {found.group('hue')}"
     ahead = Lookahead(said)
     if ahead.preposition_at(0):
         yield f"put it {text}"

@@ -56,7 +56,7 @@ def remarks(said: Sequence[str]) -> Iterator[list[str]]:
             continue
         first, second = _trimmed(said[:i]), _trimmed(said[i + 1 :])
         if first and second and is_remark(first):
-            thing = _subject_of(first)
+            thing = subject_of(first)
             filled = substitute(thing or ("it",), second)
             if filled is None or thing:
                 yield filled or second
@@ -82,7 +82,7 @@ _BEHIND_THING = re.compile(
 )
 
 
-def _subject_of(said: Sequence[str]) -> list[str] | None:
+def subject_of(said: Sequence[str]) -> list[str] | None:
     """The thing that a remark is about: its subject if it says how that is, else the last thing that it names."""
     words = _BEHIND_THING.sub("", " ".join(said)).split()
     subject: list[str] | None = None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
@@ -11,6 +12,7 @@ from .remarks import remarks
 from .smoothing import unopened, without_reason
 from .wishes import wishes
 
+_NOT_THIS = re.compile(r"^not (?:the|that|this|my|those|these) [^,]+ , (?:but )?(?P<rest>\S.*)$")
 _QUESTIONING = bag("what where who which why how when is are does do did has have was were")
 
 
@@ -43,6 +45,8 @@ def _readings(said: str, mark: str) -> Iterator[str]:
     for text in dict.fromkeys((said, plain)):
         yield from (" ".join(r) for r in topics(text.split()))
     yield from (plain, shorter, shortest)
+    if found := _NOT_THIS.match(plain):
+        yield found.group("rest")
     asked = mark == "?" and plain.split()[0] in _QUESTIONING
     words = shortest.split()
     for whole in () if asked else dict.fromkeys((tuple(words), tuple(said.split()))):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from ..tagging.lookahead import color_at
 from ..tagging.words import Word, bag
 
 _SOUNDS = bag("er erm um umm uh uhm uhh hm hmm eh ah aha oh ooh oi yo huh ugh argh ahem")
@@ -30,7 +31,8 @@ _TAGS = (
     "for crying out loud|then|now|so|thanks|please|thank you|too please|instead please|no\\s?\\?|eh|"
     "as soon as (?:you can|possible)|before (?:i|we) (?:go|forget)|and that is (?:it|all|that)|and be done with it|"
     "and be quick about it|or something|or whatever|or something like that|or so i think|somehow|"
-    "just in case|just because|because why not|why not|to start with|to be honest|to be fair|tbh|honestly|imo|imho|"
+    "for a (?:moment|bit|while|sec|second|minute|little while)|temporarily|just in case|just because|because why "
+    "not|why not|to start with|to be honest|to be fair|tbh|honestly|imo|imho|"
     "in my opinion|for me|for us|for now|at last|like i said|as i said|as discussed|as agreed|as usual"
 )  # fmt: skip
 _TAG_END = re.compile(rf"(?:(?: ,)+ (?:{_TAGS})|(?<=\S) (?:please and thanks|please and thank you|pretty please|innit|"
@@ -41,7 +43,8 @@ _TAG_END = re.compile(rf"(?:(?: ,)+ (?:{_TAGS})|(?<=\S) (?:please and thanks|ple
                       r"for god 's sake|as soon as (?:you can|possible)|and be done with it|and that is that|"
                       r"would you kindly|if it is not too much (?:trouble|bother|to ask)|"
                       r"if (?:i|we) (?:may|could)|once and for all|for heaven 's sake|to be honest|tbh|"
-                      r"or something|or whatever))(?= [.;!?]| *$)")  # fmt: skip
+                      r"for a (?:moment|bit|while|sec|second|minute)|temporarily|or something|or whatever))(?= "
+                      r"[.;!?]| *$)")  # fmt: skip
 # Words that open a sentence and say nothing of what to do; a comma need not follow.
 _OPENERS = re.compile(
     r"^(?:(?:so|and|but|well|right|ok|okay|now|alright|all right|anyway|anyways|hey|hi|hello|listen|look|please|"
@@ -77,6 +80,9 @@ _OPENERS = re.compile(
     r"you (?:had better|better|might want to|may want to|could maybe|should probably|need to|have to|have got to|"
     r"ought to|can go ahead and|can now)|we (?:had better|better|might want to|ought to|should probably|have to|"
     r"have got to|need to|can|could|should|might as well)|i (?:might as well|had better)|"
+    r"(?:how|what) about (?:we|you|if we|if you)|what if (?:we|you)|suppose we|maybe we (?:could|should)|perhaps "
+    r"we (?:could|"
+    r"should)|maybe you (?:could|should)|perhaps you (?:could|should)|"
     r"let us (?:just )?go ahead and|let us (?:also |just |now |try to |please )*)"
     r"(?: ,)* )(?=\S)"
 )
@@ -135,6 +141,52 @@ _REWORDED = tuple(
         (r"(?:only|just) the (?=\S.* (?:should|can|may|must) (?:stay|remain|be left))", "only the "),
         (r"got to", "have to"),
         (
+            r"(?P<off>(?:off|out of|from|away from) (?:\S+ ){1,5}?)and (?P<to>into|onto|to|over to|on to|under|"
+            r"behind|against)",
+            r"\g<off>\g<to>",
+        ),
+        (
+            r"(?:so (?:that )?|until |till )(?:it|they) (?:is|are) (?:right |up )?(?P<p>on|in|under|next|beside|"
+            r"between|behind|against|above|"
+            r"near|by|at|below|over|inside|opposite|onto|across|facing)",
+            r"\g<p>",
+        ),
+        (
+            r"(?:back |over |along |up |right )*(?:so (?:that )?(?:it|they)|until (?:it|they)|till (?:it|they)) "
+            r"(?:touch|hit|reach|meet|"
+            r"abut|press|rest|lean)(?:es|s)?(?: against| on)?",
+            "against",
+        ),
+        (
+            r"(?P<f>flip|spin|swing|turn|rotate) (?P<x>\S.*?) (?:round|around) (?:by |a full )?(?P<n>\d+)(?: "
+            r"degrees| deg)?",
+            r"rotate \g<x> \g<n> degrees",
+        ),
+        (
+            r"(?:put|place|stick|pop) (?P<a>\S.*?) where (?P<b>\S.*?) (?:is|are|was)(?: now)?(?: ,)* and (?P=b) "
+            r"where (?P=a) "
+            r"(?:is|are|was)(?: now)?",
+            r"swap \g<a> and \g<b>",
+        ),
+        (r"(?P<v>colou?r|paint|make|do|turn) me (?P<d>the|my|that|this|both|all|every)", r"\g<v> \g<d>"),
+        (r"(?:with|by) (?:the |a )?(?:(?:width|breadth) of a|a) hand(?: 's (?:width|breadth))?", "by 10 cm"),
+        (
+            r"(?:by )?(?:the |a )?(?:(?:width|breadth) of a hand|hand 's (?:width|breadth)|handbreadth|palm 's width)",
+            "10 cm",
+        ),
+        (r"(?:by )?(?:an? )?arm 's length", "70 cm"),
+        (r"(?:by )?(?:a )?(?:finger|thumb) 's (?:width|breadth)", "2 cm"),
+        (
+            r"(?:by )?(?:a|one) (?:step|pace|stride)(?= (?:to|left|right|back|forward|further|closer|away|towards?|"
+            r"up|down))",
+            "75 cm",
+        ),
+        (
+            r"(?:by )?(?:two|a couple of) (?:steps|paces|strides)(?= (?:to|left|right|back|forward|further|closer|"
+            r"away|towards?))",
+            "1.5 m",
+        ),
+        (
             r"(?P<v>paint|recolou?r|colou?r|dye|make|tint|turn) (?P<x>\S.*?) (?:(?:so (?:that )?(?:it|they) |to "
             r")match(?:es)?|like)(?= (?:the|my|our|that|its|"
             r"those|these) )",
@@ -167,6 +219,7 @@ def smooth(texts: Sequence[str]) -> list[str]:
     said = re.sub(r"(?: (?:—|–|―))+", " ,", said)
     said = re.sub(r"\. \.(?: \.)*", ",", said)
     said = _settle_commas(said)
+    said = _JUDGING.sub(r"\g<the> ", _plain_hues(said))
     for pattern, plain in _REWORDED:
         said = pattern.sub(plain, said)
     said = re.sub(r" (too|as well) (?:, and|,|and) ", r" \1 . ", said)
@@ -176,6 +229,39 @@ def smooth(texts: Sequence[str]) -> list[str]:
         said = _settle_commas(_TAG_END.sub("", said))
     found = said.split()
     return found if found else list(texts)
+
+
+_PRAISING = bag(
+    "nice lovely good beautiful pretty proper gorgeous cheerful fresh warm rich cool really very bold solid"
+)
+_SAME = re.compile(r"(?<!\S)the (?:exact |very )?same (?P<hue>\S+(?: \S+)?) (?:as|like)(?!\S)")
+
+
+def _plain_hues(said: str) -> str:
+    """The words without praise between an article and a colour, "the same green as" being a colour of another thing."""
+    words = said.split()
+    kept: list[str] = []
+    for i, word in enumerate(words):
+        j = i
+        while j < len(words) and words[j] in _PRAISING:
+            j += 1
+        praised = kept[-1:] in (["a"], ["an"], ["some"]) or (kept and kept[-1] in _PRAISING)
+        if j > i and (praised or words[i - 1] in _PRAISING) and color_at(words, i) is None and color_at(words, j):
+            continue
+        kept.append(word)
+    found = _SAME.search(" ".join(kept))
+    if found and (hue := color_at(found.group("hue").split(), 0)) and hue[1] == len(found.group("hue").split()):
+        return _SAME.sub("the same colour as", " ".join(kept))
+    return " ".join(kept)
+
+
+_JUDGING = re.compile(
+    r"(?<!\S)(?P<the>the|that|this|those|these|my|our) (?:(?:lone|poor|ugly|hideous|horrible|awful|stupid|silly|"
+    r"bloody|damn|"
+    r"damned|flipping|blasted|wretched|boring|lovely|favourite|favorite|beloved|tatty|shabby|tired|sad|annoying|nasty|"
+    r"ghastly|dreadful|manky|grotty|crappy|rubbishy|god awful|so called|aforementioned|said|entire|actual|same old|"
+    r"blooming|freaking|darn|pesky|trusty|humble|solitary|single|sole|only) )+(?=\S)"
+)
 
 
 def _settle_commas(said: str) -> str:

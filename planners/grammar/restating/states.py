@@ -78,6 +78,8 @@ def states(thing: str, state: Sequence[str]) -> Iterator[str]:
         yield f"{'raise' if taller.group('way').startswith('higher') else 'lower'} {thing} {taller.group('far')}"
     if words[0] == "in" and color_at(words, 1 + (words[1:2] in (["a"], ["an"]))) is not None:
         yield f"make {thing} {' '.join(words[1:])}"
+    if words[0] == "match" and len(words) > 1:
+        yield f"paint {thing} the same colour as {' '.join(words[1:])}"
     if words[0] in ("become", "turn", "look", "go", "come", "stay", "painted") and len(words) > 1:
         yield f"make {thing} {' '.join(words[1:])}"
     if words[0] in (

@@ -156,6 +156,8 @@ NEW = r"(?:a|an|another|some|one more|one|two|three|four|five|six|a couple of|a 
 WANTED = tuple(
     re.compile(pattern)
     for pattern in (
+        r"^(?P<thing>(?:a|one|two|three|four|five|six|another|\d+) (?:more )?(?:copy|copies|duplicates?|clones?) of "
+        r"\S.*)$",
         rf"^(?P<thing>{NEW} (?:more )?)(?P<noun>[^,]+?) , (?:all |both |each |in )?(?P<hue>[^,]+?)(?: "
         rf",)*(?P<more>(?: (?:on|in|"
         rf"next to|beside|under|by|behind|near|at|between|around|to|above) .*)?)$",
@@ -221,6 +223,18 @@ INSTEAD = tuple(
         r"^out with (?P<old>\S.*?)(?: ,)*(?: and)? in with (?P<new>\S.*)$",
         rf"^(?:swap|trade|change|exchange|switch|turn|upgrade)(?: out)? (?P<old>\S.*?) (?:for|into|to) "
         rf"(?P<new>{NEW} \S.*)$",
+    )
+)
+# "the third bookcase is the one I want gone", "what I want gone is the third bookcase".
+CLEFT = tuple(
+    re.compile(pattern)
+    for pattern in (
+        rf"^(?P<thing>\S.*?) (?:is|are) (?:the )?(?:one|ones|thing|things|what|thing that|one that)(?: that| "
+        rf"which)? {SPEAKER} {REALLY}"
+        rf"(?:want|need|would like|like|prefer|have)(?: to (?:be|see|have))? (?P<state>\S.*)$",
+        rf"^(?:what|the (?:one|thing)(?: that| which)?) {SPEAKER} {REALLY}(?:want|need|would like|like)(?: to "
+        rf"(?:be|see|have))? "
+        rf"(?P<state>\S.*?) (?:is|are) (?P<thing>\S.*)$",
     )
 )
 OF_COLOR = re.compile(

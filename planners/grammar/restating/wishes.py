@@ -13,13 +13,34 @@ from ..tagging.lookahead import color_at
 from .chunks import is_thing
 from .participles import at, gerunds
 from .states import bare_thing, begins_state, command, is_plain, may_end, states
-from .wish_patterns import ASKED, GIVEN, INSTEAD, KEPT, MODAL, NEEDS, OF_COLOR, PLACED, UNWANTED, WANTED, WANTING
+from .wish_patterns import (
+    ASKED,
+    CLEFT,
+    GIVEN,
+    INSTEAD,
+    KEPT,
+    MODAL,
+    NEEDS,
+    OF_COLOR,
+    PLACED,
+    UNWANTED,
+    WANTED,
+    WANTING,
+)  # fmt: skip
 
 
 def wishes(said: str) -> Iterator[str]:
     """Commands that a sentence may stand for, the likeliest first."""
-    for form in (_given, _kept, _replacing, _unwanted, _of_color, _wanted, _needed, _asked, _wanting, _modal, _placed):
+    cut = (_cleft, _given, _kept, _replacing, _unwanted, _of_color, _wanted, _needed, _asked, _wanting, _modal, _placed)
+    for form in cut:
         yield from form(said)
+
+
+def _cleft(said: str) -> Iterator[str]:
+    """ "the third bookcase is the one I want gone"."""
+    for pattern in CLEFT:
+        if found := pattern.match(said):
+            yield from states(found.group("thing"), found.group("state").split())
 
 
 def _kept(said: str) -> Iterator[str]:
@@ -34,7 +55,7 @@ def _unwanted(said: str) -> Iterator[str]:
     for pattern in UNWANTED:
         found = pattern.match(said)
         if found and is_plain(found.group("thing")):
-            yield f"delete {bare_thing(found.group('thing'))}"
+            yield f"delete {re.sub('^any ', 'all ', bare_thing(found.group('thing')))}"
 
 
 def _wanted(said: str) -> Iterator[str]:

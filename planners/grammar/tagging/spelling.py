@@ -13,7 +13,7 @@ from ....gaussians import color as colors
 from ....gaussians.language.encoders.vocabulary import Vocabulary
 from ....gaussians.world import kinds
 from ....gaussians.world.lengths import UNITS
-from ....gaussians.world.spelling import SHORTEST, likely_slips, one_slip
+from ....gaussians.world.spelling import SHORTEST, likely_slips
 from ....gaussians.world.words import normalise, plural
 from ..vocabulary import lexicon, nouns, quantities
 from .words import Word, bag
@@ -57,7 +57,7 @@ def _correction(texts: Sequence[str], i: int) -> str:
     text = texts[i]
     if text in _known_words() or _noun_expected(texts, i):
         return ""
-    near = one_slip(text, _verbs()) if _verb_expected(texts, i) else likely_slips(text, _closed_words())
+    near = likely_slips(text, _verbs()) if _verb_expected(texts, i) else likely_slips(text, _closed_words())
     near = frozenset(w for w in near if not text.startswith(w))  # "nicer" is a form of nice, not an error
     if len({UNITS.get(w, w) for w in near}) == 1:
         return min(near)  # "metrs": metres or meters

@@ -267,9 +267,16 @@ def _tag_phrase(state: TaggerState, i: int, entry: Entry, taken: int) -> int:
             return behind
     if kind == "PREP" and taken == 1 and text in ("in", "on", "at") and behind >= len(state.texts):
         return state.emit("UNKNOWN", None, i, taken)
+    if kind == "DIR" and text in ("forward", "forwards") and _comes(state):
+        return state.emit("DIR", "backward", i, taken)
     if kind == "COLORWORD" and text == "tint" and state.last_type in NOUNISH:
         return state.emit("UNKNOWN", None, i, taken)
     return state.emit(kind, value, i, taken)
+
+
+def _comes(state: TaggerState) -> bool:
+    """Whether the verb moves things to the speaker, so that "forward" is towards the speaker: "bring it forward"."""
+    return bool(state.clause.tags) and state.clause.tags[0].text in ("bring", "come", "pull", "draw")
 
 
 def _excludes(state: TaggerState, i: int) -> bool:
@@ -323,6 +330,8 @@ def _is_container(state: TaggerState, j: int) -> bool:
 
 def _continues_noun(state: TaggerState, j: int) -> bool:
     texts = state.texts
+    if state.clause.verb == "SWAP" and texts[j] in ("places", "positions", "spots", "locations", "place", "position"):
+        return False
     if texts[j] == "can":
         return _is_container(state, j)
     if not may_be_noun(texts[j]) or texts[j] == ",":

@@ -132,6 +132,38 @@ def _standing() -> dict[str, Entry]:
     return {f"{that} {form}": ("REL", None) for that in ("that", "which") for form in forms}
 
 
+def _corner_names() -> dict[str, tuple[str, ...]]:
+    """What people call each corner of the room."""
+    depths = {"front": ("front", "near", "nearest", "closest"), "back": ("back", "rear", "far", "furthest", "farthest")}
+    found: dict[str, tuple[str, ...]] = {}
+    for depth, words in depths.items():
+        for side in ("left", "right"):
+            pairs = [f"{w} {side}{hand}" for w in words for hand in ("", " hand", "most")]
+            found[f"{depth} {side}"] = (*pairs, *(f"{side}{hand} {w}" for w in words[:2] for hand in ("", " hand")))
+    return found
+
+
+def _corner_attributes() -> dict[str, Entry]:
+    """The corners of the room before a noun ("the back left chair"); "far left" is the leftmost."""
+    names = ((name, corner) for corner, found in _corner_names().items() for name in found)
+    return {name: ("SUP", corner) for name, corner in names if not name.startswith(("far", "furthest"))}
+
+
+def _corners() -> dict[str, Entry]:
+    """The four corners of the room, as places and behind a thing that is there ("in the back left corner")."""
+    found: dict[str, Entry] = {}
+    for corner, names in _corner_names().items():
+        for name in names:
+            for of in ("", " of the room"):
+                leads = ("in the", "to the", "into the", "at the", "over in the", "over to the")
+                found |= {f"{lead} {name} corner{of}": ("SPOT", corner) for lead in leads}
+            if not name.startswith(("far", "furthest")):
+                found |= {f"{lead}{name}": ("SIDE", corner) for lead in ("", "at the ", "on the ")}
+        depth, side = corner.split()
+        found |= {f"at the {depth} on the {side}": ("SIDE", corner), f"on the {side} at the {depth}": ("SIDE", corner)}
+    return found
+
+
 def _counted() -> dict[str, Entry]:
     """From where things are counted ("from the left")."""
     found: dict[str, Entry] = {}
@@ -179,6 +211,7 @@ CLOSED: dict[str, Entry] = {
     ),
     **same(("AND", None), "and, &, and also, as well as, plus, along with, together with, and then"),
     **_said("SPOT", "corner", alone=True),
+    **_corners(),
     **_said("SPOT", "center", alone=True),
     **_said("CENTER", "center"),
     **same(("SIDE", "leftmost"), "on the left, on the left side, on the left hand side, at the left, on my left, "
@@ -328,6 +361,7 @@ ATTRIBUTES: dict[str, Entry] = {
     **same(("SUP", "shortest"), "shortest"),
     **same(("SUP", "nearest"), "nearest, closest, front, foremost, frontmost, front most"),
     **same(("SUP", "farthest"), "farthest, furthest, far, back, rear, rearmost, most distant, backmost, hindmost"),
+    **_corner_attributes(),
     **same(("SUP", "leftmost"), "leftmost, far left, furthest left, left most, left, left hand, left side"),
     **same(("SUP", "rightmost"), "rightmost, far right, furthest right, right most, right, right hand, right side"),
     **same(("SUP", "highest"), "highest, topmost, top, uppermost, upper"),
