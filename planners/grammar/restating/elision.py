@@ -192,7 +192,7 @@ def terse(said: Sequence[str]) -> Iterator[str]:
     if first and first[0][0] in ("GROWN", "LIGHT") and len(said) > first[1]:
         yield f"make {' '.join(said[first[1] :])} {' '.join(said[: first[1]])}"
     for i in range(1, len(said)):
-        if _states_at(said, i) and is_thing(tuple(said[:i])):
+        if said[i - 1] not in ("one", "ones") and _states_at(said, i) and is_thing(tuple(said[:i])):
             yield from states(" ".join(said[:i]), said[i:])
 
 

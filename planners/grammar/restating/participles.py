@@ -11,7 +11,7 @@ _IRREGULAR = {
     "taken": "take", "thrown": "throw", "put": "put", "set": "set", "got": "get", "gotten": "get", "made": "make",
     "hidden": "hide", "hung": "hang", "stood": "stand", "laid": "lay", "cut": "cut", "brought": "bring",
     "given": "give", "shrunk": "shrink", "grown": "grow", "blown": "blow", "spun": "spin", "swung": "swing",
-    "lost": "lose", "kept": "keep", "left": "leave", "split": "split", "stuck": "stick", "chosen": "choose",
+    "lost": "lose", "kept": "keep", "split": "split", "stuck": "stick", "chosen": "choose",
     "shown": "show", "found": "find", "sent": "send", "slid": "slide", "done": "do", "sat": "sit", "rid": "rid",
     "shut": "shut", "broken": "break", "bent": "bend", "lit": "light", "swept": "sweep", "torn": "tear",
     "leant": "lean", "dyed": "dye", "spray-painted": "spray", "ditched": "ditch", "stretched": "stretch",

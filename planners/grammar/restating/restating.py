@@ -44,7 +44,7 @@ def _readings(said: str, mark: str) -> Iterator[str]:
     shortest = unopened(without_reason(plain)) if plain != said else unopened(shorter)
     for text in dict.fromkeys((said, plain)):
         yield from (" ".join(r) for r in topics(text.split()))
-    yield from (plain, shorter, shortest)
+    yield from (plain, shorter, shortest, shortest.removesuffix(" more"))
     if found := _NOT_THIS.match(plain):
         yield found.group("rest")
     asked = mark == "?" and plain.split()[0] in _QUESTIONING

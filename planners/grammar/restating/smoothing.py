@@ -83,6 +83,8 @@ _OPENERS = re.compile(
     r"(?:how|what) about (?:we|you|if we|if you)|what if (?:we|you)|suppose we|maybe we (?:could|should)|perhaps "
     r"we (?:could|"
     r"should)|maybe you (?:could|should)|perhaps you (?:could|should)|"
+    r"(?:could|can|would|will) (?:someone|somebody|anyone|anybody)(?: please| kindly)?|(?:someone|somebody)(?: "
+    r"please)?|"
     r"let us (?:just )?go ahead and|let us (?:also |just |now |try to |please )*)"
     r"(?: ,)* )(?=\S)"
 )
@@ -96,6 +98,7 @@ _REASON = (
     r"since there|"
     r"seeing as|seeing that|given that|in case|as (?:we|i|you|nobody|no one|there)|considering|now that|"
     r"so that (?:i|we|you|he|she|people|there|nobody|no one|everyone|everybody|the|my|our|guests|visitors|kids)|"
+    r"so (?:that )?the \S+(?: \S+)? (?:can|could|is|are|does|do|will|would|faces?|has|have|gets?)|"
     r"so (?:i|we|you|he|she|people|there|nobody|no one|everyone|everybody|guests|visitors|kids|the kids|the dog|the "
     r"cat|my|our)|so as to|so as not to|so that it (?:does|can|will|would)|so it (?:does|can|will|would|matches|"
     r"has|gets|"
@@ -140,6 +143,21 @@ _REWORDED = tuple(
         (r"whatever (?:is|are) (?:sitting|standing|lying|placed|resting|currently|now|there) ", "whatever is "),
         (r"(?:only|just) the (?=\S.* (?:should|can|may|must) (?:stay|remain|be left))", "only the "),
         (r"got to", "have to"),
+        (
+            r"(?:only|just|nothing but) (?P<x>(?:the|my|our|both|that|those) \S.*?) (?:should|must|can|may|is to|"
+            r"are to) "
+            r"(?:stay|remain|be left|be visible|be shown|be there|survive|be kept)(?: visible| behind)?",
+            r"keep only \g<x>",
+        ),
+        (r"(?:let me have a look|let me look|i want to look|have a look) at (?:only|just) ", "keep only "),
+        (r"(?P<v>swap|switch|change) (?P<x>\S.*?) over(?= [,.;!?]|$)", r"swap \g<x>"),
+        (r"get rid(?= [,.;!?]|$)", "get rid of it"),
+        (r"less (?:wide|broad)", "narrower"),
+        (r"less (?:tall|high)", "shorter"),
+        (r"less (?:big|large|huge)", "smaller"),
+        (r"less bright", "darker"),
+        (r"less dark", "lighter"),
+        (r"(?:chuck|throw|toss|kick|fling) (?P<x>\S.*?) out (?:of )?the (?:window|door)", r"delete \g<x>"),
         (
             r"(?P<off>(?:off|out of|from|away from) (?:\S+ ){1,5}?)and (?P<to>into|onto|to|over to|on to|under|"
             r"behind|against)",

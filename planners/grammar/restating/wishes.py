@@ -31,9 +31,31 @@ from .wish_patterns import (
 
 def wishes(said: str) -> Iterator[str]:
     """Commands that a sentence may stand for, the likeliest first."""
-    cut = (_cleft, _given, _kept, _replacing, _unwanted, _of_color, _wanted, _needed, _asked, _wanting, _modal, _placed)
+    cut = (
+        _by_doing,
+        _cleft,
+        _given,
+        _kept,
+        _replacing,
+        _unwanted,
+        _of_color,
+        _wanted,
+        _needed,
+        _asked,
+        _wanting,
+        _modal,
+        _placed,
+    )
     for form in cut:
         yield from form(said)
+
+
+def _by_doing(said: str) -> Iterator[str]:
+    """ "make room for a rack by moving the basket to the right"."""
+    words = said.split()
+    for i, word in enumerate(words[:-1]):
+        if word == "by" and i > 1 and (form := at(gerunds(), words, i + 1)) is not None:
+            yield " ".join([*form[0], *words[i + 1 + form[1] :]])
 
 
 def _cleft(said: str) -> Iterator[str]:

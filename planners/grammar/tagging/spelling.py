@@ -95,6 +95,7 @@ def _closed_words() -> frozenset[str]:
     """Words of the closed classes: relations, colours, sizes, amounts."""
     said = {w for table in (lexicon.CLOSED_PHRASES, lexicon.ATTRIBUTE_PHRASES) for p in table for w in p}
     said |= {c for c in colors.names() if c.isalpha()} | {u for u in UNITS if u.isalpha()}
+    said |= {"please", "finally", "actually", "instead", "should", "would", "could"}
     said |= {*quantities.NUMBERS, *quantities.ORDINALS, *quantities.FRACTIONS, "degrees", "percent", "times", "turns"}
     return frozenset(w for w in said if len(w) >= SHORTEST and w.isalpha())
 

@@ -28,6 +28,7 @@ _COMPARATIVES = {"bigger": "largest", "larger": "largest", "smaller": "smallest"
 _REPEATABLE = ("DELETE", "SELECT", "HIDE", "ISOLATE")
 MAX_NOUN_WORDS = 4
 _CHOOSING = ("DELETE", "SELECT", "HIDE", "ISOLATE", "MOVE", "KEEP", "ADJUST", "SCALE", "GROW", "ROTATE")
+_BEFORE_NAMES = ("DET", "SIZE", "NUMBER", "COLOR", "SUP", "ORDINAL", "ADJ")
 _CHANGING = ("MAKE", "PAINT", "TURN", "CHANGE", "WANT")
 
 
@@ -269,9 +270,16 @@ def _tag_phrase(state: TaggerState, i: int, entry: Entry, taken: int) -> int:
         return state.emit("UNKNOWN", None, i, taken)
     if kind == "DIR" and text in ("forward", "forwards") and _comes(state):
         return state.emit("DIR", "backward", i, taken)
+    if kind in ("COLORWORD", "PROP") and state.last_type in _BEFORE_NAMES and _names_thing(state, behind):
+        return _tag_noun(state, i, 2)  # "the paint pots"
     if kind == "COLORWORD" and text == "tint" and state.last_type in NOUNISH:
         return state.emit("UNKNOWN", None, i, taken)
     return state.emit(kind, value, i, taken)
+
+
+def _names_thing(state: TaggerState, i: int) -> bool:
+    """Whether the word at `i` is a noun of its own that one before it belongs to."""
+    return i < len(state.texts) and nouns.is_known(state.texts[i]) and not color_at(state.texts, i)
 
 
 def _comes(state: TaggerState) -> bool:
@@ -318,7 +326,7 @@ def _tag_noun(state: TaggerState, i: int, at_least: int = 0) -> int:
 
 def _is_done(word: str) -> bool:
     """Whether a word says what was done to a thing: no name of a thing ends with it ("the sofa painted")."""
-    return word in lexicon.DONE or (word.endswith("ed") and len(word) > 5 and not nouns.is_known(word))
+    return word in lexicon.DONE or (word.endswith("ed") and len(word) > 4 and not nouns.is_known(word))
 
 
 def _is_container(state: TaggerState, j: int) -> bool:

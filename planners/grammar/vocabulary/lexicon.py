@@ -32,7 +32,7 @@ COMMANDS = frozenset(
 CHAT = bag(
     "hello hi hey hiya greetings thanks thank bye goodbye cheers yes no yep nope ok okay cool great nice wow sorry "
     "morning evening good lol awesome perfect amazing excellent brilliant lovely fantastic sweet neat work job well "
-    "done super appreciate it that looks"
+    "done super appreciate it that looks million bunch heaps tons loads one"
 )
 QUESTION = bag(
     "what where who whom whose which why how when is are am was were does do did has have had can could will would "
@@ -449,7 +449,8 @@ STRUCTURE = bag(
     "sorry yeah yep nope okay thanks hello"
 )
 ADVERB_NOUNS = bag(
-    "lily fly assembly jelly belly butterfly family dolly doily holly curly woolly ply july bully gully folly supply "
+    "telly brolly trolly lily fly assembly jelly belly butterfly family dolly doily holly curly woolly ply july "
+    "bully gully folly supply "
     "wily oily bubbly cuddly friendly"
 )
 ASKING = bag("tell describe list count explain name ask say answer imagine remember guess")

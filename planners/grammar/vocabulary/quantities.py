@@ -28,7 +28,7 @@ FRACTIONS: dict[str, float] = {
 }  # fmt: skip
 ORDINALS: dict[str, int] = {w: i for i, w in enumerate(_RANKS, 1)}
 _ADVERBS = {"twice": 2.0, "thrice": 3.0}
-_DEGREES = {"degree", "degrees", "deg", "°"}
+_DEGREES = {"degree", "degrees", "deg", "degs", "°"}
 _TURNS = {"turn", "turns", "rotation", "rotations", "revolution", "revolutions"}
 _HEDGES = {"about", "around", "approximately", "roughly", "exactly", "maybe", "some"}
 
