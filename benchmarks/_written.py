@@ -56,6 +56,11 @@ def cases(folder: Path = FOLDER) -> list[dict[str, Any]]:
     return _data.instructions(folder / "instructions.jsonl")
 
 
+def strangers(folder: Path = FOLDER) -> list[dict[str, Any]]:
+    """Instructions by writers who knew neither grammar nor lexicon, over rooms of their own; raises as `cases`."""
+    return _data.instructions(folder / "strangers.jsonl")
+
+
 def is_held(case: dict[str, Any]) -> bool:
     """Whether a case belongs to the held-back half, by the hash of its id."""
     return hashlib.sha256(case["id"].encode()).digest()[0] % 2 == 1

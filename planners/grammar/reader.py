@@ -87,9 +87,10 @@ class Reader:
             non_edit = None  # "I love the sofa. Delete the rug."
             if topic is not None and ops[0].get("target") == Query(last=True):
                 ops[0] = {**ops[0], "target": topic}
-        if non_edit and ops and all(str(r) == STATEMENT and r.remark for r in said):
+        if non_edit and ops and all(r.remark for r in said):
             non_edit = None  # "Lose the flip chart. It's ancient."
         if non_edit and ops and str(non_edit) == FORBIDDEN and topic is not None:
+            ops = [with_last(ops[0], topic), *ops[1:]]
             ops, non_edit = [_excluding(op, topic) for op in ops], None  # "don't touch the sofa, remove everything"
         if not ops:
             raise non_edit or empty_refusal(words)
@@ -141,6 +142,7 @@ class Reader:
         said.remark = True
         state.said = (*state.said, said)
         state.stated_first = not state.ops
+        self._name([w.text for w in sentence])
         about_it = subject_of([w.text for w in sentence])
         if about_it is not None:
             spoken = clauses(_spanning(("select", *about_it), sentence))
@@ -213,6 +215,7 @@ class Reader:
                 state.said = (*state.said, refusal)
                 state.stated_first = not state.ops
                 state.topic = _topic(clause, refusal)
+                self._name([w.text for w in sentence])
                 continue
             state.ops = [*state.ops, *found]
 
@@ -229,6 +232,17 @@ class Reader:
         except Refusal as refusal:
             said = f"“{_quote(clause, self._cleaned)}”: {refusal}"
             raise Refusal(said, *refusal.words, verdict=refusal.verdict, firm=refusal.firm) from None
+
+    def _name(self, said: Sequence[str]) -> None:
+        """Remember what a statement is about, for "the middle one" behind "there are three guitars"."""
+        about_it = subject_of(said)
+        if about_it is None:
+            return
+        with suppress(Refusal):
+            spoken = clauses(_spanning(("select", *about_it), (Word("", 0, 0),)))
+            phrases = Phrases()
+            operations_of(phrases, parse(spoken[0]))
+            self.phrases.antecedent, self.phrases.colors = phrases.antecedent, ()
 
     def _saved(self) -> _State:
         phrases = self.phrases
@@ -280,6 +294,16 @@ def _with_topics(parts: list[tuple[tuple[Word, ...], str]]) -> list[tuple[tuple[
         found.append((sentence, mark))
         i += 1
     return found
+
+
+def with_last(op: Fields, meant: Query) -> Fields:
+    """An operation whose target leaves out, or is, what was spoken of before: "don't touch A, delete the other one"."""
+    target = op.get("target")
+    if target is None or Query(last=True) not in target.exclude:
+        return op
+    rest = tuple(meant if q == Query(last=True) else q for q in target.exclude)
+    text = target.text or meant.text
+    return {**op, "target": target.model_copy(update={"exclude": rest, "text": text})}
 
 
 def _excluding(op: Fields, spared: Query) -> Fields:

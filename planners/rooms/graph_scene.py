@@ -214,6 +214,8 @@ def _otherwise(query: Query, verdict: str) -> Iterator[Query]:
         if verdict == "absent" and any(r.name in loose for r in query.relations):
             onto = tuple(r.model_copy(update={"name": loose.get(r.name, r.name)}) for r in query.relations)
             yield query.model_copy(update={"relations": onto})
+    if verdict == "absent" and query.colors and Query(last=True) in query.exclude:
+        yield query.model_copy(update={"colors": ()})  # "the other one" need not have the colour of the first
     if verdict == "ambiguous" and query.pick == "one" and any(r.name in _BY_PAIR for r in query.relations):
         yield query.model_copy(update={"relations": tuple(map(_to_any, query.relations))})
 

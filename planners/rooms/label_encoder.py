@@ -20,6 +20,7 @@ from ...gaussians.errors import BackendError
 from ...gaussians.language.encoders.calibration import Calibration
 from ...gaussians.language.encoders.vocabulary import Vocabulary
 from ...gaussians.world import kinds
+from ...gaussians.world.everyday_names import GENERIC, PEOPLE, same_name
 from ...gaussians.world.kinds import Phrase
 from ...gaussians.world.words import AFTER_HEAD, normalise
 from ..grammar.tagging.spelling import misspelled_name
@@ -29,6 +30,7 @@ from ..grammar.tagging.spelling import misspelled_name
 EXACT, ALIKE, LOOSE, BROADER, NOT = 0.98, 0.5, 0.4, 0.26, 1e-4
 THRESHOLD = 0.2
 _SHORTEST_END, _SHORTEST_START = 5, 3  # letters of the two halves of a compound in one word
+_FIXED = frozenset({("wall",), ("floor",), ("ceiling",)})
 _ABSENT = "nothing of all this"
 # Of "a stack of books" either may be meant, the stack or the books; "a picture of a dog" is only a picture.
 _COLLECTIVE = frozenset({"stack", "pile", "pair", "bunch", "set", "row", "group", "bouquet", "collection"})
@@ -136,6 +138,8 @@ def agreement(text: str, labels: Sequence[str]) -> list[float]:
     if max(found, default=NOT) > LOOSE:
         found = [NOT if p == LOOSE else p for p in found]
     if all(p < THRESHOLD for p in found):
+        found = [_by_everyday_name(asked, words(label)) for label in labels]
+    if all(p < THRESHOLD for p in found):
         found = [
             BROADER if _covers(asked, words(label)) or _closes(asked, words(label)) else p
             for label, p in zip(labels, found, strict=True)
@@ -143,6 +147,19 @@ def agreement(text: str, labels: Sequence[str]) -> list[float]:
     if all(p < THRESHOLD for p in found) and (meant := respelt(asked, labels)) != asked:
         found = [_agrees(meant, words(label)) for label in labels]
     return found
+
+
+@cache
+def _by_everyday_name(asked: Phrase, label: Phrase) -> float:
+    """How a phrase agrees with a label by another everyday word for its head, or without whose it is."""
+    if not asked:
+        return NOT
+    owned = asked[1:] if len(asked) > 1 and asked[0] in PEOPLE else asked
+    heads = (owned[-1], *sorted(same_name(owned[-1])))
+    best = max(_agrees((*owned[:-1], head), label) for head in heads)
+    if best < THRESHOLD and owned == asked and len(asked) == 1 and asked[0] in GENERIC and label not in _FIXED:
+        return BROADER
+    return min(best, ALIKE)
 
 
 def respelt(asked: Phrase, labels: Sequence[str]) -> Phrase:

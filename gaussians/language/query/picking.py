@@ -40,6 +40,20 @@ class Choice:
     refusal: Selection | None = None
 
 
+_RANKED = (
+    "largest",
+    "smallest",
+    "tallest",
+    "shortest",
+    "nearest",
+    "farthest",
+    "leftmost",
+    "rightmost",
+    "highest",
+    "lowest",
+)
+
+
 def pick(query: Query, scored: Scored, stand: Stand) -> Choice:
     """The matches that a query refers to, by its `pick`. There must be at least one match."""
     matches = scored.matches()
@@ -55,6 +69,8 @@ def pick(query: Query, scored: Scored, stand: Stand) -> Choice:
     if query.pick == "middle" and len(ordered) % 2 == 0:
         reason = f"{query.describe()}: of {len(ordered)} none is in the middle ({listing(told)}); say which one"
         return Choice([], _refused(query, reason, told, "ambiguous"))
+    if query.count is not None and query.count > 1 and query.pick in _RANKED and len(ordered) >= query.count:
+        return Choice(sorted(ordered[: query.count]))
     if len(tied := _tied(ordered, scored, query, stand)) > 1:
         told = tuple(scored.candidate(i) for i in tied)
         reason = f"{query.describe()}: {len(tied)} are equal in that ({listing(told)}); say which one, or 'all'"
@@ -73,6 +89,9 @@ def by_distance(query: Query, scored: Scored, anchors: Sequence[Group], nearest:
         return Choice([], nothing(query, f"{query.describe()}: there is nothing but what it is compared with"))
     boxes = Boxes.of([scored.groups[i].box for i in matches])
     gaps = np.min([distances(boxes, Boxes.of([a.box])) for a in anchors], axis=0)
+    if query.count is not None and query.count > 1 and query.pick == "all":
+        order = np.argsort(gaps if nearest else -gaps, kind="stable")
+        return Choice(sorted(matches[int(i)] for i in order[: query.count]))
     return Choice([matches[int(np.argmin(gaps) if nearest else len(gaps) - 1 - np.argmax(gaps[::-1]))]])
 
 

@@ -20,6 +20,7 @@ from .places import MOTIONS
 # Nouns in the plural that are added as one thing.
 _IN_PLURAL = ("scissors", "stairs", "headphones", "streamers", "streamer", "balloons", "balloon", "lights", "light",
               "garlands", "garland", "bunting")  # fmt: skip
+_MATERIALS = ("wooden", "oak", "walnut", "brass", "copper", "bronze")
 _SOME = 3  # number for "some cushions", as for "a few"
 
 
@@ -89,6 +90,9 @@ def _asset(noun: NounPhrase) -> Fields:
     contents = f" of {modifiers[0].anchors[0].said}" if len(modifiers) == 1 and modifiers[0].kind == "part" else ""
     if not noun.is_new or query.relations or query.not_colors or (modifiers and not contents.strip(" of")):
         raise Refusal("name a new thing by its kind, such as: a red floor lamp", query.text)
+    made_of = [c for c in query.colors if c in _MATERIALS]
+    if made_of and len(query.colors) == 1:
+        query = query.model_copy(update={"colors": (), "text": f"{made_of[0]} {query.text}"})  # "a wooden stool"
     if len(query.colors) > 1:
         raise Refusal("a new thing has one colour", *query.colors)
     if any(a.endswith("er") for a in noun.adjectives):

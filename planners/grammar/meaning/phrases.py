@@ -276,6 +276,8 @@ def _pick(tags: Sequence[Tag], article: Article, plural: bool, number: int | Non
         plural = False  # "the tallest furniture" is one piece
     several = plural or (number or 1) > 1 or article in ("all", "both")
     if superlatives or ordinals:
+        if superlatives and several and number and number > 1 and not ordinals and len(superlatives) == 1:
+            return {"pick": superlatives[0].value, "count": number}  # "the two tallest plants"
         if several or len(superlatives) + len(ordinals) > 1:
             raise Refusal("a superlative or a rank picks one thing; say which one", *_quote(tags))
         if ordinals:

@@ -7,12 +7,16 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from ..parsing import Refusal, parse
-from ..tagging.lookahead import color_at, may_be_noun
+from ..tagging.lookahead import color_at, compounds, match, may_be_noun
 from ..tagging.tagger import clauses
 from ..tagging.tags import Clause, Tag
 from ..tagging.words import Word, bag
+from ..vocabulary import lexicon
 
 _SPEAKING = bag("i we you he she could would should must looks look seems")  # never within a noun phrase
+DOING = bag(
+    "wobbles wobble squeaks leaks creaks rattles flickers buzzes sags stinks smells clashes goes hang hangs stands sits"
+)
 _MODIFIERS = ("DET", "NUMBER", "OF", "COLOR", "COLORS", "SIZE", "SUP", "ORDINAL", "ADJ", "NONCOLOR", "OTHER", "TALL")
 _HEADS = ("NOUN", "ONE", "THING", "PRON", "EVERYTHING", "OTHERS")
 _PLACING = ("PREP", "NEAR", "BETWEEN", "CENTER", "TO", "TOWARD", "FROM")
@@ -83,12 +87,19 @@ def _chunk(tags: Sequence[Tag], i: int) -> tuple[int, Chunk]:
     return i + 1, Chunk(kind, tag.words[0].start, tag.words[-1].end)
 
 
+def _does(texts: Sequence[str]) -> bool:
+    """Whether words say what a thing does, other than to describe it ("the lamp that stands on the desk")."""
+    return any(w in DOING and not (i and texts[i - 1] in ("that", "which", "who")) for i, w in enumerate(texts))
+
+
 @lru_cache(maxsize=512)
 def is_thing(texts: tuple[str, ...]) -> bool:
     """Whether words are one noun phrase or a list of them, with what describes it, and nothing else."""
     if not texts or len(texts) > 24 or not (may_be_noun(texts[-1]) or texts[-1] in ("me", "else", "it", "them", "all")):
         return False
-    if not _SPEAKING.isdisjoint(texts):
+    if not _SPEAKING.isdisjoint(texts) or _does(texts):
+        return False
+    if (texts[0],) in lexicon.VERB_PHRASES and texts[0] not in lexicon.NOUN_VERBS and not match(compounds(), texts, 0):
         return False
     found = clauses(as_words(("select", *texts)))
     if len(found) != 1 or found[0].verb != "SELECT" or found[0].unsupported or found[0].negated:

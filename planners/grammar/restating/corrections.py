@@ -132,7 +132,7 @@ def _replaced(before: Sequence[str], fragment: Sequence[str]) -> list[str] | Non
     if not new or not old:
         return None
     first = new[0]
-    part = last_of(old, first.kind)
+    part = _same_head(before, old, fragment, first) or last_of(old, first.kind)
     if part is None and first.kind == "amount":
         part = last_of([c for c in old if c.kind == "thing" and before[c.end - 1][0].isdigit()], "thing")
     if part is None and first.kind in ("hue", "grown"):
@@ -154,6 +154,38 @@ def _replaced(before: Sequence[str], fragment: Sequence[str]) -> list[str] | Non
     if rest and all(c.kind in covered for c in rest):
         behind = []
     return [*before[: part.start], *said, *behind]
+
+
+def _same_head(before: Sequence[str], old: Sequence[Chunk], fragment: Sequence[str], first: Chunk) -> Chunk | None:
+    """The last thing with the noun of a corrected one, also behind a preposition; None if there is none.
+
+    Where no noun is the same, the goal of a move is corrected rather than what moves.
+    """
+    if first.kind != "thing" or first.head < 0:
+        return None
+    places = [
+        Chunk("thing", _behind_preposition(before, c), c.end, c.head) for c in old if c.kind == "place" and c.head >= 0
+    ]
+    things = sorted([*(c for c in old if c.kind == "thing" and c.head >= 0), *places], key=lambda c: c.end)
+    same = [c for c in things if before[c.head] == fragment[first.head]]
+    if same:
+        return same[-1]
+    moves = before[0] in (
+        "put",
+        "move",
+        "place",
+        "set",
+        "stick",
+        "shift",
+        "slide",
+        "push",
+        "bring",
+        "hang",
+        "stand",
+        "pop",
+        "add",
+    )
+    return things[-1] if moves and things and things[-1] in places else None
 
 
 def _with_postmodifiers(old: Sequence[Chunk], part: Chunk, before: Sequence[str], more: bool) -> Chunk:

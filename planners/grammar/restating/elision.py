@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
+from ....gaussians.world.words import singular
 from ..tagging.lookahead import Lookahead, color_at, match
 from ..tagging.words import bag
 from ..vocabulary import lexicon
-from .chunks import is_thing
+from .chunks import DOING, chunks, is_thing
 from .states import states
 
 _PRONOUNS = bag("it them they those these this that him her both")
@@ -50,6 +51,8 @@ def topic_of(said: Sequence[str]) -> tuple[str, ...] | None:
     if not found:
         return None
     thing = tuple(found.group("thing").split())
+    if not is_thing(thing):
+        return None
     if thing[0] in _NEW or "more" in thing[:3]:
         return None
     if thing[-1] in (",", ":", "?"):
@@ -59,6 +62,9 @@ def topic_of(said: Sequence[str]) -> tuple[str, ...] | None:
 
 def about(thing: Sequence[str], clause: Sequence[str]) -> Iterator[list[str]]:
     """Readings of a clause as said of a thing named before: "the shelf: paint it", "the rug: delete", "sofa: blue"."""
+    if {"one", "ones"} & set(clause) and (noun := _noun_of(thing)):
+        named = [noun if w in ("one", "ones") and i and clause[i - 1] != "this" else w for i, w in enumerate(clause)]
+        yield named
     if (filled := substitute(thing, clause)) is not None:
         yield filled
         return
@@ -70,6 +76,12 @@ def about(thing: Sequence[str], clause: Sequence[str]) -> Iterator[list[str]]:
     for command in states(" ".join(thing), clause):
         yield command.split()
     yield [*thing, *clause]
+
+
+def _noun_of(thing: Sequence[str]) -> str:
+    """The head noun of a phrase in the singular, "" if it has none."""
+    head = next((c.head for c in chunks(tuple(thing)) if c.head >= 0), -1)
+    return singular(thing[head]) if head >= 0 else ""
 
 
 def topics(said: Sequence[str]) -> Iterator[list[str]]:
@@ -179,10 +191,14 @@ def following(said: Sequence[str]) -> Iterator[str]:
 
 def terse(said: Sequence[str]) -> Iterator[str]:
     """Readings of an order without a verb: "rug out", "sofa blue", "lamp 20 cm to the left", "blue for the sofa"."""
+    ahead = Lookahead(said)
+    alone = said[0] in ("all", "both", "that", "this") and not ahead.noun_at(1)
     if (
         len(said) > _VERBLESS
-        or said[0] in ("all", "both", "everything", "it", "that", "they", "them", "this")
-        or Lookahead(said).verb(0) is not None
+        or not DOING.isdisjoint(said)
+        or alone
+        or said[0] in ("everything", "it", "they", "them")
+        or ahead.verb(0) is not None
     ):
         return
     colored = color_at(said, 0)

@@ -16,6 +16,12 @@ _SHELL_SIZE = re.compile(
     r"\bmake (?:the|this|that|my|our) (?P<part>walls?|ceilings?|floors?|room|roof|doorway|building|house) (?:\S+ )*?"
     r"(?:bigger|larger|smaller|wider|narrower|higher|lower|taller|longer|shorter|deeper|thicker|thinner)\b"
 )
+_SWITCHED = re.compile(
+    r"\b(?:plug|switch|turn|power|fire|start|boot) (?:the|that|this|my|our|all|both) [^,.;!?]+? (?:in|on|off|up)\b|"
+    r"\b(?:put|set|run|start) the (?:washing machine|washer|dryer|tumble dryer|dishwasher|oven|microwave|kettle|"
+    r"heater|radio|tv|"
+    r"television|telly|stereo|music) (?:on|to|off)\b"
+)
 _RUNNING = re.compile(
     r"^(?:\S+ )*?(?:get|make|have|let|start|set|keep) (?:the|that|this|my|our|all|every) (?P<thing>\S.*?) (?:(?:to "
     r")?(?:play|ring|sing|"
@@ -29,6 +35,8 @@ def cannot_be(texts: Sequence[str]) -> str:
     said = " ".join(texts) + " "
     if found := _SHELL.search(said) or _SHELL_SIZE.search(said):
         return f"the {found.group('part')} stays: it has no operation that moves or opens it"
+    if _SWITCHED.search(said):
+        return "moving parts and switches cannot be operated"
     if found := _RUNNING.search(said):
         return f"scenes stand still: nothing makes the {found.group('thing')} run, move by itself or sound"
     return ""

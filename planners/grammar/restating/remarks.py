@@ -11,7 +11,7 @@ from .chunks import is_thing
 from .elision import JOINTS, substitute
 
 _SUBJECTS = bag(
-    "i we you it they he she nobody everybody everyone someone somebody people guests visitors there this "
+    "never i we you it they he she nobody everybody everyone someone somebody people guests visitors there this "
     "that these those my our the grandma mum mom dad granny grandpa clients customers kids children"
 )
 _NOBODY = bag(
@@ -19,6 +19,8 @@ _NOBODY = bag(
     "clients customers kids"
 )
 _REMARKING = bag(
+    "use uses wobbles wobble squeaks squeak leaks leak creaks rattles flickers buzzes sags stinks smell smells "
+    "clash gathers "
     "is are was were am looks look seems seem feels feel keeps keep gets get takes take blocks block "
     "bothers hates hate likes like loves love wants want needs need thinks think says said has have had "
     "does do did goes comes come coming bumping bump can could will would might may never always sits sit "
@@ -38,6 +40,8 @@ _COAT = re.compile(r"\b(?:coat|lick|layer|splash|touch)s? of paint\b")
 def is_remark(said: Sequence[str]) -> bool:
     """Whether words only say how things are: they begin with a subject, hold a verb of being, and ask for nothing."""
     text = " ".join(said)
+    if _NEEDING.match(text):
+        return True
     return (
         len(said) > 1
         and Lookahead(said).verb(0) is None
@@ -73,6 +77,14 @@ def _trimmed(said: Sequence[str]) -> list[str]:
     return words
 
 
+_THERE_IS = re.compile(r"^there (?:is|are) (?:a|an|some|one|two|three|four|this|that|these|those) (?P<thing>\S.*)$")
+_NEEDING = re.compile(
+    r"^(?:(?:i|we|you|it|this room|the room) )?(?:need|needs|want|wants|could use) (?:(?:more|some|a bit more|a "
+    r"bit of|a little more) "
+    r"(?:light|space|room|storage|seating|colou?r|air|warmth|privacy|order|variety)|(?:somewhere|something|someone|"
+    r"a place|space|room|"
+    r"some|more) .*|.* (?:clear|free|empty|tidy))$"
+)
 _LINKING = bag(
     "is are was were looks look seems seem feels feel 's clashes blocks takes needs need gets has have "
     "does do can sits stands sticks spoils ruins"
@@ -84,6 +96,8 @@ _BEHIND_THING = re.compile(
 
 def subject_of(said: Sequence[str]) -> list[str] | None:
     """The thing that a remark is about: its subject if it says how that is, else the last thing that it names."""
+    if found := _THERE_IS.match(" ".join(said)):
+        return ["the", *found.group("thing").split()]
     words = _BEHIND_THING.sub("", " ".join(said)).split()
     subject: list[str] | None = None
     for i in range(1, min(len(words), 10)):

@@ -12,6 +12,11 @@ from .remarks import remarks
 from .smoothing import unopened, without_reason
 from .wishes import wishes
 
+_BEGINNING = re.compile(
+    r"^(?:(?:no|nope|nah|wait|hang on|hold on|sorry|oops|actually|rather|and|or rather|not that|not that one|i "
+    r"mean|i meant|make that|"
+    r"well|hmm) (?:, )*)+"
+)
 _NOT_THIS = re.compile(r"^not (?:the|that|this|my|those|these) [^,]+ , (?:but )?(?P<rest>\S.*)$")
 _QUESTIONING = bag("what where who which why how when is are does do did has have was were")
 
@@ -33,7 +38,9 @@ def restatements(texts: Sequence[str], mark: str, follows: bool) -> Iterator[lis
 
 
 def _continued(said: str) -> Iterator[str]:
-    plain = unopened(said).removeprefix("no , ").removeprefix("no ")
+    plain = _BEGINNING.sub("", unopened(said))
+    if not plain:
+        return
     yield plain
     yield from following(plain.split())
 

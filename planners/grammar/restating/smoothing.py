@@ -9,8 +9,10 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from ....gaussians.world.words import singular
 from ..tagging.lookahead import color_at
 from ..tagging.words import Word, bag
+from .participles import gerunds
 
 _SOUNDS = bag("er erm um umm uh uhm uhh hm hmm eh ah aha oh ooh oi yo huh ugh argh ahem")
 # Closing words, after a comma or before the end of a sentence.
@@ -36,7 +38,8 @@ _TAGS = (
     "in my opinion|for me|for us|for now|at last|like i said|as i said|as discussed|as agreed|as usual"
 )  # fmt: skip
 _TAG_END = re.compile(rf"(?:(?: ,)+ (?:{_TAGS})|(?<=\S) (?:please and thanks|please and thank you|pretty please|innit|"
-                      r"yeah|would you mate|will you mate|mate|thanks a lot|please now|if you do not mind|if you "
+                      r"yeah|would you mate|will you mate|would ya|will ya|would you|will you|could you|can you|"
+                      r"mate|thanks a lot|please now|if you do not mind|if you "
                       r"please|"
                       r"if that is (?:ok|okay|alright|all right|possible)|for me|for us|when you (?:can|get a "
                       r"(?:chance|sec|second|minute|moment)|have a (?:sec|second|minute|moment))|for goodness sake|"
@@ -126,7 +129,7 @@ _LEADING_AIM = re.compile(
 _SIZED = r"(?P<size>big|large|tall|high|wide|long|deep|broad)"
 # Phrases with a plain equal of their own, wherever they stand.
 _REWORDED = tuple(
-    (re.compile(rf"(?<!\S){pattern}(?!\S)"), plain)
+    (re.compile(rf"(?<!\S){pattern}" + ("" if pattern.endswith(" ") or "(?=" in pattern else r"(?!\S)")), plain)
     for pattern, plain in (
         (rf"half as {_SIZED} again(?: as (?:it is|now|before))?", r"1.5 times as \g<size>"),
         (rf"half again as {_SIZED}(?: as (?:it is|now|before))?", r"1.5 times as \g<size>"),
@@ -142,7 +145,71 @@ _REWORDED = tuple(
         (r"(?:cut|chop|reduce|scale|bring|take|slash) (?P<x>\S.*?) (?:in|by|to|down to|down by) half", r"halve \g<x>"),
         (r"whatever (?:is|are) (?:sitting|standing|lying|placed|resting|currently|now|there) ", "whatever is "),
         (r"(?:only|just) the (?=\S.* (?:should|can|may|must) (?:stay|remain|be left))", "only the "),
+        (r"'s (?:got to|have to|gotta)", "has to"),
         (r"got to", "have to"),
+        (r"out of (?:the|its|that|their) corner (?=into|onto|to |over|next)", ""),
+        (
+            r"(?:and |then |oh |, )*(?:while|whilst) (?:you|we|i) (?:are|am) (?:at it|there|here|about it|on)(?: ,)*",
+            ",",
+        ),
+        (r"(?:like|same as) (?:all )?(?:the rest|the others|the other ones|the other one)(?= [,.;!?]|$)", ""),
+        (r"its (?=(?:\w+ing|a|too|so|not|just|really|in the way|looking|very)(?: |$))", "it is "),
+        (r"would you mind (?:awfully|terribly|very much|ever so|kindly|possibly)", "would you mind"),
+        (r"(?<!would )(?<!do )(?:you all|d'you|you|do ya) mind (?=\w+in)", "would you mind "),
+        (r"(?P<v>swop|swopped|swap)", "swap"),
+        (
+            r"(?:crank|turn|bump|ramp|punch|pump|dial) up the colou?rs? (?:on|of|in) (?P<x>[^,.;!?]+?)",
+            r"make \g<x> more vivid",
+        ),
+        (
+            r"(?:tone|turn|dial|tame) down the colou?rs? (?:on|of|in) (?P<x>[^,.;!?]*[^ ,.;!?])",
+            r"make \g<x> less vivid",
+        ),
+        (
+            r"(?:shave|take|knock|chop|cut|lop|trim) (?P<n>(?:an? |\d|half|one|two|five|ten|fifteen|twenty)\S*(?: "
+            r"\S+){0,2}?) off "
+            r"(?P<x>(?:the|that|this|my|its)[^,.;!?]*? (?:'s )?(?:height|width|size|length|depth)(?: of "
+            r"[^,.;!?]+?)?)(?= [,.;!?]|$)",
+            r"reduce \g<x> by \g<n>",
+        ),
+        (r", (?:but )?not (?P<x>the [^,.;!?]+?)(?: though)?(?= [.;!?]|$)", r"except \g<x>"),
+        (
+            r"(?:empty|clear) (?:out |off )?(?P<x>the [^,.;!?]+?)(?: ,)? (?P<but>except for|except|apart from|but "
+            r"for|but not|bar|save for|"
+            r"but leave|but keep) ",
+            r"delete everything on \g<x> except ",
+        ),
+        (r"(?:tin|can|pot|bucket|tub) of paint", "paint can"),
+        (r"(?:tins|cans|pots|buckets|tubs) of paint", "paint cans"),
+        (r"(?P<v>down|up|along|over|off) (?=from (?:the|that|this|my))", ""),
+        (r"(?:that is |which is |that are |just )?(?:leaning|leant|propped)(?: up)? against", "next to"),
+        (r"whatever (?:is|has) been (?:left |put |placed |dumped |sitting |lying )?(?=\S)", "whatever is "),
+        (
+            r"(?P<v>budge|shuffle|move|shift|slide|nudge|scoot|push|scooch) (?P<x>[^,.;!?]+?) along (?=to the|left|"
+            r"right|a bit|a little)",
+            r"\g<v> \g<x> ",
+        ),
+        (r"rather than (?:on|in|under|by|next to|behind|beside|against|at|where) [^,.;!?]+", ""),
+        (r"be double (?P<s>(?:the |its )?(?:size|height|width|length))", r"be twice \g<s>"),
+        (r"show me nothing but", "show only"),
+        (r"leave me (?:with )?(?:only|just)", "keep only"),
+        (
+            r", (?:so |could you |can you |please |just )*(?:put|move|stick|place|pop) (?:it|them) (?:there|over "
+            r"there)(?= [.;!?]|$)",
+            "",
+        ),
+        (r", (?:exact|identical|the same) (?:copies|duplicates|clones|ones)(?= [.;!?]|$)", ""),
+        (
+            r"go (?P<d>(?:a bit |a little |a touch |much |even |way )?(?:darker|lighter|brighter|bigger|smaller|"
+            r"paler))",
+            r"make it \g<d>",
+        ),
+        (
+            r"(?:chuck|sling|whack|throw|bung|lob|toss|drop) (?P<x>an? [^,.;!?]+?) (?:down |over |in |up "
+            r")?(?P<p>by|on|onto|next to|in|"
+            r"into|under|behind|beside|near|between|against)",
+            r"put \g<x> \g<p>",
+        ),
         (
             r"(?:only|just|nothing but) (?P<x>(?:the|my|our|both|that|those) \S.*?) (?:should|must|can|may|is to|"
             r"are to) "
@@ -241,6 +308,7 @@ def smooth(texts: Sequence[str]) -> list[str]:
     for pattern, plain in _REWORDED:
         said = pattern.sub(plain, said)
     said = re.sub(r" (too|as well) (?:, and|,|and) ", r" \1 . ", said)
+    said = _named_ones(_dropped_g(said))
     before = None
     while before != said:
         before = said
@@ -280,6 +348,28 @@ _JUDGING = re.compile(
     r"ghastly|dreadful|manky|grotty|crappy|rubbishy|god awful|so called|aforementioned|said|entire|actual|same old|"
     r"blooming|freaking|darn|pesky|trusty|humble|solitary|single|sole|only) )+(?=\S)"
 )
+
+
+_APPOSED = re.compile(r"(?P<a>an?) (?P<noun>\S+)(?P<rest> [^.;!?]*?) , an? (?P<kind>[^,.;!?]+?) one(?= [.;!?]|$)")
+_OF_THESE = re.compile(
+    r"(?<!\S)of (?:the|these|those) (?:two |three |four |five )?(?P<nouns>[^,.;!?]+?) , (?P<rest>the "
+    r"[^,.;!?]*?)one(?!\S)"
+)
+
+
+def _named_ones(said: str) -> str:
+    """The words with the noun for "one" where it stands near: "a beanbag by the sofa, a red one"."""
+    said = _APPOSED.sub(r"a \g<kind> \g<noun>\g<rest>", said)
+    if found := _OF_THESE.search(said):
+        noun = " ".join([*found.group("nouns").split()[:-1], singular(found.group("nouns").split()[-1])])
+        said = said[: found.start()] + found.group("rest") + noun + said[found.end() :]
+    return said
+
+
+def _dropped_g(said: str) -> str:
+    """The words with "makin" as "making", for verbs of commands."""
+    words = (w + "g" if w.endswith("in") and len(w) > 4 and (w + "g",) in gerunds() else w for w in said.split(" "))
+    return " ".join(words)
 
 
 def _settle_commas(said: str) -> str:

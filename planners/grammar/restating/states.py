@@ -44,7 +44,11 @@ _TO_FACE = re.compile(
     r"looking towards?) "
     r"(?P<goal>\S.*)$"
 )
-_TALLER = re.compile(r"^(?:be )?(?P<far>.+) (?P<way>higher|lower|higher up|lower down)$")
+_TALLER = re.compile(
+    r"^(?:be |hang |sit |stand |go |come )*(?P<far>(?:about |around )?(?:a|an|half|\d|\w+ty|ten|five|two|three|"
+    r"four|six|one)"
+    r".*) (?P<way>higher|lower|higher up|lower down)$"
+)
 
 
 # Words before a state that add nothing to it, and the verbs that "to" may stand before.
@@ -76,6 +80,10 @@ def states(thing: str, state: Sequence[str]) -> Iterator[str]:
         yield f"turn {thing} to face {facing.group('goal')}"
     if taller := _TALLER.match(said):
         yield f"{'raise' if taller.group('way').startswith('higher') else 'lower'} {thing} {taller.group('far')}"
+    if words[0] in ("to", "into") and color_at(words, 1) is not None:
+        yield f"make {thing} {' '.join(words[1:])}"
+    if words[0] == "double":
+        yield f"make {thing} twice {' '.join(words[1:])}"
     if words[0] == "in" and color_at(words, 1 + (words[1:2] in (["a"], ["an"]))) is not None:
         yield f"make {thing} {' '.join(words[1:])}"
     if words[0] == "match" and len(words) > 1:

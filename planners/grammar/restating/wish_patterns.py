@@ -15,7 +15,7 @@ REALLY = r"(?:(?:really|just|also|still|actually|now|quite|much|so|kind of|sort 
           r"maybe|perhaps|rather|only|all|both|certainly|please) )*"  # fmt: skip
 BETTER = (
     r"(?:a (?:lot|bit|little|touch|good deal) |much |far |so much |way |even |somewhat )?"
-    r"(?:better|nicer|best|great|good|nice|lovely|cooler|prettier|perfect|fab|fantastic|smarter|cosier|happier|"
+    r"(?:better|nicer|handier|comfier|safer|neater|smarter|best|great|good|nice|lovely|cooler|prettier|perfect|fab|fantastic|smarter|cosier|happier|"
     r"more at home|more (?:sensible|fun|modern|elegant))"
 )
 # Before a thing and the state that it is to have.
@@ -27,6 +27,8 @@ WANTING = re.compile(
     rf"(?: to (?:see|have|get|find)| seeing| having| for| it if| it that| if| that)?|"
     rf"(?:could|can|may|might|shall|should|would) {SPEAKER} {REALLY}(?:please )?(?:have|get|see|try|like|want)|"
     rf"(?:can|could|would|will) (?:you|someone|somebody) {REALLY}(?:please )?(?:have|get|see (?:to it )?that)|"
+    rf"(?:\S+ ){{1,3}}?(?:said|says|reckons|thinks|told (?:me|us)|insists|suggests|asked|asks)(?: (?:for|me|us|"
+    rf"to))*(?: that)?|"
     rf"(?:let us )?{REALLY}(?:try|picture|imagine)|let us {REALLY}(?:have|see|get)|let me {REALLY}(?:have|see|try)|"
     rf"(?:just )?(?:have|get)|"
     rf"make sure(?: that)?|see to it that|make it so(?: that)?|ensure(?: that)?|i (?:think|feel|reckon|guess|suppose|"

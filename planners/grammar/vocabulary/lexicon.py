@@ -265,7 +265,9 @@ CLOSED: dict[str, Entry] = {
             "a tad bit, "
             "a teeny bit, a teensy bit, just a bit, just a little, a wee touch, a bit of a way"),
     **same(("DEGREE", "much"), "much, a lot, way, far, considerably, significantly, a great deal, a good deal, "
-            "substantially, lots, so much, very much"),
+            "substantially, lots, so much, very much, a good bit, a fair bit, quite a bit, quite a lot, a whole "
+            "lot, loads, heaps, tons, "
+            "miles, a fair amount, a hell of a lot"),
     **same(("MORE", None), "more, even more"),
     **same(("LESS", None), "less, even less"),
     **same(("LIGHT", "darker"), "darker"),
@@ -413,7 +415,10 @@ DONE = bag(
 INTERJECTIONS = bag("no yes yeah yep hmm oh ok okay and so but well maybe perhaps")
 
 # Before a verb in -ing ("would you mind removing the mug").
-GERUND_OPENERS = phrases("would you mind, do you mind, how about, what about, what if we try, try, start by, consider")
+GERUND_OPENERS = phrases(
+    "would you mind, do you mind, you mind, mind, could you try, how about, what about, what if we try, try, start "
+    "by, consider"
+)
 
 # Polite phrases: dropped at the start of a clause, before its verb.
 POLITE = phrases(

@@ -52,7 +52,9 @@ VERBS: dict[str, Entry] = {
         "yank, yank out, rip out, oust, evict, vaporize, obliterate, get shot of, junk, kick out, boot out, strip out, "
         "toss away, chuck in the bin, throw in the trash, be rid of, remove away, rid us of, hoover up, "
         "cut off, cut away, cut out, slice off, crop away, crop out, crop off, trim away, trim off, clip off, "
-        "chop off, saw off",
+        "chop off, saw off, yeet, whisk away, cart off, cart away, haul away, cull, vanish, sling out, lob out, "
+        "shift out of here, "
+        "strip away, whip out, whip away",
     ),
     **same(("CLEAR", None), "clear, clear off, clear out"),
     **same(("MERGE", None), "merge, combine, unite, join, join up, fuse, group, group together, treat, regard"),
@@ -113,7 +115,8 @@ VERBS: dict[str, Entry] = {
         ("MOVE", None),
         "move, shift, slide, push, pull, bring, shove, drag, scoot, nudge, relocate, transfer, carry, reposition, "
         "move over, shift over, budge, haul, scooch, heave, lug, send, edge, jog, scootch, wheel, roll over, "
-        "move along, slide over",
+        "move along, slide over, shuffle, shunt, ease, inch, budge up, budge along, swing, swivel over, rock over, "
+        "walk",
     ),
     **same(("CENTERING", None), "center, centre"),
     **same(("KEEP", None), "keep, leave"),
@@ -123,7 +126,7 @@ VERBS: dict[str, Entry] = {
         ("PUT", None),
         "put, place, set, set down, put down, stick, position, pop, lay, stand, hang, hang up, mount, rest, park, "
         "stack, plop, install, arrange, put up, lean, plonk, plunk, plunk down, plonk down, plop down, sit, deposit, "
-        "situate, bung",
+        "situate, bung, sling, whack, pop down, tuck, prop, prop up, plant down, shove in, wedge, pin, nestle",
     ),
     **same(
         ("ADD", None),
