@@ -24,7 +24,7 @@ from .parsing import Refusal
 from .reader import Reader
 from .restating.smoothing import smoothed
 from .tagging.spelling import correct_spelling
-from .tagging.words import clean, split
+from .tagging.words import clean, split, without_owners
 from .vocabulary.unsafe import unsafe_words
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     """
     if phrase := unsafe_words(cleaned):
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
-    words, remarks = correct_spelling(smoothed(split(cleaned)))
+    words, remarks = correct_spelling(smoothed(without_owners(split(cleaned))))
     before = _understand_previous(previous)
     phrases = Phrases(before.antecedent, before.again, before.colors)
     ops = _without_repeats(_complete_halves(Reader(phrases, cleaned, previous is not None).read(words)))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ....gaussians.errors import UserError
@@ -90,14 +91,14 @@ def clean(text: str) -> str:
     return "".join(c if c == "\n" or c.isprintable() else " " for c in text).strip()
 
 
-def _without_owners(words: list[Word]) -> list[Word]:
+def without_owners(words: Sequence[Word]) -> tuple[Word, ...]:
     """The words with people as the first part of a name: "the teacher's desk" is "the teacher desk"."""
-    return [
+    return tuple(
         w
         for i, w in enumerate(words)
         if not (w.text == "'s" and 0 < i < len(words) - 1 and singular(words[i - 1].text) in PEOPLE)
         or words[i + 1].text in ("gotta", "got", "have", "has", "too", "not", "in", "going", "been", "the", "a")
-    ]
+    )
 
 
 def split(cleaned: str) -> tuple[Word, ...]:
@@ -114,7 +115,7 @@ def split(cleaned: str) -> tuple[Word, ...]:
         words += _parts(found.group().lower(), found.start(), found.end(), words)
     if len(words) > MAX_WORDS:
         raise UserError(f"the instruction has {len(words)} words, at most {MAX_WORDS} are read; say it in parts")
-    return tuple(_without_owners(words))
+    return tuple(words)
 
 
 def _is_dash(cleaned: str, start: int, end: int) -> bool:
