@@ -1,4 +1,5 @@
-"""What a thing of a capture encloses goes where it goes: it was never seen, and is of no thing of its own.
+"""What a thing of a capture encloses goes where it goes: it was never seen, and is of no thing of its own. A plant goes
+with what holds it.
 
 A trained scene fills a closed body with Gaussians that show through its surface, and a segmentation leaves patches of a
 thing to what is behind it. Both come to light when the surface is taken away.
@@ -17,9 +18,11 @@ from torch import Tensor
 from ..gaussians.language.field.measure import reach
 from ..gaussians.language.query.color.fallback import is_reliable
 from ..gaussians.language.query.selection import Selection
+from ..gaussians.language.query.wholes import names_plant, rooted
 from ..gaussians.scene import Scene
 from ..gaussians.world.core import core_of
 from .cloud_diff import rows_of
+from .field_update import rows_in
 
 Bool = NDArray[np.bool_]
 F64 = NDArray[np.float64]
@@ -44,11 +47,23 @@ def with_enclosed(scene: Scene, selection: Selection) -> Selection:
         return selection
     own = torch.zeros(len(scene.cloud), dtype=torch.bool, device=scene.cloud.device)
     own[rows_of(scene.cloud, selection.ids)] = True
-    found = _enclosed(scene, own)
-    if found is None or not bool(found.any()):
+    found = torch.zeros_like(own)
+    for piece in _rooted(scene, selection):
+        found[rows_in(scene.cloud, field, piece)] = True
+    inside = _enclosed(scene, own | found)
+    found = (found if inside is None else found | inside) & ~own
+    if not bool(found.any()):
         return selection
     ids = scene.cloud.ids
     return replace(selection, ids=ids[own | found].sort().values, enclosed=ids[found].sort().values)
+
+
+def _rooted(scene: Scene, selection: Selection) -> list[int]:
+    """The pieces that hold the plants that a selection names, as plants of captures are found without trunk and pot."""
+    field, up = scene.language, scene.frame.up_vector
+    if field is None or not names_plant(selection.query.text) or selection.query.pick in ("all", "rest"):
+        return []
+    return [piece for g in selection.groups for piece in rooted(field, g, up) if piece not in selection.groups]
 
 
 def _enclosed(scene: Scene, own: Tensor) -> Tensor | None:

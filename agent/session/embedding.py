@@ -10,7 +10,7 @@ from ...gaussians.scene import Scene
 
 if TYPE_CHECKING:
     from ...gaussians.language.encoders import Encoder
-    from ...gaussians.language.field.language_field import LanguageField
+    from ...gaussians.language.field.language_field import Group, LanguageField
 
 _ANEW = "the groups are of the encoder "
 
@@ -44,3 +44,9 @@ def told_anew(field: LanguageField) -> str:
     """A sentence about groups that are named anew, with the encoder that named them before."""
     made_by = field.encoder if field.making is None else field.making.encoder
     return f"{_ANEW}{made_by} and are named anew"
+
+
+def only_thing(scene: Scene) -> Group | None:
+    """The one thing of an embedded scene that holds one and nothing else; None of any other scene."""
+    groups = [] if scene.language is None else [g for g in scene.language.groups if g.count and g.level != "part"]
+    return groups[0] if len(groups) == 1 and groups[0].level == "object" else None

@@ -23,7 +23,7 @@ from . import log as session_log
 from .answers import chosen_numbers, rejects
 from .asker import Asker, see_answer
 from .clarify import Question, plan_with_answer, plan_with_query
-from .embedding import embedded_by
+from .embedding import embedded_by, only_thing
 from .history import History, State
 from .judge import Judge, JudgedError, known_judge
 from .log_sessions import Beginning, begin
@@ -318,7 +318,9 @@ class Session:
             UserError: the text is too long or is not valid Unicode.
             BackendError: a language model that was chosen as the only planner gave no plan.
         """
-        return self._planner.plan(text, self._history.present.context or None)
+        context = self._history.present.context
+        only = None if context else only_thing(self.scene)
+        return self._planner.plan(text, context or (f"select the {only.label or 'thing'}" if only else None))
 
     def preview(self, instruction: str | EditPlan) -> Result:
         """A dry run: the result as it would be. Nothing is edited or logged, but the scene may become embedded."""
@@ -596,6 +598,8 @@ class Session:
             with timed(seconds, "embed"):
                 self.embed()
         before = self._history.present
+        if before.last is None and (only := only_thing(self.scene)) is not None:  # "twice as big" can mean nothing else
+            before = replace(before, last=self._context(None).resolve(self.scene, Query(groups=(only.id,))))
         with timed(seconds, "edit"):
             try:
                 state, receipts = run_plan(plan, before, self._context, dry_run=dry_run, judge=self._judge())

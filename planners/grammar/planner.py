@@ -31,6 +31,10 @@ if TYPE_CHECKING:
     from ..plan import Observation
 
 NAME = "grammar"
+_COPIES = frozenset({"copy", "duplicate", "clone", "new one", "second one", "second copy"})
+_ORIGINALS = frozenset({"original", "original one", "first one", "old one"})
+_REST = frozenset({"rest", "everything", "everything else", "other"})
+_SIDES = {"right_of": "right", "left_of": "left", "next_to": None}  # of the original, and the direction of its copies
 
 
 @dataclass(frozen=True)
@@ -138,6 +142,8 @@ def _complete_halves(ops: Sequence[Fields]) -> list[Fields]:
     for i, op in enumerate(ops):
         held, fields = op.get("held"), {k: v for k, v in op.items() if k != "held"}
         after = ops[i + 1].get("target") if i + 1 < len(ops) else None
+        if held == "kept" and settled and after is None and _is_the_rest(op["target"]):
+            continue  # "paint it red, keep the rest as it is"
         if held == "kept" and (after is None or Query(last=True) not in after.exclude):
             raise Refusal("it says what to keep, and asks for no change", "keep", verdict="not_an_edit")
         if op["op"] == "isolate" and after is not None and after.pick == "all" and Query(last=True) in after.exclude:
@@ -153,6 +159,10 @@ def _complete_halves(ops: Sequence[Fields]) -> list[Fields]:
     return settled
 
 
+def _is_the_rest(kept: Query) -> bool:
+    return kept.pick == "rest" or kept.text in _REST or Query(last=True) in kept.exclude
+
+
 def _without_repeats(ops: Sequence[Fields]) -> list[Fields]:
     """Drop deletions of what was just deleted: "we don't need the basin any more, delete it"."""
     again = {"op": "delete", "target": Query(last=True)}
@@ -160,13 +170,37 @@ def _without_repeats(ops: Sequence[Fields]) -> list[Fields]:
 
 
 def _merge_copies(ops: Sequence[Fields]) -> list[Fields]:
-    """Merge a copy and its move: "copy the chair and put it next to the desk" is one copy that is placed there."""
+    """Merge a copy and its move: "copy the chair and put it next to the desk" is one copy that is placed there. A side
+    of the original itself is the direction of a row: "copy the chair and put the copy to the right of it"."""
     merged: list[Fields] = []
     for op in ops:
         before = merged[-1] if merged else {}
         bare = before.get("op") == "duplicate" and not {"place", "direction"} & before.keys()
-        if bare and op["op"] == "move" and op["target"].last and "toward" not in op:
+        if bare and op["op"] == "move" and _is_the_copy(op["target"], before["target"]) and "toward" not in op:
             merged[-1] = {**before, **{k: v for k, v in op.items() if k not in ("op", "target")}}
         else:
             merged.append(op)
-    return merged
+    return [_in_a_row(op) if op["op"] == "duplicate" else op for op in merged]
+
+
+def _is_the_copy(moved: Query, original: Query) -> bool:
+    """Whether a query means the copy of what was just copied: "it", "the copy", "the second one"."""
+    second = moved.pick == "nth" and moved.ordinal == 2 and moved.text == original.text
+    return moved.last or second or (moved.text in _COPIES and not (moved.colors or moved.relations))
+
+
+def _in_a_row(op: Fields) -> Fields:
+    """A copy that is placed at a side of its own original: along the direction of that side, or beside it."""
+    place = op.get("place")
+    if not isinstance(place, dict) or place.get("relation") not in _SIDES:
+        return op
+    relation, anchors = place["relation"], list(place.get("anchors", ()))
+    if len(anchors) != 1 or not _is_original(anchors[0], op["target"]):
+        return op
+    way = _SIDES[relation]
+    return {**{k: v for k, v in op.items() if k != "place"}, **({"direction": way} if way else {})}
+
+
+def _is_original(anchor: Any, target: Query) -> bool:
+    said = anchor if isinstance(anchor, Query) else Query.model_validate(anchor)
+    return said.last or said == target or said.text in _ORIGINALS

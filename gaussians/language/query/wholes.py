@@ -24,6 +24,7 @@ BOTH = frozenset({"potted plant", "pot plant", "potted flowers"})  # phrases tha
 MIN_NAMED = 0.15  # probability of the names of vessels from which what stands below a plant is its pot
 LARGEST = 1.25  # of the plant's extent: width and height of a pot
 SUNK = 0.6  # of the plant's height: how far up a pot may reach, whose plant hides in it
+_MOST_PIECES = 6
 TOUCHING = 0.15  # of the smaller height: gap between a pot and its plant
 
 
@@ -91,6 +92,38 @@ def beneath(field: LanguageField, plant: int, up: F64) -> int | None:
     unnamed = [g for g in field.objects() if g.count and g.id != plant and g.label_score < MIN_NAMED]
     near = [g for g in unnamed if _stands_in(grown, g, up)]
     return max(near, key=lambda g: (g.count, -g.id)).id if near else None
+
+
+def rooted(field: LanguageField, plant: int, up: F64) -> tuple[int, ...]:
+    """The pieces that hold a plant, by their place alone: trunk, soil and pot, each below one that was found before and
+    touching it, over one another, and none wider than the plant. Only objects that nothing names count.
+
+    Args:
+        plant: id of a group, whatever its name.
+        up: unit vector `[3]`.
+    """
+    crown = field.groups[plant]
+    found = [crown]
+    open_ = [g for g in field.objects() if g.count and g.id != plant and g.label_score < MIN_NAMED]
+    while len(found) <= _MOST_PIECES:
+        below = [g for g in open_ if any(_carries(g, upper, crown, up) for upper in found)]
+        if not below:
+            break
+        found.append(max(below, key=lambda g: (g.count, -g.id)))
+        open_.remove(found[-1])
+    return tuple(g.id for g in found[1:])
+
+
+def _carries(lower: Group, upper: Group, crown: Group, up: F64) -> bool:
+    """Whether one piece of a plant stands in another: it reaches lower, touches it or overlaps it in height, and
+    lies within its outline or around it, no wider than the crown."""
+    gap = upper.box.bottom(up) - lower.box.top(up)
+    slack = TOUCHING * min(upper.box.size[2], lower.box.size[2])
+    if gap > slack or lower.box.bottom(up) >= upper.box.bottom(up) or lower.box.top(up) >= crown.box.top(up):
+        return False
+    middles = np.array([upper.box.center, lower.box.center])
+    over = bool(lower.box.covers(middles[:1])[0]) or bool(upper.box.covers(middles[1:])[0])
+    return over and max(lower.box.size[:2]) <= max(crown.box.size[:2]) and lower.box.size[2] <= crown.box.size[2]
 
 
 def _is(text: str, of: frozenset[str]) -> bool:

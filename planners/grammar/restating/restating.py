@@ -8,6 +8,7 @@ from itertools import chain
 
 from ..tagging.words import bag
 from .elision import following, gapped, splits, terse, topics
+from .phrasings import phrasings
 from .remarks import remarks
 from .smoothing import unopened, without_reason
 from .wishes import wishes
@@ -49,6 +50,8 @@ def _readings(said: str, mark: str) -> Iterator[str]:
     shorter = without_reason(said)
     plain = unopened(said)
     shortest = unopened(without_reason(plain)) if plain != said else unopened(shorter)
+    for text in dict.fromkeys((said, plain, shortest)):
+        yield from phrasings(text)
     for text in dict.fromkeys((said, plain)):
         yield from (" ".join(r) for r in topics(text.split()))
     yield from (plain, shorter, shortest, shortest.removesuffix(" more"))
