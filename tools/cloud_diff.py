@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import torch
 from torch import Tensor
@@ -92,11 +92,15 @@ class Difference:
         outside: number of rows that were not allowed to change and changed in any bit of any column, or were removed.
         columns: columns in which some remaining row changed.
         bad_ids: number of added rows whose id is not above every earlier id, or is not unique.
+        kept: `[K]` int64 rows of the cloud before that were not removed; None: all of them.
+        changed: by column that changed, `[K]` bool: which of the kept rows did.
     """
 
     outside: int
     columns: tuple[str, ...]
     bad_ids: int
+    kept: Tensor | None = None
+    changed: Mapping[str, Tensor] = field(default_factory=dict)
 
 
 def difference(before: GaussianCloud, after: GaussianCloud, allowed: Tensor, removed: Tensor) -> Difference:
@@ -111,18 +115,23 @@ def difference(before: GaussianCloud, after: GaussianCloud, allowed: Tensor, rem
     n = len(before) if kept is None else len(kept)
     if len(after) < n:
         return Difference(int((~allowed).sum()), ("ids",), 0)
-    outside = ~allowed if kept is None else ~allowed[kept]
     differs = torch.zeros(n, dtype=torch.bool, device=before.device)
-    columns = []
+    changed: dict[str, Tensor] = {}
     for name, column in before.columns():
         other = getattr(after, name)
-        if column is not other and _mark_changed(column, other, kept, differs):
-            columns.append(name)
+        if column is other:
+            continue
+        mask = torch.zeros(n, dtype=torch.bool, device=before.device)
+        if _mark_changed(column, other, kept, mask):
+            changed[name] = mask
+            differs |= mask
+    where = differs.nonzero().squeeze(1)
+    outside = int((~allowed[where if kept is None else kept[where]]).sum())
     lost = int((gone & ~allowed).sum())
     added = after.ids[n:]
     top = int(before.ids.max()) if len(before) else -1
     bad_ids = int((added <= top).sum()) + len(added) - len(torch.unique(added))
-    return Difference(lost + int((differs & outside).sum()), tuple(columns), bad_ids)
+    return Difference(lost + outside, tuple(changed), bad_ids, kept, changed)
 
 
 def _mark_changed(column: Tensor, other: Tensor, kept: Tensor | None, differs: Tensor) -> bool:
@@ -136,7 +145,10 @@ def _mark_changed(column: Tensor, other: Tensor, kept: Tensor | None, differs: T
         a = column[start:end] if kept is None else column.index_select(0, kept[start:end])
         a, b = _bits(a), _bits(other[start:end])
         if not torch.equal(a, b):
-            differs[start:end] |= (a != b).reshape(end - start, -1).any(dim=1)
+            apart = (a != b).reshape(end - start, -1)
+            if apart.shape[1] % 8 == 0:  # eight flags at a time
+                apart = apart.view(torch.int64)
+            differs[start:end] |= apart.any(dim=1)
             found = True
     return found
 

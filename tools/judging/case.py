@@ -14,10 +14,11 @@ from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.scene import Scene
 from ...gaussians.world.box import Box
+from ..cloud_diff import Difference
 from ..enclosed import with_enclosed
 from ..operation import Context, EditOp
 from ..placement.bodies import Body, bodies_of, centimetre, contact_box
-from .changes import Changes, changes_between
+from .changes import Changes, changes_between, changes_of
 
 _NO_IDS = torch.zeros(0, dtype=torch.int64)
 
@@ -32,6 +33,7 @@ class Case:
         context: viewer, encoder and "it" as the operation had them.
         chosen: what a repair took the words to mean; None: they are asked again.
         crowded: whether the operation told that a new thing touches what stands around it.
+        known: how the clouds differ row by row; None: they are compared by ids.
     """
 
     before: Scene
@@ -40,10 +42,12 @@ class Case:
     context: Context
     chosen: Selection | None = None
     crowded: bool = False
+    known: Difference | None = None
 
     @cached_property
     def changes(self) -> Changes:
-        return changes_between(self.before.cloud, self.after.cloud)
+        before, after = self.before.cloud, self.after.cloud
+        return changes_between(before, after) if self.known is None else changes_of(before, after, self.known)
 
     @cached_property
     def asked(self) -> Selection | None:

@@ -9,6 +9,7 @@ import torch
 from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
+from ..cloud_diff import Difference
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,12 +20,14 @@ class Changes:
         before, after: the clouds.
         row: `[N]` int64, row of each Gaussian in the cloud after, -1 where it is gone.
         added: `[K]` int64, rows of the cloud after whose ids are new, ascending.
+        known: the same as it was found row by row already; None: columns are compared here.
     """
 
     before: GaussianCloud
     after: GaussianCloud
     row: Tensor
     added: Tensor
+    known: Difference | None = None
 
     @cached_property
     def gone(self) -> Tensor:
@@ -64,12 +67,34 @@ class Changes:
             return found
         if old.shape[1:] != new.shape[1:]:
             return ~self.gone
-        stayed = (~self.gone).nonzero().squeeze(1)
+        if self.known is not None and bands is None:
+            return self._as_known(name, found)
+        stayed = (~self.gone if bands is None else self.shaded).nonzero().squeeze(1)
         a, b = old[stayed], new[self.row[stayed]]
         if bands is not None:
             a, b = a[:, :bands], b[:, :bands]
         found[stayed] = (a != b).flatten(1).any(dim=1) if a.ndim > 1 else a != b
         return found
+
+    def _as_known(self, name: str, found: Tensor) -> Tensor:
+        """`[N]` bool: `found`, with the rows that are known to differ in a column."""
+        assert self.known is not None
+        if (changed := self.known.changed.get(name)) is not None:
+            kept = self.known.kept
+            found[changed if kept is None else kept[changed]] = True
+        return found
+
+
+def changes_of(before: GaussianCloud, after: GaussianCloud, known: Difference) -> Changes:
+    """The difference of two clouds whose remaining rows keep their order, as it was found row by row."""
+    kept = known.kept
+    n = len(before) if kept is None else len(kept)
+    here = torch.arange(n, device=before.device)
+    row = here
+    if kept is not None:
+        row = torch.full((len(before),), -1, dtype=torch.int64, device=before.device)
+        row[kept] = here
+    return Changes(before, after, row, torch.arange(n, len(after), device=before.device), known)
 
 
 def changes_between(before: GaussianCloud, after: GaussianCloud) -> Changes:

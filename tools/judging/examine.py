@@ -249,10 +249,10 @@ def _elsewhere(case: Case) -> Tensor:
     """`[N]` bool: Gaussians whose centre is at another place than before."""
     changes = case.changes
     found = torch.zeros_like(changes.gone)
-    stayed = (~changes.gone).nonzero().squeeze(1)
-    apart = case.before.cloud.means[stayed] - case.after.cloud.means[changes.row[stayed]]
-    scale = float(case.before.cloud.means.abs().max()) if len(stayed) else 1.0
-    found[stayed] = torch.linalg.vector_norm(apart, dim=1) > 1e-5 * max(scale, 1e-9)
+    rows = changes.placed.nonzero().squeeze(1)
+    apart = case.before.cloud.means[rows] - case.after.cloud.means[changes.row[rows]]
+    scale = float(case.before.cloud.means.abs().max()) if len(rows) else 1.0
+    found[rows] = torch.linalg.vector_norm(apart, dim=1) > 1e-5 * max(scale, 1e-9)
     return found
 
 

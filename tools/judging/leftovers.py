@@ -101,8 +101,11 @@ def _stayed_around(case: Case, box: Box, near: float) -> Tensor:
     """Rows of visible Gaussians in and around a box that were not meant and did not change."""
     cloud = case.before.cloud
     stayed = (~case.changes.any & ~case.target & (cloud.opacities > _VISIBLE)).nonzero().squeeze(1)
-    local = box.local(cloud.means[stayed].to(torch.float64).cpu().numpy())
     pad = _AROUND * max(box.size) + near
+    apart = cloud.means.index_select(0, stayed) - torch.tensor(box.center, dtype=torch.float32, device=cloud.device)
+    reach = float(np.linalg.norm(np.array(box.size) / 2 + pad))
+    stayed = stayed[(apart.abs() <= 1.001 * reach).all(dim=1)]
+    local = box.local(cloud.means[stayed].to(torch.float64).cpu().numpy())
     inside = (np.abs(local) <= np.array(box.size) / 2 + pad).all(axis=1)
     return stayed[torch.from_numpy(inside)]
 

@@ -101,6 +101,10 @@ def _gap_below(case: Case, points: Array, box: Box, others: NDArray[np.float32])
     # What carries it is under its feet, not under an arm that reaches out.
     feet = points[own < low + max(_FEET * box.size[2], 2 * case.cm(max(box.size)))]
     base = contact_box(feet, case.after.frame, box.axes)
+    reach = np.float32(1.001 * np.hypot(*base.size[:2]) / 2)
+    level = case.after.frame.basis()[:2].astype(np.float32)
+    aside = np.abs(others @ level.T - (level @ np.array(base.center, dtype=np.float32)))
+    others = others[(aside[:, 0] <= reach) & (aside[:, 1] <= reach)]
     heights = others[base.covers(others)] @ up.astype(np.float32)
     slack = max(0.25 * box.size[2], 0.02 * max(box.size))
     gaps = np.sort(np.abs(heights[heights < low + slack] - low))

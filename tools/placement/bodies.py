@@ -6,6 +6,7 @@ Where a thing goes is decided in place.py.
 from __future__ import annotations
 
 import math
+import weakref
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -28,7 +29,11 @@ from ..operation import Direction
 
 Array = NDArray[np.float64]
 _MOST = 0.5  # share of an object's Gaussians from which they stand for it
+_KEPT = 4  # scenes and selections whose bodies are kept
 _CALIPERS = 1500  # points from which the footprint's orientation is found; more do not change it
+
+
+_known: dict[tuple[int, int], tuple[weakref.ref[Scene], weakref.ref[Selection], tuple[Body, ...]]] = {}
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,8 +70,22 @@ def bodies_of(scene: Scene, selection: Selection) -> list[Body]:
 
     Selected Gaussians of other things than those that are selected by their group are regions of colour, or parts: what
     was found as one is one body, whatever the groups are that it reaches over. They come last, with the Gaussians
-    outside any group. What lies inside a thing is of the body that is nearest, and its box leaves it out.
+    outside any group. What lies inside a thing is of the body that is nearest, and its box leaves it out. The last few
+    are kept, as an operation and its checks ask for the same.
     """
+    key = id(scene), id(selection)
+    known = _known.get(key)
+    if known is not None and known[0]() is scene and known[1]() is selection:
+        return list(known[2])
+    bodies = _bodies(scene, selection)
+    _known[key] = weakref.ref(scene), weakref.ref(selection), tuple(bodies)
+    while len(_known) > _KEPT:
+        del _known[next(iter(_known))]
+    return bodies
+
+
+def _bodies(scene: Scene, selection: Selection) -> list[Body]:
+    """See `bodies_of`."""
     if selection.enclosed is not None:
         return _with_inside(scene, bodies_of(scene, _without_inside(selection)), selection.enclosed)
     bodies, loose = list[Body](), list[Tensor]()
