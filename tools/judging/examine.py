@@ -422,7 +422,8 @@ def _duplicate(case: Case, op: Duplicate) -> Found:
         near = min(float(np.linalg.norm(np.array(box.center) - b.center)) for b in case.bodies)
         whole = min(case.bodies, key=lambda b: abs(len(b.rows) - len(rows)))
         now = contact_box(solid_points(case.after.cloud, rows), case.after.frame, whole.box.axes)
-        checks += [sizes.like_original(now, whole.box), hues.like_original(case, rows, whole.rows)]
+        was = contact_box(solid_points(case.before.cloud, whole.rows), case.before.frame, whole.box.axes)
+        checks += [sizes.like_original(now, was), hues.like_original(case, rows, whole.rows)]
         checks.append(at_least("beside the original", near, 0.2 * min(case.bodies[0].box.size), "units",
                                f"it stands {near:.3g} units from the original"))  # fmt: skip
         if op.direction is None:
