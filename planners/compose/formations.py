@@ -16,7 +16,7 @@ from ..layout.problem import Item, Rigid
 from .furnishing import Group, GroupRelation, pairs
 
 Place = tuple[int, float, float, float]  # id, x, y, yaw
-_PASSAGE = 0.5  # between rows, to walk through
+_PASSAGE = 0.62  # between rows, to walk through
 _AISLE = 0.9  # between two columns of benches
 _TALK = 1.2  # between two that face each other
 _KNEES = 0.45  # between a seat and the table before it
@@ -134,7 +134,7 @@ class Formations:
         kind = group.kind
         if kind.seats > 1:
             return _AISLE if columns == 2 else 0.25
-        return 0.08 if kind.seats == 1 else 0.45 if kind.top else 0.3
+        return 0.08 if kind.seats == 1 else 0.62 if kind.top else 0.3
 
     def _seat_space(self, group: Group, id: int) -> tuple[float, float, float]:
         """Metres that the seats at a thing take at its sides, before and behind it."""

@@ -98,6 +98,18 @@ class Furnishing:
                     GroupRelation(said.name, said.objects, said.wall, said.hard, said.distance, said.sides)
                 )
 
+    def hang(self) -> None:
+        """Hang up things that are said to be above another and usually stand: a shelf above the desk."""
+        for group in self.groups:
+            over = any(r.hard and r.name == "above" and r.objects for r in group.relations)
+            if not over or group.thing.support or group.kind.support not in ("floor", "surface"):
+                continue
+            if group.kind.role in ("shelf", "bookshelf"):
+                group.kind = replace(knowledge.things()["wall shelf"], name=group.kind.name, like=group.kind.role)
+            (wide, deep, tall), depth = group.kind.size, min(group.kind.size[1][1], 0.35)
+            flat = (wide, (min(deep[0], depth), depth), (min(tall[0], 0.6), min(tall[1], 0.6)))
+            group.kind = replace(group.kind, support="wall", size=flat, backed=False, aisle=0.0)
+
     def add(self, habit: knowledge.Habit, most: int | None = None) -> bool:
         """Add a habit, unless the room has it, the brief excludes it, or a thing that it needs is missing.
 
@@ -312,6 +324,7 @@ def furnish(brief: Brief, rng: np.random.Generator, area: float | None) -> Furni
     """
     made = Furnishing(brief, rng)
     made.ask()
+    made.hang()
     made.seat()
     made.fill(area)
     made.settle()

@@ -8,7 +8,8 @@ from itertools import count
 
 import numpy as np
 
-from ...gaussians.world.person import HEADROOM, HUNG_AT
+from ...gaussians.world import everyday
+from ...gaussians.world.person import HEADROOM, HUNG_AT, STEP
 from ..layout.problem import Item, Keepout, Problem, Wall, Wish
 from ..rooms.node import Size
 from . import knowledge, sizing
@@ -321,6 +322,11 @@ class _ProblemBuilder:
             if other in self.item_ids["window"]:
                 self.wishes.append(Wish(subject=one, name="at_window"))
             return
+        if name in ("under", "below") and self._lacks_space(one, other):
+            label = {i.id: i.label for i in self.items}
+            self.remarks.append(f"there is no space under the {label[other]}; the {label[one]} stands next to it")
+            self.wishes.append(Wish(subject=one, name="next_to", objects=(other,), hard=hard))
+            return
         if self._hangs(other) and name in ("in_front_of", "behind"):  # a wall has no side but the one in the room
             self.wishes.append(Wish(subject=one, name="next_to", objects=(other,), hard=hard, distance=distance))
             if name == "in_front_of":
@@ -329,6 +335,13 @@ class _ProblemBuilder:
         self.wishes.append(Wish(subject=one, name=name, objects=(other,), hard=hard, distance=distance))
         if name == "in_front_of" and hard and self._has_front(other):
             self.wishes.append(Wish(subject=other, name="facing", objects=(one,), hard=False))
+
+    def _lacks_space(self, one: int, other: int) -> bool:
+        """Whether a thing on the floor does not fit under another one there."""
+        items = {_item_id(i): i for i in self.items if i.id in (one, other)}
+        upper, lower = items[other], items[one]
+        on_floor = upper.support == lower.support == "floor" and lower.size[2] > STEP
+        return on_floor and lower.size[2] > everyday.free_beneath(upper.label, upper.size[2])
 
     def _hangs(self, id: int) -> bool:
         return any(i.id == id and i.support == "wall" for i in self.items)

@@ -198,14 +198,14 @@ def _formed_sides(groups: Sequence[tuple[Group, Size]]) -> tuple[float, float]:
         form = group.thing.arrangement
         if form is None or group.kind.support != "floor":
             continue
-        gap = form.gap if form.gap is not None else 0.1 if group.kind.seats == 1 else 0.45
+        gap = form.gap if form.gap is not None else 0.1 if group.kind.seats == 1 else 0.62
         rows = 1 if form.form == "row" else form.rows or max(2, round(sqrt(group.count / 1.5)))
         columns = form.columns or ceil(group.count / rows)
         rows = ceil(group.count / columns)
         if form.form == "circle":
             sides = [group.count * (width + 0.1) / pi + 2 * depth + 1.0] * 2
         else:
-            sides = [columns * (width + gap) + 0.4, rows * (depth + 0.6) + (1.0 if rows > 1 else 0.5)]
+            sides = [columns * (width + gap) + 0.4, rows * (depth + 0.7) + (1.0 if rows > 1 else 0.5)]
         long, short = max(long, *sides), max(short, min(sides))
     return long, short
 

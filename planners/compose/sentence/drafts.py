@@ -18,6 +18,16 @@ from ..brief import Arrangement, Brief, RefusedError, Relation, RoomSize, Scale,
 from .amounts import Side
 
 _BARE_PLURAL = 2  # count of "chairs" where the kind of room has no habit of chairs
+_ONE = (
+    "headphones",
+    "scales",
+    "scale",
+    "drums",
+    "stairs",
+    "steps",
+    "binoculars",
+    "clothes",
+)  # plural names of one thing
 _MOST = 60  # most of one thing
 
 
@@ -113,9 +123,10 @@ class Reading:
         fit = [d for d in others if d.several == (word in ("them", "these", "those"))] or others
         return next((d for d in fit if not (d.kind and d.kind.opening)), None) or next(iter(fit), None)
 
-    def first(self, subject: Draft) -> Draft | None:
-        """The first thing on the floor, which what hangs overhead is likely above."""
-        return next((d for d in self.drafts if d is not subject and d.kind and d.kind.support == "floor"), None)
+    def first(self, subject: Draft, seats: bool = True) -> Draft | None:
+        """The first thing on the floor, which what hangs overhead is likely above; without `seats` no seat."""
+        found = (d for d in self.drafts if d is not subject and d.kind and d.kind.support == "floor")
+        return next((d for d in found if d.kind and (seats or not d.kind.seats)), None)
 
     def pair(self, subject: Draft | None) -> tuple[Draft, ...]:
         """The drafts that "them" refers to: one draft of several things, or the last two drafts."""
@@ -170,7 +181,7 @@ class Reading:
             own = draft.said.count
             if own is None and draft.seated and seats:
                 own = seats
-            if own is None and draft.kind and is_plural(draft.kind.name):
+            if own is None and draft.kind and (is_plural(draft.kind.name) or draft.called in _ONE):
                 own = 1  # string lights are one thing
             if own is None:
                 own = max(habits.get(draft.name, 0), _BARE_PLURAL) if draft.plural and not draft.each else 1

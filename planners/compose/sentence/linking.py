@@ -24,7 +24,10 @@ _AT_WINDOW = frozenset({"next_to", "under", "below", "at", "in_front_of", "again
 
 _TWO = 2
 _ENDS = (",", ".", ";", "and", "!", "?", "\n")
-_TO_OWNER = frozenset({"in_front_of", "behind", "on", "under", "below", "next_to", "around", "above"})
+_NEAREST = frozenset({"next_to", "in_front_of", "behind", "left_of", "right_of", "against"})
+_TO_OWNER = frozenset(
+    {"in_front_of", "behind", "on", "under", "below", "next_to", "around", "above", "left_of", "right_of"}
+)
 _NOBODY = Draft("", Said(), False)  # the subject of a relation until its thing is read
 _PRONOUN_COUNTS = ("one", "two", "three", "four", "five", "six", "half")
 
@@ -51,6 +54,7 @@ class Linker:
         self.parent: Draft | None = None  # "a desk with …"
         self.opens = True  # whether a sentence begins here
         self.fresh: Draft | None = None  # a thing just introduced as an object: "a stool in the centre" is about it
+        self.carried = False  # whether the last relation was that of a thing on, in or under the fresh one
         self.asked = ""  # the word before the place that is read
         self.distance: float | None = None  # metres that belong to the relation that follows
         self._ahead: list[Link] = []  # relations of the next thing; their subjects are not read yet
@@ -129,7 +133,7 @@ class Linker:
     def elsewhere(self) -> None:
         """Let what follows be about no thing: a dance floor has a place, but is no thing."""
         self._finish()
-        self.last = Draft("", Said(), False)
+        self.last, self.opens = Draft("", Said(), False), False
 
     def drop(self) -> None:
         """Drop the waiting relation, as its object cannot be placed."""
@@ -193,6 +197,8 @@ class Linker:
         if said.own and subject is not None:  # "each facing its own mirror"
             return self.reading.mention(self.reading.add(Draft(name, said, False, each=subject)))
         known = self.reading.known(name, head, subject) if said.plain or said.determiner == "the" else None
+        if known is None and subject is not None and said.determiner == "the" and subject.name == name:
+            return subject  # it cannot be under itself: what is was not understood
         draft = known or self.reading.add(Draft(name, said, plural or each))
         if each and subject is not None and subject is not draft:
             subject.each = draft
@@ -205,7 +211,8 @@ class Linker:
             waiting.found = (draft,)
             return
         self.waiting = None
-        self._link(waiting.subject, waiting.name, (*waiting.found, draft), waiting)
+        if draft is not waiting.subject:
+            self._link(waiting.subject, waiting.name, (*waiting.found, draft), waiting)
 
     def pronoun(self, word: str) -> None:
         """Use a pronoun as the object of the waiting relation: "next to it", "between them"."""
@@ -215,7 +222,8 @@ class Linker:
         if word in ("them", "these", "those") and waiting.name == "between":
             objects = self.reading.pair(waiting.subject)
         else:
-            one = self.reading.before(waiting.subject, word)
+            owner = self.parent if self.parent is not waiting.subject else None  # "a desk with a lamp on it"
+            one = owner or self.reading.before(waiting.subject, word)
             objects = (one,) if one else ()
         self.waiting = None
         if objects and (waiting.name != "between" or len(objects) == 2 or objects[0].several):
@@ -278,6 +286,9 @@ class Linker:
             return spot[1]
         if not found or not self._relates(texts, i, found[0], found[1]):
             return 0
+        if self.fresh is not None and found[0] in _NEAREST and self.carried:
+            self.last = self.fresh  # "a candle on a stool next to the bed": the stool is next to it
+        self.fresh, self.carried = None, found[0] in ("on", "inside", "under")
         self._finish()
         distance, self.distance = self.distance, None
         self.waiting = _Waiting(self.last if not self.opens else None, found[0], distance=distance)
@@ -297,7 +308,9 @@ class Linker:
         if not pronoun and (stated == 1 or (word in ("each", "every") and draft.said.count)):
             self.counted(_TWO * stated)
         self._finish()
-        if texts[i + taken - 1] == "of" and "aisle" in texts[i + taken : i + taken + 3]:
+        if taken == 1:
+            self.waiting = _Waiting(draft, "next_to", sides=True)
+        elif texts[i + taken - 1] == "of" and "aisle" in texts[i + taken : i + taken + 3]:
             self.arrange(Arrangement(form="grid", columns=_TWO))
         elif texts[i + taken - 1] == "of":
             self.waiting = _Waiting(draft, "next_to", sides=True)
@@ -311,10 +324,15 @@ class Linker:
         if draft is None or self.opens or name not in _TO_OWNER:
             return False
         owner = self.parent if self.parent is not None and self.parent is not draft else self.reading.before(draft)
-        if owner is not None:
-            self._finish()
+        if owner is None:
+            return False
+        self._finish()
+        if name == "above":
+            owner = self.reading.first(draft, seats=False) or owner
+            self.reading.link(Link(draft, "above", (owner,), hard=False))
+        else:
             self._link(draft, name, (owner,))
-        return owner is not None
+        return True
 
     def away(self, texts: Sequence[str], i: int) -> int:
         """Read what a distance is from, at position `i`: a part of the room, or the next thing; the number of words

@@ -70,17 +70,24 @@ class NounPhrases:
     def content(self, i: int) -> tuple[int, str]:
         """What a thing is full of or made of: "of oranges" at position `i`; the end of the phrase and the noun."""
         texts = self.texts
-        if texts[i : i + 1] != ["of"] or texts[i + 1 : i + 2] in (["the"], ["each"], ["every"], ["them"]):
+        if texts[i : i + 1] != ["of"] or texts[i + 1 : i + 2] in (["each"], ["every"], ["them"]):
             return i, ""
         j = i + 1
-        while j < len(texts) and (texts[j] in ADJECTIVES or texts[j] in ("a", "an", "some", "many")):
+        while j < len(texts) and (texts[j] in ADJECTIVES or texts[j] in ("a", "an", "the", "some", "many")):
             j += 1
         while j < len(texts) and color_at(texts, j) and not self.name_at(j):
             j += color_at(texts, j)[1]  # type: ignore[index]
         if found := self.name_at(j):
             return j + found[1], found[0]
-        if j < len(texts) and may_be_noun(texts[j]) and texts[j] not in vocabulary.FILLER:
+        if (
+            j < len(texts)
+            and not match(vocabulary.RELATIONS, texts, j)
+            and may_be_noun(texts[j])
+            and texts[j] not in vocabulary.FILLER
+        ):
             return j + 1, singular(texts[j])
+        if j > i + 1 and texts[j - 1] in vocabulary.MATERIALS:
+            return j, texts[j - 1]  # "a basket of wool"
         return i, ""
 
     def stood_before(self, i: int) -> bool:

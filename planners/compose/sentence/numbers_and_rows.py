@@ -11,6 +11,7 @@ from ..brief import Arrangement
 from . import vocabulary
 
 _TIMES = re.compile(r"[x×](\d{1,2})|(\d{1,2})[x×]")
+_GRID = re.compile(r"([1-9]\d?)[x×]([1-9]\d?)")
 _OPENERS = ("in", "into", "as", "forming")
 _MOST = 60
 
@@ -39,8 +40,16 @@ def standing(texts: Sequence[str], i: int) -> Standing | None:
     behind = texts[i] in _OPENERS
     j = i + behind
     j += texts[j : j + 1] in (["a"], ["an"], ["the"])
+    if behind and texts[j : j + 1] and (said := _GRID.fullmatch(texts[j])) and texts[j + 1 : j + 2] == ["grid"]:
+        made = Arrangement(form="grid", rows=int(said[1]), columns=int(said[2]))
+        return Standing(made, min(int(said[1]) * int(said[2]), _MOST), True, j + 2 - i)
     rows, taken = _number(texts, j)
     at = j + taken
+    if behind and rows and texts[at : at + 1] in (["by"], ["x"], ["×"]):  # "in a 2 by 3 grid"
+        columns, digits = _number(texts, at + 1)
+        if columns and texts[at + 1 + digits : at + 2 + digits] in (["grid"], ["block"], ["array"]):
+            made = Arrangement(form="grid", rows=rows, columns=columns)
+            return Standing(made, rows * columns, True, at + 2 + digits - i)
     at += texts[at : at + 1] in (["neat"], ["long"], ["single"], ["straight"], ["big"], ["small"], ["wide"])
     form = vocabulary.FORMS.get(texts[at]) if at < len(texts) else None
     plural = form is not None and texts[at].endswith("s")

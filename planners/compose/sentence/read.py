@@ -37,6 +37,7 @@ _AFTER_ROUND = (["it"], ["the"], ["them"], ["each"], ["every"], ["this"], ["that
 _OPENERS = frozenset(
     {"a", "an", "the", "its", "their", "his", "her", "my", "our", "your", "own", "another", "with", "and"}
 )
+_LISTED = frozenset({",", ";", ":", "-", "."})
 _ENDS = frozenset({",", "and", "with", "that", "which", "or", "but", "to", "for", "as", "is", "are", "has", "have"})
 
 
@@ -77,11 +78,12 @@ class _Reader(NounPhrases):
         self.unknown: list[str] = []
         self.about_room = True  # whether a size that comes next is that of the room
         self.unshown: tuple[str, ...] = ()  # adjectives of the next noun that boxes do not show
+        self.room_end = 0  # position behind the last name of a room
         self.modifiers: list[str] = []  # unknown words before a noun, kept in its name
 
     def run(self) -> None:
         i = 0
-        steps = (self._mark, self._size, self._negation, self._only, self._formation, self._long_name, self._feature,
+        steps = (self._mark, self._formation, self._size, self._negation, self._only, self._long_name, self._feature,
                  self._place, self._people, self._count, self._color, self._name, self._attribute,
                  self._filler)  # fmt: skip
         while i < len(self.texts):
@@ -131,6 +133,7 @@ class _Reader(NounPhrases):
             self.linker.stop()
         elif text in ("but", "with", "w") or (text == "and" and self.said == Said()):
             self.linker.joined("with" if text == "w" else text)
+            self.said = replace(self.said, determiner="")
         elif text in _OWNING and self.linker.last is not None and not self.linker.opens:
             self.linker.joined("with")
         else:
@@ -235,6 +238,7 @@ class _Reader(NounPhrases):
     def _place(self, i: int) -> int:
         if self.texts[i] in ("round", "down", "off") and self.texts[i + 1 : i + 2] not in _AFTER_ROUND:
             return 0
+        self._per(i)
         self.linker.asked = self.before(i)
         taken = self.linker.place(self.texts, i)
         if taken:
@@ -242,6 +246,14 @@ class _Reader(NounPhrases):
             self.modifiers = []
             self.said = Said()
         return taken
+
+    def _per(self, i: int) -> None:
+        """Read "four chairs to a table" and "two stools per desk" as "at each"."""
+        texts = self.texts
+        if texts[i] == "per":
+            texts[i : i + 1] = ["at", "each"]
+        elif texts[i] == "to" and texts[i + 1 : i + 2] in (["a"], ["each"], ["every"]) and self.name_at(i + 2):
+            texts[i : i + 2] = ["at", "each"]
 
     def _people(self, i: int) -> int:
         """How many people are to be seated: "for six people", "seats four", "six-seater", "for eight"."""
@@ -273,6 +285,13 @@ class _Reader(NounPhrases):
         if found := times(self.texts, i):
             return self._times(i, *found)
         number = quantities.read(self.texts[i:])
+        if (
+            number
+            and number.kind == "NUMBER"
+            and self.texts[i + number.taken : i + number.taken + 2] == ["pairs", "of"]
+        ):
+            self.said = replace(self.said, count=2 * int(number.value))
+            return number.taken + 2
         if number and number.kind == "NUMBER" and number.value == int(number.value) and 1 <= number.value <= 10**6:
             self.said = replace(self.said, count=int(number.value))
             return number.taken
@@ -320,6 +339,9 @@ class _Reader(NounPhrases):
         if what == -1 and not is_plural(self.texts[i]) and self.name_at(i + taken):
             self.modifiers += self.texts[i : i + taken]  # a "studio monitor" is no studio
         elif what == -1:
+            if i and i == self.room_end:
+                self.kind = ""  # of "a cafe terrace" the last word says what it is
+            self.room_end = i + taken
             self._room(name, " ".join(self.texts[i : i + taken]))
         else:
             self.styles.append(name) if not self.linker.reading.drafts else None
@@ -377,6 +399,9 @@ class _Reader(NounPhrases):
         if self.kind not in ("", "room", name) and said.determiner != "the" and everyday.find(word):
             self._thing(singular(word), word, 0)  # a greenhouse in a garden
             return
+        if self.kind and name == "kitchen" and self.linker.reading.drafts:
+            self._thing("kitchen counter", word, 0)  # a kitchenette in a studio flat
+            return
         self.said = Said()
         if self.linker.in_room():
             if name != "room" and not self.kind:
@@ -433,7 +458,9 @@ class _Reader(NounPhrases):
         word = self.texts[i]
         behind = self.noun_follows(i + 1)
         if word in vocabulary.PARTS or singular(word) in vocabulary.PARTS:
-            if not behind:
+            if not behind and not self.linker.waiting and self._relation_at(i + 1) and self._is_listed(i):
+                self.linker.elsewhere()  # "a ring in the centre": what is there is no thing, but nothing else is
+            elif not behind:
                 self.linker.drop()
             return 1
         if behind and word.endswith(vocabulary.ADJECTIVE_ENDINGS) and not nouns.is_known(word):
@@ -442,24 +469,46 @@ class _Reader(NounPhrases):
         known = nouns.is_known(word) and may_be_noun(word) and not word.endswith(vocabulary.NOT_THINGS)
         if behind:
             self.modifiers.append(word)
-        elif known or self._is_head(i):
+        elif (known or self._is_head(i)) and not self._is_title(i):
             lead, self.modifiers = self.modifiers, []
             self._thing(" ".join([*lead, singular(word)])[:60], word, i)
         else:
             self.linker.drop()
         if not known or behind:
             self.unknown.append(word)
+        if not self.kind and not self.linker.reading.drafts and self.texts[i + 1 : i + 2] in _AFTER_PLACE:
+            self.kind = "room"  # "the vestry: …"
         return 1
+
+    def _is_title(self, i: int) -> bool:
+        """Whether a text begins with an unknown word for the place that it describes: "the vestry: a long table"."""
+        first = not self.kind and not self.linker.reading.drafts
+        return first and self.texts[i + 1 : i + 2] in ([":"], ["-"], ["."])
+
+    def _is_listed(self, i: int) -> bool:
+        """Whether a noun phrase of one word begins at position `i`."""
+        return i == 0 or self.before(i) in _LISTED or self.before(i) in _OPENERS
+
+    def _relation_at(self, i: int) -> bool:
+        table = (vocabulary.RELATIONS, vocabulary.SPOTS)
+        return any(match(t, self.texts, i) for t in table) and self.texts[i] != "of"
 
     def _is_place(self, i: int, taken: int, word: str) -> bool:
         """Whether the first noun phrase names the place that is described: "a nail bar with", "a caravan: …"."""
         first = not self.kind and not self.linker.reading.drafts and not is_plural(word)
-        return first and word in vocabulary.PLACES and self.texts[i + taken : i + taken + 1] in _AFTER_PLACE
+        after = self.texts[i + taken : i + taken + 10]
+        ends = after[:1] in _AFTER_PLACE or (":" in after and "," not in after[: after.index(":")])
+        return first and word in vocabulary.PLACES and ends
 
     def _is_head(self, i: int) -> bool:
         """Whether an unknown word is the head of a noun phrase by its place: after a determiner, a number or an
         adjective, and before the end of the phrase."""
         word, after = self.texts[i], self.texts[i + 1] if i + 1 < len(self.texts) else "."
-        opened = self.before(i) in _OPENERS or self.said != Said() or bool(self.modifiers)
+        opened = (
+            self.before(i) in _OPENERS
+            or (self.before(i) in _LISTED and self._relation_at(i + 1))
+            or self.said != Said()
+            or bool(self.modifiers)
+        )
         ends = after in _ENDS or bool(match(vocabulary.RELATIONS, self.texts, i + 1)) or after in _MARKS
         return opened and ends and may_be_noun(word) and not word.endswith(vocabulary.NOT_THINGS) and len(word) > 2

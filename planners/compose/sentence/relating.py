@@ -19,6 +19,8 @@ def sides_at(texts: Sequence[str], i: int) -> int:
     for phrase in _LEFT_AND_RIGHT:
         if tuple(texts[i : i + len(phrase)]) == phrase:
             return len(phrase)
+    if texts[i] in ("flanking", "framing"):
+        return 1
     j = i + (texts[i] in PREPOSITIONS)
     if texts[j : j + 1] and texts[j] in ("either", "each", "both", "every", "opposite"):
         j += 1

@@ -55,6 +55,8 @@ SPOTS: dict[Phrase, str] = {
         "face each other, face one another, faces each other, looking at each other, face to face with each "
         "other": "facing",
         "in front, out in front, right in front": "rel in_front_of",
+        "to its left, on its left, to the left of it": "rel left_of",
+        "to its right, on its right, to the right of it": "rel right_of",
         "on top": "rel on",
         "on the floor, on the ground": "floor",
         "at the back, in the back, at the rear, in the rear, at the far end, along the back, across the back, at the "
@@ -129,7 +131,8 @@ PLACES = bag(
     "bar pub club stall stand booth shop store parlour parlor caravan marquee tent cabin house hall lounge den station "
     "centre center workshop ward wagon carriage boat ship bus train van truck hut shed barn stable yard camp arena "
     "pool "
-    "lobby suite quarters chamber cell dungeon cave bunker treehouse pavilion gazebo conservatory winery brewery"
+    "lobby suite quarters chamber cell dungeon cave bunker treehouse pavilion gazebo conservatory winery brewery sauna "
+    "igloo lighthouse"
 )
 # Endings of adjectives that boxes cannot show: "a striped awning", "mismatched chairs".
 ADJECTIVE_ENDINGS = ("ed", "ing", "able", "ible", "ish", "less", "ful")
@@ -140,6 +143,7 @@ PARTS = bag(
     "west aisle floor floors ground wall walls ceiling ceilings room garden terrace balcony space height width length "
     "depth level metre metres meter meters foot feet rest place position spot point background foreground inside "
     "outside entrance exit light dark day night morning evening summer winter spring autumn time afternoon sun shade "
+    "alcove alcoves niche recess bay nook pair pairs group groups grid fold riad cell "
     "hotel school office shop store church museum hospital station airport village farm pub club restaurant cafe mall "
     "market university college theatre cinema factory warehouse library bar diner studio apartment flat "
     "sky weather season house home building street town city country manor world style"
@@ -202,6 +206,7 @@ FILLER = bag(
     "centrally surrounded distinct clear creating create between natural main principal has gets goes stands sits "
     "least most say well old new ones please plain empty own its their his her my stood laid set w facing against "
     "round lots big-ish old-fashioned proper lovely pretty beautiful usual same different single double "
+    "first second third fourth fifth last next fold folded pull drop "
     "himself herself each being lined lit selling full fully half tucked running leading down up off out"
 )
 BUILD = bag("make create build design generate compose furnish imagine give show draw let set put place plan want need")
