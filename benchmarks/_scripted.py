@@ -44,7 +44,7 @@ class Scripted:
     def __init__(self, errors: float, seed: int) -> None:
         self._errors, self._seed = errors, seed
         self._grammar = load("grammar")
-        self._cases = {(c["room"], c["text"], c.get("context")): c for c in _written.cases()}
+        self._cases = {(c["room"], c["text"], c.get("context")): c for c in _every_case()}
 
     def plan(self, text: str, *, previous: str | None = None, observation: Observation | None = None) -> EditPlan:
         """The plan that was written down, or a wrong one; see `Planner.plan`."""
@@ -62,12 +62,14 @@ class Scripted:
         return EditPlan(instruction=text, planner=NAME, usage=usage, **told)
 
 
+def _every_case() -> list[dict[str, Any]]:
+    return [*_written.cases(), *_written.strangers()]
+
+
 @cache
 def rooms() -> dict[str, str]:
     """The names of the written rooms by the JSON of the graph that a planner sees."""
-    return {
-        _key(GraphObservation(_written.stage(room)).graph()): room for room in {c["room"] for c in _written.cases()}
-    }
+    return {_key(GraphObservation(_written.stage(room)).graph()): room for room in {c["room"] for c in _every_case()}}
 
 
 def _key(graph: SceneGraph) -> str:

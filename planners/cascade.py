@@ -2,19 +2,22 @@
 
     wishes, if the text is a wish for the room  ──►  grammar  ──abstains──►  language model, if one is configured
 
-A plan of the grammar is final: no model can overrule it, so `auto` is as fast and as accurate as the grammar on what
-the grammar understands. Wishes for the whole room take precedence, because the grammar would read some of them as a
-single edit: "make a circle of chairs" is not the insertion of a circle.
+A plan of the grammar is final where it is sure of it or the scene has what it names. Where the scene has no such thing,
+or several, or the words are taken for no edit, and the grammar had to guess at their meaning, the model is asked as
+well; its plan counts only if the scene has what it names. Wishes for the whole room take precedence, because the
+grammar would read some of them as a single edit: "make a circle of chairs" is not the insertion of a circle.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import Protocol
+from typing import Any, Protocol
 
-from ..gaussians.errors import BackendError, UserError
+from ..gaussians.errors import BackendError, ScenewrightError, UserError
+from ..gaussians.language.query.nested import with_queries
+from ..gaussians.language.query.query import Query
 from .budget import OverBudgetError
 from .grammar.meaning.changes import TO_A_LENGTH
 from .grammar.vocabulary.verbs import TO_ALIGN
@@ -41,8 +44,8 @@ class Cascade:
     """Asks the wish planner and the grammar, which need no model, and then a language model.
 
     Args:
-        grammar: asked for every instruction. What it calls `ok`, `unsafe` or `not_an_edit` never reaches a model, so
-            neither do questions, chat and orders that are not about the scene.
+        grammar: asked for every instruction. What it calls `unsafe` never reaches a model, nor what it is sure of:
+            questions, chat, and plans that it read in their own words.
         wishes: makes the planner of wishes for the whole room when it is first needed; None for no such planner.
         model: the language-model planner; None for no model.
     """
@@ -77,8 +80,35 @@ class Cascade:
         if wish is not None and wish.verdict != "not_understood":
             return _with_total_time(wish, started)
         if plan.verdict not in ABSTAINS:
-            return plan
+            return self._second_opinion(plan, text, previous, observation, started)
         return _with_total_time(self._ask_model(wish or plan, text, previous, observation), started)
+
+    def _second_opinion(
+        self, plan: EditPlan, text: str, previous: str | None, observation: Observation | None, started: float
+    ) -> EditPlan:
+        """The model's plan where the grammar's is not sure and fits nothing in the scene; else the grammar's."""
+        sure = getattr(self.grammar, "is_sure", None)
+        if self.model is None or observation is None or sure is None or sure(text, previous=previous):
+            return plan
+        if plan.verdict == "ok" and self._fits(plan, previous, observation):
+            return plan
+        other = self._ask_model(plan, text, previous, observation)
+        if other.verdict == "ok" and other.planner != plan.planner and self._fits(other, previous, observation):
+            return _with_total_time(other, started)
+        return _with_total_time(plan.model_copy(update={"usage": other.usage}), started)
+
+    def _fits(self, plan: EditPlan, previous: str | None, observation: Observation) -> bool:
+        """Whether the scene has what a plan names; also where the scene cannot be read."""
+        from .rooms.graph_scene import Stage
+        from .rooms.plan_on_graph import recalled, resolve_plan
+
+        try:
+            stage = Stage.of(observation.graph())
+            last = recalled(stage, self.grammar.plan(previous)) if previous else None
+            rows = {node.id: row for row, node in enumerate(stage.graph.nodes)}
+            return resolve_plan(stage, with_rows(plan, rows), last).verdict == "ok"
+        except ScenewrightError:
+            return True
 
     def _plan_wish(self, text: str, previous: str | None, observation: Observation | None) -> EditPlan | None:
         """The plan of the wish planner; None if the text is not a wish for the whole room."""
@@ -90,7 +120,8 @@ class Cascade:
         self, abstained: EditPlan, text: str, previous: str | None, observation: Observation | None
     ) -> EditPlan:
         """The plan of the model, or the abstention, with the reason why the model gave no plan."""
-        if self.model is None or not may_ask(abstained, observation):
+        asked = abstained.verdict not in ABSTAINS or may_ask(abstained, observation)
+        if self.model is None or not asked:
             return abstained
         try:
             plan = self.model.plan(text, previous=previous, observation=observation)
@@ -109,6 +140,17 @@ class Cascade:
 
 def _with_total_time(plan: EditPlan, started: float) -> EditPlan:
     return plan.model_copy(update={"seconds": time.perf_counter() - started})
+
+
+def with_rows(plan: EditPlan, rows: Mapping[Any, int]) -> EditPlan:
+    """A plan whose ids of groups are the rows of a stage; ids that are not there are left."""
+
+    def change(query: Query) -> Query:
+        return (
+            query.model_copy(update={"groups": tuple(rows.get(i, i) for i in query.groups)}) if query.groups else query
+        )
+
+    return plan.model_copy(update={"ops": tuple(with_queries(op, change) for op in plan.ops)})
 
 
 def may_ask(abstained: EditPlan, observation: Observation | None) -> bool:

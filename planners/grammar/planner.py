@@ -14,7 +14,9 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from ...gaussians.errors import UserError
+from ...gaussians.language.query.nested import queries
 from ...gaussians.language.query.query import Query
+from ...gaussians.world import kinds
 from ...tools.operation import EditOp
 from ...tools.registry import parse as parse_op
 from ..plan import MAX_OPS, EditPlan
@@ -22,9 +24,12 @@ from .meaning.changes import Fields
 from .meaning.phrases import Phrases
 from .parsing import Refusal
 from .reader import Reader
+from .restating.remarks import is_remark
 from .restating.smoothing import smoothed
+from .tagging.non_edits import QUESTION, STATEMENT
 from .tagging.spelling import correct_spelling
 from .tagging.words import clean, split, without_owners
+from .vocabulary.nouns import is_known
 from .vocabulary.unsafe import unsafe_words
 
 if TYPE_CHECKING:
@@ -46,6 +51,7 @@ class _Outcome:
         antecedent: the last head noun.
         again: the operations of the last clause.
         remarks: spelling corrections.
+        plainly: whether every sentence was read in its own words.
         colors: colours of the last head noun.
     """
 
@@ -54,6 +60,7 @@ class _Outcome:
     again: tuple[dict[str, Any], ...] = ()
     remarks: tuple[str, ...] = ()
     colors: tuple[str, ...] = ()
+    plainly: bool = True
 
 
 class GrammarPlanner:
@@ -79,6 +86,36 @@ class GrammarPlanner:
         except Refusal as refusal:
             told = {"verdict": refusal.verdict, "reason": str(refusal), "unknown": _shortened(refusal.words)}
         return EditPlan(instruction=text, planner=NAME, seconds=time.perf_counter() - started, **told)
+
+    def is_sure(self, text: str, *, previous: str | None = None) -> bool:
+        """Whether nothing of an instruction's meaning was guessed.
+
+        A plan is sure if every sentence was read in its own words and spelling, and every name in it is known. That
+        something is no edit is sure of questions, chat, commands of the session, prohibitions, and remarks on how
+        things are; not of other statements, nor of requests in the form of a question.
+        """
+        cleaned = clean(text)
+        try:
+            outcome = _understand(cleaned, previous)
+        except Refusal as refusal:
+            if refusal.verdict != "not_an_edit":
+                return refusal.verdict in ("unsafe", "impossible")
+            said = [w.text for w in split(cleaned)]
+            asked = str(refusal) == QUESTION and bool(said) and said[0] not in _REQUESTING
+            return asked or str(refusal) not in (QUESTION, STATEMENT) or is_remark(said)
+        names = [q.text for op in outcome.ops for q in _targets(op)]
+        return outcome.plainly and not outcome.remarks and all(_is_known_name(n) for n in names)
+
+
+_REQUESTING = ("can", "could", "would", "will", "may", "might", "should", "shall", "please", "the", "that", "this")
+
+
+def _targets(fields: dict[str, Any]) -> list[Query]:
+    return [q for _, q in queries(tuple(v for v in fields.values() if isinstance(v, Query)))]
+
+
+def _is_known_name(name: str) -> bool:
+    return not name or kinds.find(name) is not None or all(is_known(word) for word in name.split())
 
 
 @cache
@@ -114,10 +151,18 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     words, remarks = correct_spelling(smoothed(without_owners(split(cleaned))))
     before = _understand_previous(previous)
     phrases = Phrases(before.antecedent, before.again, before.colors)
-    ops = _without_repeats(_complete_halves(Reader(phrases, cleaned, previous is not None).read(words)))
+    reader = Reader(phrases, cleaned, previous is not None)
+    ops = _without_repeats(_complete_halves(reader.read(words)))
     if len(ops) > MAX_OPS:
         raise Refusal(f"that is more than {MAX_OPS} steps; say it in parts")
-    return _Outcome(tuple(_merge_copies(ops)), phrases.antecedent, tuple(phrases.before), remarks, phrases.colors)
+    return _Outcome(
+        tuple(_merge_copies(ops)),
+        phrases.antecedent,
+        tuple(phrases.before),
+        remarks,
+        phrases.colors,
+        not reader.restated,
+    )
 
 
 def _understand_previous(previous: str | None) -> _Outcome:

@@ -68,6 +68,7 @@ class Reader:
         self._follows = follows
         self._state = _State(antecedent=phrases.antecedent, before=tuple(phrases.before), colors=phrases.colors)
         self._tries = 0
+        self.restated = False  # whether any sentence was read in other words than its own
 
     def read(self, words: Sequence[Word]) -> list[Fields]:
         """The operations of an instruction, as fields; none is only half done.
@@ -167,6 +168,7 @@ class Reader:
                 final = final or (error if error.firm else None)
                 continue
             if len(self._state.ops) > len(before.ops):
+                self.restated = True
                 return
         self._restore(before)
         told = "it takes back what it said before; say only what to do"
@@ -198,6 +200,7 @@ class Reader:
             done = len(self._state.ops) > len(before.ops)
             gained = new < (stated or 0) or len(self._state.ops) > plain
             if (done and gained) or (stated is None and (done or not new)):
+                self.restated = True
                 return True
         return final
 

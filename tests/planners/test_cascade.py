@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from same_plan import same
 
+from scenewright.agent.session.observation import GraphObservation
 from scenewright.benchmarks import _written
 from scenewright.gaussians.errors import BackendError, UserError
 from scenewright.planners import MODEL_VARIABLE, load
@@ -64,14 +65,51 @@ def test_where_the_grammar_answers_nobody_else_is_asked() -> None:
     for case in _written.cases():
         alone = GRAMMAR.plan(case["text"], previous=case.get("context"))
         wishes, model = Wishes(reading=False), Fake()
+        scene = GraphObservation(_written.stage(case["room"]))
         plan = Cascade(GRAMMAR, lambda w=wishes: w, model).plan(
-            case["text"], previous=case.get("context"), observation=Blind()
+            case["text"], previous=case.get("context"), observation=scene
         )
+        sure = GRAMMAR.is_sure(case["text"], previous=case.get("context"))
         if alone.verdict in ("not_understood", "impossible"):
             assert model.asked or alone.verdict == "impossible", case["id"]
-        else:
+        elif sure or not model.asked:
             assert same(plan, alone) and plan.usage is None and not model.asked, case["id"]
         assert wishes.asked == []
+
+
+ROOM = _written.stage("living_room")
+
+
+@pytest.mark.parametrize(
+    ("text", "asked"),
+    [
+        ("delete the sofa", False),  # it is there
+        ("I'd rather not see the sofa here anymore", False),
+        ("delete the piano", False),  # read as it stands, and a piano is known: it is not there
+        ("I never want to see that piano again", True),  # read in other words, and not there
+        ("delete the zorblax", True),  # no known name
+        ("what colour is the sofa?", False),
+        ("I love the sofa", False),
+        ("could the zorblax be somewhere else?", True),  # a question in form, perhaps a request
+    ],
+)
+def test_a_model_is_asked_where_the_grammar_guessed_and_the_scene_disagrees(text: str, asked: bool) -> None:
+    model = Fake("not_understood")
+    plan = Cascade(GRAMMAR, None, model).plan(text, observation=GraphObservation(ROOM))
+    alone = GRAMMAR.plan(text)
+    assert bool(model.asked) == asked
+    assert (plan.ops, plan.verdict) == (alone.ops, alone.verdict) or alone.verdict == "not_understood"
+
+
+@pytest.mark.parametrize(("there", "counts"), [("sofa", True), ("piano", False)])
+def test_a_second_opinion_counts_only_if_the_scene_has_what_it_names(there: str, counts: bool) -> None:
+    class Naming(Fake):
+        def plan(self, text: str, *, previous: str | None = None, observation: Any = None) -> EditPlan:
+            ops = (parse({"op": "delete", "target": {"text": there}}),)
+            return EditPlan(instruction=text, planner=self.name, ops=ops, usage=USAGE)
+
+    plan = Cascade(GRAMMAR, None, Naming()).plan("delete the zorblax", observation=GraphObservation(ROOM))
+    assert (plan.planner == "fake:1") == counts and plan.usage == USAGE
 
 
 @pytest.mark.parametrize(

@@ -137,7 +137,8 @@ UNWANTED = tuple(
         rf"(?:go|disappear|vanish|leave|get lost|get out|be off|go away|be {GONE}|go bye bye|come out|"
         rf"go in the (?:bin|trash|skip)|be history)(?: {NO_MORE})*$",
         rf"^(?P<thing>\S.*?) {REALLY}(?:is|are|be|to be|get|gets)? ?{GONE}$",
-        r"^(?:(?:i|we) would )?(?:rather|prefer) (?:not|not to) have (?P<thing>\S.*)$",
+        rf"^(?:(?:i|we) would )?(?:rather|prefer) (?:not|not to) (?:have|see|keep|look at) (?P<thing>\S.*?)(?: "
+        rf"{NO_MORE})*$",
         rf"^(?:the (?:room|place|space|scene)|it|this room|this place|that|this|the whole thing|everything) "
         rf"(?:would|will) "
         rf"(?:be|look|feel) {BETTER} without (?P<thing>\S.*)$",
