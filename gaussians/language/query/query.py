@@ -77,16 +77,16 @@ class Query(BaseModel):
     """What to select.
 
     Attributes:
-        text: the noun without its attributes, singular, e.g. "coffee table"; "" means anything.
+        text: the noun alone, singular ("coffee table"); "" means anything.
         colors: colour words that must hold as measured ("dark green"); every one of them.
         not_colors: colour words that must not hold.
-        size: relative, among those that otherwise match.
+        size: among those that otherwise match.
         relations: all must hold.
         region: only what lies in this part of space.
         pick: of several matches. "one" demands exactly one; "any" takes the best; superlatives and "nth" (with
             `ordinal`) order them; "rest" takes everything but the matches.
         ordinal: from 1, left to right as the viewer sees them; negative: right to left.
-        count: how many are meant ("two chairs"); fewer or more matches are reported.
+        count: how many are meant ("two chairs", "the two tallest").
         exclude: set difference ("all chairs but the green one"); with pick "one" taken first ("the other chair").
         also: set union ("the chairs and the lamp").
         last: the selection of the instruction before ("it", "them").
