@@ -78,6 +78,12 @@ def _drawn() -> Mapping[str, str]:
     return {name: entry["shape"] for entry in _classes() for name in entry.get("drawn", "").split(", ") if name}
 
 
+def stands_otherwise(label: str) -> bool:
+    """Whether a label names a kind that is drawn as its class says, whatever its builder: an open parasol stands."""
+    meant = kinds.of(label)
+    return meant is not None and meant.name in _drawn()
+
+
 def free_beneath(label: str, height: float) -> float:
     """Metres of height that are free beneath a thing of this label and height: between a table's legs, under a tree."""
     kind = kinds.of(label) or of(label)

@@ -83,7 +83,7 @@ class AssetMaker:
             notes += taken.notes
             if taken.asset is not None:
                 return Made(taken.asset, notes)
-        kind = kind_of(node.label)
+        kind = None if everyday.stands_otherwise(node.label) else kind_of(node.label)
         if kind is None:
             kind = registry.KINDS.get(everyday.shape(node.label))
             if kind is None:

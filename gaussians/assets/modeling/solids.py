@@ -101,6 +101,14 @@ def _canopy(w: float, d: float, h: float, main: Material, dark: Material) -> lis
     return [join(*posts).named("posts", dark), join(*beams, box(w, d, 0.04 * h, (0, 0, 0.91 * h))).named("roof", main)]
 
 
+def _parasol(w: float, d: float, h: float, main: Material, dark: Material) -> list[Piece]:
+    cloth = _oval(
+        lathe([(0, 0.8 * h), (w / 2, 0.78 * h), (w / 2, 0.81 * h), (0.25 * w, 0.92 * h), (0, 0.99 * h)]), w, d
+    )
+    pole = join(cylinder(0.03, h), cylinder(0.12 * w, 0.04 * h))
+    return [cloth.named("cloth", main), pole.named("pole", dark)]
+
+
 def _bunting(w: float, d: float, h: float, main: Material, dark: Material) -> list[Piece]:
     count = max(3, round(w / 0.22))
     flags = []
@@ -308,9 +316,9 @@ def _tent(w: float, d: float, h: float, main: Material, dark: Material) -> list[
 
 _SOLIDS: dict[str, Solid] = {
     "rock": _rock, "tree": _tree, "bush": _bush, "planter": _planter, "disc": _disc, "slab": _slab, "fence": _fence,
-    "frame": _frame, "canopy": _canopy, "bunting": _bunting, "house": _house, "post": _post, "tub": _tub,
-    "lounger": _lounger, "hammock": _hammock, "bridge": _bridge, "bike": _bike, "car": _car, "boat": _boat,
-    "cart": _cart, "board": _board, "cage": _cage, "sack": _sack, "barrel": _barrel, "logs": _logs, "harp": _harp,
-    "poster": _poster, "wall lamp": _wall_lamp, "animal": _animal, "figure": _figure, "tent": _tent,
+    "frame": _frame, "canopy": _canopy, "parasol": _parasol, "bunting": _bunting, "house": _house, "post": _post,
+    "tub": _tub, "lounger": _lounger, "hammock": _hammock, "bridge": _bridge, "bike": _bike, "car": _car,
+    "boat": _boat, "cart": _cart, "board": _board, "cage": _cage, "sack": _sack, "barrel": _barrel, "logs": _logs,
+    "harp": _harp, "poster": _poster, "wall lamp": _wall_lamp, "animal": _animal, "figure": _figure, "tent": _tent,
 }  # fmt: skip
 SHAPES = tuple(_SOLIDS)

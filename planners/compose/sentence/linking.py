@@ -166,7 +166,7 @@ class Linker:
             known = len(self.reading.drafts)
             found = self._resolved(name, head, said, plural, each)
             found.called = found.called or called
-            self.fresh = found if len(self.reading.drafts) > known and said.determiner != "the" else None
+            self.fresh = found if len(self.reading.drafts) > known else None
             self._object(found)
             return
         if said.determiner in ("the", "each") and (before := self.reading.known(name, head)):
