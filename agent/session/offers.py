@@ -98,7 +98,7 @@ def _pool(field: LanguageField, query: Query, resolve: Callable[[Query], Selecti
     owner = next((r for r in query.relations if r.name == "part_of"), None)
     if owner is not None:
         found = resolve(owner.anchors[0])
-        if found.chosen and (parts := _parts(field, found.groups)):
+        if found.verdict == "found" and (parts := _parts(field, found.groups)):
             return [], parts
     things = [g for g in field.objects() if g.count]
     parts = _parts(field, [g.id for g in things])

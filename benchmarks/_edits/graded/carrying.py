@@ -29,7 +29,7 @@ from .scenes import Place
 Picture = NDArray[np.uint8]  # [H, W, 3]
 Outcome = Literal["done", "asked", "refused"]
 Answers = Mapping[str, Mapping[str, str]]  # answers by the key of the instruction, then by the hash of the question
-ROUNDS = 3  # questions that are answered at most
+ROUNDS = 4  # questions that are answered at most
 CHANGED = 12  # of 255: a pixel that differs by more has changed
 _ASKED = 2  # how much larger the pictures of a question are, so that numbers leave things visible
 _CLOSEST = 0.25  # share of a view that a close-up shows at least
