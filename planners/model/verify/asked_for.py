@@ -119,7 +119,24 @@ _GENERAL = frozenset(
     ]
 )
 _PRONOUNS = frozenset(
-    ["it", "them", "they", "that", "this", "these", "those", "one", "ones", "same", "his", "him", "her", "its", "their", "there"]
+    [
+        "it",
+        "them",
+        "they",
+        "that",
+        "this",
+        "these",
+        "those",
+        "one",
+        "ones",
+        "same",
+        "his",
+        "him",
+        "her",
+        "its",
+        "their",
+        "there",
+    ]
 )
 # Beginnings of words that ask for each kind of step.
 _KINDS: dict[str, str] = {
