@@ -15,6 +15,7 @@ from ..session.result import Result
 
 Picture = NDArray[np.uint8]  # [H, W, 3], display space
 
+_SMALL = 96  # side of the picture in which it is looked for, pixels
 _MARK = np.array([255, 196, 0], dtype=np.uint8)
 
 
@@ -32,6 +33,17 @@ def spotlight(scene: Scene, camera: Camera, selection: Selection) -> Picture:
     shown: Picture = np.where(lit[..., None], image, image // 3 + 20).astype(np.uint8)
     shown[_edge(lit)] = _MARK
     return shown
+
+
+def camera_showing(scene: Scene, selection: Selection, viewer: Camera) -> Camera:
+    """The viewer's camera if it shows the selection, else one from which its groups are seen."""
+    drawn = render(scene.cloud.replace(group=selection.mask(scene.cloud).int()), viewer.resized(_SMALL, _SMALL))
+    if bool((drawn.group == 1).any()) or not selection.groups or scene.language is None:
+        return viewer
+    from ...gaussians.viewpoints.for_groups import Sights, choose
+
+    chosen = choose(Sights.of(scene), selection.groups, 1, (viewer.width, viewer.height))
+    return chosen[0].view.camera if chosen else viewer
 
 
 def after(result: Result, camera: Camera) -> Picture:

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from prompt_toolkit.output import Output
 
     from ...gaussians.camera import Camera
+    from ...gaussians.language.query.selection import Selection
     from ...planners.plan import EditPlan
     from ..session.result import Result
     from ..session.session import Session
@@ -234,6 +235,8 @@ class Chat:
             **planner_json(question.plan if question else self._new_plan),
         }
         self.tell("\n".join([*lines, *usage_lines(self._new_plan)]), data, "yellow")
+        if verdict == "unconfirmed" and self._lines.interactive and question is not None:
+            self.show_picture(question.selection)
 
     # -- output -----------------------------------------------------------------------------------------------------
 
@@ -241,15 +244,26 @@ class Chat:
         """Print an answer, its first line in the colour `style`."""
         self.terminal.result(coloured(text, style, self.terminal.out), data)
 
-    def show_picture(self) -> None:
-        """Print the current view, at most 100 columns by 40 rows and no larger than the terminal."""
+    def show_picture(self, doubted: Selection | None = None) -> None:
+        """Print the current view, at most 100 columns by 40 rows and no larger than the terminal.
+
+        Args:
+            doubted: what is asked about: it is lit and the rest dimmed, from where it is seen if the view does not
+                show it.
+        """
         from ...gaussians.render import render
         from ...gaussians.viewpoints.coverage import fit_camera
+        from ..pictures.scene_pictures import camera_showing, spotlight
 
         size = shutil.get_terminal_size((80, 24))
         columns, rows = min(size.columns, 100), min(size.lines - 4, 40)
-        camera = fit_camera(self.session.viewer, 4 * columns, 4 * round(columns * 2 / 3))
-        image = render(self.session.scene.cloud, camera).to_uint8()
+        width, height = 4 * columns, 4 * round(columns * 2 / 3)
+        if doubted is None:
+            camera = fit_camera(self.session.viewer, width, height)
+            image = render(self.session.scene.cloud, camera).to_uint8()
+        else:
+            camera = fit_camera(camera_showing(self.session.scene, doubted, self.session.viewer), width, height)
+            image = spotlight(self.session.scene, camera, doubted)
         self.terminal.picture(draw(image, columns, max(rows, 8), depth_of(self.terminal.out)))
 
     def _greet(self) -> None:

@@ -57,13 +57,13 @@ def stands(case: Case, rows: Tensor, label: str) -> Check:
     captured = case.before.frame.metres_per_unit is None
     standing = _CAPTURED * max(reach, box.size[2]) if captured else max(_AIR * case.cm(reach), _FEET * box.size[2])
     bound = _AT_WALL * case.cm(reach) if hung else standing
-    if math.isinf(gap):
+    if math.isinf(gap) or (captured and gap > bound and case.bodies):
         return _level(case, box, bound)
     return at_most("carried", gap, bound, "units", f"{gap:.3g} units lie between it and what carries it")
 
 
 def _level(case: Case, box: Box, bound: float) -> Check:
-    """Where the scene shows nothing near a new thing, it is as high as what it was copied from or replaces."""
+    """Where the scene shows nothing that carries a new thing, it is as high as what it was copied from or replaces."""
     up = case.before.frame.up_vector
     if not case.bodies:
         return report("carried", 0.0, "units", "the scene shows nothing that could carry it")
@@ -101,18 +101,25 @@ def _gap_below(case: Case, points: Array, box: Box, others: NDArray[np.float32])
     # What carries it is under its feet, not under an arm that reaches out.
     feet = points[own < low + max(_FEET * box.size[2], 2 * case.cm(max(box.size)))]
     base = contact_box(feet, case.after.frame, box.axes)
-    reach = np.float32(1.001 * np.hypot(*base.size[:2]) / 2)
-    level = case.after.frame.basis()[:2].astype(np.float32)
-    aside = np.abs(others @ level.T - (level @ np.array(base.center, dtype=np.float32)))
-    others = others[(aside[:, 0] <= reach) & (aside[:, 1] <= reach)]
-    heights = others[base.covers(others)] @ up.astype(np.float32)
     slack = max(0.25 * box.size[2], 0.02 * max(box.size))
-    gaps = np.sort(np.abs(heights[heights < low + slack] - low))
+    gaps = _gaps(case, base, others, low, slack)
     # Several points make a surface: a single stray one carries nothing. A cushion is touched by a part of it only.
     enough = int(np.clip(_SURFACE * len(gaps), *_FEW)) if len(gaps) >= _SPARSE else 1
     gap = float(gaps[enough]) if len(gaps) > enough else math.inf
     floor = case.after.frame.floor
     return gap if floor is None else min(gap, abs(low - floor))
+
+
+def _gaps(case: Case, base: Box, others: NDArray[np.float32], low: float, slack: float) -> Array:
+    """`[K]` distances of the points over and under a footprint from the height `low`, ascending, without what is higher
+    by more than `slack`."""
+    frame = case.after.frame
+    reach = np.float32(1.001 * np.hypot(*base.size[:2]) / 2)
+    level = frame.basis()[:2].astype(np.float32)
+    aside = np.abs(others @ level.T - (level @ np.array(base.center, dtype=np.float32)))
+    near = others[(aside[:, 0] <= reach) & (aside[:, 1] <= reach)]
+    heights = near[base.covers(near)] @ frame.up_vector.astype(np.float32)
+    return np.sort(np.abs(heights[heights < low + slack] - low)).astype(np.float64)
 
 
 def free_of_others(case: Case, rows: Tensor) -> Check:

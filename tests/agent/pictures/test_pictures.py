@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,8 @@ import torch
 from PIL import Image
 
 from scenewright.agent.pictures.image_files import Tile, beside, contact_sheet, save_png
-from scenewright.agent.pictures.scene_pictures import numbered, picture, spotlight
+from scenewright.agent.pictures.scene_pictures import camera_showing, numbered, picture, spotlight
+from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.language.query.selection import Candidate, Selection
@@ -51,6 +53,20 @@ def test_the_spotlight_dims_all_but_the_selection(boxes: Scene) -> None:
     green = (plain[..., 1].astype(int) - plain[..., 0]) > 90
     assert same[green].mean() > 0.8 and same[~green].mean() < 0.3
     assert torch.equal(boxes.cloud.group.unique(), torch.tensor([0, 1, 2, 3], dtype=torch.int32))
+
+
+def test_what_is_asked_about_is_shown_from_where_it_is_seen(boxes: Scene) -> None:
+    """The viewer's own camera if it shows it, else another that does."""
+    camera = boxes.cameras[0].resized(480, 320)
+    asked = Selection(Query(text="x"), "unconfirmed", (boxes.cloud.group == 1).nonzero().squeeze(1), (1,))
+    assert camera_showing(boxes, asked, camera) is camera
+    eye = camera.position
+    away = Camera.look_at(
+        list(eye), list(2 * eye - boxes.cloud.means.double().mean(dim=0).numpy()), [0, 0, 1], 480, 320
+    )
+    assert not (spotlight(boxes, away, asked) != spotlight(boxes, away, replace(asked, ids=asked.ids[:0]))).any()
+    found = camera_showing(boxes, asked, away)
+    assert (spotlight(boxes, found, asked) != spotlight(boxes, found, replace(asked, ids=asked.ids[:0]))).any()
 
 
 def test_candidates_are_numbered_where_they_are_seen(boxes: Scene) -> None:
