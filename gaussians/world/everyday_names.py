@@ -21,63 +21,14 @@ for _group in _SAME.split("/"):
         _NAMES[_word] = _NAMES.get(_word, frozenset()) | frozenset(_group.split()) - {_word}
 
 # Words for a thing of any kind.
-GENERIC = frozenset("tool machine appliance gadget device instrument contraption gizmo widget".split())  # noqa: SIM905
+GENERIC = frozenset("tool machine appliance gadget device instrument".split())  # noqa: SIM905
 # Those whose a thing is said to be, which its label need not tell: "the teacher's desk".
 PEOPLE = frozenset(
-    [
-        "teacher",
-        "pupil",
-        "student",
-        "kid",
-        "child",
-        "baby",
-        "toddler",
-        "mum",
-        "mom",
-        "mother",
-        "dad",
-        "father",
-        "granny",
-        "grandma",
-        "grandpa",
-        "wife",
-        "husband",
-        "boss",
-        "client",
-        "customer",
-        "barber",
-        "hairdresser",
-        "doctor",
-        "nurse",
-        "patient",
-        "visitor",
-        "guest",
-        "boy",
-        "girl",
-        "man",
-        "woman",
-        "lady",
-        "neighbour",
-        "neighbor",
-        "friend",
-        "dog",
-        "cat",
-        "parent",
-        "brother",
-        "sister",
-        "son",
-        "daughter",
-        "musician",
-        "drummer",
-        "singer",
-        "player",
-        "worker",
-        "owner",
-        "landlord",
-        "lodger",
-        "flatmate",
-        "roommate",
-    ]
+    """
+    teacher pupil student kid child baby toddler mum mom mother dad father granny grandma grandpa wife husband boss
+    client customer barber hairdresser doctor nurse patient visitor guest boy girl man woman lady neighbour neighbor friend dog
+    cat parent brother sister son daughter musician drummer singer player worker owner landlord lodger flatmate roommate
+    """.split()  # noqa: SIM905
 )
 
 

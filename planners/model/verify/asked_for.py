@@ -16,127 +16,22 @@ from typing import Any
 from ....gaussians.color import EVERYDAY
 from ....gaussians.world.words import is_plural
 from ....tools.operation import EditOp
+from ...grammar.tagging.words import bag
 from ...grammar.vocabulary.quantities import NUMBERS
 from ...grammar.vocabulary.verbs import VERBS
 from ...rooms.label_encoder import words
 
 _WORD = re.compile(r"[^\W\d_]+|\d+(?:[.,]\d+)?|%|°")
-_ENGLISH = frozenset(
-    [
-        "the",
-        "a",
-        "an",
-        "this",
-        "that",
-        "these",
-        "those",
-        "my",
-        "our",
-        "your",
-        "to",
-        "of",
-        "on",
-        "in",
-        "into",
-        "at",
-        "by",
-        "next",
-        "with",
-        "and",
-        "or",
-        "but",
-        "please",
-        "i",
-        "we",
-        "you",
-        "it",
-        "them",
-        "is",
-        "are",
-        "can",
-        "could",
-        "would",
-        "should",
-        "want",
-        "need",
-        "like",
-        "make",
-        "move",
-        "put",
-        "delete",
-        "remove",
-        "paint",
-        "turn",
-        "add",
-        "all",
-        "every",
-        "under",
-        "over",
-        "behind",
-        "near",
-    ]
+_ENGLISH = bag(
+    "the a an this that these those my our your to of on in into at by next with and or but please i we you it them is "
+    "are can could would should want need like make move put delete remove paint turn add all every under over behind "
+    "near"
 )
 # Words for things of any kind, which need no name.
-_GENERAL = frozenset(
-    [
-        "other",
-        "others",
-        "another",
-        "rest",
-        "else",
-        "everything",
-        "anything",
-        "all",
-        "both",
-        "each",
-        "every",
-        "any",
-        "thing",
-        "things",
-        "stuff",
-        "object",
-        "objects",
-        "furniture",
-        "room",
-        "scene",
-        "place",
-        "here",
-        "some",
-        "something",
-        "whatever",
-        "what",
-        "lot",
-        "decor",
-        "clutter",
-        "mess",
-        "whole",
-        "entire",
-        "machine",
-        "tool",
-        "item",
-        "items",
-        "anyone",
-    ]
-)
-_PRONOUNS = frozenset(
-    [
-        "it",
-        "them",
-        "they",
-        "that",
-        "this",
-        "these",
-        "those",
-        "one",
-        "ones",
-        "same",
-        "his",
-        "him",
-        "her",
-        "its",
-        "their",
-        "there",
-    ]
+_GENERAL = bag(
+    "other others another rest else everything anything all both each every any thing things stuff object objects "
+    "furniture room scene place here some something whatever what where who whose lot decor clutter mess whole entire "
+    "machine tool item items anyone"
 )
 # Beginnings of words that ask for each kind of step.
 _KINDS: dict[str, str] = {
@@ -165,7 +60,6 @@ _KINDS: dict[str, str] = {
     "exchange": "swap switch exchang trad plac interchang chang where",
     "opacity": "hid hidden transparen opac see through fad ghost invisib vanish disappear visib translucen clear",
     "isolate": "only just keep isolat nothing except but alone leav solo everything rest single",
-    "select": "select highlight find show pick choos locat mark point where spot look which focus",
     "arrange": "arrang line row align circle around spread space tidy order group even grid stack neat between "
     "evenly each",
 }
@@ -205,9 +99,9 @@ def speaks_of_any(text: str | None) -> bool:
     return bool(text) and not _GENERAL.isdisjoint(w.lower() for w in _WORD.findall(text or ""))
 
 
-def has_pronoun(text: str) -> bool:
-    """Whether an instruction points back at things ("it", "the other one")."""
-    return not _PRONOUNS.isdisjoint(w.lower() for w in _WORD.findall(text))
+def clears(text: str) -> bool:
+    """Whether an instruction asks to clear a thing, which means what stands on it."""
+    return re.search(r"\b(?:clear|empty|tidy|strip|declutter|clean)", text.lower()) is not None
 
 
 def names_target(op: EditOp, text: str, previous: str | None) -> bool:
@@ -252,27 +146,15 @@ def _color_words() -> frozenset[str]:
     return frozenset(w for name in (*names(), *EVERYDAY) for w in name.split()) | {"grey", "gray"}
 
 
+_SEVERAL = frozenset(
+    (*(n for n in NUMBERS if n != "one"), "some", "few", "couple", "pair", "several", "each", "every", "both", "all")
+) | {"more", "twice", "times"}
+
+
 def too_many(ops: Sequence[EditOp], text: str, previous: str | None) -> Iterator[EditOp]:
     """The steps that add several things although the instruction speaks of one."""
     heard = [w.lower() for w in _WORD.findall(f"{text} {previous or ''}")]
-    several = {
-        "some",
-        "few",
-        "couple",
-        "pair",
-        "several",
-        "dozen",
-        "each",
-        "every",
-        "both",
-        "all",
-        "more",
-        "twice",
-        "times",
-    }
-    counted = any(
-        w[0].isdigit() or (w in NUMBERS and w != "one") or w in several or (len(w) > 3 and is_plural(w)) for w in heard
-    )
+    counted = any(w[0].isdigit() or w in _SEVERAL or (len(w) > 3 and is_plural(w)) for w in heard)
     for op in ops:
         if op.op in ("insert", "duplicate") and (getattr(op, "count", 1) or 1) > 1 and not counted:
             yield op

@@ -30,6 +30,7 @@ from ...rooms.graph_scene import Id
 from ...rooms.label_encoder import words
 from ...rooms.plan_on_graph import Resolved
 from ..prompt.pruning import Relevance
+from .asked_for import clears, is_english, names_target, speaks_of_any, too_many, unasked_kinds, unwanted
 from .rehearsal import Rehearsal
 from .removal_words import Ground, mentions
 from .unstated_choices import drop_unstated_colors, drop_unstated_ids, singular_picks, stems
@@ -79,6 +80,7 @@ class Guard:
     def __init__(self, text: str, previous: str | None, graph: SceneGraph | None, recall: Planner) -> None:
         self._text = text
         self._previous = previous
+        self._recall = recall
         self._scene = Rehearsal(graph, previous, recall) if graph is not None else None
 
     def drop_unstated(self, ops: Sequence[EditOp]) -> tuple[EditOp, ...]:
@@ -96,6 +98,7 @@ class Guard:
             return _first_of_each_kind(found)  # a dry run needs existing ids
         resolved = self._scene.dry_run(ops) if self._scene is not None and ops else None
         found += [*self._unjustified_removals(ops), *self._broad_removals(ops, resolved)]
+        found += self._unasked(ops, resolved)
         found += self._structure(ops) if resolved is None else self._dry_run_faults(resolved)
         return _first_of_each_kind(found)
 
@@ -148,6 +151,7 @@ class Guard:
         """Operations that remove something although the instruction does not ask for it."""
         for op in filter(_removes, ops):
             asked = any(mentions(g, self._text, self._before) for g in _REMOVALS[op.op])
+            asked |= len(ops) == 1 and unwanted(self._text) and names_target(op, self._text, self._before)
             if not asked and not (op.op == "replace" and self._names(getattr(op, "asset", ""))):
                 what = f"{op.op} {op.subject()}"
                 told = (
@@ -155,6 +159,59 @@ class Guard:
                     'be done otherwise, answer with verdict "not_understood"'
                 )
                 yield Fault("groundless", told, "not_understood", f"{_REFUSED}: {what}. {_REPHRASE}")
+
+    def _unasked(self, ops: Sequence[EditOp], resolved: Resolved | None) -> Iterator[Fault]:
+        """Steps that the instruction does not ask for: on things that it neither names nor points at, of a kind or in a
+        number that nothing in it says."""
+        if not is_english(self._text):
+            return
+        pointing = speaks_of_any(self._text) or speaks_of_any(self._before)
+        pointing |= self._scene is None or not self._named  # nothing in the scene is called as the words say
+        for step, op in enumerate(ops):
+            meant = set(resolved.steps[step].targets) if resolved is not None and step < len(resolved.steps) else set()
+            open_choice = any(q.pick == "any" for _, q in queries((op,)))
+            meant |= {self._support[i] for i in meant if clears(self._text) and i in self._support}
+            named = not meant or bool(self._scene is not None and meant & self._named)
+            if self._is_read and meant and not open_choice and not meant & self._read_targets:
+                yield self._unasked_fault(op, "the words mean another thing")
+            elif not (self._is_read or pointing or named or names_target(op, self._text, self._before)):
+                yield self._unasked_fault(op, f"{op.subject()} is not named")
+        for op in unasked_kinds(ops, self._text, self._before):
+            yield self._unasked_fault(op, f"nothing asks to {op.op} {op.subject()}")
+        for op in too_many(ops, self._text, self._before):
+            yield self._unasked_fault(op, "it speaks of one thing, not of several")
+
+    @cached_property
+    def _read_targets(self) -> set[Id]:
+        """What the grammar takes the instruction to be about, where it is sure and the scene has it; else nothing."""
+        sure = getattr(self._recall, "is_sure", None)
+        if self._scene is None or sure is None:
+            return set()
+        try:
+            known = sure(self._text, previous=self._previous)
+            ops = self._recall.plan(self._text, previous=self._previous).ops if known else ()
+        except UserError:  # too long for the grammar
+            return set()
+        if any(q.pick == "any" for _, q in queries(tuple(ops))):
+            return set()
+        resolved = self._scene.dry_run(ops) if ops else None
+        if resolved is None or resolved.verdict != "ok":
+            return set()
+        return {i for step in resolved.steps for i in step.targets}
+
+    @cached_property
+    def _support(self) -> dict[Id, Id]:
+        """What each thing stands on."""
+        assert self._scene is not None
+        return {n.id: n.support for n in self._scene.graph.nodes}
+
+    @property
+    def _is_read(self) -> bool:
+        return bool(self._read_targets)
+
+    def _unasked_fault(self, op: EditOp, why: str) -> Fault:
+        told = f"{op.op}: {why} in the instruction. Give only the steps that it asks for, on what it names"
+        return Fault("unasked", told, "not_understood", f"{_REFUSED}: {op.op} {op.subject()} ({why}). {_REPHRASE}")
 
     def _broad_removals(self, ops: Sequence[EditOp], resolved: Resolved | None) -> Iterator[Fault]:
         """Operations that remove everything, or many unnamed things, although the instruction does not say "all"."""
