@@ -26,7 +26,8 @@ GENERIC = frozenset("tool machine appliance gadget device instrument".split())  
 PEOPLE = frozenset(
     """
     teacher pupil student kid child baby toddler mum mom mother dad father granny grandma grandpa wife husband boss
-    client customer barber hairdresser doctor nurse patient visitor guest boy girl man woman lady neighbour neighbor friend dog
+    client customer barber hairdresser doctor nurse patient visitor guest boy girl man woman lady neighbour neighbor
+    friend dog
     cat parent brother sister son daughter musician drummer singer player worker owner landlord lodger flatmate roommate
     """.split()  # noqa: SIM905
 )
