@@ -69,7 +69,7 @@ def find_question(plan: EditPlan, step: int, verdict: str, resolve: Callable[[Qu
 
 def plan_with_answer(question: Question, answer: str, parse: Callable[[str], Query | None]) -> EditPlan:
     """The plan with the user's answer in it: numbers of the list ("2", "1 and 3", "all but 2"), "all", or words ("the
-    left one", "the red one"); "yes" to what is not confirmed.
+    left one", "the red one"); "yes" to what is not confirmed. What was chosen counts as confirmed.
 
     Args:
         parse: reads a noun phrase as a query; returns None if it cannot.
@@ -89,7 +89,8 @@ def plan_with_answer(question: Question, answer: str, parse: Callable[[str], Que
             "('1 and 2'), 'all', or a description such as 'the left one'"
         )
     _require_choice(question, chosen, answer)
-    return plan_with_query(question, chosen)
+    # What a person has chosen needs no other confirmation, nor an encoder that knows it.
+    return plan_with_query(question, chosen.model_copy(update={"confirmed": True}))
 
 
 def plan_with_query(question: Question, chosen: Query) -> EditPlan:

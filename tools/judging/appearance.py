@@ -39,9 +39,10 @@ def embedded() -> Encoder:
 
 
 def is_looked_for(query: Query, encoder: Encoder) -> bool:
-    """Whether the query names a kind of thing that the encoder knows, and nothing else decides what it means."""
+    """Whether the query names a kind of thing that the encoder knows, and nothing else decides what it means: no person
+    has confirmed it, for one."""
     word = query.text.lower()
-    fixed = query.last or query.groups or query.invert or query.also or query.pick == "rest"
+    fixed = query.last or query.groups or query.confirmed or query.invert or query.also or query.pick == "rest"
     part = any(r.name == "part_of" for r in query.relations)
     unnamed = word in ANYTHING | ALL | FLOATERS or word in STRUCTURE
     return not (fixed or part or unnamed) and encoder.knows(word)

@@ -113,14 +113,15 @@ def _named(case: Case, changed: Tensor) -> list[Check]:
 def _seen(case: Case, clouds: Sequence[GaussianCloud]) -> list[Check]:
     """The encoder finds these things to be what the words of the target name; empty if they name no kind of thing.
 
-    Nothing is looked at where the scene was embedded by another encoder, or looks like nothing that ours was trained
-    on.
+    Nothing is looked at where the scene was embedded by another encoder, looks like nothing that ours was trained on,
+    or where somebody gave the target its name.
     """
-    query, encoder = case.op.query(), appearance.embedded()
+    query, encoder, field = case.op.query(), appearance.embedded(), case.before.language
     if (
         query is None
         or not appearance.is_looked_for(query, encoder)
         or not appearance.is_judge_of(encoder, case.before)
+        or (field is not None and any(field.groups[i].named_by for i in case.meant.groups))
     ):
         return []
     return [appearance.looks_as_named("looks as named", query.text.lower(), encoder, clouds, case.before)]

@@ -12,7 +12,10 @@ from scenewright.agent.session.answers import chosen_numbers, only_an_answer
 from scenewright.agent.session.refusal import NotUnderstoodError
 from scenewright.agent.session.session import Session
 from scenewright.gaussians.errors import AmbiguousError, UserError
+from scenewright.gaussians.language import encoders
+from scenewright.gaussians.language.query.query import Query
 from scenewright.gaussians.scene import Scene
+from scenewright.tools.judging.appearance import is_looked_for
 
 
 @given(st.lists(st.integers(1, 9), min_size=1, max_size=6), st.sampled_from((", ", " and ", " & ", " ", ",")))
@@ -69,6 +72,17 @@ def test_several_numbers_choose_several_things(boxes: Scene, encoder: Any, said:
     first = session.question.candidates[0].group
     session.answer(said)
     assert set(session.scene.cloud.group.unique().tolist()) == {first if g == "other" else g for g in left}
+
+
+def test_what_a_person_has_chosen_is_confirmed_and_no_encoder_is_asked(boxes: Scene, encoder: Any) -> None:
+    session = Session(boxes, encoder=encoder)
+    with pytest.raises(AmbiguousError):
+        session.do("delete the red thing")
+    for said in ("1", "the left one"):
+        query = session.answered(said).ops[0].query()
+        assert query is not None and query.confirmed
+        assert not is_looked_for(query.model_copy(update={"text": "chair", "groups": ()}), encoders.load("auto"))
+    assert is_looked_for(Query(text="chair"), encoders.load("auto"))
 
 
 def test_both_is_no_answer_among_three(boxes: Scene, encoder: Any) -> None:
