@@ -27,6 +27,10 @@ def test_a_sentence_means_its_plain_command(case: dict[str, str]) -> None:
     assert said.ops == plain.ops, said.reason
 
 
+def test_a_number_that_is_not_understood_is_not_half_a_turn() -> None:
+    assert not PLANNER.plan("give the chair a 7 furlong turn").ops
+
+
 @pytest.mark.parametrize(
     "text",
     [

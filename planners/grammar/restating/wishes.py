@@ -171,8 +171,10 @@ def _given(said: str) -> Iterator[str]:
     if found.group("amount") == "a little":
         amount = "a little"
     if verb in ("turn", "spin", "rotation", "twist"):
-        turned = f"{amount} turn" if amount and not amount.endswith(("degree", "degrees", "°", "little")) else amount
+        stated = re.fullmatch(r"(?:an? |another )?([\d.]+) ?(?:-? ?degrees?|°)", amount)
+        turned = f"{stated[1]} degrees" if stated else f"{amount} turn" if amount not in ("", "a little") else amount
         yield " ".join(f"rotate {found.group('thing')} {turned}{found.group('rest')}".split())
-        yield " ".join(f"turn {found.group('thing')} around{found.group('rest')}".split())
+        if not re.search(r"\d", amount):  # a number that is not understood is not half a turn
+            yield " ".join(f"turn {found.group('thing')} around{found.group('rest')}".split())
         return
     yield " ".join(f"{verb} {found.group('thing')} {amount}{found.group('rest')}".split())
