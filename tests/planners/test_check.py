@@ -151,7 +151,7 @@ def inside(points: np.ndarray, thing: Node) -> np.ndarray:
     turn = math.radians(thing.yaw)
     along, across = x * math.cos(turn) + y * math.sin(turn), y * math.cos(turn) - x * math.sin(turn)
     w, d, h = thing.size
-    return (abs(along) <= w / 2) & (abs(across) <= d / 2) & (abs(z) <= h / 2)
+    return (abs(along) < w / 2) & (abs(across) < d / 2) & (abs(z) < h / 2)  # boxes that touch do not meet
 
 
 def lattice(thing: Node, steps: int = 25) -> np.ndarray:

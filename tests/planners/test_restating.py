@@ -27,6 +27,13 @@ def test_a_sentence_means_its_plain_command(case: dict[str, str]) -> None:
     assert said.ops == plain.ops, said.reason
 
 
+@pytest.mark.parametrize("text", ["move the chair before the desk", "put the ottoman before the sofa"])
+def test_a_place_is_no_reason(text: str) -> None:
+    """ "Before it falls" is a reason and is left out; "before the desk" is where a thing shall be."""
+    assert not PLANNER.plan(text).ops
+    assert PLANNER.plan("delete the vase before it falls").ops == PLANNER.plan("delete the vase").ops
+
+
 def test_a_number_that_is_not_understood_is_not_half_a_turn() -> None:
     assert not PLANNER.plan("give the chair a 7 furlong turn").ops
 

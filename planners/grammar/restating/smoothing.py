@@ -107,12 +107,15 @@ _REASON = (
     r"has|gets|"
     r"fits)|so they (?:do|can|will|would|match|have|get)|so that they (?:do|can|will|would)|"
     r"in order to|to (?:make|free up|create|give|get|have|save|leave) (?:\w+ )*?(?:room|space|way|light|air|peace)|"
-    r"before (?:i|we|you|he|she|it|someone|somebody|anyone|people|the|my|our)|otherwise|or else|while (?:i|we|you|it)|"
+    r"before (?:i|we|you|he|she|someone|somebody|anyone|people)|"
+    r"before (?:it|they|(?:the|my|our) \S+(?: \S+)?) (?:is|are|gets?|comes?|goes?|falls?|breaks?|tips?|arrives?|"
+    r"starts?|ends?|has|have|does|do|can|will|would|leaves?|see|sees|visits?|moves?)(?= |$)|"
+    r"otherwise|or else|while (?:i|we|you|it)|"
     r"for (?:the|my|our|a) (?:party|guests|wedding|visit|photo|photos|shoot|summer|winter|christmas|kids|children|baby|"
     r"evening|meeting|presentation|concert|show)|to match the (?:rest|mood)|to brighten (?:things|the place|it) up|"
     r"until (?:i|we|you))"
 )
-_TRAILING_REASON = re.compile(rf"(?<=\S)(?: ,)* {_REASON}(?= )[^.;!?]*(?= [.;!?]|$)")
+_TRAILING_REASON = re.compile(rf"(?<=\S)(?: ,)* {_REASON}(?= |$)[^.;!?]*(?= [.;!?]|$)")
 _FACING = re.compile(r"\b(?:so (?:that )?(?:it|they|he|she) (?:is |are )?(?:fac|look|point)|until|till)")
 _LEADING_REASON = re.compile(
     r"^(?:because|cos|since|as|so that|so|in order to|in order that|to|given that|seeing as|seeing that|now that|"
