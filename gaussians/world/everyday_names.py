@@ -1,5 +1,5 @@
-"""Everyday words for things that the table of kinds does not list: clippings "
-"("amp"), British and American names, people.
+"""Everyday words for things that the table of kinds does not list: clippings ("amp"), British and American names,
+people.
 
 `kinds.json` holds the synonyms of what can be built; these hold for any label. All words are in the singular.
 """

@@ -143,13 +143,7 @@ class Reader:
         said.remark = True
         state.said = (*state.said, said)
         state.stated_first = not state.ops
-        self._name([w.text for w in sentence])
-        about_it = subject_of([w.text for w in sentence])
-        if about_it is not None:
-            spoken = clauses(_spanning(("select", *about_it), sentence))
-            with suppress(Refusal):
-                (op,) = operations_of(Phrases(), parse(spoken[0]))
-                state.topic = op["target"]
+        state.topic = self._name([w.text for w in sentence]) or state.topic
 
     def _corrected(self, readings: Sequence[str], sentence: Sequence[Word], depth: int) -> None:
         """Read a sentence that takes back part of what it says.
@@ -236,16 +230,20 @@ class Reader:
             said = f"“{_quote(clause, self._cleaned)}”: {refusal}"
             raise Refusal(said, *refusal.words, verdict=refusal.verdict, firm=refusal.firm) from None
 
-    def _name(self, said: Sequence[str]) -> None:
-        """Remember what a statement is about, for "the middle one" behind "there are three guitars"."""
+    def _name(self, said: Sequence[str]) -> Query | None:
+        """What a statement is about, kept for "the middle one" behind "there are three guitars"; None if it cannot be
+        told."""
         about_it = subject_of(said)
         if about_it is None:
-            return
+            return None
         with suppress(Refusal):
             spoken = clauses(_spanning(("select", *about_it), (Word("", 0, 0),)))
             phrases = Phrases()
-            operations_of(phrases, parse(spoken[0]))
+            (op,) = operations_of(phrases, parse(spoken[0]))
             self.phrases.antecedent, self.phrases.colors = phrases.antecedent, ()
+            meant: Query = op["target"]
+            return meant
+        return None
 
     def _saved(self) -> _State:
         phrases = self.phrases

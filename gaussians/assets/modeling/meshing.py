@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 
 from ...cloud import GaussianCloud
 from ...errors import UserError
+from ...harmonics import dc_to_color
 from ...rotations import to_matrix
 
 F64 = NDArray[np.float64]
@@ -27,7 +28,6 @@ _SPACING = 0.8  # standard deviations that a cell is wide at least, so that no c
 _SMOOTH = 0.9  # cells, standard deviation by which what is filled is smoothed
 _FILLED = 0.35  # optical depth of a cell from which it is filled
 _NEAR = 6  # Gaussians that colour a vertex
-_SH0 = 0.28209479177387814
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +123,7 @@ def _filled(
 
 
 def _colors(cloud: GaussianCloud, means: F64, opacity: F64, vertices: F64) -> F64:
-    rgb = cloud.sh[:, 0].cpu().numpy().astype(np.float64) * _SH0 + 0.5
+    rgb = dc_to_color(cloud.sh[:, 0].cpu().double()).numpy()
     near = min(_NEAR, len(means))
     distance, rows = cKDTree(means).query(vertices, k=near)
     distance, rows = distance.reshape(-1, near), rows.reshape(-1, near)

@@ -260,11 +260,15 @@ class Belief:
 
     def _seen_logs(self, trust: float) -> F64:
         """Log-likelihood `[G, H]` of every name by pictures, sizes and support."""
+        return _tempered(self._pictured_shares, trust, len(self.pictured)) + self.sized + self.rested
+
+    @cached_property
+    def _pictured_shares(self) -> F64:
+        """Probability `[G, H]` of every name by pictures alone; even where none was taken, or for names beyond them."""
         share = distribution(self.encoder, self.field.embeddings)
         share = np.where(self.seen[:, None], share, 1 / share.shape[1])
         beyond = len(self.names) - len(self.pictured)
-        share = np.concatenate([share, np.full((len(share), beyond), 1 / len(self.pictured))], axis=1)
-        return _tempered(share, trust, len(self.pictured)) + self.sized + self.rested
+        return np.concatenate([share, np.full((len(share), beyond), 1 / len(self.pictured))], axis=1)
 
     def of_kinds(self, kinds: frozenset[str], trusting: bool = False) -> F64:
         """Posterior `[G]` that each group is of any of some kinds; 0 for groups that no source has seen."""

@@ -40,20 +40,6 @@ class Choice:
     refusal: Selection | None = None
 
 
-_RANKED = (
-    "largest",
-    "smallest",
-    "tallest",
-    "shortest",
-    "nearest",
-    "farthest",
-    "leftmost",
-    "rightmost",
-    "highest",
-    "lowest",
-)
-
-
 def pick(query: Query, scored: Scored, stand: Stand) -> Choice:
     """The matches that a query refers to, by its `pick`. There must be at least one match."""
     matches = scored.matches()
@@ -69,7 +55,8 @@ def pick(query: Query, scored: Scored, stand: Stand) -> Choice:
     if query.pick == "middle" and len(ordered) % 2 == 0:
         reason = f"{query.describe()}: of {len(ordered)} none is in the middle ({listing(told)}); say which one"
         return Choice([], _refused(query, reason, told, "ambiguous"))
-    if query.count is not None and query.count > 1 and query.pick in _RANKED and len(ordered) >= query.count:
+    ranked = query.pick not in ("nth", "middle", *CORNERS)  # "the two tallest"
+    if query.count is not None and query.count > 1 and ranked and len(ordered) >= query.count:
         return Choice(sorted(ordered[: query.count]))
     if len(tied := _tied(ordered, scored, query, stand)) > 1:
         told = tuple(scored.candidate(i) for i in tied)
