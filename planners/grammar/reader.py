@@ -132,7 +132,7 @@ class Reader:
             return
         if not told.firm and (reason := cannot_be([w.text for w in sentence])):
             raise Refusal(reason, sentence[0].text, verdict="impossible")
-        if told.verdict == "not_understood" and depth == 0 and is_remark([w.text for w in sentence]):
+        if told.verdict == "not_understood" and depth <= 1 and is_remark([w.text for w in sentence]):
             return self._remark(sentence)
         raise told
 
@@ -213,6 +213,8 @@ class Reader:
                 state.stated_first = not state.ops
                 state.topic = _topic(clause, refusal)
                 self._name([w.text for w in sentence])
+                if clause.negated and state.topic is not None and state.topic.text:
+                    self.phrases.antecedent, self.phrases.colors = state.topic.text, ()
                 continue
             state.ops = [*state.ops, *found]
 

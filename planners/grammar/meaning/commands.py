@@ -150,7 +150,8 @@ def take(phrases: Phrases, node: Node) -> list[Fields]:
     found = phrases.things(node)
     goes = any(p.word.startswith(("into", "onto", "against", "up against")) for p in found[-1].modifiers)
     if not trees(node, *MOTIONS) and not goes:
-        return [{"op": "select", "target": existing(found), "held": "taken"}]
+        off = any(p.kind == "off" for p in found[-1].modifiers)
+        return [{"op": "select", "target": existing(found), "held": "taken off" if off else "taken"}]
     return moved(phrases, found, node, "MOVE")
 
 

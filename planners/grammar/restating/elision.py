@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from ....gaussians.world.words import singular
 from ..tagging.lookahead import Lookahead, color_at, match
 from ..tagging.words import bag
-from ..vocabulary import lexicon
+from ..vocabulary import lexicon, quantities
 from .chunks import DOING, chunks, is_thing
 from .states import states
 
@@ -217,6 +217,9 @@ def _states_at(said: Sequence[str], i: int) -> bool:
     if said[i] in ("out", "gone", "off", "away", "to", "onto", "into", "against", "in", "a", "another", "up", "down"):
         return True
     if color_at(said, i):
+        return True
+    amount = quantities.read(said[i:])
+    if amount is not None and amount.kind not in ("NUMBER", "ORDINAL"):
         return True
     found = match(lexicon.CLOSED_PHRASES, said, i)
     return (found is not None and found[0][0] in _STATED) or said[i][0].isdigit()

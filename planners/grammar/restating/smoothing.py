@@ -10,8 +10,9 @@ import re
 from collections.abc import Sequence
 
 from ....gaussians.world.words import singular
-from ..tagging.lookahead import color_at
+from ..tagging.lookahead import Lookahead, color_at
 from ..tagging.words import Word, bag
+from ..vocabulary import lexicon, nouns
 from .participles import gerunds
 
 _SOUNDS = bag("er erm um umm uh uhm uhh hm hmm eh ah aha oh ooh oi yo huh ugh argh ahem")
@@ -80,8 +81,8 @@ _OPENERS = re.compile(
     r"(?:it would|it'd) be (?:great|good|nice|lovely|cool|better|best|helpful|awesome|fantastic|wonderful|super)"
     r"(?: if you (?:could|would)| if we (?:could|would)| to)|"
     r"i (?:would|'d) (?:be grateful|appreciate it) if you (?:could|would)|i (?:would )?wish you (?:would|could)|"
-    r"you (?:had better|better|might want to|may want to|could maybe|should probably|need to|have to|have got to|"
-    r"ought to|can go ahead and|can now)|we (?:had better|better|might want to|ought to|should probably|have to|"
+    r"you (?:had better|would better|better|might want to|may want to|could maybe|should probably|need to|have to|have got to|"
+    r"ought to|can go ahead and|can now)|we (?:had better|would better|better|might want to|ought to|should probably|have to|"
     r"have got to|need to|can|could|should|might as well)|i (?:might as well|had better)|"
     r"(?:how|what) about (?:we|you|if we|if you)|what if (?:we|you)|suppose we|maybe we (?:could|should)|perhaps "
     r"we (?:could|"
@@ -116,6 +117,10 @@ _REASON = (
     r"until (?:i|we|you))"
 )
 _TRAILING_REASON = re.compile(rf"(?<=\S)(?: ,)* {_REASON}(?= |$)[^.;!?]*(?= [.;!?]|$)")
+_MATCHING = re.compile(
+    r"^(?P<edit>.+?)(?: ,)? (?:to|so (?:that )?(?:it|they)|which|that) (?:match|matches|go|goes|fit|fits|suit|suits|blend in|"
+    r"complement|complements|tie in)(?: well| better| nicely)?(?: in| with)* [^,.;!?]*$"
+)
 _FACING = re.compile(r"\b(?:so (?:that )?(?:it|they|he|she) (?:is |are )?(?:fac|look|point)|until|till)")
 _LEADING_REASON = re.compile(
     r"^(?:because|cos|since|as|so that|so|in order to|in order that|to|given that|seeing as|seeing that|now that|"
@@ -130,6 +135,11 @@ _LEADING_AIM = re.compile(
 
 
 _SIZED = r"(?P<size>big|large|tall|high|wide|long|deep|broad)"
+_TURNED = "turn|rotate|spin|swing|swivel|pivot|twist|move|angle|orient|revolve"
+_LOOKING = (
+    r"(?:facing|faces|face|(?:looks?|looking|points?|pointing|aims?|aimed|turned|directed|turns?)(?: right| straight| directly| "
+    r"out)?(?: at| to| towards?| into| onto| of)+)"
+)
 # Phrases with a plain equal of their own, wherever they stand.
 _REWORDED = tuple(
     (re.compile(rf"(?<!\S){pattern}" + ("" if pattern.endswith(" ") or "(?=" in pattern else r"(?!\S)")), plain)
@@ -137,6 +147,33 @@ _REWORDED = tuple(
         (rf"half as {_SIZED} again(?: as (?:it is|now|before))?", r"1.5 times as \g<size>"),
         (rf"half again as {_SIZED}(?: as (?:it is|now|before))?", r"1.5 times as \g<size>"),
         (rf"(?:as {_SIZED} again)", r"2 times as \g<size>"),
+        (r"no one", "nobody"),
+        (
+            rf"(?:{_TURNED}) (?P<x>(?:the|that|this|my|our|both|all|those|these) [^,.;!?]+?|it|them)(?: right| back)?(?: round| "
+            rf"around| over)?(?: ,)? (?:until|till|so that|so|such that|to where|in order that) (?:it|they|its front|their fronts|"
+            rf"the front)(?: is| are)?(?: then)? {_LOOKING}",
+            r"turn \g<x> to face",
+        ),
+        (
+            r"(?P<the>the|that|this|my) (?P<noun>[a-z]+(?: [a-z]+)?) , (?:i mean |that is |namely |specifically )?(?P<one>the "
+            r"[^,.;!?]+?) one(?: ,)?(?: (?:and |so )?not (?:the|that) [^,.;!?]+)?(?= [,.;!?]|$)",
+            r"\g<one> \g<noun>",
+        ),
+        (
+            r", (?P<n>(?:about |around |roughly )?(?:an?|half|one|two|three|five|ten|twenty|thirty|forty|fifty|\d\S*)(?: [a-z]+){0,3}?) "
+            r"(?:will|should|would|ought to|is|ought) (?:do|suffice|be (?:enough|plenty|fine|good|ok|about right)|enough|plenty|fine)"
+            r"(?: it| nicely| the trick)*(?= [,.;!?]|$)",
+            r"\g<n>",
+        ),
+        (r", (?:say|about|like|roughly|around|something like|let us say) (?=\d|half|a third|a quarter|two thirds)", "about "),
+        (r"if (?P<x>[^,.;!?]+?)(?: ,)? (?:that|it|this) (?:would|will|might) be (?:great|good|nice|lovely|ideal|perfect|fab|"
+         r"fantastic|wonderful|super|amazing|brilliant|cool|better|best)", r"\g<x>"),
+        (r"(?P<v>paint|make|colou?r|dye|recolou?r) (?P<x>(?:the|that|this|my|our|both|all|every) [^,.;!?]+?|it|them) (?:in )?the "
+         r"(?:exact )?colou?r of (?=(?:the|my|our|that|its|those|these) )", r"\g<v> \g<x> the same colour as "),
+        (r"as (?P<hue>red|blue|green|yellow|white|black|brown|gr[ea]y|pink|purple|orange) as (?=(?:the|my|our|that|those|these) )",
+         "the same colour as "),
+        (r"(?P<x>it|they|that|there) (?:is|are) no (?=\w+ (?:to me|anymore))", r"\g<x> is not "),
+        (r"another (?=\d|half|bit|a )", ""),
         (r"(?:piece|bit|item|lump)s? of furniture", "furniture"),
         (
             r"(?:turn|spin|swing) (?P<x>\S.*?) (?:round |around |so (?:that )?it (?:is )?)?(?:to |and )?(?:face|"
@@ -145,7 +182,8 @@ _REWORDED = tuple(
             r"turn \g<x> around",
         ),
         (r"(?:to |so (?:that )?it (?:is )?)?(?:face|faces|facing) the (?:other|opposite) (?:way|direction)", "around"),
-        (r"(?:cut|chop|reduce|scale|bring|take|slash) (?P<x>\S.*?) (?:in|by|to|down to|down by) half", r"halve \g<x>"),
+        (r"(?:cut|chop|reduce|bring|take|slash) (?P<x>\S.*?) (?:in|by|to|down to|down by) half", r"halve \g<x>"),
+        (r"scale (?:down )?(?P<x>(?!up)\S.*?) (?:down |to |down by |down to )half", r"halve \g<x>"),
         (r"whatever (?:is|are) (?:sitting|standing|lying|placed|resting|currently|now|there) ", "whatever is "),
         (r"(?:only|just) the (?=\S.* (?:should|can|may|must) (?:stay|remain|be left))", "only the "),
         (r"'s (?:got to|have to|gotta)", "has to"),
@@ -303,7 +341,8 @@ def smoothed(words: Sequence[Word]) -> tuple[Word, ...]:
 
 def smooth(texts: Sequence[str]) -> list[str]:
     """The words of an instruction without hesitation, tags and reasons; never fewer than none of them are left."""
-    said = " ".join(t for t in texts if t not in _SOUNDS)
+    said = " ".join(_without_hedges([t for t in texts if t not in _SOUNDS]))
+    said = _linked(said)
     said = re.sub(r"(?: (?:—|–|―))+", " ,", said)
     said = re.sub(r"\. \.(?: \.)*", ",", said)
     said = _settle_commas(said)
@@ -318,6 +357,42 @@ def smooth(texts: Sequence[str]) -> list[str]:
         said = _settle_commas(_TAG_END.sub("", said))
     found = said.split()
     return found if found else list(texts)
+
+
+_HEDGES = bag(
+    "really definitely certainly probably possibly perhaps maybe surely properly neatly carefully gently quickly "
+    "quietly completely totally entirely fully absolutely literally frankly seriously personally obviously ideally "
+    "preferably basically essentially honestly truly urgently desperately badly finally"
+)
+_SHADED = bag("transparent invisible see opaque different hidden visible clear solid")
+
+
+def _without_hedges(texts: Sequence[str]) -> list[str]:
+    """The words without adverbs that only stress or weaken what is said; "fully transparent" stays."""
+    behind = [*texts[1:], ""]
+    kept = [t for t, after in zip(texts, behind, strict=True) if t not in _HEDGES or after in _SHADED]
+    return kept if any(t[0].isalpha() for t in kept) else list(texts)
+
+
+_OWNED = re.compile(
+    r"(?:^|(?<=[.;!?,] ))(?P<thing>(?:(?:the|that|this|my|our|your) )?(?:[a-z]+ ){1,4}?)'s (?P<how>(?:(?:too|so|very|"
+    r"just|a bit|a little|rather|quite|pretty|well|way|all|getting|looking|been|gone|become|made|always|still|bit|"
+    r"dead|proper|right|far|really|such|no|not|only|never) )*)(?P<last>[a-z]+)(?P<rest>(?: [a-z]+){0,6})(?= [,.;!?]|$)"
+)
+
+
+def _linked(said: str) -> str:
+    """The words with "is" for the "'s" of a clause that says how a thing is: "that lamp 's naff , swap it"."""
+
+    def full(found: re.Match[str]) -> str:
+        thing, how, last = found["thing"].split(), found["how"], found["last"]
+        owned = (last,) in lexicon.CLOSED_PHRASES or nouns.is_known(last) or color_at((last,), 0)
+        verb = Lookahead([*thing, "it"]).verb(0)
+        if (owned or found["rest"]) and not how or verb is not None and thing[0] not in ("that", "this", "the"):
+            return found.group()
+        return f"{found['thing']}is {how}{last}{found['rest']}"
+
+    return _OWNED.sub(full, said)
 
 
 _PRAISING = bag(
@@ -389,10 +464,18 @@ def unopened(said: str) -> str:
     return _OPENING_MARKS.sub("", said)
 
 
+def _ends_in_hue(said: str) -> bool:
+    """Whether words end in a colour, so that what it shall match is a reason: "paint it navy, to match the logo"."""
+    words = said.split()
+    return any(found[1] == taken for taken in (1, 2, 3) if (found := color_at(words, len(words) - taken)) is not None)
+
+
 def without_reason(said: str) -> str:
     """A sentence without the reason behind or in front of its command."""
     if not _FACING.search(said):
         said = _TRAILING_REASON.sub("", said)
+    if (found := _MATCHING.match(said)) and _ends_in_hue(found["edit"]):
+        said = found["edit"]
     if found := _LEADING_AIM.match(said):
         return found.group("rest").removeprefix(", ")
     if found := _LEADING_REASON.match(said):
