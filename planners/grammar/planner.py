@@ -244,7 +244,9 @@ def _is_all_else(query: Query) -> bool:
 
 
 def naming_last(query: Query, meant: Query) -> Query:
-    """A query with what "it" means in it named."""
+    """A query with what "it" means in it named; "the other one" need not have the colours of what it leaves out."""
+    alike = query.text == meant.text and query.colors == meant.colors and Query(last=True) in query.exclude
+    query = query.model_copy(update={"colors": ()}) if alike else query
     return with_queries(query, lambda q: meant if q == Query(last=True) else q)
 
 

@@ -13,9 +13,10 @@ from ..tagging.tags import Clause, Tag
 from ..tagging.words import Word, bag
 from ..vocabulary import doings, lexicon
 
-_SPEAKING = bag("i we you he she could would should must looks look seems")  # never within a noun phrase
+_SPEAKING = bag("try i we you he she could would should must looks look seems")  # never within a noun phrase
 DOING = bag(
-    "belongs belong lives needs wants looks wobbles wobble squeaks leaks creaks rattles flickers buzzes sags stinks smells clashes goes hang hangs stands sits"
+    "belongs belong lives needs wants looks wobbles wobble squeaks leaks creaks rattles flickers buzzes sags stinks "
+    "smells clashes goes hang hangs stands sits"
 )
 _MODIFIERS = ("DET", "NUMBER", "OF", "COLOR", "COLORS", "SIZE", "SUP", "ORDINAL", "ADJ", "NONCOLOR", "OTHER", "TALL")
 _HEADS = ("NOUN", "ONE", "THING", "PRON", "EVERYTHING", "OTHERS")

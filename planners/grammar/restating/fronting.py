@@ -22,8 +22,10 @@ _STAYS = (
     r"be there|be here)(?: where (?:it is|they are)| put| there| here| behind| as it is| as they are)*"
 )
 _AMONG = re.compile(
-    rf"^(?:out )?of (?:all )?(?P<group>(?:the|those|these|my|our) (?:two |three |four |five |six |\d )?(?P<nouns>[^,]+?))"
-    rf"(?: ,)? (?P<rest>(?:{_ONLY} )?(?:the |that |this )\S.*|(?:keep|leave|spare|save) \S.*|(?:[a-z]+ ){{1,2}}the \S.*)$"
+    rf"^(?:out )?of (?:all )?(?P<group>(?:the|those|these|my|our) (?:two |three |four |five |six |\d "
+    rf")?(?P<nouns>[^,]+?))"
+    rf"(?: ,)? (?P<rest>(?:{_ONLY} )?(?:the |that |this )\S.*|(?:keep|leave|spare|save) \S.*|(?:[a-z]+ ){{1,2}}the "
+    rf"\S.*)$"
 )
 _KEPT_ONE = (
     re.compile(rf"^{_ONLY} (?P<one>the \S.*?) {_STAYS}$"),
@@ -38,9 +40,11 @@ _SPARED = tuple(
         rf"^(?P<edit>\S.*?)(?: ,)*(?: (?:and|but|so|though|although|however))* {_ONLY} (?P<one>\S.*?) {_STAYS}$",
         rf"^(?P<edit>\S.*?)(?: ,)*(?: (?:and|but|so|though|although|however))* (?P<one>(?:the|my|our|that|this) \S.*?) "
         rf"{_STAYS}$",
-        r"^(?P<edit>\S.*?)(?: ,)*(?: (?:and|but|so|though|although|however))* (?:only |just |please |do )*(?:spare|keep|"
+        r"^(?P<edit>\S.*?)(?: ,)*(?: (?:and|but|so|though|although|however))* (?:only |just |please |do )*(?:spare|"
+        r"keep|"
         r"leave|save|leave out|skip|ignore|mind you leave)(?: (?:me|us))? (?P<one>(?:the|my|our|that|this) [^,]+?)"
-        r"(?: alone| be| in place| there| here| where (?:it is|they are)| as (?:it is|they are)| out| though| please)*$",
+        r"(?: alone| be| in place| there| here| where (?:it is|they are)| as (?:it is|they are)| out| though| "
+        r"please)*$",
         r"^(?P<edit>\S.*?)(?: ,)*(?: (?:and|but|so|though|although|however|just|only|mind|please))* (?:not|never) "
         r"(?P<one>(?:the|my|our|that|this) [^,]+?)(?: though| please| of course| obviously)*$",
         r"^(?P<edit>\S.*?)(?: ,)*(?: (?:and|but|so|though|although|however|just|only|please))* do not (?:touch|delete|"
@@ -53,11 +57,13 @@ _EXCLUDED = re.compile(
     r"from|save for|leaving aside|with the exception of) (?P<one>[^,]+?)(?: ,)+ (?P<rest>\S.*)$"
 )
 _FOR = re.compile(
-    r"^(?P<state>\S.*?)(?: ,)* (?:(?:please|thanks|then)(?: ,)* )?(?:for|with|on) (?P<thing>(?:the|my|our|that|this|those|these|"
+    r"^(?P<state>\S.*?)(?: ,)* (?:(?:please|thanks|then)(?: ,)* )?(?:for|with|on) (?P<thing>(?:the|my|our|that|this|"
+    r"those|these|"
     r"both|all|every) \S.*?)(?: please)?$"
 )
 _WHICH = re.compile(
-    r"^(?:whichever|which|whatever)(?: one)? (?:of )?(?:the )?(?P<nouns>\S.*?) (?:is|are|looks|stands|sits|happens to be)"
+    r"^(?:whichever|which|whatever)(?: one)? (?:of )?(?:the )?(?P<nouns>\S.*?) (?:is|are|looks|stands|sits|happens "
+    r"to be)"
     r"(?: the)? (?P<which>\S+)(?: ,| \?)* (?P<rest>\S.*)$"
 )
 

@@ -30,14 +30,16 @@ _SWITCHED = re.compile(
 _RUNNING = re.compile(
     r"^(?:\S+ )*?(?:get|make|have|let|start|set|keep) (?:the|that|this|my|our|all|every) (?P<thing>\S.*?) (?:(?:to "
     r")?(?:play|ring|sing|"
-    r"dance|talk|speak|bark|fly|drive|run|work|glow|blink|bounce|walk|beep|tick|boil|cook)|(?:play|ring|sing|danc|talk|speak|"
+    r"dance|talk|speak|bark|fly|drive|run|work|glow|blink|bounce|walk|beep|tick|boil|cook)|(?:play|ring|sing|danc|"
+    r"talk|speak|"
     r"bark|fly|driv|runn|work|glow|blink|bounc|walk|beep|tick|boil|cook|spinn|rock|swing|mov|turn)ing)\b"
 )
 
 
 # What is made to be eaten and drunk, and what is done for people.
 _SERVED = re.compile(
-    r"^(?:make|fix|pour|bring|get|cook|brew|give|order|fetch|buy) (?:me|us|them|him|her|everyone) (?:a |an |some |the )?"
+    r"^(?:make|fix|pour|bring|get|cook|brew|give|order|fetch|buy) (?:me|us|them|him|her|everyone) (?:a |an |some |"
+    r"the )?"
     r"(?:\w+ )?(?:coffee|tea|cuppa|sandwich|drink|beer|dinner|lunch|breakfast|snack|pizza|meal|discount|refund)\b"
 )
 _OBJECT = bag("the a an my our your his her its that this those these some something it them me us all both up")

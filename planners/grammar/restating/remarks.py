@@ -10,6 +10,7 @@ from ..tagging.words import bag
 from ..vocabulary import doings, nouns
 from .chunks import is_thing
 from .elision import JOINTS, substitute
+from .judgements import is_judged
 
 _SUBJECTS = bag(
     "never i we you it they he she nobody everybody everyone someone somebody people guests visitors there this "
@@ -30,18 +31,11 @@ _REMARKING = bag(
     "used lets got prefers"
 )
 _OPENING_NOUNS = bag("the a an my our your his her its that this those these all both every each some any and or of")
-# What is said of a change before: "too clinical", "not quite", "wrong way".
-_JUDGED = re.compile(
-    r"^(?:(?:hmm|oh|no|nah|nope|oops|whoops|wait|sorry|well|it is|that is|they are|still|now|it looks|looks|bit|a bit|"
-    r"a little|much|way|far|just|actually|,) )*"
-    r"(?:(?:too|not so|not as|not very|not that|so) (?P<how>\w+)|not \w+ enough|not enough|not quite(?: right| there)?|"
-    r"(?:the )?(?:wrong|other) (?:way|direction|side|one)|too (?:far|much) (?:now|that way)|almost(?: there)?|"
-    r"nearly(?: there)?|not bad|(?:much |a lot |far )?better)$"
-)
 _ASKING = re.compile(
     r"\b(?:should|must|ought|(?:has|have|needs?|wants?|got) to|to be|could you|can you|would you|will you|please|"
     r"instead|"
-    r"would like|had better|i mean|i meant|delete|remove|paint|recolou?r|move|rotate|replace|duplicate|not|if|unless|could do "
+    r"would like|had better|i mean|i meant|delete|remove|paint|recolou?r|move|rotate|replace|duplicate|not|if|"
+    r"unless|could do "
     r"with|(?:needs?|wants?) \w+ing)\b"
 )
 _COAT = re.compile(r"\b(?:coat|lick|layer|splash|touch)s? of paint\b")
@@ -54,7 +48,7 @@ def is_remark(said: Sequence[str]) -> bool:
         return True
     return (
         len(said) > 1
-        and (Lookahead(said).verb(0) is None or said[0] in _SUBJECTS)
+        and Lookahead(said).verb(0) is None
         and (said[0] in _SUBJECTS or said[1] in _REMARKING or finite_at(said, 1))
         and any(finite_at(said, i) for i in range(1, len(said)))
         and not _ASKING.search(
@@ -66,9 +60,9 @@ def is_remark(said: Sequence[str]) -> bool:
 def _judged(said: Sequence[str]) -> list[str] | None:
     """The thing that a judgement names behind it, empty if none; None for other words: "too bright, that rug"."""
     judgement, _, thing = " ".join(said).partition(" , ")
-    if _JUDGED.match(" ".join(said)):
+    if is_judged(said):
         return []
-    return thing.split() if _JUDGED.match(judgement) and is_thing(tuple(thing.split())) else None
+    return thing.split() if is_judged(judgement.split()) and is_thing(tuple(thing.split())) else None
 
 
 def finite_at(said: Sequence[str], i: int) -> bool:
@@ -94,7 +88,11 @@ def remarks(said: Sequence[str]) -> Iterator[list[str]]:
         first, second = _trimmed(said[:i]), _trimmed(said[i + 1 :])
         if first and second and is_remark(first):
             thing = subject_of(first)
-            if thing and (hue := _HUE_WISH.match(" ".join(second))) and color_at(second, len(second) - hue["hue"].count(" ") - 1):
+            if (
+                thing
+                and (hue := _HUE_WISH.match(" ".join(second)))
+                and color_at(second, len(second) - hue["hue"].count(" ") - 1)
+            ):
                 yield ["paint", *_of_whom(thing), *hue["hue"].split()]
             if far := _FAR_FROM.search(" ".join(first)):
                 second = _toward(second, far["goal"])
@@ -137,6 +135,11 @@ def _trimmed(said: Sequence[str]) -> list[str]:
 
 
 _THERE_IS = re.compile(r"^there (?:is|are) (?:a|an|some|one|two|three|four|this|that|these|those) (?P<thing>\S.*)$")
+_COLOR_OF = re.compile(
+    r"^(?:the|that|this) (?:colou?r|shade|tone|\w+) of (?P<thing>(?:the|that|this|my|our) (?:\w+ ){1,3}?)(?:is|"
+    r"looks|does|clashes|"
+    r"feels|seems|hurts|jars|goes|bothers|annoys) "
+)
 _NEEDING = re.compile(
     r"^(?:(?:i|we|you|it|this room|the room) )?(?:need|needs|want|wants|could use) (?:(?:more|some|a bit more|a "
     r"bit of|a little more) "
@@ -159,6 +162,8 @@ def subject_of(said: Sequence[str]) -> list[str] | None:
         return judged
     if found := _THERE_IS.match(" ".join(said)):
         return ["the", *found.group("thing").split()]
+    if found := _COLOR_OF.match(" ".join(said)):
+        return found["thing"].split()
     words = _BEHIND_THING.sub("", " ".join(said)).split()
     subject: list[str] | None = None
     for i in range(1, min(len(words), 10)):

@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 from itertools import chain
 
 from ..tagging.words import bag
-from .elision import about, following, gapped, splits, terse, topics
+from .continuing import continued, following
+from .elision import about, gapped, splits, terse, topics
 from .fronting import fronted
 from .phrasings import phrasings
 from .remarks import remarks
@@ -33,7 +34,8 @@ def restatements(texts: Sequence[str], mark: str, follows: bool) -> Iterator[lis
     """
     said = " ".join(texts)
     seen = {said}
-    for reading in chain(_readings(said, mark), _continued(said) if follows else ()):
+    first = continued(texts) if follows else ()
+    for reading in chain(first, _readings(said, mark), _continued(said) if follows else ()):
         if reading not in seen:
             seen.add(reading)
             yield reading.split()

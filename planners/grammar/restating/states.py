@@ -21,7 +21,8 @@ _STATE_WORDS = bag(
 
 # What a thing may be made to do: "have the chair face the fridge".
 _DOING = bag(
-    "face stand sit lean lie hang look point vanish disappear go swap match turn rotate move shrink grow rest spin tilt "
+    "face stand sit lean lie hang look point vanish disappear go swap match turn rotate move shrink grow rest spin "
+    "tilt "
     "slide shift come"
 )
 

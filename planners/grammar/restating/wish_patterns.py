@@ -15,7 +15,8 @@ REALLY = r"(?:(?:really|just|also|still|actually|now|quite|much|so|kind of|sort 
           r"maybe|perhaps|rather|only|all|both|certainly|please) )*"  # fmt: skip
 BETTER = (
     r"(?:a (?:lot|bit|little|touch|good deal) |much |far |so much |way |even |somewhat )?"
-    r"(?:better|nicer|handier|comfier|safer|neater|smarter|best|great|good|nice|lovely|cooler|prettier|perfect|fab|fantastic|smarter|cosier|happier|"
+    r"(?:better|nicer|handier|comfier|safer|neater|smarter|best|great|good|nice|lovely|cooler|prettier|perfect|fab|"
+    r"fantastic|smarter|cosier|happier|"
     r"more at home|more (?:sensible|fun|modern|elegant))"
 )
 # Before a thing and the state that it is to have.
@@ -35,7 +36,8 @@ WANTING = re.compile(
     rf"(?:just )?(?:have|get|make|let)|"
     rf"make sure(?: that)?|see to it that|make it so(?: that)?|ensure(?: that)?|i (?:think|feel|reckon|guess|suppose|"
     rf"believe|say|vote)(?: that)?|how about|what about|what if|would it be (?:possible|ok|okay) (?:for|to have)|"
-    rf"(?:it |that )?(?:would|might|could|may) {REALLY}be {BETTER} (?:if|to have|to see|with)|any (?:chance|way)(?: that)?|it is (?:time|about time|high time) (?:for|that)|"
+    rf"(?:it |that )?(?:would|might|could|may) {REALLY}be {BETTER} (?:if|to have|to see|with)|any (?:chance|way)(?: "
+    rf"that)?|it is (?:time|about time|high time) (?:for|that)|"
     rf"it 's time for|please let|let|help me (?:get|have)|i am (?:after|hoping for|thinking)|imagine|picture|"
     rf"my (?:idea|plan|wish|preference) (?:is|would be)(?: to have| for)?)"
     rf" )(?P<rest>\S.*)$"
@@ -43,10 +45,12 @@ WANTING = re.compile(
 MODAL = re.compile(
     rf"^(?P<thing>\S.*?) (?:(?P<not>(?:can|must|should|may|shall|will|would|could|need|do|does|ought) not|never)|"
     rf"{REALLY}(?:should|must|shall|could|can|may|might|ought to|has to|have to|had to|has got to|have got to|got to|"
-    rf"would {REALLY}(?:be|look|fit|go|do|feel|work|stand|sit|suit|make more sense) {BETTER}(?: if it (?:were|was|"
+    rf"would {REALLY}(?:be|look|fit|go|do|feel|work|stand|sit|suit|make more sense) {BETTER}(?: off)?(?: if it "
+    rf"(?:were|was|"
     rf"is))?|"
     rf"needs to|need to|wants to|want to|is to|are to|was to|were to|will|would|had better|is supposed to|"
-    rf"are supposed to|is meant to|are meant to|is going to|are going to|is due to|deserves to|cries out to|would be {BETTER} off|"
+    rf"are supposed to|is meant to|are meant to|is going to|are going to|is due to|deserves to|cries out to|would "
+    rf"be {BETTER} off|"
     rf"would like to|was supposed to|is ready to|is dying to|needs|should all|must all|should both|"
     rf"(?:looks|is|fits|works|goes|are|look) (?:much |far |way |a lot )?(?:better|nicer|best)))"
     rf" {REALLY}(?P<state>\S.*)$"
@@ -119,7 +123,8 @@ UNWANTED = tuple(
         r"^not (?:one|a single|any) (?P<each>\S.*?) (?:should|must|can|may|shall|is to) (?:stay|remain|be left|be kept|"
         r"be there|survive|be here)(?: behind)?$",
         r"^no (?!one|body|thing|need|problem|worries|way|idea|doubt|more|less|that|this|it|the|not|do|make|i |we |"
-        r"longer|room|space|place|reason|point|use|chance|but|and|other|wait|sorry|thanks|thank|please|yes|actually|hang|hold|stop|oops|just|\w+er\b)(?P<thing>[^,:]+?)(?: at all| "
+        r"longer|room|space|place|reason|point|use|chance|but|and|other|wait|sorry|thanks|thank|please|yes|actually|"
+        r"hang|hold|stop|oops|just|\w+er\b)(?P<thing>[^,:]+?)(?: at all| "
         r"whatsoever| in here| here)*$",
         rf"^(?:{SPEAKER} {REALLY}(?:would|will|could|do)? ?{REALLY}(?:want|like|prefer|rather have|have|see) )no "
         rf"(?!one|more)(?P<thing>[^,:]+?)(?: {NO_MORE}| at all)*$",
@@ -183,7 +188,10 @@ UNWANTED = tuple(
     )
 )
 NEW = r"(?:a|an|another|some|one more|one|two|three|four|five|six|a couple of|a pair of|a few|more|new)"
-_PLACE = r"(?: ,)?(?P<more> (?:on|in|next to|beside|under|by|behind|near|at|between|around|to|above|opposite|against|over|in front of) .*)?"
+_PLACE = (
+    r"(?: ,)?(?P<more> (?:on|in|next to|beside|under|by|behind|near|at|between|around|to|above|opposite|against|over|"
+    r"in front of) .*)?"
+)
 WANTED = tuple(
     re.compile(pattern)
     for pattern in (
@@ -193,7 +201,8 @@ WANTED = tuple(
         rf"^(?:is there )?(?:any|a) chance (?:of|for|that there could be|to have|to get) (?P<thing>{NEW} \S.*)$",
         rf"^(?:would|could|might|should)(?: not)? (?P<thing>{NEW} [^,]+?) {REALLY}(?:be|look|go|fit|do|work|suit) "
         rf"(?:{BETTER}|well)(?P<more> .*)?$",
-        rf"^(?:what|all|the (?:only )?thing) (?:that )?(?:\S+ ){{1,3}}?(?:needs?|lacks?|wants?|is missing|could do with|is crying out for)"
+        rf"^(?:what|all|the (?:only )?thing) (?:that )?(?:\S+ ){{1,3}}?(?:needs?|lacks?|wants?|is missing|could do "
+        rf"with|is crying out for)"
         rf" is (?P<thing>{NEW} \S.*)$",
         r"^(?P<thing>(?:a|one|two|three|four|five|six|another|\d+) (?:more )?(?:copy|copies|duplicates?|clones?) of "
         r"\S.*)$",
@@ -268,13 +277,18 @@ INSTEAD = tuple(
 EMPTIED = tuple(
     re.compile(pattern)
     for pattern in (
-        rf"^(?:nothing|no thing|not a thing|not one thing|no clutter|none of it) {REALLY}(?:should|must|can|may|shall|needs to|"
-        r"has to|ought to|is to|is allowed to) (?:be|stay|remain|stand|sit|lie|be left|be lying|be standing)(?: around)? "
+        rf"^(?:nothing|no thing|not a thing|not one thing|no clutter|none of it) {REALLY}(?:should|must|can|may|"
+        rf"shall|needs to|"
+        r"has to|ought to|is to|is allowed to) (?:be|stay|remain|stand|sit|lie|be left|be lying|be standing)(?: "
+        r"around)? "
         r"on (?P<thing>the [^,]+)$",
-        rf"^(?:{SPEAKER} {REALLY}(?:want|need|would like|would love) |make |have |get |keep )?(?P<thing>(?:the|that|this|"
-        rf"my|our) [^,]+?)(?: (?:should|must|has to|needs to|ought to|is to) be| to be)? {REALLY}(?:empty|clear|cleared|bare|"
+        rf"^(?:{SPEAKER} {REALLY}(?:want|need|would like|would love) |make |have |get |keep )?(?P<thing>(?:the|that|"
+        rf"this|"
+        rf"my|our) [^,]+?)(?: (?:should|must|has to|needs to|ought to|is to) be| to be)? {REALLY}(?:empty|clear|"
+        rf"cleared|bare|"
         r"emptied|cleared off|cleared out|free of clutter)$",
-        r"^(?:strip|wipe|sweep|take|get) (?:everything|the lot|all of it|all|it all|anything) (?:off|from) (?P<thing>the [^,]+)$",
+        r"^(?:strip|wipe|sweep|take|get) (?:everything|the lot|all of it|all|it all|anything) (?:off|from) "
+        r"(?P<thing>the [^,]+)$",
         r"^(?:clear|empty|strip) (?P<thing>the [^,]+?) (?:completely|entirely|fully|totally|off|out|bare|of everything|"
         r"of all (?:its |the )?(?:clutter|stuff|things|contents))(?: please)*$",
     )
@@ -283,20 +297,25 @@ EMPTIED = tuple(
 HUED = tuple(
     re.compile(pattern)
     for pattern in (
-        rf"^(?:{SPEAKER} (?:have |has |would |could |will |am going to |are going to |might )*|let us |please )?(?:go|going|gone|went|"
+        rf"^(?:{SPEAKER} (?:have |has |would |could |will |am going to |are going to |might )*|let us |please "
+        rf")?(?:go|going|gone|went|"
         rf"decided|settled|settle|decide|choose|chose|opt|opted|vote|voted|stick|try|use|pick|picked|apply|put) "
-        rf"(?:with |for |on |to )?(?P<hue>\S.*?) (?:for|on|onto) (?P<thing>(?:the|that|this|my|our|both|all|every) \S.*)$",
+        rf"(?:with |for |on |to )?(?P<hue>\S.*?) (?:for|on|onto) (?P<thing>(?:the|that|this|my|our|both|all|every) "
+        rf"\S.*)$",
         rf"^(?P<hue>\S.*?) (?:would |might |could )?(?:suits?|becomes?|flatters?|fits?|works? (?:better )?(?:on|for)|"
-        rf"looks? {BETTER} on|goes {BETTER} with) (?P<thing>(?:the|that|this|my|our) [^,;]+?)(?: (?:{BETTER}|more|best))?$",
-        rf"^(?P<was>\S+) (?:does|is) not (?:suit|work for|work on|look (?:good|right|great|nice) on|right for) "
-        rf"(?P<thing>(?:the|that|this|my|our) [^,;]+?) [;,] (?P<hue>\S+(?: \S+)?) (?:would|does|will|might)(?: do| be better| work)?$",
-        rf"^(?:a|the) (?:better|best|nicer|right) colou?r for (?P<thing>(?:the|that|this|my|our) [^,;]+?) (?:is|would be|might be)"
-        rf" (?P<hue>\S.*)$",
+        rf"looks? {BETTER} on|goes {BETTER} with) (?P<thing>(?:the|that|this|my|our) [^,;]+?)(?: (?:{BETTER}|more|"
+        rf"best))?$",
+        r"^(?P<was>\S+) (?:does|is) not (?:suit|work for|work on|look (?:good|right|great|nice) on|right for) "
+        r"(?P<thing>(?:the|that|this|my|our) [^,;]+?) [;,] (?P<hue>\S+(?: \S+)?) (?:would|does|will|might)(?: do| "
+        r"be better| work)?$",
+        r"^(?:a|the) (?:better|best|nicer|right) colou?r for (?P<thing>(?:the|that|this|my|our) [^,;]+?) (?:is|"
+        r"would be|might be)"
+        r" (?P<hue>\S.*)$",
     )
 )
 BEST_PLACE = re.compile(
-    rf"^(?:the|a) (?:best|better|right|ideal|proper|perfect|only|good|nicer) (?:place|spot|position|home|location) for "
-    rf"(?P<thing>\S.*?) (?:is|would be|might be|has to be|must be|will be) (?P<state>\S.*)$"
+    r"^(?:the|a) (?:best|better|right|ideal|proper|perfect|only|good|nicer) (?:place|spot|position|home|location) for "
+    r"(?P<thing>\S.*?) (?:is|would be|might be|has to be|must be|will be) (?P<state>\S.*)$"
 )
 # "the third bookcase is the one I want gone", "what I want gone is the third bookcase".
 CLEFT = tuple(

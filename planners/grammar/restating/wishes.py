@@ -68,8 +68,10 @@ def _by_doing(said: str) -> Iterator[str]:
 
 _WOULD = re.compile(
     r"^(?:i|we|you)(?: (?:would|will|could|might|should|had|may|am going to|are going to|want to|need to|have to))"
-    r"(?: (?:just|rather|also|prefer to|like to|love to|better|best|do well to|do better to|want to|need to|like you to|now|"
-    r"be tempted to|be inclined to|say|suggest we|suggest you))* (?P<rest>\S.*?)(?:(?: ,)* (?:if (?:i|it) (?:were|was) (?:you|me|up to me|"
+    r"(?: (?:just|rather|also|prefer to|like to|love to|better|best|do well to|do better to|want to|need to|like "
+    r"you to|now|"
+    r"be tempted to|be inclined to|say|suggest we|suggest you))* (?P<rest>\S.*?)(?:(?: ,)* (?:if (?:i|it) (?:were|"
+    r"was) (?:you|me|up to me|"
     r"my choice|my room|mine)|in your (?:place|shoes)|if it were up to me|if you ask me))?$"
 )
 
@@ -119,12 +121,19 @@ def _kept(said: str) -> Iterator[str]:
             yield f"keep only {found.group('thing')}"
 
 
+_NUMBERED = re.compile(
+    r"(?:two|three|four|five|\d+|so many|that many|another|more|as many|this many|several|quite so many) "
+)
+
+
 def _unwanted(said: str) -> Iterator[str]:
     for pattern in UNWANTED:
         if not (found := pattern.match(said)):
             continue
         each = found.groupdict().get("each")
         thing = f"every {each}" if each else found.group("thing")
+        if _NUMBERED.match(thing):
+            continue  # "we do not need two palms" leaves one of them
         if is_plain(thing) or thing in ("it", "they"):
             yield f"delete {re.sub('^any ', 'all ', bare_thing(thing)).replace('they', 'them')}"
 
@@ -204,11 +213,14 @@ def _placed(said: str) -> Iterator[str]:
         yield f"put {found.group('thing')} {' '.join(state)}"
 
 
+_INDEFINITE = ("a", "an", "another", "some")
+
+
 def _split_states(rest: Sequence[str]) -> Iterator[str]:
     """The readings of a thing and its state that stand side by side: "the sofa painted blue"."""
     for i in range(1, len(rest)):
         thing = tuple(rest[:i])
-        if may_end(rest[i - 1]) and begins_state(rest, i) and is_thing(thing):
+        if rest[0] not in _INDEFINITE and may_end(rest[i - 1]) and begins_state(rest, i) and is_thing(thing):
             yield from states(" ".join(thing), rest[i:])
 
 

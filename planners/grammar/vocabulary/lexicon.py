@@ -205,7 +205,8 @@ CLOSED: dict[str, Entry] = {
     **same(
         ("BUT", None),
         "but, but not, except, except for, excepting, excluding, other than, apart from, aside from, besides, "
-        "but leave, but keep, but do not touch, save for, bar, barring, though not, although not, minus, and not, without touching, without removing, "
+        "but leave, but keep, but do not touch, save for, bar, barring, though not, although not, minus, and not, "
+        "without touching, without removing, "
         "without moving, without deleting, without changing, without affecting, without including, leaving, leaving "
         "out, keeping, not counting, not including, other then, but never",
     ),
@@ -341,7 +342,8 @@ CLOSED: dict[str, Entry] = {
             "the rest of the scene, the rest of the room, the rest of it"),
     **same(("ONE", False), "one"),
     **same(("ONE", True), "ones"),
-    **same(("OTHERS", None), "the others, all the others, all others, the other ones, all the other ones, both of the others, both the "
+    **same(("OTHERS", None), "the others, all the others, all others, the other ones, all the other ones, both of "
+                             "the others, both the "
             "others, both others, all of the others, each of the others, both of the other ones, both other ones"),
     **same(("THING", False), "thing, object, item, part, piece, area, region, element, bit"),
     **same(("THING", True), "things, objects, items, parts, pieces, areas, regions, elements, bits, stuff"),

@@ -31,7 +31,19 @@ _ADVERBS = {"twice": 2.0, "thrice": 3.0}
 _DEGREES = {"degree", "degrees", "deg", "degs", "°"}
 _TURNS = {"turn", "turns", "rotation", "rotations", "revolution", "revolutions"}
 _WHOLE = {"whole", "full", "good", "further", "more", "extra"}
-_HEDGES = {"about", "around", "approximately", "roughly", "exactly", "maybe", "some", "approx", "nearly", "almost", "just"}
+_HEDGES = {
+    "about",
+    "around",
+    "approximately",
+    "roughly",
+    "exactly",
+    "maybe",
+    "some",
+    "approx",
+    "nearly",
+    "almost",
+    "just",
+}
 
 
 @dataclass(frozen=True)
