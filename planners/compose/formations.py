@@ -80,7 +80,11 @@ class Formations:
 
     def _arranged(self, group: Group) -> Iterator[list[Place]]:
         said, own = group.thing.arrangement, list(self.ids.get(group.key, ()))
-        if said is None or len(own) < 2:
+        if (
+            said is None
+            or len(own) < 2
+            or (said.form == "grid" and said.rows in (None, 2) and self._faces_itself(group))
+        ):
             return
         if said.form == "circle" and len(own) > 2:
             yield self._ring(own, self._middle(group), said.gap)
@@ -90,6 +94,10 @@ class Formations:
             rows = 1 if said.form == "row" else said.rows or max(2, round(sqrt(len(own) / 1.5)))
             columns = said.columns or ceil(len(own) / rows)
             yield self._grid(group, own, columns, said.gap)
+
+    def _faces_itself(self, group: Group) -> bool:
+        own = list(self.ids.get(group.key, ()))
+        return len(own) % 2 == 0 and any(r.name == "facing" and self._objects(r) == own for r in group.relations)
 
     def _middle(self, group: Group) -> int | None:
         """The single thing on the floor that a circle is around."""

@@ -24,7 +24,10 @@ _PER_AREA = 0.9  # objects for each square metre of a stated size
 _FOCI = ("altar", "stage", "blackboard", "whiteboard", "projector screen", "lectern", "pulpit", "podium", "screen")
 _AUDIENCE = 4  # so many seats without another place face what an audience looks at
 _NAMED, _EXTRAS = 4, 4  # from so many named things on a room gets at most so many others
+_HUNG_HEIGHT = 0.6  # metres, tallest thing that hangs from the ceiling and usually stands
+_BEHIND = 0.65  # metres between a counter and what is behind it
 _SKIPPED = 0.15  # probability that a habit is left out, so that rooms of one kind differ
+_SCREEN = ((0.9, 1.2), (0.06, 0.06), (1.7, 1.8))  # size of a curtain that parts a room
 _PLAIN = Kind(name="thing", size=((0.5, 0.5), (0.5, 0.5), (0.5, 0.5)))
 
 
@@ -88,6 +91,10 @@ class Furnishing:
             if thing.name in ("door", "window"):
                 continue
             kind = knowledge.thing(thing.name) or replace(_PLAIN, name=thing.name)
+            parted = any(r.subject == thing.id and r.name in ("around", "next_to", "between", "in_front_of")
+                         and r.objects != ("window",) and r.objects for r in self.brief.relations)  # fmt: skip
+            if kind.name == "curtain" and parted and thing.support is None:
+                kind = replace(kind, support="floor", size=_SCREEN)  # a curtain round a bed stands as a screen
             if self.room.outdoor and kind.support == "wall" and thing.support is None:
                 kind = replace(kind, support="floor")  # a chalkboard at a stall stands; there is no wall
             self.groups.append(Group(thing.id, thing, kind))
@@ -99,16 +106,73 @@ class Furnishing:
                 )
 
     def hang(self) -> None:
-        """Hang up things that are said to be above another and usually stand: a shelf above the desk."""
+        """Hang up things that are said to be above another and usually stand: a shelf above the desk, on the wall; a
+        lamp above a table in the room, from the ceiling."""
         for group in self.groups:
-            over = any(r.hard and r.name == "above" and r.objects for r in group.relations)
-            if not over or group.thing.support or group.kind.support not in ("floor", "surface"):
+            over = [r for r in group.relations if r.hard and r.name == "above" and r.objects]
+            if not over or group.thing.support in ("ceiling", "floor") or group.kind.support == "ceiling":
+                continue
+            lower = self.find(over[0].objects[0])
+            if lower is not None and not self._is_at_wall(lower) and group.thing.support is None:
+                self._hang_from_ceiling(group)
+                continue
+            if group.thing.support or group.kind.support not in ("floor", "surface"):
                 continue
             if group.kind.role in ("shelf", "bookshelf"):
                 group.kind = replace(knowledge.things()["wall shelf"], name=group.kind.name, like=group.kind.role)
             (wide, deep, tall), depth = group.kind.size, min(group.kind.size[1][1], 0.35)
             flat = (wide, (min(deep[0], depth), depth), (min(tall[0], 0.6), min(tall[1], 0.6)))
             group.kind = replace(group.kind, support="wall", size=flat, backed=False, aisle=0.0)
+
+    def _is_at_wall(self, group: Group) -> bool:
+        """Whether things of a group stand or hang at a wall, so that something can hang on it above them."""
+        names = {r.name for r in group.relations if r.hard}
+        if names & {"against_wall", "in_corner", "at_window"}:
+            return True
+        if self.room.outdoor or names & {"in_center", "between", "around"} or group.thing.arrangement:
+            return False
+        for relation in group.relations:
+            if relation.name == "on" and relation.objects and (under := self.find(relation.objects[0])) is not None:
+                return under is not group and under.kind.support == "floor" and under.kind.backed
+        return group.kind.backed or group.kind.support == "wall"
+
+    def _hang_from_ceiling(self, group: Group) -> None:
+        if group.kind.role in ("table lamp", "floor lamp", "desk lamp", "lamp", "wall lamp"):
+            group.kind = replace(knowledge.things()["pendant lamp"], name=group.kind.name, like="pendant lamp")
+            return
+        wide, deep, tall = group.kind.size
+        tall = (min(tall[0], _HUNG_HEIGHT), min(tall[1], _HUNG_HEIGHT))
+        group.kind = replace(group.kind, support="ceiling", size=(wide, deep, tall), backed=False, aisle=0.0)
+
+    def settle_places(self) -> None:
+        """Resolve stated places that exclude each other only for things as they usually stand: what hangs on a wall
+        stands if it is next to something in the middle of the room; what nothing fits beneath hangs."""
+        for group in self.groups:
+            for relation in [r for r in group.relations if r.hard and r.objects]:
+                other = self.find(relation.objects[0])
+                if other is None or other is group:
+                    continue
+                beside = relation.name in ("next_to", "left_of", "right_of", "in_front_of", "behind", "around")
+                inner = any(r.hard and r.name in ("in_center", "around", "between") for r in other.relations)
+                if beside and inner and group.kind.support == "wall" and group.thing.support is None:
+                    group.kind = replace(group.kind, support="floor")
+                elif relation.name in ("under", "below") and other.kind.role == "coat rack":
+                    size = (other.kind.size[0], (0.12, 0.12), (0.3, 0.3))
+                    other.kind = replace(other.kind, support="wall", size=size, backed=False)
+            self._settle_counter(group)
+
+    def _settle_counter(self, group: Group) -> None:
+        """Let a counter at a wall leave an aisle where things are said to be behind it."""
+        behind = [g for g in self.groups for r in g.relations if r.hard and r.name == "behind" and r.objects
+                  and self.find(r.objects[0]) is group and g.kind.support == "floor"]  # fmt: skip
+        if not behind:
+            return
+        for k, relation in enumerate(group.relations):
+            if relation.name == "against_wall" and relation.distance is None:
+                deep = max(g.thing.depth or g.kind.size[1][1] for g in behind)
+                group.relations[k] = replace(relation, distance=round(deep + _BEHIND, 2))
+                self.remarks.append(f"the {group.kind.name} stands {deep + _BEHIND:.1f} m from the wall, with the "
+                                    f"{behind[0].kind.name} behind it")  # fmt: skip
 
     def add(self, habit: knowledge.Habit, most: int | None = None) -> bool:
         """Add a habit, unless the room has it, the brief excludes it, or a thing that it needs is missing.
@@ -307,7 +371,7 @@ def _role(name: str) -> str:
 
 
 def _carried(group: Group) -> bool:
-    return any(b.name == "on" for b in group.relations)
+    return any(b.name in ("on", "inside") for b in group.relations)
 
 
 def _is_for_people(group: Group) -> bool:
@@ -325,6 +389,7 @@ def furnish(brief: Brief, rng: np.random.Generator, area: float | None) -> Furni
     made = Furnishing(brief, rng)
     made.ask()
     made.hang()
+    made.settle_places()
     made.seat()
     made.fill(area)
     made.settle()

@@ -149,7 +149,10 @@ def _words(name: str) -> tuple[str, ...]:
 
 
 Table = Mapping[tuple[str, ...], str]
-_ALIASES = {("mobile",): "baby mobile"}  # words that mean another thing as the label of a thing
+_ALIASES = {
+    ("mobile",): "baby mobile",
+    ("towel",): "folded towel",
+}  # words that mean another thing as the label of a thing
 
 
 @cache

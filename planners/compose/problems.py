@@ -24,6 +24,10 @@ _OVERHEAD = HEADROOM + 0.05  # metres kept free under things that hang from the 
 # With a hard wish of these names a counter has no aisle, as nobody works behind it.
 # Relations that hold for a row as a whole where they hold for its middle.
 _AIMED = ("facing", "in_front_of", "behind", "left_of", "right_of", "next_to", "far_from", "aligned_with")
+_CARRYING = ("on", "inside")  # relations of a thing to what carries it
+_CORNERS: tuple[tuple[Wall, Wall], ...] = (
+    ("north", "west"), ("north", "east"), ("south", "west"), ("south", "east"),
+)  # fmt: skip
 _WITHOUT_AISLE = ("against_wall", "in_corner", "at_window")
 
 
@@ -127,8 +131,10 @@ class _ProblemBuilder:
         if group.thing.support:
             return None
         for relation in group.relations:
-            if relation.name == "on" and relation.objects:
+            if relation.name in _CARRYING and relation.objects:
                 other = self.made.find(relation.objects[0])
+                if relation.name == "inside" and group.kind.support != "surface" and other and not other.kind.holds:
+                    continue
                 if not other or other is group or other.kind.size[2][1] <= 0.05:
                     continue
                 if not self._is_circular(group, other):
@@ -143,7 +149,7 @@ class _ProblemBuilder:
             if at.key in seen:
                 return True
             seen.add(at.key)
-            relation = next((b for b in at.relations if b.name == "on" and b.objects), None)
+            relation = next((b for b in at.relations if b.name in _CARRYING and b.objects), None)
             at = self.made.find(relation.objects[0]) if relation else None
         return False
 
@@ -157,7 +163,8 @@ class _ProblemBuilder:
             self._register(group, made)
             return
         hung: list[Item] = []
-        if group.kind.name == "curtain" and group.thing.support in (None, "wall"):
+        placed = any(r.objects and r.objects[0] != "window" for r in group.relations)
+        if group.kind.name == "curtain" and group.thing.support in (None, "wall") and not placed:
             most = group.count if group.asked else len(self.items)
             self.items, hung = hang_curtains(self.items, most, size, self.room[2], color, self.ids)
             if hung and len(hung) < group.count and group.asked:
@@ -216,7 +223,7 @@ class _ProblemBuilder:
     def _item(self, group: Group, size: Size, color: str, support: int | str) -> Item:
         kind = group.kind
         floor = support == "floor"
-        flush = any(r.hard and r.name in _WITHOUT_AISLE for r in group.relations)
+        flush = any(r.hard and r.name in _WITHOUT_AISLE and r.distance is None for r in group.relations)
         return Item(
             id=next(self.ids),
             label=self._label(group)[:80],
@@ -255,6 +262,9 @@ class _ProblemBuilder:
                 self.remarks.append(f"there is no window for the {key} to stand at")
             return
         if not relation.objects:
+            if relation.name == "in_corner" and relation.sides:
+                self._add_corners(subjects, hard)
+                return
             walls: tuple[Wall | None, ...] = ("west", "east") if relation.sides else (relation.wall,)
             form = group.thing.arrangement if group is not None else None
             group_is_row = form is not None and form.form == "row" and relation.name == "against_wall"
@@ -273,7 +283,7 @@ class _ProblemBuilder:
             self.wishes += [Wish(subject=a, name="aligned_with", objects=(b,), hard=hard) for a, b in chained(subjects)]
             return
         if relation.name == "on" and group and self._carrier(group) is None:
-            self._add_rug_wishes(subjects, others, hard)
+            self._add_rug_wishes(group, subjects, others, hard)
             return
         aimed = relation.name in _AIMED
         for one, other in self._item_pairs(relation, subjects, others):
@@ -283,6 +293,12 @@ class _ProblemBuilder:
             leads = not aimed or self._leads(one, subjects)
             self._add_wish(one, relation.name, other, hard and leads, relation.distance)
 
+    def _add_corners(self, subjects: list[int], hard: bool) -> None:
+        """Wishes that share things out over the corners of the room."""
+        for k, one in enumerate(subjects):
+            for wall in _CORNERS[k % len(_CORNERS)]:
+                self.wishes.append(Wish(subject=one, name="in_corner", hard=hard, wall=wall))
+
     def _leads(self, one: int, subjects: list[int]) -> bool:
         """Whether a relation of a whole formation is asked of this member: of its middle one, the others follow."""
         if one not in self.formed.members or len(subjects) < 3:
@@ -291,7 +307,15 @@ class _ProblemBuilder:
 
     def _item_pairs(self, relation: GroupRelation, subjects: list[int], others: list[int]) -> list[tuple[int, int]]:
         """Pairs of related items; for "on", each item with the item that carries it."""
-        if relation.name != "on":
+        if (
+            relation.name == "facing"
+            and subjects == others
+            and len(subjects) % 2 == 0
+            and subjects[0] in self.formed.members
+        ):
+            half = len(subjects) // 2
+            return [*zip(subjects, subjects[half:], strict=False), *zip(subjects[half:], subjects, strict=False)]
+        if relation.name not in _CARRYING:
             return list(pairs(subjects, others))
         by_id = {i.id: i for i in self.items}
         return [(s, int(by_id[s].support)) for s in subjects if by_id[s].support in others]
@@ -308,8 +332,13 @@ class _ProblemBuilder:
             ends = (flat[0], flat[1])
             self.wishes += [Wish(subject=s, name="between", objects=ends, hard=hard) for s in subjects if s not in ends]
 
-    def _add_rug_wishes(self, subjects: list[int], rugs: list[int], hard: bool) -> None:
-        """Standing on a rug becomes the wish that the rug is under the thing."""
+    def _add_rug_wishes(self, group: Group, subjects: list[int], rugs: list[int], hard: bool) -> None:
+        """Standing on a rug becomes the wish that the rug is under the thing; of chairs around a table, under that."""
+        table = next((r for r in group.relations if r.name == "around" and r.objects), None)
+        if table is not None and (others := self._ids(table.objects[0])):
+            for one, rug in pairs(others, rugs):
+                self.wishes.append(Wish(subject=rug, name="under", objects=(one,), hard=hard))
+            hard = False
         for one, rug in pairs(subjects, rugs):
             self.wishes.append(Wish(subject=rug, name="under", objects=(one,), hard=hard))
 

@@ -22,7 +22,10 @@ _WALL_SHARE = 0.62  # share of the wall length that things with their back to a 
 _LONGEST = 2.0  # times the longest usual side: limit of a side where only the other one is stated
 _BESIDE = 0.03  # metres between things on a top
 _LOOSE = 1.15  # factor on the width of a top that holds several rows of things, as they differ in size
+_RAIL = 0.2  # metres, depth of railings and fences
+_STANDS = 0.7  # least share of a thing's depth that is on what carries it
 _MOST_GROWN = 2.5  # factor by which what carries things may grow
+_ROOF = 0.55  # share of its height that is free under a roof at least
 _SMALLEST = 1.0  # metres, least side of a room
 
 
@@ -82,8 +85,11 @@ def sized(made: Furnishing, rng: np.random.Generator, shrink: float = 1.0) -> li
             size = table_for(size, sat, group.kind.round, sides, edge)
         found[group.key] = size
     for group in made.groups:
+        _fit_canopy(made, group, found)
+    for group in made.groups:
         _fit_loads(made, group, found)
         _fit_beneath(made, group, found)
+        _fit_inside(made, group, found)
     return [(g, found[g.key]) for g in made.groups]
 
 
@@ -108,12 +114,45 @@ def _fit_loads(made: Furnishing, carrier: Group, sizes: dict[str, Size]) -> None
     if carrier.kind.round:
         wide = deep = max(wide, deep)
     sizes[carrier.key] = round(wide, 3), round(deep, 3), height
-    factor = min(1.0, wide / need, (deep + 0.1) / deepest)
+    rail = carrier.kind.backed and depth < _RAIL  # at the edge of the place: nothing may stand over on its far side
+    factor = min(1.0, wide / need, (deep if rail else deep / _STANDS) / deepest)
     if factor < 1.0:
         for g in loads:
             if g.thing.width is None and g.thing.depth is None:
                 w, d, h = sizes[g.key]
                 sizes[g.key] = round(w * factor, 3), round(d * factor, 3), round(h * max(factor, 0.7), 3)
+
+
+def _fit_canopy(made: Furnishing, group: Group, sizes: dict[str, Size]) -> None:
+    """Widen a roof without a stated size over what is said to be under it, with the chairs around that."""
+    for relation in group.relations:
+        roof = made.find(relation.objects[0]) if relation.name in ("under", "below") and relation.objects else None
+        if roof is None or roof.kind.under < _ROOF or roof.thing.width is not None or group.kind.is_rug:
+            continue
+        (width, depth, height), (w, d, _) = sizes[roof.key], sizes[group.key]
+        seated = any(r.name == "around" and made.find(r.objects[0]) is group for g in made.groups for r in g.relations)
+        room = 1.5 if seated else 0.3
+        number = ceil(group.count / roof.count)
+        w, d = (w * number + room, d + room) if number > 1 else (w + room, d + room)
+        sizes[roof.key] = round(max(width, w), 3), round(max(depth, d), 3), height
+
+
+def _fit_inside(made: Furnishing, group: Group, sizes: dict[str, Size]) -> None:
+    """Widen a container without a stated size for what is inside it, up to a limit; beyond it the contents shrink."""
+    for relation in group.relations:
+        other = made.find(relation.objects[0]) if relation.name == "inside" and relation.objects else None
+        if other is None or other is group or other.kind.support == "wall":
+            continue
+        (width, depth, height), (w, d, h) = sizes[other.key], sizes[group.key]
+        number = ceil(group.count / other.count)
+        wide, deep = (number * (w + 0.03) + 0.04, d + 0.05)
+        if other.thing.width is None and other.thing.depth is None:
+            width, depth = min(max(width, wide), _MOST_GROWN * width), min(max(depth, deep), _MOST_GROWN * depth)
+            sizes[other.key] = round(width, 3), round(depth, 3), height
+        factor = min(1.0, width / wide, depth / deep)
+        tall = min(1.0, 0.9 * height / h)
+        if (factor < 1.0 or tall < 1.0) and group.thing.width is None and group.thing.height is None:
+            sizes[group.key] = round(w * factor, 3), round(d * factor, 3), round(h * min(tall, factor), 3)
 
 
 def _fit_beneath(made: Furnishing, group: Group, sizes: dict[str, Size]) -> None:

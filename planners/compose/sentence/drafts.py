@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 from ....gaussians.world.kinds import Kind
 from ....gaussians.world.relations import WishName
-from ....gaussians.world.words import is_plural
+from ....gaussians.world.words import is_plural, singular
 from ...layout.problem import Wall
 from .. import knowledge
 from ..brief import Arrangement, Brief, RefusedError, Relation, RoomSize, Scale, Thing
@@ -71,6 +71,11 @@ class Draft:
         return knowledge.thing(self.name)
 
     @property
+    def renamed(self) -> bool:
+        """Whether several were said of a thing that its kind has another name for: magazines, of the kind "books"."""
+        return self.plural and bool(self.called) and self.called != singular(self.name)
+
+    @property
     def several(self) -> bool:
         return self.plural or (self.said.count or 1) > 1 or self.each is not None
 
@@ -97,6 +102,7 @@ class Reading:
         self.links: list[Link] = []
         self.capped: list[str] = []  # remarks on things of which too many were asked for
         self.suggested: list[Link] = []  # of the links those that "with" suggests: "a desk with a lamp"
+        self.topic: Draft | None = None  # what "it" meant last in this sentence
 
     def add(self, draft: Draft) -> Draft:
         self.drafts.append(draft)
@@ -116,12 +122,39 @@ class Reading:
             return next((d for d in others if d.name in (head, role)), None) if role != name else None
         return next((d for d in others if d.name.endswith(head)), None)
 
-    def before(self, subject: Draft | None, word: str = "it") -> Draft | None:
-        """The draft that "it" or "them" refers to in a relation of `subject`: the last single thing, the last
-        several ones."""
+    def parted(self, draft: Draft, color: str) -> Draft:
+        """One of several things that has a colour of its own, taken out of them: "the blue tent" of two tents."""
+        if draft.said.color == color:
+            return draft
+        count = (draft.said.count or _BARE_PLURAL) - 1
+        if draft.said.color or count < 1 or draft.each is not None:
+            return draft
+        draft.said = replace(draft.said, count=count)
+        one = replace(draft, said=replace(draft.said, count=1, color=color), plural=False)
+        draft.plural = count > 1
+        self.drafts.append(one)
+        self.links += [replace(x, subject=one) for x in self.links if x.subject is draft and draft not in x.objects]
+        return self.mention(one)
+
+    def named_again(self, name: str, said: Said, plural: bool) -> Draft | None:
+        """The single thing that a bare noun names again: "bin under the workbench, workbench 2 m wide"."""
+        found = next((d for d in self.drafts if d.name == name), None)
+        return found if said.plain and not plural and found is not None and not found.several else None
+
+    def before(self, subject: Draft | None, word: str = "it", relation: str = "") -> Draft | None:
+        """The draft that "it", "them" or "each" refers to in a relation of `subject`: what "it" meant before in the
+        sentence, else the last single thing, the last several ones; with "on it" the last that carries things."""
         others = [d for d in reversed(self.recent) if d is not subject]
-        fit = [d for d in others if d.several == (word in ("them", "these", "those"))] or others
-        return next((d for d in fit if not (d.kind and d.kind.opening)), None) or next(iter(fit), None)
+        fit = [d for d in others if d.several == (word in ("them", "these", "those", "each"))] or others
+        fit = [d for d in fit if not (d.kind and d.kind.opening)] or fit
+        if relation in ("on", "reversed on") and word == "it":
+            fit = [d for d in fit if d.kind and (d.kind.top or d.kind.is_rug or d.kind.stores)] or fit
+        elif relation not in ("inside", "under", "below") and word == "it":
+            if self.topic is not None and self.topic in fit:
+                return self.topic
+            fit = [d for d in fit if d.kind and d.kind.support == "floor" and d.support is None] or fit
+        self.topic = fit[0] if fit and word == "it" else self.topic
+        return fit[0] if fit else None
 
     def first(self, subject: Draft, seats: bool = True) -> Draft | None:
         """The first thing on the floor, which what hangs overhead is likely above; without `seats` no seat."""
@@ -131,6 +164,7 @@ class Reading:
     def pair(self, subject: Draft | None) -> tuple[Draft, ...]:
         """The drafts that "them" refers to: one draft of several things, or the last two drafts."""
         others = [d for d in reversed(self.recent) if d is not subject]
+        others = [d for d in others if d.each not in others]  # of two beds with a lamp each, "them" is the beds
         if many := next((d for d in others[:2] if d.several), None):
             return (many,)
         return tuple(reversed(others[:2]))
@@ -142,6 +176,7 @@ class Reading:
             gone = [x for x in self.suggested if x.subject is link.subject and (
                 x.objects != link.objects or x.name in ("on", "next_to"))]  # fmt: skip
             self.links = [x for x in self.links if not any(x is g for g in gone)]
+        self.suggested = [x for x in self.suggested if x != link]
         if link not in self.links:
             self.links.append(link)
 
@@ -181,7 +216,8 @@ class Reading:
             own = draft.said.count
             if own is None and draft.seated and seats:
                 own = seats
-            if own is None and draft.kind and (is_plural(draft.kind.name) or draft.called in _ONE):
+            one = draft.called in _ONE or draft.name in _ONE or f"{draft.name}s" in _ONE
+            if own is None and draft.kind and (one or (is_plural(draft.kind.name) and not draft.renamed)):
                 own = 1  # string lights are one thing
             if own is None:
                 own = max(habits.get(draft.name, 0), _BARE_PLURAL) if draft.plural and not draft.each else 1

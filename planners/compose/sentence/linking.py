@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import cast
+from typing import Literal, cast
 
 from ....gaussians.world.relations import WishName
 from ...grammar.tagging.lookahead import match
@@ -17,17 +17,23 @@ from . import vocabulary
 from .drafts import Draft, Link, Reading, Said, changed
 from .relating import PREPOSITIONS, layout_name, sides_at
 
-_SKIPPED = frozenset({"the", "a", "an", "one", "each", "every", "all", "both", "opposite", "that", "my", "its", "two"})
+_SKIPPED = frozenset({
+    "the", "a", "an", "one", "each", "every", "all", "both", "opposite", "that", "my", "its", "two", "other", "end",
+    "long", "short", "same", "near", "main", "whole", "entire", "upper", "lower", "top", "bottom", "adjacent", "four",
+    "longer", "shorter", "side", "opposing", "facing", "remaining", "white", "brick", "stone", "wooden", "of",
+})  # fmt: skip
+_EVERY = frozenset({"each", "every", "all", "four"})
 _ROOM_SIDES: dict[str, Wall] = {"behind": "north", "in_front_of": "south", "left_of": "west", "right_of": "east"}
 _AT_WINDOW = frozenset({"next_to", "under", "below", "at", "in_front_of", "against", "inside"})
 
 
-_TWO = 2
+_TWO, _CORNERS, _FULL = 2, 4, 4
 _ENDS = (",", ".", ";", "and", "!", "?", "\n")
 _NEAREST = frozenset({"next_to", "in_front_of", "behind", "left_of", "right_of", "against"})
-_TO_OWNER = frozenset(
-    {"in_front_of", "behind", "on", "under", "below", "next_to", "around", "above", "left_of", "right_of"}
-)
+_TO_OWNER = frozenset({
+    "in_front_of", "behind", "on", "under", "below", "next_to", "around", "above", "left_of", "right_of", "between",
+    "facing",
+})  # fmt: skip
 _NOBODY = Draft("", Said(), False)  # the subject of a relation until its thing is read
 _PRONOUN_COUNTS = ("one", "two", "three", "four", "five", "six", "half")
 
@@ -38,9 +44,11 @@ class _Waiting:
 
     subject: Draft | None
     name: str
-    found: tuple[Draft, ...] = ()
     distance: float | None = None
+    found: tuple[Draft, ...] = ()
     sides: bool = False
+    owner: Draft | None = None  # what has the subject in a list behind "with"
+    peers: tuple[Draft, ...] = ()  # things before the subject in its list: "a lamp and a clock on the desk"
 
 
 class Linker:
@@ -55,6 +63,7 @@ class Linker:
         self.opens = True  # whether a sentence begins here
         self.fresh: Draft | None = None  # a thing just introduced as an object: "a stool in the centre" is about it
         self.carried = False  # whether the last relation was that of a thing on, in or under the fresh one
+        self.listed = False  # whether a list of what each has goes on behind a comma
         self.asked = ""  # the word before the place that is read
         self.distance: float | None = None  # metres that belong to the relation that follows
         self._ahead: list[Link] = []  # relations of the next thing; their subjects are not read yet
@@ -62,19 +71,49 @@ class Linker:
         self._each = False
         self._each_of: Draft | None = None  # "each desk …": what follows is one for each of it
         self._own = False  # "its own chair, monitor and lamp": the list goes on behind commas
+        self._ahead_support: Literal["wall", "ceiling", "floor"] | None = None
+        self._ahead_each: Draft | None = None  # "around each of them": of what the next thing is there once for each
+        self._fronted: list[Link] = []  # relations of the last thing that stood before it, which the next ones share
+        self._sharing: list[Draft] = []  # things that share them unless they have a place of their own
+        self._list: list[Draft] = []  # things that are listed since the last place or end of a clause
+        self._and = False  # whether the last separator is "and"
+        self._owner: Draft | None = None  # of a list behind "with", what has the things in it
 
     # ---- punctuation and little words ------------------------------------------------------------------------------
 
-    def comma(self) -> None:
+    def comma(self, goes_on: bool = False) -> None:
+        """Handle a comma; `goes_on`: a list goes on behind it up to an "and"."""
         self._finish()
-        self.distance, self._negating, self.fresh = None, False, None
-        if not self._own:
+        self.distance, self._negating, self.fresh, self._and = None, False, None, False
+        self.listed = goes_on and self.parent is not None and self.parent is self._each_of
+        if not self._own and not self.listed:
             self.parent = None
+
+    def front(self) -> None:
+        """Let a place that follows be that of the next thing: "…, on it two candles"."""
+        self._share_front()
+        self._finish()
+        self._list, self._own, self._owner = [], False, None
+        self.opens, self.parent, self.fresh = True, None, None
+
+    def _share_front(self) -> None:
+        """Give the things that were listed behind "on it a till" their place, unless they have one."""
+        links, drafts = self._fronted, self._sharing
+        self._fronted, self._sharing = [], []
+        for draft in drafts:
+            if draft.placed or draft.support:
+                continue
+            for link in links:
+                if _may_share(draft, link):
+                    self.reading.link(replace(link, subject=draft, hard=link.hard and link.name in ("on", "inside")))
 
     def stop(self) -> None:
         self._own = False
         self.comma()
+        self._share_front()
+        self._list, self._owner = [], None
         self.opens, self._each, self._each_of = True, False, None
+        self.reading.topic = None
 
     def joined(self, word: str) -> None:
         """Handle "with", which relates the following things to the last one, and "and" and "but"."""
@@ -83,10 +122,12 @@ class Linker:
             if self.waiting and self.waiting.name == "between":
                 return
             self._finish()
+            self._and = True
         else:
             self._finish()
             self._negating = False
-            self.parent = self.last if word == "with" else None
+            self._list = []
+            self.parent = self._owner = self.last if word == "with" else None
             if self.parent is not None and self._each:
                 self._each_of = self.parent
             self._each = False
@@ -169,26 +210,53 @@ class Linker:
             self.fresh = found if len(self.reading.drafts) > known else None
             self._object(found)
             return
-        if said.determiner in ("the", "each") and (before := self.reading.known(name, head)):
+        again = self.reading.named_again(name, said, plural) if not said.determiner else None
+        if again or (said.determiner in ("the", "each") and (again := self.reading.known(name, head))):
+            before = again
             changed(before, said)
             self.last = self.reading.mention(before)
             self._each_of = before if each else self._each_of
+            self._take_ahead(before)
+            self._list = [before]
             return
         draft = self.reading.add(Draft(name, said, plural or each, seated=each, called=called))
-        for ahead in self._ahead:
-            self.reading.link(replace(ahead, subject=draft))
-        self._ahead = []
+        on = all(x.name in ("on", "inside") for x in self._fronted)
+        if not self._take_ahead(draft) and self._fronted and (on or self._and):
+            self._sharing.append(draft)
+        self._list.append(draft)
         parent = self.parent
         if parent is not None and self._own and not said.own and (said.determiner or said.count or plural):
             parent, self.parent, self._own = None, None, False  # the list of "its own …" has ended
         if parent is not None and not opens:
-            if parent is self._each_of or said.own:
+            if parent is self._each_of or said.own or (parent.each is not None and said.determiner == "a"):
                 draft.each = parent
             self._own = self._own or said.own
             self._attach(draft, parent)
         if each:
             self._each_of = draft
         self.last = draft
+
+    def _take_ahead(self, draft: Draft) -> bool:
+        """Give a thing the places that stood before it; whether there were any."""
+        links, support, owner = self._ahead, self._ahead_support, self._ahead_each
+        self._ahead, self._ahead_support, self._ahead_each = [], None, None
+        if owner is not None and owner is not draft:
+            draft.each = owner
+        draft.support = support or draft.support
+        own = [replace(x, subject=draft) for x in links if draft not in x.objects]
+        for link in own:
+            if (
+                link.sides
+                and (link.objects or link.name == "in_corner")
+                and (draft.said.count or 1) == 1
+                and not draft.plural
+            ):
+                draft.said = replace(draft.said, count=_TWO if link.objects else _CORNERS)
+            self.reading.link(replace(link, name=layout_name(link.name, draft, link.objects[0], link.sides))
+                              if link.objects else link)  # fmt: skip
+        if own:
+            self._fronted, self._sharing = own, []
+        return bool(own)
 
     def _resolved(self, name: str, head: str, said: Said, plural: bool, each: bool) -> Draft:
         """The draft of an object, mentioned before or new; "on each table" counts the subject once per table."""
@@ -197,6 +265,8 @@ class Linker:
         if said.own and subject is not None:  # "each facing its own mirror"
             return self.reading.mention(self.reading.add(Draft(name, said, False, each=subject)))
         known = self.reading.known(name, head, subject) if said.plain or said.determiner == "the" else None
+        if known is not None and said.color and known.several and not plural:
+            known = self.reading.parted(known, said.color)
         if known is None and subject is not None and said.determiner == "the" and subject.name == name:
             return subject  # it cannot be under itself: what is was not understood
         draft = known or self.reading.add(Draft(name, said, plural or each))
@@ -211,6 +281,10 @@ class Linker:
             waiting.found = (draft,)
             return
         self.waiting = None
+        if waiting.owner is not None and _belongs_to_owner(waiting, draft):
+            waiting.subject, waiting.peers = waiting.owner, ()
+        if waiting.subject is None:
+            self.reading.topic = draft
         if draft is not waiting.subject:
             self._link(waiting.subject, waiting.name, (*waiting.found, draft), waiting)
 
@@ -222,10 +296,22 @@ class Linker:
         if word in ("them", "these", "those") and waiting.name == "between":
             objects = self.reading.pair(waiting.subject)
         else:
-            owner = self.parent if self.parent is not waiting.subject else None  # "a desk with a lamp on it"
-            one = owner or self.reading.before(waiting.subject, word)
+            owner = self.parent or waiting.owner  # "a desk with a lamp on it"
+            owner = owner if owner is not waiting.subject else None
+            if word == "each" and owner is not None and not owner.several:
+                owner = None
+            one = owner or self.reading.before(waiting.subject, word, waiting.name)
             objects = (one,) if one else ()
         self.waiting = None
+        one = waiting.subject
+        owned = word == "it" and bool(objects) and objects[0].each is not None
+        if owned and one is not None and one.said.determiner == "a" and one.each is None:
+            one.each = objects[0]
+        if word == "each" and objects:
+            for draft in (waiting.subject, *waiting.peers):
+                if draft is not None and draft is not objects[0]:
+                    draft.each = objects[0]
+            self._ahead_each = objects[0] if waiting.subject is None else self._ahead_each
         if objects and (waiting.name != "between" or len(objects) == 2 or objects[0].several):
             self._link(waiting.subject, waiting.name, objects, waiting)
 
@@ -237,16 +323,31 @@ class Linker:
             known = "next_to" if name in ("at", "against", "inside") else name
             self._ahead.append(Link(first, known, objects, distance=distance, sides=sides))
             return
+        if name == "across":  # "two sofas facing each other across a table": it is between them
+            if subject.several:
+                self.reading.link(Link(first, "between", (subject,)))
+            else:
+                self.reading.link(Link(subject, "facing", (first,)))
+            return
         if name.startswith("reversed "):
+            if name == "reversed on" and first.plural and first.said.count is None:
+                first.said = replace(first.said, count=_FULL if not subject.several else _TWO)
+                first.each = subject if subject.several else first.each
             self._link(first, name.removeprefix("reversed "), (subject,), said)
             self.last = subject
             return
         if first.name == "window" and name in _AT_WINDOW:
             self.reading.link(Link(subject, "at_window", distance=distance))
+            if name in ("under", "below"):
+                self.reading.link(Link(subject, "under", (first,)))
             return
-        self.reading.link(
-            Link(subject, layout_name(name, subject, first, sides), objects, distance=distance, sides=sides)
-        )
+        link = Link(subject, layout_name(name, subject, first, sides), objects, distance=distance, sides=sides)
+        self.reading.link(link)
+        for peer in said.peers if said is not None else ():
+            if not peer.placed and peer not in objects and _may_share(peer, link):
+                kin = peer.kind is not None and subject.kind is not None and peer.kind.support == subject.kind.support
+                name = layout_name(link.name, peer, first, sides)
+                self.reading.link(replace(link, subject=peer, name=name, hard=kin or name in ("on", "inside")))
 
     def _attach(self, child: Draft, parent: Draft) -> None:
         """Add the relation that "with" means for two things, if any."""
@@ -291,8 +392,17 @@ class Linker:
         self.fresh, self.carried = None, found[0] in ("on", "inside", "under")
         self._finish()
         distance, self.distance = self.distance, None
-        self.waiting = _Waiting(self.last if not self.opens else None, found[0], distance=distance)
+        subject = self.last if not self.opens else None
+        owner = self._owner if subject is not None and subject in self._list else None
+        self.waiting = _Waiting(subject, found[0], distance, owner=owner, peers=self._peers(subject))
         return found[1]
+
+    def _peers(self, subject: Draft | None) -> tuple[Draft, ...]:
+        """The things before a subject that its place is said of too: "a lamp and a clock on the desk"."""
+        listed, self._list = self._list, []
+        if subject is None or not self._and or not listed or listed[-1] is not subject:
+            return ()
+        return tuple(d for d in listed[:-1] if not d.placed)
 
     def _sides(self, texts: Sequence[str], i: int) -> int:
         """Read "on either side of", "down each side", "one on the left and one on the right of"; the number of words.
@@ -300,6 +410,8 @@ class Linker:
         A thing that is named once stands at both sides: "a lamp on either side" is two lamps.
         """
         taken = sides_at(texts, i)
+        if taken and self.opens and texts[i] != "of":
+            return self._sides_ahead(texts, i, taken)
         if not taken or self.last is None or self.opens:
             return 0
         draft, word = self.last, texts[i + 1] if texts[i] in PREPOSITIONS else texts[i]
@@ -318,18 +430,33 @@ class Linker:
             self._link(draft, "next_to", (owner,), _Waiting(draft, "next_to", sides=True))
         return taken
 
+    def _sides_ahead(self, texts: Sequence[str], i: int, taken: int) -> int:
+        """Read "at either end of the table" before its thing; the number of words."""
+        self._finish()
+        self.waiting = _Waiting(None, "next_to", sides=True)
+        if texts[i + taken - 1] != "of":
+            one, self.waiting = self.reading.before(None), None
+            if one is not None:
+                self._link(None, "next_to", (one,), _Waiting(None, "next_to", sides=True))
+        return taken
+
     def _to_owner(self, name: str) -> bool:
         """Relate the last thing to what it belongs to: "a counter and two stools in front"."""
         draft = self.last
         if draft is None or self.opens or name not in _TO_OWNER:
             return False
-        owner = self.parent if self.parent is not None and self.parent is not draft else self.reading.before(draft)
+        owner = self.parent if self.parent is not None and self.parent is not draft else None
+        owner = owner or self.reading.before(draft, relation=name)
         if owner is None:
             return False
         self._finish()
         if name == "above":
             owner = self.reading.first(draft, seats=False) or owner
             self.reading.link(Link(draft, "above", (owner,), hard=False))
+        elif name == "between":
+            pair = (owner,) if owner.several else self.reading.pair(draft)
+            if len(pair) == _TWO or (pair and pair[0].several):
+                self.reading.link(Link(draft, "between", pair))
         else:
             self._link(draft, name, (owner,))
         return True
@@ -355,6 +482,7 @@ class Linker:
         j = i + taken
         while j < len(texts) and texts[j] in _SKIPPED:
             j += 1
+        every = bool(_EVERY & set(texts[i + taken : j]))
         sides = []
         while j < len(texts) and (texts[j] in vocabulary.CORNERS or texts[j] in vocabulary.WALLS):
             sides.append(texts[j])
@@ -364,8 +492,11 @@ class Linker:
             self._at_wall(name, vocabulary.WALLS.get(sides[-1]) if sides else None)
         elif part in ("corner", "corners") and name in ("inside", "at", "against", "on"):
             walls = [w for s in sides for w in vocabulary.CORNERS.get(s, ())]
-            for wall in dict.fromkeys(walls) or (None,):
-                self._place("in_corner", cast("Wall | None", wall))
+            if every or (part == "corners" and not walls):
+                self._spot("corners")
+            else:
+                for wall in dict.fromkeys(walls) or (None,):
+                    self._place("in_corner", cast("Wall | None", wall))
         else:
             return 0
         self._finish()
@@ -386,29 +517,67 @@ class Linker:
             self._place("in_center", None)
         elif spot == "corner":
             self._place("in_corner", None)
+        elif spot == "corners":
+            self._place("in_corner", None, sides=True)
+            if subject is not None and (subject.said.count or 1) == 1:
+                self.counted(_CORNERS)
         elif subject is None:
-            return
+            if spot.startswith("part "):
+                self._ahead.append(Link(_NOBODY, "against_wall", (), cast(Wall, spot.removeprefix("part ")), False))
+            elif spot in ("wall", "ceiling", "floor"):
+                self._ahead_support = cast(Literal["wall", "ceiling", "floor"], spot)
+            elif spot.startswith("rel ") and (one := self.reading.before(None)) is not None:
+                self._link(None, spot.removeprefix("rel "), (one,))
         elif spot == "aligned_with":
             self.reading.link(Link(subject, "aligned_with", (subject,)))
             if subject.several and subject.arrangement is None and subject.said.arrangement is None:
                 subject.arrangement = Arrangement(form="row")
         elif spot == "facing":
             self._face_each_other(subject)
+        elif spot == "beside":
+            self._side_by_side(subject)
         elif spot == "wall":
             self._at_wall("on", None)
         elif spot.startswith("rel "):
             self._to_owner(spot.removeprefix("rel "))
+        elif spot in ("one side", "other side"):
+            if (table := self._table_of(subject)) is not None:
+                self.reading.link(Link(subject, "around", (table,)))
+            else:
+                wall: Wall = "west" if spot == "one side" else "east"
+                self.reading.link(Link(subject, "against_wall", (), wall, False))
         elif spot.startswith("part "):
             self.reading.link(Link(subject, "against_wall", (), cast(Wall, spot.removeprefix("part ")), False))
         elif spot == "walls":
             self.reading.link(Link(subject, "against_wall", sides=True))
         elif spot == "floor":
-            subject.support = "floor"
+            subject.support, subject.placed = "floor", True
         else:
-            subject.support = "ceiling"
+            subject.support, subject.placed = "ceiling", True
             owner = self.parent if self.parent is not subject else None
             if (owner := owner or self.reading.first(subject)) is not None:
                 self.reading.link(Link(subject, "above", (owner,), hard=False))
+
+    def _table_of(self, subject: Draft) -> Draft | None:
+        """The table that a seat "on one side" is at."""
+        other = self.reading.before(subject)
+        seat = subject.kind is not None and subject.kind.seats == 1
+        return other if seat and other is not None and other.kind and other.kind.top and not other.kind.seats else None
+
+    def more_at(self, count: int) -> None:
+        """Handle "and three along each side" behind chairs at a table: that many more of the last thing."""
+        if self.last is not None:
+            self.counted((self.last.said.count or 1) + count)
+
+    def _side_by_side(self, subject: Draft) -> None:
+        if subject.several:
+            self.reading.link(Link(subject, "aligned_with", (subject,)))
+            self.reading.link(Link(subject, "next_to", (subject,)))
+            if subject.arrangement is None and subject.said.arrangement is None:
+                subject.arrangement = Arrangement(form="row")
+        elif (other := self.reading.before(subject)) is not None:
+            self.reading.link(Link(subject, "next_to", (other,)))
+            self.reading.link(Link(subject, "aligned_with", (other,), hard=False))
 
     def _face_each_other(self, subject: Draft) -> None:
         other = subject if subject.several else self.reading.before(subject)
@@ -417,9 +586,41 @@ class Linker:
             if other is not subject:
                 self.reading.link(Link(other, "facing", (subject,)))
 
-    def _place(self, name: WishName, wall: Wall | None) -> None:
+    def _place(self, name: WishName, wall: Wall | None, sides: bool = False) -> None:
         if self.last is None or self.opens:
-            self._ahead.append(Link(_NOBODY, name, (), wall))
-        else:
-            distance, self.distance = self.distance, None
-            self.reading.link(Link(self.last, name, (), wall, distance=distance))
+            self._ahead.append(Link(_NOBODY, name, (), wall, sides=sides))
+            return
+        distance, self.distance = self.distance, None
+        self.reading.link(Link(self.last, name, (), wall, distance=distance, sides=sides))
+        for peer in self._peers(self.last):
+            if name == "against_wall" and peer.kind and self.last.kind and peer.kind.support == self.last.kind.support:
+                self.reading.link(Link(peer, name, (), wall))
+
+
+def _may_share(draft: Draft, link: Link) -> bool:
+    """Whether a thing in a list shares the place of another one of it, where only that one's is stated."""
+    kind = draft.kind
+    if draft in link.objects or draft is link.subject:
+        return False
+    small = kind is None or kind.support == "surface"
+    if link.name in ("on", "inside"):
+        first = link.objects[0].kind
+        return (
+            small
+            or (link.subject.kind is not None and link.subject.kind.support != "surface")
+            or (first is not None and first.name == "stage")
+        )
+    if link.name in ("in_center", "in_corner", "next_to", "between", "around", "aligned_with"):
+        return False
+    return not small or link.name in ("under", "below")
+
+
+def _belongs_to_owner(waiting: _Waiting, other: Draft) -> bool:
+    """Whether a place behind "a desk with a lamp" is that of the desk: "by the window"."""
+    small, owner = waiting.subject, waiting.owner
+    if small is None or owner is None or other is owner or owner.placed or small.several:
+        return False
+    fits = small.kind is None or small.kind.support == "surface"
+    return fits and bool(owner.kind) and waiting.name in (
+        "next_to", "facing", "left_of", "right_of", "in_front_of", "behind", "against", "between", "at",
+    )  # fmt: skip

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from ....gaussians.world.words import singular
 from ...grammar.tagging.lookahead import color_at, match, may_be_noun
+from ...grammar.vocabulary import quantities
 from .. import knowledge
 from . import vocabulary
 from .drafts import Said
@@ -31,6 +32,7 @@ class NounPhrases:
     def __init__(self, texts: Sequence[str]) -> None:
         self.texts = list(texts)
         self.said = Said()
+        self.has_place = False  # whether the place that is described was named, so that "the bar" is a thing in it
 
     def before(self, i: int) -> str:
         """The word before position `i`, "" at the beginning."""
@@ -65,6 +67,8 @@ class NounPhrases:
         if taken > 1:
             return False
         text, before = self.texts[i], self.before(i)
+        if text in ("bar", "bars") and self.has_place:
+            return False
         return text in vocabulary.PARTS or (before in _BEFORE_VERBS and text not in knowledge.things())
 
     def content(self, i: int) -> tuple[int, str]:
@@ -73,6 +77,8 @@ class NounPhrases:
         if texts[i : i + 1] != ["of"] or texts[i + 1 : i + 2] in (["each"], ["every"], ["them"]):
             return i, ""
         j = i + 1
+        if quantities.read(texts[j : j + 1]):
+            return i, ""
         while j < len(texts) and (texts[j] in ADJECTIVES or texts[j] in ("a", "an", "the", "some", "many")):
             j += 1
         while j < len(texts) and color_at(texts, j) and not self.name_at(j):
@@ -85,6 +91,8 @@ class NounPhrases:
             and may_be_noun(texts[j])
             and texts[j] not in vocabulary.FILLER
         ):
+            if texts[j].endswith("ing") and (rest := self.name_at(j + 1)):
+                return j + 1 + rest[1], f"{texts[j]} {rest[0]}"  # "wrapping paper"
             return j + 1, singular(texts[j])
         if j > i + 1 and texts[j - 1] in vocabulary.MATERIALS:
             return j, texts[j - 1]  # "a basket of wool"

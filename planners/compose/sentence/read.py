@@ -13,7 +13,7 @@ from typing import Any
 from ....gaussians.errors import UserError
 from ....gaussians.world import everyday
 from ....gaussians.world.words import is_plural, singular
-from ...grammar.tagging.lookahead import color_at, match, may_be_noun
+from ...grammar.tagging.lookahead import NOUN_COLORS, color_at, match, may_be_noun
 from ...grammar.tagging.words import clean
 from ...grammar.vocabulary import lexicon, nouns, quantities
 from ...grammar.vocabulary.unsafe import unsafe_words
@@ -21,10 +21,11 @@ from .. import knowledge
 from ..brief import Brief, RefusedError
 from . import amounts, vocabulary
 from .amounts import Side
+from .clauses import Clauses
 from .drafts import Said, brief_of
 from .linking import Linker
-from .noun_phrases import NounPhrases
 from .numbers_and_rows import standing, times
+from .relating import sides_at
 from .tokenize import refuse_others, words_of
 
 _MARKS = frozenset(".;!?\n:")
@@ -32,8 +33,10 @@ _OWNING = ("has", "have", "gets", "get")
 _SAID_OF = ("be", "is", "are", "in", "painted", "all", "colored", "coloured")
 _IRRELEVANT = ("selling", "sells", "serving", "serves", "like")  # what stands behind them is not in the room itself
 _PLANTED = (["pot"], ["tree"], ["bush"], ["plant"], ["hedge"], ["trees"], ["pots"], ["bushes"], ["plants"], ["bouquet"])
-_AFTER_PLACE = (["with"], [":"], [","], ["."], ["interior"], ["where"], ["-"], ["for"], ["has"])
+_AFTER_PLACE = (["with"], ["w"], [":"], [","], ["."], ["interior"], ["where"], ["-"], ["for"], ["has"], ["containing"])
+_LIKE_PLACES = ("house", "tent")  # shapes of things that one can be in
 _AFTER_ROUND = (["it"], ["the"], ["them"], ["each"], ["every"], ["this"], ["that"], ["both"])
+_MOST_MORE = 20  # of "and three along each side"
 _OPENERS = frozenset(
     {"a", "an", "the", "its", "their", "his", "her", "my", "our", "your", "own", "another", "with", "and"}
 )
@@ -61,7 +64,7 @@ def read(text: str) -> Brief:
     return reader.brief()
 
 
-class _Reader(NounPhrases):
+class _Reader(Clauses):
     """The state of one reading."""
 
     def __init__(self, texts: Sequence[str]) -> None:
@@ -78,13 +81,15 @@ class _Reader(NounPhrases):
         self.unknown: list[str] = []
         self.about_room = True  # whether a size that comes next is that of the room
         self.unshown: tuple[str, ...] = ()  # adjectives of the next noun that boxes do not show
+        self.room_word = ""  # the word for the place that is described
         self.room_end = 0  # position behind the last name of a room
         self.modifiers: list[str] = []  # unknown words before a noun, kept in its name
 
     def run(self) -> None:
+        self.straighten()
         i = 0
         steps = (self._mark, self._formation, self._size, self._negation, self._only, self._long_name, self._feature,
-                 self._place, self._people, self._count, self._color, self._name, self._attribute,
+                 self._more, self._place, self._people, self._count, self._color, self._name, self._attribute,
                  self._filler)  # fmt: skip
         while i < len(self.texts):
             taken = next((n for step in steps if (n := step(i))), 0)
@@ -128,7 +133,7 @@ class _Reader(NounPhrases):
     def _mark(self, i: int) -> int:
         text = self.texts[i]
         if text == ",":
-            self.linker.comma()
+            self.linker.comma(self.goes_on(i, self.linker.listed))
         elif text in _MARKS:
             self.linker.stop()
         elif text in ("but", "with", "w") or (text == "and" and self.said == Said()):
@@ -162,11 +167,19 @@ class _Reader(NounPhrases):
             return found.taken + taken
         if behind and (behind[0] == "of" or behind[0] not in {",", *_MARKS, "where", *vocabulary.FILLER}):
             self.said = replace(self.said, sides={**self.said.sides, **found.sides})
-        elif self.about_room or last is None or (not self.size and self.before(i) in (",", ";", ".", ":")):
+        elif self.about_room or last is None or (not self.size and self._begins_size(i, found)):
             self.size.update(found.sides)
         else:
             last.said = replace(last.said, sides={**last.said.sides, **found.sides})
         return found.taken
+
+    def _begins_size(self, i: int, found: amounts.Extents) -> bool:
+        """Whether a size at position `i` is that of the room: behind a mark and of two sides or an area, or behind the
+        end of a sentence."""
+        before = self.before(i)
+        return before in (";", ".", ":") or (
+            before == "," and (len(found.sides) > 1 or set(found.sides) <= {"area", "any"})
+        )
 
     def _distance(self, i: int, found: amounts.Extents) -> int:
         """Read what follows a length that is a distance: "2 m from the bench", "1 m apart", "50 cm in front of"."""
@@ -240,12 +253,33 @@ class _Reader(NounPhrases):
             return 0
         self._per(i)
         self.linker.asked = self.before(i)
+        if not self.linker.opens and self.comes_first(i):
+            self.linker.front()
         taken = self.linker.place(self.texts, i)
         if taken:
             self._settle_count()
             self.modifiers = []
             self.said = Said()
         return taken
+
+    def _more(self, i: int) -> int:
+        """Read "and three along each side" behind chairs that are at the ends of a table."""
+        number = quantities.read(self.texts[i:]) if self.before(i) in ("and", ",") else None
+        last = self.linker.last
+        if number is None or number.kind != "NUMBER" or last is None or not last.placed or number.value > _MOST_MORE:
+            return 0
+        at = i + number.taken
+        taken = sides_at(self.texts, at) if at < len(self.texts) else 0
+        spot = match(vocabulary.SPOTS, self.texts, at)
+        if taken and self.texts[at + taken - 1] != "of":
+            if number.value > 1 or (last.said.count or 1) == 1:  # of four benches, "one on each side" is one of them
+                self.linker.more_at(2 * int(number.value))
+        elif last.several and ((spot and spot[0] in ("one side", "other side")) or self.one_of(at + 1)):
+            taken = spot[1] if spot else 1 + self.one_of(at + 1)
+            self.linker.more_at(int(number.value))
+        else:
+            return 0
+        return number.taken + taken
 
     def _per(self, i: int) -> None:
         """Read "four chairs to a table" and "two stools per desk" as "at each"."""
@@ -274,16 +308,23 @@ class _Reader(NounPhrases):
         return end - i + (person or behind in ("seater", "seat"))
 
     def _count(self, i: int) -> int:
+        if taken := self._colors(i):
+            return taken
         if self.texts[i] == "both":
             self.said = replace(self.said, determiner="the")
             return 1
         if found := match(vocabulary.COUNTS, self.texts, i):
             behind = self.texts[i + found[1] : i + found[1] + 1]
             one = "set" in self.texts[i : i + found[1]] and bool(behind) and behind[0] in vocabulary.PAIRS
+            name = self.name_at(i + found[1])
+            one = one or (self.texts[i : i + 2] == ["a", "bunch"] and name is not None and is_plural(name[0]))
             self.said = replace(self.said, count=1 if one else found[0])
             return found[1]
         if found := times(self.texts, i):
             return self._times(i, *found)
+        if self.linker.waiting and (taken := self.one_of(i)):
+            self.linker.pronoun("them")
+            return taken
         number = quantities.read(self.texts[i:])
         if (
             number
@@ -305,27 +346,60 @@ class _Reader(NounPhrases):
             self.linker.counted(count)
         return taken
 
+    def _colors(self, i: int) -> int:
+        """Read "one green and one orange" behind two things: each has a colour of its own."""
+        colors, j = [], i
+        while self.texts[j : j + 1] == ["one"] or self.texts[j : j + 2] == ["the", "other"]:
+            at = j + (1 if self.texts[j] == "one" else 2)
+            found = color_at(self.texts, at) if at < len(self.texts) else None
+            if not found:
+                break
+            colors.append(_plain(found[0]))
+            j = at + found[1]
+            if self.texts[j : j + 2] == [",", "and"]:
+                j += 2
+            elif self.texts[j : j + 1] in ([","], ["and"]):
+                j += 1
+        last = self.linker.last
+        if len(colors) < 2 or last is None or (last.said.count or 2) < len(colors) or not last.several:
+            return 0
+        for color in colors[1:]:
+            self.linker.reading.parted(last, color)
+        last.said = replace(last.said, color=colors[0])
+        self.linker.last = last
+        return j - i - (self.texts[j - 1] in (",", "and"))
+
     def _color(self, i: int) -> int:
         found = color_at(self.texts, i)
         if not found or self.texts[i + found[1] : i + found[1] + 1] in _PLANTED:
             return 0
         last = self.linker.last
         if last is not None and self.before(i) in _SAID_OF and not self.noun_follows(i + found[1]):
-            last.said = replace(last.said, color=found[0][:40])
+            last.said = replace(last.said, color=_plain(found[0]))
             return found[1]
         name = knowledge.lookup(knowledge.thing_words(), self.texts, i)
-        if name and (name[1] > found[1] or not self.noun_follows(i + found[1])):
+        plain = self._is_colored(i)
+        if name and not plain and (name[1] > found[1] or not self.noun_follows(i + found[1])):
             return 0
         if self.texts[i] in vocabulary.MATERIALS and found[1] == 1:
             return 0
-        self.said = replace(self.said, color=found[0][:40])
+        self.said = replace(self.said, color=_plain(found[0]))
         return found[1]
 
+    def _is_colored(self, i: int) -> bool:
+        """Whether a name that begins with a colour is that of a thing in this colour: "a red carpet"."""
+        color = color_at(self.texts, i)
+        name = knowledge.lookup(knowledge.thing_words(), self.texts, i) if color else None
+        if not color or not name or name[0] in knowledge.things() or self.texts[i] in NOUN_COLORS:
+            return False
+        return (rest := self.name_at(i + color[1])) is not None and rest[1] == name[1] - color[1]
+
     def _long_name(self, i: int) -> int:
-        return self._name(i, 2)
+        return 0 if self._is_colored(i) else self._name(i, 2)
 
     def _name(self, i: int, shortest: int = 1) -> int:
         """A thing, a room or a style: the longest name at position `i`, of at least `shortest` words."""
+        self.has_place = bool(self.kind or self.linker.reading.drafts)
         tables = (knowledge.thing_words(), knowledge.room_words(), knowledge.style_words())
         hits = [(knowledge.lookup(t, self.texts, i), what) for t, what in zip(tables, range(3), strict=True)]
         if self.texts[i] == "light" and self.texts[i + 1 : i + 2] and self.texts[i + 1] in vocabulary.STRUCTURE:
@@ -354,6 +428,14 @@ class _Reader(NounPhrases):
         texts = self.texts
         if self.is_verb(i, taken):
             return 0
+        if (
+            taken == 1
+            and texts[i] in vocabulary.MATERIALS
+            and texts[i + 1 : i + 2]
+            and texts[i + 1] in vocabulary.STRUCTURE
+        ):
+            self.said = replace(self.said, material=texts[i])
+            return 1 + self._feature(i + 1)
         if not is_plural(texts[i + taken - 1]) and knowledge.lookup(knowledge.room_words(), texts, i + taken):
             return taken  # "a vegetable garden" holds no vegetable
         before: list[str] = []
@@ -361,6 +443,7 @@ class _Reader(NounPhrases):
             before += texts[i : i + taken]
             i, (name, taken) = i + taken, more
         if self._is_place(i, taken, word := texts[i + taken - 1]):
+            self.habits = False  # what is usual there is unknown
             self._room("room", word)
             self.modifiers = []
             return taken + len(before)
@@ -396,12 +479,17 @@ class _Reader(NounPhrases):
 
     def _room(self, name: str, word: str) -> None:
         said = self.said
-        if self.kind not in ("", "room", name) and said.determiner != "the" and everyday.find(word):
-            self._thing(singular(word), word, 0)  # a greenhouse in a garden
+        another = self.kind not in ("", "room", name) or (self.kind and word != self.room_word)
+        if another and said.determiner != "the" and everyday.find(word):
+            self._thing(singular(word), word, 0)  # a greenhouse in a garden, a kitchenette in a studio flat
             return
         if self.kind and name == "kitchen" and self.linker.reading.drafts:
-            self._thing("kitchen counter", word, 0)  # a kitchenette in a studio flat
+            self._thing("kitchen counter", word, 0)
             return
+        if self.kind and any(d.name == singular(word) for d in self.linker.reading.drafts):
+            self._thing(singular(word), word, 0)
+            return
+        self.room_word = self.room_word or word
         self.said = Said()
         if self.linker.in_room():
             if name != "room" and not self.kind:
@@ -427,7 +515,13 @@ class _Reader(NounPhrases):
         elif text in vocabulary.SHAPES:
             self.said = replace(self.said, shape=text)
         elif text in ("each", "every"):
-            if i + 1 == len(self.texts) or self.texts[i + 1] in (",", "and", *_MARKS):
+            of = 2 if self.texts[i + 1 : i + 3] in (["of", "them"], ["of", "these"]) else 0
+            one = self.texts[i + 1 : i + 2] == ["one"]
+            ends = i + 1 == len(self.texts) or self.texts[i + 1] in (",", "and", *_MARKS)
+            if self.linker.waiting and (of or one or ends or not self.noun_follows(i + 1)):
+                self.linker.pronoun("each")
+                return 1 + of + one
+            if ends:
                 self.linker.each_behind()
                 return 1
             self.said = replace(self.said, determiner="each")
@@ -457,6 +551,13 @@ class _Reader(NounPhrases):
         the name. All are listed as unknown, except everyday nouns."""
         word = self.texts[i]
         behind = self.noun_follows(i + 1)
+        if singular(word) in vocabulary.MEASURES and self.texts[i + 1 : i + 2] == ["of"]:
+            return self._measured(i)
+        if word in vocabulary.PLACES and self._is_place(i, 1, word):
+            return self._entitled(i)
+        if word in ("head", "corner", "centre", "center") and self.name_at(i + 1):
+            self.modifiers.append(word)  # a "head table", a "corner sofa"
+            return 1
         if word in vocabulary.PARTS or singular(word) in vocabulary.PARTS:
             if not behind and not self.linker.waiting and self._relation_at(i + 1) and self._is_listed(i):
                 self.linker.elsewhere()  # "a ring in the centre": what is there is no thing, but nothing else is
@@ -477,13 +578,33 @@ class _Reader(NounPhrases):
         if not known or behind:
             self.unknown.append(word)
         if not self.kind and not self.linker.reading.drafts and self.texts[i + 1 : i + 2] in _AFTER_PLACE:
-            self.kind = "room"  # "the vestry: …"
+            return self._entitled(i)
         return 1
+
+    def _entitled(self, i: int) -> int:
+        """Take a word for the place that is described, of which nothing is known: "the vestry: …"."""
+        place = " ".join([*self.modifiers, self.texts[i]])
+        self.kind, self.habits, self.modifiers, self.room_word = "room", False, [], self.texts[i]
+        self.remarks.append(f"“{place}” is taken for the place itself")
+        self.linker.elsewhere()
+        return 1
+
+    def _measured(self, i: int) -> int:
+        """Read "a stack of": what follows is several things, of "a roll of cloth" one."""
+        end, content = self.content(i + 2 - 1)
+        measure, known = singular(self.texts[i]), content and knowledge.thing(content) is not None
+        several = measure not in ("roll", "sheet", "block", "piece", "length", "bolt", "slab") and known
+        if several or not content:
+            self.said = replace(self.said, determiner="", count=self.said.count)
+            return 2
+        self._thing(f"{measure} of {content}"[:60], self.texts[i], i)
+        return end - i
 
     def _is_title(self, i: int) -> bool:
         """Whether a text begins with an unknown word for the place that it describes: "the vestry: a long table"."""
         first = not self.kind and not self.linker.reading.drafts
-        return first and self.texts[i + 1 : i + 2] in ([":"], ["-"], ["."])
+        after = self.texts[i + 1 : i + 2]
+        return first and (after in ([":"], ["-"], ["."], ["with"], ["w"]) or self.is_heading(i + 1))
 
     def _is_listed(self, i: int) -> bool:
         """Whether a noun phrase of one word begins at position `i`."""
@@ -498,7 +619,10 @@ class _Reader(NounPhrases):
         first = not self.kind and not self.linker.reading.drafts and not is_plural(word)
         after = self.texts[i + taken : i + taken + 10]
         ends = after[:1] in _AFTER_PLACE or (":" in after and "," not in after[: after.index(":")])
-        return first and word in vocabulary.PLACES and ends
+        place = word in vocabulary.PLACES or everyday.shape(" ".join(self.texts[i : i + taken])) in _LIKE_PLACES
+        return (
+            first and place and ends and (after[:1] != [","] or word in vocabulary.PLACES or self.is_heading(i + taken))
+        )
 
     def _is_head(self, i: int) -> bool:
         """Whether an unknown word is the head of a noun phrase by its place: after a determiner, a number or an
@@ -512,3 +636,8 @@ class _Reader(NounPhrases):
         )
         ends = after in _ENDS or bool(match(vocabulary.RELATIONS, self.texts, i + 1)) or after in _MARKS
         return opened and ends and may_be_noun(word) and not word.endswith(vocabulary.NOT_THINGS) and len(word) > 2
+
+
+def _plain(color: str) -> str:
+    """A colour as things have it."""
+    return color.replace("grey", "gray")[:40]

@@ -40,6 +40,8 @@ def layout_name(name: str, subject: Draft, other: Draft, sides: bool = False) ->
         return "around"
     if name == "at":
         return "next_to"
+    if name == "around" and small and not small.seats and not subject.several and small.support == "floor":
+        return "next_to"
     if sides and small and small.support == "surface" and large and large.top:
         return "on"
     if name == "against":

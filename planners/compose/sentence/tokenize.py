@@ -5,6 +5,7 @@ Handles typography and typing errors. `read.py` interprets the words.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from ....gaussians.world.words import singular
@@ -16,6 +17,13 @@ from .. import knowledge
 from ..brief import RefusedError
 from . import vocabulary
 
+# Parts of a thing that its adjective counts, and shapes by letters: "two-tier", "l-shaped".
+_COUNTED = re.compile(
+    r"\b(?:(?:one|two|three|four|five|six|seven|eight|twin|double|multi|half|\d{1,2})[- ](?:tiere?d?|legged|doors?|"
+    r"doored|drawers?|burner|panell?e?d?|stor(?:e?y|ied)|levell?e?d?|armed|sided|ring|pieces?|wheele?d?|hob|branche?d?|"
+    r"masted|tap|arm|step|rung)|[ltuvxcs][- ]shaped)\s+(?=\w)",
+    re.IGNORECASE,
+)
 _GREETINGS = frozenset({"hi", "hello", "hey"})
 
 
@@ -25,7 +33,7 @@ def words_of(cleaned: str) -> tuple[list[str], list[str]]:
     A correction is kept only where it completes a whole name: "gravel" does not become "travel" of "travel bag".
     """
     joined: list[str] = []
-    for word in split(cleaned):
+    for word in split(_COUNTED.sub("", cleaned)):
         if word.text == "'s" and joined:
             joined[-1] += "" if joined[-1].endswith("s") else "s"
         elif word.text not in ('"', "'"):

@@ -42,6 +42,17 @@ RELATIONS: dict[Phrase, str] = {
             "goes next to, stands next to, sits next to, right beside, right next to": "next_to",
             "hangs above, hangs over, hanging above, suspended above, suspended over, hung over": "above",
             "along, lined along, running along, all along, down": "against",
+            "across": "across",
+            "tied to, attached to, fixed to, chained to, connected to, hooked to, clipped to, leading to, leading up "
+            "to": "next_to",
+            "right above, directly above, just above, hanging right above, hanging directly above, mounted over, "
+            "centered above, centred above": "above",
+            "directly behind, right behind, just behind": "behind",
+            "directly in front of, right in front of, just in front of, out in front of": "in_front_of",
+            "directly under, right under, just under, tucked beneath, stored beneath, stored underneath": "under",
+            "perched on, piled on, stacked on, balanced on, propped on, spread on, arranged on, laid on, asleep on, "
+            "sleeping on, right on top of, high on top of": "on",
+            "stuffed with, brimming with, stacked high with": "reversed on",
         }
     ),
 }
@@ -55,17 +66,23 @@ SPOTS: dict[Phrase, str] = {
         "face each other, face one another, faces each other, looking at each other, face to face with each "
         "other": "facing",
         "in front, out in front, right in front": "rel in_front_of",
+        "to one side, off to one side, on one side": "one side",
+        "to the other side, on the other side, on the opposite side": "other side",
+        "side by side, next to each other, beside each other, next to one another, beside one another, shoulder to "
+        "shoulder": "beside",
         "to its left, on its left, to the left of it": "rel left_of",
         "to its right, on its right, to the right of it": "rel right_of",
         "on top": "rel on",
         "on the floor, on the ground": "floor",
+        "in the corners, in each corner, in every corner, at the corners, in all corners, in all four corners, in the "
+        "four corners, in the corners of the room, at the corners of the room, at each corner, in each of the corners, "
+        "at every corner, in each of the four corners": "corners",
+        "at its head, at its foot, at its side, by its side, at its end, at their head, next to that": "rel next_to",
         "at the back, in the back, at the rear, in the rear, at the far end, along the back, across the back, at the "
         "very back": "part north",
         "at the front, in the front, up front, along the front, out front": "part south",
-        "on the left, to the left, on the left side, on the left hand side, to one side, off to the left, off to one "
-        "side, on one side": "part west",
-        "on the right, to the right, on the right side, on the right hand side, to the other side, off to the right, "
-        "on the other side": "part east",
+        "on the left, to the left, on the left side, on the left hand side, off to the left": "part west",
+        "on the right, to the right, on the right side, on the right hand side, off to the right": "part east",
         "on opposite walls, against opposite walls, along opposite walls, on facing walls, at opposite walls": "walls",
         "from the ceiling, on the ceiling, hanging from the ceiling, hung from the ceiling, suspended from the "
         "ceiling, overhead, under the ceiling, ceiling mounted": "ceiling",
@@ -124,7 +141,10 @@ FORMS: dict[str, Form] = {
     **dict.fromkeys(bag("grid block"), "grid"),
 }  # fmt: skip
 # Of "a stack of books" the books are the thing; of "a crate of apples" the crate.
-MEASURES = bag("stack pile heap bundle pair set string collection tower bunch group cluster bank row rows line range")
+MEASURES = bag(
+    "roll sheet block piece slab bolt row stack pile heap bundle pair set string collection tower bunch group cluster "
+    "bank rows line range"
+)
 PAIRS = bag("scales drums drawers keys weights shelves stairs steps cutlery tools doors clubs skis oars headphones")
 # Heads of names of places: a text that begins with "a nail bar with" describes one.
 PLACES = bag(
@@ -138,8 +158,8 @@ PLACES = bag(
 ADJECTIVE_ENDINGS = ("ed", "ing", "able", "ible", "ish", "less", "ful")
 # Parts of things and of the room, which are no things by themselves.
 PARTS = bag(
-    "end ends back front side sides foot head edge edges top bottom middle centre center rear base row rows column "
-    "columns line lines circle ring half halves third angle angles direction way distance left right north south east "
+    "end ends back front side sides foot head edge edges top bottom middle centre center rear base row rows "
+    "line lines circle ring half halves third angle angles direction way distance left right north south east "
     "west aisle floor floors ground wall walls ceiling ceilings room garden terrace balcony space height width length "
     "depth level metre metres meter meters foot feet rest place position spot point background foreground inside "
     "outside entrance exit light dark day night morning evening summer winter spring autumn time afternoon sun shade "
@@ -207,6 +227,8 @@ FILLER = bag(
     "least most say well old new ones please plain empty own its their his her my stood laid set w facing against "
     "round lots big-ish old-fashioned proper lovely pretty beautiful usual same different single double "
     "first second third fourth fifth last next fold folded pull drop "
+    "piled stacked heaped propped scattered strewn perched tucked nestled mounted displayed arranged parked stored "
+    "stretched gathered huddled clustered grouped crammed squeezed nailed screwed pinned taped glued theres heres "
     "himself herself each being lined lit selling full fully half tucked running leading down up off out"
 )
 BUILD = bag("make create build design generate compose furnish imagine give show draw let set put place plan want need")
