@@ -14,6 +14,7 @@ import torch
 from torch import Tensor
 
 from .errors import UserError
+from .rows import rows_where, taken
 
 SH_BANDS = {1: 0, 4: 1, 9: 2, 16: 3}  # coefficients per channel K = (degree + 1)^2 -> degree
 NO_GROUP = -1
@@ -120,13 +121,15 @@ class GaussianCloud:
 
     def __getitem__(self, index: Tensor | slice) -> Self:
         """Rows by boolean mask `[N]`, integer index `[M]` or slice; every column stays aligned."""
+        rows: Tensor | slice = index
         if isinstance(index, Tensor) and index.dtype == torch.bool:
             if index.shape != (len(self),):
                 raise UserError(f"a mask over this cloud must have shape [{len(self)}], got {list(index.shape)}")
-            rows = index.nonzero().squeeze(1)  # one scan of the mask instead of one a column
+            rows = rows_where(index)  # one scan of the mask instead of one a column
+        if isinstance(rows, Tensor) and rows.ndim == 1 and (not len(rows) or int(rows.min()) >= 0):
             # Unlike `column[rows]` this does not wait for threads that other processes keep busy: 0.02 ms, not 16.
-            return type(self)(**{name: column.index_select(0, rows) for name, column in self.columns()})
-        return type(self)(**{name: column[index] for name, column in self.columns()})
+            return type(self)(**{name: taken(column, rows) for name, column in self.columns()})
+        return type(self)(**{name: column[rows] for name, column in self.columns()})
 
     def replace(self, **columns: Any) -> Self:
         """A new cloud with some columns replaced; the others are shared."""

@@ -94,14 +94,22 @@ def rotate(sh: Tensor, rotation: Tensor) -> Tensor:
     if tuple(matrix.shape) != (3, 3) or not _is_rotation(matrix):
         raise UserError("harmonics can only be rotated by a proper 3x3 rotation; remove scale and mirroring first")
     # One product over all bands and channels is three times as fast as a small one for each band.
-    turn = torch.eye(int(sh.shape[-2]), dtype=torch.float64)
-    for degree in range(1, SH_BANDS[len(turn)] + 1):
-        band = slice(degree**2, (degree + 1) ** 2)
-        turn[band, band] = band_matrix(matrix, degree)
+    turn = _all_bands(tuple(matrix.flatten().tolist()), int(sh.shape[-2]))
     every_channel = torch.kron(turn, torch.eye(3, dtype=torch.float64)).to(sh.device, sh.dtype)
     turned = (sh.flatten(-2) @ every_channel.T).reshape(sh.shape)
     turned[..., 0, :] = sh[..., 0, :]
     return turned
+
+
+@functools.lru_cache(maxsize=4)  # clouds are rotated block by block
+def _all_bands(rotation: tuple[float, ...], bands: int) -> Tensor:
+    """`[K, K]` float64 matrix that rotates K = `bands` coefficients; `rotation` row by row."""
+    matrix = torch.tensor(rotation, dtype=torch.float64).reshape(3, 3)
+    turn = torch.eye(bands, dtype=torch.float64)
+    for degree in range(1, SH_BANDS[bands] + 1):
+        band = slice(degree**2, (degree + 1) ** 2)
+        turn[band, band] = band_matrix(matrix, degree)
+    return turn
 
 
 def band_matrix(rotation: Tensor, degree: int) -> Tensor:

@@ -13,8 +13,10 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from ..gaussians.kept import Kept
 from ..gaussians.language.field.language_field import Group, LanguageField
 from ..gaussians.language.query.selection import Selection
+from ..gaussians.rows import rows_where
 from ..gaussians.scene import Scene
 from ..gaussians.world.support import is_sheet, standing_on
 from .contact import held_by, touching
@@ -121,7 +123,18 @@ def stacks_on(scene: Scene, body: Body) -> list[Stack]:
 
 
 def with_carried(scene: Scene, bodies: Sequence[Body]) -> list[Body]:
-    """The bodies with the Gaussians of the objects on them added; an object on two of them moves with the first."""
+    """The bodies with the Gaussians of the objects on them added; an object on two of them moves with the first.
+
+    The last few are kept, as an operation and its checks ask for the same.
+    """
+    return list(_known.get((scene, *bodies), lambda: tuple(_with_carried(scene, bodies))))
+
+
+_known: Kept[tuple[Body, ...]] = Kept(4)
+
+
+def _with_carried(scene: Scene, bodies: Sequence[Body]) -> list[Body]:
+    """See `with_carried`."""
     full, claimed = list[Body](), {b.group for b in bodies}
     for body in bodies:
         carried = tuple(g for g in carried_on(scene, body) if g not in claimed)
@@ -148,7 +161,7 @@ def _rest_above(scene: Scene, body: Body) -> Tensor:
     mine[leaves] = True
     mine = mine[scene.cloud.group]
     mine[body.rows] = False
-    rows = mine.nonzero().squeeze(1)
+    rows = rows_where(mine)
     place = body.box.local(scene.cloud.means[rows].cpu().numpy()) / np.maximum(np.array(body.box.size), 1e-9)
     over = (place[:, 2] > _OVER) & (place[:, 2] < 0.5 + _HIGHEST) & (np.abs(place[:, :2]) <= 0.5).all(axis=1)
     return rows[torch.from_numpy(over).to(rows.device)] if over.sum() >= _PIECE else none

@@ -87,7 +87,7 @@ def collision_free(after: Scene, moved: tuple[Affine, ...]) -> Check | None:
         box = contact_box(points, after.frame)
         own = torch.zeros(len(after.cloud), dtype=torch.bool, device=after.cloud.device)
         own[body.rows] = True
-        others = obstacle_points(after.cloud, own)
+        others = obstacle_points(after.cloud, own, box.bounds())
         clear = max(0.15 * box.size[2], 1e-9)
         worst = max(worst, points_inside(points, others, box, min(clear, 4 * centimetre(after.frame, max(box.size)))))
         bound = max(bound, _TOUCHING * len(points), 3.0)

@@ -10,6 +10,7 @@ from torch import Tensor
 
 from ..gaussians.cloud import GaussianCloud
 from ..gaussians.language.query.selection import Selection, mask_of
+from ..gaussians.rows import copied, empty, rows_of_ids, rows_where, span_of
 
 _ROWS = 1 << 13  # rows written at a time: intermediates stay in a core's cache, whatever the cloud's size
 _BYTES = 1 << 19  # bytes compared at a time: they stay in a core's cache
@@ -17,12 +18,12 @@ _BYTES = 1 << 19  # bytes compared at a time: they stay in a core's cache
 
 def rows_of(cloud: GaussianCloud, ids: Tensor) -> Tensor:
     """`[M]` int64 rows of `cloud` that have one of these ids, ascending."""
-    return mask_of(cloud, ids).nonzero().squeeze(1)
+    return rows_of_ids(cloud.ids, ids)
 
 
 def fresh_ids(cloud: GaussianCloud, count: int) -> Tensor:
     """`[count]` int64 ids above every id of `cloud`."""
-    first = int(cloud.ids.max()) + 1 if len(cloud) else 0
+    first = span_of(cloud.ids).high + 1 if len(cloud) else 0
     return torch.arange(first, first + count, dtype=torch.int64, device=cloud.device)
 
 
@@ -36,11 +37,11 @@ def joined(cloud: GaussianCloud, without: Tensor | None, added: list[GaussianClo
 
     The added clouds have the cloud's degree and ids above its own (see `fresh_ids`).
     """
-    keep = None if without is None else (~without).nonzero().squeeze(1)
+    keep = None if without is None else rows_where(~without)
     n = len(cloud) if keep is None else len(keep)
     columns: dict[str, Tensor] = {}
     for name, column in cloud.columns():
-        out = column.new_empty((n + sum(len(c) for c in added), *column.shape[1:]))
+        out = empty((n + sum(len(c) for c in added), *column.shape[1:]), column)
         if keep is None:
             out[:n] = column
         else:
@@ -67,13 +68,24 @@ class Draft:
     def write(self, name: str, rows: Tensor, values: Tensor) -> None:
         """Set rows `[M]` of a column to `[M, ...]`."""
         if name not in self._written:
-            self._written[name] = getattr(self._cloud, name).clone()
+            self._written[name] = copied(getattr(self._cloud, name))
         self._written[name].index_copy_(0, rows, values.to(self._written[name].dtype))
 
     def map(self, name: str, rows: Tensor, change: Callable[[Tensor], Tensor]) -> None:
         """Replace rows of a column by `change` of them, a block at a time so that intermediates stay small."""
+        if len(rows) == len(self._cloud) and bool((rows == torch.arange(len(rows), device=rows.device)).all()):
+            self._map_all(name, change)
+            return
         for block in torch.split(rows, _ROWS):
             self.write(name, block, change(self.read(name, block)))
+
+    def _map_all(self, name: str, change: Callable[[Tensor], Tensor]) -> None:
+        """Replace a whole column, a block at a time: no row is looked up, and nothing is copied first."""
+        column = self._column(name)
+        out = empty(column.shape, column)
+        for start in range(0, len(column), _ROWS):
+            out[start : start + _ROWS] = change(column[start : start + _ROWS])
+        self._written[name] = out
 
     def done(self) -> GaussianCloud:
         """The edited cloud."""
@@ -111,7 +123,7 @@ def difference(before: GaussianCloud, after: GaussianCloud, allowed: Tensor, rem
         removed: ids that were removed.
     """
     gone = mask_of(before, removed)
-    kept = None if not bool(gone.any()) else (~gone).nonzero().squeeze(1)
+    kept = None if not bool(gone.any()) else rows_where(~gone)
     n = len(before) if kept is None else len(kept)
     if len(after) < n:
         return Difference(int((~allowed).sum()), ("ids",), 0)
@@ -125,11 +137,11 @@ def difference(before: GaussianCloud, after: GaussianCloud, allowed: Tensor, rem
         if _mark_changed(column, other, kept, mask):
             changed[name] = mask
             differs |= mask
-    where = differs.nonzero().squeeze(1)
+    where = rows_where(differs)
     outside = int((~allowed[where if kept is None else kept[where]]).sum())
     lost = int((gone & ~allowed).sum())
     added = after.ids[n:]
-    top = int(before.ids.max()) if len(before) else -1
+    top = span_of(before.ids).high if len(before) else -1
     bad_ids = int((added <= top).sum()) + len(added) - len(torch.unique(added))
     return Difference(lost + outside, tuple(changed), bad_ids, kept, changed)
 

@@ -16,6 +16,7 @@ from torch import Tensor
 
 from ..gaussians.language.field.language_field import Group
 from ..gaussians.language.query.color.fallback import is_reliable
+from ..gaussians.rows import rows_where
 from ..gaussians.scene import Scene
 from ..gaussians.world import kinds
 from ..gaussians.world.core import least_opacity
@@ -119,7 +120,7 @@ def _near(scene: Scene, body: Body, groups: Iterable[Group]) -> Tensor:
     low, high = (torch.from_numpy(c.astype(np.float32)) for c in (corners.min(axis=0) - pad, corners.max(axis=0) + pad))
     cloud = scene.cloud
     inside = ((cloud.means >= low.to(cloud.device)) & (cloud.means <= high.to(cloud.device))).all(dim=1)
-    return (inside & (cloud.opacities >= least_opacity(cloud.opacities))).nonzero().squeeze(1)
+    return rows_where(inside & (cloud.opacities >= least_opacity(cloud.opacities)))
 
 
 def _is_held(

@@ -19,6 +19,7 @@ from ..gaussians.language.field.measure import reach
 from ..gaussians.language.query.color.fallback import is_reliable
 from ..gaussians.language.query.selection import Selection
 from ..gaussians.language.query.wholes import names_plant, rooted
+from ..gaussians.rows import rows_where
 from ..gaussians.scene import Scene
 from ..gaussians.world.core import core_of
 from .cloud_diff import rows_of
@@ -71,7 +72,7 @@ def _enclosed(scene: Scene, own: Tensor) -> Tensor | None:
     no inside."""
     cloud, field = scene.cloud, scene.language
     assert field is not None
-    rows = own.nonzero().squeeze(1)
+    rows = rows_where(own)
     solid = core_of(cloud, rows).solid
     if solid.sum() < _FEWEST:
         return None

@@ -16,7 +16,7 @@ from .cloud_diff import Draft, rows_of
 from .field_update import after_move
 from .operation import Affine
 from .placement.bodies import Array, centimetre, contact_box, told_length
-from .placement.occupancy import obstacle_points
+from .placement.occupancy import column_of, obstacle_points
 from .transform import shift
 
 _FEET = 0.06  # of its height: the lowest part of a thing, on which it stands
@@ -68,7 +68,7 @@ def _way_down(scene: Scene, rows: Tensor, foot: Tensor, rise: float) -> tuple[fl
     box = contact_box(feet, scene.frame)
     own = torch.zeros(len(scene.cloud), dtype=torch.bool, device=scene.cloud.device)
     own[rows] = True
-    others = obstacle_points(scene.cloud, own)
+    others = obstacle_points(scene.cloud, own, column_of(scene.cloud, box))
     under = others[box.covers(others)]
     under = under[under @ up.astype(np.float32) <= low + slack + rise]
     support = surface_below(box.local(under)[:, :2] / np.maximum(np.array(box.size[:2]), 1e-9), under @ up)

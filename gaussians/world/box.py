@@ -47,6 +47,19 @@ class Box:
         corners: F64 = np.array(self.center) + (signs * np.array(self.size) / 2) @ np.array(self.axes)
         return corners
 
+    def bounds(self, along: tuple[float, float] | None = None) -> tuple[F64, F64]:
+        """The lower and the upper corner `[3]` of the world-aligned box around it.
+
+        Args:
+            along: heights along its third axis from and to which it is taken instead, scene units.
+        """
+        corners = self.corners()
+        if along is not None:
+            up = np.array(self.axes[2])
+            level = corners - np.outer(corners @ up, up)
+            corners = np.concatenate([level + height * up for height in along])
+        return corners.min(axis=0), corners.max(axis=0)
+
     def bottom(self, up: F64) -> float:
         """Height of its underside along `up` `[3]`."""
         return float(np.array(self.center) @ up) - self.size[2] / 2

@@ -7,8 +7,6 @@ to edit a thing (pivot, box, underside) is measured on the core; strays are left
 
 from __future__ import annotations
 
-import weakref
-from collections import OrderedDict
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +16,7 @@ from scipy import ndimage
 from torch import Tensor
 
 from ..cloud import GaussianCloud
+from ..kept import Kept
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
@@ -38,7 +37,6 @@ _SHRUNK = 0.8  # of the sides of the grid: a core smaller than that is divided a
 _ROUNDS = 6
 _SAMPLE = 60_000  # solid points from which the core is found
 FEW = 24  # solid points below which no piece can be told from a stray
-_KEPT = 8  # cores that are kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,8 +68,7 @@ def least_opacity(opacities: Tensor) -> float:
     return float(torch.kthvalue(opacities, count - need + 1).values)
 
 
-_Known = tuple[weakref.ref[Tensor], ...]
-_known: OrderedDict[tuple[int, ...], tuple[_Known, Core]] = OrderedDict()
+_known: Kept[Core] = Kept(8)
 
 
 def core_of(cloud: GaussianCloud, rows: Tensor) -> Core:
@@ -81,16 +78,7 @@ def core_of(cloud: GaussianCloud, rows: Tensor) -> Core:
     dropped and the grid is fitted to the rest, until it stops shrinking; a thing without strays is whole in the first
     round. Takes time linear in M.
     """
-    columns = (cloud.means, cloud.scales, cloud.opacities, rows)
-    key = tuple(id(c) for c in columns)
-    if (known := _known.get(key)) is not None and all(r() is c for r, c in zip(known[0], columns, strict=True)):
-        _known.move_to_end(key)
-        return known[1]
-    made = _core(cloud, rows)
-    _known[key] = (tuple(weakref.ref(c) for c in columns), made)
-    while len(_known) > _KEPT:
-        _known.popitem(last=False)
-    return made
+    return _known.get((cloud.means, cloud.scales, cloud.opacities, rows), lambda: _core(cloud, rows))
 
 
 def _core(cloud: GaussianCloud, rows: Tensor) -> Core:

@@ -14,7 +14,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from ...gaussians.errors import UserError
-from ...gaussians.language.query.nested import queries
+from ...gaussians.language.query.nested import queries, with_queries
 from ...gaussians.language.query.query import Query
 from ...gaussians.world import kinds
 from ...tools.operation import EditOp
@@ -184,24 +184,70 @@ def _complete_halves(ops: Sequence[Fields]) -> list[Fields]:
     """
     settled: list[Fields] = []
     taken: Query | None = None
+    kept: Query | None = None
     for i, op in enumerate(ops):
         held, fields = op.get("held"), {k: v for k, v in op.items() if k != "held"}
         after = ops[i + 1].get("target") if i + 1 < len(ops) else None
         if held == "kept" and settled and after is None and _is_the_rest(op["target"]):
             continue  # "paint it red, keep the rest as it is"
-        if held == "kept" and (after is None or Query(last=True) not in after.exclude):
+        if held == "kept" and settled and after is None and _is_among(op["target"], settled[-1].get("target")):
+            settled[-1] = _without(settled[-1], op["target"])  # "delete the lamps, but keep the white one"
+            continue
+        if held == "kept" and after is None:
             raise Refusal("it says what to keep, and asks for no change", "keep", verdict="not_an_edit")
-        if op["op"] == "isolate" and after is not None and after.pick == "all" and Query(last=True) in after.exclude:
-            fields = {"op": "select", "target": op["target"]}  # "just keep the sofa and remove everything else"
-        if held == "taken":
-            if after != Query(last=True) or ops[i + 1]["op"] != "move":
+        if held == "kept" and not _leaves_it_out(after):
+            if _is_among(op["target"], after):
+                ops = [*ops[: i + 1], _without(ops[i + 1], op["target"]), *ops[i + 2 :]]
+            continue  # "leave the bed, move the desk"
+        alone = op["op"] == "isolate" and after is not None and _is_all_else(after)
+        if held == "kept" or (alone and ops[i + 1]["op"] != "delete"):
+            kept = op["target"]
+            continue
+        if i and op["op"] == "delete" and settled and settled[-1]["op"] == "isolate" and _is_all_else(op["target"]):
+            continue  # "just keep the sofa and remove everything else"
+        if held == "taken off" and after != Query(last=True):
+            fields = {"op": "delete", "target": op["target"]}  # "take the picture off the wall"
+        elif held in ("taken", "taken off"):
+            if after != Query(last=True):
                 raise Refusal("say where to, or take it away", "take")
             taken = op["target"]
             continue
+        if kept is not None:
+            fields, kept = {**fields, "target": naming_last(fields["target"], kept)}, None
         if taken is not None:
             fields, taken = {**fields, "target": taken}, None
         settled.append(fields)
     return settled
+
+
+def _is_among(kept: Query, target: Query | None) -> bool:
+    """Whether what shall stay is one of the things that a target means: "the white one" of "the lamps"."""
+    if target is None or target.pick not in ("all", "rest") or len(target.exclude) >= 4:
+        return False
+    return kept.text == target.text or target.text in ("", "everything")
+
+
+def _without(op: Fields, kept: Query) -> Fields:
+    target: Query = op["target"]
+    return {**op, "target": target.model_copy(update={"exclude": (*target.exclude, kept), "count": None})}
+
+
+def _leaves_it_out(query: Query | None) -> bool:
+    """Whether a target leaves out what was named before it: "the others", "everything on the desk but that"."""
+    return query is not None and any(Query(last=True) in q.exclude for q in (query, *query.also))
+
+
+def _is_all_else(query: Query) -> bool:
+    """Whether a target is all that was not named before it, wherever it is."""
+    plain = query.pick == "all" and query.text in ("", "everything") and not (query.relations or query.colors)
+    return plain and Query(last=True) in query.exclude and query.region is None
+
+
+def naming_last(query: Query, meant: Query) -> Query:
+    """A query with what "it" means in it named; "the other one" need not have the colours of what it leaves out."""
+    alike = query.text == meant.text and query.colors == meant.colors and Query(last=True) in query.exclude
+    query = query.model_copy(update={"colors": ()}) if alike else query
+    return with_queries(query, lambda q: meant if q == Query(last=True) else q)
 
 
 def _is_the_rest(kept: Query) -> bool:

@@ -132,7 +132,7 @@ class Reader:
             return
         if not told.firm and (reason := cannot_be([w.text for w in sentence])):
             raise Refusal(reason, sentence[0].text, verdict="impossible")
-        if told.verdict == "not_understood" and depth == 0 and is_remark([w.text for w in sentence]):
+        if told.verdict == "not_understood" and depth <= 1 and is_remark([w.text for w in sentence]):
             return self._remark(sentence)
         raise told
 
@@ -212,7 +212,9 @@ class Reader:
                 state.said = (*state.said, refusal)
                 state.stated_first = not state.ops
                 state.topic = _topic(clause, refusal)
-                self._name([w.text for w in sentence])
+                self._name([w.text for t in clause.tags for w in t.words])
+                if clause.negated and state.topic is not None and state.topic.text:
+                    self.phrases.antecedent, self.phrases.colors = state.topic.text, ()
                 continue
             state.ops = [*state.ops, *found]
 
@@ -304,7 +306,8 @@ def with_last(op: Fields, meant: Query) -> Fields:
         return op
     rest = tuple(meant if q == Query(last=True) else q for q in target.exclude)
     text = target.text or meant.text
-    return {**op, "target": target.model_copy(update={"exclude": rest, "text": text})}
+    colors = () if target.colors == meant.colors else target.colors
+    return {**op, "target": target.model_copy(update={"exclude": rest, "text": text, "colors": colors})}
 
 
 def _excluding(op: Fields, spared: Query) -> Fields:

@@ -25,9 +25,10 @@ from ...gaussians.world.kinds import Phrase
 from ...gaussians.world.words import AFTER_HEAD, normalise
 from ..grammar.tagging.spelling import misspelled_name
 
-# Probability that a phrase means a label, by how the two agree. Each step is less than the share of the best score at
-# which the resolver sees a rival (0.55), so that an exact name beats a synonym, and that a broader word.
+# Probability that a phrase means a label, by how the two agree; BESIDE is that of a synonym where another label is the
+# very name, and less than the share of that one's score at which the resolver sees a rival (`picking.NAME_LEAD`).
 EXACT, ALIKE, LOOSE, BROADER, NOT = 0.98, 0.5, 0.4, 0.26, 1e-4
+BESIDE = 0.28
 THRESHOLD = 0.2
 _SHORTEST_END, _SHORTEST_START = 5, 3  # letters of the two halves of a compound in one word
 _FIXED = frozenset({("wall",), ("floor",), ("ceiling",)})
@@ -137,6 +138,9 @@ def agreement(text: str, labels: Sequence[str]) -> list[float]:
     found = [_agrees(asked, words(label)) for label in labels]
     if max(found, default=NOT) > LOOSE:
         found = [NOT if p == LOOSE else p for p in found]
+    if max(found, default=NOT) == EXACT:
+        synonym = [p == ALIKE and not set(asked) <= set(words(n)) for p, n in zip(found, labels, strict=True)]
+        found = [BESIDE if other else p for p, other in zip(found, synonym, strict=True)]
     if all(p < THRESHOLD for p in found):
         found = [_by_everyday_name(asked, words(label)) for label in labels]
     if all(p < THRESHOLD for p in found):

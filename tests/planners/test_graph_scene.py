@@ -14,11 +14,12 @@ from hypothesis import strategies as st
 from scenewright.gaussians.color import BASIC
 from scenewright.gaussians.errors import BackendError, FileError
 from scenewright.gaussians.language.query.attributes import COLOR_HOLDS, color_scores
+from scenewright.gaussians.language.query.picking import NAME_LEAD
 from scenewright.gaussians.language.query.query import Query, Relation
 from scenewright.planners.rooms.color_words import color_of
 from scenewright.planners.rooms.graph import SceneGraph
 from scenewright.planners.rooms.graph_scene import Stage
-from scenewright.planners.rooms.label_encoder import ALIKE, BROADER, EXACT, NOT, WordEncoder, agreement
+from scenewright.planners.rooms.label_encoder import ALIKE, BESIDE, BROADER, EXACT, NOT, WordEncoder, agreement
 from scenewright.planners.rooms.node import Node, RoomShape, Viewpoint
 
 LIVING = Stage.of(SceneGraph.read(Path(__file__).parent / "written" / "living_room.json"))
@@ -64,6 +65,13 @@ def test_agreement(asked: str, label: str, how: float) -> None:
 def test_a_broader_word_gives_way_to_a_head() -> None:
     assert agreement("chair", ["armchair", "office chair"]) == [NOT, ALIKE]
     assert agreement("chair", ["chair", "office chair"]) == [EXACT, ALIKE]
+
+
+def test_a_very_name_leaves_no_rival_to_its_synonym() -> None:
+    """Where both a pillow and a cushion are there, "the cushion" is the one that is called so."""
+    assert agreement("cushion", ["pillow", "cushion"]) == [BESIDE, EXACT]
+    assert agreement("cushion", ["pillow", "throw pillow"]) == [ALIKE, ALIKE]
+    assert BESIDE < NAME_LEAD * EXACT
 
 
 def test_a_slip_is_corrected_only_for_a_word_that_nobody_knows() -> None:

@@ -33,10 +33,7 @@ def seen_pixels(cloud: GaussianCloud, scene: Scene, views: int = VIEWS, pixels: 
 
     if not len(cloud):
         return torch.zeros(0, 3, dtype=torch.float64)
-    if len(cloud) > _MOST:
-        grown = math.sqrt(len(cloud) / _MOST)  # fewer Gaussians must cover the same area
-        cloud = cloud[torch.linspace(0, len(cloud) - 1, _MOST).long()]
-        cloud = cloud.replace(scales=cloud.scales * grown)
+    cloud = few_of(cloud, torch.arange(len(cloud))) if len(cloud) > _MOST else cloud
     middle = scene.language.middle if scene.language is not None else np.zeros(3)
     found = []
     for camera in cameras_around(cloud.means.double().numpy(), scene.frame, middle, pixels, views):
@@ -44,6 +41,14 @@ def seen_pixels(cloud: GaussianCloud, scene: Scene, views: int = VIEWS, pixels: 
         solid = seen.alpha > _SOLID
         found.append((seen.rgb[solid] / seen.alpha[solid][:, None]).clamp(0, 1).double())
     return torch.cat(found)
+
+
+def few_of(cloud: GaussianCloud, rows: Tensor) -> GaussianCloud:
+    """Some rows `[M]` of a cloud; of many an evenly spaced sample, grown so that it covers the same area."""
+    if len(rows) <= _MOST:
+        return cloud[rows]
+    few = cloud[rows[torch.linspace(0, len(rows) - 1, _MOST).long()]]
+    return few.replace(scales=few.scales * math.sqrt(len(rows) / _MOST))
 
 
 def seen_colors(scene: Scene, rows: Tensor) -> Sample:

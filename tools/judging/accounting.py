@@ -5,6 +5,7 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
+from ...gaussians.rows import rows_where
 from ..receipt import Check, at_least, at_most
 from .case import Case, weight_of
 from .changes import Changes
@@ -69,7 +70,7 @@ def all_of_it(case: Case, changed: Tensor, target: Tensor | None = None) -> Chec
         changed: `[N]` bool, Gaussians that changed as asked.
         target: `[N]` bool, None for what the words mean.
     """
-    rows = (case.target if target is None else target).nonzero().squeeze(1)
+    rows = rows_where(case.target if target is None else target)
     weight = weight_of(case.before.cloud, rows)
     total = float(weight.sum())
     share = float(weight[changed[rows]].sum()) / total if total > 0 else 0.0

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import torch
 from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
+from ...gaussians.kept import Kept
 from ...gaussians.language.field.measure import solid_points
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection, mask_of
@@ -34,6 +36,7 @@ class Case:
         chosen: what a repair took the words to mean; None: they are asked again.
         crowded: whether the operation told that a new thing touches what stands around it.
         known: how the clouds differ row by row; None: they are compared by ids.
+        motions: by rows, see `standing.rigid_motion`.
     """
 
     before: Scene
@@ -43,6 +46,9 @@ class Case:
     chosen: Selection | None = None
     crowded: bool = False
     known: Difference | None = None
+    motions: Kept[Any] = field(default_factory=lambda: Kept(8), repr=False)
+    _now: Kept[Tensor] = field(default_factory=lambda: Kept(8), repr=False)
+    _boxes: Kept[Box] = field(default_factory=lambda: Kept(8), repr=False)
 
     @cached_property
     def changes(self) -> Changes:
@@ -88,12 +94,18 @@ class Case:
 
     def now(self, rows: Tensor) -> Tensor:
         """Rows of the cloud after of those rows of the cloud before that are still there."""
+        if self.changes.all_stayed:
+            return rows
+        return self._now.get((rows,), lambda: self._stayed(rows))
+
+    def _stayed(self, rows: Tensor) -> Tensor:
         there = self.changes.row[rows]
         return there[there >= 0]
 
     def box_after(self, rows: Tensor) -> Box:
         """Upright box of the solid Gaussians of some rows of the cloud after."""
-        return contact_box(solid_points(self.after.cloud, rows), self.after.frame)
+        after = self.after
+        return self._boxes.get((rows,), lambda: contact_box(solid_points(after.cloud, rows), after.frame))
 
     def cm(self, extent: float) -> float:
         """A centimetre in scene units, see `placement.bodies.centimetre`."""
@@ -103,5 +115,5 @@ class Case:
 def weight_of(cloud: GaussianCloud, rows: Tensor | None = None) -> Tensor:
     """`[M]` float64 visual weight of Gaussians: opacity times the area of their two largest extents."""
     scales, opacities = (cloud.scales, cloud.opacities) if rows is None else (cloud.scales[rows], cloud.opacities[rows])
-    extents = scales.to(torch.float64).sort(dim=1).values
-    return extents[:, 1] * extents[:, 2] * opacities.to(torch.float64)
+    a, b, c = scales.to(torch.float64).unbind(dim=1)
+    return torch.maximum(torch.maximum(a * b, b * c), a * c) * opacities.to(torch.float64)

@@ -9,7 +9,10 @@ import torch
 from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
+from ...gaussians.rows import rows_where
 from ..cloud_diff import Difference
+
+_ROUNDING = 1e-5  # of the largest coordinate
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +31,12 @@ class Changes:
     row: Tensor
     added: Tensor
     known: Difference | None = None
+
+    @cached_property
+    def all_stayed(self) -> bool:
+        """Whether every Gaussian is in the row in which it was."""
+        n = len(self.before)
+        return len(self.row) <= len(self.after) and bool((self.row == torch.arange(n, device=self.row.device)).all())
 
     @cached_property
     def gone(self) -> Tensor:
@@ -59,6 +68,16 @@ class Changes:
         """`[N]` bool: gone, or different in any way that is drawn."""
         return self.gone | self.placed | self.shaded | self.faded
 
+    @cached_property
+    def elsewhere(self) -> Tensor:
+        """`[N]` bool: the centre is at another place than before, by more than rounding."""
+        found = torch.zeros_like(self.gone)
+        rows = rows_where(self.placed)
+        apart = self.before.means[rows] - self.after.means[self.row[rows]]
+        largest = float(max(map(abs, torch.aminmax(self.before.means)))) if len(rows) else 1.0
+        found[rows] = torch.linalg.vector_norm(apart, dim=1) > _ROUNDING * max(largest, 1e-9)
+        return found
+
     def _differs(self, name: str, bands: int | None = None) -> Tensor:
         """`[N]` bool: rows that stayed and differ in a column, or in the first `bands` of it."""
         old, new = getattr(self.before, name), getattr(self.after, name)
@@ -69,10 +88,11 @@ class Changes:
             return ~self.gone
         if self.known is not None and bands is None:
             return self._as_known(name, found)
-        stayed = (~self.gone if bands is None else self.shaded).nonzero().squeeze(1)
-        a, b = old[stayed], new[self.row[stayed]]
+        stayed = rows_where(~self.gone if bands is None else self.shaded)
         if bands is not None:
-            a, b = a[:, :bands], b[:, :bands]
+            old, new = old[:, :bands], new[:, :bands]
+        every = self.all_stayed and len(stayed) == len(old)
+        a, b = (old, new[: len(old)]) if every else (old[stayed], new[self.row[stayed]])
         found[stayed] = (a != b).flatten(1).any(dim=1) if a.ndim > 1 else a != b
         return found
 
@@ -110,4 +130,4 @@ def changes_between(before: GaussianCloud, after: GaussianCloud) -> Changes:
         row[there] = order[place[there]]
     kept = torch.zeros(len(after), dtype=torch.bool, device=before.device)
     kept[row[row >= 0]] = True
-    return Changes(before, after, row, (~kept).nonzero().squeeze(1))
+    return Changes(before, after, row, rows_where(~kept))

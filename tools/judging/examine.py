@@ -18,8 +18,10 @@ from ...gaussians.cloud import GaussianCloud
 from ...gaussians.errors import ScenewrightError
 from ...gaussians.harmonics import dc_to_color
 from ...gaussians.language.field.measure import solid_points
+from ...gaussians.rows import rows_where
 from ...gaussians.world import kinds
 from ...gaussians.world.box import Box
+from ..coloring.seen import few_of
 from ..coloring.surfaces import surfaces
 from ..new_objects import scene_scale
 from ..operation import Placement
@@ -102,7 +104,7 @@ Found = tuple[list[Check], Tensor]
 
 def _named(case: Case, changed: Tensor) -> list[Check]:
     """The encoder, shown what really changed (`[N]` bool over the cloud before), finds it to be what the words name."""
-    if not bool(changed.any()):
+    if not bool(changed.any()) or not _is_seen(case):
         return []
     cloud = case.before.cloud
     # Parts of other hues may keep their colour: the whole thing is looked at, and not the frame of a television.
@@ -111,20 +113,27 @@ def _named(case: Case, changed: Tensor) -> list[Check]:
 
 
 def _seen(case: Case, clouds: Sequence[GaussianCloud]) -> list[Check]:
-    """The encoder finds these things to be what the words of the target name; empty if they name no kind of thing.
+    """The encoder finds these things to be what the words of the target name; empty if they name no kind of thing."""
+    query = case.op.query()
+    if query is None or not _is_seen(case):
+        return []
+    word = query.text.lower()
+    return [appearance.looks_as_named("looks as named", word, appearance.embedded(), clouds, case.before)]
+
+
+def _is_seen(case: Case) -> bool:
+    """Whether the encoder can tell if things are what the words of the target name.
 
     Nothing is looked at where the scene was embedded by another encoder, looks like nothing that ours was trained on,
     or where somebody gave the target its name.
     """
     query, encoder, field = case.op.query(), appearance.embedded(), case.before.language
-    if (
-        query is None
-        or not appearance.is_looked_for(query, encoder)
-        or not appearance.is_judge_of(encoder, case.before)
-        or (field is not None and any(field.groups[i].named_by for i in case.meant.groups))
-    ):
-        return []
-    return [appearance.looks_as_named("looks as named", query.text.lower(), encoder, clouds, case.before)]
+    return (
+        query is not None
+        and appearance.is_looked_for(query, encoder)
+        and appearance.is_judge_of(encoder, case.before)
+        and not (field is not None and any(field.groups[i].named_by for i in case.meant.groups))
+    )
 
 
 def _delete(case: Case, op: Delete) -> Found:
@@ -138,8 +147,8 @@ def _isolate(case: Case, op: Isolate) -> Found:
 
 def _recolor(case: Case, op: Recolor) -> Found:
     checks = [all_of_it(case, case.changes.colored, _to_paint(case, op))]
-    rows = case.changes.shaded.nonzero().squeeze(1)
-    shown = rows if len(rows) else case.target.nonzero().squeeze(1)
+    rows = rows_where(case.changes.shaded)
+    shown = rows if len(rows) else rows_where(case.target)
     if op.adjust is None and op.color is not None:
         checks.append(appearance.looks_colored("seen in the colour", op.color, _after(case, shown), case.after))
         checks += hues.as_asked(case, op, shown[case.target[shown]])
@@ -166,13 +175,13 @@ def _to_paint(case: Case, op: Recolor) -> Tensor | None:
 
 
 def _after(case: Case, rows: Tensor) -> GaussianCloud:
-    """The Gaussians of some rows of the cloud before, as they are after the edit."""
-    return case.after.cloud[case.now(rows)]
+    """The Gaussians of some rows of the cloud before, as they are after the edit, thinned to what is rendered."""
+    return few_of(case.after.cloud, case.now(rows))
 
 
 def _adjusted(case: Case, op: Recolor, rows: Tensor) -> Check:
     """The seen colour moved in the asked direction, Lab."""
-    was = appearance.seen_lab(case.before.cloud[rows], case.before)
+    was = appearance.seen_lab(few_of(case.before.cloud, rows), case.before)
     now = appearance.seen_lab(_after(case, rows), case.after)
     if len(was) < 4 or len(now) < 4:
         return report("seen to change", 0.0, "ΔE", "too few of its pixels are solid to see a colour")
@@ -190,7 +199,7 @@ def _adjusted(case: Case, op: Recolor, rows: Tensor) -> Check:
 
 
 def _opacity(case: Case, op: Opacity) -> Found:
-    rows = case.target.nonzero().squeeze(1)
+    rows = rows_where(case.target)
     was, now = case.before.cloud.opacities[rows], case.after.cloud.opacities[case.now(rows)]
     ratio = float(now.double().sum() / was.double().sum()) if len(now) == len(was) and len(was) else -1.0
     said = f"its opacity is {ratio:.2f} times what it was"
@@ -219,7 +228,7 @@ def _near(name: str, off: float, way: float, case: Case, told: str) -> Check:
 
 def _move(case: Case, op: Move) -> Found:
     left, residue = left_behind(case)
-    checks = [all_of_it(case, _elsewhere(case), _of_bodies(case)), left]
+    checks = [all_of_it(case, case.changes.elsewhere, _of_bodies(case)), left]
     for body in case.bodies[: appearance.MOST]:
         checks.append(_displaced(case, body.rows))
         motion = standing.rigid_motion(case, body.rows)
@@ -238,23 +247,12 @@ def _move(case: Case, op: Move) -> Found:
             checks += _approached(case, op, body.rows, body.center, way)
         elif op.place is not None:
             checks += _placed(case, op.place, case.now(body.rows), body.label)
-    return [*checks, *_named(case, _elsewhere(case) & case.target)], residue
+    return [*checks, *_named(case, case.changes.elsewhere & case.target)], residue
 
 
 def _of_bodies(case: Case) -> Tensor:
     """`[N]` bool: the target without its strays, which stay where they are."""
     return case.target & mask_of_bodies(case.before, case.bodies)
-
-
-def _elsewhere(case: Case) -> Tensor:
-    """`[N]` bool: Gaussians whose centre is at another place than before."""
-    changes = case.changes
-    found = torch.zeros_like(changes.gone)
-    rows = changes.placed.nonzero().squeeze(1)
-    apart = case.before.cloud.means[rows] - case.after.cloud.means[changes.row[rows]]
-    scale = float(case.before.cloud.means.abs().max()) if len(rows) else 1.0
-    found[rows] = torch.linalg.vector_norm(apart, dim=1) > 1e-5 * max(scale, 1e-9)
-    return found
 
 
 def _approached(case: Case, op: Move, rows: Tensor, was: Any, way: Any) -> list[Check]:

@@ -12,7 +12,7 @@ from ...gaussians.color import rgb_to_lab, shade_of
 from ...gaussians.language.field.measure import mean_lab, sample
 from ...gaussians.scene import Scene
 from ..coloring.scene_light import scene_light
-from ..coloring.seen import lit_face, seen_colors
+from ..coloring.seen import few_of, lit_face, seen_colors
 from ..ops.recolor import Recolor
 from ..receipt import Check, at_least, at_most, report
 from .appearance import seen_lab
@@ -58,7 +58,9 @@ def kept_in_light(case: Case, rows: Tensor) -> tuple[Check, ...]:
     """
     if len(case.now(rows)) < _FEW:
         return ()
-    was, now = seen_lab(case.before.cloud[rows], case.before), seen_lab(case.after.cloud[case.now(rows)], case.after)
+    was, now = (
+        seen_lab(few_of(scene.cloud, of), scene) for scene, of in ((case.before, rows), (case.after, case.now(rows)))
+    )
     if len(was) != len(now) or len(was) < _FEW:
         return (report("hue kept", 0.0, "ΔE", "too few of its pixels are solid to see a hue"),)
     seen = (was[:, 0] > _DARK) & (now[:, 0] > _DARK)

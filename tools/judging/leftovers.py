@@ -7,6 +7,8 @@ fragments filed under another object that are not connected to that object.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import torch
 from numpy.typing import NDArray
@@ -20,6 +22,7 @@ from ...gaussians.harmonics import dc_to_color
 from ...gaussians.language.field.language_field import Group
 from ...gaussians.language.field.measure import solid_points
 from ...gaussians.language.query.color.fallback import is_reliable
+from ...gaussians.rows import rows_where, rows_within
 from ...gaussians.world.box import Box
 from ..placement.bodies import contact_box
 from ..receipt import Check, at_most, report
@@ -53,7 +56,7 @@ def left_behind(case: Case) -> tuple[Check, Tensor]:
     found = [_left_of(case, one) for one in rows]
     left = torch.unique(torch.cat(found)) if found else torch.zeros(0, dtype=torch.int64)
     cloud = case.before.cloud
-    weight = weight_of(cloud, case.target.nonzero().squeeze(1))
+    weight = weight_of(cloud, rows_where(case.target))
     most = float(weight[:: max(1, len(weight) // _SAMPLE)].quantile(0.95)) if len(weight) else 0.0
     share = float(weight_of(cloud, left).clamp(max=most).sum()) / max(float(weight.clamp(max=most).sum()), 1e-30)
     said = f"{len(left):,} Gaussians, {share:.1%} of the thing by area, stand where it stood and belong to nothing else"
@@ -94,17 +97,17 @@ def _left_of(case: Case, rows: Tensor) -> Tensor:
 def _spacing(points: Points) -> float:
     """Median distance of points `[M, 3]` to their nearest neighbour."""
     sample = points[:: max(1, len(points) // 1000)]
-    return float(np.median(cKDTree(points).query(sample, k=2)[0][:, 1]))
+    return float(np.median(cKDTree(points, balanced_tree=False).query(sample, k=2)[0][:, 1]))
 
 
 def _stayed_around(case: Case, box: Box, near: float) -> Tensor:
     """Rows of visible Gaussians in and around a box that were not meant and did not change."""
     cloud = case.before.cloud
-    stayed = (~case.changes.any & ~case.target & (cloud.opacities > _VISIBLE)).nonzero().squeeze(1)
     pad = _AROUND * max(box.size) + near
-    apart = cloud.means.index_select(0, stayed) - torch.tensor(box.center, dtype=torch.float32, device=cloud.device)
-    reach = float(np.linalg.norm(np.array(box.size) / 2 + pad))
-    stayed = stayed[(apart.abs() <= 1.001 * reach).all(dim=1)]
+    width, depth, height = (side + 2 * pad for side in box.size)
+    around = replace(box, size=(width, depth, height))
+    stayed = rows_within(cloud.means, *around.bounds())
+    stayed = stayed[~(case.changes.any | case.target)[stayed] & (cloud.opacities[stayed] > _VISIBLE)]
     local = box.local(cloud.means[stayed].to(torch.float64).cpu().numpy())
     inside = (np.abs(local) <= np.array(box.size) / 2 + pad).all(axis=1)
     return stayed[torch.from_numpy(inside)]
@@ -154,7 +157,7 @@ def _fragments(case: Case, owner: int, here: Tensor, thing: Tensor, voxel: float
     assert field is not None
     none = np.zeros(len(here), bool)
     leaves = torch.tensor(field.leaves(owner), dtype=cloud.group.dtype, device=cloud.device)
-    rows = (torch.isin(cloud.group, leaves) & (cloud.opacities > _VISIBLE)).nonzero().squeeze(1)
+    rows = rows_where(torch.isin(cloud.group, leaves) & (cloud.opacities > _VISIBLE))
     if len(rows) < 2:
         return none
     points = cloud.means[rows].to(torch.float64).cpu().numpy()

@@ -7,6 +7,7 @@ from scipy.spatial import cKDTree
 from torch import Tensor
 
 from ...gaussians.language.query.selection import Selection, mask_of
+from ...gaussians.rows import rows_where
 from ...gaussians.scene import Scene
 from ..field_update import recount, with_measures
 
@@ -17,8 +18,8 @@ def refiled(scene: Scene, selection: Selection, residue: Tensor) -> Scene | None
     Nothing that is drawn changes. None if the selection has no groups.
     """
     cloud = scene.cloud
-    own = (mask_of(cloud, selection.ids) & (cloud.group >= 0)).nonzero().squeeze(1)
-    rows = mask_of(cloud, residue).nonzero().squeeze(1)
+    own = rows_where(mask_of(cloud, selection.ids) & (cloud.group >= 0))
+    rows = rows_where(mask_of(cloud, residue))
     if scene.language is None or not selection.groups or not len(own) or not len(rows):
         return None
     tree = cKDTree(cloud.means[own].to(torch.float64).cpu().numpy())

@@ -90,5 +90,6 @@ def _is_taken(case: Case, rows: Tensor, box: Box, way: Array) -> bool:
     """Whether other things reach into a thing that is shifted by `way`."""
     points = solid_points(case.after.cloud, rows) + way
     clear = min(max(0.15 * box.size[2], 1e-9), 4 * case.cm(max(box.size)))
-    inside = points_inside(points, other_points(case, rows), box.shifted(way), clear)
+    there = box.shifted(way)
+    inside = points_inside(points, other_points(case, rows, there.bounds()), there, clear)
     return inside > max(_BLOCKED * len(points), 3.0)

@@ -14,12 +14,13 @@ from torch import Tensor
 from ...gaussians.language.field.language_field import Group
 from ...gaussians.language.field.measure import solid_points
 from ...gaussians.language.query.query import Query
+from ...gaussians.rows import rows_where
 from ...gaussians.world import kinds, relations
 from ...gaussians.world.box import Box, distance
 from ...gaussians.world.relation_geometry import HOLDS, Stand, object_stand, viewer_stand
 from ..operation import Placement
 from ..placement.bodies import Array, bodies_of, contact_box, front_of
-from ..placement.occupancy import obstacle_points, points_inside
+from ..placement.occupancy import column_of, obstacle_points, points_inside
 from ..placement.place import WALL_WORDS
 from ..placement.surroundings import FLOOR_WORDS
 from ..receipt import Check, at_least, at_most, report
@@ -44,16 +45,18 @@ def stands(case: Case, rows: Tensor, label: str) -> Check:
         rows: of the cloud after.
         label: its kind; things for walls and ceilings need only touch something.
     """
-    points, others = solid_points(case.after.cloud, rows), other_points(case, rows)
-    box = case.box_after(rows)
+    points, box = solid_points(case.after.cloud, rows), case.box_after(rows)
     known, reach = kinds.find(label) if label else None, max(box.size)
     hung = known.support if known is not None and known.support in ("wall", "ceiling") else ""
     if hung == "ceiling":
+        others = other_points(case, rows, column_of(case.after.cloud, box))
         above = others[box.covers(others)]
         others = above[above @ case.after.frame.up_vector > box.top(case.after.frame.up_vector) - 0.1 * box.size[2]]
         if not len(others):
             return report("carried", 0.0, "units", "the scene shows no ceiling above it")
-    gap = _nearest(points, others) if hung else _gap_below(case, points, box, others)
+    elif hung:
+        others = other_points(case, rows, _around(points))
+    gap = _nearest(points, others) if hung else _gap_below(case, rows, points, box)
     captured = case.before.frame.metres_per_unit is None
     standing = _CAPTURED * max(reach, box.size[2]) if captured else max(_AIR * case.cm(reach), _FEET * box.size[2])
     bound = _AT_WALL * case.cm(reach) if hung else standing
@@ -73,19 +76,18 @@ def _level(case: Case, box: Box, bound: float) -> Check:
     )
 
 
-def other_points(case: Case, rows: Tensor) -> NDArray[np.float32]:
-    """Solid points of everything that the edit left where it was."""
+def other_points(case: Case, rows: Tensor, within: tuple[Array, Array]) -> NDArray[np.float32]:
+    """Solid points of everything that the edit left where it was, from one world corner to another."""
     own = torch.zeros(len(case.after.cloud), dtype=torch.bool, device=case.after.cloud.device)
     own[rows] = True
-    own[case.now((case.free & case.changes.any).nonzero().squeeze(1))] = True  # what stands on it went along
-    return obstacle_points(case.after.cloud, own)
+    own[case.now(rows_where(case.free & case.changes.any))] = True  # what stands on it went along
+    return obstacle_points(case.after.cloud, own, within)
 
 
 def _nearest(points: Array, others: NDArray[np.float32]) -> float:
     """Smallest distance of a thing's points to solid points near its box."""
-    low, high = points.min(axis=0), points.max(axis=0)
-    pad = 0.5 * float((high - low).max()) + 1e-9
-    near = others[((others > low - pad) & (others < high + pad)).all(axis=1)]
+    low, high = _around(points)
+    near = others[((others > low) & (others < high)).all(axis=1)]
     if not len(near):
         return math.inf
     sample = points[:: max(1, len(points) // 2000)]
@@ -93,7 +95,14 @@ def _nearest(points: Array, others: NDArray[np.float32]) -> float:
     return float(np.quantile(distance, 0.01))
 
 
-def _gap_below(case: Case, points: Array, box: Box, others: NDArray[np.float32]) -> float:
+def _around(points: Array) -> tuple[Array, Array]:
+    """Corners of the box around a thing's points, padded by half its largest side."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    pad = 0.5 * float((high - low).max()) + 1e-9
+    return low - pad, high + pad
+
+
+def _gap_below(case: Case, rows: Tensor, points: Array, box: Box) -> float:
     """Distance between a thing's underside and the nearest surface under its footprint, above it or below."""
     up = case.after.frame.up_vector
     own = points @ up
@@ -102,6 +111,7 @@ def _gap_below(case: Case, points: Array, box: Box, others: NDArray[np.float32])
     feet = points[own < low + max(_FEET * box.size[2], 2 * case.cm(max(box.size)))]
     base = contact_box(feet, case.after.frame, box.axes)
     slack = max(0.25 * box.size[2], 0.02 * max(box.size))
+    others = other_points(case, rows, column_of(case.after.cloud, base))
     gaps = _gaps(case, base, others, low, slack)
     # Several points make a surface: a single stray one carries nothing. A cushion is touched by a part of it only.
     enough = int(np.clip(_SURFACE * len(gaps), *_FEW)) if len(gaps) >= _SPARSE else 1
@@ -113,12 +123,7 @@ def _gap_below(case: Case, points: Array, box: Box, others: NDArray[np.float32])
 def _gaps(case: Case, base: Box, others: NDArray[np.float32], low: float, slack: float) -> Array:
     """`[K]` distances of the points over and under a footprint from the height `low`, ascending, without what is higher
     by more than `slack`."""
-    frame = case.after.frame
-    reach = np.float32(1.001 * np.hypot(*base.size[:2]) / 2)
-    level = frame.basis()[:2].astype(np.float32)
-    aside = np.abs(others @ level.T - (level @ np.array(base.center, dtype=np.float32)))
-    near = others[(aside[:, 0] <= reach) & (aside[:, 1] <= reach)]
-    heights = near[base.covers(near)] @ frame.up_vector.astype(np.float32)
+    heights = others[base.covers(others)] @ case.after.frame.up_vector.astype(np.float32)
     return np.sort(np.abs(heights[heights < low + slack] - low)).astype(np.float64)
 
 
@@ -127,7 +132,7 @@ def free_of_others(case: Case, rows: Tensor) -> Check:
     points = solid_points(case.after.cloud, rows)
     box = case.box_after(rows)
     clear = min(max(0.15 * box.size[2], 1e-9), 4 * case.cm(max(box.size)))
-    inside = points_inside(points, other_points(case, rows), box, clear)
+    inside = points_inside(points, other_points(case, rows, box.bounds()), box, clear)
     bound = max((_CROWDED if case.crowded else _INSIDE) * len(points), 3.0)
     return at_most("free of others", inside, bound, "Gaussians", f"{inside} points of other things are inside it")
 
@@ -203,6 +208,11 @@ def rigid_motion(case: Case, rows: Tensor) -> tuple[Array, Array, float] | None:
 
     None if fewer than four of them stayed.
     """
+    return case.motions.get((rows,), lambda: _rigid_motion(case, rows))
+
+
+def _rigid_motion(case: Case, rows: Tensor) -> tuple[Array, Array, float] | None:
+    """See `rigid_motion`."""
     kept = rows[case.changes.row[rows] >= 0]
     if len(kept) < 4:
         return None

@@ -6,7 +6,6 @@ Where a thing goes is decided in place.py.
 from __future__ import annotations
 
 import math
-import weakref
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -17,6 +16,7 @@ from torch import Tensor
 
 from ...gaussians.camera import Camera, Vec3
 from ...gaussians.errors import InstructionError
+from ...gaussians.kept import Kept
 from ...gaussians.language.field.measure import as_axes, box_along, level_axes, reach, solid_points
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Frame, Scene
@@ -29,11 +29,7 @@ from ..operation import Direction
 
 Array = NDArray[np.float64]
 _MOST = 0.5  # share of an object's Gaussians from which they stand for it
-_KEPT = 4  # scenes and selections whose bodies are kept
 _CALIPERS = 1500  # points from which the footprint's orientation is found; more do not change it
-
-
-_known: dict[tuple[int, int], tuple[weakref.ref[Scene], weakref.ref[Selection], tuple[Body, ...]]] = {}
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,15 +69,10 @@ def bodies_of(scene: Scene, selection: Selection) -> list[Body]:
     outside any group. What lies inside a thing is of the body that is nearest, and its box leaves it out. The last few
     are kept, as an operation and its checks ask for the same.
     """
-    key = id(scene), id(selection)
-    known = _known.get(key)
-    if known is not None and known[0]() is scene and known[1]() is selection:
-        return list(known[2])
-    bodies = _bodies(scene, selection)
-    _known[key] = weakref.ref(scene), weakref.ref(selection), tuple(bodies)
-    while len(_known) > _KEPT:
-        del _known[next(iter(_known))]
-    return bodies
+    return list(_known.get((scene, selection), lambda: tuple(_bodies(scene, selection))))
+
+
+_known: Kept[tuple[Body, ...]] = Kept(4)
 
 
 def _bodies(scene: Scene, selection: Selection) -> list[Body]:
@@ -144,12 +135,10 @@ def rows_by_thing(scene: Scene, selection: Selection) -> list[tuple[int, Tensor]
     for part, whole in owner.items():
         table[part] = whole
     owners = table[torch.where(leaf < 0, len(table) - 1, leaf.to(torch.int64))]
-    return [(group, rows[owners == group]) for group in _in_order(owners)]
-
-
-def _in_order(owners: Tensor) -> list[int]:
-    found = sorted(int(g) for g in torch.unique(owners))
-    return [g for g in found if g >= 0] + [g for g in found if g < 0]
+    order = owners.argsort(stable=True)
+    groups, counts = torch.unique_consecutive(owners[order], return_counts=True)
+    parts = dict(zip(groups.tolist(), torch.split(rows[order], counts.tolist()), strict=True))
+    return [(group, parts[group]) for group in sorted(parts, key=lambda g: (g < 0, g))]
 
 
 def _owners(scene: Scene, selection: Selection) -> dict[int, int]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -10,28 +11,88 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
+from ...gaussians.kept import Kept
 from ...gaussians.rotations import to_matrix
+from ...gaussians.rows import rows_where, rows_within, taken
 from ...gaussians.world.box import Box
 from ...gaussians.world.core import least_opacity
 
 Array = NDArray[np.float64]
 Bool = NDArray[np.bool_]
+_SAMPLE = 20_000  # solid Gaussians from which the typical extent is measured
+_LARGE = 3.0  # times that: Gaussians that get further points
+_MOST_LARGE = 60_000
 _LEVELS = 4  # most surface heights of one thing (a shelf and a chair have several)
 
 
-def obstacle_points(cloud: GaussianCloud, without: Tensor | None = None) -> NDArray[np.float32]:
-    """`[M, 3]` float32 centres of the opaque Gaussians, and further points along the two long axes of large ones."""
-    solid = cloud.opacities >= least_opacity(cloud.opacities)
-    if without is not None:
-        solid = solid & ~without
-    rows = solid.nonzero().squeeze(1)
-    means = cloud.means.index_select(0, rows)
-    largest = cloud.scales.index_select(0, rows).amax(dim=1)
-    if not len(rows):
+def obstacle_points(
+    cloud: GaussianCloud, without: Tensor | None = None, within: tuple[Array, Array] | None = None
+) -> NDArray[np.float32]:
+    """`[M, 3]` float32 centres of the opaque Gaussians, and further points along the two long axes of large ones.
+
+    Args:
+        without: `[N]` bool, Gaussians that are no obstacles.
+        within: only points from one corner to another, world-aligned; None: all.
+    """
+    if not len(cloud):
         return np.zeros((0, 3), dtype=np.float32)
-    typical = float(largest[:: max(1, len(largest) // 20_000)].median())
-    big = rows[(largest > 3 * typical)][:60_000]
-    return np.concatenate([means.cpu().numpy(), _spread(cloud, big)])
+    least, rows, spread, *_ = _measured(cloud)
+    if within is None:
+        own = rows_where(cloud.opacities >= least if without is None else (cloud.opacities >= least) & ~without)
+    else:
+        own = rows_within(cloud.means, *within)
+        own = own[cloud.opacities[own] >= least]
+        own = own if without is None else own[~without[own]]
+    if len(rows) and without is not None:
+        spread = spread[(~without[rows]).cpu().numpy()]
+    further = spread.reshape(-1, 3)
+    if within is not None:
+        further = further[rows_within(torch.from_numpy(further), *within).numpy()]
+    return np.concatenate([taken(cloud.means, own).cpu().numpy(), further])
+
+
+class _Measures(NamedTuple):
+    """What does not depend on the question: the least opacity of solid Gaussians, the rows `[B]` of the large ones,
+    their points `[B, 24, 3]`, and the corners `[3]` of the world-aligned box around all Gaussians."""
+
+    least: float
+    rows: Tensor
+    spread: NDArray[np.float32]
+    low: Array
+    high: Array
+
+
+_measures: Kept[_Measures] = Kept(4)
+
+
+def _measured(cloud: GaussianCloud) -> _Measures:
+    return _measures.get((cloud.means, cloud.quats, cloud.scales, cloud.opacities), lambda: _measure(cloud))
+
+
+def _measure(cloud: GaussianCloud) -> _Measures:
+    least = least_opacity(cloud.opacities)
+    low, high = (corner.double().cpu().numpy() for corner in torch.aminmax(cloud.means, dim=0))
+    solid = cloud.opacities >= least
+    sample = rows_where(solid)[:: max(1, int(solid.sum()) // _SAMPLE)]
+    if not len(sample):
+        return _Measures(least, sample, np.zeros((0, 24, 3), dtype=np.float32), low, high)
+    typical = float(cloud.scales[sample].amax(dim=1).median())
+    sides = rows_where(cloud.scales.reshape(-1) > _LARGE * typical)
+    rows = torch.unique_consecutive(sides // 3)
+    rows = rows[solid[rows]][:_MOST_LARGE]
+    spread = _spread(cloud, rows).reshape(-1, 24, 3)
+    if len(rows):
+        low, high = np.minimum(low, spread.min(axis=(0, 1))), np.maximum(high, spread.max(axis=(0, 1)))
+    return _Measures(least, rows, spread, low, high)
+
+
+def column_of(cloud: GaussianCloud, box: Box) -> tuple[Array, Array]:
+    """The corners of the world-aligned box around all that lies over and under a box's footprint in a cloud."""
+    if not len(cloud):
+        return box.bounds()
+    found, up = _measured(cloud), np.array(box.axes[2])
+    low, high = np.sort(np.stack([found.low * up, found.high * up]), axis=0).sum(axis=1)
+    return box.bounds((float(low), float(high)))
 
 
 def _spread(cloud: GaussianCloud, rows: Tensor) -> NDArray[np.float32]:

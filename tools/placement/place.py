@@ -242,8 +242,11 @@ def _occupied(
     heights: tuple[float, float],
 ) -> Bool:
     """Cells with a solid point in the height range; single points without a neighbour are ignored as floaters."""
-    up = around.solid @ basis[2].astype(np.float32)
-    points = around.solid[(up > heights[0]) & (up < heights[1])] @ basis[:2].T.astype(np.float32)
+    level = np.flatnonzero((around.heights > heights[0]) & (around.heights < heights[1]))
+    for axis, low, high in zip(basis[:2].astype(np.float32), origin - cell, origin + (shape + 1) * cell, strict=True):
+        place = around.solid[level] @ axis
+        level = level[(place > low) & (place < high)]
+    points = around.solid[level] @ basis[:2].T.astype(np.float32)
     counts = histogram(points.astype(np.float64), origin, cell, shape)
     nearby = window_sum(np.pad(counts, 1), np.array([3, 3]), list(shape))
     occupied: Bool = (counts > 0) & (nearby > 1)

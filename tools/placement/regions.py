@@ -237,9 +237,8 @@ def other_supports(around: Surroundings, size: Vec3, plan: Array, region: Region
     What may hang in the air, as a copy of something that does, goes no lower than its own height: else it is level.
     """
     half = np.array(size[:2]) / 2
-    heights = around.solid @ around.up.astype(np.float32)
     slack = max(5 * centimetre(around.frame, max(size)), 0.02 * max(size))
-    level = around.solid[heights < region.height + slack]
+    level = around.solid[around.heights < region.height + slack]
     local = level @ plan.T.astype(np.float32)
     near = ((local > region.low - half) & (local < region.high + half)).all(axis=1)
     points, found = local[near].astype(np.float64), list[Region]()

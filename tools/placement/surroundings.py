@@ -18,7 +18,7 @@ from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.box import Axes, Box
 from ..operation import Context
 from .bodies import Array, Body, as_vec, centimetre, contact_box, mask_of_bodies
-from .occupancy import obstacle_points, surface_heights
+from .occupancy import column_of, obstacle_points, surface_heights
 
 _LOW_CEILING = 240.0  # centimetres, height of a low room
 _SAMPLE_SIZE = 50_000  # points from which extents of the room are measured
@@ -68,9 +68,16 @@ class Surroundings:
         """`[M, 3]` points of the obstacles, world frame."""
         return obstacle_points(self.scene.cloud, self.moving)
 
+    @cached_property
+    def heights(self) -> NDArray[np.float32]:
+        """`[M]` of the obstacles' points along up."""
+        heights: NDArray[np.float32] = self.solid @ self.up.astype(np.float32)
+        return heights
+
     def add_obstacle(self, points: Array, box: Box) -> None:
         """Add points `[M, 3]` of the world frame and their box to the obstacles."""
         self.solid = np.concatenate([self.solid, points.astype(np.float32)])
+        self.__dict__.pop("heights", None)
         self.placed.append(box)
 
     @cached_property
@@ -141,15 +148,15 @@ class Surroundings:
         tolerance = max(self.tolerance(anchor), 5 * centimetre(self.frame, max(anchor.box.size)))
         if abs(bottom - self.floor) <= tolerance and self.frame.floor is not None:
             return self.floor, None
-        heights = self.solid @ self.up.astype(np.float32)
-        near = (np.abs(heights - bottom) <= tolerance) & ~anchor.box.covers(self.solid)
+        near = np.flatnonzero(np.abs(self.heights - bottom) <= tolerance)
+        near = near[~anchor.box.covers(self.solid[near])]
         if self.rests and not self._is_around(anchor, self.solid[near]):
             return self._below(anchor, plan)
-        if near.sum() < 20:
+        if len(near) < 20:
             return bottom, None
         local = self.solid[near].astype(np.float64)
-        level = float(np.median(heights[near]))
-        return level, np.column_stack([local @ plan.T, heights[near]])
+        level = float(np.median(self.heights[near]))
+        return level, np.column_stack([local @ plan.T, self.heights[near]])
 
     def _is_around(self, anchor: Body, points: NDArray[np.float32]) -> bool:
         """Whether points at the height of a thing's underside lie around it, as of a table top: what is under it was
@@ -162,11 +169,11 @@ class Surroundings:
 
     def _below(self, anchor: Body, plan: Array) -> tuple[float, Array | None]:
         """Height and points of the broadest surface under a thing that is in the air, else of the floor."""
-        heights = self.solid @ self.up.astype(np.float32)
-        under = (heights < anchor.box.bottom(self.up)) & anchor.box.covers(self.solid)
-        if self.frame.floor is not None:
-            under &= heights > self.floor + self.tolerance(anchor)
-        if under.sum() < 20:
+        heights = self.heights
+        lowest = self.floor + self.tolerance(anchor) if self.frame.floor is not None else -np.inf
+        under = np.flatnonzero((heights < anchor.box.bottom(self.up)) & (heights > lowest))
+        under = under[anchor.box.covers(self.solid[under])]
+        if len(under) < 20:
             return (self.floor if self.frame.floor is not None else anchor.box.bottom(self.up)), None
         points, tops = self.solid[under].astype(np.float64) @ plan.T, heights[under].astype(np.float64)
         tolerance = self.tolerance(anchor)
@@ -189,7 +196,7 @@ def support_height(scene: Scene, body: Body, context: Context) -> float | None:
     floor = Surroundings(scene, context).floor
     if abs(bottom - floor) <= slack:
         return floor
-    others = obstacle_points(scene.cloud, mask_of_bodies(scene, [body]))
+    others = obstacle_points(scene.cloud, mask_of_bodies(scene, [body]), column_of(scene.cloud, box))
     heights = others[box.covers(others)] @ up.astype(np.float32)
     near = heights[np.abs(heights - bottom) <= slack]
     return float(np.median(near)) if len(near) >= _MIN_POINTS else None

@@ -11,6 +11,7 @@ import torch
 from numpy.typing import NDArray
 
 from ...gaussians.errors import InstructionError
+from ...gaussians.rows import rows_where
 from ...gaussians.scene import Scene
 from ...gaussians.world.box import Box
 from .bodies import Array, Body, centimetre
@@ -69,7 +70,7 @@ def _wall_points(scene: Scene) -> NDArray[np.float32]:
         return np.zeros((0, 3), dtype=np.float32)
     flags = torch.zeros(len(field.groups) + 1, dtype=torch.bool, device=scene.cloud.device)  # the last: no group
     flags[[leaf for g in walls for leaf in field.leaves(g.id)]] = True
-    return obstacle_points(scene.cloud[flags[scene.cloud.group].nonzero().squeeze(1)])
+    return obstacle_points(scene.cloud[rows_where(flags[scene.cloud.group])])
 
 
 def _leaves_room(scene: Scene, body: Body, offset: Array) -> bool:

@@ -18,7 +18,9 @@ from ...camera import Vec3
 from ...cloud import GaussianCloud
 from ...color import rgb_to_lab
 from ...harmonics import dc_to_color
+from ...kept import Kept
 from ...rotations import to_matrix
+from ...rows import rows_where
 from ...scene import Frame
 from ...world.box import Axes, Box
 from ...world.core import core_of
@@ -155,8 +157,16 @@ def centroid(cloud: GaussianCloud, rows: Tensor) -> F64:
 
 def solid_points(cloud: GaussianCloud, rows: Tensor) -> F64:
     """Centres `[M, 3]` of the solid Gaussians of a thing, without haze and strays (see `world.core`)."""
-    points: F64 = cloud.means[rows].to(torch.float64).cpu().numpy()
-    return points[core_of(cloud, rows).solid]
+    return _solid_points.get((cloud.means, cloud.scales, cloud.opacities, rows), lambda: _points(cloud, rows))
+
+
+_solid_points: Kept[F64] = Kept(8)  # an edit and its checks ask for the same
+
+
+def _points(cloud: GaussianCloud, rows: Tensor) -> F64:
+    points: F64 = cloud.means[rows].to(torch.float64).cpu().numpy()[core_of(cloud, rows).solid]
+    points.flags.writeable = False
+    return points
 
 
 def reach(values: F64) -> tuple[float, float]:
@@ -172,7 +182,7 @@ def _solid(cloud: GaussianCloud, rows: Tensor | None) -> Tensor:
     """The rows that a box is measured on: the visible ones, or all if none is visible; subsampled evenly."""
     opaque = cloud.opacities > MIN_BOX_OPACITY if rows is None else cloud.opacities[rows] > MIN_BOX_OPACITY
     if bool(opaque.any()):
-        seen = opaque.nonzero().squeeze(1)
+        seen = rows_where(opaque)
         rows = seen if rows is None else rows[seen]
     return _thinned(cloud, rows, _EXTENT)
 

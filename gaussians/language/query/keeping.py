@@ -9,6 +9,8 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
+from ...kept import Kept
+from ...rows import rows_where
 from ...scene import Scene
 from ...world.core import core_of
 from ..field.group_index import GroupIndex, union
@@ -20,6 +22,14 @@ def without_strays(scene: Scene, members: GroupIndex, kept: Selection) -> Tensor
 
     Gaussians that belong to no selected group are taken as one thing.
     """
+    return _known.get((scene, members, kept), lambda: _without_strays(scene, members, kept))
+
+
+_known: Kept[Tensor] = Kept(2)  # an operation and its checks ask for the same
+
+
+def _without_strays(scene: Scene, members: GroupIndex, kept: Selection) -> Tensor:
+    """See `without_strays`."""
     field, ids = scene.language, kept.ids
     left = mask_of(scene.cloud, ids)
     stay = torch.zeros_like(left)
@@ -29,7 +39,7 @@ def without_strays(scene: Scene, members: GroupIndex, kept: Selection) -> Tensor
         rows = rows[left[rows]]
         left[rows] = False
         _mark(scene, rows, stay)
-    _mark(scene, left.nonzero().squeeze(1), stay)
+    _mark(scene, rows_where(left), stay)
     found = scene.cloud.ids[stay].sort().values
     return found if len(found) else union(ids, found)
 

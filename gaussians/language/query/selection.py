@@ -16,10 +16,10 @@ from torch import Tensor
 from ...camera import Camera, Vec3
 from ...cloud import GaussianCloud
 from ...errors import AbsentError, AmbiguousError, UnconfirmedError
+from ...rows import mask_of_ids
 from .query import Query
 
 Verdict = Literal["found", "unconfirmed", "ambiguous", "absent"]
-_DENSE = 8  # ids in a range of at most this many times the rows are looked up in a table
 
 
 @dataclass(frozen=True)
@@ -120,13 +120,4 @@ def nothing(query: Query, reason: str, candidates: tuple[Candidate, ...] = ()) -
 
 def mask_of(cloud: GaussianCloud, ids: Tensor) -> Tensor:
     """Whether each row `[N]` of `cloud` has one of these ids."""
-    if not len(ids) or not len(cloud):
-        return torch.zeros(len(cloud), dtype=torch.bool, device=cloud.device)
-    ids = ids.to(cloud.device)
-    low, high = (int(v) for v in torch.aminmax(cloud.ids))
-    if high - low >= _DENSE * len(cloud):
-        return torch.isin(cloud.ids, ids, assume_unique=True)
-    # Ids are nearly always row numbers of a file; a table of flags is then 15 times faster than sorting.
-    flags = torch.zeros(high - low + 1, dtype=torch.bool, device=cloud.device)
-    flags[ids[(ids >= low) & (ids <= high)] - low] = True
-    return flags[cloud.ids - low]
+    return mask_of_ids(cloud.ids, ids)

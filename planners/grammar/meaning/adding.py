@@ -106,7 +106,18 @@ def _asset(noun: NounPhrase) -> Fields:
 
 
 def replace_(phrases: Phrases, node: Node) -> list[Fields]:
-    return _replaced(phrases.things(node, 0), phrases.things(node, 1))
+    old, new = phrases.things(node, 0), phrases.things(node, 1)
+    if tokens(node, "INTO") and len(new) == 1 and (color := _only_colored(old, new[0])):
+        return [{"op": "recolor", "target": existing(old), "color": color}]  # "turn the red chair into a blue one"
+    return _replaced(old, new)
+
+
+def _only_colored(old: list[NounPhrase], new: NounPhrase) -> str:
+    """The colour that a thing of the same kind differs in, "" if it differs in more."""
+    query = new.query
+    same = not new.said and new.is_new and all(n.query.text == query.text for n in old)
+    bare = not (query.size or query.relations or new.modifiers or new.adjectives or new.height)
+    return query.colors[0] if same and bare and len(query.colors) == 1 else ""
 
 
 def substitute(phrases: Phrases, node: Node) -> list[Fields]:

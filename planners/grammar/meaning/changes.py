@@ -233,6 +233,29 @@ def repeated(op: Fields, degree: str) -> Fields:
     raise Refusal("say what more: which way, or how it should become", "more")
 
 
+def repeated_by(op: Fields, kind: str, amount: Any) -> Fields:
+    """An operation that goes further in the way of one before, by a stated amount; a bare number is in its unit.
+
+    Raises:
+        Refusal: it has no such amount.
+    """
+    again = {**op, "target": Query(last=True)}
+    if op.get("op") == "move" and op.get("direction") and kind in ("LENGTH", "NUMBER"):
+        before = op.get("distance") or {}
+        value, unit = amount if kind == "LENGTH" else (amount, before.get("unit"))
+        if unit is not None:
+            return {**again, "distance": {"value": value, "unit": unit}}
+    turns = op.get("op") == "rotate" and op.get("degrees") is not None and not op.get("toward")
+    if turns and kind in ("ANGLE", "NUMBER"):
+        return {**again, "degrees": abs(float(amount)) * (1 if float(op["degrees"]) > 0 else -1)}
+    if op.get("op") == "scale" and op.get("factor") and kind == "FRACTION":
+        factor = 1 + float(amount) if float(op["factor"]) > 1 else 1 - float(amount)
+        return {**again, **scaled(factor, op.get("axis", "all"))}
+    if op.get("op") == "recolor" and op.get("adjust") and kind == "FRACTION":
+        return {**again, "amount": float(amount)}
+    raise Refusal("say what more: which way, or how it should become", "more")
+
+
 _CHANGES: dict[str, Callable[[Node], Fields]] = {
     "become_hue": _hue,
     "toward_hue": _toward,

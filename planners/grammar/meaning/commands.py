@@ -1,7 +1,7 @@
 """Turns parsed clauses into operations: one function for each rule of grammar.lark that is a command.
 
-The rules that move, rotate, resize and add are in moving.py, shaping.py and adding.py. Every function returns
-operations as fields, which the registry of tools validates.
+The rules that move, rotate, resize, add and repeat are in moving.py, shaping.py, adding.py and repeating.py. Every
+function returns operations as fields, which the registry of tools validates.
 """
 
 from __future__ import annotations
@@ -10,12 +10,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
+from typing import Any
 
+from ....gaussians.language.query.nested import with_queries
 from ....gaussians.language.query.query import Query, Region
 from ....gaussians.world.words import head
 from ..parsing import Node, Refusal, tokens, trees
 from ..vocabulary import nouns
-from . import adding, changes, moving, shaping
+from . import adding, changes, moving, repeating, shaping
 from .adding import inserted
 from .changes import Fields
 from .described import EVERYTHING, NounPhrase, all_of, existing, is_all_on_it, union
@@ -35,43 +37,42 @@ def operations_of(phrases: Phrases, tree: Node) -> list[Fields]:
     for group in excluded:
         out = union(phrases.group(group))
         ops = [{**op, "target": _except(_all_of(op.get("target"), out, simple), out)} for op in ops]
+    ops = [_with_others(op) for op in ops]
     phrases.before = ops
     return ops
+
+
+def _with_others(op: Fields) -> Fields:
+    """An operation in which "the other one" leaves out its own target: "make the silver lamp like the other one"."""
+    target = op.get("target")
+    if not isinstance(target, Query) or target.last:
+        return op
+
+    def named(query: Query) -> Query:
+        if Query(last=True) not in query.exclude or query.text != target.text:
+            return query
+        rest = tuple(target if q == Query(last=True) else q for q in query.exclude)
+        colors = () if query.colors == target.colors else query.colors
+        return query.model_copy(update={"exclude": rest, "colors": colors})
+
+    changed = {name: _named_in(op[name], named) for name in ("like", "toward", "place") if op.get(name) is not None}
+    return {**op, **changed} if changed else op
+
+
+def _named_in(value: Any, change: Callable[[Query], Query]) -> Any:
+    """A query, or the anchors of a place, with every query changed."""
+    if isinstance(value, Query):
+        return with_queries(value, change)
+    anchors = value.get("anchors") if isinstance(value, dict) else None
+    return {**value, "anchors": tuple(with_queries(a, change) for a in anchors)} if anchors else value
 
 
 @cache
 def _rules() -> dict[str, Callable[[Phrases, Node], list[Fields]]]:
     """The functions of the command rules by the name of the rule in grammar.lark."""
-    found = (*_RULES, *adding.RULES, *moving.RULES, *shaping.RULES)
+    found = (*_RULES, *adding.RULES, *moving.RULES, *repeating.RULES, *shaping.RULES)
     named = {rule.__name__.rstrip("_"): rule for rule in found}
     return {**named, "change_color": give_color, "turn_color": give_color}
-
-
-# ---- repeating the previous clause --------------------------------------------------------------------------------
-
-
-def same(phrases: Phrases, node: Node) -> list[Fields]:
-    """Repeat the previous clause with another target: "do the same to the lamp"."""
-    return _again(phrases, phrases.query(node))
-
-
-def bare(phrases: Phrases, node: Node) -> list[Fields]:
-    """Repeat the previous clause for a thing that is named alone: "and the green one too"."""
-    found = phrases.things(node)
-    pointing = all(n.article in ("def", "all", "both") and not n.query.last for n in found)
-    if not phrases.before or not pointing:
-        raise Refusal("it does not say what to do", found[0].said or found[0].query.text)
-    return _again(phrases, existing(found))
-
-
-def _again(phrases: Phrases, target: Query) -> list[Fields]:
-    first = next((op.get("target") for op in phrases.before), None)
-    if first is None or any("held" in op for op in phrases.before):
-        raise Refusal("it is not clear what to do with it")
-    if any(op.get("target") not in (first, Query(last=True)) for op in phrases.before):
-        raise Refusal("the previous clause did several things; say what to do with it")
-    chained = [op.get("target") != first for op in phrases.before]
-    return [{**op, "target": Query(last=True) if c else target} for op, c in zip(phrases.before, chained, strict=True)]
 
 
 # ---- one thing or several -----------------------------------------------------------------------------------------
@@ -150,7 +151,14 @@ def take(phrases: Phrases, node: Node) -> list[Fields]:
     found = phrases.things(node)
     goes = any(p.word.startswith(("into", "onto", "against", "up against")) for p in found[-1].modifiers)
     if not trees(node, *MOTIONS) and not goes:
-        return [{"op": "select", "target": existing(found), "held": "taken"}]
+        if all(n.is_new and n.article == "indef" for n in found) and tokens(node, "TAKE")[0].text in (
+            "get",
+            "fetch",
+            "grab",
+        ):
+            return inserted(phrases, found, node, "ADD")  # "can we get a lamp next to the bed"
+        off = any(p.kind == "off" for p in found[-1].modifiers)
+        return [{"op": "select", "target": existing(found), "held": "taken off" if off else "taken"}]
     return moved(phrases, found, node, "MOVE")
 
 
@@ -238,13 +246,6 @@ def give_color(phrases: Phrases, node: Node) -> list[Fields]:
 def paint_like(phrases: Phrases, node: Node) -> list[Fields]:
     """ "paint the chair the same colour as the table"."""
     return phrases.targeted(node, "recolor", like=goal_of(phrases, trees(node, "np")[0]).full())
-
-
-def more(phrases: Phrases, node: Node) -> list[Fields]:
-    """The last change again, by a little or as said: "a bit more" behind "move it to the left"."""
-    if not phrases.before:
-        raise Refusal("say of what", "more")
-    return [changes.repeated(op, changes.degree_of(node)) for op in phrases.before]
 
 
 def change_from(phrases: Phrases, node: Node) -> list[Fields]:
@@ -370,7 +371,7 @@ def _except(target: Query | None, out: Query) -> Query:
 
 
 _RULES = (
-    same, bare, merge, split, split_into, delete, clear, drop, take, keep, select, isolate, hide, crop, crop_away,
-    crop_space, fade, switch, paint, paint_like, more, give_color, change_from, tint, tint_more, give_shade, coat_on,
+    merge, split, split_into, delete, clear, drop, take, keep, select, isolate, hide, crop, crop_away,
+    crop_space, fade, switch, paint, paint_like, give_color, change_from, tint, tint_more, give_shade, coat_on,
     adjust, change_opacity, make, it_becomes, put,
 )  # fmt: skip

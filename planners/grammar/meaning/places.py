@@ -163,9 +163,10 @@ def _destination_start(modifiers: Sequence[PostModifier], verb: str) -> int | No
     ]
     if not goals:
         return None
-    explicit = [i for i in goals if modifiers[i].word.split()[0] in ("into", "onto", "to", "against", "up")]
-    if explicit:
-        return explicit[0]
+    said = {i: modifiers[i].word.split()[0] for i in goals}
+    for openers in (("into", "onto", "against", "up"), ("to",)):
+        if explicit := [i for i in goals if said[i] in openers]:
+            return explicit[0]
     if verb == "COPY":
         return None  # a copy needs no place, so "copy the lamp on the desk" says which lamp
     first, last = goals[0], goals[-1]

@@ -90,6 +90,12 @@ def _factor(node: Node) -> tuple[float | None, float | None, bool, str]:
     return None, None, False, ""
 
 
+def _side_of(node: Node, axis: str) -> str:
+    """The side that a clause's `factor` names behind an amount, else `axis`: "to two thirds of its height"."""
+    named = [t.value for inner in trees(node, "factor") for t in tokens(inner, "PROP")]
+    return str(named[0]) if named and axis == "all" else axis
+
+
 def scale(phrases: Phrases, node: Node) -> list[Fields]:
     share, times, to, degree = _factor(node)
     way = [t.value for t in tokens(node, "DIR")]
@@ -97,7 +103,8 @@ def scale(phrases: Phrases, node: Node) -> list[Fields]:
         return _sized(phrases, node, "all", way[0] == "up", (share, times, to, degree))
     if way or (share is None and times is None):
         raise Refusal("say by how much: by 1.5, to 50 %, up by 20 %")
-    return phrases.targeted(node, **changes.scaled(times if times is not None else share or 0.0))
+    factor = times if times is not None else share or 0.0
+    return phrases.targeted(node, **changes.scaled(factor, _side_of(node, "all")))
 
 
 def _sized(
@@ -115,7 +122,7 @@ def grow(phrases: Phrases, node: Node) -> list[Fields]:
         axis = "all"
     if axis == "prop":
         raise Refusal("say what of it: its size, its height, its width", tokens(node, "GROW")[0].text)
-    return _sized(phrases, node, axis, up, _factor(node))
+    return _sized(phrases, node, _side_of(node, axis), up, _factor(node))
 
 
 def grow_prop(phrases: Phrases, node: Node) -> list[Fields]:

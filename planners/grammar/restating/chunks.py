@@ -11,11 +11,12 @@ from ..tagging.lookahead import color_at, compounds, match, may_be_noun
 from ..tagging.tagger import clauses
 from ..tagging.tags import Clause, Tag
 from ..tagging.words import Word, bag
-from ..vocabulary import lexicon
+from ..vocabulary import doings, lexicon
 
-_SPEAKING = bag("i we you he she could would should must looks look seems")  # never within a noun phrase
+_SPEAKING = bag("try i we you he she could would should must looks look seems")  # never within a noun phrase
 DOING = bag(
-    "wobbles wobble squeaks leaks creaks rattles flickers buzzes sags stinks smells clashes goes hang hangs stands sits"
+    "belongs belong lives needs wants looks wobbles wobble squeaks leaks creaks rattles flickers buzzes sags stinks "
+    "smells clashes goes hang hangs stands sits"
 )
 _MODIFIERS = ("DET", "NUMBER", "OF", "COLOR", "COLORS", "SIZE", "SUP", "ORDINAL", "ADJ", "NONCOLOR", "OTHER", "TALL")
 _HEADS = ("NOUN", "ONE", "THING", "PRON", "EVERYTHING", "OTHERS")
@@ -89,7 +90,10 @@ def _chunk(tags: Sequence[Tag], i: int) -> tuple[int, Chunk]:
 
 def _does(texts: Sequence[str]) -> bool:
     """Whether words say what a thing does, other than to describe it ("the lamp that stands on the desk")."""
-    return any(w in DOING and not (i and texts[i - 1] in ("that", "which", "who")) for i, w in enumerate(texts))
+    if any(w in DOING and not (i and texts[i - 1] in ("that", "which", "who")) for i, w in enumerate(texts)):
+        return True
+    kept = ("keep", "keeps", "kept", "is", "are")
+    return any(w in doings.ongoing() and texts[i - 1] in kept for i, w in enumerate(texts) if i)
 
 
 @lru_cache(maxsize=512)

@@ -8,8 +8,9 @@ from collections.abc import Iterator, Sequence
 from ....gaussians.world.words import singular
 from ..tagging.lookahead import Lookahead, color_at, match
 from ..tagging.words import bag
-from ..vocabulary import lexicon
+from ..vocabulary import lexicon, quantities
 from .chunks import DOING, chunks, is_thing
+from .judgements import is_judged
 from .states import states
 
 _PRONOUNS = bag("it them they those these this that him her both")
@@ -24,6 +25,7 @@ _TOPIC = re.compile(
     r"(?: (?:over there|there|here|in there|over here))?$"
 )
 _NEW = ("a", "an", "another", "some", "more", "new")  # what begins so is no thing that was there before
+_ARTICLES = bag("the a an my our your this that these those all both every each everything another some")
 JOINTS = (",", "and", "then", "so", "but", ";", ":")
 _MOST = 6  # joints that are tried
 
@@ -51,7 +53,7 @@ def topic_of(said: Sequence[str]) -> tuple[str, ...] | None:
     if not found:
         return None
     thing = tuple(found.group("thing").split())
-    if not is_thing(thing):
+    if not is_thing(thing) or is_judged(said):
         return None
     if thing[0] in _NEW or "more" in thing[:3]:
         return None
@@ -71,6 +73,8 @@ def about(thing: Sequence[str], clause: Sequence[str]) -> Iterator[list[str]]:
     ahead = Lookahead(clause)
     start, _ = ahead.skip_polite(0)
     if (verb := ahead.verb(start)) is not None:
+        if clause[start + verb[1] : start + verb[1] + 1] and clause[start + verb[1]] in _ARTICLES:
+            return  # it has an object of its own
         yield [*clause[: start + verb[1]], *thing, *clause[start + verb[1] :]]
         return
     for command in states(" ".join(thing), clause):
@@ -155,40 +159,6 @@ _STATED = ("DIR", "LENGTH", "GROWN", "LIGHT", "PREP", "TO", "TOWARD", "SPOT", "A
 _VERBLESS = 10  # words
 
 
-_DO_TOO = re.compile(r"^(?:and |now |then |also )*(?:do|same for|ditto(?: for)?|likewise|so does|so should|so for) "
-                     r"(?P<thing>\S.*?)"
-                     r"(?: (?:too|as well|also|next|now|the same))*$")  # fmt: skip
-_MORE = re.compile(r"^(?:and |now |just |no |then |but )*(?P<degree>(?:even |a little |a bit |a tad |slightly |"
-                   r"much |a lot |a touch |"
-                   r"a little bit |some |quite a bit )*)(?:more|further|farther|again|once more|one more time)"
-                   r"(?: please| still| again| of the same| in (?:that|the same) direction| (?:that|the same) "
-                   r"way)*$")  # fmt: skip
-
-
-_TOO = re.compile(r"^(?:and |then |oh |also )*(?:the )?(?P<thing>\S.*?) (?:too|as well|also|likewise)$")
-_NICER = re.compile(r"^(?:in )?(?P<hue>\S.*?) (?:would|might|could) (?:be|look|suit|work|go|fit|feel)(?: it| "
-                    r"them)? (?:much |far |way |a lot |so "
-                    r"much )?(?:better|nicer|best|good|nice|great|well|lovely|perfect|prettier)(?: there| on "
-                    r"it)?$")  # fmt: skip
-
-
-def following(said: Sequence[str]) -> Iterator[str]:
-    """Readings as the continuation of the command before: "a bit more", "do the wardrobe as well", "on the rug"."""
-    text = " ".join(said)
-    if found := _DO_TOO.match(text):
-        yield f"do the same to {found.group('thing')}"
-    if found := _TOO.match(text):
-        yield f"do the same to {found.group('thing')}"
-    if found := _MORE.match(text):
-        degree = found.group("degree").strip().removesuffix("even").strip()
-        yield f"{degree} more".strip()
-    if found := _NICER.match(text):
-        yield f"make it {found.group('hue')}"
-    ahead = Lookahead(said)
-    if ahead.preposition_at(0):
-        yield f"put it {text}"
-
-
 def terse(said: Sequence[str]) -> Iterator[str]:
     """Readings of an order without a verb: "rug out", "sofa blue", "lamp 20 cm to the left", "blue for the sofa"."""
     ahead = Lookahead(said)
@@ -217,6 +187,9 @@ def _states_at(said: Sequence[str], i: int) -> bool:
     if said[i] in ("out", "gone", "off", "away", "to", "onto", "into", "against", "in", "a", "another", "up", "down"):
         return True
     if color_at(said, i):
+        return True
+    amount = quantities.read(said[i:])
+    if amount is not None and amount.kind not in ("NUMBER", "ORDINAL"):
         return True
     found = match(lexicon.CLOSED_PHRASES, said, i)
     return (found is not None and found[0][0] in _STATED) or said[i][0].isdigit()

@@ -5,6 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from ..tagging.lookahead import Lookahead
+from ..tagging.words import bag
+from ..vocabulary import doings
+from .smoothing import unopened
+
 _SHELL = re.compile(
     r"\b(?:push|move|pull|shift|raise|lower|lift|extend|knock|widen|enlarge|take|shrink|stretch|rotate|turn|tear|break|"
     r"slide|bring|drop|cut|open|smash|build|drill)(?: (?:up|out|down|through))? (?:(?:the|that|this|my|our|a) )?"
@@ -25,14 +30,30 @@ _SWITCHED = re.compile(
 _RUNNING = re.compile(
     r"^(?:\S+ )*?(?:get|make|have|let|start|set|keep) (?:the|that|this|my|our|all|every) (?P<thing>\S.*?) (?:(?:to "
     r")?(?:play|ring|sing|"
-    r"dance|talk|speak|bark|fly|drive|run|work|glow|blink|bounce|walk|beep|tick|boil|cook)|(?:play|ring|sing|danc|talk|speak|"
+    r"dance|talk|speak|bark|fly|drive|run|work|glow|blink|bounce|walk|beep|tick|boil|cook)|(?:play|ring|sing|danc|"
+    r"talk|speak|"
     r"bark|fly|driv|runn|work|glow|blink|bounc|walk|beep|tick|boil|cook|spinn|rock|swing|mov|turn)ing)\b"
 )
+
+
+# What is made to be eaten and drunk, and what is done for people.
+_SERVED = re.compile(
+    r"^(?:make|fix|pour|bring|get|cook|brew|give|order|fetch|buy) (?:me|us|them|him|her|everyone) (?:a |an |some |"
+    r"the )?"
+    r"(?:\w+ )?(?:coffee|tea|cuppa|sandwich|drink|beer|dinner|lunch|breakfast|snack|pizza|meal|discount|refund)\b"
+)
+_OBJECT = bag("the a an my our your his her its that this those these some something it them me us all both up")
 
 
 def cannot_be(texts: Sequence[str]) -> str:
     """Why a sentence that is not understood asks for what no operation does; "" if that cannot be told."""
     said = " ".join(texts) + " "
+    start, _ = Lookahead(texts).skip_polite(0)
+    command = [w for w in unopened(" ".join(texts[start:])).split() if w not in ("please", "just")]
+    if len(command) > 1 and command[0] in doings.ACTIONS and command[1] in _OBJECT:
+        return f"scenes stand still: no operation does this ({command[0]})"
+    if _SERVED.match(" ".join(command)):
+        return "scenes stand still: nothing is cooked, fetched or served"
     if found := _SHELL.search(said) or _SHELL_SIZE.search(said):
         return f"the {found.group('part')} stays: it has no operation that moves or opens it"
     if _SWITCHED.search(said):

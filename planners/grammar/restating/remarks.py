@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from ..tagging.lookahead import Lookahead
+from ..tagging.lookahead import Lookahead, color_at
 from ..tagging.words import bag
+from ..vocabulary import doings, nouns
 from .chunks import is_thing
 from .elision import JOINTS, substitute
+from .judgements import is_judged
 
 _SUBJECTS = bag(
     "never i we you it they he she nobody everybody everyone someone somebody people guests visitors there this "
@@ -28,29 +30,54 @@ _REMARKING = bag(
     "wastes smells works spoils ruins hides hide suits belongs sees see find finds cannot started reminds "
     "used lets got prefers"
 )
+_OPENING_NOUNS = bag("the a an my our your his her its that this those these all both every each some any and or of")
 _ASKING = re.compile(
     r"\b(?:should|must|ought|(?:has|have|needs?|wants?|got) to|to be|could you|can you|would you|will you|please|"
     r"instead|"
-    r"would like|had better|delete|remove|paint|recolou?r|move|rotate|replace|duplicate|not|if|unless|could do "
+    r"would like|had better|i mean|i meant|delete|remove|paint|recolou?r|move|rotate|replace|duplicate|not|if|"
+    r"unless|could do "
     r"with|(?:needs?|wants?) \w+ing)\b"
 )
 _COAT = re.compile(r"\b(?:coat|lick|layer|splash|touch)s? of paint\b")
 
 
 def is_remark(said: Sequence[str]) -> bool:
-    """Whether words only say how things are: they begin with a subject, hold a verb of being, and ask for nothing."""
+    """Whether words only say how things are: they begin with a subject, hold a finite verb, and ask for nothing."""
     text = " ".join(said)
-    if _NEEDING.match(text):
+    if _NEEDING.match(text) or _judged(said) is not None:
         return True
     return (
         len(said) > 1
         and Lookahead(said).verb(0) is None
-        and (said[0] in _SUBJECTS or said[1] in _REMARKING)
-        and bool(_REMARKING & set(said))
+        and (said[0] in _SUBJECTS or said[1] in _REMARKING or finite_at(said, 1))
+        and any(finite_at(said, i) for i in range(1, len(said)))
         and not _ASKING.search(
             _COAT.sub("", text).replace("can not", "cannot").replace("do not", "").replace("does not", "")
         )
     )
+
+
+def _judged(said: Sequence[str]) -> list[str] | None:
+    """The thing that a judgement names behind it, empty if none; None for other words: "too bright, that rug"."""
+    judgement, _, thing = " ".join(said).partition(" , ")
+    if is_judged(said):
+        return []
+    return thing.split() if is_judged(judgement.split()) and is_thing(tuple(thing.split())) else None
+
+
+def finite_at(said: Sequence[str], i: int) -> bool:
+    """Whether the word at `i`, which is not the first, says what is, was or is done by what stands before it."""
+    word, before = said[i], said[i - 1]
+    if word in _REMARKING:
+        return True
+    if before in _OPENING_NOUNS or (word not in doings.said_of_one() and not (word in doings.plain() and _many(said))):
+        return False
+    return said[0] in _NOBODY or not nouns.is_known(word)
+
+
+def _many(said: Sequence[str]) -> bool:
+    """Whether the subject is people or things in the plural, so that its verb has no ending: "guests trip"."""
+    return said[0] in _NOBODY and said[0] not in ("it", "he", "she")
 
 
 def remarks(said: Sequence[str]) -> Iterator[list[str]]:
@@ -61,11 +88,41 @@ def remarks(said: Sequence[str]) -> Iterator[list[str]]:
         first, second = _trimmed(said[:i]), _trimmed(said[i + 1 :])
         if first and second and is_remark(first):
             thing = subject_of(first)
+            if (
+                thing
+                and (hue := _HUE_WISH.match(" ".join(second)))
+                and color_at(second, len(second) - hue["hue"].count(" ") - 1)
+            ):
+                yield ["paint", *_of_whom(thing), *hue["hue"].split()]
+            if far := _FAR_FROM.search(" ".join(first)):
+                second = _toward(second, far["goal"])
             filled = substitute(thing or ("it",), second)
             if filled is None or thing:
+                yield filled or [*first, ".", *second]
                 yield filled or second
         if first and second and is_remark(second) and word != "and":
             yield first
+
+
+# "The red is too loud, go for beige"; "the table is too far from the sofa, move it closer".
+_HUE_WISH = re.compile(
+    r"^(?:please |just |let us |rather |maybe |i would |we could |so )*(?:go|try|use|make that|how about|what about|"
+    r"i would say|let us say|say) (?:with |for |it |in |a |to )*(?P<hue>\S+(?: \S+)?)(?: instead| please| then)*$"
+)
+_FAR_FROM = re.compile(r"\btoo (?:far|close)(?: away)? (?:from|to) (?P<goal>(?:the|that|this|my|our) \S.*)$")
+
+
+def _of_whom(thing: Sequence[str]) -> Sequence[str]:
+    """The thing whose colour a phrase names: "the red of the rug" is about the rug."""
+    of = "of" in thing and color_at(thing, 1) is not None
+    return thing[list(thing).index("of") + 1 :] if of else thing
+
+
+def _toward(second: Sequence[str], goal: str) -> list[str]:
+    """A command with what it is to be closer to, or away from, named."""
+    if second[-1] in ("closer", "nearer"):
+        return [*second, "to", *goal.split()]
+    return list(second)
 
 
 def _trimmed(said: Sequence[str]) -> list[str]:
@@ -78,6 +135,11 @@ def _trimmed(said: Sequence[str]) -> list[str]:
 
 
 _THERE_IS = re.compile(r"^there (?:is|are) (?:a|an|some|one|two|three|four|this|that|these|those) (?P<thing>\S.*)$")
+_COLOR_OF = re.compile(
+    r"^(?:the|that|this) (?:colou?r|shade|tone|\w+) of (?P<thing>(?:the|that|this|my|our) (?:\w+ ){1,3}?)(?:is|"
+    r"looks|does|clashes|"
+    r"feels|seems|hurts|jars|goes|bothers|annoys) "
+)
 _NEEDING = re.compile(
     r"^(?:(?:i|we|you|it|this room|the room) )?(?:need|needs|want|wants|could use) (?:(?:more|some|a bit more|a "
     r"bit of|a little more) "
@@ -96,12 +158,16 @@ _BEHIND_THING = re.compile(
 
 def subject_of(said: Sequence[str]) -> list[str] | None:
     """The thing that a remark is about: its subject if it says how that is, else the last thing that it names."""
+    if judged := _judged(said):
+        return judged
     if found := _THERE_IS.match(" ".join(said)):
         return ["the", *found.group("thing").split()]
+    if found := _COLOR_OF.match(" ".join(said)):
+        return found["thing"].split()
     words = _BEHIND_THING.sub("", " ".join(said)).split()
     subject: list[str] | None = None
     for i in range(1, min(len(words), 10)):
-        if words[i] in _REMARKING:
+        if finite_at(words, i):
             thing = tuple(words[:i])
             named = words[0] in ("the", "that", "this", "these", "those", "my", "our") or i == 1
             if words[0] not in _NOBODY and named and is_thing(thing):
@@ -112,4 +178,6 @@ def subject_of(said: Sequence[str]) -> list[str] | None:
     for i in range(len(words) - 1, 0, -1):
         if words[i] in ("the", "that", "this", "those", "these", "my", "our") and is_thing(tuple(words[i:])):
             return list(words[i:])
+        if words[i] in ("two", "three", "four", "five", "both") and is_thing(tuple(words[i:])):
+            return ["the", *words[i:]]
     return subject

@@ -7,7 +7,9 @@ from collections.abc import Iterator, Sequence
 from itertools import chain
 
 from ..tagging.words import bag
-from .elision import following, gapped, splits, terse, topics
+from .continuing import continued, following
+from .elision import about, gapped, splits, terse, topics
+from .fronting import fronted
 from .phrasings import phrasings
 from .remarks import remarks
 from .smoothing import unopened, without_reason
@@ -18,7 +20,7 @@ _BEGINNING = re.compile(
     r"mean|i meant|make that|"
     r"well|hmm) (?:, )*)+"
 )
-_NOT_THIS = re.compile(r"^not (?:the|that|this|my|those|these) [^,]+ , (?:but )?(?P<rest>\S.*)$")
+_NOT_THIS = re.compile(r"^not (?P<wrong>(?:the|that|this|my|those|these) [^,]+) , (?:but )?(?P<rest>\S.*)$")
 _QUESTIONING = bag("what where who which why how when is are does do did has have was were")
 
 
@@ -32,7 +34,8 @@ def restatements(texts: Sequence[str], mark: str, follows: bool) -> Iterator[lis
     """
     said = " ".join(texts)
     seen = {said}
-    for reading in chain(_readings(said, mark), _continued(said) if follows else ()):
+    first = continued(texts) if follows else ()
+    for reading in chain(first, _readings(said, mark), _continued(said) if follows else ()):
         if reading not in seen:
             seen.add(reading)
             yield reading.split()
@@ -55,12 +58,16 @@ def _readings(said: str, mark: str) -> Iterator[str]:
     for text in dict.fromkeys((said, plain)):
         yield from (" ".join(r) for r in topics(text.split()))
     yield from (plain, shorter, shortest, shortest.removesuffix(" more"))
-    if found := _NOT_THIS.match(plain):
-        yield found.group("rest")
+    for text in dict.fromkeys((said, plain, plain.removeprefix("no "))):
+        if found := _NOT_THIS.match(text):
+            yield " ".join(next(about(found.group("wrong").split(), found.group("rest").split()), []))
+            yield found.group("rest")
     asked = mark == "?" and plain.split()[0] in _QUESTIONING
     words = shortest.split()
     for whole in () if asked else dict.fromkeys((tuple(words), tuple(said.split()))):
         yield from (" ".join(r) for r in remarks(whole))
+    for base in dict.fromkeys((said, plain, shortest)):
+        yield from fronted(base)
     for base in dict.fromkeys((said, shorter, plain, shortest)):
         yield from wishes(base)
     if asked:

@@ -10,9 +10,11 @@ import re
 from collections.abc import Sequence
 
 from ....gaussians.world.words import singular
-from ..tagging.lookahead import color_at
+from ..tagging.lookahead import Lookahead, color_at
 from ..tagging.words import Word, bag
+from ..vocabulary import lexicon, nouns
 from .participles import gerunds
+from .rewordings import REWORDED
 
 _SOUNDS = bag("er erm um umm uh uhm uhh hm hmm eh ah aha oh ooh oi yo huh ugh argh ahem")
 # Closing words, after a comma or before the end of a sentence.
@@ -80,8 +82,10 @@ _OPENERS = re.compile(
     r"(?:it would|it'd) be (?:great|good|nice|lovely|cool|better|best|helpful|awesome|fantastic|wonderful|super)"
     r"(?: if you (?:could|would)| if we (?:could|would)| to)|"
     r"i (?:would|'d) (?:be grateful|appreciate it) if you (?:could|would)|i (?:would )?wish you (?:would|could)|"
-    r"you (?:had better|better|might want to|may want to|could maybe|should probably|need to|have to|have got to|"
-    r"ought to|can go ahead and|can now)|we (?:had better|better|might want to|ought to|should probably|have to|"
+    r"you (?:had better|would better|better|might want to|may want to|could maybe|should probably|need to|have to|"
+    r"have got to|"
+    r"ought to|can go ahead and|can now)|we (?:had better|would better|better|might want to|ought to|should "
+    r"probably|have to|"
     r"have got to|need to|can|could|should|might as well)|i (?:might as well|had better)|"
     r"(?:how|what) about (?:we|you|if we|if you)|what if (?:we|you)|suppose we|maybe we (?:could|should)|perhaps "
     r"we (?:could|"
@@ -116,6 +120,11 @@ _REASON = (
     r"until (?:i|we|you))"
 )
 _TRAILING_REASON = re.compile(rf"(?<=\S)(?: ,)* {_REASON}(?= |$)[^.;!?]*(?= [.;!?]|$)")
+_MATCHING = re.compile(
+    r"^(?P<edit>.+?)(?: ,)? (?:to|so (?:that )?(?:it|they)|which|that) (?:match|matches|go|goes|fit|fits|suit|suits|"
+    r"blend in|"
+    r"complement|complements|tie in)(?: well| better| nicely)?(?: in| with)* [^,.;!?]*$"
+)
 _FACING = re.compile(r"\b(?:so (?:that )?(?:it|they|he|she) (?:is |are )?(?:fac|look|point)|until|till)")
 _LEADING_REASON = re.compile(
     r"^(?:because|cos|since|as|so that|so|in order to|in order that|to|given that|seeing as|seeing that|now that|"
@@ -126,166 +135,6 @@ _LEADING_REASON = re.compile(
 _LEADING_AIM = re.compile(
     r"^(?:to|in order to|so as to) (?:make|free up|create|get|have|save|give)(?: \w+){0,3}? "
     r"(?:room|space|way|light)(?: here| in here| for (?:the )?\w+)? (?P<rest>\S.+)$"
-)
-
-
-_SIZED = r"(?P<size>big|large|tall|high|wide|long|deep|broad)"
-# Phrases with a plain equal of their own, wherever they stand.
-_REWORDED = tuple(
-    (re.compile(rf"(?<!\S){pattern}" + ("" if pattern.endswith(" ") or "(?=" in pattern else r"(?!\S)")), plain)
-    for pattern, plain in (
-        (rf"half as {_SIZED} again(?: as (?:it is|now|before))?", r"1.5 times as \g<size>"),
-        (rf"half again as {_SIZED}(?: as (?:it is|now|before))?", r"1.5 times as \g<size>"),
-        (rf"(?:as {_SIZED} again)", r"2 times as \g<size>"),
-        (r"(?:piece|bit|item|lump)s? of furniture", "furniture"),
-        (
-            r"(?:turn|spin|swing) (?P<x>\S.*?) (?:round |around |so (?:that )?it (?:is )?)?(?:to |and )?(?:face|"
-            r"faces|facing|look|looks|"
-            r"point|points) the (?:other|opposite) (?:way|direction)(?: round| around)?",
-            r"turn \g<x> around",
-        ),
-        (r"(?:to |so (?:that )?it (?:is )?)?(?:face|faces|facing) the (?:other|opposite) (?:way|direction)", "around"),
-        (r"(?:cut|chop|reduce|scale|bring|take|slash) (?P<x>\S.*?) (?:in|by|to|down to|down by) half", r"halve \g<x>"),
-        (r"whatever (?:is|are) (?:sitting|standing|lying|placed|resting|currently|now|there) ", "whatever is "),
-        (r"(?:only|just) the (?=\S.* (?:should|can|may|must) (?:stay|remain|be left))", "only the "),
-        (r"'s (?:got to|have to|gotta)", "has to"),
-        (r"got to", "have to"),
-        (r"out of (?:the|its|that|their) corner (?=into|onto|to |over|next)", ""),
-        (
-            r"(?:and |then |oh |, )*(?:while|whilst) (?:you|we|i) (?:are|am) (?:at it|there|here|about it|on)(?: ,)*",
-            ",",
-        ),
-        (r"(?:like|same as) (?:all )?(?:the rest|the others|the other ones|the other one)(?= [,.;!?]|$)", ""),
-        (r"its (?=(?:\w+ing|a|too|so|not|just|really|in the way|looking|very)(?: |$))", "it is "),
-        (r"would you mind (?:awfully|terribly|very much|ever so|kindly|possibly)", "would you mind"),
-        (r"(?<!would )(?<!do )(?:you all|d'you|you|do ya) mind (?=\w+in)", "would you mind "),
-        (r"(?P<v>swop|swopped|swap)", "swap"),
-        (
-            r"(?:crank|turn|bump|ramp|punch|pump|dial) up the colou?rs? (?:on|of|in) (?P<x>[^,.;!?]+?)",
-            r"make \g<x> more vivid",
-        ),
-        (
-            r"(?:tone|turn|dial|tame) down the colou?rs? (?:on|of|in) (?P<x>[^,.;!?]*[^ ,.;!?])",
-            r"make \g<x> less vivid",
-        ),
-        (
-            r"(?:shave|take|knock|chop|cut|lop|trim) (?P<n>(?:an? |\d|half|one|two|five|ten|fifteen|twenty)\S*(?: "
-            r"\S+){0,2}?) off "
-            r"(?P<x>(?:the|that|this|my|its)[^,.;!?]*? (?:'s )?(?:height|width|size|length|depth)(?: of "
-            r"[^,.;!?]+?)?)(?= [,.;!?]|$)",
-            r"reduce \g<x> by \g<n>",
-        ),
-        (r", (?:but )?not (?P<x>the [^,.;!?]+?)(?: though)?(?= [.;!?]|$)", r"except \g<x>"),
-        (
-            r"(?:empty|clear) (?:out |off )?(?P<x>the [^,.;!?]+?)(?: ,)? (?P<but>except for|except|apart from|but "
-            r"for|but not|bar|save for|"
-            r"but leave|but keep) ",
-            r"delete everything on \g<x> except ",
-        ),
-        (r"(?:tin|can|pot|bucket|tub) of paint", "paint can"),
-        (r"(?:tins|cans|pots|buckets|tubs) of paint", "paint cans"),
-        (r"(?P<v>down|up|along|over|off) (?=from (?:the|that|this|my))", ""),
-        (r"(?:that is |which is |that are |just )?(?:leaning|leant|propped)(?: up)? against", "next to"),
-        (r"whatever (?:is|has) been (?:left |put |placed |dumped |sitting |lying )?(?=\S)", "whatever is "),
-        (
-            r"(?P<v>budge|shuffle|move|shift|slide|nudge|scoot|push|scooch) (?P<x>[^,.;!?]+?) along (?=to the|left|"
-            r"right|a bit|a little)",
-            r"\g<v> \g<x> ",
-        ),
-        (r"rather than (?:on|in|under|by|next to|behind|beside|against|at|where) [^,.;!?]+", ""),
-        (r"be double (?P<s>(?:the |its )?(?:size|height|width|length))", r"be twice \g<s>"),
-        (r"show me nothing but", "show only"),
-        (r"leave me (?:with )?(?:only|just)", "keep only"),
-        (
-            r", (?:so |could you |can you |please |just )*(?:put|move|stick|place|pop) (?:it|them) (?:there|over "
-            r"there)(?= [.;!?]|$)",
-            "",
-        ),
-        (r", (?:exact|identical|the same) (?:copies|duplicates|clones|ones)(?= [.;!?]|$)", ""),
-        (
-            r"go (?P<d>(?:a bit |a little |a touch |much |even |way )?(?:darker|lighter|brighter|bigger|smaller|"
-            r"paler))",
-            r"make it \g<d>",
-        ),
-        (
-            r"(?:chuck|sling|whack|throw|bung|lob|toss|drop) (?P<x>an? [^,.;!?]+?) (?:down |over |in |up "
-            r")?(?P<p>by|on|onto|next to|in|"
-            r"into|under|behind|beside|near|between|against)",
-            r"put \g<x> \g<p>",
-        ),
-        (
-            r"(?:only|just|nothing but) (?P<x>(?:the|my|our|both|that|those) \S.*?) (?:should|must|can|may|is to|"
-            r"are to) "
-            r"(?:stay|remain|be left|be visible|be shown|be there|survive|be kept)(?: visible| behind)?",
-            r"keep only \g<x>",
-        ),
-        (r"(?:let me have a look|let me look|i want to look|have a look) at (?:only|just) ", "keep only "),
-        (r"(?P<v>swap|switch|change) (?P<x>\S.*?) over(?= [,.;!?]|$)", r"swap \g<x>"),
-        (r"get rid(?= [,.;!?]|$)", "get rid of it"),
-        (r"less (?:wide|broad)", "narrower"),
-        (r"less (?:tall|high)", "shorter"),
-        (r"less (?:big|large|huge)", "smaller"),
-        (r"less bright", "darker"),
-        (r"less dark", "lighter"),
-        (r"(?:chuck|throw|toss|kick|fling) (?P<x>\S.*?) out (?:of )?the (?:window|door)", r"delete \g<x>"),
-        (
-            r"(?P<off>(?:off|out of|from|away from) (?:\S+ ){1,5}?)and (?P<to>into|onto|to|over to|on to|under|"
-            r"behind|against)",
-            r"\g<off>\g<to>",
-        ),
-        (
-            r"(?:so (?:that )?|until |till )(?:it|they) (?:is|are) (?:right |up )?(?P<p>on|in|under|next|beside|"
-            r"between|behind|against|above|"
-            r"near|by|at|below|over|inside|opposite|onto|across|facing)",
-            r"\g<p>",
-        ),
-        (
-            r"(?:back |over |along |up |right )*(?:so (?:that )?(?:it|they)|until (?:it|they)|till (?:it|they)) "
-            r"(?:touch|hit|reach|meet|"
-            r"abut|press|rest|lean)(?:es|s)?(?: against| on)?",
-            "against",
-        ),
-        (
-            r"(?P<f>flip|spin|swing|turn|rotate) (?P<x>\S.*?) (?:round|around) (?:by |a full )?(?P<n>\d+)(?: "
-            r"degrees| deg)?",
-            r"rotate \g<x> \g<n> degrees",
-        ),
-        (
-            r"(?:put|place|stick|pop) (?P<a>\S.*?) where (?P<b>\S.*?) (?:is|are|was)(?: now)?(?: ,)* and (?P=b) "
-            r"where (?P=a) "
-            r"(?:is|are|was)(?: now)?",
-            r"swap \g<a> and \g<b>",
-        ),
-        (r"(?P<v>colou?r|paint|make|do|turn) me (?P<d>the|my|that|this|both|all|every)", r"\g<v> \g<d>"),
-        (r"(?:with|by) (?:the |a )?(?:(?:width|breadth) of a|a) hand(?: 's (?:width|breadth))?", "by 10 cm"),
-        (
-            r"(?:by )?(?:the |a )?(?:(?:width|breadth) of a hand|hand 's (?:width|breadth)|handbreadth|palm 's width)",
-            "10 cm",
-        ),
-        (r"(?:by )?(?:an? )?arm 's length", "70 cm"),
-        (r"(?:by )?(?:a )?(?:finger|thumb) 's (?:width|breadth)", "2 cm"),
-        (
-            r"(?:by )?(?:a|one) (?:step|pace|stride)(?= (?:to|left|right|back|forward|further|closer|away|towards?|"
-            r"up|down))",
-            "75 cm",
-        ),
-        (
-            r"(?:by )?(?:two|a couple of) (?:steps|paces|strides)(?= (?:to|left|right|back|forward|further|closer|"
-            r"away|towards?))",
-            "1.5 m",
-        ),
-        (
-            r"(?P<v>paint|recolou?r|colou?r|dye|make|tint|turn) (?P<x>\S.*?) (?:(?:so (?:that )?(?:it|they) |to "
-            r")match(?:es)?|like)(?= (?:the|my|our|that|its|"
-            r"those|these) )",
-            r"\g<v> \g<x> the same colour as",
-        ),
-        (
-            r"(?P<verb>put|place|tidy|store|stow|pack|stick|pop) (?P<x>\S.*?) away (?P<p>in|into|on|onto|under|"
-            r"inside|behind)",
-            r"put \g<x> \g<p>",
-        ),
-    )
 )
 
 
@@ -303,12 +152,13 @@ def smoothed(words: Sequence[Word]) -> tuple[Word, ...]:
 
 def smooth(texts: Sequence[str]) -> list[str]:
     """The words of an instruction without hesitation, tags and reasons; never fewer than none of them are left."""
-    said = " ".join(t for t in texts if t not in _SOUNDS)
+    said = " ".join(_without_hedges([t for t in texts if t not in _SOUNDS]))
+    said = _linked(said)
     said = re.sub(r"(?: (?:—|–|―))+", " ,", said)
     said = re.sub(r"\. \.(?: \.)*", ",", said)
     said = _settle_commas(said)
     said = _JUDGING.sub(r"\g<the> ", _plain_hues(said))
-    for pattern, plain in _REWORDED:
+    for pattern, plain in REWORDED:
         said = pattern.sub(plain, said)
     said = re.sub(r" (too|as well) (?:, and|,|and) ", r" \1 . ", said)
     said = _named_ones(_dropped_g(said))
@@ -318,6 +168,42 @@ def smooth(texts: Sequence[str]) -> list[str]:
         said = _settle_commas(_TAG_END.sub("", said))
     found = said.split()
     return found if found else list(texts)
+
+
+_HEDGES = bag(
+    "really definitely certainly probably possibly perhaps maybe surely properly neatly carefully gently quickly "
+    "quietly completely totally entirely fully absolutely literally frankly seriously personally obviously ideally "
+    "preferably basically essentially honestly truly urgently desperately badly finally"
+)
+_SHADED = bag("transparent invisible see opaque different hidden visible clear solid")
+
+
+def _without_hedges(texts: Sequence[str]) -> list[str]:
+    """The words without adverbs that only stress or weaken what is said; "fully transparent" stays."""
+    kept = [t for i, t in enumerate(texts) if t not in _HEDGES or _SHADED & set(texts[i + 1 : i + 2])]
+    return kept if any(t[0].isalpha() for t in kept) else list(texts)
+
+
+_OWNED = re.compile(
+    r"(?:^|(?<=[.;!?,] ))(?P<thing>(?:(?:the|that|this|my|our|your) )?(?:[a-z]+ ){1,4}?)'s (?P<how>(?:(?:too|so|very|"
+    r"just|a bit|a little|rather|quite|pretty|well|way|all|getting|looking|been|gone|become|made|always|still|bit|"
+    r"dead|proper|right|far|really|such|no|not|only|never) )*)(?P<last>[a-z]+)(?P<rest>(?: [a-z]+){0,6})(?= [,.;!?]|$)"
+)
+
+
+def _linked(said: str) -> str:
+    """The words with "is" for the "'s" of a clause that says how a thing is: "that lamp 's naff , swap it"."""
+
+    def full(found: re.Match[str]) -> str:
+        thing, how, last = found["thing"].split(), found["how"], found["last"]
+        owned = (last,) in lexicon.CLOSED_PHRASES or nouns.is_known(last) or color_at((last,), 0)
+        verb = Lookahead([*thing, "it"]).verb(0)
+        command = verb is not None and thing[0] not in ("that", "this", "the")
+        if command or (not how and (owned or found["rest"])):
+            return found.group()
+        return f"{found['thing']}is {how}{last}{found['rest']}"
+
+    return _OWNED.sub(full, said)
 
 
 _PRAISING = bag(
@@ -353,6 +239,10 @@ _JUDGING = re.compile(
 )
 
 
+_NARROWED = re.compile(
+    r"(?<!not )(?P<the>the|that|this|my) (?P<noun>[a-z]+(?: [a-z]+)?) , (?:i mean |that is |namely |specifically )?"
+    r"(?P<one>the [^,.;!?]+?) one(?: ,)?(?: (?:and |so )?not (?:the|that) [^,.;!?]+)?(?= [,.;!?]|$)"
+)
 _APPOSED = re.compile(r"(?P<a>an?) (?P<noun>\S+)(?P<rest> [^.;!?]*?) , an? (?P<kind>[^,.;!?]+?) one(?= [.;!?]|$)")
 _OF_THESE = re.compile(
     r"(?<!\S)of (?:the|these|those) (?:two |three |four |five )?(?P<nouns>[^,.;!?]+?) , (?P<rest>the "
@@ -363,10 +253,17 @@ _OF_THESE = re.compile(
 def _named_ones(said: str) -> str:
     """The words with the noun for "one" where it stands near: "a beanbag by the sofa, a red one"."""
     said = _APPOSED.sub(r"a \g<kind> \g<noun>\g<rest>", said)
+    if (found := _NARROWED.search(said)) and _is_bare(found["noun"].split()):
+        said = f"{said[: found.start()]}{found['one']} {found['noun']}{said[found.end() :]}"
     if found := _OF_THESE.search(said):
         noun = " ".join([*found.group("nouns").split()[:-1], singular(found.group("nouns").split()[-1])])
         said = said[: found.start()] + found.group("rest") + noun + said[found.end() :]
     return said
+
+
+def _is_bare(noun: Sequence[str]) -> bool:
+    """Whether a noun stands without attributes of its own."""
+    return (noun[0],) not in lexicon.ATTRIBUTE_PHRASES and color_at(noun, 0) is None
 
 
 def _dropped_g(said: str) -> str:
@@ -389,10 +286,18 @@ def unopened(said: str) -> str:
     return _OPENING_MARKS.sub("", said)
 
 
+def _ends_in_hue(said: str) -> bool:
+    """Whether words end in a colour, so that what it shall match is a reason: "paint it navy, to match the logo"."""
+    words = said.split()
+    return any(found[1] == taken for taken in (1, 2, 3) if (found := color_at(words, len(words) - taken)) is not None)
+
+
 def without_reason(said: str) -> str:
     """A sentence without the reason behind or in front of its command."""
     if not _FACING.search(said):
         said = _TRAILING_REASON.sub("", said)
+    if (found := _MATCHING.match(said)) and _ends_in_hue(found["edit"]):
+        said = found["edit"]
     if found := _LEADING_AIM.match(said):
         return found.group("rest").removeprefix(", ")
     if found := _LEADING_REASON.match(said):

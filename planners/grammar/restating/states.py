@@ -19,10 +19,19 @@ _STATE_WORDS = bag(
 )
 
 
+# What a thing may be made to do: "have the chair face the fridge".
+_DOING = bag(
+    "face stand sit lean lie hang look point vanish disappear go swap match turn rotate move shrink grow rest spin "
+    "tilt "
+    "slide shift come"
+)
+
+
 def begins_state(rest: Sequence[str], i: int) -> bool:
     """Whether a state may begin at `i`."""
     word = rest[i]
     state = word in _STATE_WORDS or word.endswith("er") or word[0].isdigit() or color_at(rest, i) is not None
+    state = state or (i > 1 and word in _DOING)
     return state or at(participles(), rest, i) is not None
 
 
@@ -71,6 +80,9 @@ def states(thing: str, state: Sequence[str]) -> Iterator[str]:
             break
         words = words[1:]
     said = " ".join(words)
+    if said in ("empty", "clear", "bare", "cleared", "emptied"):
+        yield f"delete everything on {thing}"
+        return
     if re.match(rf"^(?:{GONE}|go|go away|disappear|vanish|leave)$", said):
         yield f"delete {bare_thing(thing)}"
         return
@@ -107,6 +119,8 @@ def states(thing: str, state: Sequence[str]) -> Iterator[str]:
         yield f"{words[0]} {thing} {' '.join(words[1:])}"
     if words[0] in (
         "go",
+        "lean",
+        "leaning",
         "stand",
         "sit",
         "hang",

@@ -15,7 +15,8 @@ REALLY = r"(?:(?:really|just|also|still|actually|now|quite|much|so|kind of|sort 
           r"maybe|perhaps|rather|only|all|both|certainly|please) )*"  # fmt: skip
 BETTER = (
     r"(?:a (?:lot|bit|little|touch|good deal) |much |far |so much |way |even |somewhat )?"
-    r"(?:better|nicer|handier|comfier|safer|neater|smarter|best|great|good|nice|lovely|cooler|prettier|perfect|fab|fantastic|smarter|cosier|happier|"
+    r"(?:better|nicer|handier|comfier|safer|neater|smarter|best|great|good|nice|lovely|cooler|prettier|perfect|fab|"
+    r"fantastic|smarter|cosier|happier|"
     r"more at home|more (?:sensible|fun|modern|elegant))"
 )
 # Before a thing and the state that it is to have.
@@ -27,13 +28,16 @@ WANTING = re.compile(
     rf"(?: to (?:see|have|get|find)| seeing| having| for| it if| it that| if| that)?|"
     rf"(?:could|can|may|might|shall|should|would) {SPEAKER} {REALLY}(?:please )?(?:have|get|see|try|like|want)|"
     rf"(?:can|could|would|will) (?:you|someone|somebody) {REALLY}(?:please )?(?:have|get|see (?:to it )?that)|"
+    rf"(?:\S+ ){{1,4}}?(?:wants?|would (?:like|love|prefer)|prefers?|fanc(?:y|ies)|insists? on|asked for|asks for)"
+    rf"(?= (?:the|that|this|my|our|those|these|both|all|every|it|them) )|"
     rf"(?:\S+ ){{1,3}}?(?:said|says|reckons|thinks|told (?:me|us)|insists|suggests|asked|asks)(?: (?:for|me|us|"
     rf"to))*(?: that)?|"
     rf"(?:let us )?{REALLY}(?:try|picture|imagine)|let us {REALLY}(?:have|see|get)|let me {REALLY}(?:have|see|try)|"
-    rf"(?:just )?(?:have|get)|"
+    rf"(?:just )?(?:have|get|make|let)|"
     rf"make sure(?: that)?|see to it that|make it so(?: that)?|ensure(?: that)?|i (?:think|feel|reckon|guess|suppose|"
     rf"believe|say|vote)(?: that)?|how about|what about|what if|would it be (?:possible|ok|okay) (?:for|to have)|"
-    rf"it would be {BETTER} (?:if|to have|to see|with)|it is (?:time|about time|high time) (?:for|that)|"
+    rf"(?:it |that )?(?:would|might|could|may) {REALLY}be {BETTER} (?:if|to have|to see|with)|any (?:chance|way)(?: "
+    rf"that)?|it is (?:time|about time|high time) (?:for|that)|"
     rf"it 's time for|please let|let|help me (?:get|have)|i am (?:after|hoping for|thinking)|imagine|picture|"
     rf"my (?:idea|plan|wish|preference) (?:is|would be)(?: to have| for)?)"
     rf" )(?P<rest>\S.*)$"
@@ -41,10 +45,12 @@ WANTING = re.compile(
 MODAL = re.compile(
     rf"^(?P<thing>\S.*?) (?:(?P<not>(?:can|must|should|may|shall|will|would|could|need|do|does|ought) not|never)|"
     rf"{REALLY}(?:should|must|shall|could|can|may|might|ought to|has to|have to|had to|has got to|have got to|got to|"
-    rf"would {REALLY}(?:be|look|fit|go|do|feel|work|stand|sit|suit|make more sense) {BETTER}(?: if it (?:were|was|"
+    rf"would {REALLY}(?:be|look|fit|go|do|feel|work|stand|sit|suit|make more sense) {BETTER}(?: off)?(?: if it "
+    rf"(?:were|was|"
     rf"is))?|"
     rf"needs to|need to|wants to|want to|is to|are to|was to|were to|will|would|had better|is supposed to|"
-    rf"are supposed to|is meant to|are meant to|is going to|are going to|is due to|deserves to|cries out to|"
+    rf"are supposed to|is meant to|are meant to|is going to|are going to|is due to|deserves to|cries out to|would "
+    rf"be {BETTER} off|"
     rf"would like to|was supposed to|is ready to|is dying to|needs|should all|must all|should both|"
     rf"(?:looks|is|fits|works|goes|are|look) (?:much |far |way |a lot )?(?:better|nicer|best)))"
     rf" {REALLY}(?P<state>\S.*)$"
@@ -62,8 +68,8 @@ NEEDS = re.compile(
 )
 ASKED = re.compile(
     rf"^(?:can|could|may|might|please can|please could) (?P<thing>\S.*?) {REALLY}"
-    rf"(?P<verb>be|go|come|stand|sit|hang|move|turn|face|look|become|have|disappear|vanish|leave|get|shrink|grow|lie) "
-    rf"?(?P<state>.*)$"
+    rf"(?P<verb>be|go|come|stand|sit|hang|move|turn|face|look|become|have|disappear|vanish|leave|get|shrink|grow|lie|"
+    rf"lean|lose|match|swap|point|live|rest|rotate|spin|slide|shift)(?: (?P<state>\S.*))?$"
 )
 GONE = r"(?:gone|out|away|off|history|toast|outta here|out of (?:here|there|the (?:room|way|house|picture|scene)|"\
        r"my sight|sight)|"\
@@ -92,12 +98,37 @@ KEPT = tuple(
 )
 NO_MORE = (
     r"(?:anymore|any more|any longer|again|ever again|here|in here|around|around here|in this room|in the room|"
-    r"there|at all|"
+    r"there|at all|either|too|as well|"
     r"any longer here|in the (?:scene|picture)|hanging around|cluttering (?:up )?the (?:place|room))"
+)
+_DOWN = r"(?:down|off|out)(?: (?:from|of|off))?(?: (?:the|that|my|our|its) (?:\w+ )?(?:wall|ceiling|hook|room|shelf))?"
+_IN_THE_BIN = (
+    r"(?:in|into|to|on) the (?:bin|trash|skip|dump|tip|rubbish|garbage|dumpster|scrap heap|recycling|charity shop)"
 )
 UNWANTED = tuple(
     re.compile(pattern)
     for pattern in (
+        rf"^(?P<thing>\S.*?) {REALLY}(?:has to|have to|must|needs? to|should|ought to|is to|are to|can|may|had better|"
+        rf"wants to|will have to|is going to have to) (?:come|be taken|get taken|be|go) {_DOWN}$",
+        rf"^(?:{SPEAKER}|(?:\S+ ){{1,3}}?\S+) (?:wants?|needs?|would like|asked for|insists? on) (?P<thing>(?:the|that|"
+        rf"this|my|our|those|these|both|all) \S.*?) (?:taken )?(?:down|off the wall|down off the wall|off)$",
+        rf"^(?P<thing>\S.*?) (?:goes|go|is going|are going|belongs?|can go|has to go|have to go|should go|must go|"
+        rf"needs to go) {_IN_THE_BIN}$",
+        r"^(?P<thing>\S.*? (?:one|left|right|last|first|middle|top|bottom|back|front|wall|corner|\w+est \w+)) "
+        r"(?:goes|go)$",
+        r"^(?:so |and |then )?(?:out|away|off) (?P<thing>(?:it|they|the \S.*?)) (?:goes|go)$",
+        rf"^(?:none|not one|not a single one|not any|not a one) of (?P<thing>(?:the|those|these|my|our) \S.*?) {REALLY}"
+        rf"(?:should|must|can|may|shall|is to|are to|gets to|get to|will) (?:stay|remain|be left|be kept|be there|"
+        rf"survive|be here)(?: {NO_MORE})*$",
+        r"^not (?:one|a single|any) (?P<each>\S.*?) (?:should|must|can|may|shall|is to) (?:stay|remain|be left|be kept|"
+        r"be there|survive|be here)(?: behind)?$",
+        r"^no (?!one|body|thing|need|problem|worries|way|idea|doubt|more|less|that|this|it|the|not|do|make|i |we |"
+        r"longer|room|space|place|reason|point|use|chance|but|and|other|wait|sorry|thanks|thank|please|yes|actually|"
+        r"hang|hold|stop|oops|just|\w+er\b)(?P<thing>[^,:]+?)(?: at all| "
+        r"whatsoever| in here| here)*$",
+        rf"^(?:{SPEAKER} {REALLY}(?:would|will|could|do)? ?{REALLY}(?:want|like|prefer|rather have|have|see) )no "
+        rf"(?!one|more)(?P<thing>[^,:]+?)(?: {NO_MORE}| at all)*$",
+        r"^(?:(?:the|this|that|my|our) (?:\w+ ){1,2})?without (?P<thing>(?:the|that|this|my|our|any) [^,]+)$",
         rf"^(?:there is|there 's|there are|we have|we have got|i have|i have got|there 's just|i see|i have really) "
         rf"(?:really |just |simply )?(?:no|not any|not enough|no more|hardly any|just no) "
         rf"(?:room|space|place|need|use|call|reason|point|purpose)(?: (?:left|here|in here))?"
@@ -157,9 +188,22 @@ UNWANTED = tuple(
     )
 )
 NEW = r"(?:a|an|another|some|one more|one|two|three|four|five|six|a couple of|a pair of|a few|more|new)"
+_PLACE = (
+    r"(?: ,)?(?P<more> (?:on|in|next to|beside|under|by|behind|near|at|between|around|to|above|opposite|against|over|"
+    r"in front of) .*)?"
+)
 WANTED = tuple(
     re.compile(pattern)
     for pattern in (
+        rf"^(?P<thing>(?!(?:the|that|this|my|our|your|those|these|no|nothing|it|all|both|every|more|what|is|are) )"
+        rf"(?:[a-z]+ ){{0,3}}[a-z]+) (?:is |are )?(?:needed|wanted|required|missing|please){_PLACE}$",
+        rf"^(?:missing|needed|wanted|required|to add|still missing|still needed) [:,] (?P<thing>{NEW} \S.*)$",
+        rf"^(?:is there )?(?:any|a) chance (?:of|for|that there could be|to have|to get) (?P<thing>{NEW} \S.*)$",
+        rf"^(?:would|could|might|should)(?: not)? (?P<thing>{NEW} [^,]+?) {REALLY}(?:be|look|go|fit|do|work|suit) "
+        rf"(?:{BETTER}|well)(?P<more> .*)?$",
+        rf"^(?:what|all|the (?:only )?thing) (?:that )?(?:\S+ ){{1,3}}?(?:needs?|lacks?|wants?|is missing|could do "
+        rf"with|is crying out for)"
+        rf" is (?P<thing>{NEW} \S.*)$",
         r"^(?P<thing>(?:a|one|two|three|four|five|six|another|\d+) (?:more )?(?:copy|copies|duplicates?|clones?) of "
         r"\S.*)$",
         rf"^(?P<thing>{NEW} (?:more )?)(?P<noun>[^,]+?) , (?:all |both |each |in )?(?P<hue>[^,]+?)(?: "
@@ -228,6 +272,50 @@ INSTEAD = tuple(
         rf"^(?:swap|trade|change|exchange|switch|turn|upgrade)(?: out)? (?P<old>\S.*?) (?:for|into|to) "
         rf"(?P<new>{NEW} \S.*)$",
     )
+)
+# What is left empty: nothing shall be on it.
+EMPTIED = tuple(
+    re.compile(pattern)
+    for pattern in (
+        rf"^(?:nothing|no thing|not a thing|not one thing|no clutter|none of it) {REALLY}(?:should|must|can|may|"
+        rf"shall|needs to|"
+        r"has to|ought to|is to|is allowed to) (?:be|stay|remain|stand|sit|lie|be left|be lying|be standing)(?: "
+        r"around)? "
+        r"on (?P<thing>the [^,]+)$",
+        rf"^(?:{SPEAKER} {REALLY}(?:want|need|would like|would love) |make |have |get |keep )?(?P<thing>(?:the|that|"
+        rf"this|"
+        rf"my|our) [^,]+?)(?: (?:should|must|has to|needs to|ought to|is to) be| to be)? {REALLY}(?:empty|clear|"
+        rf"cleared|bare|"
+        r"emptied|cleared off|cleared out|free of clutter)$",
+        r"^(?:strip|wipe|sweep|take|get) (?:everything|the lot|all of it|all|it all|anything) (?:off|from) "
+        r"(?P<thing>the [^,]+)$",
+        r"^(?:clear|empty|strip) (?P<thing>the [^,]+?) (?:completely|entirely|fully|totally|off|out|bare|of everything|"
+        r"of all (?:its |the )?(?:clutter|stuff|things|contents))(?: please)*$",
+    )
+)
+# "Black for the chandelier", "let us go with black on the chandelier", "grey suits the chaise longue better".
+HUED = tuple(
+    re.compile(pattern)
+    for pattern in (
+        rf"^(?:{SPEAKER} (?:have |has |would |could |will |am going to |are going to |might )*|let us |please "
+        rf")?(?:go|going|gone|went|"
+        rf"decided|settled|settle|decide|choose|chose|opt|opted|vote|voted|stick|try|use|pick|picked|apply|put) "
+        rf"(?:with |for |on |to )?(?P<hue>\S.*?) (?:for|on|onto) (?P<thing>(?:the|that|this|my|our|both|all|every) "
+        rf"\S.*)$",
+        rf"^(?P<hue>\S.*?) (?:would |might |could )?(?:suits?|becomes?|flatters?|fits?|works? (?:better )?(?:on|for)|"
+        rf"looks? {BETTER} on|goes {BETTER} with) (?P<thing>(?:the|that|this|my|our) [^,;]+?)(?: (?:{BETTER}|more|"
+        rf"best))?$",
+        r"^(?P<was>\S+) (?:does|is) not (?:suit|work for|work on|look (?:good|right|great|nice) on|right for) "
+        r"(?P<thing>(?:the|that|this|my|our) [^,;]+?) [;,] (?P<hue>\S+(?: \S+)?) (?:would|does|will|might)(?: do| "
+        r"be better| work)?$",
+        r"^(?:a|the) (?:better|best|nicer|right) colou?r for (?P<thing>(?:the|that|this|my|our) [^,;]+?) (?:is|"
+        r"would be|might be)"
+        r" (?P<hue>\S.*)$",
+    )
+)
+BEST_PLACE = re.compile(
+    r"^(?:the|a) (?:best|better|right|ideal|proper|perfect|only|good|nicer) (?:place|spot|position|home|location) for "
+    r"(?P<thing>\S.*?) (?:is|would be|might be|has to be|must be|will be) (?P<state>\S.*)$"
 )
 # "the third bookcase is the one I want gone", "what I want gone is the third bookcase".
 CLEFT = tuple(

@@ -9,18 +9,22 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from ..tagging.lookahead import color_at
+from ..tagging.lookahead import Lookahead, color_at
 from .chunks import is_thing
 from .participles import at, gerunds
 from .states import bare_thing, begins_state, command, is_plain, may_end, states
 from .wish_patterns import (
     ASKED,
+    BEST_PLACE,
     CLEFT,
+    EMPTIED,
     GIVEN,
+    HUED,
     INSTEAD,
     KEPT,
     MODAL,
     NEEDS,
+    NEW,
     OF_COLOR,
     PLACED,
     UNWANTED,
@@ -33,7 +37,11 @@ def wishes(said: str) -> Iterator[str]:
     """Commands that a sentence may stand for, the likeliest first."""
     cut = (
         _by_doing,
+        _would,
         _cleft,
+        _emptied,
+        _hued,
+        _best_place,
         _given,
         _kept,
         _replacing,
@@ -58,6 +66,46 @@ def _by_doing(said: str) -> Iterator[str]:
             yield " ".join([*form[0], *words[i + 1 + form[1] :]])
 
 
+_WOULD = re.compile(
+    r"^(?:i|we|you)(?: (?:would|will|could|might|should|had|may|am going to|are going to|want to|need to|have to))"
+    r"(?: (?:just|rather|also|prefer to|like to|love to|better|best|do well to|do better to|want to|need to|like "
+    r"you to|now|"
+    r"be tempted to|be inclined to|say|suggest we|suggest you))* (?P<rest>\S.*?)(?:(?: ,)* (?:if (?:i|it) (?:were|"
+    r"was) (?:you|me|up to me|"
+    r"my choice|my room|mine)|in your (?:place|shoes)|if it were up to me|if you ask me))?$"
+)
+
+
+def _would(said: str) -> Iterator[str]:
+    """ "I'd move the palm a bit", "you'd do well to turn the chair around"."""
+    found = _WOULD.match(said)
+    if found and Lookahead(found["rest"].split()).verb(0) is not None:
+        yield found["rest"]
+
+
+def _emptied(said: str) -> Iterator[str]:
+    for pattern in EMPTIED:
+        if (found := pattern.match(said)) and is_thing(tuple(found["thing"].split())):
+            yield f"delete everything on {found['thing']}"
+
+
+def _hued(said: str) -> Iterator[str]:
+    for pattern in HUED:
+        if (found := pattern.match(said)) and _is_hue(found["hue"]):
+            yield f"paint {found['thing']} {found['hue']}"
+
+
+def _is_hue(said: str) -> bool:
+    words = said.split()
+    found = color_at(words, 0)
+    return found is not None and found[1] == len(words)
+
+
+def _best_place(said: str) -> Iterator[str]:
+    if found := BEST_PLACE.match(said):
+        yield f"put {found['thing']} {found['state']}"
+
+
 def _cleft(said: str) -> Iterator[str]:
     """ "the third bookcase is the one I want gone"."""
     for pattern in CLEFT:
@@ -73,11 +121,21 @@ def _kept(said: str) -> Iterator[str]:
             yield f"keep only {found.group('thing')}"
 
 
+_NUMBERED = re.compile(
+    r"(?:two|three|four|five|\d+|so many|that many|another|more|as many|this many|several|quite so many) "
+)
+
+
 def _unwanted(said: str) -> Iterator[str]:
     for pattern in UNWANTED:
-        found = pattern.match(said)
-        if found and is_plain(found.group("thing")):
-            yield f"delete {re.sub('^any ', 'all ', bare_thing(found.group('thing')))}"
+        if not (found := pattern.match(said)):
+            continue
+        each = found.groupdict().get("each")
+        thing = f"every {each}" if each else found.group("thing")
+        if _NUMBERED.match(thing):
+            continue  # "we do not need two palms" leaves one of them
+        if is_plain(thing) or thing in ("it", "they"):
+            yield f"delete {re.sub('^any ', 'all ', bare_thing(thing)).replace('they', 'them')}"
 
 
 def _wanted(said: str) -> Iterator[str]:
@@ -86,9 +144,14 @@ def _wanted(said: str) -> Iterator[str]:
             continue
         more, noun = found.groupdict().get("more") or "", found.groupdict().get("noun")
         if noun is None:
-            yield f"add {found.group('thing')}{more}"
+            yield f"add {_introduced(found.group('thing'))}{more}"
         elif color_at(found.group("hue").split(), 0):
             yield f"add {found.group('thing')}{found.group('hue')} {noun}{more}"
+
+
+def _introduced(thing: str) -> str:
+    """A new thing with an article: "floor lamp wanted"."""
+    return thing if re.match(rf"^(?:{NEW}|\d+)\b", thing) or thing.endswith("s") else f"a {thing}"
 
 
 def _replacing(said: str) -> Iterator[str]:
@@ -124,7 +187,7 @@ def _asked(said: str) -> Iterator[str]:
     """ "can the lamp go on the desk"."""
     found = ASKED.match(said)
     if found and not re.match(r"(?:you|i|we|it be possible)\b", found.group("thing")):
-        yield from states(found.group("thing"), f"{found.group('verb')} {found.group('state')}".split())
+        yield from states(found.group("thing"), f"{found.group('verb')} {found.group('state') or ''}".split())
 
 
 def _wanting(said: str) -> Iterator[str]:
@@ -150,11 +213,14 @@ def _placed(said: str) -> Iterator[str]:
         yield f"put {found.group('thing')} {' '.join(state)}"
 
 
+_INDEFINITE = ("a", "an", "another", "some")
+
+
 def _split_states(rest: Sequence[str]) -> Iterator[str]:
     """The readings of a thing and its state that stand side by side: "the sofa painted blue"."""
     for i in range(1, len(rest)):
         thing = tuple(rest[:i])
-        if may_end(rest[i - 1]) and begins_state(rest, i) and is_thing(thing):
+        if rest[0] not in _INDEFINITE and may_end(rest[i - 1]) and begins_state(rest, i) and is_thing(thing):
             yield from states(" ".join(thing), rest[i:])
 
 

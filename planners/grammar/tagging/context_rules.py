@@ -133,6 +133,9 @@ def _tag_after_verb(state: TaggerState, i: int) -> int | None:
         return state.emit("PLACES", None, i, 1)
     if text == "deep" and state.last_type == "LENGTH":
         return state.emit("SIZEWORD", "deep", i, 1)
+    if text == "or" and [t.type for t in state.clause.tags[-2:]] == ["NOT", "HUE"] and state.ahead.hue_follows(i + 1):
+        state.emit("REL", None, i, 0)
+        return state.emit("NOT", None, i, 1)
     if text in ("neither", "nor") and any(t.type == "REL" for t in state.clause.tags):
         if text == "nor":
             state.emit("REL", None, i, 0)

@@ -15,7 +15,7 @@ from ....gaussians.world import kinds
 from ....gaussians.world.lengths import UNITS
 from ....gaussians.world.spelling import SHORTEST, likely_slips
 from ....gaussians.world.words import normalise, plural
-from ..vocabulary import lexicon, nouns, quantities
+from ..vocabulary import doings, lexicon, nouns, quantities
 from .words import Word, bag
 
 _CLAUSE_OPENERS = bag(". ; ! then please you")
@@ -110,5 +110,6 @@ def _known_words() -> frozenset[str]:
     )
     said |= lexicon.COMMANDS | lexicon.ASKING | lexicon.PARTICIPLES | nouns.everyday() | kinds.every_word()
     said |= {w for c in nouns.COMPOUNDS for w in c} | Vocabulary.household().modifiers
+    said |= doings.plain() | doings.said_of_one() | doings.ongoing()
     said |= {w for n in kinds.every_word() for w in normalise(n)}
     return frozenset(said | _closed_words() | _verbs() | set(map(plural, said)))

@@ -237,6 +237,9 @@ def _tag_phrase(state: TaggerState, i: int, entry: Entry, taken: int) -> int:
     text, behind = state.texts[i], i + taken
     if kind == "EVERYTHING" and text == "whatever" and taken == 2 and state.ahead.preposition_at(behind):
         return state.emit("EVERYTHING", value, i, taken)
+    if kind == "DEGREE" and state.texts[i:behind] == ("a", "little") and state.ahead.noun_at(behind):
+        state.emit("DET", "indef", i, 1)  # "a little side table"
+        return state.emit("SIZE", "small", i + 1, 1)
     if kind == "DET" and taken == 1:
         return _tag_determiner(state, i, value)
     if (

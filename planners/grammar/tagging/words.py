@@ -40,6 +40,11 @@ _CONTRACTIONS = {
     "wanna": "want to", "gonna": "going to", "pls": "please", "plz": "please", "thx": "thanks", "u": "you",
     "teh": "the", "hte": "the", "adn": "and", "nad": "and",
 }  # fmt: skip
+# In the singular behind a number above one these are parts of a name: "a two-seater sofa".
+_COUNTED = frozenset({"two", "three", "four", "five", "six", "eight", "ten", "twelve"})
+_COUNTABLE = frozenset(
+    {"seater", "person", "legged", "tier", "tiered", "burner", "drawer", "door", "armed", "bulb", "shelf", "panel"}
+)
 _TOKEN = re.compile(
     r"#[0-9a-f]{3}(?:[0-9a-f]{3})?(?![0-9a-z])"
     r"|\d+(?:st|nd|rd|th)\b"
@@ -134,6 +139,9 @@ def _parts(text: str, start: int, end: int, before: list[Word]) -> list[Word]:
         return [Word("'s", start, end)] if plural_owner else []
     if text == "-":
         return []
+    if text in _COUNTABLE and before and before[-1].text in _COUNTED:
+        first = before.pop()
+        return [Word(f"{first.text}-{text}", first.start, end)]  # "a two-seater sofa"
     if full := _CONTRACTIONS.get(text):
         return [Word(part, start, end) for part in full.split()]
     if text.endswith("'s"):

@@ -205,7 +205,8 @@ CLOSED: dict[str, Entry] = {
     **same(
         ("BUT", None),
         "but, but not, except, except for, excepting, excluding, other than, apart from, aside from, besides, "
-        "but leave, but keep, but do not touch, save for, bar, minus, and not, without touching, without removing, "
+        "but leave, but keep, but do not touch, save for, bar, barring, though not, although not, minus, and not, "
+        "without touching, without removing, "
         "without moving, without deleting, without changing, without affecting, without including, leaving, leaving "
         "out, keeping, not counting, not including, other then, but never",
     ),
@@ -341,7 +342,9 @@ CLOSED: dict[str, Entry] = {
             "the rest of the scene, the rest of the room, the rest of it"),
     **same(("ONE", False), "one"),
     **same(("ONE", True), "ones"),
-    **same(("OTHERS", None), "the others, all the others, all others, the other ones, all the other ones"),
+    **same(("OTHERS", None), "the others, all the others, all others, the other ones, all the other ones, both of "
+                             "the others, both the "
+            "others, both others, all of the others, each of the others, both of the other ones, both other ones"),
     **same(("THING", False), "thing, object, item, part, piece, area, region, element, bit"),
     **same(("THING", True), "things, objects, items, parts, pieces, areas, regions, elements, bits, stuff"),
 }  # fmt: skip
@@ -383,7 +386,8 @@ FILLER = phrases(
     "thanks, thank you, thank you very much, ok, okay, well, so, hey, hi, hello, also, as well, right now, "
     "straight away, go ahead and, from the scene, in the scene, from the room, in the room, from this scene, "
     "in this scene, in here, from here, out of here, out of the room, out of the scene, in the picture, "
-    "in the image, in the view, from the picture, from the image, really, simply, instead, over there, "
+    "in the image, in the view, where it is, where they are, right where it is, right where they are, in peace, "
+    "from the picture, from the image, really, simply, instead, over there, "
     "you see, you know, as it is now, as it is, as before, as now, than it is now, than before, than it is, "
     "than now, than it was, as it was, as they are, as they are now, than they are, currently, too, if you "
     "would, if you will, could you, can you, would you please, for now, from the view, this time, alone, "

@@ -30,7 +30,20 @@ ORDINALS: dict[str, int] = {w: i for i, w in enumerate(_RANKS, 1)}
 _ADVERBS = {"twice": 2.0, "thrice": 3.0}
 _DEGREES = {"degree", "degrees", "deg", "degs", "°"}
 _TURNS = {"turn", "turns", "rotation", "rotations", "revolution", "revolutions"}
-_HEDGES = {"about", "around", "approximately", "roughly", "exactly", "maybe", "some"}
+_WHOLE = {"whole", "full", "good", "further", "more", "extra"}
+_HEDGES = {
+    "about",
+    "around",
+    "approximately",
+    "roughly",
+    "exactly",
+    "maybe",
+    "some",
+    "approx",
+    "nearly",
+    "almost",
+    "just",
+}
 
 
 @dataclass(frozen=True)
@@ -108,6 +121,9 @@ def _with_unit(words: Sequence[str], value: float, taken: int) -> Quantity | Non
 def _one_unit(words: Sequence[str]) -> Quantity | None:
     """One unit: "a metre (and a half)", "a full turn", "a right angle", "a degree"."""
     unit = words[1]
+    if unit in _WHOLE and len(words) > 2 and words[2] in (*UNITS, *IN_METRES) and words[2] not in ("m", "'", '"'):
+        found = _one_unit((words[0], *words[2:]))  # "a whole metre"
+        return found and Quantity(found.kind, found.value, found.unit, found.taken + 1)
     if unit in IN_METRES:
         return _with_unit(("1", *words[1:]), 1.0, 1)
     if unit in UNITS and unit not in ("m", "'", '"'):

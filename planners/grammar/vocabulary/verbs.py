@@ -60,7 +60,12 @@ VERBS: dict[str, Entry] = {
     **same(("MERGE", None), "merge, combine, unite, join, join up, fuse, group, group together, treat, regard"),
     **same(("SPLIT", None), "split, split up, divide, separate, break up, ungroup"),
     **same(("DROP", None), "drop"),
-    **same(("TAKE", None), "take, throw, get, pick up, grab"),
+    **same(
+        ("TAKE", None),
+        "take, throw, get, pick up, grab, nick, pinch, swipe, snatch, nab, whip, fetch, steal, borrow, retrieve, "
+        "scoop up, "
+        "hoick",
+    ),
     **same(
         ("SELECT", None),
         "select, highlight, find, find me, locate, pick, pick out, choose, show me, show, mark, point out, point to, "
@@ -146,9 +151,12 @@ VERBS: dict[str, Entry] = {
     **same(("SCALE", None), "scale, resize, rescale"),
     **same(
         ("GROW", ("all", True)),
-        "enlarge, grow, expand, blow up, magnify, size up, scale up, upscale, upsize, supersize, embiggen, beef up",
+        "enlarge, grow, expand, blow up, magnify, size up, scale up, upscale, upsize, supersize, embiggen, beef up, "
+        "bump up, bulk up, pump up",
     ),
-    **same(("GROW", ("all", False)), "shrink, size down, downsize, scale down, downscale, minify, shrink down"),
+    **same(
+        ("GROW", ("all", False)), "shrink, size down, downsize, scale down, downscale, minify, shrink down, bump down"
+    ),
     **same(("GROW", ("prop", True)), "increase"),
     **same(("GROW", ("prop", False)), "decrease, reduce"),
     **same(("GROW", ("width", True)), "widen, broaden, lengthen"),
