@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
@@ -18,6 +19,16 @@ def _json(value: bool) -> bool:
 
 def _debug(value: bool) -> bool:
     terminal.debug = value
+    return value
+
+
+def _window(value: str | None) -> str | None:
+    """The window for all models of this run; their back ends read the variable, as they read keys."""
+    if value is not None:
+        from ..planners.model import WINDOW_VARIABLE, window
+
+        window(value)
+        os.environ[WINDOW_VARIABLE] = value
     return value
 
 
@@ -69,6 +80,14 @@ Budget = Annotated[
     typer.Option(
         "--budget", metavar="LIMITS",
         help="Limits for models: seconds per instruction, dollars per session, views, tokens: '20s,0.05usd,8views'.",
+    ),
+]  # fmt: skip
+Window = Annotated[
+    str | None,
+    typer.Option(
+        "--window", metavar="TOKENS", callback=_window,
+        help="Context window of the language model, as in 32768 or 32k, for servers that do not tell theirs; also "
+        "SCENEWRIGHT_WINDOW.",
     ),
 ]  # fmt: skip
 Vlm = Annotated[

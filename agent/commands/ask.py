@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..options import Batch, Budget, Debug, Encoder, Force, Json, View, Vlm
+from ..options import Batch, Budget, Debug, Encoder, Force, Json, View, Vlm, Window
 from ..terminal.output import read_batch, terminal
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ def command(
     ] = None,
     vlm: Vlm = "auto",
     budget: Budget = None,
+    window: Window = None,
     encoder: Encoder = "auto",
     view: View = "auto",
     force: Force = False,

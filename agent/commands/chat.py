@@ -18,6 +18,7 @@ from ..options import (
     Up,
     View,
     Vlm,
+    Window,
 )
 from ..terminal.output import terminal
 
@@ -27,6 +28,7 @@ def command(
     planner: Planner = "auto",
     vlm: Vlm = "auto",
     budget: Budget = None,
+    window: Window = None,
     assets: Assets = None,
     picture: Picture = False,
     judge: Judge = None,

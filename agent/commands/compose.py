@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...gaussians.timing import timed
-from ..options import Budget, Debug, Force, Json, Planner, Seed, Size, View
+from ..options import Budget, Debug, Force, Json, Planner, Seed, Size, View, Window
 from ..terminal.output import terminal
 
 if TYPE_CHECKING:
@@ -57,6 +57,7 @@ def command(
     detail: Annotated[float, typer.Option("--detail", help="Factor on the number of Gaussians, 0.05 to 8.")] = 1.0,
     planner: Planner = "auto",
     budget: Budget = None,
+    window: Window = None,
     seed: Seed = 0,
     view: View = "auto",
     size: Size = None,

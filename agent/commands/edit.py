@@ -31,6 +31,7 @@ from ..options import (
     Up,
     View,
     Vlm,
+    Window,
     Yes,
 )
 from ..terminal.output import error_json, terminal
@@ -77,6 +78,7 @@ def command(
     planner: Planner = "auto",
     vlm: Vlm = "auto",
     budget: Budget = None,
+    window: Window = None,
     assets: Assets = None,
     picture: Picture = False,
     judge: Judge = None,

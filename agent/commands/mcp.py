@@ -22,6 +22,7 @@ from ..options import (
     Up,
     View,
     Vlm,
+    Window,
 )
 
 
@@ -34,6 +35,7 @@ def command(
     planner: Planner = "auto",
     vlm: Vlm = "auto",
     budget: Budget = None,
+    window: Window = None,
     picture: Picture = False,
     judge: Judge = None,
     encoder: Encoder = "auto",

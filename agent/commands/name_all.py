@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from ..options import Budget, Debug, Encoder, Json, SceneFile, View, Vlm
+from ..options import Budget, Debug, Encoder, Json, SceneFile, View, Vlm, Window
 from ..terminal.output import terminal
 
 
@@ -17,6 +17,7 @@ def command(
     ] = False,
     vlm: Vlm = "auto",
     budget: Budget = None,
+    window: Window = None,
     encoder: Encoder = "auto",
     view: View = "auto",
     as_json: Json = False,

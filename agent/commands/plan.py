@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..options import Batch, Budget, Debug, Encoder, Json, Picture, Planner, View
+from ..options import Batch, Budget, Debug, Encoder, Json, Picture, Planner, View, Window
 from ..terminal.output import read_batch, terminal
 
 Answer = Callable[[str, str | None], dict[str, Any]]  # arguments: the instruction and the previous one
@@ -32,6 +32,7 @@ def command(
     encoder: Encoder = "auto",
     planner: Planner = "auto",
     budget: Budget = None,
+    window: Window = None,
     picture: Picture = False,
     view: View = "auto",
     as_json: Json = False,

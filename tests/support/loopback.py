@@ -64,10 +64,17 @@ Step = Turn | Callable[[Asked], Turn]
 
 
 class Server:
-    """A scripted server; `asked` holds the requests it got."""
+    """A scripted server; `asked` holds the requests it got.
+
+    Attributes:
+        pages: answers to GET requests by their path; every other path is not found.
+        looked_up: the paths of GET requests.
+    """
 
     def __init__(self, script: Sequence[Step], tls: ssl.SSLContext | None = None) -> None:
         self.asked: list[Asked] = []
+        self.pages: dict[str, Turn] = {}
+        self.looked_up: list[str] = []
         self._script = list(script)
         self._lock = threading.Lock()
         self._http = ThreadingHTTPServer(("127.0.0.1", 0), self._handler())
@@ -93,6 +100,12 @@ class Server:
 
         class Handler(BaseHTTPRequestHandler):
             protocol_version = "HTTP/1.1"
+
+            def do_GET(self) -> None:
+                turn = server.pages.get(self.path, plain({"error": "not found"}, 404))
+                server.looked_up.append(self.path)
+                self.close_connection = True
+                self._send(turn)
 
             def do_POST(self) -> None:
                 data = self.rfile.read(int(self.headers.get("content-length", 0)))
@@ -183,6 +196,15 @@ class OpenAI:
             yield {**head, "choices": [], "usage": cls.usage}
 
         return events(bodies(), done=True, **how)
+
+    @classmethod
+    def call(cls, text: str) -> Turn:
+        """The answer as the arguments of a function."""
+        call = {"id": "call_1", "type": "function", "function": {"name": "answer", "arguments": text}}
+        message = {"role": "assistant", "content": None, "tool_calls": [call]}
+        head = {"id": "chatcmpl-1", "object": "chat.completion", "created": 1, "model": "small"}
+        choice = {"index": 0, "message": message, "finish_reason": "tool_calls"}
+        return plain({**head, "choices": [choice], "usage": cls.usage})
 
     @staticmethod
     def error(status: int, message: str, code: str | None = None, **headers: str) -> Turn:

@@ -27,13 +27,18 @@ _MAX_ANSWER = 2048  # maximum tokens of an answer; typical plans of 64 operation
 _FAILURES = (MemoryError, RuntimeError, ValueError, TypeError, IndexError, KeyError, AttributeError)
 
 
-def load(path: str) -> LocalModel:
+def load(path: str, window: int | None = None) -> LocalModel:
     """Load the model in a folder, or by its name on the hub (see `checkpoint.read`).
+
+    Args:
+        window: tokens of prompt and answer together, if fewer than the model has.
 
     Raises:
         BackendError: the model cannot be loaded; the message says why and what to do.
     """
-    return LocalModel(checkpoint.read(path), f"transformers:{path}")
+    model = LocalModel(checkpoint.read(path), f"transformers:{path}")
+    model.window = min(model.window, window or model.window)
+    return model
 
 
 class LocalModel:

@@ -15,40 +15,45 @@ from ....gaussians.errors import BackendError
 from ...plan import Usage
 from .. import pictures
 from ..backend import Answer, Message, ModelBackend, OnText, UnreachableError
-from . import errors, http, wire
+from . import context_window, errors, http, wire
 from .address import Address, read
 from .errors import Extras
 from .wait import Emit, Failed, wait
 from .wire import Reply
 
 HOSTED_WINDOW = 128_000  # tokens; the minimum of the models that the three providers now offer
-NEAR_WINDOW = 8_192  # twice the default of Ollama and llama.cpp, 4096, which is too few for any plan
+NEAR_WINDOW = 8_192  # of servers that do not tell; twice the smallest default, 4096, which is too few for any plan
 _PICTURES = {"openai": pictures.OPENAI, "anthropic": pictures.ANTHROPIC, "google": pictures.GOOGLE}
 # Prefixes of hosted models without image input; all others accept images.
 _WITHOUT_IMAGES = ("gpt-3.5", "o1-mini", "o1-preview", "o3-mini", "claude-2", "claude-instant", "gemini-1.0", "text-")
 
 
-def load(spec: str) -> ModelBackend:
+def load(spec: str, window: int | None = None) -> ModelBackend:
     """The model that "openai:MODEL[@BASE_URL]", "anthropic:MODEL[@BASE_URL]" or "google:MODEL[@BASE_URL]" names.
 
     Keys come from OPENAI_API_KEY, ANTHROPIC_API_KEY, GOOGLE_API_KEY or GEMINI_API_KEY; SCENEWRIGHT_API_KEY comes first.
     A self-hosted server in OpenAI's format needs none. Nothing is imported and no request is sent yet.
 
+    Args:
+        window: tokens of prompt and answer together; None asks the server.
+
     Raises:
         UserError: the specification is malformed.
         BackendError: a key or a package is missing; the message says which, and how to get it.
     """
-    return Remote(read(spec, os.environ))
+    return Remote(read(spec, os.environ), window)
 
 
 class Remote:
     """A language model behind an address, a `ModelBackend`.
 
-    It remembers the parameters that its server refused (a schema, a temperature), so that a refusal costs one request.
+    It remembers the parameters that its server refused (a schema, a temperature), so that a refusal costs one request,
+    and the form of answers that it keeps to.
     """
 
-    def __init__(self, address: Address) -> None:
+    def __init__(self, address: Address, window: int | None = None) -> None:
         self._address = address
+        self._window = window
         self._extras = Extras()
 
     @property
@@ -64,8 +69,11 @@ class Remote:
 
     @property
     def window(self) -> int:
-        """Tokens for prompt and answer: the minimum of hosted models, or the usual setting of local servers."""
-        return NEAR_WINDOW if self._address.near else HOSTED_WINDOW
+        """Tokens for prompt and answer: as set, or as the server tells, which is asked until it does; else the minimum
+        of hosted models, or the usual setting of local servers."""
+        if self._window is None and self._address.own:
+            self._window = context_window.told_by(self._address)
+        return self._window or (NEAR_WINDOW if self._address.near else HOSTED_WINDOW)
 
     def answer(
         self, messages: Sequence[Message], schema: dict[str, Any], *, seconds: float, on_text: OnText | None = None
@@ -122,7 +130,7 @@ class Remote:
             refusals: errors of a busy or failing server, after which the request is repeated, are appended here.
         """
         left = deadline - time.monotonic()
-        extras, tries, spoken = self._extras, 0, False
+        extras, tries, spoken, kind = self._extras, 0, False, self._address.kind
 
         def pass_on(piece: str) -> None:
             nonlocal spoken
@@ -137,11 +145,11 @@ class Remote:
                 try:
                     reply = await wire.ask(model, self._address, question)
                 except Exception as error:
-                    less = errors.fewer_extras(extras, error)
+                    less = None if spoken else errors.fewer_extras(extras, error, kind)
                     if less is None and emit is not None:
                         less = errors.without_stream(extras, error)
-                    pause = errors.retry_delay(error, tries) if less is None else 0.0
-                    if spoken or pause is None or pause >= deadline - time.monotonic():
+                    pause = 0.0 if less else None if spoken else errors.retry_delay(error, tries)
+                    if pause is None or pause >= deadline - time.monotonic():
                         raise
                     if less is None:
                         refusals.append(error)
@@ -149,5 +157,5 @@ class Remote:
                     extras = less or extras
                     await asyncio.sleep(pause)
                 else:
-                    self._extras = extras
+                    self._extras = errors.learned(extras, reply.text, kind) if reply.end == "done" else extras
                     return reply

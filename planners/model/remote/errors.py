@@ -11,9 +11,16 @@ from typing import Any, Literal
 from urllib.parse import urlsplit
 from urllib.request import getproxies, proxy_bypass
 
-from .address import SERVICES, Address
+from .address import SERVICES, Address, Kind
 
-Form = Literal["schema", "json", "words"]  # the answer is constrained to a schema, to JSON, or not at all
+# What holds an answer to its form: a schema, a function whose arguments it is, JSON of any kind, or words alone.
+Form = Literal["schema", "tool", "json", "words"]
+# From the tightest to the loosest, by wire; Anthropic's schema is that of a tool.
+_FORMS: dict[Kind, tuple[Form, ...]] = {
+    "openai": ("schema", "tool", "json", "words"),
+    "anthropic": ("schema", "words"),
+    "google": ("schema", "json", "words"),
+}
 
 FIRST_PAUSE = 1.0  # seconds before the first retry if the server gives no delay; doubled each time
 _SHORTEST_PAUSE = 0.1
@@ -63,7 +70,7 @@ _REFUSALS = {400, 415, 422, 501}  # status codes with which servers refuse a par
 _NO_GRAMMAR = re.compile(_FORM, re.IGNORECASE)
 
 
-def fewer_extras(extras: Extras, error: BaseException) -> Extras | None:
+def fewer_extras(extras: Extras, error: BaseException, kind: Kind) -> Extras | None:
     """Parameters for the next request after a refusal, always fewer than before; None if that would not help.
 
     Parameters that the refusal names are omitted; if it names none, all are.
@@ -75,7 +82,8 @@ def fewer_extras(extras: Extras, error: BaseException) -> Extras | None:
         return None
     body = str(error.body)[:_READ]
     if error.status_code == 500 and _NO_GRAMMAR.search(body) and extras.form != "words":
-        return replace(extras, form=_looser(extras.form))
+        form = looser(extras.form, kind)  # a function's arguments are held to the same grammar
+        return replace(extras, form=looser(form, kind) if form == "tool" else form)
     if error.status_code not in _REFUSALS:
         return None
     too_long = isinstance(error, failures.ModelContextWindowExceededError) or _TOO_LONG.search(body)
@@ -84,24 +92,41 @@ def fewer_extras(extras: Extras, error: BaseException) -> Extras | None:
     blamed = {name for name, words in _COMPLAINTS.items() if words.search(body)}
     omitted: dict[str, Any] = dict.fromkeys(blamed, False)
     if "form" in blamed:
-        omitted["form"] = _looser(extras.form)
+        omitted["form"] = looser(extras.form, kind)
     less = replace(extras, **omitted)
     return less if less != extras else BARE
 
 
 def without_stream(extras: Extras, error: BaseException) -> Extras | None:
-    """Parameters that ask for the answer at once, after a stream that held none; None if the error is another.
+    """Parameters that ask for the answer at once, after a stream that held none or broke; None if the error is another.
 
-    Some servers accept `stream`, ignore it and send a whole answer.
+    Some servers accept `stream`, ignore it and send a whole answer; others send events that are none, or stop halfway.
     """
+    import httpx2
     from pydantic_ai import exceptions as failures
 
-    empty = isinstance(error, failures.UnexpectedModelBehavior) and extras.stream
-    return replace(extras, stream=False) if empty else None
+    chain = list(_chain(error))
+    if not extras.stream or _first(chain, StoppedError, httpx2.TimeoutException, httpx2.ConnectError):
+        return None
+    broken = (failures.UnexpectedModelBehavior, httpx2.RemoteProtocolError, httpx2.ReadError, ConnectionResetError)
+    said_so = isinstance(error, failures.ModelAPIError) and error.in_stream
+    if _first(chain, *broken, ValueError) is None and not said_so:
+        return None
+    return replace(extras, stream=False)
 
 
-def _looser(form: Form) -> Form:
-    return "json" if form == "schema" else "words"
+def learned(extras: Extras, text: str, kind: Kind) -> Extras:
+    """Parameters for the next request after an answer: a looser form if the answer shows that the server ignores this
+    one, since an answer that is held to JSON has a brace; and no stream if its end is missing."""
+    if "{" not in text:
+        return replace(extras, form=looser(extras.form, kind))
+    return replace(extras, stream=False) if extras.stream and "}" not in text else extras
+
+
+def looser(form: Form, kind: Kind) -> Form:
+    """The next form that a server may take."""
+    forms = _FORMS[kind]
+    return forms[min(forms.index(form) + 1, len(forms) - 1)] if form in forms else "words"
 
 
 def retry_delay(error: BaseException, tries: int) -> float | None:

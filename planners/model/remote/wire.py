@@ -151,8 +151,9 @@ def _parameters(kind: Kind, extras: Extras, schema: dict[str, Any]) -> ModelRequ
     """Parameters that constrain the answer to the schema.
 
     OpenAI's strict mode requires every property, Anthropic's has no recursion, and a query may contain queries.
-    Therefore OpenAI and compatible servers get the schema in non-strict mode, Anthropic as the arguments of a tool that
-    must be called, and Google in the subset that pydantic-ai supports. The schema is not added to the prompt.
+    Therefore OpenAI and compatible servers get the schema in non-strict mode, Anthropic (and a compatible server that
+    takes no schema) as the arguments of a tool that must be called, and Google in the subset that pydantic-ai supports.
+    The schema is not added to the prompt.
     Sources: platform.openai.com/docs/guides/structured-outputs, platform.claude.com/docs structured outputs,
     ai.google.dev/gemini-api/docs/structured-output.
     """
@@ -161,9 +162,9 @@ def _parameters(kind: Kind, extras: Extras, schema: dict[str, Any]) -> ModelRequ
     from pydantic_ai.tools import ToolDefinition
 
     plain = loosened({key: value for key, value in schema.items() if key != "$schema"})
-    if extras.form == "words" or (kind == "anthropic" and extras.form == "json"):
+    if extras.form == "words":
         return ModelRequestParameters()
-    if kind == "anthropic":
+    if kind == "anthropic" or extras.form == "tool":
         tool = ToolDefinition(
             name=_NAME, parameters_json_schema=plain, description="Give the answer.", kind="output", strict=False
         )

@@ -244,7 +244,8 @@ def test_a_server_that_knows_no_response_format_is_asked_without_and_remembered(
         model = model_at(wires.OpenAI, server.url)
         for _ in range(2):
             assert model.answer(TALK, schema("plan"), seconds=30).text == PLAN
-    assert formats(server.asked) == ["json_schema", "json_object", None, None]
+    assert formats(server.asked) == ["json_schema", None, None]  # a function's arguments are the next tightest form
+    assert ["tools" in request.body for request in server.asked] == [False, True, True]
     assert server.asked[-1].body["temperature"] == 0  # only what was complained about is left out
 
 
