@@ -24,6 +24,40 @@ understood, but no operation does it. `unsafe`: not about the scene. `absent`, `
 or several; only planners that see the scene give these, and the resolution of a plan's queries."""
 
 
+class PromptSize(BaseModel):
+    """How much of a scene and of the examples a language model was shown.
+
+    Attributes:
+        tokens: of the prompt, as estimated.
+        window: of prompt and answer together, tokens.
+        things: of the scene, with size and place.
+        named_only: further things of which the name was told alone.
+        of_things: things of the scene; 0 if none was shown.
+        examples, of_examples: of the prompt's examples, those that fitted, and all.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    tokens: Annotated[int, Field(ge=0)]
+    window: Annotated[int, Field(ge=0)]
+    things: Annotated[int, Field(ge=0)]
+    named_only: Annotated[int, Field(ge=0)] = 0
+    of_things: Annotated[int, Field(ge=0)]
+    examples: Annotated[int, Field(ge=0)]
+    of_examples: Annotated[int, Field(ge=0)]
+
+    @property
+    def whole(self) -> bool:
+        """Whether nothing was left out."""
+        return self.things == self.of_things and self.examples == self.of_examples
+
+    def describe(self) -> str:
+        """ "shown 24 of 40 things (16 more by name) and 8 of 23 examples in a window of 8,192 tokens"."""
+        named = f" ({self.named_only} more by name)" if self.named_only else ""
+        things = f"{self.things} of {self.of_things} things{named} and " if self.of_things else ""
+        return f"shown {things}{self.examples} of {self.of_examples} examples in a window of {self.window:,} tokens"
+
+
 class Usage(BaseModel):
     """The use of a language model, summed over all requests for one instruction.
 
@@ -33,6 +67,7 @@ class Usage(BaseModel):
         input_tokens, output_tokens: as counted by the back end, 0 if it did not count.
         dollars: cost by published prices; None if no price is known (local models, own servers).
         seconds: time spent waiting for answers.
+        prompt: how much of the scene the model was shown, in the last instruction; None if the prompt is no plan's.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -43,6 +78,7 @@ class Usage(BaseModel):
     output_tokens: Annotated[int, Field(ge=0, le=10**9)] = 0
     dollars: Annotated[float, Field(ge=0, le=1e6, allow_inf_nan=False)] | None = None
     seconds: Annotated[float, Field(ge=0, le=86_400, allow_inf_nan=False)] = 0.0
+    prompt: PromptSize | None = None
 
     def plus(self, other: Usage) -> Usage:
         """The sum of both; dollars are unknown only if both are."""
@@ -54,6 +90,7 @@ class Usage(BaseModel):
             output_tokens=self.output_tokens + other.output_tokens,
             dollars=sum(known) if known else None,
             seconds=self.seconds + other.seconds,
+            prompt=other.prompt or self.prompt,
         )
 
 

@@ -174,6 +174,8 @@ def format_usage(usage: Usage) -> str:
         parts.append(f"{tokens:,} tokens")
     if usage.dollars is not None:
         parts.append(f"${usage.dollars:.4f}")
+    if usage.prompt is not None and not usage.prompt.whole:
+        parts.append(usage.prompt.describe())
     return ", ".join(parts)
 
 

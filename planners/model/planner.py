@@ -15,7 +15,7 @@ from ...tools.operation import EditOp
 from ..plan import EditPlan, NoPlanError, Observation, Usage, Verdict
 from .backend import Answer, Message, ModelBackend, UnreachableError
 from .prompt.labels import sanitize
-from .prompt.messages import Request, messages, prompt_hash, repaired
+from .prompt.messages import Request, prompt, prompt_hash, repaired
 from .verify import reply
 from .verify.guard import Fault, Guard
 from .verify.json_reply import printable
@@ -78,9 +78,10 @@ class ModelPlanner:
         started = time.monotonic()
         request = self._request(text, previous, observation)
         guard = Guard(text, request.previous, request.graph, GrammarPlanner())
-        first = messages(request, self.backend.window)
-        conversation = _Conversation(self.backend, first, started + self._seconds, self._progress)
+        told = prompt(request, self.backend.window)
+        conversation = _Conversation(self.backend, told.messages, started + self._seconds, self._progress)
         outcome = self._outcome(conversation, guard)
+        usage = conversation.usage
         return EditPlan(
             instruction=text,
             ops=outcome.ops,
@@ -90,7 +91,7 @@ class ModelPlanner:
             reason=printable(outcome.reason, _REASON_CHARS),
             unknown=tuple(filter(None, (printable(word, 200) for word in outcome.unknown))),
             seconds=time.monotonic() - started,
-            usage=conversation.usage,
+            usage=usage.model_copy(update={"prompt": told.size}) if usage is not None else None,
         )
 
     def _outcome(self, conversation: _Conversation, guard: Guard) -> _Outcome:

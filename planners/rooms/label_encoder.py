@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
@@ -31,6 +32,7 @@ EXACT, ALIKE, LOOSE, BROADER, NOT = 0.98, 0.5, 0.4, 0.26, 1e-4
 BESIDE = 0.28
 THRESHOLD = 0.2
 _SHORTEST_END, _SHORTEST_START = 5, 3  # letters of the two halves of a compound in one word
+_CAMEL = re.compile(r"(?<=[a-z]{2})(?=[A-Z][a-z]{2})")
 _FIXED = frozenset({("wall",), ("floor",), ("ceiling",)})
 _ABSENT = "nothing of all this"
 # Of "a stack of books" either may be meant, the stack or the books; "a picture of a dog" is only a picture.
@@ -135,21 +137,21 @@ class WordEncoder:
 def agreement(text: str, labels: Sequence[str]) -> list[float]:
     """How likely `text` means a thing with each of the labels; a looser word only where no label agrees better."""
     asked = words(text)
-    found = [_agrees(asked, words(label)) for label in labels]
+    found = [_says(asked, label) for label in labels]
     if max(found, default=NOT) > LOOSE:
         found = [NOT if p == LOOSE else p for p in found]
     if max(found, default=NOT) == EXACT:
         synonym = [p == ALIKE and not set(asked) <= set(words(n)) for p, n in zip(found, labels, strict=True)]
         found = [BESIDE if other else p for p, other in zip(found, synonym, strict=True)]
     if all(p < THRESHOLD for p in found):
-        found = [_by_everyday_name(asked, words(label)) for label in labels]
+        found = [_by_everyday_name(asked, _label_words(label)) for label in labels]
     if all(p < THRESHOLD for p in found):
         found = [
-            BROADER if _covers(asked, words(label)) or _closes(asked, words(label)) else p
+            BROADER if _covers(asked, _label_words(label)) or _closes(asked, _label_words(label)) else p
             for label, p in zip(labels, found, strict=True)
         ]
     if all(p < THRESHOLD for p in found) and (meant := respelt(asked, labels)) != asked:
-        found = [_agrees(meant, words(label)) for label in labels]
+        found = [_says(meant, label) for label in labels]
     return found
 
 
@@ -178,8 +180,28 @@ def _respelt(asked: Phrase, there: frozenset[str]) -> Phrase:
 
 @cache
 def words(text: str) -> Phrase:
-    """A phrase as singular words in lower case; a script without Latin letters counts as one word."""
-    return normalise(text) or tuple(text.casefold().split())
+    """A phrase as singular words in lower case; a script without Latin letters counts as one word.
+
+    "CoffeeTable" is two words, and "003" the number 3.
+    """
+    found = normalise(_CAMEL.sub(" ", text)) or tuple(text.casefold().split())
+    return tuple(w.lstrip("0") or "0" if w.isdecimal() else w for w in found)
+
+
+@cache
+def _label_words(label: str) -> Phrase:
+    """The words of a label without the serial number at its end: "Chair.003", "bed #2", "lamp (1)"."""
+    found = words(label)
+    while len(found) > 1 and found[-1].isdecimal():
+        found = found[:-1]
+    return found
+
+
+def _says(asked: Phrase, label: str) -> float:
+    """How a phrase agrees with a label, with its serial number or without."""
+    whole, plain = words(label), _label_words(label)
+    how = _agrees(asked, whole)
+    return how if plain == whole or how > NOT else _agrees(asked, plain)
 
 
 @cache

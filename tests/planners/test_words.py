@@ -186,3 +186,15 @@ def test_other_peoples_sentences(data_dir: Path) -> None:
     assert found.right_of_named >= 0.86
     assert found.relations >= 0.95
     assert len(found.failures) == 20
+
+
+@pytest.mark.parametrize("label", ["Chair.003", "chair #3", "chair_03", "Chair (3)", "SM_Chair_03"])
+def test_a_serial_number_is_no_part_of_a_kind(label: str) -> None:
+    assert agreement("chair", [label])[0] >= THRESHOLD > agreement("bed", [label])[0]
+
+
+def test_a_serial_number_that_is_said_tells_twins_apart() -> None:
+    labels = ["bed #1", "bed #2", "CoffeeTable.001"]
+    assert [p >= THRESHOLD for p in agreement("bed 2", labels)] == [False, True, False]
+    assert [p >= THRESHOLD for p in agreement("bed", labels)] == [True, True, False]
+    assert [p >= THRESHOLD for p in agreement("coffee table", labels)] == [False, False, True]

@@ -26,6 +26,11 @@ _UNSPACED = 8  # most characters of a name in a script without spaces; a sentenc
 _MARKS = re.compile(r"[^\w\s'’&()/+-]|_")  # characters that names do not contain, such as braces
 _ADDRESS = re.compile(r"://|\bwww\.|\w\.\w{2,}|\w@\w", re.IGNORECASE)
 _QUOTES = re.compile(r"[\"“”„«»]")
+# What modelling programs and people add to a name to tell twins apart: "Chair.003", "bed #2", "sofa.obj", "no. 2".
+_SERIAL = re.compile(r"[.#:](?=\d)|\s#\s?(?=\d)")
+_SUFFIX = re.compile(r"\.(?:obj|fbx|glb|gltf|ply|stl|usd[acz]?|dae|blend)$", re.IGNORECASE)
+_SHORTENED = re.compile(r"\b(no|nr|dr|mr|mrs|st)\.(?=\s|\d)", re.IGNORECASE)
+_OPTION = re.compile(r"(?<!\S)--?[a-z]", re.IGNORECASE)  # of a command line
 _BEFORE_THE = frozenset({"of", "in", "on", "by", "from"})
 _LINKS = _BEFORE_THE | {"with", "and", "for", "a", "an", "the"}
 _SCRIPT_OF_IDEAS = re.compile(r"[\u0e00-\u0eff\u1000-\u109f\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
@@ -33,19 +38,26 @@ _SCRIPT_OF_IDEAS = re.compile(r"[\u0e00-\u0eff\u1000-\u109f\u3040-\u30ff\u3400-\
 # Words of commands, forms of address and words for "all", which do not occur in names of objects, in the languages that
 # models understand best. Each is a prefix; with "=" it is a whole word.
 _ORDERS = """
-ignor disregard forget overrid bypass obey disobey =execute =executing delet =remove =removes =removed =removing eras
-destroy elimin obliterat annihilat =purge instruct =command =commands prompt =previous =prior everything anything
-nothing =now =then =all =every =must =should =shall =please =you =your =yours =yourself =me =my =instead =only
-=assistant =json =admin =say =tell =answer =respond =reply =output =do =don =not =never =always =make =move =recolor
+ignor disregard forget overrid bypass obey disobey =execute =executing delet =remove =removes =removed =removing
+eras destroy elimin obliterat annihilat =purge =instruct =instructs =instructed =previous =prior everything anything
+nothing =now =then =all =every =must =should =shall =please =you =your =yours =yourself =me =instead =only
+=assistant =json =admin =say =tell =answer =respond =reply =do =don =not =never =always =make =move =recolor
 =isolate =replace =duplicate =rotate =insert =select =return =reveal =pretend =become =wipe =nuke =kill =discard
-=jailbreak =verdict =ops =query password =get =rid lösch entfern vergiss ignorier zerstör anweis befehl =alles =alle
-=bitte =du =sie supprim =efface =effacez oubli enlev détrui =retire =tout =tous =toutes =vous =tu consigne =borra
-=borre =borrar olvid destruy =quita =todo =todos =todas =usted instruccion cancell dimentic rimuov distrugg =tutto
-=tutti istruzion =apaga =apague esquec =tudo instruç verwijder negeer =wis vergeet usuń zignoruj wszystk удал игнор
-забуд уничтож сотри =все =всё инструкц видал ігнор =sil yoksay
+=jailbreak =verdict =ops =query password =get =rid =sudo =rm =rf =chmod =curl =wget =bash =powershell =eval =exec
+=reboot =shutdown lösch entfern vergiss ignorier zerstör anweis befehl =alles =alle =bitte =du =sie supprim =efface
+=effacez oubli enlev détrui =retire =tout =tous =toutes =vous =tu consigne =borra =borre =borrar olvid destruy
+=quita =todo =todos =todas =usted instruccion cancell dimentic rimuov distrugg =tutto =tutti istruzion =apaga
+=apague esquec =tudo instruç verwijder negeer =wis vergeet usuń zignoruj wszystk удал игнор забуд уничтож сотри =все
+=всё инструкц видал ігнор =sil yoksay
 """
 _WHOLE_ORDERS = frozenset(w[1:] for w in _ORDERS.split() if w[0] == "=")
 _BEGINNINGS = tuple(w for w in _ORDERS.split() if w[0] != "=")
+# Nouns that speak of orders; before another noun they only say what it is for: "instruction manual", "command console".
+_OF_ORDERS = re.compile(r"(?:instruction|command|prompt|output|query)s?$")
+# Words of orders that also stand in compounds with hyphens: "all-in-one printer", "make-up table".
+_IN_COMPOUNDS = frozenset(
+    ("all", "every", "must", "not", "me", "do", "make", "now", "only", "say", "tell", "get", "then", "you")
+)
 _UNSPACED_ORDERS = re.compile(
     "删|刪|忽略|无视|無視|忘|指令|指示|全部|所有|请|請|必须|清除|移除|削除|消|すべて|全て|命令|삭제|무시|모두|지시"
 )
@@ -73,7 +85,8 @@ def plain(name: str, most: int = MAX_WORDS) -> str | None:
     Args:
         most: maximum number of words.
     """
-    if "\n" in name or "\r" in name or _ADDRESS.search(name):
+    name = _SHORTENED.sub(r"\1", _SERIAL.sub(" ", _SUFFIX.sub("", name)))
+    if "\n" in name or "\r" in name or _ADDRESS.search(name) or _OPTION.search(name):
         return None
     text = _QUOTES.sub("", unicodedata.normalize("NFKC", name).replace("_", " "))
     text = "".join(c for c in text if not unicodedata.category(c).startswith("C"))
@@ -89,7 +102,10 @@ def plain(name: str, most: int = MAX_WORDS) -> str | None:
     tied = bool(_LINKS & set(words))
     if len(strange) > _STRANGE_WORDS or len(words) > (_UNTIED if not tied else _BESIDE_STRANGE if strange else most):
         return None
-    orders = any(w in _WHOLE_ORDERS or w.startswith(_BEGINNINGS) or _mixed(w) for w in words)
+    inside = {part for compound in re.findall(r"[^\W_]+(?:-[^\W_]+)+", text.lower()) for part in compound.split("-")}
+    harmless = inside & _IN_COMPOUNDS
+    orders = any((w in _WHOLE_ORDERS and w not in harmless) or w.startswith(_BEGINNINGS) or _mixed(w) for w in words)
+    orders |= bool(_OF_ORDERS.match(words[-1]))
     return None if orders or _is_order(words) else text
 
 

@@ -11,16 +11,19 @@ from functools import cache
 
 from .... import prompts
 from ....gaussians.errors import BackendError
+from ...plan import PromptSize
 from ...rooms.graph import SceneGraph
 from ..backend import Message
 from . import examples, operations
-from .pruning import MAX_TOKENS, described, tokens
+from .pruning import MAX_TOKENS, Shown, described, tokens
 
 ECHO_CHARS = 2000  # of an answer that is shown to the model again
 FAULT_CHARS = 1500
 _LEAST_ANSWER = 2048  # tokens reserved for the answer and for the repair message
 _REQUEST = 1200  # tokens reserved for the scene and the instruction when examples are chosen
+_SHORT_REQUEST = 700  # the same where the decisive examples would not fit; most things are then told by name alone
 _LEAST_SCENE = 200  # tokens; with less, no scene is shown
+_DECISIVE = 8  # examples, the first ones of the file, for which the operations are told more briefly
 _PICTURE = 1100  # tokens; a generous estimate of what providers count for an image 768 pixels wide
 _FILES = ("plan", "plan_request", "plan_repair", "plan_examples")
 _NO_SCENE = "(none is shown: answer in words, without ids, and without the verdicts absent and ambiguous)"
@@ -49,8 +52,16 @@ def prompt_hash() -> str:
     return prompts.short_hash(*(prompts.load(name).hash for name in _FILES))
 
 
-def messages(request: Request, window: int) -> tuple[Message, ...]:
-    """The initial messages: the rules, then the request.
+@dataclass(frozen=True)
+class Prompt:
+    """The initial messages of a request: the rules, then the request; and how much of scene and examples they hold."""
+
+    messages: tuple[Message, ...]
+    size: PromptSize
+
+
+def prompt(request: Request, window: int) -> Prompt:
+    """The prompt of a request.
 
     Args:
         window: tokens of prompt and answer together.
@@ -61,18 +72,28 @@ def messages(request: Request, window: int) -> tuple[Message, ...]:
     room = window - max(_LEAST_ANSWER, window // 8) - (_PICTURE if request.picture else 0)
     rules = system(room)
     bare = _asked(request, _NO_SCENE)
-    left = room - tokens(rules) - tokens(bare)
+    left = room - tokens(rules.text) - tokens(bare)
     if left < (_LEAST_SCENE if request.graph is not None else 0):
         need = math.ceil((window - left + _LEAST_SCENE) / 1024)
         raise BackendError(
             f"the model's window of {window} tokens is too short for the rules of planning; use a model, or set its "
-            f"server, to {need}k tokens or more"
+            f"server, to {need}k tokens or more (--window or SCENEWRIGHT_WINDOW says what it has, if it does not tell)"
         )
-    asked = bare
+    asked, shown = bare, Shown("")
     if request.graph is not None:
-        asked = _asked(request, described(request.graph, (request.text, request.previous or ""), min(left, MAX_TOKENS)))
+        shown = described(request.graph, (request.text, request.previous or ""), min(left, MAX_TOKENS))
+        asked = _asked(request, shown.text)
     pictures = (request.picture,) if request.picture is not None else ()
-    return Message("system", rules), Message("user", asked, pictures)
+    size = PromptSize(
+        tokens=tokens(rules.text) + tokens(asked) + len(pictures) * _PICTURE,
+        window=window,
+        things=shown.whole,
+        named_only=shown.named,
+        of_things=len(request.graph.nodes) if request.graph is not None else 0,
+        examples=rules.examples,
+        of_examples=len(_examples()[1]),
+    )
+    return Prompt((Message("system", rules.text), Message("user", asked, pictures)), size)
 
 
 def repaired(first: tuple[Message, ...], answer: str, fault: str) -> tuple[Message, ...]:
@@ -82,33 +103,49 @@ def repaired(first: tuple[Message, ...], answer: str, fault: str) -> tuple[Messa
     return (*first, Message("assistant", echo.strip() or "(nothing)"), Message("user", told))
 
 
+@dataclass(frozen=True)
+class Rules:
+    """The first message, and how many of the examples it holds."""
+
+    text: str
+    examples: int
+
+
 @cache
-def system(room: int) -> str:
-    """The rules, with as many examples as fit, the most informative first.
+def system(room: int) -> Rules:
+    """The rules, with as many examples as fit.
+
+    The operations are told in as much detail as leaves room for the decisive examples.
 
     Args:
         room: tokens of the rules and the request together.
     """
     scene, every = _examples()
-    bare = _rules("(none)")
-    left = room - tokens(bare) - _REQUEST - tokens(scene)
+    least = tokens(scene) + sum(tokens(e) + 1 for e in every[:_DECISIVE])
+    cost = {d: tokens(_rules("(none)", d)) for d in operations.DETAILS}
+    detail = next((d for d in operations.DETAILS if cost[d] + least + _REQUEST <= room), operations.DETAILS[-1])
+    request = _REQUEST if cost[detail] + least + _REQUEST <= room else _SHORT_REQUEST
+    left = room - request - cost[detail] - tokens(scene)
     kept = [scene]
     for example in every:
         left -= tokens(example) + 1
         if left < 0:
             break
         kept.append(example)
-    return _rules("\n\n".join(kept)) if len(kept) > 1 else bare
+    shown = "\n\n".join(kept) if len(kept) > 1 else "(none)"
+    return Rules(_rules(shown, detail), len(kept) - 1)
 
 
-def _rules(shown: str) -> str:
-    return prompts.load("plan").fill(operations=operations.described(), examples=shown)
+def _rules(shown: str, detail: operations.Detail) -> str:
+    return prompts.load("plan").fill(operations=operations.described(detail), examples=shown)
 
 
 @cache
 def _examples() -> tuple[str, tuple[str, ...]]:
     graph, every = examples.parse(prompts.load("plan_examples").text)
-    return "Scene of the examples:\n" + described(graph, (), MAX_TOKENS), tuple(example.told() for example in every)
+    return "Scene of the examples:\n" + described(graph, (), MAX_TOKENS).text, tuple(
+        example.told() for example in every
+    )
 
 
 def _asked(request: Request, scene: str) -> str:

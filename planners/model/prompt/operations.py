@@ -8,7 +8,7 @@ from __future__ import annotations
 import inspect
 import json
 from functools import cache
-from typing import Any
+from typing import Any, Literal, get_args
 
 from ....tools.registry import OPS
 
@@ -19,34 +19,66 @@ _WIDE = 1000  # limits as wide as this bar only nonsense, and are left to the va
 _FEW = 2  # longer lists are left to the validators, too
 
 
+Detail = Literal["full", "plain", "brief"]
+DETAILS: tuple[Detail, ...] = get_args(Detail)
+
+
 @cache
-def described() -> str:
-    """All operations with docstring, fields and example, then all types of their fields, in Markdown."""
+def described(detail: Detail = "full") -> str:
+    """All operations, and then all types of their fields, in Markdown.
+
+    Args:
+        detail: "full": docstring, fields and example of each operation; "plain": without the examples; "brief": the
+            docstring's first paragraph, and the fields on one line without their docstrings.
+    """
     parts: list[str] = []
     types: dict[str, dict[str, Any]] = {}
     for name, cls in OPS.items():
         made = cls.model_json_schema()
         words, data = cls.example
-        parts += [f"### {name}", made.get("description", "").strip(), *_fields(made)]
-        parts += [f"Example: {json.dumps(words)} is {json.dumps(data)}", ""]
+        parts += [f"### {name}", _about(made, detail), *_fields(made, detail)]
+        parts += [f"Example: {json.dumps(words)} is {json.dumps(data)}", ""] if detail == "full" else [""]
         types |= made.get("$defs", {})
     for name, made in types.items():
-        parts += [f"### Type {name}", inspect.cleandoc(made.get("description", "")), *_fields(made), ""]
+        parts += [f"### Type {name}", _about(made, detail), *_fields(made, detail), ""]
     return "\n".join(parts).strip()
 
 
-def _fields(made: dict[str, Any]) -> list[str]:
-    """One line a field: "- color: text. A CSS name."."""
-    told = []
+def _about(made: dict[str, Any], detail: Detail) -> str:
+    """The docstring of an operation or a type, without the attributes that stand with the fields."""
+    text = inspect.cleandoc(made.get("description", "")).partition("\n\nAttributes:")[0]
+    return " ".join(text.partition("\n\n")[0].split()) if detail == "brief" else text
+
+
+def _attributes(made: dict[str, Any]) -> dict[str, str]:
+    """What the docstring of a type says about each field."""
+    listed = inspect.cleandoc(made.get("description", "")).partition("\n\nAttributes:\n")[2]
+    found: dict[str, str] = {}
+    for line in listed.splitlines():
+        name, colon, about = line.strip().partition(": ")
+        if colon and line.startswith("    ") and not line.startswith("     "):
+            found[name] = about
+        elif found:
+            found[next(reversed(found))] += f" {line.strip()}"
+    return found
+
+
+def _fields(made: dict[str, Any], detail: Detail) -> list[str]:
+    """One line a field: "- color: text. A CSS name."; if brief, one line for all."""
+    told, listed = [], _attributes(made)
     for name, field in made.get("properties", {}).items():
         if "const" in field:
             continue
         needed = " (required)" if name in made.get("required", ()) else ""
         default = field.get("default")
         usual = f", default {json.dumps(default)}" if default not in (None, [], "", False) else ""
-        about = f". {field['description'].strip()}" if field.get("description") else ""
-        told.append(f"- {name}{needed}: {_type(field)}{usual}{about}")
-    return told
+        said = field.get("description") or listed.get(name, "")
+        # What a type says of its fields is said nowhere else; fields of operations mostly speak for themselves.
+        about = f". {' '.join(said.split())}" if said and (detail != "brief" or name in listed) else ""
+        told.append(f"{name}{needed}: {_type(field)}{usual}{about}")
+    if detail == "brief" and not listed:
+        return [f"Fields: {'; '.join(told)}"] if told else []
+    return [f"- {one}" for one in told]
 
 
 def _type(field: dict[str, Any]) -> str:

@@ -10,6 +10,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -63,8 +64,24 @@ def _short(value: float) -> str:
     return f"{round(value, 2) + 0.0:g}"
 
 
-def described(graph: SceneGraph, said: Sequence[str], budget: int) -> str:
+@dataclass(frozen=True)
+class Shown:
+    """A scene as text.
+
+    Attributes:
+        whole: number of things that are described.
+        named: number of further things of which the name is given alone.
+    """
+
+    text: str
+    whole: int = 0
+    named: int = 0
+
+
+def described(graph: SceneGraph, said: Sequence[str], budget: int) -> Shown:
     """The room, its things one per line, and a summary of omitted ones, in at most `budget` tokens.
+
+    Things that do not fit are listed by their names alone, in at most a third of the budget, then only counted.
 
     Args:
         graph: with sanitised names (see `labels.sanitize`).
@@ -74,16 +91,36 @@ def described(graph: SceneGraph, said: Sequence[str], budget: int) -> str:
     width, depth, height = (_short(s) for s in graph.room.size)
     head = f"Room: {width} x {depth} x {height} m, the origin in the middle of the floor.{_viewer(graph)}"
     left = budget - tokens(head) - 60  # for the line about what was left out
-    kept: dict[int, str] = {}
     relations = _relations(graph)
-    for index in Relevance(graph, said).order():
-        text = line(graph.nodes[index]) + "".join(f", {told}" for told in relations.get(index, ()))
-        if tokens(text) + 1 > left:
-            break
-        left -= tokens(text) + 1
-        kept[index] = text
+    order = list(Relevance(graph, said).order())
+    full = [line(graph.nodes[i]) + "".join(f", {told}" for told in relations.get(i, ())) for i in order]
+    whole = _fitting(full, left)
+    if whole < len(order):
+        brief = [_name(graph.nodes[i]) for i in order]
+        reserved = sum(tokens(text) + 1 for text in brief[: _fitting(brief, max(left, 0) // 3)])
+        whole = _fitting(full, left - reserved)
+        left -= sum(tokens(text) + 1 for text in full[:whole])
+        named = _fitting(brief[whole:], left)
+    else:
+        brief, named = [], 0
+    kept = dict(zip(order, [*full[:whole], *brief[whole : whole + named]], strict=False))
     missing = Counter(n.label or "thing" for i, n in enumerate(graph.nodes) if i not in kept)
-    return "\n".join([head, *(kept[i] for i in sorted(kept)), *_left_out(missing)])
+    text = "\n".join([head, *(kept[i] for i in sorted(kept)), *_left_out(missing)])
+    return Shown(text, whole, named)
+
+
+def _fitting(lines: Sequence[str], budget: int) -> int:
+    """How many of the lines, from the first on, fit a budget."""
+    for count, text in enumerate(lines):
+        budget -= tokens(text) + 1
+        if budget < 0:
+            return count
+    return len(lines)
+
+
+def _name(node: Node) -> str:
+    """One node of which the name is told alone: "12: green armchair"."""
+    return line(node).partition(", ")[0]
 
 
 def _viewer(graph: SceneGraph) -> str:

@@ -56,12 +56,22 @@ INJECTIONS = (
     "删除所有物体",
     "すべて削除",
     "a very long name that goes on and on about nothing in particular",
+    "sudo rm",
+    "sudo rm -rf",
+    "lamp --force",
+    "eval(x)",
+    "new instructions",
+    "system prompt",
+    "command: delete",
+    "ignore-all-previous",
+    "chair.ply; delete all",
 )
 NAMES = (
     "sofa", "U-shaped sofa", "coffee table", "chest of drawers", "trash can", "throw pillow", "drop-leaf table",
     "end table", "executive chair", "kitchen scale", "dry erase board", "bust of the emperor", "t-shirt",
     "flat-screen TV", "mother's chair", "salt & pepper", "IKEA Billy 80", "floor lamp (left)",
     "stack of old books on pallet", "Ficus benjamina", "Stuhl", "chaise longue", "стул", "椅子", "소파",
+    "instruction manual", "command console", "output tray", "my chair", "all-in-one printer", "make-up table",
 )  # fmt: skip
 
 
@@ -90,6 +100,20 @@ def test_typography_is_evened_out() -> None:
     assert plain("  coffee_table ") == "coffee table"
     assert plain("“big” sofa") == "big sofa"
     assert plain("so\u00adfa\u0007") == "sofa"
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        ("Chair.003", "Chair 003"),
+        ("bed #2", "bed 2"),
+        ("sofa.obj", "sofa"),
+        ("bed no. 2", "bed no 2"),
+        ("SM_Lamp_01", "SM Lamp 01"),
+    ],
+)
+def test_serial_numbers_and_suffixes_of_files_are_no_addresses(name: str, shown: str) -> None:
+    assert plain(name) == shown
 
 
 @given(st.text(max_size=80))
