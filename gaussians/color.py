@@ -13,6 +13,7 @@ import torch
 from torch import Tensor
 
 from .errors import UserError
+from .world.shades import FINISHES, PAINTS, SHADES
 from .world.spelling import did_you_mean
 
 Rgb = tuple[float, float, float]
@@ -59,6 +60,7 @@ _DARKENING = ("very dark", "dark", "deep")
 _TEXT_LIMIT = 80  # characters; no colour name with qualifiers is longer
 NAMING_LIGHTNESS = 0.45
 
+_LAST = frozenset({*BASIC, "grey"})  # what the last word of a colour of two names repeats ("navy blue")
 _WORDS = re.compile(r"[^a-z0-9#]+")
 _QUALIFIER = re.compile(rf"^({'|'.join(QUALIFIERS)}) (.+)$")
 
@@ -94,6 +96,8 @@ def shade_of(text: str) -> Rgb:
 def parse(text: str) -> Rgb:
     """RGB in [0, 1], display space, of a CSS name, an everyday name, `#rgb`, `#rrggbb`, or "dark/light/… NAME".
 
+    Colours named after things ("bottle green", "mahogany") and mixtures ("blue green", "reddish brown") are known too.
+
     Raises:
         UserError: the colour is unknown; the message lists the closest known names.
     """
@@ -110,8 +114,42 @@ def parse(text: str) -> Rgb:
     stem = plain.removesuffix("ish")
     if stem != plain and (named := _named(stem) or _named(stem[:-1]) or _named(f"{stem}e")):
         return named  # greenish, reddish, bluish
+    if described := _described(plain):
+        return described
     hint = did_you_mean(joined, names()) or "use a CSS name such as teal, or #1f8a8a"
     raise UserError(f"unknown colour {text!r}; {hint}")
+
+
+def _described(plain: str) -> Rgb | None:
+    """The colour of a description in several words, or of a thing's name; None if it is none."""
+    words = tuple(w for w in plain.split() if w != "s")  # robin's egg
+    if (value := PAINTS.get(plain)) or (value := PAINTS.get(" ".join(words[:-1])) if words[-1:] else None):
+        return _hex(value) if plain in PAINTS or words[-1] in _LAST else None
+    if words in SHADES:
+        return shade_of(SHADES[words])
+    for taken in (2, 1):
+        finish = FINISHES.get(" ".join(words[:taken])) if len(words) > taken else None
+        if finish is not None and (base := _known(" ".join(words[taken:]))):
+            return _qualify(finish, base) if finish else base
+    if len(words) < 2:
+        return _hex(BASIC[FAMILIES[plain]]) if plain in FAMILIES else None
+    first, last = _known(" ".join(words[:-1])), _known(words[-1])
+    if first is None or last is None:
+        return None
+    tinge = words[0].endswith("ish")  # reddish brown
+    if words[-1] in _LAST and not tinge and words[0] not in _LAST:
+        return first  # "navy blue"
+    share = 0.3 if tinge else 0.5
+    r, g, b = (share * x + (1 - share) * y for x, y in zip(first, last, strict=True))
+    return (r, g, b)
+
+
+def _known(text: str) -> Rgb | None:
+    """The colour of a text, None if it is none."""
+    try:
+        return parse(BASIC.get(text, text))
+    except UserError:
+        return None
 
 
 def _named(plain: str) -> Rgb | None:

@@ -50,10 +50,39 @@ def resolved_plan(session: Session, text: str, context: str | None = None) -> di
     """The plan of an instruction with its targets resolved in the session's scene; nothing is edited.
 
     Args:
-        context: the previous instruction, whose target "it" refers to.
+        context: the previous instruction, whose target "it" refers to, and after which the scene is looked at.
     """
     started = time.perf_counter()
+    changed = _carried_out(session, context)
+    try:
+        plan, told = _resolved(session, text)
+    finally:
+        if changed:
+            session.undo()
+    return {**told, **planner_json(plan), "seconds": round(time.perf_counter() - started, 4)}
+
+
+def _carried_out(session: Session, context: str | None) -> bool:
+    """Carry out the instruction before, as the grammar reads it, so that what it deleted is not there.
+
+    Where that cannot be done, "it" is what it was about, if that can be told. Returns whether the scene changed.
+    """
+    from ...planners.grammar import GrammarPlanner
+
     session.recall(context)
+    plan = GrammarPlanner().plan(context) if context else None
+    if plan is None or all(op.op == "select" for op in plan.ops):
+        return False
+    try:
+        session.apply(plan)
+    except ScenewrightError:
+        session.recall(context)
+        return False
+    return True
+
+
+def _resolved(session: Session, text: str) -> tuple[EditPlan, dict[str, Any]]:
+    """The plan of an instruction, and its verdict, steps and candidates in the session's scene as it is."""
     plan = session.plan(text)
     steps: list[dict[str, Any]] = []
     verdict, reason = "ok", plan.reason
@@ -64,14 +93,12 @@ def resolved_plan(session: Session, text: str, context: str | None = None) -> di
         verdict, reason = verdict_of(error), str(error)
         steps = [_step(op, ()) for op in plan.ops]
     candidates = session.question.candidates if session.question else ()
-    return {
+    return plan, {
         "verdict": verdict,
         "steps": steps,
         "candidates": [candidate_json(c) for c in candidates],
         "reason": reason,
         "unknown": list(plan.unknown),
-        **planner_json(plan),
-        "seconds": round(time.perf_counter() - started, 4),
     }
 
 

@@ -5,7 +5,7 @@ No scene is built or edited. impossible.py refuses steps that sizes make impossi
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,6 +15,7 @@ from ...gaussians.language.query.selection import Selection
 from ...tools.operation import EditOp
 from ..impossible import Step, StepRefused, metres, refuse_above, refuse_impossible
 from ..plan import EditPlan, Observation, Planner, Verdict
+from .graph import SceneGraph
 from .graph_scene import Id, Stage
 
 _NEW = "new"  # ids of what a plan adds begin so
@@ -44,6 +45,8 @@ def resolve_text(
 ) -> Resolved:
     """What an instruction would touch; "it" is what the instruction before (`context`) was about on the same graph.
 
+    What the instruction before took away is not there any more, neither for the words nor for the planner.
+
     Args:
         observation: the graph as planners may look at it; its ids are the stage's rows.
 
@@ -51,8 +54,34 @@ def resolve_text(
         UserError: a text is too long to be an instruction.
         BackendError: a language model cannot be reached.
     """
-    last = recalled(stage, planner.plan(context, observation=observation)) if context else None
-    return resolve_plan(stage, planner.plan(text, previous=context, observation=observation), last)
+    if not context:
+        return resolve_plan(stage, planner.plan(text, observation=observation))
+    play = _Play(stage)
+    last = play.recall(planner.plan(context, observation=observation))
+    if observation is not None and play.gone:
+        observation = _Later(observation, play.gone)
+    return resolve_plan(play.stage, planner.plan(text, previous=context, observation=observation), last)
+
+
+@dataclass(frozen=True)
+class _Later:
+    """An observation after things were taken away; `gone` holds their ids."""
+
+    before: Observation
+    gone: frozenset[int]
+
+    def graph(self) -> SceneGraph:
+        graph = self.before.graph()
+        kept = tuple(
+            n.model_copy(update={"support": "floor"}) if n.support in self.gone else n
+            for n in graph.nodes
+            if n.id not in self.gone
+        )
+        relations = tuple(r for r in graph.relations if not {r[0], r[2]} & self.gone)
+        return graph.model_copy(update={"nodes": kept, "relations": relations})
+
+    def picture(self) -> bytes | None:
+        return None  # it would show what is gone
 
 
 def resolve_plan(stage: Stage, plan: EditPlan, last: Selection | None = None) -> Resolved:
@@ -110,9 +139,11 @@ class _Play:
     last: Selection | None = None
     fresh: tuple[Id, ...] = ()
     added: int = field(default=0)
+    gone: frozenset[int] = frozenset()
 
     def recall(self, plan: EditPlan) -> Selection | None:
-        """What "it" means after a plan, with the graph as it is; something that was to be added may be there by now."""
+        """What "it" means after a plan, and the graph without what the plan took away; something that was to be added
+        may be there by now."""
         for op in plan.ops:
             query = op.query() or Query(text=getattr(op, "asset", ""), pick="one")
             try:
@@ -120,7 +151,18 @@ class _Play:
             except UserError:
                 return None
             self.last = found if found.verdict == "found" else None
+            if self.last is not None and op.op in ("delete", "isolate"):
+                self._take_away(op, self.last.groups)
         return self.last
+
+    def _take_away(self, op: EditOp, groups: Iterable[int]) -> None:
+        """Remove what an operation on these groups removes."""
+        field_ = self.stage.scene.language
+        assert field_ is not None
+        kept = set(groups)
+        away = kept if op.op != "isolate" else {g.id for g in field_.groups if g.id not in kept}
+        self.gone |= away
+        self.stage = self.stage.without(away)
 
     def step(self, op: EditOp) -> Step:
         """The operation with what it would touch.
@@ -176,11 +218,7 @@ class _Play:
             self.last, self.fresh = None, (f"{_NEW} {self.added}",)
         elif chosen is not None:
             self.last, self.fresh = chosen, ()
-        if op.op in ("delete", "replace"):
-            self.stage = self.stage.without(groups)
-        elif op.op == "isolate" and chosen is not None:
-            field_ = self.stage.scene.language
-            assert field_ is not None
-            self.stage = self.stage.without(g.id for g in field_.groups if g.id not in groups)
+        if op.op in ("delete", "replace") or (op.op == "isolate" and chosen is not None):
+            self._take_away(op, groups)
         elif op.op == "recolor" and getattr(op, "adjust", None) is None:
             self.stage = self.stage.painted(groups, str(getattr(op, "color", "")))

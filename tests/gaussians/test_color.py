@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from scenewright.gaussians import color
 from scenewright.gaussians.errors import UserError
+from scenewright.gaussians.world.shades import PAINTS, SHADES
 
 channel = st.floats(0, 1)
 
@@ -127,3 +128,35 @@ def test_any_text_is_a_colour_or_a_clear_error(text: str) -> None:
 def test_long_text_is_refused_at_once() -> None:
     with pytest.raises(UserError, match="unknown colour"):
         color.parse("dark " * 5000 + "red")
+
+
+def test_every_colour_that_the_grammar_reads_has_a_value() -> None:
+    said = [" ".join(words) for words in SHADES]
+    for text in (*said, *PAINTS, *color.FAMILIES, *color.BASIC):
+        assert all(0 <= c <= 1 for c in color.parse(text)), text
+
+
+@pytest.mark.parametrize(
+    ("text", "like"),
+    [
+        ("navy blue", "navy"), ("chocolate brown", "brown"), ("matte black", "black"), ("glossy red", "red"),
+        ("mahogany", "#6e2f22"), ("cobalt blue", "#1f4fa8"), ("dark mahogany", None), ("pastel yellow", None),
+        ("blue-green", None), ("reddish brown", None), ("fire engine red", None), ("warm white", "white"),
+    ],
+)  # fmt: skip
+def test_colours_said_in_several_words(text: str, like: str | None) -> None:
+    found = color.parse(text)
+    assert like is None or found in (color.parse(like), color.shade_of(like))
+
+
+def test_a_mixture_lies_between_its_parts() -> None:
+    red, brown, between = (
+        color.rgb_to_lab(torch.tensor(color.parse(t))) for t in ("#c8201e", "#7a4a26", "reddish brown")
+    )
+    assert (between - brown).norm() < (red - brown).norm() and (between - red).norm() < (red - brown).norm()
+
+
+@pytest.mark.parametrize("text", ["coffee table", "table", "see through", "mahogany desk", "nothing", "blue sofa"])
+def test_things_are_no_colours(text: str) -> None:
+    with pytest.raises(UserError):
+        color.parse(text)

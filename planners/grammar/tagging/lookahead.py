@@ -11,9 +11,9 @@ from functools import cache
 from typing import Any
 
 from ....gaussians import color as colors
+from ....gaussians.world.shades import shade_at
 from ....gaussians.world.words import plural
 from ..vocabulary import lexicon, nouns, quantities
-from ..vocabulary.shades import shade_at
 from ..vocabulary.verbs import Entry
 from .words import bag
 

@@ -14,8 +14,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ....gaussians.world.shades import shade_at
 from ..vocabulary import lexicon, nouns, quantities
-from ..vocabulary.shades import shade_at
 from ..vocabulary.verbs import Entry
 from .context_rules import CARRYING, NOUNISH, facing_at, tag_by_context
 from .lookahead import NOUN_COLORS, color_at, compounds, match, may_be_noun, verb_classes

@@ -10,9 +10,11 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import Any
 
-from ....gaussians.language.query.nested import with_queries
+from ....gaussians.color import plain_color
+from ....gaussians.language.query.nested import queries, with_queries
 from ....gaussians.language.query.query import Query
 from ....tools.operation import EditOp
+from ...rooms.graph_scene import Id
 from ...rooms.label_encoder import words
 from .rehearsal import Rehearsal
 
@@ -37,7 +39,8 @@ inches foot feet ft clockwise counterclockwise transparent invisible opaque
 def drop_unstated_ids(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tuple[EditOp, ...]:
     """Remove ids where the words of the query fit more things and the instruction does not distinguish them.
 
-    Example: "delete the chair", and a model that picks one of three.
+    Example: "delete the chair", and a model that picks one of three. Ids stay where the plan treats every one of the
+    things alike, each in a step of its own, and where the instruction says the colour that tells them apart.
 
     Args:
         ops: queries with ids that do not exist are left as they are.
@@ -47,6 +50,7 @@ def drop_unstated_ids(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tup
     if _OPEN_CHOICE.search(said):
         return tuple(ops)
     used = _used(ops)
+    meant = {i for _, query in queries(tuple(ops)) for i in query.groups}
 
     def rewrite(query: Query) -> Query:
         if not query.groups or scene.missing_ids(query) or scene.misnamed(query):
@@ -56,10 +60,20 @@ def drop_unstated_ids(ops: Sequence[EditOp], text: str, scene: Rehearsal) -> tup
         told = all(stems(word) <= _plain() | used | stems(named.text) for word in _WORD.findall(said))
         if not set(query.groups) < set(fits) or not told:
             return query
+        if set(fits) <= meant or _told_by_color(set(query.groups), fits, stems(text), scene):
+            return query
         # One thing is meant, however many ids the model gave; never all that the words fit.
         return named.model_copy(update={"groups": (), "pick": "one" if named.pick in _LOOSE else named.pick})
 
     return tuple(with_queries(op, rewrite) for op in ops)
+
+
+def _told_by_color(chosen: set[int], fits: Sequence[Id], said: set[str], scene: Rehearsal) -> bool:
+    """Whether the chosen things are those of the alike whose colour is said."""
+    colors = {n.id: stems(plain_color(n.color)) for n in scene.graph.nodes if n.id in fits}
+    spoken = {id: own & said for id, own in colors.items()}
+    wanted = set[str]().union(*(spoken.get(i, set()) for i in chosen))
+    return bool(wanted) and chosen == {i for i, own in spoken.items() if own & wanted}
 
 
 def drop_unstated_colors(ops: Sequence[EditOp], text: str, previous: str | None) -> tuple[EditOp, ...]:

@@ -410,6 +410,27 @@ def test_plan_on_a_graph_in_a_batch(call: Any, tmp_path: Path) -> None:
     assert [s["targets"] for r in answer.rows for s in r["steps"]] == [["kettle"], ["kettle"], []]
 
 
+def test_a_batch_does_not_list_what_the_context_took_away(call: Any, room: Path, tmp_path: Path) -> None:
+    batch = tmp_path / "batch.jsonl"
+    rows = [
+        {"id": 1, "text": "delete all green things", "context": "delete the green thing"},
+        {"id": 2, "text": "select everything", "context": "keep only the green thing"},
+        {"id": 3, "text": "delete the green thing"},
+    ]
+    batch.write_text("\n".join(map(json.dumps, rows)))
+    answer = call("plan", room, "--batch", batch)
+    assert [r["verdict"] for r in answer.rows] == ["absent", "ok", "ok"]  # and the scene is as it was in the last
+    rows = [
+        {"id": 1, "text": "delete all the cushions", "context": "delete the blue cushion"},
+        {"id": 2, "text": "delete the rug", "context": "delete the rug"},
+        {"id": 3, "text": "delete the rug"},
+    ]
+    batch.write_text("\n".join(map(json.dumps, rows)))
+    answer = call("plan", "--batch", batch, "--graph", LIVING, "--resolve")
+    assert answer.rows[0]["steps"][0]["targets"] == [15, 16]
+    assert [r["verdict"] for r in answer.rows[1:]] == ["absent", "ok"]
+
+
 def test_resolving_needs_something_to_resolve_on(call: Any, room: Path) -> None:
     assert call("plan", "delete the sofa", "--resolve").code == 2
     assert call("plan", room, "delete the sofa", "--graph", LIVING).code == 2

@@ -109,6 +109,17 @@ def test_ids_that_the_words_have_a_ground_for_stay(text: str, groups: list[int])
     assert not faults(text, planned)
 
 
+def test_ids_that_tell_twins_apart_stay() -> None:
+    swapped = (
+        op("recolor", "armchair", q_groups=[2], color="yellow"),
+        op("recolor", "armchair", q_groups=[3], color="green"),
+    )
+    for text in ("make the green armchair yellow and the yellow one green", "swap the colors of the armchairs"):
+        assert guard(text).drop_unstated(swapped) == swapped
+    alone = op("recolor", "armchair", q_groups=[2], color="yellow")
+    assert guard("paint the green armchair yellow").drop_unstated([alone]) == (alone,)
+
+
 # -- colours, shell, it ----------------------------------------------------------------------------------------------
 
 
