@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ...gaussians.language.encoders.probability import why_unknown
 from ...gaussians.language.query.attributes import COLOR_HOLDS, color_scores
 from ...gaussians.language.query.color.fallback import is_reliable
-from ...gaussians.language.query.query import ALL, FLOATERS
+from ...gaussians.language.query.query import ALL, BACKGROUND, FLOATERS
 from ...gaussians.language.query.terms import STRUCTURE, candidate_of, is_name
 from ...gaussians.viewpoints.visibility import GroupPixels
 from .sight import bare, named
@@ -85,7 +85,7 @@ def _ranked(scene: Scene, query: Query, groups: Sequence[Group], viewer: Camera)
 def _is_open(query: Query) -> bool:
     """Whether a query is for things by a name or an attribute, and not by ids or for parts of space."""
     fixed = query.last or query.groups or query.invert or query.pick == "rest" or query.region is not None
-    return not fixed and query.text not in ALL | FLOATERS and bool(query.text or query.colors)
+    return not fixed and query.text not in ALL | BACKGROUND | FLOATERS and bool(query.text or query.colors)
 
 
 def _unknown(query: Query, encoder: Encoder | None) -> bool:

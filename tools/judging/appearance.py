@@ -14,7 +14,7 @@ from ...gaussians.language.encoders.probability import probability
 from ...gaussians.language.field.measure import box_of
 from ...gaussians.language.query.attributes import color_scores
 from ...gaussians.language.query.color.fallback import is_reliable
-from ...gaussians.language.query.query import ALL, FLOATERS, Query
+from ...gaussians.language.query.query import ALL, BACKGROUND, FLOATERS, Query
 from ...gaussians.language.query.terms import ANYTHING, STRUCTURE
 from ...gaussians.language.segmentation.group_renders import mean_vectors
 from ...gaussians.scene import Frame, Scene
@@ -44,7 +44,7 @@ def is_looked_for(query: Query, encoder: Encoder) -> bool:
     word = query.text.lower()
     fixed = query.last or query.groups or query.confirmed or query.invert or query.also or query.pick == "rest"
     part = any(r.name == "part_of" for r in query.relations)
-    unnamed = word in ANYTHING | ALL | FLOATERS or word in STRUCTURE
+    unnamed = word in ANYTHING | ALL | BACKGROUND | FLOATERS or word in STRUCTURE
     return not (fixed or part or unnamed) and encoder.knows(word)
 
 

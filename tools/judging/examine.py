@@ -5,7 +5,6 @@ Each operation has a function that lists its checks; an operation without one ge
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -51,6 +50,7 @@ _WAY = 0.03  # of the way, and at least 2 cm: error of a moved thing's place
 _TURN = 2.0  # degrees
 _SIZE = 0.03  # error of a size ratio, and at most a third of the change that was asked for
 _BRIGHTEST = 0.97  # display value of the brightest channel from which a colour may stay as it is
+_HUELESS = 1 / 255  # between the channels of a grey
 _PART = 0.05  # score of a colour that only parts of a new thing have
 _LEVEL = 0.03  # of its height, and at least 2 cm: by how much a copy of a thing that hangs may hang higher or lower
 
@@ -162,10 +162,13 @@ def _recolor(case: Case, op: Recolor) -> Found:
 def _to_paint(case: Case, op: Recolor) -> Tensor | None:
     """`[N]` bool: what of the target has to change its colour; None for all of it.
 
-    A new colour leaves parts of other hues. What is as bright as a display shows cannot become lighter or purer.
+    A new colour leaves parts of other hues. What is as bright as a display shows cannot become lighter or purer, and a
+    grey has no hue to lose.
     """
-    if op.adjust in ("lighter", "more_saturated"):
+    if op.adjust in ("lighter", "more_saturated", "less_saturated"):
         shown = dc_to_color(case.before.cloud.sh[:, 0])
+        if op.adjust == "less_saturated":
+            return case.target & (shown.amax(dim=1) - shown.amin(dim=1) > _HUELESS)
         return case.target & (shown.amax(dim=1) < _BRIGHTEST)
     if op.color is None or op.paints_parts or not bool(case.target.any()):
         return None
@@ -186,11 +189,12 @@ def _adjusted(case: Case, op: Recolor, rows: Tensor) -> Check:
     if len(was) < 4 or len(now) < 4:
         return report("seen to change", 0.0, "ΔE", "too few of its pixels are solid to see a colour")
     old, new = was.mean(axis=0), now.mean(axis=0)
+    chroma = [float(np.linalg.norm(lab[:, 1:], axis=1).mean()) for lab in (was, now)]  # the mean of many is grey
     step = {
         "darker": old[0] - new[0],
         "lighter": new[0] - old[0],
-        "more_saturated": math.hypot(*new[1:]) - math.hypot(*old[1:]),
-        "less_saturated": math.hypot(*old[1:]) - math.hypot(*new[1:]),
+        "more_saturated": chroma[1] - chroma[0],
+        "less_saturated": chroma[0] - chroma[1],
         "warmer": new[2] - old[2],
         "cooler": old[2] - new[2],
         "toward": float(np.linalg.norm(new - old)),

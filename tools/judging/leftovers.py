@@ -50,8 +50,12 @@ def left_behind(case: Case) -> tuple[Check, Tensor]:
     """The check that nothing of the target is left where it stood, and the ids of what is.
 
     It only reports, without ids, where most things of the scene have no sure label: what is near a thing in such a
-    capture may be anything. It does so for parts of space and floaters, beside which everything else stays.
+    capture may be anything. Of parts of space and floaters nothing is measured: beside them everything else stays.
     """
+    query = case.op.query()
+    if query is not None and query.spatial:
+        none = torch.zeros(0, dtype=torch.int64)
+        return report("nothing left behind", 0.0, "1", "of a part of space everything else stays"), none
     rows = [body.rows for body in case.bodies]
     found = [_left_of(case, one) for one in rows]
     left = torch.unique(torch.cat(found)) if found else torch.zeros(0, dtype=torch.int64)
@@ -61,8 +65,7 @@ def left_behind(case: Case) -> tuple[Check, Tensor]:
     share = float(weight_of(cloud, left).clamp(max=most).sum()) / max(float(weight.clamp(max=most).sum()), 1e-30)
     said = f"{len(left):,} Gaussians, {share:.1%} of the thing by area, stand where it stood and belong to nothing else"
     field = case.before.language
-    query = case.op.query()
-    if field is None or not is_reliable(field) or (query is not None and query.spatial):
+    if field is None or not is_reliable(field):
         return report("nothing left behind", share, "1", said), left[:0]
     return at_most("nothing left behind", share, BOUND, "1", said), cloud.ids[left]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 
 import torch
@@ -11,8 +10,8 @@ from torch import Tensor
 
 from ...gaussians.cloud import GaussianCloud
 from ...gaussians.color import rgb_to_lab, shade_of
-from ...gaussians.language.field.measure import Sample, lightness_spread, mean_lab, sample
-from ...gaussians.language.query.query import Query
+from ...gaussians.language.field.measure import Sample, lightness_spread, mean_chroma, mean_lab, sample
+from ...gaussians.language.query.query import BACKGROUND, Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
@@ -94,7 +93,9 @@ class Recolor(TargetedOp):
 
     @property
     def paints_parts(self) -> bool:
-        """Whether parts of other hues get a new colour too: asked for, or everything in the scene is meant."""
+        """Whether parts of other hues get a new colour too: asked for, or the scene or its background is meant."""
+        if self.target.text in BACKGROUND:
+            return True
         everything = self.target.text in ("", "everything") and self.target.pick == "all"
         return self.whole or (everything and not (self.target.colors or self.target.relations))
 
@@ -184,15 +185,15 @@ class Recolor(TargetedOp):
         return at_least(f"{self.adjust.replace('_', ' ')}", step, 0.2, "ΔE", said)
 
     def _progress(self, was: Sample, now: Sample) -> float:
-        """How far the colour moved in the requested direction, in Lab: of the lit faces, or for saturation and warmth
-        of the mean.
+        """How far the colour moved in the requested direction, in Lab: of the lit faces, for warmth of the mean, or for
+        saturation of the mean chroma (of many colours the mean is grey).
 
         These two change chroma only, and the median chroma of a striped thing may be that of its white stripes.
         """
-        old, new = mean_lab(was), mean_lab(now)
         if self.adjust in ("more_saturated", "less_saturated"):
-            gain = math.hypot(float(new[1]), float(new[2])) - math.hypot(float(old[1]), float(old[2]))
+            gain = mean_chroma(now) - mean_chroma(was)
             return gain if self.adjust == "more_saturated" else -gain
+        old, new = mean_lab(was), mean_lab(now)
         if self.adjust in ("warmer", "cooler"):
             return float(new[2] - old[2]) * (1 if self.adjust == "warmer" else -1)
         old, new = lit_face(was), lit_face(now)

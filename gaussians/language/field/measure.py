@@ -142,6 +142,11 @@ def mean_lab(taken: Sample) -> Tensor:
     return (taken.weight[:, None] * taken.lab).sum(dim=0)
 
 
+def mean_chroma(taken: Sample) -> float:
+    """Weighted mean of the Lab chroma of the colours."""
+    return float((taken.weight * torch.linalg.vector_norm(taken.lab[:, 1:], dim=1)).sum())
+
+
 def lightness_spread(taken: Sample) -> float:
     """Weighted standard deviation of Lab lightness, a measure of shading and texture."""
     lightness = taken.lab[:, 0]

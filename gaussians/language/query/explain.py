@@ -11,7 +11,7 @@ from typing import Any
 
 from ...errors import UserError
 from .picking import rivals
-from .query import ALL, FLOATERS, Query
+from .query import ALL, BACKGROUND, FLOATERS, Query
 from .resolve import Resolver, Unresolved
 from .selection import Candidate, Verdict
 from .terms import name_shares
@@ -117,7 +117,7 @@ def explain(resolver: Resolver, query: Query) -> Explanation:
 
 
 def _candidates(resolver: Resolver, query: Query, selected: set[int]) -> tuple[Explained, ...]:
-    if query.last or query.groups or (query.text in ALL | FLOATERS and not query.colors):
+    if query.last or query.groups or (query.text in ALL | BACKGROUND | FLOATERS and not query.colors):
         return ()
     try:
         rank = resolver.scored(query)

@@ -21,6 +21,7 @@ Picks = Literal[
 ]  # fmt: skip
 CORNERS = ("front left", "front right", "back left", "back right")  # of the room, as the viewer sees it
 ALL = frozenset({"everything", "all", "scene", "room", "whole scene"})  # nouns that mean every Gaussian
+BACKGROUND = frozenset({"background", "backdrop", "surroundings", "surrounding", "environment"})
 FLOATERS = frozenset({"floater", "noise", "floating bit", "stray", "haze", "speck"})
 Sizes = Literal["small", "large", "tall", "short", "wide", "narrow"]
 
@@ -119,7 +120,7 @@ class Query(BaseModel):
     @property
     def spatial(self) -> bool:
         """Whether it means a part of the scene, with what belongs to no thing, rather than things by their names."""
-        return self.invert or self.pick == "rest" or self.text in ALL | FLOATERS
+        return self.invert or self.pick == "rest" or self.text in ALL | BACKGROUND | FLOATERS
 
     def describe(self) -> str:
         """The query in words, for messages: "the red chair left of the sofa"."""

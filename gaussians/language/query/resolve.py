@@ -27,13 +27,14 @@ from ..field.language_field import Group, LanguageField
 from ..field.measure import box_of
 from . import wholes
 from .attributes import COLOR_HOLDS, color_scores
+from .background import background
 from .color.fallback import PARTS, by_color, by_hue, is_reliable
 from .floaters import floaters
 from .keeping import without_strays
 from .part_query import Piece, pieces_of
 from .parts import NAMED
 from .picking import by_distance, pick
-from .query import ALL, FLOATERS, Query, Region, Relation
+from .query import ALL, BACKGROUND, FLOATERS, Query, Region, Relation
 from .readings import is_known
 from .reshape import reshaped
 from .selection import Candidate, Selection, nothing
@@ -54,6 +55,8 @@ from .terms import (
 if TYPE_CHECKING:
     from ..encoders import Encoder
 
+_NAMED = 0.5  # probability of a name from which a thing is called so
+_REST = "the rest of what? nothing was named before: say 'everything but the ...', or 'the background'"
 _STACKED = 2  # how often a crop looks for what stands on what it keeps
 
 __all__ = ["STRUCTURE", "Resolver", "resolve"]  # builders of scenes need the words for structure
@@ -134,7 +137,9 @@ class Resolver:
         for other in query.exclude:
             out = self.select(other.model_copy(update={"pick": "all"}) if other.pick == "one" else other)
             if not out.chosen:
-                return replace(out, query=query, reason=f"cannot leave out what is not there: {out.reason}")
+                rest = other.last and query.text in ALL
+                why = _REST if rest else f"cannot leave out what is not there: {out.reason}"
+                return replace(out, query=query, reason=why)
             outs.append(out)
         unmeant = frozenset(g for out in outs for g in out.groups) if query.pick == "one" and not query.also else None
         own = self._own(query, unmeant or frozenset())
@@ -177,6 +182,8 @@ class Resolver:
             return Selection(query, "found", self.members.every_id, tuple(g.id for g in groups), told)
         if query.text in FLOATERS and not query.colors:
             return self._floaters(query)
+        if query.text in BACKGROUND and not self._is_named(query.text):
+            return self._background(query)
         try:
             if query.region is not None:
                 held = mostly_in(self.scene, self._inside(query.region).rows)
@@ -243,6 +250,18 @@ class Resolver:
         share = float(cloud.opacities[rows].sum() / cloud.opacities.sum())
         told = f"{len(ids):,} Gaussians that lie apart from every surface, {share:.1%} of all opacity"
         return Selection(query, "found", ids, (), (), told)
+
+    def _is_named(self, text: str) -> bool:
+        """Whether a thing of the scene is called so."""
+        return any(g.label == text and g.label_score >= _NAMED for g in present_groups(self.field, "object"))
+
+    def _background(self, query: Query) -> Selection:
+        """Everything but the subject of the scene, or but what the background is said to be of."""
+        if query.relations:
+            anchors = tuple(a for relation in query.relations for a in relation.anchors)
+            found = self.select(Query(text="everything", pick="all", exclude=anchors))
+            return replace(found, query=query)
+        return background(self.scene, self.members, query)
 
     def _in_region(self, query: Query, region: Region) -> Selection:
         """Every Gaussian of a part of space."""

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from ..tagging.lookahead import Lookahead
 from ..tagging.words import bag
 from ..vocabulary import doings
+from ..vocabulary.verbs import BLURS
 from .smoothing import unopened
 
 _SHELL = re.compile(
@@ -34,8 +35,7 @@ _RUNNING = re.compile(
     r"talk|speak|"
     r"bark|fly|driv|runn|work|glow|blink|bounc|walk|beep|tick|boil|cook|spinn|rock|swing|mov|turn)ing)\b"
 )
-
-
+_BLURRED = re.compile(r"\b(?:blurr?(?:y|ier|ed)?|bokeh|out of focus|in focus|sharper|depth of field)\b")
 # What is made to be eaten and drunk, and what is done for people.
 _SERVED = re.compile(
     r"^(?:make|fix|pour|bring|get|cook|brew|give|order|fetch|buy) (?:me|us|them|him|her|everyone) (?:a |an |some |"
@@ -58,6 +58,8 @@ def cannot_be(texts: Sequence[str]) -> str:
         return f"the {found.group('part')} stays: it has no operation that moves or opens it"
     if _SWITCHED.search(said):
         return "moving parts and switches cannot be operated"
+    if _BLURRED.search(said):
+        return BLURS
     if found := _RUNNING.search(said):
         return f"scenes stand still: nothing makes the {found.group('thing')} run, move by itself or sound"
     return ""

@@ -169,6 +169,7 @@ VERBS: dict[str, Entry] = {
     **same(("MULTIPLY", 0.5), "halve"),
 }
 
+BLURS = "how sharp a picture is belongs to the camera, not to the scene: make it darker, paler or transparent instead"
 TO_ALIGN = "things cannot be lined up with each other in one step"
 
 # Verbs that no operation carries out. They are listed so that the refusal gives the reason, not "not understood".
@@ -184,4 +185,5 @@ UNSUPPORTED: dict[str, str] = {
             "invert selection, deselect, unselect, select none, select nothing, reset the selection"),
     **same("objects cannot be renamed", "rename, label"),
     **same(TO_ALIGN, "align, line up"),
+    **same(BLURS, "blur, blur out, defocus, unblur, deblur, sharpen, sharpen up"),
 }  # fmt: skip
