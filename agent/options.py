@@ -102,6 +102,9 @@ Assets = Annotated[
     Path | None,
     typer.Option("--assets", metavar="FOLDER", help="Insert the .glb and .ply files in this folder by their names."),
 ]
+Infill = Annotated[
+    bool, typer.Option("--infill/--no-infill", help="Fill the surfaces that deleted, moved and replaced things hid.")
+]
 Picture = Annotated[
     bool, typer.Option("--picture", help="Send the viewer's picture to a language model that takes pictures.")
 ]

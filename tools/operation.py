@@ -165,6 +165,7 @@ class Context:
         resolver: how queries become selections; None means `scenewright.gaussians.language.query.resolve`.
         renderer: back end of pixel checks, as `gaussians.render.render` takes it.
         assets: the user's own assets, which are taken before those of the library; None: there are none.
+        infill: whether surfaces that an edit reveals are filled afterwards (see `completing`).
     """
 
     viewer: Camera
@@ -176,6 +177,7 @@ class Context:
     resolver: Resolver | None = None
     renderer: str = "auto"
     assets: AssetSource | None = None
+    infill: bool = True
 
     def resolve(self, scene: Scene, query: Query) -> Selection:
         """What `query` means in `scene`; whatever its verdict is (see `Selection.require`).
@@ -248,6 +250,7 @@ class EditOp(BaseModel):
 
     op: str
     example: ClassVar[tuple[str, dict[str, Any]]]
+    reveals: ClassVar[bool] = False  # whether it takes things from their place, and what they hid may be filled
     takes_enclosed: ClassVar[bool] = False  # whether what a thing of a capture encloses is edited with it
 
     def query(self) -> Query | None:

@@ -119,6 +119,28 @@ class Judgement(BaseModel):
         return all(check.passed for check in self.checks)
 
 
+class Filled(BaseModel):
+    """What was done to a surface that an edit revealed.
+
+    Attributes:
+        surface: in words: "the floor", "the wall".
+        gaussians: how many were made.
+        area: of the hole, square scene units.
+        sure: how sure the fill is, in [0, 1].
+        lighter: Gaussians of the surface that lay in the thing's contact shadow and are lighter now.
+        reason: why nothing was made; "" if something was.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    surface: str
+    gaussians: int
+    area: float
+    sure: float
+    lighter: int = 0
+    reason: str = ""
+
+
 class Receipt(BaseModel):
     """What one operation did; `Receipt.model_validate_json(receipt.to_json()) == receipt`.
 
@@ -136,6 +158,7 @@ class Receipt(BaseModel):
         backends: what was used, by role: "resolver", "encoder", "renderer".
         dry_run: True if nothing was kept.
         judged: what the judge measured, if there was one.
+        filled: what was done to the surfaces that the edit revealed.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -155,6 +178,7 @@ class Receipt(BaseModel):
     backends: dict[str, str] = Field(default_factory=dict)
     dry_run: bool = False
     judged: Judgement | None = None
+    filled: tuple[Filled, ...] = ()
 
     @property
     def passed(self) -> bool:

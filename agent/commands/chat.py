@@ -7,6 +7,7 @@ from ..options import (
     Budget,
     Debug,
     Encoder,
+    Infill,
     Json,
     Judge,
     Log,
@@ -32,6 +33,7 @@ def command(
     assets: Assets = None,
     picture: Picture = False,
     judge: Judge = None,
+    infill: Infill = True,
     encoder: Encoder = "auto",
     up: Up = None,
     metres_per_unit: Scale = None,
@@ -48,7 +50,7 @@ def command(
     session, _ = open_session(
         SessionOptions(
             scene, planner, encoder, view, log=log, seed=seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
-            picture=picture, judge=judge, vlm=vlm, assets=assets,
+            picture=picture, judge=judge, vlm=vlm, assets=assets, infill=infill,
         )
     )  # fmt: skip
     try:

@@ -18,6 +18,7 @@ from ..options import (
     Debug,
     Encoder,
     Force,
+    Infill,
     Json,
     Judge,
     Log,
@@ -82,6 +83,7 @@ def command(
     assets: Assets = None,
     picture: Picture = False,
     judge: Judge = None,
+    infill: Infill = True,
     encoder: Encoder = "auto",
     seed: Seed = 0,
     yes: Yes = False,
@@ -114,6 +116,7 @@ def command(
         vlm,
         yes,
         assets,
+        infill,
     )  # fmt: skip
     with timed(seconds, "open"):
         session, had_field = open_session(options)

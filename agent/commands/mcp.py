@@ -10,6 +10,7 @@ from ..options import (
     Budget,
     Debug,
     Encoder,
+    Infill,
     Json,
     Judge,
     Log,
@@ -38,6 +39,7 @@ def command(
     window: Window = None,
     picture: Picture = False,
     judge: Judge = None,
+    infill: Infill = True,
     encoder: Encoder = "auto",
     up: Up = None,
     metres_per_unit: Scale = None,
@@ -69,7 +71,7 @@ def command(
     session, embedded = open_session(
         SessionOptions(
             scene, planner, encoder, view, size, log, seed, up=up, metres_per_unit=metres_per_unit, budget=budget,
-            picture=picture, judge=judge, vlm=vlm,
+            picture=picture, judge=judge, vlm=vlm, infill=infill,
         ),
         progress,
     )  # fmt: skip

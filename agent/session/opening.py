@@ -32,6 +32,7 @@ class SessionOptions:
         vlm: a vision model, as `Session` takes it.
         accept_unconfirmed: edit without asking what was chosen although its name is not confirmed.
         assets: folder of the user's own assets, or None.
+        infill: fill the surfaces that an edit reveals.
         up, metres_per_unit: the scene's frame as the user gives it; a saved field made in another frame is not used.
     """
 
@@ -51,6 +52,7 @@ class SessionOptions:
     vlm: str = "auto"
     accept_unconfirmed: bool = False
     assets: Path | None = None
+    infill: bool = True
 
 
 def open_session(options: SessionOptions, progress: Progress | None = None) -> tuple[Session, bool]:
@@ -87,6 +89,7 @@ def open_session(options: SessionOptions, progress: Progress | None = None) -> t
         vlm=options.vlm,
         accept_unconfirmed=options.accept_unconfirmed,
         assets=options.assets,
+        infill=options.infill,
     )
     for note in session.log_notes:
         terminal.say(f"note: {note}")

@@ -59,6 +59,7 @@ def run_plan(
         PlanFailed: an operation cannot be done, failed its own check, or was judged a failure.
     """
     from ...tools import execute
+    from ...tools.completing import completed
     from ...tools.ops.reframe import of_everything
 
     words = plan.instruction if len(plan.ops) == 1 else ""
@@ -69,7 +70,8 @@ def run_plan(
     for step, op in enumerate(plan.ops):
         context = context_of(last)
         try:
-            scene, receipt, last = carry_out(scene, of_everything(op), context)
+            op = of_everything(op)
+            scene, receipt, last = completed(scene, op, context, carry_out(scene, op, context))
         except ScenewrightError as error:
             raise PlanFailed(_in_plan(error, plan, step), _question(plan, step, error, scene, context)) from error
         receipts.append(

@@ -76,6 +76,7 @@ class Session:
             model, with pictures before and after. None: do not judge.
         accept_unconfirmed: edit what was chosen although its name is not confirmed, without asking; for scripts.
         assets: a folder with assets of your own (.glb, .ply), which are inserted by their names.
+        infill: fill the surfaces that deleted, moved and replaced things hid.
         vlm: a vision model for what geometry does not answer and words do not find: a name that `planners.model.load`
             takes, a back end, "auto" for the one that `SCENEWRIGHT_VLM` names, or None.
 
@@ -110,6 +111,7 @@ class Session:
         vlm: str | ModelBackend | None = "auto",
         accept_unconfirmed: bool = False,
         assets: str | Path | None = None,
+        infill: bool = True,
     ) -> None:
         self._progress = progress or (lambda stage, fraction: None)
         # The planner comes first, so that an unknown name creates no log file.
@@ -117,6 +119,7 @@ class Session:
         self._vision = VisionClient(vlm, self._planner.ledger, self._progress)
         self._encoder = encoder
         self._assets = own_assets(assets)
+        self._infill = infill
         self._asker = Asker()
         self._viewer = viewer
         self._seed = seed
@@ -228,7 +231,7 @@ class Session:
         encoder = self.encoder if self.scene.language is not None else None
         return Context(
             viewer=self.viewer, last=last, encoder=encoder, seed=self._seed, pixel_checks=self.pixel_checks,
-            assets=self._assets,
+            assets=self._assets, infill=self._infill,
         )  # fmt: skip
 
     # -- planner ----------------------------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +24,7 @@ from .meaning.changes import Fields
 from .meaning.phrases import Phrases
 from .parsing import Refusal
 from .reader import Reader
+from .restating.filling import Request, heard
 from .restating.remarks import is_remark
 from .restating.smoothing import smoothed
 from .tagging.non_edits import QUESTION, STATEMENT
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 NAME = "grammar"
 _COPIES = frozenset({"copy", "duplicate", "clone", "new one", "second one", "second copy"})
 _ORIGINALS = frozenset({"original", "original one", "first one", "old one"})
+_REVEALING = frozenset({"delete", "move", "replace"})  # operations whose holes are filled
 _REST = frozenset({"rest", "everything", "everything else", "other"})
 _SIDES = {"right_of": "right", "left_of": "left", "next_to": None}  # of the original, and the direction of its copies
 
@@ -148,6 +150,9 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
     """
     if phrase := unsafe_words(cleaned):
         raise Refusal("this is not about the scene", phrase, verdict="unsafe")
+    said = heard(cleaned)
+    if said.requests or said.leave:
+        return _with_holes(said.rest, said.requests, said.leave, previous)
     words, remarks = correct_spelling(smoothed(without_owners(split(cleaned))))
     before = _understand_previous(previous)
     phrases = Phrases(before.antecedent, before.again, before.colors)
@@ -163,6 +168,26 @@ def _understand(cleaned: str, previous: str | None) -> _Outcome:
         phrases.colors,
         not reader.restated,
     )
+
+
+def _with_holes(rest: str, holes: Sequence[Request], leave: bool, previous: str | None) -> _Outcome:
+    """An instruction that says to fill holes, or to leave what it reveals as it is.
+
+    Raises:
+        Refusal: as `_understand`.
+    """
+    outcome = _understand(rest, previous) if rest or not holes else _understand_previous(previous)
+    ops = list(outcome.ops) if rest else []
+    if leave:
+        ops = [{**op, "infill": False} if op["op"] in _REVEALING else op for op in ops]
+    for hole in holes:
+        surface = _understand(f"select {hole.what}", rest or previous)
+        for op in surface.ops:
+            target: Query = op["target"]
+            if hole.where == "in" and target.pick == "one" and not target.relations:
+                target = target.model_copy(update={"pick": "all"})  # a room has several walls
+            ops.append({"op": "infill", "target": target, **({} if hole.where == "in" else {"where": hole.where})})
+    return replace(outcome, ops=tuple(ops), again=tuple(ops[-1:]))
 
 
 def _understand_previous(previous: str | None) -> _Outcome:

@@ -25,12 +25,13 @@ _WAYS: dict[str, frozenset[str]] = {
     "reframe": frozenset({"placed"}),
     "insert": frozenset(),
     "duplicate": frozenset(),
+    "infill": frozenset(),
     "select": frozenset(),
     "merge": frozenset(),
     "split": frozenset(),
 }
 _CARRIED = {"delete": frozenset({"placed"}), "replace": frozenset({"placed"})}
-_ADDS = frozenset({"insert", "duplicate", "replace"})
+_ADDS = frozenset({"insert", "duplicate", "replace", "infill"})
 _COMPLETE = 0.99  # share of the target's visual weight that must change: a few Gaussians may already be as asked
 
 

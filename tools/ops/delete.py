@@ -31,8 +31,10 @@ class Delete(TargetedOp):
         {"op": "delete", "target": {"text": "coffee table"}},
     )
     takes_enclosed: ClassVar[bool] = True
+    reveals: ClassVar[bool] = True
     op: Literal["delete"] = "delete"
     on_it: Literal["settles", "goes", "stays"] = "settles"
+    infill: bool = True  # whether the surfaces that it hid are filled, see `completing`
 
     def may_change(self, scene: Scene, selection: Selection) -> Tensor:
         asked = super().may_change(scene, selection)

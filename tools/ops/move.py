@@ -59,12 +59,14 @@ class Move(TargetedOp):
         {"op": "move", "target": {"text": "lamp"}, "direction": "left", "distance": {"value": 40, "unit": "cm"}},
     )
     takes_enclosed: ClassVar[bool] = True
+    reveals: ClassVar[bool] = True
     op: Literal["move"] = "move"
     direction: Direction | None = None
     distance: Length | None = None
     place: Placement | None = None
     """Where to put it down: supported and free of collision."""
     toward: Query | None = None
+    infill: bool = True  # whether the surfaces that it hid are filled, see `completing`
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:

@@ -34,10 +34,12 @@ class Replace(TargetedOp):
         {"op": "replace", "target": {"text": "stool"}, "asset": "armchair", "color": "green"},
     )
     takes_enclosed: ClassVar[bool] = True
+    reveals: ClassVar[bool] = True
     op: Literal["replace"] = "replace"
     asset: AssetName
     """Kind of the new object, singular."""
     color: ColorName | None = None
+    infill: bool = True  # whether the surfaces that it hid are filled, see `completing`
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         bodies = bodies_of(scene, selection)

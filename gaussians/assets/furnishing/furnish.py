@@ -95,6 +95,27 @@ def furnish(
     Raises:
         UserError: the kind of room or object is unknown, or the number is out of range.
     """
+    plan = arranged(seed, kind, objects, detail, include=include)
+    return assemble(plan.layout, plan.kind, plan.rng, detail, ceiling)
+
+
+@dataclass(frozen=True, eq=False)
+class Arranged:
+    """A room before it is built: where its things stand, its kind, and the state of its random numbers."""
+
+    layout: Layout
+    kind: str
+    rng: np.random.Generator
+
+
+def arranged(
+    seed: int, kind: str = "any", objects: int | None = None, detail: float = 1.0, *, include: Sequence[str] = ()
+) -> Arranged:
+    """The layout of `furnish`; with a copy of its random numbers it is built with and without a thing alike.
+
+    Raises:
+        UserError: as `furnish`.
+    """
     if kind != "any" and kind not in recipes.RECIPES:
         raise UserError(f"unknown kind of room {kind!r}; known: any, {', '.join(recipes.RECIPES)}")
     if objects is not None and not 3 <= objects <= 40:
@@ -114,7 +135,7 @@ def furnish(
         _add(layout, get, extra)
     recipe(layout, get)
     recipes.fill_up(layout, get, objects or int(rng.integers(12, 18)))
-    return assemble(layout, name, rng, detail, ceiling)
+    return Arranged(layout, name, rng)
 
 
 def _walls(rng: np.random.Generator) -> tuple[str, ...]:

@@ -1,0 +1,1 @@
+"""Parts of `bench fill`: rooms with a known empty truth, and measures of filled pictures."""

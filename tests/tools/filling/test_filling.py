@@ -1,0 +1,183 @@
+"""A box on a chequered floor before a wall; what the box hides is not there, as in a capture."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+from scenewright.gaussians.camera import Camera
+from scenewright.gaussians.cloud import GaussianCloud, concat
+from scenewright.gaussians.harmonics import color_to_dc
+from scenewright.gaussians.language.query.query import Query
+from scenewright.gaussians.language.query.selection import Selection
+from scenewright.gaussians.render import render
+from scenewright.gaussians.scene import Frame, Scene
+from scenewright.tools.completing import completed
+from scenewright.tools.execute import Done, carry_out
+from scenewright.tools.filling.fill import merged, patches_behind
+from scenewright.tools.operation import Context
+from scenewright.tools.registry import parse
+
+STEP = 0.04
+FLOOR, WALL, BOX = 0, 1, 2
+VIEW = Camera.look_at([0.0, -2.4, 1.6], [0.0, 0.1, 0.2], [0, 0, 1], 160, 120)
+
+
+def _sheet(points: np.ndarray, normal: int, rgb: np.ndarray, group: int) -> GaussianCloud:
+    scales = np.full((len(points), 3), 0.6 * STEP)
+    scales[:, normal] = 0.002
+    quats = torch.tensor([1.0, 0, 0, 0]).expand(len(points), 4).contiguous()
+    sh = color_to_dc(torch.from_numpy(rgb.astype(np.float32)))[:, None]
+    owner = torch.full((len(points),), group, dtype=torch.int32)
+    f32 = (torch.from_numpy(a.astype(np.float32)) for a in (points, scales))
+    means, scale = f32
+    return GaussianCloud.create(means, quats, scale, torch.full((len(points),), 0.95), sh, owner)
+
+
+def _grid(low: tuple[float, float], high: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+    a = np.arange(low[0], high[0], STEP) + STEP / 2
+    b = np.arange(low[1], high[1], STEP) + STEP / 2
+    x, y = np.meshgrid(a, b, indexing="ij")
+    return x.ravel(), y.ravel()
+
+
+def _floor() -> GaussianCloud:
+    x, y = _grid((-1.6, -1.6), (1.6, 0.8))
+    tiles = 0.45 + 0.2 * ((np.floor(x / 0.2) + np.floor(y / 0.2)) % 2)
+    return _sheet(np.stack([x, y, 0 * x], 1), 2, np.stack([tiles, tiles, tiles], 1), FLOOR)
+
+
+def _wall() -> GaussianCloud:
+    x, z = _grid((-1.6, 0.0), (1.6, 1.6))
+    rgb = np.stack([0.7 + 0.05 * x, 0.6 + 0 * x, 0.4 + 0.1 * z], 1)
+    return _sheet(np.stack([x, 0 * x + 0.8, z], 1), 1, rgb, WALL)
+
+
+def _box(y: float = 0.35, z: float = 0.0, size: float = 0.6) -> GaussianCloud:
+    sides = []
+    a, b = _grid((-size / 2, -size / 2), (size / 2, size / 2))
+    red = np.tile([0.8, 0.1, 0.1], (len(a), 1))
+    for axis in range(3):
+        for end in (-size / 2, size / 2):
+            points = np.insert(np.stack([a, b], 1), axis, end, axis=1)
+            sides.append(_sheet(points + np.array([0, y, z + size / 2]), axis, red, BOX))
+    return _numbered(sides)
+
+
+def _numbered(clouds: list[GaussianCloud]) -> GaussianCloud:
+    first, out = 0, []
+    for cloud in clouds:
+        out.append(cloud.replace(ids=torch.arange(first, first + len(cloud))))
+        first += len(cloud)
+    return concat(out)
+
+
+def _scene(box: GaussianCloud, *surfaces: GaussianCloud) -> Scene:
+    """The surfaces without what the box hides from above and from before, and the box."""
+    kept = []
+    low, high = box.means.amin(dim=0), box.means.amax(dim=0)
+    for cloud in surfaces:
+        inside = ((cloud.means >= low) & (cloud.means <= high))[:, :2].all(dim=1)
+        under = inside & (cloud.means[:, 2] < 0.01) & (low[2] < 0.05)
+        behind = (cloud.means[:, 0].abs() < 0.3) & (cloud.means[:, 1] > 0.79) & (cloud.means[:, 2] < 0.55)
+        kept.append(cloud[~(under | (behind & (high[1] > 0.6)))])
+    return Scene(_numbered([*kept, box]), Frame((0, 0, 1), 0.0, 1.0, "given", "given"))
+
+
+@pytest.fixture(scope="module")
+def room() -> Scene:
+    return _scene(_box(), _floor(), _wall())
+
+
+def _delete(scene: Scene, infill: bool = True, context: Context | None = None) -> Done:
+    op = parse({"op": "delete", "target": {"groups": [BOX]}, "infill": infill})
+    context = context or Context(VIEW, resolver=_found)
+    return completed(scene, op, context, carry_out(scene, op, context))
+
+
+def _found(scene: Scene, query: Query, *_: object, **__: object) -> Selection:
+    return Selection(query, "found", scene.cloud.ids[scene.cloud.group == BOX], (BOX,))
+
+
+def test_the_hole_is_closed_and_looks_like_the_floor_and_the_wall(room: Scene) -> None:
+    bare, done = _delete(room, infill=False), _delete(room)
+    truth = render(_numbered([_floor(), _wall()]), VIEW)
+    shots = [render(d.scene.cloud, VIEW) for d in (bare, done)]
+    hole = (shots[0].alpha < 0.5) & (truth.alpha > 0.9)
+    assert hole.sum() > 300
+    assert (shots[1].alpha[hole] > 0.5).float().mean() > 0.98
+    error = [float(((s.rgb - truth.rgb)[hole] ** 2).mean().sqrt()) for s in shots]
+    assert error[1] < 0.08 < 0.4 < error[0]
+    assert done.receipt.added == len(done.scene.cloud) - len(bare.scene.cloud) > 100
+    assert {f.surface for f in done.receipt.filled} >= {"the floor", "the wall"}
+    assert any("filled what it hid" in note for note in done.receipt.notes)
+
+
+def test_old_rows_stay_bit_for_bit_and_new_ones_continue_their_groups(room: Scene) -> None:
+    bare, done = _delete(room, infill=False).scene.cloud, _delete(room).scene.cloud
+    shaded = (done.sh[: len(bare)] != bare.sh).any(dim=2).any(dim=1)
+    assert not bool(shaded.any()), "this box casts no shadow"
+    for name, column in bare.columns():
+        assert torch.equal(getattr(done, name)[: len(bare)], column), name
+    new = done[torch.arange(len(bare), len(done))]
+    assert int(new.ids.min()) > int(room.cloud.ids.max())
+    floor = new.means[:, 2] < 0.005
+    assert set(new.group[floor].tolist()) == {FLOOR} and set(new.group[new.means[:, 2] > 0.1].tolist()) == {WALL}
+
+
+def test_the_same_edit_gives_the_same_bytes_and_leaves_the_scene_alone(room: Scene) -> None:
+    was = room.cloud.digest()
+    assert _delete(room).scene.cloud.digest() == _delete(room).scene.cloud.digest()
+    assert room.cloud.digest() == was
+
+
+def test_filling_again_adds_nothing(room: Scene) -> None:
+    thing = room.cloud[room.cloud.group == BOX]
+    scene = _delete(room).scene
+    for _ in range(10):
+        assert len(merged(scene, patches_behind(scene, thing))) == 0
+
+
+def test_no_infill_leaves_the_hole(room: Scene) -> None:
+    op = parse({"op": "delete", "target": {"groups": [BOX]}})
+    context = Context(VIEW, resolver=_found)
+    plain = carry_out(room, op, context)
+    assert completed(room, op, replace(context, infill=False), plain) is plain
+    assert _delete(room, infill=False).receipt.filled == ()
+
+
+def test_nothing_is_made_where_nothing_is_behind() -> None:
+    """A box in the air before no wall hid nothing that could be continued."""
+    scene = _scene(_box(y=-0.6, z=0.9, size=0.4), _floor())
+    done = _delete(scene)
+    assert done.receipt.added == 0
+
+
+def test_the_middle_of_a_ring_of_things_is_not_closed() -> None:
+    """The tops of four stools form no surface over the place of the table between them."""
+    tops = []
+    for x, y in ((-0.7, 0.0), (0.7, 0.0), (0.0, -0.7), (0.0, 0.7)):
+        a, b = _grid((x - 0.16, y - 0.16), (x + 0.16, y + 0.16))
+        tops.append(_sheet(np.stack([a, b, 0 * a + 0.3], 1), 2, np.tile([0.1, 0.7, 0.1], (len(a), 1)), FLOOR))
+    scene = _scene(_box(y=0.0, z=0.0, size=0.7), _floor(), *tops)
+    new = _delete(scene).scene.cloud
+    made = new[torch.arange(len(scene.cloud) - int((scene.cloud.group == BOX).sum()), len(new))]
+    assert len(made) > 50 and float(made.means[:, 2].max()) < 0.1
+
+
+def test_a_move_fills_where_it_was_and_not_where_it_is(room: Scene) -> None:
+    op = parse({"op": "move", "target": {"groups": [BOX]}, "direction": "left", "distance": {"value": 1, "unit": "m"}})
+    context = Context(VIEW, resolver=_found)
+    done = completed(room, op, context, carry_out(room, op, context))
+    new = done.scene.cloud[torch.arange(len(room.cloud), len(done.scene.cloud))]
+    assert len(new) > 100 and float(new.means[:, 0].abs().max()) < 0.45
+    assert done.receipt.added == len(new)
+
+
+def test_a_surface_that_goes_is_not_filled(room: Scene) -> None:
+    bare = room.replace(cloud=room.cloud[room.cloud.group != WALL])
+    wall = room.cloud[room.cloud.group == WALL]
+    assert all(abs(p.plane.normal[1]) < 0.9 for p in patches_behind(bare, wall) if len(p.cloud))

@@ -1,0 +1,105 @@
+"""Complete an edit: fill the surfaces that it reveals, and take contact shadows along with what cast them.
+
+This comes after the checks of the operation. It only adds Gaussians, and makes those lighter or darker that lie in a
+contact shadow; all others stay the same bit for bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import torch
+from torch import Tensor
+
+from ..gaussians.language.query.selection import mask_of
+from ..gaussians.scene import Scene
+from ..gaussians.timing import timed
+from .cloud_diff import joined
+from .execute import Done
+from .field_update import after_recolor, recount
+from .operation import Context, EditOp
+from .receipt import Filled
+
+
+def completed(before: Scene, op: EditOp, context: Context, done: Done) -> Done:
+    """The result of an operation with what it revealed filled, unless the operation or the context says not to.
+
+    Args:
+        before: the scene before the operation.
+        done: its result.
+    """
+    query = op.query()
+    if not (op.reveals and context.infill and getattr(op, "infill", True)) or done.scene is before:
+        return done
+    if query is None or query.spatial:
+        return done
+    seconds: dict[str, float] = {}
+    with timed(seconds, "fill"):
+        scene, told, ids = filled(before, done.scene, _moved(before, done.scene) if op.op == "move" else ())
+    if not told:
+        return done
+    from .filling.told import notes
+
+    receipt = done.receipt.model_copy(
+        update={
+            "added": done.receipt.added + len(ids),
+            "changed": done.receipt.changed + sum(f.lighter for f in told),
+            "total": len(scene.cloud),
+            "notes": (*done.receipt.notes, *notes(told)),
+            "filled": told,
+            "seconds": {**done.receipt.seconds, **seconds},
+        }
+    )
+    return done._replace(scene=scene, receipt=receipt)
+
+
+def filled(before: Scene, after: Scene, moved: Sequence[Tensor] = ()) -> tuple[Scene, tuple[Filled, ...], Tensor]:
+    """The scene after an edit with filled surfaces, what was done to each, and the ids of the new Gaussians.
+
+    Args:
+        moved: rows of the cloud before that were moved.
+    """
+    from .filling.fill import merged, patches_behind, unshaded
+    from .filling.revealed import left_their_place
+    from .filling.told import filled as tell
+
+    scene, told, ids = after, list[Filled](), [after.cloud.ids[:0]]
+    top = int(before.cloud.ids.max()) if len(before.cloud) else -1  # ids of what is gone are not used again
+    elsewhere = [before.cloud.ids[rows] for rows in moved]
+    for rows in left_their_place(before, after, moved):
+        apart = mask_of(scene.cloud, torch.cat(elsewhere)) if elsewhere else None
+        patches = patches_behind(scene, before.cloud[rows], apart)
+        lit, new = unshaded(scene, patches), merged(scene, patches, top)
+        told += tell(scene, patches)
+        if lit is not scene.cloud:
+            shaded = torch.cat([p.shaded for p in patches])
+            scene = scene.replace(cloud=lit)
+            scene = scene.replace(language=after_recolor(scene, lit.ids[shaded]))
+        if len(new):
+            cloud = joined(scene.cloud, None, [new])
+            scene = scene.replace(cloud=cloud, language=recount(scene.language, cloud))
+            ids.append(new.ids)
+    return scene, _together(told), torch.cat(ids)
+
+
+def _together(told: Sequence[Filled]) -> tuple[Filled, ...]:
+    """What was done, one entry for each surface and reason."""
+    found: dict[tuple[str, str], Filled] = {}
+    for one in told:
+        key = one.surface, one.reason
+        if (other := found.get(key)) is None:
+            found[key] = one
+            continue
+        area = one.area + other.area
+        sure = (one.sure * one.area + other.sure * other.area) / area if area > 0 else 0.0
+        found[key] = Filled(
+            surface=one.surface, gaussians=one.gaussians + other.gaussians, area=area, sure=sure,
+            lighter=one.lighter + other.lighter, reason=one.reason,
+        )  # fmt: skip
+    return tuple(found.values())
+
+
+def _moved(before: Scene, after: Scene) -> tuple[Tensor, ...]:
+    """Rows of the cloud before whose centres are elsewhere; rows keep their order when things move."""
+    a, b = before.cloud.means, after.cloud.means
+    return ((a != b[: len(a)]).any(dim=1).nonzero().squeeze(1),) if a is not b else ()

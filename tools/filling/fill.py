@@ -1,0 +1,381 @@
+"""Fill what a thing that is gone hid: its surroundings' surfaces are continued as new Gaussians.
+
+    planes near the thing -> a chart of each -> hidden and empty cells -> colours and heights continued -> Gaussians
+
+Nothing that is there changes.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import torch
+from scipy import ndimage
+from torch import Tensor
+
+from ...gaussians.cloud import GaussianCloud, concat
+from ...gaussians.rotations import to_matrix
+from ...gaussians.scene import Scene
+from .charts import COVERED, Chart, Seen, chart_of, rows_in_slab, seen
+from .hidden import VOXELS as HIDING
+from .hidden import hidden, space_of
+from .new_rows import gaussians_of
+from .planes import F64, VOXELS, Mask, Plane, planes_near
+from .shadow import Shadow, estimated, multiplied, rows_and_factors, zone_of
+from .smooth import harmonic
+from .texture import Continued, continued
+
+_AROUND = 0.6  # of the thing's extent: how far around it its surroundings are looked at
+OPAQUE = 0.15  # Gaussians below it are haze
+_THICK = 3.0  # times the noise of a surface: how thick it is
+_FEWEST = 6  # cells of a hole
+_SUPPORT = 0.25  # of a hole's border that must be known
+_SURROUNDED = 0.6  # likewise, of a surface that things lie behind: as of a vase at the edge of a table
+_LEAST = 3e-4  # of the square of the thing's extent: area of a hole that is worth filling
+_SKIRT = 0.02  # of the thing's extent: how near a wall the floor is not looked at
+_PART = 0.3  # of a gap in a surface: where the thing hid as much of it, all of it is the hole
+_ENCLOSED = 0.8  # of such a gap's border that must be of the surface
+_FAR = 1.0  # of the thing's extent: a surface farther from it was seen past it
+_GROUP = 0.1  # of a surface's cells from which a group is part of it
+_SAMPLE = 60_000  # points of the surroundings
+_WIDE = 8_000  # large Gaussians of which further points are taken
+_BESIDE = 0.05  # of the thing's extent: how far from where it touches a surface other than floors and walls it hid it
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """One surface that was continued, or could not be.
+
+    Attributes:
+        plane: the surface.
+        chart: its cells.
+        hole: `[H, W]`, the cells that were hidden and empty.
+        cloud: the new Gaussians; their group is that of the surface they continue. Empty if none were made.
+        support: share of the hole's border that is known.
+        shaded, factor: `[M]`, rows of the surface that lie in the thing's contact shadow, and by what their colours are
+            multiplied to take it away.
+        error: root mean square disagreement with the border, display space.
+        spread: standard deviation of the surface's texture, display space.
+        reason: why nothing was made, "" if something was.
+    """
+
+    plane: Plane
+    chart: Chart
+    hole: Mask
+    cloud: GaussianCloud
+    support: float
+    error: float
+    spread: float
+    reason: str = ""
+    shaded: Tensor = field(default_factory=lambda: torch.zeros(0, dtype=torch.int64))
+    factor: Tensor = field(default_factory=lambda: torch.zeros(0))
+
+    @property
+    def area(self) -> float:
+        """Of the hole, square scene units."""
+        return float(self.hole.sum()) * self.chart.cell**2
+
+
+def patches_behind(scene: Scene, thing: GaussianCloud, apart: Tensor | None = None) -> list[Patch]:
+    """The surfaces that a thing hid, continued.
+
+    Args:
+        scene: without the thing.
+        thing: its Gaussians, where they were.
+        apart: `[N]` bool, Gaussians that are not continued: the thing itself where it stands now. None: there are none.
+    """
+    size, low, high = _extent(thing)
+    if size <= 0:
+        return []
+    pad = _AROUND * size
+    rows = rows_between(scene.cloud, low - pad, high + pad)
+    rows = rows if apart is None else rows[~apart[rows]]
+    solid = rows[scene.cloud.opacities[rows] > OPAQUE]
+    around = spread(scene.cloud, solid[:: max(1, len(solid) // _SAMPLE)], size)
+    own = points_of(thing, (thing.opacities > OPAQUE).nonzero().squeeze(1))
+    own = own[((own >= low) & (own <= high)).all(axis=1)]
+    if len(own) < 4:
+        return []
+    up = scene.frame.up_vector
+    planes = planes_near(around, own, up)
+    made, patches = scene.cloud, list[Patch]()
+    for plane in planes:
+        clips = [p for p in planes if p is not plane and p.last]
+        patch = _patch(scene.replace(cloud=made), rows, thing, plane, clips, (low, high, size))
+        if patch is not None:
+            patches.append(patch)
+    return patches
+
+
+def _extent(thing: GaussianCloud) -> tuple[float, F64, F64]:
+    """Largest extent and corners of a thing without its strays."""
+    if len(thing) < 4:
+        return 0.0, np.zeros(3), np.zeros(3)
+    from ...gaussians.world.core import core_of
+
+    rows = torch.arange(len(thing), device=thing.device)
+    points = points_of(thing, rows[torch.from_numpy(core_of(thing, rows).solid).to(rows.device)])
+    if len(points) < 4:
+        return 0.0, np.zeros(3), np.zeros(3)
+    low, high = np.quantile(points, [0.002, 0.998], axis=0)
+    pad = 0.02 * float((high - low).max())
+    return float((high - low).max()), low - pad, high + pad
+
+
+def points_of(cloud: GaussianCloud, rows: Tensor) -> F64:
+    points: F64 = cloud.means[rows].to(torch.float64).cpu().numpy()
+    return points
+
+
+def spread(cloud: GaussianCloud, rows: Tensor, size: float) -> F64:
+    """Points that Gaussians cover: their centres, and a grid of points on those that are large."""
+    points = points_of(cloud, rows)
+    wide = rows[cloud.scales[rows].amax(dim=1) > size / VOXELS]
+    wide = wide[:: max(1, len(wide) // _WIDE)]
+    if not len(wide):
+        return points
+    scales, order = cloud.scales[wide].sort(dim=1, descending=True)
+    axes = to_matrix(cloud.quats[wide]).gather(2, order[:, None, :].expand(-1, 3, -1))  # columns, the longest first
+    found = [points]
+    for a, b in itertools.product((-1.0, 0.0, 1.0), repeat=2):
+        if a or b:
+            reach = axes[:, :, 0] * (a * scales[:, :1]) + axes[:, :, 1] * (b * scales[:, 1:2])
+            found.append((cloud.means[wide] + reach).to(torch.float64).cpu().numpy())
+    return np.concatenate(found)
+
+
+def rows_between(cloud: GaussianCloud, low: F64, high: F64) -> Tensor:
+    """Rows of the visible Gaussians between two corners."""
+    a, b = (torch.tensor(c, dtype=torch.float32, device=cloud.device) for c in (low, high))
+    inside = ((cloud.means >= a) & (cloud.means <= b)).all(dim=1) & (cloud.opacities > 0.02)
+    return inside.nonzero().squeeze(1)
+
+
+def _patch(
+    scene: Scene, rows: Tensor, thing: GaussianCloud, plane: Plane, clips: Sequence[Plane],
+    extent: tuple[F64, F64, float],
+) -> Patch | None:  # fmt: skip
+    """One surface continued where the thing hid it; None if it hid nothing of it."""
+    low, high, size = extent
+    corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+    local = plane.local(corners)
+    if local[:, 2].min() > _FAR * size:
+        return None
+    pad = _AROUND * size
+    thick = max(_THICK * plane.noise, 0.01 * size)
+    window = local[:, :2].min(axis=0) - pad, local[:, :2].max(axis=0) + pad
+    coarse = chart_of(plane, *window, float((window[1] - window[0]).max()) / 100)
+    slab = rows_in_slab(scene.cloud, rows, coarse, thick, thick)
+    chart = chart_of(plane, *window, spacing_of(coarse, scene.cloud, slab))
+    shown = seen(chart, scene.cloud[slab])
+    own = _of_surface(shown)
+    within = _before(chart.points(), clips, 0.0)
+    # Skirting boards and the like are in front of a wall and none of the floor.
+    covered = (shown.alpha > COVERED) & own & _before(chart.points(), clips, max(_SKIRT * size, 1.5 * chart.cell))
+    empty = (shown.alpha <= COVERED) & within
+    surface = Surface(chart, shown, covered, slab)
+    hole, support = np.zeros_like(empty), 0.0
+    if empty.sum() >= _FEWEST:
+        was, open_ = _hidden_cells(scene, rows, slab, thing, plane, chart, empty, extent)
+        # Where nothing was seen, the surface is there if it is there around.
+        filled = harmonic(covered.astype(np.float64)[..., None], covered | open_, was)[..., 0]
+        hole = (was & (filled > 0.5)) | _gaps(was, empty, covered, within)
+        hole = _large(hole, _LEAST * size**2 / chart.cell**2)
+        rim = ndimage.binary_dilation(hole, iterations=2) & ~hole
+        told = (covered | open_) & rim if plane.last else rim
+        support = float((covered & rim).sum()) / max(int(told.sum()), 0.2 * int(rim.sum()), 1)
+    shadow = _shadow(thing, surface, within, size)
+    if not hole.any() and shadow is None:
+        return None
+    return continue_into(scene, surface, hole, support, shadow)
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A surface in its chart: what is seen of it, the cells that it covers `[H, W]`, and its rows."""
+
+    chart: Chart
+    shown: Seen
+    covered: Mask
+    rows: Tensor
+
+
+def _shadow(thing: GaussianCloud, surface: Surface, within: Mask, size: float) -> Shadow | None:
+    """The contact shadow of a thing on a surface."""
+    footprint = seen(surface.chart, thing).alpha > COVERED
+    if not footprint.any():
+        return None
+    zone = zone_of(footprint, surface.chart, size) & within
+    return estimated(surface.shown.rgb, surface.covered, footprint, zone)
+
+
+def continue_into(
+    scene: Scene, surface: Surface, hole: Mask, support: float, shadow: Shadow | None, reason: str = ""
+) -> Patch:
+    """The new Gaussians of a hole, and the factors that take the shadow away.
+
+    Args:
+        support: share of the hole's border that is known.
+        reason: why it must not be filled; "" if it may.
+    """
+    chart, shown = surface.chart, surface.shown
+    nothing = scene.cloud[torch.zeros(0, dtype=torch.int64)]
+    least = _SUPPORT if chart.plane.last else _SURROUNDED
+    if not reason and support < least and hole.any():
+        reason = "too little of it is seen around the hole"
+    rows, factor = torch.zeros(0, dtype=torch.int64), torch.zeros(0)
+    if shadow is not None:
+        shown = replace(shown, rgb=shown.rgb / shadow.ratio[..., None])
+        rows, factor = rows_and_factors(scene.cloud, surface.rows, chart, 1 / shadow.ratio)
+    if reason or not hole.any():
+        return Patch(chart.plane, chart, hole, nothing, support, 0.0, 0.0, reason, rows, factor)
+    return replace(
+        _filled(scene, surface.rows, chart.plane, chart, shown, surface.covered, hole, support),
+        shaded=rows, factor=factor,
+    )  # fmt: skip
+
+
+def _filled(
+    scene: Scene, slab: Tensor, plane: Plane, chart: Chart, shown: Seen, covered: Mask, hole: Mask, support: float
+) -> Patch:
+    known = covered & ~hole
+    result: Continued = continued(shown.rgb, known, hole)
+    solid = known & (shown.alpha > 0.9) if (known & (shown.alpha > 0.9)).any() else known
+    height = harmonic(shown.height[..., None], solid, hole | (known & ~solid))[..., 0]
+    edge = ndimage.binary_dilation(hole) & known & (shown.alpha < 0.9)
+    cells = hole | edge
+    cloud = gaussians_of(chart, result.picture, height, cells, _groups(shown, known), scene.cloud, slab)
+    return Patch(plane, chart, hole, cloud, support, result.error, result.spread)
+
+
+def _groups(shown: Seen, known: Mask) -> np.ndarray:
+    """`[H, W]` group of the nearest known cell."""
+    at = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
+    return np.asarray(shown.group[tuple(at)])
+
+
+def _of_surface(shown: Seen) -> Mask:
+    """The cells whose group is part of the surface; small groups are things that reach into it."""
+    there = shown.alpha > COVERED
+    if not there.any():
+        return there
+    names, count = np.unique(shown.group[there], return_counts=True)
+    main = names[(count >= _GROUP * count.sum()) | (names < 0)]
+    return np.asarray(np.isin(shown.group, main))
+
+
+def _before(points: F64, clips: Sequence[Plane], margin: float) -> Mask:
+    """Which points lie before every plane behind which nothing lies, by a margin."""
+    inside = np.ones(points.shape[:-1], bool)
+    for plane in clips:
+        inside &= plane.height(points) > margin - max(2 * plane.noise, 1e-9)
+    return inside
+
+
+def _hidden_cells(
+    scene: Scene, rows: Tensor, slab: Tensor, thing: GaussianCloud, plane: Plane, chart: Chart, empty: Mask,
+    extent: tuple[F64, F64, float],
+) -> tuple[Mask, Mask]:  # fmt: skip
+    """Which of the empty cells the thing hid, and which were seen to be empty."""
+    low, high, size = extent
+    points = chart.points()
+    flat = points.reshape(-1, 3)
+    touched = _touched(thing, chart, size / HIDING)
+    if not plane.last:  # a surface among others is known to go on only where the thing lay on it
+        empty = empty & ndimage.binary_dilation(touched, iterations=max(1, round(_BESIDE * size / chart.cell)))
+        if not empty.any():
+            return empty, empty
+    least, most = np.minimum(flat.min(axis=0), low), np.maximum(flat.max(axis=0), high)
+    in_slab = torch.zeros(len(scene.cloud), dtype=torch.bool, device=scene.cloud.device)
+    in_slab[slab] = True
+    others = rows[~in_slab[rows] & (scene.cloud.opacities[rows] > 2 * OPAQUE)]
+    body = points_of(thing, (thing.opacities > OPAQUE).nonzero().squeeze(1))
+    space = space_of(body, points_of(scene.cloud, others), least, most)
+    stride = max(1, int(np.ceil(np.sqrt(empty.sum() / 1600))))
+    asked = np.zeros_like(empty)
+    asked[::stride, ::stride] = True
+    coarse = asked & ndimage.binary_dilation(empty, iterations=stride)
+    was, free = np.zeros_like(empty), np.zeros_like(empty)
+    was[coarse], free[coarse] = hidden(points[coarse], plane.normal, space, scene.cameras, scene.frame.up_vector)
+    if stride > 1:
+        at = ndimage.distance_transform_edt(~coarse, return_distances=False, return_indices=True)
+        was, free = was[tuple(at)], free[tuple(at)]
+    was = (was | touched) & empty
+    return was, free & empty & ~was
+
+
+def _touched(thing: GaussianCloud, chart: Chart, reach: float) -> Mask:
+    """The cells that the thing lies on or touches."""
+    rows = torch.arange(len(thing), device=thing.device)
+    near = rows_in_slab(thing, rows, chart, reach, 2 * reach)
+    return seen(chart, thing[near]).alpha > COVERED
+
+
+def _gaps(was: Mask, empty: Mask, covered: Mask, within: Mask) -> Mask:
+    """The gaps in a surface that a thing hid a good part of: holes, though some views see into them.
+
+    Args:
+        was: the empty cells that the thing hid.
+        within: where the surface may be.
+    """
+    area, _ = ndimage.label(empty)
+    out = np.zeros_like(empty)
+    for k, place in enumerate(ndimage.find_objects(area), start=1):
+        gap = area[place] == k
+        if (was[place] & gap).sum() < _PART * gap.sum():
+            continue
+        wide = tuple(slice(max(0, p.start - 1), p.stop + 1) for p in place)
+        gap = area[wide] == k
+        rim = ndimage.binary_dilation(gap) & ~gap & within[wide]
+        if (covered[wide] & rim).sum() >= _ENCLOSED * rim.sum() > 0:
+            out[wide] |= gap
+    return out
+
+
+def _large(hole: Mask, least: float) -> Mask:
+    """The hole without specks of fewer than `least` cells."""
+    area, count = ndimage.label(hole)
+    if not count:
+        return hole
+    size = np.bincount(area.ravel())
+    keep = size >= max(_FEWEST, least)
+    keep[0] = False
+    return np.asarray(keep[area])
+
+
+def spacing_of(chart: Chart, cloud: GaussianCloud, rows: Tensor) -> float:
+    """Typical distance of the Gaussians of a surface, scene units."""
+    h, w = chart.shape
+    if len(rows) < 8:
+        return max(h, w) * chart.cell / 40
+    local = chart.plane.local(points_of(cloud, rows))[:, :2]
+    block = 4 * chart.cell
+    cell = np.floor((local - chart.low) / block).astype(np.int64)
+    _, count = np.unique(cell[:, 0] * 100_000 + cell[:, 1], return_counts=True)
+    return float(block / np.sqrt(np.median(count)))
+
+
+def unshaded(scene: Scene, patches: Sequence[Patch]) -> GaussianCloud:
+    """The cloud of a scene without the contact shadows that patches found; itself if there are none."""
+    cloud, sh = scene.cloud, scene.cloud.sh
+    for patch in patches:
+        if len(patch.shaded):
+            sh = sh.clone() if sh is cloud.sh else sh
+            sh[patch.shaded] = multiplied(sh[patch.shaded], patch.factor)
+    return cloud if sh is cloud.sh else cloud.replace(sh=sh)
+
+
+def merged(scene: Scene, patches: Sequence[Patch], above: int = -1) -> GaussianCloud:
+    """All new Gaussians of some patches, with ids above those of the scene and above the id `above`."""
+    clouds = [p.cloud for p in patches if len(p.cloud)]
+    if not clouds:
+        return scene.cloud[torch.zeros(0, dtype=torch.int64)]
+    first = max(above, int(scene.cloud.ids.max())) + 1
+    numbered = []
+    for cloud in clouds:
+        numbered.append(cloud.replace(ids=torch.arange(first, first + len(cloud), device=cloud.device)))
+        first += len(cloud)
+    return concat(numbered)

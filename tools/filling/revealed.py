@@ -1,0 +1,61 @@
+"""What an edit reveals and where its things come to stand: which Gaussians left their place, and in which things."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import torch
+from torch import Tensor
+
+from ...gaussians.language.field.language_field import LanguageField
+from ...gaussians.scene import Scene
+
+MOST_THINGS = 12  # things behind which is looked after one edit, the largest
+_FEWEST = 20  # Gaussians of a thing
+_MOST = 0.5  # of the scene: what takes away more leaves no place to fill
+
+
+def left_their_place(before: Scene, after: Scene, moved: Sequence[Tensor]) -> list[Tensor]:
+    """Rows `[M]` of the cloud before that are gone or were moved, by the thing they are of, the largest first.
+
+    Empty if an edit took away most of the scene, or a surface such as a floor.
+
+    Args:
+        moved: rows of the cloud before that were moved.
+    """
+    gone = _gone(before, after)
+    for rows in moved:
+        gone[rows] = True
+    rows = gone.nonzero().squeeze(1)
+    if not len(rows) or len(rows) > _MOST * len(before.cloud):
+        return []
+    owner = before.cloud.group[rows]
+    if before.language is not None:
+        owner = _objects(before.language, owner)
+        if any(before.language.groups[g].level == "structure" for g in torch.unique(owner).tolist() if g >= 0):
+            structure = [g.id for g in before.language.groups if g.level == "structure"]
+            whole = torch.isin(owner, torch.tensor(structure, dtype=owner.dtype, device=owner.device))
+            if float(whole.float().mean()) > _MOST:
+                return []
+    things = [rows[owner == g] for g in torch.unique(owner)]
+    things = sorted((t for t in things if len(t) >= _FEWEST), key=len, reverse=True)
+    return things[:MOST_THINGS]
+
+
+def _gone(before: Scene, after: Scene) -> Tensor:
+    """`[N]` bool: rows of the cloud before whose ids the cloud after does not have."""
+    ids, left = before.cloud.ids, after.cloud.ids
+    if ids is left:
+        return torch.zeros(len(ids), dtype=torch.bool, device=ids.device)
+    top = int(max(ids.max(), left.max())) + 1 if len(ids) and len(left) else 0
+    if top <= 8 * (len(ids) + len(left)):
+        there = torch.zeros(top, dtype=torch.bool, device=ids.device)
+        there[left] = True
+        return ~there[ids]
+    return ~torch.isin(ids, left)
+
+
+def _objects(field: LanguageField, groups: Tensor) -> Tensor:
+    """The object that each group is of; -1 stays."""
+    table = torch.tensor([g.parent if g.parent >= 0 else g.id for g in field.groups] + [-1], device=groups.device)
+    return table[groups.long()]

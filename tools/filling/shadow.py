@@ -1,0 +1,141 @@
+"""The contact shadow that a thing casts on a surface: estimated as a ratio of colours against the surface around it,
+divided out where the thing stood, and multiplied in where it is put.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from scipy import ndimage
+from torch import Tensor
+
+from ...gaussians.cloud import GaussianCloud
+from ...gaussians.harmonics import SH_C0
+from .charts import Chart
+from .planes import F64, Mask
+from .texture import continued
+
+REACH = 0.3  # of the thing's extent: how far a contact shadow reaches beyond what it covers
+_DARKEST = 0.25  # ratio of colours that a contact shadow goes down to
+_SEEN = 0.96  # ratio above which nothing is changed
+_PART = 0.2  # of the cells near a thing, its darkest, that tell whether there is a shadow: it may stand on legs
+_CLEAR = 0.9  # ratio there above which there is none
+_SMOOTH = 1.5  # cells over which the ratio is averaged at least
+_COARSE = 0.2  # of the shadow's reach: further cells, where the texture is not predictable
+_OUTSIDE = 0.12  # how far from one the ratio may be where the shadow has ended; more is no shadow but another surface
+
+
+@dataclass(frozen=True, eq=False)
+class Shadow:
+    """A contact shadow on a chart.
+
+    Attributes:
+        ratio: `[H, W]` colour in the shadow over colour without it, in (0, 1].
+        depth: mean darkening under and close to the thing, in [0, 1).
+    """
+
+    ratio: F64
+    depth: float
+
+
+def zone_of(footprint: Mask, chart: Chart, size: float) -> Mask:
+    """The cells that the contact shadow of a thing may reach.
+
+    Args:
+        footprint: `[H, W]`, the cells below the thing.
+        size: extent of the thing, scene units.
+    """
+    return np.asarray(ndimage.distance_transform_edt(~footprint) * chart.cell <= REACH * size)
+
+
+def estimated(rgb: F64, known: Mask, footprint: Mask, zone: Mask) -> Shadow | None:
+    """The shadow that a thing cast on a surface; None if there is none, or nothing to tell it by.
+
+    The surface without the shadow is continued into the zone from around it, with its texture.
+
+    Args:
+        rgb: `[H, W, 3]` of the surface, valid where known.
+        known: `[H, W]`.
+        footprint, zone: `[H, W]`, below the thing, and where its shadow may reach.
+    """
+    inside = known & zone
+    outside = _alike(rgb, known & ~zone, inside)
+    if outside.sum() < 0.5 * inside.sum() or inside.sum() < 20:
+        return None
+    away = ndimage.distance_transform_edt(~footprint)
+    end = float(away[zone].max())
+    clear = continued(rgb, outside, zone)
+    # A texture that cannot be predicted is averaged over more of it.
+    sigma = _SMOOTH + min(_COARSE * end, 6.0) * min(clear.error / max(clear.spread, 1e-9), 1.0)
+    ratio = _ratio(rgb, np.minimum(clear.picture, _brightest(rgb, outside)), inside, sigma)
+    close = inside & (away <= max(1.0, 0.25 * end))
+    if not close.any() or float(np.quantile(ratio[close], _PART)) > _CLEAR:
+        return None
+    rim = inside & (away > 0.7 * end)
+    if rim.any() and abs(float(np.median(ratio[rim])) - 1) > _OUTSIDE:
+        return None  # what does not fade outward is another surface, or the light of the room
+    fade = np.clip((end - away) / max(0.3 * end, 1e-9), 0.0, 1.0)
+    ratio = 1 - fade * (1 - np.clip(ratio, _DARKEST, 1.0))
+    ratio = np.where(inside & (ratio < _SEEN), ratio, 1.0)
+    return Shadow(ratio, float(1 - ratio[close].mean()))
+
+
+def _alike(rgb: F64, outside: Mask, inside: Mask) -> Mask:
+    """Those of the cells outside a shadow that are of the surface inside it: of its hue, and not far brighter or darker
+    than most."""
+    if not outside.any() or not inside.any():
+        return outside
+    light = rgb.mean(axis=2)
+    tint = rgb / np.maximum(light, 0.02)[..., None]
+    middle, spread = np.median(light[outside]), 1.48 * np.median(np.abs(light[outside] - np.median(light[outside])))
+    far = np.abs(light - middle) > max(3 * float(spread), 0.12)
+    typical = np.median(tint[inside], axis=0)
+    usual = 1.48 * float(np.median(np.abs(tint[inside] - typical).max(axis=1)))
+    other = np.abs(tint - typical).max(axis=2) > max(4 * usual, 0.2)
+    return np.asarray(outside & ~far & ~other)
+
+
+def _brightest(rgb: F64, outside: Mask) -> F64:
+    """`[3]` the colour that a surface without shadow does not exceed."""
+    return np.asarray(np.quantile(rgb[outside], 0.9, axis=0))
+
+
+def _ratio(rgb: F64, clear: F64, inside: Mask, sigma: float) -> F64:
+    """`[H, W]` local factor by which the picture is darker than it would be without the shadow; one outside."""
+    weight = inside.astype(np.float64)
+
+    def smooth(values: F64) -> F64:
+        return np.asarray(ndimage.gaussian_filter(values * weight, sigma, mode="constant"))
+
+    both, own = (rgb * clear).sum(axis=2), (clear * clear).sum(axis=2)
+    return np.where(inside, smooth(both) / np.maximum(smooth(own), 1e-9), 1.0)
+
+
+def cast(footprint: Mask, chart: Chart, height: float, depth: float) -> F64:
+    """`[H, W]` ratio of a soft shadow around a footprint, `depth` below it, that fades with the thing's height."""
+    reach = max(0.35 * height / chart.cell, 1.5)
+    blob = ndimage.gaussian_filter(footprint.astype(np.float64), reach / 2, mode="constant")
+    return np.asarray(1 - depth * np.clip(blob / max(float(blob.max()), 1e-9), 0.0, 1.0))
+
+
+def rows_and_factors(cloud: GaussianCloud, rows: Tensor, chart: Chart, factor: F64) -> tuple[Tensor, Tensor]:
+    """The rows of a surface whose colour changes, and by what it is multiplied, `[M]` each.
+
+    Args:
+        rows: the Gaussians of the surface.
+        factor: `[H, W]` on the chart.
+    """
+    points = chart.plane.local(cloud.means[rows].to(torch.float64).cpu().numpy())[:, :2]
+    at = (points - chart.low) / chart.cell - 0.5
+    values = ndimage.map_coordinates(factor, at[:, ::-1].T, order=1, mode="nearest")
+    changed = torch.from_numpy(np.abs(values - 1) > 1e-3)
+    return rows[changed.to(rows.device)], torch.from_numpy(values.astype(np.float32))[changed].to(rows.device)
+
+
+def multiplied(sh: Tensor, factor: Tensor) -> Tensor:
+    """Harmonics `[M, K, 3]` of colours multiplied by `[M]`."""
+    out = sh * factor[:, None, None]
+    out[:, 0] = ((sh[:, 0] * SH_C0 + 0.5) * factor[:, None] - 0.5) / SH_C0
+    return out
