@@ -100,6 +100,14 @@ def plan_with_query(question: Question, chosen: Query) -> EditPlan:
     return question.plan.model_copy(update={"ops": tuple(ops)})
 
 
+def as_a_whole(plan: EditPlan, step: int) -> EditPlan:
+    """The plan whose step takes all of its target: parts of other colours too, where an operation leaves them."""
+    ops: list[EditOp] = list(plan.ops)
+    if "whole" in type(ops[step]).model_fields:
+        ops[step] = ops[step].model_copy(update={"whole": True})
+    return plan.model_copy(update={"ops": tuple(ops)})
+
+
 def _require_choice(question: Question, chosen: Query, answer: str) -> None:
     """Check that the answer selects only candidates of the question. Raises UserError if the query finds nothing, or
     something that is not a candidate."""

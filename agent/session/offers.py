@@ -14,9 +14,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ...gaussians.errors import AbsentError
 from ...gaussians.language.encoders.probability import why_unknown
+from ...gaussians.language.field.apart import set_apart
 from ...gaussians.language.query.attributes import COLOR_HOLDS, color_scores
-from ...gaussians.language.query.color.fallback import is_reliable
+from ...gaussians.language.query.color.fallback import PARTS, is_reliable
+from ...gaussians.language.query.palette import palette
+from ...gaussians.language.query.portions import rows_of, rows_of_candidates
 from ...gaussians.language.query.query import ALL, BACKGROUND, FLOATERS
 from ...gaussians.language.query.terms import STRUCTURE, candidate_of, is_name
 from ...gaussians.viewpoints.visibility import GroupPixels
@@ -26,15 +30,20 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ...gaussians.camera import Camera
+    from ...gaussians.errors import ScenewrightError
     from ...gaussians.language.encoders import Encoder
     from ...gaussians.language.field.language_field import Group, LanguageField
     from ...gaussians.language.query.query import Query
     from ...gaussians.language.query.selection import Candidate, Selection
     from ...gaussians.scene import Scene
+    from .clarify import Question
 
 MOST = 36  # things that get a number
+PARTS_PAGE = 1000  # the page from which parts are offered, however many pages of things there are
+HINT = "or a portion: 'the red part of 2', '3 without the wall', 'pieces of 3'"
 _VIEWS = 5  # of the scene's cameras that are looked through beside the viewer's
 _ELSEWHERE = 0.4  # what a share of another view's picture counts against one of the viewer's
+_TRACE, _MINOR = 0.03, 0.5  # shares of Gaussians between which the colour that was said tells a part of what was chosen
 _SMALLEST = 0.0005  # share of a picture from which a thing is worth a number
 
 
@@ -60,16 +69,32 @@ def offered(
     whole, parts = _pool(field, query, resolve)
     ranked = _ranked(scene, query, whole, viewer)
     pages = -(-len(ranked) // MOST)
+    page = page if page < PARTS_PAGE else pages + page - PARTS_PAGE
     if page >= pages:
         ranked, page = _ranked(scene, query, parts, viewer), page - pages
     found = ranked[page * MOST : (page + 1) * MOST]
     if not found:
         return None
     kind = "parts" if found[0].group not in {g.id for g in whole} else "things"
-    told = f"if it is among the {len(found)} numbered {kind}, say its number, or several"
+    told = f"if it is among the {len(found)} numbered {kind}, say its number, or several, {HINT}"
     return replace(selection, candidates=tuple(found)).noting(
         told + ("; or 'none' for others" if len(found) == MOST else "")
     )
+
+
+def offers_of(
+    asked: Question, scene: Scene, groups: Sequence[int], viewer: Camera
+) -> tuple[ScenewrightError, Question]:
+    """A question that offers some groups, the most visible first, and the error that says so."""
+    assert scene.language is not None
+    field, query = scene.language, asked.selection.query
+    shown = _ranked(scene, query.model_copy(update={"colors": ()}), [field.groups[g] for g in groups], viewer)
+    hidden = [candidate_of(field.groups[g]) for g in groups if g not in {c.group for c in shown}]
+    found = (*shown, *hidden)[:MOST]
+    told = f"nothing was changed; {query.describe()}: it is in {len(found)} numbered pieces now; say which, {HINT}"
+    selection = replace(asked.selection, verdict="absent", candidates=found, ids=asked.selection.ids[:0], groups=())
+    selection = replace(selection, reason=told)
+    return AbsentError(told), replace(asked, selection=selection, offered=True)
 
 
 def _ranked(scene: Scene, query: Query, groups: Sequence[Group], viewer: Camera) -> list[Candidate]:
@@ -136,10 +161,34 @@ def _colored(query: Query, groups: Sequence[Group]) -> NDArray[np.bool_]:
 def chosen(scene: Scene, query: Query, candidates: Sequence[Candidate], places: Sequence[int]) -> tuple[Scene, Query]:
     """What a person chose by numbers: the scene, whose field keeps the name for it, and the query that means it.
 
-    A part keeps its place in its object and gets no name.
+    A part keeps its place in its object and gets no name. Where the query says a colour that is not the main one of
+    what was chosen, only what has it is meant.
     """
-    assert scene.language is not None
-    groups = tuple(candidates[i].group for i in places)
-    if any(scene.language.groups[g].level != "object" for g in groups):
+    field, groups = _field(scene), tuple(candidates[i].group for i in places)
+    if any(candidates[i].ids is not None for i in places):
+        own = rows_of_candidates(scene, [candidates[i] for i in places])
+        scene, group = set_apart(scene, own, query.text if is_name(query.text) else "", "user")
+        return scene, bare(query).model_copy(update={"groups": (group,), "confirmed": True})
+    if query.colors and (rows := _minor_color(scene, groups, query)) is not None:
+        part = all(field.groups[g].level == "part" for g in groups)
+        scene, group = set_apart(scene, rows, "" if part or not is_name(query.text) else query.text, "user", part=part)
+        return scene, bare(query).model_copy(update={"groups": (group,)})
+    if any(field.groups[g].level != "object" for g in groups):
         return scene, bare(query).model_copy(update={"groups": groups})
     return named(scene, query, groups, "user")
+
+
+def _minor_color(scene: Scene, groups: Sequence[int], query: Query) -> NDArray[np.int64] | None:
+    """The rows of some groups that have the colours of a query, where most of the groups is of others: the red frame of
+    a bicycle that is one group with the wall. None where the colours are the main ones, or are not there."""
+    if query.not_colors or is_reliable(_field(scene)) or query.text in PARTS:
+        return None
+    found = palette(scene, rows_of(scene, groups))
+    rows = found.of(query.colors)
+    share = len(rows) / len(found.rows)
+    return rows if _TRACE <= share <= _MINOR else None
+
+
+def _field(scene: Scene) -> LanguageField:
+    assert scene.language is not None
+    return scene.language

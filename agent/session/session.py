@@ -20,14 +20,17 @@ from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ...gaussians.timing import timed
 from . import log as session_log
+from . import portions
 from .answers import chosen_numbers, rejects
 from .asker import Asker, see_answer
-from .clarify import Question, plan_with_answer, plan_with_query
+from .clarify import Question, as_a_whole, plan_with_answer, plan_with_query
 from .embedding import embedded_by, only_thing
 from .history import History, State
 from .judge import Judge, JudgedError, known_judge
 from .log_sessions import Beginning, begin
 from .observation import graph_of, picture_of
+from .offers import PARTS_PAGE, offers_of
+from .offers import chosen as offered_choice
 from .own_assets import own_assets
 from .plan_runner import PlanFailed, has_queries, run_plan
 from .planner_client import PlannerClient, is_dismissal, undo_or_redo
@@ -369,17 +372,62 @@ class Session:
             raise UserError("there is no open question; give an instruction")
         if rejects(text) and (error := self.offer_others()) is not None:
             raise error
-        if self.question.offered and (places := chosen_numbers(text, len(self.question.candidates))) is not None:
-            from .offers import chosen
-
+        single = self.question.selection.verdict == "unconfirmed"
+        if (portion := portions.read(text, len(self.question.candidates), single=single)) is not None:
+            return self._portion(self.question, portion)
+        by_number = self.question.offered or any(c.ids is not None for c in self.question.candidates)
+        if by_number and (places := chosen_numbers(text, len(self.question.candidates))) is not None:
             absent = self.question.selection
-            scene, meant = chosen(self.scene, absent.query, absent.candidates, places)
-            self._history.amend(replace(self._history.present, scene=scene))
+            scene, meant = offered_choice(self.scene, absent.query, absent.candidates, places)
+            self._regroup(scene)
             return plan_with_query(self.question, meant)
         if self.question.selection.verdict == "unconfirmed" and is_dismissal(text):
             asked, self.question = self.question.selection.query.describe(), None
             raise UnconfirmedError(f"nothing was changed; say in other words what is meant by {asked}")
         return plan_with_answer(self.question, text, self._planner.noun_phrase)
+
+    def _portion(self, asked: Question, portion: portions.Portion) -> EditPlan:
+        """The plan of a question for a portion of its candidates, which becomes a group of its own; or their pieces as
+        new candidates.
+
+        Raises:
+            AbsentError: the pieces are offered.
+            UserError: there is no such portion.
+        """
+        absent = asked.selection
+        if portion.kind == "pieces":
+            raise self._offer_pieces(asked, portion)
+        whole = portion.kind == "whole" and not portion.more
+        if whole:
+            scene, meant = offered_choice(self.scene, absent.query, absent.candidates, portion.places)
+        else:
+            scene, meant = portions.taken(self.scene, portion, absent.query, absent.candidates, self.viewer)
+        self._regroup(scene)
+        plan = plan_with_query(asked, meant)
+        return as_a_whole(plan, asked.step) if whole else plan
+
+    def _regroup(self, scene: Scene) -> None:
+        """Take over a scene whose field or groups differ, not its Gaussians; the log tells if groups do."""
+        present = self._history.present
+        state = replace(present, scene=scene)
+        if scene.cloud is not present.scene.cloud:
+            self._record("embed", session_log.embed_fields, present, state)
+        self._history.amend(state)
+
+    def _offer_pieces(self, asked: Question, portion: portions.Portion) -> ScenewrightError:
+        """Let the open question offer the pieces of some candidates, and the error that says so."""
+        if not portion.places:
+            found = self._offer(asked, page=PARTS_PAGE)
+            return found or AbsentError("nothing smaller is known; say of which number: 'pieces of 3'")
+        groups = [asked.candidates[i].group for i in portion.places]
+        if any(g < 0 for g in groups):
+            raise UserError("that one cannot be divided; say where it is ('the left one'), or 'all'")
+        scene, found_pieces = portions.pieces(self.scene, groups)
+        if len(found_pieces) <= len(groups):
+            raise UserError("it cannot be divided further; say a colour or a side of it: 'the red part of 3'")
+        self._regroup(scene)
+        error, self.question = offers_of(asked, scene, found_pieces, self.viewer)
+        return error
 
     def select(self, phrase: str | Query) -> Selection:
         """Resolve a phrase, whatever the verdict; the scene does not change, and "it" refers to what was found.

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...gaussians.errors import AbsentError, InstructionError, ScenewrightError, UserError
 from ..pictures.named_cameras import view_text
+from ..session import portions
 from ..session.answers import chosen_numbers, rejects
 from ..session.camera_moves import Looked, look
 from ..session.camera_words import read_moves
@@ -189,7 +190,9 @@ class Chat:
         question = self.session.question
         if question is None or undo_or_redo(text) is not None:
             return False
-        return question.selection.verdict != "absent" or chosen_numbers(text, len(question.candidates)) is not None
+        if question.selection.verdict != "absent" or chosen_numbers(text, len(question.candidates)) is not None:
+            return True
+        return bool(question.candidates) and portions.read(text, len(question.candidates)) is not None
 
     def _question(self, text: str) -> None:
         """Answer a question about the scene."""

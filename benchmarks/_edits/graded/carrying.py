@@ -24,6 +24,7 @@ from ....agent.session.result import Result
 from ....agent.session.session import Session
 from ....gaussians.camera import Camera
 from ....gaussians.errors import ScenewrightError, UserError
+from ....gaussians.scene import Scene
 from .scenes import Place
 
 Picture = NDArray[np.uint8]  # [H, W, 3]
@@ -119,7 +120,7 @@ def carry_out(instruction: Instruction, place: Place, answers: Answers) -> tuple
     questions = len(told) // 2
     if result is None:
         question = session.question
-        shown = Shown(()) if question is None or not question.candidates else _asked(question, place)
+        shown = Shown(()) if question is None or not question.candidates else _asked(question, place, session.scene)
         look = _asks(said, question)
         return Carried(key, outcome, questions, said, tuple(told), look), shown
     look, shown = _done(result, place)
@@ -168,15 +169,15 @@ def _done(result: Result, place: Place) -> tuple[str, Shown]:
     return look, Shown(tuple(rows))
 
 
-def _asked(question: Question, place: Place) -> Shown:
+def _asked(question: Question, place: Place, scene: Scene) -> Shown:
     """What a question offers: what was chosen, lit, or the candidates with numbers, from every view."""
     pictures = []
     for view in place.views:
         larger = view.resized(_ASKED * view.width, _ASKED * view.height)
         if question.selection.verdict == "unconfirmed":
-            pictures.append(spotlight(place.scene, larger, question.selection))
+            pictures.append(spotlight(scene, larger, question.selection))
         else:
-            pictures.append(numbered(place.scene, larger, question.candidates))
+            pictures.append(numbered(scene, larger, question.candidates))
     return Shown(tuple(tuple(pictures[i : i + 2]) for i in range(0, len(pictures), 2)))
 
 

@@ -34,6 +34,7 @@ class Candidate:
         size: `[3]` extents of its oriented box, scene units: two level sides, then height.
         score: product of the terms, in [0, 1].
         terms: score of each term in [0, 1]: "text", each colour, the size word, each relation.
+        ids: `[M]` int64 sorted ids of its Gaussians where they are not just those of its group: of a colour patch.
     """
 
     group: int
@@ -43,6 +44,7 @@ class Candidate:
     size: Vec3
     score: float
     terms: dict[str, float] = field(default_factory=dict)
+    ids: Tensor | None = field(default=None, compare=False, repr=False)
 
     def seen_from(self, viewer: Camera) -> str:
         """Where a viewer sees it: "on the left of the view", "outside the view"."""

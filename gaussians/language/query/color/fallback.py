@@ -89,7 +89,10 @@ def by_color(scene: Scene, field: LanguageField, query: Query, viewer: Camera, s
     rivals = [p for p in places if p.weight > RIVAL * places[0].weight]
     doubtful = "" if search.generic else f"{query.text!r} could not be confirmed"
     if len(rivals) > 1 and query.pick == "one":
-        told = tuple(p.candidate(query.colors[0], search.label(p)) for p in rivals[:6])
+        members = index_groups(scene.cloud)
+        told = tuple(
+            replace(p.candidate(query.colors[0], search.label(p)), ids=members.ids_at(p.rows)) for p in rivals[:6]
+        )
         reason = f"{doubtful or query.describe()}: {len(rivals)} places have that colour; say where it is, or 'all'"
         return replace(nothing(query, reason, told), verdict="ambiguous")
     chosen = places if query.pick == "all" else places[:1]
