@@ -15,7 +15,9 @@ from torch import Tensor
 
 from ..gaussians.kept import Kept
 from ..gaussians.language.field.language_field import Group, LanguageField
+from ..gaussians.language.query.color.fallback import is_reliable
 from ..gaussians.language.query.selection import Selection
+from ..gaussians.language.query.telling import told
 from ..gaussians.rows import rows_where
 from ..gaussians.scene import Scene
 from ..gaussians.world.support import is_sheet, standing_on
@@ -28,6 +30,7 @@ _HIGHEST = 3.0  # times its height: what lies higher above it is something else
 _SHARE = 0.3  # of its objects' Gaussians: a region as large as that may have the rest of them on it
 _DROP = 1.15  # of the height of what a thing stood on: how far it comes down, with the error of measured boxes
 _WIDEST = 1.2  # of the longer side of what carries it: a rider that is wider, where boxes are of a capture, is none
+_MOST_OVER = 0.8  # of the footprint of what surely stands on a thing: over that thing
 _PIECE = 30  # Gaussians of the same object on a region from which they are a thing on it
 MAX_NAMED = 4  # names in a note; further objects are counted
 
@@ -85,6 +88,23 @@ def carried_on(scene: Scene, body: Body) -> tuple[int, ...]:
     return (*found, *held_by(scene, body, (*own, *found)))
 
 
+def is_told_apart(scene: Scene) -> bool:
+    """Whether things, their names and what they stand on are known: in rooms of known scale, and where names are sure.
+    Of a capture, groups are pieces of things, and their boxes reach far."""
+    if scene.frame.metres_per_unit is not None or scene.language is None:
+        return True
+    return is_reliable(scene.language)
+
+
+def _lies_on(thing: Group, support: Group) -> bool:
+    """Whether nearly all of the footprint of a thing is over that of its support."""
+    corners = support.box.local(thing.box.corners())[:, :2]
+    half = np.array(support.box.size[:2]) / 2
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    inner = np.clip(np.minimum(high, half) - np.maximum(low, -half), 0, None)
+    return bool(float(np.prod(inner)) >= _MOST_OVER * float(np.prod(np.maximum(high - low, 1e-12))))
+
+
 def _level_side(group: Group) -> float:
     return max(group.box.size[:2])
 
@@ -109,7 +129,9 @@ def stacks_on(scene: Scene, body: Body) -> list[Stack]:
     most = _DROP * body.box.size[2]
     if len(above := _rest_above(scene, body)):  # what lies on a region carries the other things on it
         rows = torch.unique(torch.cat([above, *(rows_in(scene.cloud, field, g) for g in every_one)]))
-        return [Stack(scene.cloud.ids[rows], scene.cloud.ids[above], "the rest of it", most)]
+        down = most if is_told_apart(scene) else 0.0
+        return [Stack(scene.cloud.ids[rows], scene.cloud.ids[above], "the rest of it", down)]
+    apart = is_told_apart(scene)
     for group in sorted(every_one, key=lambda g: (field.groups[g].box.bottom(up), g)):
         if group in claimed:
             continue
@@ -118,7 +140,8 @@ def stacks_on(scene: Scene, body: Body) -> list[Stack]:
         claimed |= set(whole)
         rows = [rows_in(scene.cloud, field, g) for g in whole]
         foot, every = scene.cloud.ids[rows[0]], scene.cloud.ids[torch.unique(torch.cat(rows))]
-        stacks.append(Stack(every, foot, field.groups[group].label, most))
+        down = most if apart or field.groups[group].named_by or field.groups[group].inserted else 0.0
+        stacks.append(Stack(every, foot, told(field, field.groups[group]), down))
     return stacks
 
 
@@ -176,7 +199,7 @@ def carried_note(scene: Scene, bodies: Sequence[Body]) -> tuple[str, ...]:
     """A note that names the carried objects; empty if there are none."""
     if scene.language is None:
         return ()
-    names = [scene.language.groups[g].label or "something" for b in bodies for g in b.carried]
+    names = [told(scene.language, scene.language.groups[g]) for b in bodies for g in b.carried]
     more = f" and {len(names) - MAX_NAMED} more" if len(names) > MAX_NAMED else ""
     return (f"what stood on it went along: {', '.join(names[:MAX_NAMED])}{more}",) if names else ()
 
@@ -190,12 +213,16 @@ def unsupported_note(before: Scene, after: Scene, groups: tuple[int, ...]) -> tu
         return ()  # nothing moved or was removed
     targets = [old.groups[g] for g in groups if old.groups[g].level == "object"]
     stood = {g.id: (g, t) for t in targets for g in standing_on(old, before.frame, t) if g.id not in groups}
+    if not is_told_apart(before):
+        stood = {i: (g, t) for i, (g, t) in stood.items() if _lies_on(g, t)}
     left = [(g, t) for g, t in stood.values() if new.groups[g.id].count and new.groups[g.id].box == g.box]
     hanging = [g for g, t in left if not _still_stands(after, g, t)]
     if not hanging:
         return ()
-    named = ", ".join(g.label or "something" for g in sorted(hanging, key=lambda g: g.id)[:MAX_NAMED])
+    named = ", ".join(told(old, g) for g in sorted(hanging, key=lambda g: g.id)[:MAX_NAMED])
     more = f" and {len(hanging) - MAX_NAMED} more" if len(hanging) > MAX_NAMED else ""
+    if not is_told_apart(before):
+        return (f"what seems to have stood on it stays where it is: {named}{more}",)
     return (f"left hanging in the air: {named}{more}; move or delete what stood there too",)
 
 

@@ -24,6 +24,8 @@ from ..gaussians.scene import Scene
 from ..gaussians.world.core import core_of
 from .cloud_diff import rows_of
 from .field_update import rows_in
+from .placement.bodies import body_of
+from .showing_through import showing_through
 
 Bool = NDArray[np.bool_]
 F64 = NDArray[np.float64]
@@ -37,7 +39,7 @@ _FEWEST = 200  # solid Gaussians below which a thing has no inside
 
 
 def with_enclosed(scene: Scene, selection: Selection) -> Selection:
-    """The selection with what it encloses; as it is where nothing is enclosed.
+    """The selection with what it encloses and what would show it after it is gone; `shows` is what shows it even so.
 
     Only of whole things of scenes whose names are not reliable: elsewhere what lies inside a thing is known.
     """
@@ -53,10 +55,23 @@ def with_enclosed(scene: Scene, selection: Selection) -> Selection:
         found[rows_in(scene.cloud, field, piece)] = True
     inside = _enclosed(scene, own | found)
     found = (found if inside is None else found | inside) & ~own
+    whole = own | found
+    box = body_of(scene, whole.nonzero().squeeze(1), -1).box
+    more, shows = showing_through(scene, whole, box, _of_sure_things(scene))
+    found |= more
     if not bool(found.any()):
-        return selection
+        return replace(selection, shows=shows)
     ids = scene.cloud.ids
-    return replace(selection, ids=ids[own | found].sort().values, enclosed=ids[found].sort().values)
+    return replace(selection, ids=ids[own | found].sort().values, enclosed=ids[found].sort().values, shows=shows)
+
+
+def _of_sure_things(scene: Scene) -> Tensor:
+    """`[N]` bool: Gaussians of objects whose names are sure."""
+    field = scene.language
+    assert field is not None
+    sure = [g.level == "object" and (g.label_score >= _SURE or bool(g.named_by)) for g in field.groups]
+    flags = torch.tensor([*(sure[g.parent] if g.parent >= 0 else sure[g.id] for g in field.groups), False])
+    return flags.to(scene.cloud.device)[scene.cloud.group]
 
 
 def _rooted(scene: Scene, selection: Selection) -> list[int]:

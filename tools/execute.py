@@ -19,6 +19,7 @@ from ..gaussians.timing import timed
 from . import pixel_diff
 from .carried_objects import unsupported_note
 from .cloud_diff import Difference, difference
+from .cohesion import remarks
 from .enclosed import with_enclosed
 from .judging.case import Case
 from .judging.examine import measured
@@ -69,7 +70,7 @@ def carry_out(
         op = op.settled(scene, context)
     with timed(seconds, "apply"):
         outcome = op.apply(scene, chosen, context)
-        unsupported = unsupported_note(scene, outcome.scene, chosen.groups)
+        unsupported = (*remarks(scene, op, chosen), *unsupported_note(scene, outcome.scene, chosen.groups))
         query = op.query()
         where = (chosen.reason,) if query is not None and query.spatial and chosen.reason else ()
         outcome = replace(outcome, notes=(*where, *inner, *outcome.notes, *unsupported))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ...gaussians.errors import UserError
 from ...gaussians.language.query.nested import Path, exchange, queries
@@ -98,6 +98,17 @@ def plan_with_query(question: Question, chosen: Query) -> EditPlan:
     ops: list[EditOp] = list(question.plan.ops)
     ops[question.step] = exchange(ops[question.step], question.path, chosen)
     return question.plan.model_copy(update={"ops": tuple(ops)})
+
+
+def with_plural(plan: EditPlan, asked: Question) -> EditPlan:
+    """The plan, with a remark if all things of a name were asked for and a person chose some of a list."""
+    node: Any = asked.plan.ops[asked.step]
+    for key in asked.path:
+        node = node[key] if isinstance(key, int) else getattr(node, key)
+    if not isinstance(node, Query) or node.pick != "all" or not node.text:
+        return plan
+    said = f"{node.text}: only what was chosen; there may be more of that kind"
+    return plan.model_copy(update={"reason": "; ".join(r for r in (plan.reason, said) if r)[:2000]})
 
 
 def as_a_whole(plan: EditPlan, step: int) -> EditPlan:

@@ -23,7 +23,7 @@ from . import log as session_log
 from . import portions
 from .answers import chosen_numbers, rejects
 from .asker import Asker, see_answer
-from .clarify import Question, as_a_whole, plan_with_answer, plan_with_query
+from .clarify import Question, as_a_whole, plan_with_answer, plan_with_query, with_plural
 from .embedding import embedded_by, only_thing
 from .history import History, State
 from .judge import Judge, JudgedError, known_judge
@@ -380,7 +380,7 @@ class Session:
             absent = self.question.selection
             scene, meant = offered_choice(self.scene, absent.query, absent.candidates, places)
             self._regroup(scene)
-            return plan_with_query(self.question, meant)
+            return with_plural(plan_with_query(self.question, meant), self.question)
         if self.question.selection.verdict == "unconfirmed" and is_dismissal(text):
             asked, self.question = self.question.selection.query.describe(), None
             raise UnconfirmedError(f"nothing was changed; say in other words what is meant by {asked}")

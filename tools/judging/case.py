@@ -67,7 +67,7 @@ class Case:
         found = self.chosen if self.chosen is not None else self.asked
         if found is None or not found.chosen:
             return Selection(Query(), "found", _NO_IDS)
-        whole = found.enclosed is not None or not self.op.takes_enclosed or not len(found)
+        whole = found.shows is not None or not self.op.takes_enclosed or not len(found)
         return found if whole else with_enclosed(self.before, found)
 
     @cached_property

@@ -49,6 +49,7 @@ _RIGID = 0.01  # of its size: RMS by which a thing that moved may be out of shap
 _WAY = 0.03  # of the way, and at least 2 cm: error of a moved thing's place
 _TURN = 2.0  # degrees
 _SIZE = 0.03  # error of a size ratio, and at most a third of the change that was asked for
+_DARKEST = 1 / 255  # display value of the brightest channel up to which there is no light
 _BRIGHTEST = 0.97  # display value of the brightest channel from which a colour may stay as it is
 _HUELESS = 1 / 255  # between the channels of a grey
 _PART = 0.05  # score of a colour that only parts of a new thing have
@@ -159,20 +160,21 @@ def _recolor(case: Case, op: Recolor) -> Found:
     return [*checks, *_named(case, case.changes.shaded)], _NO_IDS
 
 
-def _to_paint(case: Case, op: Recolor) -> Tensor | None:
-    """`[N]` bool: what of the target has to change its colour; None for all of it.
+def _to_paint(case: Case, op: Recolor) -> Tensor:
+    """`[N]` bool: what of the target has to change its colour.
 
-    A new colour leaves parts of other hues. What is as bright as a display shows cannot become lighter or purer, and a
-    grey has no hue to lose.
+    A new colour leaves parts of other hues. What is as bright as a display shows cannot become lighter or purer, a grey
+    has no hue to lose, and what reflects no light at all has no colour to change.
     """
-    if op.adjust in ("lighter", "more_saturated", "less_saturated"):
-        shown = dc_to_color(case.before.cloud.sh[:, 0])
-        if op.adjust == "less_saturated":
-            return case.target & (shown.amax(dim=1) - shown.amin(dim=1) > _HUELESS)
-        return case.target & (shown.amax(dim=1) < _BRIGHTEST)
-    if op.color is None or op.paints_parts or not bool(case.target.any()):
-        return None
-    target = case.target.clone()
+    shown = dc_to_color(case.before.cloud.sh[:, 0])
+    brightest = shown.amax(dim=1)
+    target = case.target & (brightest > _DARKEST)
+    if op.adjust == "less_saturated":
+        return target & (brightest - shown.amin(dim=1) > _HUELESS)
+    if op.adjust in ("lighter", "more_saturated"):
+        return target & (brightest < _BRIGHTEST)
+    if op.color is None or op.paints_parts or not bool(target.any()):
+        return target
     target[surfaces(case.before, case.meant).left] = False
     return target
 
@@ -308,7 +310,8 @@ def _scale(case: Case, op: Scale) -> Found:
         if len(rows) < 4:
             checks.append(at_most("size as asked", 1.0, _SIZE, "1", "nothing of it is there any more"))
             continue
-        checks += [_resized(case, op, body.box, rows), spots.foot_kept(case, body), spots.underside_kept(case, body)]
+        was = contact_box(solid_points(case.before.cloud, body.rows), case.before.frame, body.box.axes)
+        checks += [_resized(case, op, was, rows), spots.foot_kept(case, body), spots.underside_kept(case, body)]
     return [*checks, *_named(case, case.changes.placed & case.target)], _NO_IDS
 
 

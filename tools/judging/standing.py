@@ -29,6 +29,7 @@ from .case import Case
 _FEET = 0.05  # of its height: the lowest part of a thing, on which it stands
 _AIR = 4.0  # centimetres between a thing and what carries it: cushions are soft, and boxes miss thin feet
 _CAPTURED = 0.1  # of its size: the same where the scale is unknown, as the surfaces of captures are thick
+_THICK = 0.25  # of the height of what a thing stands on in a capture: error of the top of its box
 _AT_WALL = 8.0  # centimetres between a thing that hangs and what it hangs on: brackets and frames
 _SURFACE = 0.02  # share of the points under a thing that must be at its underside
 _FEW = (2, 7)  # least and most number of such points that do not count: stray ones
@@ -60,9 +61,24 @@ def stands(case: Case, rows: Tensor, label: str) -> Check:
     captured = case.before.frame.metres_per_unit is None
     standing = _CAPTURED * max(reach, box.size[2]) if captured else max(_AIR * case.cm(reach), _FEET * box.size[2])
     bound = _AT_WALL * case.cm(reach) if hung else standing
+    if captured and not hung and gap > bound:
+        gap, bound = _over_anchor(case, box, gap, bound)
     if math.isinf(gap) or (captured and gap > bound and case.bodies):
         return _level(case, box, bound)
     return at_most("carried", gap, bound, "units", f"{gap:.3g} units lie between it and what carries it")
+
+
+def _over_anchor(case: Case, box: Box, gap: float, bound: float) -> tuple[float, float]:
+    """The gap and its bound by the box of what a thing of a capture was put on: a small thing may stand where no
+    Gaussian of a large surface has its centre."""
+    place, up = getattr(case.op, "place", None), case.before.frame.up_vector
+    if not isinstance(place, Placement) or place.relation != "on":
+        return gap, bound
+    for anchor in _anchors(case, place):
+        apart, thick = abs(box.bottom(up) - anchor.box.top(up)), _THICK * anchor.box.size[2]
+        if bool(anchor.box.covers(np.array([box.center]))[0]) and apart <= max(bound, thick):
+            return apart, max(bound, thick)
+    return gap, bound
 
 
 def _level(case: Case, box: Box, bound: float) -> Check:

@@ -13,15 +13,22 @@ from ...gaussians.language.field.measure import solid_points
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
 from ..alternatives import NOT_GIVEN, either, given
+from ..carried_objects import is_told_apart
 from ..checks import count_matches, moved_as_asked, overlap_notes, placed
 from ..cloud_diff import Draft, selection_of
 from ..new_objects import NewObjects
 from ..operation import Affine, Context, Direction, Length, Outcome, Placement, TargetedOp
 from ..placement.bodies import Array, Body, bodies_of, centimetre, heading
-from ..placement.place import free_spot, spot_beside
+from ..placement.place import anchors_of, free_spot, spot_beside
 from ..placement.surroundings import Surroundings
 from ..receipt import Check
 from ..transform import shift
+
+_STEP = 0.35  # of its height: by which a copy in a capture may stand higher or lower than its original
+
+
+_FARTHER = (0.0, 0.3, 0.6, 1.0)  # of its width: how much farther off a copy may stand where there is more room
+_WAYS: dict[str, Direction] = {"left_of": "left", "in_front_of": "backward", "behind": "forward"}
 
 
 class Duplicate(TargetedOp):
@@ -86,7 +93,8 @@ class Duplicate(TargetedOp):
             way = heading(context.viewer, scene.frame, self.direction)
             step = self._step(scene, bodies, way)
             return [(b, way * step * (i + 1), None) for i in range(self.count) for b in bodies], ()
-        up, around, found = scene.frame.up_vector, Surroundings(scene, context), []
+        up, around = scene.frame.up_vector, Surroundings(scene, context)
+        found: list[tuple[Body, Array, float | None]] = []
         notes = dict[str, None]()
         place = self.place
         for body in [b for _ in range(self.count) for b in bodies]:
@@ -95,10 +103,32 @@ class Duplicate(TargetedOp):
             else:
                 spot = spot_beside(around, body)
             offset = spot.foot - body.foot(up)
+            support: float | None = spot.support
+            if abs(float(offset @ up)) > _STEP * body.box.size[2] and not is_told_apart(scene):
+                offset, support = self._beside(around, body, context), None
+                notes["no surface is seen where the copy goes: it is as high as the original"] = None
             around.add_obstacle(solid_points(scene.cloud, body.rows) + offset, body.box.shifted(offset))
-            found.append((body, offset, spot.support))
-            notes |= dict.fromkeys(spot.notes)
-        return [(body, offset, support) for body, offset, support in found], tuple(notes)
+            found.append((body, offset, support))
+            notes |= dict.fromkeys(spot.notes if support is not None else ())
+        return found, tuple(notes)
+
+    def _beside(self, around: Surroundings, body: Body, context: Context) -> Array:
+        """The way of a copy to the side that the place names of a thing, or else to the right of the original, at the
+        height of the original."""
+        anchors = anchors_of(around, self.place) if self.place is not None else []
+        by, up = anchors[0] if anchors else body, around.up
+        side = _WAYS.get(self.place.relation, "right") if self.place is not None else "right"
+        way = heading(context.viewer, around.frame, side)
+        gap = 8 * centimetre(around.frame, max(body.box.size))
+        goal = by.center + way * ((by.box.extent(way) + body.box.extent(way)) / 2 + gap)
+        level = goal - body.center - up * float((goal - body.center) @ up)
+        tries = [level + step * body.box.extent(way) * way for step in _FARTHER]
+        return min(tries, key=lambda offset: self._taken(around, body, offset))
+
+    def _taken(self, around: Surroundings, body: Body, offset: Array) -> int:
+        """How many solid points are where a copy would be."""
+        local = np.abs(body.box.shifted(offset).local(around.solid.astype(np.float64)))
+        return int((local <= 0.45 * np.array(body.box.size)).all(axis=1).sum())
 
     def _step(self, scene: Scene, bodies: list[Body], way: Array) -> float:
         """Step from one copy to the next: as given, or the extent of all originals together plus 8 cm."""

@@ -19,6 +19,7 @@ from ...gaussians.errors import InstructionError
 from ...gaussians.kept import Kept
 from ...gaussians.language.field.measure import as_axes, box_along, level_axes, reach, solid_points
 from ...gaussians.language.query.selection import Selection
+from ...gaussians.language.query.telling import told
 from ...gaussians.scene import Frame, Scene
 from ...gaussians.world.box import Axes, Box
 from ...gaussians.world.core import core_of
@@ -231,10 +232,11 @@ def turned_axes(axes: Axes, matrix: Array, frame: Frame) -> Axes:
 
 
 def neighbours(scene: Scene, but: set[int]) -> list[tuple[str, Box]]:
-    """Label and box of each object of the field that still has Gaussians, without the group ids `but`."""
+    """Name (see `told`) and box of each object of the field that still has Gaussians, without the group ids `but`."""
     if scene.language is None:
         return []
-    return [(g.label, g.box) for g in scene.language.objects() if g.count and g.id not in but]
+    field = scene.language
+    return [(told(field, g) if g.label else "", g.box) for g in field.objects() if g.count and g.id not in but]
 
 
 def centimetre(frame: Frame, extent: float) -> float:

@@ -72,6 +72,8 @@ class Selection:
         candidates: best first; those selected, those that are ambiguous, or the nearest ones.
         reason: one sentence for the user.
         enclosed: `[K]` int64 sorted, those of `ids` that lie inside what was found; None if there are none.
+        shows: share of its picture that would stay as it is without it, as other things of the same colours are there;
+            None if nobody looked.
     """
 
     query: Query
@@ -81,6 +83,7 @@ class Selection:
     candidates: tuple[Candidate, ...] = ()
     reason: str = ""
     enclosed: Tensor | None = None
+    shows: float | None = None
 
     def __len__(self) -> int:
         return int(self.ids.shape[0])

@@ -19,7 +19,7 @@ RED, WHITE, PURPLE = (0.75, 0.1, 0.08), (0.85, 0.85, 0.85), (0.22, 0.12, 0.30)
 
 
 def sheet(colors: list[tuple[float, float, float]], folds: bool = False, n: int = 40) -> Scene:
-    """A level sheet of `n` times `n` Gaussians whose strips along x have the colours; `folds` darken every other row."""
+    """A level sheet of `n` times `n` Gaussians in strips of colours along x; `folds` darken every other row."""
     x, y = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
     means = np.stack([x, y, np.zeros_like(x)], axis=2).reshape(-1, 3) * 0.01
     rgb = np.array(colors)[(x * len(colors) // n).reshape(-1)]
