@@ -60,6 +60,10 @@ class Length(BaseModel):
             return self.value
         return in_metres(self.value, self.unit) / (frame.metres_per_unit or 1.0)
 
+    def times(self, factor: float) -> Length:
+        """This length `factor` times, at most the longest that there is."""
+        return Length(value=min(self.value * factor, 10_000.0), unit=self.unit)
+
     def assumption(self, frame: Frame) -> tuple[str, ...]:
         """The assumptions that converting it took, as notes for the receipt; empty if there were none."""
         if self.unit == "units" or frame.metres_per_unit is not None:
@@ -239,6 +243,11 @@ class Outcome:
     focus: Selection | None = None
 
 
+def compounded(share: float, times: float) -> float:
+    """The share (0 to 1) of the way that is gone if a step that goes `share` of what is left is made `times` times."""
+    return 1 - (1 - share) ** times
+
+
 class EditOp(BaseModel):
     """One atomic operation: data that say what to do, and the code that does and checks it.
 
@@ -269,6 +278,11 @@ class EditOp(BaseModel):
             AbsentError, AmbiguousError: such a thing is not in the scene, or not unique.
         """
         return self
+
+    def stronger(self, times: float) -> Self | None:
+        """The operation done `times` as much, below 1 done less; None if it has no strength, or is done as much as it
+        can be."""
+        return None
 
     def may_change(self, scene: Scene, selection: Selection) -> Tensor:
         """`[N]` bool: the Gaussians that may change or be removed; the others must stay the same bit for bit."""

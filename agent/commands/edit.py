@@ -49,6 +49,7 @@ class _Targets:
     """The files that an edit writes."""
 
     output: Path | None
+    preview: Path | None
     pictures: Path | None
     force: bool
     keep_field: bool
@@ -61,6 +62,14 @@ def command(
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Show the plan and what it would change; write no scene.")
     ] = False,
+    preview: Annotated[
+        Path | None,
+        typer.Option(
+            "--preview",
+            metavar="FILE.png",
+            help="A dry run: write a picture of before, after and what would change, and say how much; write no scene.",
+        ),
+    ] = None,
     pictures: Annotated[
         Path | None, typer.Option("--pictures", metavar="FOLDER", help="Write before.png and after.png there.")
     ] = None,
@@ -102,12 +111,15 @@ def command(
 
     if (text is None) == (replay is None):
         raise UserError('give either TEXT or --replay LOG: scenewright edit SCENE "make the sofa teal" -o out.ply')
+    if preview is not None and replay is not None:
+        raise UserError("--preview shows what one instruction would change: give TEXT, or --replay LOG without it")
+    dry_run = dry_run or preview is not None
     if output is None and not dry_run:
-        raise UserError("say where to write the edited scene: -o out.ply (or try it first with --dry-run)")
+        raise UserError("say where to write the edited scene: -o out.ply (or try it first with --preview change.png)")
     if session_of_log is not None and replay is None:
         raise UserError("--session names a session of a log; give the log with --replay")
     chosen = _logged(replay, session_of_log) if replay is not None else None
-    _check_targets(None if dry_run else output, pictures, force)
+    _check_targets(None if dry_run else output, preview, pictures, force)
     started = time.perf_counter()
     seconds: dict[str, float] = {}
     options = SessionOptions(
@@ -120,7 +132,7 @@ def command(
     )  # fmt: skip
     with timed(seconds, "open"):
         session, had_field = open_session(options)
-    targets = _Targets(None if dry_run else output, pictures, force, had_field)
+    targets = _Targets(None if dry_run else output, preview, pictures, force, had_field)
     with closing(session):
         results = [_instruct(session, str(text), dry_run)] if chosen is None else _replay(session, chosen)
         lines, data = _report(results, chosen, dry_run)
@@ -128,6 +140,7 @@ def command(
             _write(session, results, targets, data)
     spent = {**data.pop("seconds", {}), **seconds, "total": time.perf_counter() - started}
     data["seconds"] = {stage: round(value, 3) for stage, value in spent.items()}
+    lines += [data["change"]] if "change" in data else []
     lines += ["dry run: no scene was written"] if dry_run else [f"wrote {data['output']}"]
     lines += [f"wrote {path}" for path in data.get("pictures", ())]
     terminal.result("\n".join(lines), data)
@@ -139,15 +152,18 @@ def command(
         terminal.say("seconds: " + ", ".join(f"{stage} {value:.2f}" for stage, value in data["seconds"].items()))
 
 
-def _check_targets(output: Path | None, pictures: Path | None, force: bool) -> None:
+def _check_targets(output: Path | None, preview: Path | None, pictures: Path | None, force: bool) -> None:
     """Check before the work that the files can be written: no overwriting, existing folders, known formats."""
     from ...gaussians.files import writer
-    from ..output_files import make_folder, refuse_existing, require_folder
+    from ..output_files import make_folder, refuse_existing, require_folder, require_png
 
     if output is not None:
         writer(output)
         require_folder(output)
-    wanted = [output] if output else []
+    if preview is not None:
+        require_png(preview)
+        require_folder(preview)
+    wanted = [path for path in (output, preview) if path]
     wanted += [pictures / name for name in ("before.png", "after.png")] if pictures else []
     refuse_existing(wanted, force)
     if pictures is not None:
@@ -255,6 +271,18 @@ def _write(session: Session, results: Sequence[Result], targets: _Targets, data:
             data["field"] = str(save_field(session.scene, targets.output))
     if targets.pictures is not None:
         data["pictures"] = _draw(session, results, targets.pictures, targets.force)
+    if targets.preview is not None:
+        data |= _previewed(session, results[0], targets.preview, targets.force)
+
+
+def _previewed(session: Session, result: Result, path: Path, force: bool) -> dict[str, Any]:
+    """Write the picture of what a dry run would change; its path and numbers as data."""
+    from ..pictures.change_pictures import change_of
+    from ..pictures.image_files import save_png
+
+    change = change_of(result, session.viewer)
+    save_png(change.picture, path, force)
+    return {"pictures": [str(path)], "change": f"it would change {change.sentence()}", "preview": change.to_json()}
 
 
 def _draw(session: Session, results: Sequence[Result], folder: Path, force: bool) -> list[str]:

@@ -16,7 +16,7 @@ from ..session.result import Result
 Picture = NDArray[np.uint8]  # [H, W, 3], display space
 
 _SMALL = 96  # side of the picture in which it is looked for, pixels
-_MARK = np.array([255, 196, 0], dtype=np.uint8)
+MARK = np.array([255, 196, 0], dtype=np.uint8)
 
 
 def picture(scene: Scene, camera: Camera) -> Picture:
@@ -31,7 +31,7 @@ def spotlight(scene: Scene, camera: Camera, selection: Selection) -> Picture:
     lit: NDArray[np.bool_] = (drawn.group == 1).cpu().numpy()
     image = drawn.to_uint8()
     shown: Picture = np.where(lit[..., None], image, image // 3 + 20).astype(np.uint8)
-    shown[_edge(lit)] = _MARK
+    shown[edge(lit)] = MARK
     return shown
 
 
@@ -82,7 +82,7 @@ def _numbered_at_centres(scene: Scene, camera: Camera, candidates: Sequence[Cand
     return draw_placed(picture(scene, camera), marks, placed)
 
 
-def _edge(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def edge(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """The two-pixel border just outside a mask."""
     grown = mask.copy()
     for _ in range(2):

@@ -9,11 +9,15 @@ from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from ...gaussians.errors import UserError
 from ...gaussians.language.query.query import Query
 from ...gaussians.language.query.selection import Selection
 from ...gaussians.scene import Scene
+
+if TYPE_CHECKING:
+    from ...planners.plan import EditPlan
 
 DEPTH = 200  # states kept for undo; each holds only the columns that its edit changed
 
@@ -27,6 +31,7 @@ class State:
         last: the selection that "it" refers to; None at first.
         text: the instruction that led here, "" for the first state.
         context: the previous instruction, for "a bit more" and "the red one".
+        plan: the plan that was carried out to get here; None for the first state, and where it is not known.
         pointed: what a vision model pointed at in this scene, by phrase.
     """
 
@@ -35,6 +40,7 @@ class State:
     text: str = ""
     context: str = ""
     pointed: Mapping[str, Query] = field(default_factory=dict)
+    plan: EditPlan | None = None
 
     @cached_property
     def digest(self) -> str:

@@ -273,6 +273,9 @@ class Session:
     def do(self, text: str) -> Result:
         """Carry out an instruction completely or not at all. "undo" and "redo" in words are understood too.
 
+        "More", "a bit less", "too strong" and the like carry out the last edit again from its start, with another
+        strength; after an undo, the edit that was undone.
+
         Raises:
             NotUnderstoodError: some words were not understood; the message names them. (A UserError.)
             ImpossibleError: understood, but there is no operation for it. (An InstructionError.)
@@ -286,6 +289,8 @@ class Session:
         """
         if (step := undo_or_redo(text)) is not None:
             return self.undo() if step == "undo" else self.redo()
+        if (changed := self._stronger(text)) is not None:
+            return changed
         started = time.perf_counter()
         try:
             plan = self.plan(text)
@@ -333,15 +338,39 @@ class Session:
         plan = self.plan(instruction) if isinstance(instruction, str) else instruction
         return self._carry_out(plan, {}, dry_run=True)[0]
 
-    def apply(self, plan: EditPlan, *, planned_in: float = 0.0) -> Result:
-        """Carry out a plan completely or not at all; raises as `do`. `planned_in`: seconds that planning took."""
+    def _stronger(self, text: str) -> Result | None:
+        """The last edit with the strength that a text asks for; None if the text does not ask for it, or there is no
+        such edit, or it has no strength."""
+        from .strength import stronger_plan, times_asked
+
+        times, history = times_asked(text), self._history
+        if times is None or not (history.future or history.past):
+            return None
+        undone = history.future[-1] if history.future else None
+        last = undone or history.present
+        plan = None if last.plan is None else stronger_plan(last.plan, times)
+        if plan is None:
+            return None
+        return self.apply(plan) if undone is not None else self.apply(plan, start=history.undo_target())
+
+    def apply(self, plan: EditPlan, *, planned_in: float = 0.0, start: State | None = None) -> Result:
+        """Carry out a plan completely or not at all; raises as `do`.
+
+        Args:
+            planned_in: seconds that planning took.
+            start: the state before the last edit, to carry it out instead of that edit, which is undone; None: the
+                present state.
+        """
         seconds = {"plan": planned_in}
         try:
-            result, state = self._carry_out(plan, seconds, dry_run=False)
+            result, state = self._carry_out(plan, seconds, dry_run=False, start=start)
         except ScenewrightError as error:
             self._record("failed", session_log.failed_fields, plan.instruction, plan, error, self._history.present)
             raise
         with timed(seconds, "log"):
+            if start is not None:
+                self._record("undo", session_log.step_fields, plan.reason, self._history.present, start)
+                self._history.undo()
             self._record("do", session_log.do_fields, result, self._history.present, state)
         self._history.advance(state)
         return result
@@ -641,14 +670,16 @@ class Session:
             if len(found) == earlier.gaussians:
                 self._history.amend(replace(self._history.present, last=found))
 
-    def _carry_out(self, plan: EditPlan, seconds: dict[str, float], *, dry_run: bool) -> tuple[Result, State]:
+    def _carry_out(
+        self, plan: EditPlan, seconds: dict[str, float], *, dry_run: bool, start: State | None = None
+    ) -> tuple[Result, State]:
         self.question = None
         if not plan.ops:
             raise refusal(plan)
         if has_queries(plan):
             with timed(seconds, "embed"):
                 self.embed()
-        before = self._history.present
+        before = start or self._history.present
         if before.last is None and (only := only_thing(self.scene)) is not None:  # "twice as big" can mean nothing else
             before = replace(before, last=self._context(None).resolve(self.scene, Query(groups=(only.id,))))
         with timed(seconds, "edit"):
@@ -656,7 +687,7 @@ class Session:
                 state, receipts = run_plan(plan, before, self._context, dry_run=dry_run, judge=self._judge())
             except PlanFailed as failure:
                 self.question = failure.question
-                return self._carry_out(self._settled(failure), seconds, dry_run=dry_run)
+                return self._carry_out(self._settled(failure), seconds, dry_run=dry_run, start=start)
         viewer, last = self.viewer, state.last
         result = Result(plan.instruction, plan, receipts, before.scene, state.scene, viewer, last, seconds, dry_run)
         return result, state

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from ...gaussians.camera import Camera
     from ...gaussians.language.query.selection import Selection
     from ...planners.plan import EditPlan
+    from ..pictures.scene_pictures import Picture
     from ..session.result import Result
     from ..session.session import Session
     from .output import Terminal
@@ -258,8 +259,7 @@ class Chat:
         from ...gaussians.viewpoints.coverage import fit_camera
         from ..pictures.scene_pictures import camera_showing, spotlight
 
-        size = shutil.get_terminal_size((80, 24))
-        columns, rows = min(size.columns, 100), min(size.lines - 4, 40)
+        columns, rows = _extent()
         width, height = 4 * columns, 4 * round(columns * 2 / 3)
         if doubted is None:
             camera = fit_camera(self.session.viewer, width, height)
@@ -267,7 +267,13 @@ class Chat:
         else:
             camera = fit_camera(camera_showing(self.session.scene, doubted, self.session.viewer), width, height)
             image = spotlight(self.session.scene, camera, doubted)
-        self.terminal.picture(draw(image, columns, max(rows, 8), depth_of(self.terminal.out)))
+        self.terminal.picture(draw(image, columns, rows, depth_of(self.terminal.out)))
+
+    def show_image(self, image: Picture) -> None:
+        """Print a picture, on an interactive terminal."""
+        if self._lines.interactive:
+            columns, rows = _extent()
+            self.terminal.picture(draw(image, columns, rows, depth_of(self.terminal.out)))
 
     def _greet(self) -> None:
         path, count = self.session.scene.path, len(self.session.scene.cloud)
@@ -283,3 +289,9 @@ class Chat:
         language = self.session.scene.language
         labels = {g.label for g in language.groups if g.label and g.count} if language else set()
         return sorted({*OPS, *labels})
+
+
+def _extent() -> tuple[int, int]:
+    """Columns and rows of a picture: at most 100 by 40, and no larger than the terminal."""
+    size = shutil.get_terminal_size((80, 24))
+    return min(size.columns, 100), max(min(size.lines - 4, 40), 8)

@@ -13,6 +13,7 @@ from .tables import table
 if TYPE_CHECKING:
     from ...gaussians.camera import Camera
     from ...planners.plan import EditPlan
+    from ..pictures.scene_pictures import Picture
     from ..session.result import Result
     from ..session.session import Session
     from .output import Terminal
@@ -38,6 +39,7 @@ class Conversation(Protocol):
     def tell(self, text: str, data: dict[str, Any], style: str = "default") -> None: ...
     def show_result(self, result: Result) -> None: ...
     def show_picture(self) -> None: ...
+    def show_image(self, image: Picture) -> None: ...
     def kept(self) -> None: ...
 
 
@@ -81,6 +83,18 @@ def _plan(chat: Conversation, text: str) -> None:
     if chat.planned is None:
         raise UserError("nothing was planned yet; /plan TEXT shows what an instruction would do")
     chat.tell("\n".join(plan_lines(chat.planned)), chat.planned.model_dump(mode="json"))
+
+
+def _preview(chat: Conversation, text: str) -> None:
+    from ..pictures.change_pictures import change_of
+
+    if not text:
+        raise UserError("say what to try: /preview remove the floaters")
+    result = chat.session.preview(text)
+    change = change_of(result, chat.session.viewer)
+    lines = [*result.sentences(), f"it would change {change.sentence()}", "(not done)"]
+    chat.tell("\n".join(lines), result.to_json() | {"preview": change.to_json()})
+    chat.show_image(change.marked)
 
 
 def _select(chat: Conversation, text: str) -> None:
@@ -225,6 +239,7 @@ SLASH_COMMANDS: dict[str, SlashCommand] = {
     "/undo": SlashCommand("undo the last instruction", lambda chat, _: chat.show_result(chat.session.undo())),
     "/redo": SlashCommand("redo what was undone last", lambda chat, _: chat.show_result(chat.session.redo())),
     "/plan": SlashCommand("TEXT: what an instruction would do, without doing it; alone: the last plan", _plan),
+    "/preview": SlashCommand("TEXT: how much an instruction would change, with a picture, without doing it", _preview),
     "/select": SlashCommand("TEXT: select the things that a phrase describes; 'it' then refers to them", _select),
     "/why": SlashCommand("TEXT: explain what a phrase selects, with the score of each term", _why),
     "/grow": SlashCommand(

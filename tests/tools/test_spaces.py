@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 import torch
 
 from scenewright.gaussians.cloud import NO_GROUP, concat
 from scenewright.gaussians.errors import AbsentError, InstructionError
+from scenewright.gaussians.language.query.floaters import floaters
 from scenewright.gaussians.language.query.resolve import resolve
 from scenewright.gaussians.scene import Scene
 from scenewright.tools.execute import Done, carry_out
@@ -171,3 +173,7 @@ def test_floaters_are_what_lies_apart_and_no_wall(corner: Scene, real: Context) 
     assert len(gone) - 21 < 0.001 * len(corner.cloud)
     assert found.receipt.changed == 0  # nothing settles where haze was
     assert "apart from every surface" in found.receipt.notes[0]
+    fewer, more = (floaters(scene.cloud, strength) for strength in (0.25, 4.0))
+    usual = floaters(scene.cloud)
+    assert set(np.flatnonzero(usual)) == gone
+    assert not (fewer & ~usual).any() and not (usual & ~more).any() and fewer.sum() < usual.sum() < more.sum()

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, Self
 
 import torch
 from torch import Tensor
 
 from ...gaussians.errors import InstructionError, ScenewrightError
+from ...gaussians.language.query.query import FLOATERS, STRONGEST, WEAKEST
 from ...gaussians.language.query.selection import Selection, mask_of
 from ...gaussians.scene import Scene
 from ..carried_objects import MAX_NAMED, Stack, stacks_on
@@ -35,6 +36,14 @@ class Delete(TargetedOp):
     op: Literal["delete"] = "delete"
     on_it: Literal["settles", "goes", "stays"] = "settles"
     infill: bool = True  # whether the surfaces that it hid are filled, see `completing`
+
+    def stronger(self, times: float) -> Self | None:
+        if self.target.text not in FLOATERS:
+            return None
+        reach = min(max(self.target.strength * times, WEAKEST), STRONGEST)
+        if reach == self.target.strength:
+            return None
+        return self.model_copy(update={"target": self.target.model_copy(update={"strength": reach})})
 
     def may_change(self, scene: Scene, selection: Selection) -> Tensor:
         asked = super().may_change(scene, selection)

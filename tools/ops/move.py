@@ -77,6 +77,9 @@ class Move(TargetedOp):
             raise ValueError("a distance goes with a direction or toward, not with a place")
         return self
 
+    def stronger(self, times: float) -> Self | None:
+        return None if self.distance is None else self.model_copy(update={"distance": self.distance.times(times)})
+
     def may_change(self, scene: Scene, selection: Selection) -> Tensor:
         return rows_with_carried(scene, selection)
 

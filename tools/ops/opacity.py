@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import torch
 from pydantic import Field
@@ -27,6 +27,9 @@ class Opacity(TargetedOp):
     )
     op: Literal["opacity"] = "opacity"
     value: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
+
+    def stronger(self, times: float) -> Self | None:
+        return self.model_copy(update={"value": self.value**times}) if 0 < self.value < 1 else None
 
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         draft = Draft(scene.cloud)

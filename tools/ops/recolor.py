@@ -26,7 +26,7 @@ from ..coloring.seen import lit_color, lit_face, seen_colors
 from ..coloring.shading import Shading
 from ..coloring.surfaces import surfaces
 from ..field_update import after_recolor
-from ..operation import ColorName, Context, Outcome, TargetedOp
+from ..operation import ColorName, Context, Outcome, TargetedOp, compounded
 from ..receipt import Check, at_least, at_most, report
 
 Adjust = Literal["darker", "lighter", "more_saturated", "less_saturated", "warmer", "cooler", "toward"]
@@ -90,6 +90,13 @@ class Recolor(TargetedOp):
         pigment = (lit / white.clamp(min=0.05)).clamp(0, 1)
         written = "#" + "".join(f"{round(255 * float(c)):02x}" for c in pigment)
         return self.model_copy(update={"color": written, "like": None})
+
+    def stronger(self, times: float) -> Self | None:
+        if self.like is not None:
+            return None
+        if self.adjust is None:  # a colour is there or on the way
+            return self.model_copy(update={"adjust": "toward", "amount": times}) if times < 1 else None
+        return self.model_copy(update={"amount": compounded(self.amount, times)}) if self.amount < 1 else None
 
     @property
     def paints_parts(self) -> bool:

@@ -81,6 +81,13 @@ class Reframe(EditOp):
             raise ValueError("to move the whole scene, give a distance")
         return self
 
+    def stronger(self, times: float) -> Self | None:
+        if self.degrees is not None:
+            return self.model_copy(update={"degrees": min(max(self.degrees * times, -3600.0), 3600.0)})
+        if self.factor is not None:
+            return self.model_copy(update={"factor": min(max(self.factor**times, 0.0001), 10_000.0)})
+        return None if self.distance is None else self.model_copy(update={"distance": self.distance.times(times)})
+
     def subject(self) -> str:
         return "the whole scene"
 

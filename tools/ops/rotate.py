@@ -59,6 +59,11 @@ class Rotate(TargetedOp):
             raise ValueError("a thing that turns toward something turns about up")
         return self
 
+    def stronger(self, times: float) -> Self | None:
+        if self.degrees is None or self.toward is not None:
+            return None
+        return self.model_copy(update={"degrees": min(max(self.degrees * times, -3600.0), 3600.0)})
+
     def may_change(self, scene: Scene, selection: Selection) -> Tensor:
         return rows_with_carried(scene, selection) if self.axis == "up" else super().may_change(scene, selection)
 

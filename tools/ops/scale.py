@@ -68,6 +68,11 @@ class Scale(TargetedOp):
         """The dimension and its requested length; None if a factor was given."""
         return next(((side, size) for side in _SIDES if (size := getattr(self, side)) is not None), None)
 
+    def stronger(self, times: float) -> Self | None:
+        if self.factor is None:
+            return None
+        return self.model_copy(update={"factor": min(max(self.factor**times, 0.01), 100.0)})
+
     def apply(self, scene: Scene, selection: Selection, context: Context) -> Outcome:
         across = heading(context.viewer, scene.frame, "right")
         draft, moved = Draft(scene.cloud), []

@@ -23,6 +23,7 @@ CORNERS = ("front left", "front right", "back left", "back right")  # of the roo
 ALL = frozenset({"everything", "all", "scene", "room", "whole scene"})  # nouns that mean every Gaussian
 BACKGROUND = frozenset({"background", "backdrop", "surroundings", "surrounding", "environment"})
 FLOATERS = frozenset({"floater", "noise", "floating bit", "stray", "haze", "speck"})
+WEAKEST, STRONGEST = 0.1, 4.0  # strength with which floaters are looked for
 Sizes = Literal["small", "large", "tall", "short", "wide", "narrow"]
 
 
@@ -116,6 +117,9 @@ class Query(BaseModel):
     # The user confirmed what is chosen, so that a selection that would be unconfirmed is found. Only the answer to that
     # question sets it, no planner (`nested.without_confirmation`): so it is in no schema, nor in the text above.
     confirmed: SkipJsonSchema[bool] = False
+    # Of floaters: how readily a Gaussian counts as one; at 2 about twice as many do. Words about an edit that
+    # was made set it ("more", "a bit less"), no planner.
+    strength: SkipJsonSchema[Annotated[float, Field(ge=WEAKEST, le=STRONGEST)]] = 1.0
 
     @property
     def spatial(self) -> bool:

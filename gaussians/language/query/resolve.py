@@ -242,7 +242,7 @@ class Resolver:
     def _floaters(self, query: Query) -> Selection:
         """The Gaussians that lie apart from every surface."""
         cloud = self.scene.cloud
-        found = floaters(cloud)
+        found = floaters(cloud, query.strength)
         ids = self.members.ids_at(np.flatnonzero(found))
         if not len(ids):
             return nothing(query, "every Gaussian of this scene lies at some surface; there are no floaters")

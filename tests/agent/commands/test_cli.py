@@ -106,6 +106,21 @@ def test_a_dry_run_shows_the_plan_and_what_it_would_do(call: Any, room: Path) ->
     assert "seconds" not in answer.out and "seconds" in answer.err
 
 
+def test_a_preview_writes_a_picture_and_says_how_much_would_change(call: Any, room: Path, tmp_path: Path) -> None:
+    """Nothing but the picture is written; it is not overwritten."""
+    there = sorted(tmp_path.rglob("*"))
+    answer = call("edit", room, "make the green thing blue", "--preview", tmp_path / "change.png", "--json")
+    data = json.loads(answer.out)
+    assert answer.code == 0 and data["dry_run"] and 0 < data["preview"]["share_of_picture"] < 1
+    assert data["preview"]["gaussians"] == data["receipts"][0]["changed"] and data["preview"]["mean_delta_e"] > 5
+    assert sorted(tmp_path.rglob("*")) == sorted([*there, tmp_path / "change.png"])
+    again = call("edit", room, "make the green thing blue", "--preview", tmp_path / "change.png")
+    assert again.code == 2 and "exists" in again.err
+    words = call("edit", room, "make the green thing blue", "--preview", tmp_path / "change.png", "--force")
+    assert "it would change" in words.out and "of the picture looks different" in words.out
+    assert call("edit", room, "delete it", "--preview", tmp_path / "change.jpg").code == 2
+
+
 def test_what_is_nearest_is_called_so(call: Any, room: Path) -> None:
     answer = call("edit", room, "delete the yellow thing", "--dry-run")
     assert answer.code == 3 and answer.err.startswith("scenewright: ")

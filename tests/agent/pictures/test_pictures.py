@@ -10,8 +10,10 @@ import pytest
 import torch
 from PIL import Image
 
+from scenewright.agent.pictures.change_pictures import change_of
 from scenewright.agent.pictures.image_files import Tile, beside, contact_sheet, save_png
 from scenewright.agent.pictures.scene_pictures import camera_showing, numbered, picture, spotlight
+from scenewright.agent.session.session import Session
 from scenewright.gaussians.camera import Camera
 from scenewright.gaussians.errors import UserError
 from scenewright.gaussians.language.query.query import Query
@@ -91,3 +93,22 @@ def test_candidates_without_a_group_are_numbered_at_their_centre(boxes: Scene) -
     rows, columns = changed.nonzero()
     # The mark is a disc of radius 9 around the projected centre; one pixel for the rim.
     assert len(rows) and np.abs(rows - y).max() <= 10.5 and np.abs(columns - x).max() <= 10.5
+
+
+def test_a_change_is_counted_and_marked_where_it_is_seen(boxes: Scene, encoder: object) -> None:
+    """Dimmed where nothing changed; nothing differs in a view that does not show it."""
+    session = Session(boxes, planner="grammar", encoder=encoder, viewer=boxes.cameras[0], vlm=None)  # type: ignore[arg-type]
+    result = session.preview("make the green thing blue")
+    camera = boxes.cameras[0].resized(240, 160)
+    change = change_of(result, camera)
+    assert session.scene is boxes and change.gaussians == result.receipts[0].changed and change.of == len(boxes.cloud)
+    drawn = picture(boxes, camera).astype(int)
+    green = (drawn[..., 1] - drawn[..., 0]) > 90
+    differs = (drawn != picture(result.scene, camera)).any(axis=2)
+    assert green.mean() <= change.share <= differs.mean() and change.difference > 10
+    assert change.picture.shape == (160, 3 * 240 + 2 * 6, 3)
+    blue = picture(result.scene, camera)
+    assert (change.marked[green] == blue[green]).all(axis=1).mean() > 0.7
+    away = Camera.look_at((0, 0, 5), (0, 0, 9), (0, 1, 0), 60, 40)
+    unseen = change_of(result, away)
+    assert unseen.share == 0 and "nothing of the picture" in unseen.sentence()

@@ -94,9 +94,11 @@ def test_commands(boxes: Scene, encoder: Any, tmp_path: Path) -> None:
     target = tmp_path / "out.ply"
     session, out, err = _talk(
         boxes, encoder, "/help", "make the green thing blue", "/undo", "/redo", "/plan delete the blue thing", "/plan",
+        "/preview make the blue thing red", "/preview",
         "/select the red thing", "/things", "/history", "/show", "/show 0", f"/save {target}", "/nonsense",
     )  # fmt: skip
     assert all(name in out for name in COMMANDS)
+    assert "it would change" in out and "say what to try" in out
     assert "(not done)" in out and '"op": "recolor"' in out
     assert "  1. make the green thing blue" in out
     assert "there is no command /nonsense" in out
