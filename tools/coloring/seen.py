@@ -21,6 +21,7 @@ from ..color_map import LUMA
 
 VIEWS = 3
 PIXELS = 80  # side of a picture
+_INSIDE = 0.5  # alpha of a pixel inside an outline
 _SOLID = 0.8  # alpha of a pixel that shows the thing and not what is behind it
 _MOST = 6000  # Gaussians that are rendered
 _FEWEST = 32  # pixels, or the Gaussians themselves are sampled
@@ -78,3 +79,17 @@ def lit_color(colors: Sample) -> Tensor:
 def lit_face(colors: Sample) -> Tensor:
     """`[3]` CIE Lab of `lit_color`."""
     return rgb_to_lab(lit_color(colors).clamp(0, 1))
+
+
+def outline_difference(was: GaussianCloud, now: GaussianCloud, scene: Scene) -> float:
+    """Area by which the outlines of two clouds differ, relative to that of the first, in small pictures of each alone
+    from a few sides: the same cameras, those of the first."""
+    import numpy as np
+
+    middle = scene.language.middle if scene.language is not None else np.zeros(3)
+    apart = area = 0.0
+    for camera in cameras_around(was.means.double().numpy(), scene.frame, middle, PIXELS, VIEWS):
+        old, new = (render(cloud, camera).alpha for cloud in (was, now))
+        apart += float(((old > _INSIDE) != (new > _INSIDE)).sum())
+        area += float((old > _INSIDE).sum())
+    return apart / max(area, 1.0)

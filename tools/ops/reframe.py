@@ -79,6 +79,8 @@ class Reframe(EditOp):
             raise ValueError(f"reframe needs exactly one of {', '.join(_WAYS)}, got {said or 'none'}")
         if self.direction is not None and self.distance is None:
             raise ValueError("to move the whole scene, give a distance")
+        if self.at is not None and self.degrees is not None:
+            raise ValueError("the whole scene turns about its middle or about an axis of the file, not at a thing")
         return self
 
     def stronger(self, times: float) -> Self | None:

@@ -8,8 +8,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ....gaussians.language.query.query import Query
-from ....gaussians.world.words import head
+from ....gaussians.world.finishes import said as finish_said
+from ....gaussians.world.words import head, plural
 from ..parsing import Node, Refusal, tokens, trees
+from ..restating.materials import surfaced
 from ..vocabulary import nouns, sizes
 from . import places
 from .changes import Fields
@@ -21,6 +23,8 @@ from .places import MOTIONS
 _IN_PLURAL = ("scissors", "stairs", "headphones", "streamers", "streamer", "balloons", "balloon", "lights", "light",
               "garlands", "garland", "bunting")  # fmt: skip
 _MATERIALS = ("wooden", "oak", "walnut", "brass", "copper", "bronze")
+# What belongs to a room and stays when it gets another material.
+_FIXED = frozenset({"floor", "wall", "ceiling", "ground", "flooring", "floorboards", "carpet", "worktop", "countertop"})
 _SOME = 3  # number for "some cushions", as for "a few"
 
 
@@ -131,7 +135,18 @@ def _replaced(old: list[NounPhrase], new: list[NounPhrase]) -> list[Fields]:
     if new[0].article not in ("indef", "bare"):
         raise Refusal("introduce a new thing with a, not the; to let things change places, say swap", new[0].query.text,
                       verdict="impossible")  # fmt: skip
+    if (material := _material(new[0])) and all(head(noun.query.text) in _FIXED for noun in old):
+        return [{**material, "target": union(old)}]  # "replace the floor with oak planks"
     return [{"op": "replace", "target": union(old), **_asset(new[0])}]
+
+
+def _material(new: NounPhrase) -> Fields | None:
+    """The fields of the material that a noun phrase names, None if it names a thing."""
+    name = next((n for n in (new.query.text, plural(new.query.text)) if finish_said(n)), None)
+    if name is None:
+        return None
+    colored = {"color": new.query.colors[0]} if new.query.colors and not finish_said(new.query.colors[0]) else {}
+    return {**surfaced(name), **colored}
 
 
 def swap(phrases: Phrases, node: Node) -> list[Fields]:

@@ -10,6 +10,7 @@ from typing import Any
 
 from ....gaussians.language.query.query import Query
 from ..parsing import Node, Refusal, tokens, trees
+from ..restating.materials import meant
 
 Fields = dict[str, Any]
 
@@ -66,7 +67,7 @@ def change(node: Node) -> Fields:
 
 
 def _hue(node: Node) -> Fields:
-    return {"op": "recolor", "color": hue_of(trees(node, "hue")[0])}
+    return meant(hue_of(trees(node, "hue")[0]))
 
 
 def _shade(node: Node) -> Fields:

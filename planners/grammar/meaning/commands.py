@@ -16,6 +16,7 @@ from ....gaussians.language.query.nested import with_queries
 from ....gaussians.language.query.query import Query, Region
 from ....gaussians.world.words import head
 from ..parsing import Node, Refusal, tokens, trees
+from ..restating.materials import is_mark, meant
 from ..vocabulary import nouns
 from . import adding, changes, moving, repeating, shaping
 from .adding import inserted
@@ -233,14 +234,17 @@ def switch(phrases: Phrases, node: Node) -> list[Fields]:
 
 
 def paint(phrases: Phrases, node: Node) -> list[Fields]:
-    return [op for coat in trees(node, "coat") for op in give_color(phrases, coat)]
+    """A coat of paint; "paint it oak" asks for the colour of oak, "paint it #oak" stands for the material."""
+    return [op for coat in trees(node, "coat") for op in give_color(phrases, coat, painted=True)]
 
 
-def give_color(phrases: Phrases, node: Node) -> list[Fields]:
+def give_color(phrases: Phrases, node: Node, painted: bool = False) -> list[Fields]:
     hue = trees(node, "hue")[-1]
     if any(t.text == "tint" for t in tokens(hue, "COLORWORD")):
         return tint(phrases, node)
-    return phrases.targeted(node, "recolor", color=changes.hue_of(hue))
+    said = changes.hue_of(hue)
+    fields = {"op": "recolor", "color": said} if painted and not is_mark(said) else meant(said)
+    return phrases.targeted(node, **fields)
 
 
 def paint_like(phrases: Phrases, node: Node) -> list[Fields]:

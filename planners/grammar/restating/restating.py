@@ -10,6 +10,7 @@ from ..tagging.words import bag
 from .continuing import continued, following
 from .elision import about, gapped, splits, terse, topics
 from .fronting import fronted
+from .materials import in_materials
 from .phrasings import phrasings
 from .remarks import remarks
 from .smoothing import unopened, without_reason
@@ -54,6 +55,7 @@ def _readings(said: str, mark: str) -> Iterator[str]:
     plain = unopened(said)
     shortest = unopened(without_reason(plain)) if plain != said else unopened(shorter)
     for text in dict.fromkeys((said, plain, shortest)):
+        yield from in_materials(text)
         yield from phrasings(text)
     for text in dict.fromkeys((said, plain)):
         yield from (" ".join(r) for r in topics(text.split()))

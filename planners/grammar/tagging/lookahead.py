@@ -55,8 +55,8 @@ def _without_basic(phrase: str, taken: int, behind: Sequence[str]) -> tuple[str,
 
 def _is_color(phrase: str) -> bool:
     joined = phrase.replace(" ", "").replace("grey", "gray")
-    if joined in _color_names() or phrase.startswith("#"):
-        return len(phrase) < 30
+    if joined in _color_names() or (phrase.startswith("#") and " " not in phrase):
+        return len(phrase) < 60
     for qualifier in colors.QUALIFIERS:
         if phrase.startswith(qualifier + " "):
             return _is_color(phrase[len(qualifier) + 1 :])

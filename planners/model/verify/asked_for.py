@@ -14,6 +14,7 @@ from functools import cache
 from typing import Any
 
 from ....gaussians.color import EVERYDAY
+from ....gaussians.world.finishes import words as finish_words
 from ....gaussians.world.words import is_plural
 from ....tools.operation import EditOp
 from ...grammar.tagging.words import bag
@@ -119,7 +120,7 @@ def unasked_kinds(ops: Sequence[EditOp], text: str, previous: str | None) -> Ite
         return
     heard = [w.lower() for w in _WORD.findall(f"{text} {previous or ''}")]
     for op in ops:
-        starts = _KINDS.get(op.op)
+        starts = _starts().get(op.op)
         if starts is None or _has_value(op, set(heard) | _stems(" ".join(heard))):
             continue
         if not any(w.startswith(s) if len(s) > 2 else w == s for s in starts.split() for w in heard):
@@ -137,6 +138,15 @@ def _has_value(op: EditOp, heard: set[str]) -> bool:
         if isinstance(value, int | float) and f"{value:g}" in heard:
             return True
     return op.op == "recolor" and bool(heard & _color_words())
+
+
+@cache
+def _starts() -> dict[str, str]:
+    """`_KINDS` with the names of materials."""
+    materials = " ".join(sorted({word for name in finish_words() for word in name.split() if len(word) > 2}))
+    return _KINDS | {
+        "restyle": f"mater textur pattern made out look finish surface clad panel cover upholst {materials}"
+    }
 
 
 @cache

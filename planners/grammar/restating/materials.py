@@ -1,0 +1,136 @@
+"""Sentences that ask for a material, with the material as a new colour: "clad it in brick" to "paint it #brick".
+
+All forms of a new colour are then forms of a new material too. A word that begins with "#" and is no hexadecimal value
+stands for a material with its colours: `#marble~dark-green`, `#stripes~red~white`; `meant` reads it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+from typing import Any
+
+from ....gaussians import color as colors
+from ....gaussians.world.finishes import said as finish_said
+from ....gaussians.world.finishes import words
+from ..tagging.words import bag
+
+_HEX = re.compile(r"#(?:[0-9a-f]{3}|[0-9a-f]{6})")
+_MARK = re.compile(r"#[a-z][a-z-]+(?:~[a-z-]+){0,2}")
+_CUE = (
+    r"(?:(?:to )?look(?:ing)? (?:like|as if) (?:it (?:is|were|was) )?(?:made )?(?:out )?(?:of )?|"
+    r"(?:be )?made (?:out )?(?:of|from) |"
+    r"(?:out )?of |into |to |in |with |from |as |using )?"
+    r"(?:an? |some |real |solid |genuine |proper |old |nice |rustic |beautiful |plain )*"
+)
+_KIND = (
+    r"(?: (?:finish|look|texture|surface|effect|pattern|style|material|veneer|cladding|covering|flooring|floor|"
+    r"panels|panelling|paneling|wallpaper|design|print|upholstery|fabric))?"
+)
+_AFTER = re.compile(
+    r"^(?:$|[,;.]| (?:,|and|please|but|then|instead|too|as well|now|thanks|on|for|to|over|this time|again))"
+)
+# Verbs that give a thing a surface, in place of "paint".
+_COVER = (
+    "cover|clad|panel|upholster|reupholster|wrap|finish|refinish|face|line|dress|do|redo|resurface|veneer|plate|remake|"
+    "rebuild|pave|texture|retexture|coat|surface|sheathe|deck|redecorate|remodel|build|restyle|style|redress"
+)
+_COVERED = re.compile(rf"^(?:please )?(?:re )?(?:{_COVER})(?: up| over| out)? ")
+_LAID = re.compile(
+    r"^(?P<before>(?:please )?)(?:put|lay|use|add|apply|try|have|want|i want|i would like|slap|stick)(?: down)? "
+    r"(?P<mark>#\S+) (?:on|onto|for|over|to|across|all over) (?P<thing>.+)$"
+)
+_BARE = re.compile(r"^(?P<mark>#\S+) (?:on|for|over) (?P<thing>.+)$")
+_GIVEN = re.compile(r"^(?P<before>(?:please )?)give (?P<thing>.+?) (?P<mark>#\S+)")
+_EXCHANGED = re.compile(
+    r"^(?P<before>(?:please )?)(?:replace|swap|change|exchange|switch|convert|turn|transform) (?P<thing>.+?) "
+    r"(?P<mark>#\S+)"
+)
+_VERBS: dict[str, str] = {
+    "tile": "tiles", "retile": "tiles", "carpet": "carpet", "recarpet": "carpet", "wood panel": "planks",
+    "board": "planks", "turf": "grass", "brick": "brick", "gild": "gold", "plaster": "plaster",
+}  # fmt: skip
+_VERB = re.compile(
+    rf"^(?P<before>(?:please )?)(?P<verb>{'|'.join(_VERBS)}) (?P<thing>(?:the|that|this|my|our|all|every|both)\b.+)$"
+)
+# Words that name colours at least as often as materials: they are materials only behind a cue.
+COLORS_TOO = bag(
+    "gold copper bronze brass terracotta clay sand slate stone grass denim chrome iron tin rock ebony "
+    "cherry straw mahogany walnut chestnut bamboo metallic wool cotton linen silk canvas"
+)
+_MOST = 6
+
+
+@cache
+def _material() -> re.Pattern[str]:
+    """A material with its colours, and with the words that lead to it and belong to it."""
+    names = "|".join(re.escape(w) for w in sorted(words(), key=lambda w: (-len(w), w)))
+    plain = "|".join([*(q for q in colors.QUALIFIERS), *colors.BASIC, "grey"])
+    hue = rf"(?:(?:{plain}|navy|cream|teal|turquoise|beige|burgundy|olive|mint|golden|charcoal) ?)+"
+    return re.compile(
+        rf"(?<![\w#~-])(?P<cue>{_CUE})(?:(?P<one>{hue}) )??(?:and (?P<two>{hue}) )?(?P<name>{names}){_KIND}(?![\w-])"
+    )
+
+
+def in_materials(said: str) -> Iterator[str]:
+    """The sentence with each material that it may ask for as a new colour."""
+    if found := _VERB.match(said):
+        yield f"{found['before']}paint {found['thing']} {_mark(_VERBS[found['verb']])}"
+    for count, match in enumerate(_material().finditer(said)):
+        if count >= _MOST:
+            return
+        behind = said[match.end() :]
+        if not _AFTER.match(behind) or (match["name"] in COLORS_TOO and not _is_cued(match)):
+            continue
+        before = said[: match.start()].rstrip()
+        yield from _worded(f"{before} {_mark(match['name'], match['one'], match['two'])}{behind}".strip())
+
+
+def _is_cued(match: re.Match[str]) -> bool:
+    """Whether words around a name say that a material is meant: "made of gold", "a copper finish"."""
+    own = match[0][len(match["cue"]) :].split()
+    return (
+        any(word in match["cue"] for word in ("of ", "look", "solid ", "real ", "genuine "))
+        or len(own) > len(match["name"].split()) + 2
+    )
+
+
+def _mark(name: str, one: str | None = None, two: str | None = None) -> str:
+    said = [name, *(c.strip() for c in (one, two) if c)]
+    return "#" + "~".join(word.replace(" ", "-") for word in said)
+
+
+def _worded(said: str) -> Iterator[str]:
+    """Sentences about a new colour that say the same."""
+    if found := _LAID.match(said) or _BARE.match(said):
+        yield f"paint {found['thing']} {found['mark']}"
+        return
+    if _COVERED.match(said):
+        yield _COVERED.sub("paint ", said)
+    if found := _GIVEN.match(said) or _EXCHANGED.match(said):
+        thing = re.sub(r" (?:a|an|some|for|with|to|into|by)$", "", found["thing"])
+        yield f"{found['before']}paint {thing} {found['mark']}{said[found.end() :]}"
+    yield said
+
+
+def is_mark(hue: str) -> bool:
+    """Whether a colour stands for a material."""
+    return bool(_MARK.fullmatch(hue)) and not _HEX.fullmatch(hue)
+
+
+def meant(hue: str) -> dict[str, Any]:
+    """The fields of a new surface: of a colour, or of the material that a word stands for."""
+    if is_mark(hue):
+        name, *said = (word.replace("-", " ") for word in hue[1:].split("~"))
+        return {**surfaced(name), **dict(zip(("color", "second"), said, strict=False))}
+    if hue not in COLORS_TOO and finish_said(hue) is not None:
+        return surfaced(hue)
+    return {"op": "recolor", "color": hue}
+
+
+def surfaced(name: str) -> dict[str, Any]:
+    """The fields of a new surface of a material by any of its names."""
+    found = finish_said(name)
+    assert found is not None
+    return {"op": "restyle", "material": found.finish, **({"color": found.color} if found.color else {})}
