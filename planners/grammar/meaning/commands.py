@@ -14,6 +14,7 @@ from typing import Any
 
 from ....gaussians.language.query.nested import with_queries
 from ....gaussians.language.query.query import Query, Region
+from ....gaussians.world import kinds
 from ....gaussians.world.words import head
 from ..parsing import Node, Refusal, tokens, trees
 from ..restating.materials import is_mark, meant
@@ -143,6 +144,8 @@ def drop(phrases: Phrases, node: Node) -> list[Fields]:
     far = [t for d in trees(node, "distance") for t in tokens(d, "LENGTH")]
     if len(far) == len(trees(node, *MOTIONS)) == 1:
         return phrases.targeted(node, "move", direction="down", distance=length(far[0].value))
+    if any(p.kind == "related" and p.value in ("on", "inside") for p in found[-1].modifiers) and not trees(node, *MOTIONS):
+        return moved(phrases, found, node, "PUT")  # "drop it in the box"
     if trees(node, *MOTIONS) or any(n.modifiers or n.article == "all" for n in found):
         raise Refusal("say put or delete", "drop")
     return phrases.targeted(node, "delete")
@@ -344,8 +347,10 @@ def _is_cleared(noun: NounPhrase) -> bool:
     """Whether "clear" frees a noun instead of removing it: a place, furniture, a surface, or a part of a thing."""
     of_a_thing = any(p.kind == "part" for p in noun.modifiers) or any(r.name == "part_of" for r in noun.query.relations)
     name = noun.query.text
+    kind = kinds.of(name)
+    seat = kind is not None and nouns.is_chair(kind)
     freed = head(name) in nouns.EVERYWHERE | nouns.PLACES or nouns.is_surface(name) or nouns.is_furniture(name)
-    return noun.query.last or of_a_thing or freed
+    return noun.query.last or of_a_thing or (freed and not (seat and noun.plural))
 
 
 def _require_clear_end(found: Sequence[NounPhrase]) -> None:

@@ -93,7 +93,8 @@ def _does(texts: Sequence[str]) -> bool:
     if any(w in DOING and not (i and texts[i - 1] in ("that", "which", "who")) for i, w in enumerate(texts)):
         return True
     kept = ("keep", "keeps", "kept", "is", "are")
-    return any(w in doings.ongoing() and texts[i - 1] in kept for i, w in enumerate(texts) if i)
+    doing = (i for i, w in enumerate(texts) if i and w in doings.ongoing() and texts[i - 1] in kept)
+    return any(i < 2 or texts[i - 2] not in ("that", "which", "who") for i in doing)
 
 
 @lru_cache(maxsize=512)

@@ -71,6 +71,10 @@ _TRIED = re.compile(
     r"(?: (?:again|instead|then|please|rather|now|after all|though|this time|would be (?:better|nicer)|is better|"
     r"was better))*$"
 )
+_SAFER = re.compile(
+    r"^(?:no |wait |actually |not there |not that one |rather |or |maybe |, )*(?P<place>\S.*?)(?: (?:would|might|will|could) (?:be|look|work|feel) "
+    r"(?:a bit |a little |much |far |even )?(?:\w+er|best|good|great|fine|ideal|perfect)| instead| rather| please)*$"
+)
 _ONE_MORE = re.compile(
     r"^(?:and |plus |, )*(?P<n>one|another|a|two|three|four|five|\d+)(?: more)?(?: one| ones)? (?:of|like|just like|"
     r"the same as) "
@@ -90,6 +94,8 @@ def continued(said: Sequence[str]) -> Iterator[str]:
     text = " ".join(words)
     if _AGAIN.match(text):
         yield "more"
+    if (found := _SAFER.match(text)) and Lookahead(words).preposition_at(0):
+        yield f"put it {found['place']}"
     if (found := _TRIED.match(text)) and _is_hue(found["hue"]):
         yield f"make it {found['hue']}"
     if found := _ONE_MORE.match(text):

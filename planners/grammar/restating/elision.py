@@ -157,6 +157,7 @@ def _only_hues(said: Sequence[str]) -> bool:
 
 _STATED = ("DIR", "LENGTH", "GROWN", "LIGHT", "PREP", "TO", "TOWARD", "SPOT", "AWAY", "UPSIDE", "TIMES", "DEGREE")
 _VERBLESS = 10  # words
+_LONGEST_LIST = 24
 
 
 def terse(said: Sequence[str]) -> Iterator[str]:
@@ -164,12 +165,15 @@ def terse(said: Sequence[str]) -> Iterator[str]:
     ahead = Lookahead(said)
     alone = said[0] in ("all", "both", "that", "this") and not ahead.noun_at(1)
     if (
-        len(said) > _VERBLESS
+        len(said) > (_LONGEST_LIST if "," in said or "and" in said else _VERBLESS)
         or not DOING.isdisjoint(said)
         or alone
         or said[0] in ("everything", "it", "they", "them")
         or ahead.verb(0) is not None
     ):
+        return
+    if (listed := _listed(said)) is not None:
+        yield listed
         return
     colored = color_at(said, 0)
     if colored and said[colored[1] : colored[1] + 1] in (["for"], ("for",)):
@@ -180,6 +184,31 @@ def terse(said: Sequence[str]) -> Iterator[str]:
     for i in range(1, len(said)):
         if said[i - 1] not in ("one", "ones") and _states_at(said, i) and is_thing(tuple(said[:i])):
             yield from states(" ".join(said[:i]), said[i:])
+
+
+def _listed(said: Sequence[str]) -> str | None:
+    """The parts of a list of orders as sentences: "vase on the shelf, lamp on the desk"; None for anything else."""
+    parts: list[list[str]] = [[]]
+    for word in said:
+        if word in (",", "and", "then"):
+            parts.append([])
+        else:
+            parts[-1].append(word)
+    parts = [p for p in parts if p]
+    if len(parts) < 2 or any(len(p) > _VERBLESS or not _is_order(p) for p in parts):
+        return None
+    noun = _noun_of([w for w in parts[0] if w not in ("one", "ones")])
+    named = [[noun if noun and w == "one" and i else w for w in part] for i, part in enumerate(parts)]
+    return " . ".join(" ".join(p) for p in named)
+
+
+def _is_order(part: Sequence[str]) -> bool:
+    """Whether words are a thing and what shall become of it."""
+    return any(
+        (part[i - 1] in ("one", "ones") or is_thing(tuple(part[:i])))
+        and (_states_at(part, i) or Lookahead(part).preposition_at(i))
+        for i in range(1, len(part))
+    )
 
 
 def _states_at(said: Sequence[str], i: int) -> bool:

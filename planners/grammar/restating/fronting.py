@@ -12,6 +12,9 @@ from collections.abc import Iterator, Sequence
 from ..tagging.lookahead import Lookahead, color_at, match
 from ..vocabulary import lexicon, quantities
 from .chunks import is_thing
+from .elision import JOINTS
+from .participles import at, participles
+from .remarks import is_remark
 from .states import states
 
 _MOST = 4  # ends of a front that are tried
@@ -77,6 +80,8 @@ def fronted(said: str) -> Iterator[str]:
     if (found := _WHICH.match(said)) and found["which"] in _RANKS:
         yield from _filled(found["rest"], f"the {found['which']} {found['nouns']}")
     words = said.split()
+    yield from _with_participle(said)
+    yield from _unjoined(words)
     yield from _placed_first(words)
     yield from _changed_first(said)
 
@@ -117,6 +122,27 @@ def _spared(said: str) -> Iterator[str]:
     for pattern in _SPARED:
         if (found := pattern.match(said)) and Lookahead(found["edit"].split()).verb(0) is not None:
             yield f"{found['edit']} except {found['one']}"
+
+
+_WITH = re.compile(r"^(?P<edit>\S.*?)(?: ,)? (?:and )?with (?P<thing>(?:the|that|this|my|our|both|all) [^,]+?) (?P<state>\w+(?:ed|ne|en|ung|ut)(?: .*)?)$")
+
+
+def _with_participle(said: str) -> Iterator[str]:
+    """ "paint the table white, with the hamper moved next to it"."""
+    if (found := _WITH.match(said)) and at(participles(), found["state"].split(), 0) is not None:
+        for command in states(found["thing"], found["state"].split()):
+            yield f"{found['edit'].removesuffix(' ,')} . {command}"
+            return
+
+
+def _unjoined(words: Sequence[str]) -> Iterator[str]:
+    """ "the bear is so dull make it blue": a remark and a command with nothing between them."""
+    for i in range(3, len(words) - 1):
+        if words[i + 1] in ("it", "them") and words[i - 1] not in JOINTS and is_remark(words[:i]):
+            verb = Lookahead(words[i:]).verb(0)
+            if verb is not None and verb[1] == 1:
+                yield " ".join([*words[:i], ",", *words[i:]])
+                return
 
 
 def _placed_first(words: Sequence[str]) -> Iterator[str]:

@@ -42,6 +42,13 @@ _SERVED = re.compile(
     r"the )?"
     r"(?:\w+ )?(?:coffee|tea|cuppa|sandwich|drink|beer|dinner|lunch|breakfast|snack|pizza|meal|discount|refund)\b"
 )
+def _made_to(command: Sequence[str]) -> bool:
+    """Whether a thing shall be made to do what things do: "make the basket smell of rolls", "make it stop raining"."""
+    if len(command) < 3 or command[0] not in ("make", "get", "have", "let", "keep", "stop"):
+        return False
+    return any(w in doings.plain() or w in doings.ongoing() for w in command[2:6])
+
+
 _OBJECT = bag("the a an my our your his her its that this those these some something it them me us all both up")
 
 
@@ -52,6 +59,8 @@ def cannot_be(texts: Sequence[str]) -> str:
     command = [w for w in unopened(" ".join(texts[start:])).split() if w not in ("please", "just")]
     if len(command) > 1 and command[0] in doings.ACTIONS and command[1] in _OBJECT:
         return f"scenes stand still: no operation does this ({command[0]})"
+    if _made_to(command):
+        return "scenes stand still: nothing runs, happens or smells"
     if _SERVED.match(" ".join(command)):
         return "scenes stand still: nothing is cooked, fetched or served"
     if found := _SHELL.search(said) or _SHELL_SIZE.search(said):

@@ -44,7 +44,7 @@ _COAT = re.compile(r"\b(?:coat|lick|layer|splash|touch)s? of paint\b")
 def is_remark(said: Sequence[str]) -> bool:
     """Whether words only say how things are: they begin with a subject, hold a finite verb, and ask for nothing."""
     text = " ".join(said)
-    if _NEEDING.match(text) or _judged(said) is not None:
+    if _NEEDING.match(text) or _LOOKING.match(text) or _judged(said) is not None:
         return True
     return (
         len(said) > 1
@@ -68,6 +68,8 @@ def _judged(said: Sequence[str]) -> list[str] | None:
 def finite_at(said: Sequence[str], i: int) -> bool:
     """Whether the word at `i`, which is not the first, says what is, was or is done by what stands before it."""
     word, before = said[i], said[i - 1]
+    if i == 1 and before in ("it", "that", "this", "he", "she") and word.endswith("s") and len(word) > 3:
+        return word not in ("goes", "needs", "wants", "belongs", "this")
     if word in _REMARKING:
         return True
     if before in _OPENING_NOUNS or (word not in doings.said_of_one() and not (word in doings.plain() and _many(said))):
@@ -104,6 +106,19 @@ def remarks(said: Sequence[str]) -> Iterator[list[str]]:
             yield first
 
 
+_OF_IT = ("it", "they", "he", "she", "we", "i", "nobody", "everyone", "that")
+
+
+def without_remark(said: Sequence[str]) -> str | None:
+    """A command without the remark behind it that begins with a pronoun; None if there is none."""
+    for i in range(len(said) - 2, 1, -1):
+        behind = said[i + 1 :]
+        if said[i] == "," and behind[0] in _OF_IT and "," not in behind and is_remark(behind):
+            kept = list(said[:i])
+            return " ".join(kept) if Lookahead(kept).verb(0) is not None or len(kept) > 1 else None
+    return None
+
+
 # "The red is too loud, go for beige"; "the table is too far from the sofa, move it closer".
 _HUE_WISH = re.compile(
     r"^(?:please |just |let us |rather |maybe |i would |we could |so )*(?:go|try|use|make that|how about|what about|"
@@ -135,13 +150,19 @@ def _trimmed(said: Sequence[str]) -> list[str]:
 
 
 _THERE_IS = re.compile(r"^there (?:is|are) (?:a|an|some|one|two|three|four|this|that|these|those) (?P<thing>\S.*)$")
+# What the speaker wants to do, not to have done: "I want to have a closer look".
+_LOOKING = re.compile(
+    r"^(?:so )?(?:i|we|she|he|they) (?:just |only )?(?:wants?|needs?|would like|wish|am going|are going|have|has|am trying|are trying|plan|intend) "
+    r"to (?:have a|take a|get a|look|see (?!\S+ \S+ (?:gone|moved|painted))|check|inspect|compare|study|admire|read|count|photograph|think|focus|"
+    r"concentrate|work|sleep|sit|cook|play|eat|dance|practise|film|get (?:past|through|by|in|out|to)|walk|reach)\b"
+)
 _COLOR_OF = re.compile(
     r"^(?:the|that|this) (?:colou?r|shade|tone|\w+) of (?P<thing>(?:the|that|this|my|our) (?:\w+ ){1,3}?)(?:is|"
     r"looks|does|clashes|"
     r"feels|seems|hurts|jars|goes|bothers|annoys) "
 )
 _NEEDING = re.compile(
-    r"^(?:(?:i|we|you|it|this room|the room) )?(?:need|needs|want|wants|could use) (?:(?:more|some|a bit more|a "
+    r"^(?:(?:i|we|you|it|this room|the room) )?(?:need|needs|want|wants|could use) (?:(?:more|some|the|that|a bit more|a "
     r"bit of|a little more) "
     r"(?:light|space|room|storage|seating|colou?r|air|warmth|privacy|order|variety)|(?:somewhere|something|someone|"
     r"a place|space|room|"
@@ -169,6 +190,8 @@ def subject_of(said: Sequence[str]) -> list[str] | None:
     for i in range(1, min(len(words), 10)):
         if finite_at(words, i):
             thing = tuple(words[:i])
+            if words[0] in ("one", "a", "an") and i > 1 and words[1] != "of" and is_thing(tuple(words[1:i])):
+                return ["the", *words[1:i]]
             named = words[0] in ("the", "that", "this", "these", "those", "my", "our") or i == 1
             if words[0] not in _NOBODY and named and is_thing(thing):
                 subject = list(thing)

@@ -12,7 +12,7 @@ from .elision import about, gapped, splits, terse, topics
 from .fronting import fronted
 from .materials import in_materials
 from .phrasings import phrasings
-from .remarks import remarks
+from .remarks import remarks, without_remark
 from .smoothing import unopened, without_reason
 from .wishes import wishes
 
@@ -53,6 +53,8 @@ def _continued(said: str) -> Iterator[str]:
 def _readings(said: str, mark: str) -> Iterator[str]:
     shorter = without_reason(said)
     plain = unopened(said)
+    if (bare := without_remark(plain.split())) is not None:
+        yield bare
     shortest = unopened(without_reason(plain)) if plain != said else unopened(shorter)
     for text in dict.fromkeys((said, plain, shortest)):
         yield from in_materials(text)

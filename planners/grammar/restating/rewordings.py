@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+_HUE = "red|blue|green|yellow|orange|purple|pink|brown|white|black|gr[ea]y|teal|turquoise"
 _SIZED = r"(?P<size>big|large|tall|high|wide|long|deep|broad)"
 _TURNED = "turn|rotate|spin|swing|swivel|pivot|twist|move|angle|orient|revolve"
 _LOOKING = (
@@ -19,6 +20,28 @@ REWORDED = tuple(
         (rf"half again as {_SIZED}(?: as (?:it is|now|before))?", r"1.5 times as \g<size>"),
         (rf"(?:as {_SIZED} again)", r"2 times as \g<size>"),
         (r"no one", "nobody"),
+        (r"(?P<have>has|have) got to", "has to"),
+        (r"(?P<p>size|height|width|length|depth) (?:that )?(?:it|they) (?:is|are)(?: now)?", r"\g<p>"),
+        (r"(?:together |along |there )?with the (?:other one|others|rest|other)(?= [,.;!?]|$)", ""),
+        (
+            r"(?:cut|chop|trim|bring|take|saw|reduce) (?P<x>(?:the|that|this|my|our) [^,.;!?]+?|it|them) (?:back |down )?to "
+            r"(?=(?:half|a third|a quarter|two thirds|three quarters|\d+ ?%|\d+ percent)(?: of)?(?: (?:its|their|the)| |$))",
+            r"scale \g<x> to ",
+        ),
+        (r"(?:like|bout|circa|something like|maybe) (?=\d+ ?(?:cm|m|mm|in|inch|inches|ft|feet|foot|deg|degrees|%))", ""),
+        (r"(?P<n>\d\S*(?: (?:cm|m|mm|inches|feet|centimet\w+|met\w+|degrees))?) (?:or so|ish|give or take|or thereabouts)",
+         r"\g<n>"),
+        (r"(?:over|along|across) (?=(?:a (?:wee |tiny |little |small )?(?:bit|tad|touch|smidge|little|notch)|\d\S*|half|slightly|by) )", ""),
+        (r"(?P<to>to the (?:left|right)|left|right|back|forward|up|down) (?P<some>a (?:smidge|bit|touch|tad|little|notch))(?= [,.;!?]|$)",
+         r"\g<some> \g<to>"),
+        (
+            r"(?:and |, )*(?:then )?(?:once|when|after|as soon as) (?:that is|that has been|this is|it is|you have|you are|all that is|"
+            r"that) (?:done|finished|sorted|through)(?: that| with that| it)?(?: ,)?",
+            ", then",
+        ),
+        (r"in an? (?P<l>darker|lighter|paler|brighter|warmer|cooler|richer) (?:tone|shade|colou?r|hue|tint)", r"\g<l>"),
+        (r"x (?P<n>\d)(?: (?:the |its )?size| bigger| as big)?", r"\g<n> times the size"),
+        (r"(?:like|bout) so", ""),
         (r"back (?=to (?:the|my) (?:left|right)(?! of)(?= |$)|(?:up|down)(?: again| a | by |$))", ""),
         (
             rf"(?:{_TURNED}) (?P<x>(?:the|that|this|my|our|both|all|those|these) [^,.;!?]+?|it|them)(?: right| "
@@ -66,7 +89,7 @@ REWORDED = tuple(
             r"point|points) the (?:other|opposite) (?:way|direction)(?: round| around)?",
             r"turn \g<x> around",
         ),
-        (r"(?:to |so (?:that )?it (?:is )?)?(?:face|faces|facing) the (?:other|opposite) (?:way|direction)", "around"),
+        (r"(?:to |so (?:that )?it (?:is )?)?(?:face|faces|facing) the (?:other|opposite) (?:way|direction)", "turn around"),
         (r"(?:cut|chop|reduce|bring|take|slash) (?P<x>\S.*?) (?:in|by|to|down to|down by) half", r"halve \g<x>"),
         (r"scale (?:down )?(?P<x>(?!up)\S.*?) (?:down |to |down by |down to )half", r"halve \g<x>"),
         (r"whatever (?:is|are) (?:sitting|standing|lying|placed|resting|currently|now|there) ", "whatever is "),
@@ -84,11 +107,11 @@ REWORDED = tuple(
         (r"(?<!would )(?<!do )(?:you all|d'you|you|do ya) mind (?=\w+in)", "would you mind "),
         (r"(?P<v>swop|swopped|swap)", "swap"),
         (
-            r"(?:crank|turn|bump|ramp|punch|pump|dial) up the colou?rs? (?:on|of|in) (?P<x>[^,.;!?]+?)",
+            rf"(?:crank|turn|bump|ramp|punch|pump|dial) up the (?:colou?rs?|{_HUE}) (?:on|of|in) (?P<x>[^,.;!?]+?)",
             r"make \g<x> more vivid",
         ),
         (
-            r"(?:tone|turn|dial|tame) down the colou?rs? (?:on|of|in) (?P<x>[^,.;!?]*[^ ,.;!?])",
+            rf"(?:tone|turn|dial|tame) down the (?:colou?rs?|{_HUE}) (?:on|of|in) (?P<x>[^,.;!?]*[^ ,.;!?])",
             r"make \g<x> less vivid",
         ),
         (

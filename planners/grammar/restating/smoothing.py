@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from ....gaussians.world.words import singular
 from ..tagging.lookahead import Lookahead, color_at
 from ..tagging.words import Word, bag
-from ..vocabulary import lexicon, nouns
+from ..vocabulary import doings, lexicon, nouns, quantities
 from .participles import gerunds
 from .rewordings import REWORDED
 
@@ -41,7 +41,7 @@ _TAGS = (
 )  # fmt: skip
 _TAG_END = re.compile(rf"(?:(?: ,)+ (?:{_TAGS})|(?<=\S) (?:please and thanks|please and thank you|pretty please|innit|"
                       r"yeah|would you mate|will you mate|would ya|will ya|would you|will you|could you|can you|"
-                      r"mate|thanks a lot|please now|if you do not mind|if you "
+                      r"mate|ta|lol|please love|please mate|thanks a lot|please now|if you do not mind|if you "
                       r"please|"
                       r"if that is (?:ok|okay|alright|all right|possible)|for me|for us|when you (?:can|get a "
                       r"(?:chance|sec|second|minute|moment)|have a (?:sec|second|minute|moment))|for goodness sake|"
@@ -53,7 +53,7 @@ _TAG_END = re.compile(rf"(?:(?: ,)+ (?:{_TAGS})|(?<=\S) (?:please and thanks|ple
 # Words that open a sentence and say nothing of what to do; a comma need not follow.
 _OPENERS = re.compile(
     r"^(?:(?:so|and|but|well|right|ok|okay|now|alright|all right|anyway|anyways|hey|hi|hello|listen|look|please|"
-    r"yes|yeah|"
+    r"yes|yeah|yo|mummy|daddy|mum|dad|computer|assistant|robot|"
     r"yep|sure|fine|great|good|nice|perfect|lovely|thanks|thank you|cool|actually|honestly|basically|also|then|next|"
     r"next up|go on|come on|here goes|let us see|let me see|let me think|you know what|guess what|first|firstly|"
     r"first of all|first off|to start|to start with|to begin with|finally|lastly|last of all|last thing|one last thing|"
@@ -116,7 +116,9 @@ _REASON = (
     r"starts?|ends?|has|have|does|do|can|will|would|leaves?|see|sees|visits?|moves?)(?= |$)|"
     r"otherwise|or else|while (?:i|we|you|it)|"
     r"for (?:the|my|our|a) (?:party|guests|wedding|visit|photo|photos|shoot|summer|winter|christmas|kids|children|baby|"
-    r"evening|meeting|presentation|concert|show)|to match the (?:rest|mood)|to brighten (?:things|the place|it) up|"
+    r"evening|meeting|presentation|concert|show)|for (?:(?:the|my|our|your) )?(?:people|customers|clients|visitors|punters|"
+    r"guests|kids|children|staff|everyone|everybody)(?: (?:who|that|to) [^,.;!?]*)?|"
+    r"(?<=, )where (?:\S+ )+?\S+|(?<=, )not (?:out |over |there |up )*where (?:\S+ )+?\S+|to match the (?:rest|mood)|to brighten (?:things|the place|it) up|"
     r"until (?:i|we|you))"
 )
 _TRAILING_REASON = re.compile(rf"(?<=\S)(?: ,)* {_REASON}(?= |$)[^.;!?]*(?= [.;!?]|$)")
@@ -160,6 +162,7 @@ def smooth(texts: Sequence[str]) -> list[str]:
     said = _JUDGING.sub(r"\g<the> ", _plain_hues(said))
     for pattern, plain in REWORDED:
         said = pattern.sub(plain, said)
+    said = _joined_amounts(_TIMES.sub("", said))
     said = re.sub(r" (too|as well) (?:, and|,|and) ", r" \1 . ", said)
     said = _named_ones(_dropped_g(said))
     before = None
@@ -168,6 +171,30 @@ def smooth(texts: Sequence[str]) -> list[str]:
         said = _settle_commas(_TAG_END.sub("", said))
     found = said.split()
     return found if found else list(texts)
+
+
+# When it shall be done, which nobody can choose here.
+_TIMES = re.compile(
+    r"(?<=\S)(?: ,)? (?:(?:by|before|until|for|from|on|in time for|this|next|every|first thing) (?:(?:the|this|next) )?(?:monday|tuesday|"
+    r"wednesday|thursday|friday|saturday|sunday|tomorrow|tonight|today|noon|midnight|christmas|easter|weekend|summer|winter|"
+    r"morning|evening|afternoon)s?(?: morning| evening| night)?|tomorrow|tonight|today|asap)(?= [,.;!?]|$)"
+)
+
+
+def _joined_amounts(said: str) -> str:
+    """The words without a comma before the amount that ends a command: "push it back, 50 cm"."""
+    words = said.split(" ")
+    kept: list[str] = []
+    for i, word in enumerate(words):
+        if word == "," and kept and "," not in kept and Lookahead(kept).verb(Lookahead(kept).skip_polite(0)[0]) is not None:
+            rest = words[i + 1 :]
+            amount = quantities.read(rest)
+            if amount is not None and amount.kind in ("LENGTH", "ANGLE", "PERCENT"):
+                behind = rest[amount.taken :]
+                if not behind or behind[0] in (".", ";", "!", "?", ","):
+                    continue
+        kept.append(word)
+    return " ".join(kept)
 
 
 _HEDGES = bag(
@@ -286,6 +313,17 @@ def unopened(said: str) -> str:
     return _OPENING_MARKS.sub("", said)
 
 
+def _without_event(said: str) -> str:
+    """A sentence without what happens before or when somebody does something: "before the neighbours complain"."""
+    words = said.split()
+    for i in range(2, len(words) - 2):
+        if words[i] in ("before", "when", "whenever", "while") and words[i + 1] in ("the", "my", "our", "your", "any", "people"):
+            end = next((j for j in range(i, len(words)) if words[j] in (",", ".", ";")), len(words))
+            if any(w in doings.plain() or w in doings.said_of_one() for w in words[i + 3 : end]):
+                return " ".join([*words[:i], *words[end:]]).replace(" , ,", " ,")
+    return said
+
+
 def _ends_in_hue(said: str) -> bool:
     """Whether words end in a colour, so that what it shall match is a reason: "paint it navy, to match the logo"."""
     words = said.split()
@@ -296,6 +334,7 @@ def without_reason(said: str) -> str:
     """A sentence without the reason behind or in front of its command."""
     if not _FACING.search(said):
         said = _TRAILING_REASON.sub("", said)
+    said = _without_event(said)
     if (found := _MATCHING.match(said)) and _ends_in_hue(found["edit"]):
         said = found["edit"]
     if found := _LEADING_AIM.match(said):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from ..tagging.lookahead import color_at
+from ..tagging.lookahead import Lookahead, color_at
 from ..tagging.words import bag
 from .chunks import is_thing
 from .participles import at, participles
@@ -60,6 +60,14 @@ _TALLER = re.compile(
 )
 
 
+_LEFT = bag("kept stored left located placed positioned parked housed tucked stowed situated standing sitting put hung")
+
+
+def _in_degrees(said: str) -> str:
+    """A turn with its unit: "90 clockwise"."""
+    return re.sub(r"^(?:by )?(\d+) (?=(?:anti|counter)? ?clockwise)", r"\1 degrees ", said)
+
+
 # Words before a state that add nothing to it, and the verbs that "to" may stand before.
 _EMPTY = bag("to be also just now all both really being been were was is are get gets should then")
 _BECOMING = bag(
@@ -86,8 +94,14 @@ def states(thing: str, state: Sequence[str]) -> Iterator[str]:
     if re.match(rf"^(?:{GONE}|go|go away|disappear|vanish|leave)$", said):
         yield f"delete {bare_thing(thing)}"
         return
+    if words[0] in _LEFT and Lookahead(words).preposition_at(1):
+        yield f"put {thing} {' '.join(words[1:])}"
     if (form := at(participles(), words, 0)) is not None:
         yield command(form[0], thing, words[form[1] :])
+        if words[0] in ("taken", "made", "turned", "brought") and len(words) > 1:
+            yield f"make {thing} {' '.join(words[1:])}"
+    if "clockwise" in said or re.search(r"\b(?:degrees?|deg|°)(?: |$)", said):
+        yield f"rotate {thing} {_in_degrees(said)}"
     if facing := _TO_FACE.match(said):
         yield f"turn {thing} to face {facing.group('goal')}"
     if taller := _TALLER.match(said):

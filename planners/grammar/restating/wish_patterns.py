@@ -16,7 +16,8 @@ REALLY = r"(?:(?:really|just|also|still|actually|now|quite|much|so|kind of|sort 
 BETTER = (
     r"(?:a (?:lot|bit|little|touch|good deal) |much |far |so much |way |even |somewhat )?"
     r"(?:better|nicer|handier|comfier|safer|neater|smarter|best|great|good|nice|lovely|cooler|prettier|perfect|fab|"
-    r"fantastic|smarter|cosier|happier|"
+    r"fantastic|smarter|cosier|happier|safer|"
+    r"(?!(?:bigg|larg|small|tall|short|wid|narrow|dark|light|bright|high|low|clos|near|furth|long|warm|cool|pal)er)\w{2,}er|"
     r"more at home|more (?:sensible|fun|modern|elegant))"
 )
 # Before a thing and the state that it is to have.
@@ -48,7 +49,7 @@ MODAL = re.compile(
     rf"would {REALLY}(?:be|look|fit|go|do|feel|work|stand|sit|suit|make more sense) {BETTER}(?: off)?(?: if it "
     rf"(?:were|was|"
     rf"is))?|"
-    rf"needs to|need to|wants to|want to|is to|are to|was to|were to|will|would|had better|is supposed to|"
+    rf"needs to|need to|wants to|want to|is to|are to|was to|were to|will|would|had better|gets?|is getting|are getting|is supposed to|"
     rf"are supposed to|is meant to|are meant to|is going to|are going to|is due to|deserves to|cries out to|would "
     rf"be {BETTER} off|"
     rf"would like to|was supposed to|is ready to|is dying to|needs|should all|must all|should both|"
@@ -114,8 +115,8 @@ UNWANTED = tuple(
         rf"this|my|our|those|these|both|all) \S.*?) (?:taken )?(?:down|off the wall|down off the wall|off)$",
         rf"^(?P<thing>\S.*?) (?:goes|go|is going|are going|belongs?|can go|has to go|have to go|should go|must go|"
         rf"needs to go) {_IN_THE_BIN}$",
-        r"^(?P<thing>\S.*? (?:one|left|right|last|first|middle|top|bottom|back|front|wall|corner|\w+est \w+)) "
-        r"(?:goes|go)$",
+        r"^(?P<thing>(?!(?:it|that|this|there|he|she|they|which|anything|what|here|everything)\b)[^,;:]*?\w) (?:goes|is going|are going|"
+        r"comes (?:off|out|down)|goes away|has had it|must die)$",
         r"^(?:so |and |then )?(?:out|away|off) (?P<thing>(?:it|they|the \S.*?)) (?:goes|go)$",
         rf"^(?:none|not one|not a single one|not any|not a one) of (?P<thing>(?:the|those|these|my|our) \S.*?) {REALLY}"
         rf"(?:should|must|can|may|shall|is to|are to|gets to|get to|will) (?:stay|remain|be left|be kept|be there|"

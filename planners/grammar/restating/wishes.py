@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 from ..tagging.lookahead import Lookahead, color_at
+from ..vocabulary import quantities
 from .chunks import is_thing
 from .participles import at, gerunds
 from .states import bare_thing, begins_state, command, is_plain, may_end, states
@@ -156,10 +157,15 @@ def _introduced(thing: str) -> str:
 
 def _replacing(said: str) -> Iterator[str]:
     for pattern in INSTEAD:
-        if (found := pattern.match(said)) and not color_at(
-            found.group("new").split(), 1 + (found.group("new")[-2:] == "")
-        ):
+        if (found := pattern.match(said)) and not _is_amount(found.group("new").split()):
             yield f"replace {found.group('old')} with {found.group('new')}"
+
+
+def _is_amount(new: Sequence[str]) -> bool:
+    """Whether words that look like a new thing are a colour or an amount: "a dark red", "one and a half times as tall"."""
+    amount = quantities.read(new)
+    stated = amount is not None and amount.kind not in ("NUMBER", "ORDINAL")
+    return stated or color_at(new, 1) is not None
 
 
 def _of_color(said: str) -> Iterator[str]:

@@ -76,7 +76,13 @@ def _noun_expected(texts: Sequence[str], i: int) -> bool:
     "of" is not among these words, as a comparative may precede it ("the taller of the two").
     """
     behind = texts[i + 1] if i + 1 < len(texts) else "."
-    return i > 0 and texts[i - 1] in _ARTICLES and behind in _BEHIND_NOUN
+    j = i - 1
+    while j > 0 and (texts[j] in colors.BASIC or (texts[j],) in lexicon.ATTRIBUTE_PHRASES):
+        j -= 1
+    if i and texts[i - 1] in (*colors.BASIC, "grey"):
+        return True  # a colour and its noun: "the grey lounger 80 cm to the right"
+    ends = behind in _BEHIND_NOUN or behind[0].isdigit() or (behind,) in lexicon.CLOSED_PHRASES
+    return i > 0 and texts[j] in _ARTICLES and (behind in _BEHIND_NOUN if j == i - 1 else ends)
 
 
 def misspelled_name(text: str, there: frozenset[str]) -> str:

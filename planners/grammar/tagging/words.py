@@ -38,6 +38,13 @@ _CONTRACTIONS = {
     "mightn't": "might not", "ain't": "is not", "gotta": "have to", "hafta": "have to", "dunno": "do not know",
     "shan't": "shall not", "y'all": "you all", "outta": "out of", "kinda": "kind of", "sorta": "sort of",
     "wanna": "want to", "gonna": "going to", "pls": "please", "plz": "please", "thx": "thanks", "u": "you",
+    "shes": "she is", "hes": "he is", "thats": "that is", "theres": "there is", "heres": "here is", "whats": "what is",
+    "wheres": "where is", "theyre": "they are", "youre": "you are", "im": "i am", "ive": "i have", "youve": "you have",
+    "weve": "we have", "isnt": "is not", "arent": "are not", "wasnt": "was not", "werent": "were not",
+    "doesnt": "does not", "didnt": "did not", "cant": "can not", "couldnt": "could not", "wouldnt": "would not",
+    "shouldnt": "should not", "wont": "will not", "havent": "have not", "hasnt": "has not", "itll": "it will",
+    "cld": "could", "wld": "would", "shld": "should", "ur": "your", "n": "and", "em": "them", "'em": "them",
+    "ya": "you", "wot": "what", "cuz": "because", "bc": "because", "tho": "though", "abit": "a bit", "alot": "a lot",
     "teh": "the", "hte": "the", "adn": "and", "nad": "and",
 }  # fmt: skip
 # In the singular behind a number above one these are parts of a name: "a two-seater sofa".
@@ -46,6 +53,7 @@ _COUNTABLE = frozenset(
     {"seater", "person", "legged", "tier", "tiered", "burner", "drawer", "door", "armed", "bulb", "shelf", "panel"}
 )
 _TOKEN = re.compile(
+    r"->|=>|"
     r"#[0-9a-f]{3}(?:[0-9a-f]{3})?(?![0-9a-z])"
     r"|\d+(?:st|nd|rd|th)\b"
     r"|(?<!\S)-(?=\d)\d+(?:\.\d+)?"
@@ -137,6 +145,8 @@ def _parts(text: str, start: int, end: int, before: list[Word]) -> list[Word]:
     if text in ("'", '"') and not (before and before[-1].end == start and before[-1].text[-1].isdigit()):
         plural_owner = text == "'" and before and before[-1].end == start and before[-1].text.endswith("s")
         return [Word("'s", start, end)] if plural_owner else []
+    if text in ("->", "=>"):
+        return [Word(":", start, end)]
     if text == "-":
         return []
     if text in _COUNTABLE and before and before[-1].text in _COUNTED:

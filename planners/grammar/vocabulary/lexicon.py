@@ -214,6 +214,11 @@ CLOSED: dict[str, Entry] = {
     **_said("SPOT", "corner", alone=True),
     **_corners(),
     **_said("SPOT", "center", alone=True),
+    **{
+        f"in the {middle} of the {group}": ("SPOT", "center")
+        for middle in ("middle", "centre", "center")
+        for group in ("row", "line", "group", "bunch", "lot", "trio", "three", "five", "set")
+    },
     **_said("CENTER", "center"),
     **same(("SIDE", "leftmost"), "on the left, on the left side, on the left hand side, at the left, on my left, "
             "on the far left, to the far left, on the very left, farthest to the left, furthest to the left, "
@@ -372,7 +377,7 @@ ATTRIBUTES: dict[str, Entry] = {
     **same(("SUP", "highest"), "highest, topmost, top, uppermost, upper"),
     **same(("SUP", "lowest"), "lowest, bottom, bottommost, lower"),
     **same(("SUP", "middle"), "middle, centre, center, central, middlemost"),
-    **same(("SIZE", "small"), "small, little, tiny, mini, smaller"),
+    **same(("SIZE", "small"), "small, little, tiny, smaller"),
     **same(("SIZE", "large"), "big, large, huge, giant, enormous, massive, bigger, larger"),
     **same(("SIZE", "tall"), "tall, high, taller"),
     **same(("SIZE", "short"), "short, low, shorter"),
@@ -445,7 +450,7 @@ POLITE = phrases(
 
 # Never part of a noun: function words, and words whose loss would change the meaning.
 STRUCTURE = bag(
-    "if unless until till while because since when whenever although though who whom whose which what where why how "
+    "if unless until while because since when whenever although though who whom whose which what where why how "
     "that than then so last next previous former latter or nor yet no without "
     "like about through across during via be is are was were am been being do does "
     "did done have has had can could will would shall should may might must i me we us you he she they him her "
@@ -455,7 +460,7 @@ STRUCTURE = bag(
     "much many few several enough whichever whatever "
     "more less most least not none nothing nobody except but and to of from off with for as by in on at into onto "
     "it its them their itself themselves myself another every each all both any some else maybe perhaps together apart "
-    "sorry yeah yep nope okay thanks hello"
+    "sorry yeah yep nope okay thanks hello stays remains belongs gets"
 )
 ADVERB_NOUNS = bag(
     "telly brolly trolly lily fly assembly jelly belly butterfly family dolly doily holly curly woolly ply july "

@@ -121,7 +121,7 @@ VERBS: dict[str, Entry] = {
         "move, shift, slide, push, pull, bring, shove, drag, scoot, nudge, relocate, transfer, carry, reposition, "
         "move over, shift over, budge, haul, scooch, heave, lug, send, edge, jog, scootch, wheel, roll over, "
         "move along, slide over, shuffle, shunt, ease, inch, budge up, budge along, swing, swivel over, rock over, "
-        "walk",
+        "walk, bump, bump over, kick, hoof, lob over, roll along, trundle, steer, guide",
     ),
     **same(("CENTERING", None), "center, centre"),
     **same(("KEEP", None), "keep, leave"),
